@@ -1,0 +1,1 @@
+"""Parametric objects, materials and light for street scenes."""

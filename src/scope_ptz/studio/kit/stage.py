@@ -1,0 +1,193 @@
+"""The stage: where kit objects are placed and become annotated instances.
+
+Conventions. Metres, z up. World north is +y, east is +x. A *bearing* is in degrees clockwise from north seen from above.
+Every kit builder models its object at the origin, standing on z = 0, facing north (+y), right side towards +x.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import bpy
+from mathutils import Matrix, Vector
+
+INSTANCE_PROP = "scope_instance"
+"""Custom property of every annotated Blender object: the string id of the instance it belongs to."""
+
+
+@dataclass
+class TextMark:
+    """One readable text on an object, in the object's own frame (before placement).
+
+    ``centre`` is the middle of the text block; ``right`` runs along the line of text as a reader sees it and ``up`` towards the
+    top of the letters (unit vectors); the outward normal is ``right x up``. ``cap_height_m`` is the height of a capital letter.
+    """
+
+    text: str
+    centre: tuple[float, float, float]
+    right: tuple[float, float, float]
+    up: tuple[float, float, float]
+    width_m: float
+    height_m: float
+    cap_height_m: float
+
+
+@dataclass
+class Built:
+    """What a kit builder returns: the Blender objects of one thing, all parented to ``root``, and its readable texts."""
+
+    root: bpy.types.Object
+    objects: list[bpy.types.Object]
+    texts: list[TextMark] = field(default_factory=list)
+
+    @classmethod
+    def of(cls, name: str, objects: Iterable[bpy.types.Object], texts: Sequence[TextMark] = ()) -> Built:
+        """Parent ``objects`` (already modelled around the origin) to a new empty and return them as one thing."""
+        root = bpy.data.objects.new(name, None)
+        root.empty_display_size = 0.2
+        bpy.context.scene.collection.objects.link(root)
+        parts = list(objects)
+        for part in parts:
+            if part.parent is None:
+                part.parent = root
+        return cls(root, parts, list(texts))
+
+    def copy(self) -> Built:
+        """A linked duplicate: mesh data are shared, so a hundred cones cost one cone of memory."""
+        twins: dict[bpy.types.Object, bpy.types.Object] = {}
+        for obj in [self.root, *self.objects]:
+            twin = obj.copy()
+            bpy.context.scene.collection.objects.link(twin)
+            twins[obj] = twin
+        for obj, twin in twins.items():
+            if obj.parent in twins:
+                twin.parent = twins[obj.parent]
+                twin.matrix_parent_inverse = obj.matrix_parent_inverse.copy()
+        return Built(twins[self.root], [twins[o] for o in self.objects], list(self.texts))
+
+
+@dataclass
+class Instance:
+    """An annotated thing of the scene. ``number`` is its value in the ID layer (also ``object.pass_index``)."""
+
+    id: str
+    number: int
+    category: str
+    name: str
+    built: Built
+    attributes: dict[str, Any]
+    parent: str | None = None
+
+
+@dataclass
+class Viewpoint:
+    """One optical centre. ``pan0_bearing_deg`` is the world bearing at which the camera's pan reads 0."""
+
+    name: str
+    position: tuple[float, float, float]
+    pan0_bearing_deg: float
+    description: str
+
+
+@dataclass
+class Preset:
+    """A named pose of the scene, in the pan/tilt/zoom frame of its viewpoint. One preset of the scene is home."""
+
+    name: str
+    viewpoint: str
+    pan_deg: float
+    tilt_deg: float
+    zoom: float
+    description: str
+
+
+@dataclass
+class ActorPath:
+    """A moving thing: a builder, and where it is at any time.
+
+    ``waypoints`` are ``(t_s, x, y, z)``, followed at the speed that they imply, heading along the motion; ``period_s`` repeats it.
+    ``build`` makes the object for one gait phase in [0, 1) (0 for things without legs); ``stride_m`` is the length of one gait cycle.
+    """
+
+    id: str
+    number: int
+    category: str
+    name: str
+    build: Any
+    waypoints: list[tuple[float, float, float, float]]
+    period_s: float
+    attributes: dict[str, Any]
+    stride_m: float | None = None
+
+
+class Stage:
+    """Collects what a scene module builds. Ids are ``category-NN`` in order of placement, and never change afterwards."""
+
+    def __init__(self, name: str, title: str) -> None:
+        self.name = name
+        self.title = title
+        self.instances: list[Instance] = []
+        self.viewpoints: list[Viewpoint] = []
+        self.presets: list[Preset] = []
+        self.home_preset: str | None = None
+        self.actors: list[ActorPath] = []
+        self.absent: list[str] = []
+        self._numbers: dict[str, int] = {}
+
+    def place(
+        self,
+        built: Built,
+        category: str,
+        name: str,
+        location: tuple[float, float, float],
+        bearing_deg: float = 0.0,
+        *,
+        parent: str | None = None,
+        lean_deg: tuple[float, float] = (0.0, 0.0),
+        scale: float = 1.0,
+        **attributes: Any,
+    ) -> str:
+        """Put a built thing into the world and annotate it; returns the instance id.
+
+        ``name`` is the plain-English noun phrase a person would use ("white van"). Attributes are facts worth asking about:
+        colour, material, state ("open", "lit", "parked"), facing, and so on; values are short lower-case strings, numbers or booleans.
+        """
+        self.put(built, location, bearing_deg, lean_deg=lean_deg, scale=scale)
+        count = self._numbers.get(category, 0) + 1
+        self._numbers[category] = count
+        instance = Instance(
+            f"{category.replace(' ', '-')}-{count:02d}", len(self.instances) + 1, category, name, built, attributes, parent
+        )
+        for obj in built.objects:
+            obj[INSTANCE_PROP] = instance.id
+            obj.pass_index = instance.number
+        self.instances.append(instance)
+        return instance.id
+
+    def put(
+        self,
+        built: Built,
+        location: tuple[float, float, float],
+        bearing_deg: float = 0.0,
+        *,
+        lean_deg: tuple[float, float] = (0.0, 0.0),
+        scale: float = 1.0,
+    ) -> Built:
+        """Put a thing into the world without annotating it (ground, far scenery): its pass index stays 0."""
+        rotation = Matrix.Rotation(-math.radians(bearing_deg), 4, "Z")
+        rotation @= Matrix.Rotation(math.radians(lean_deg[0]), 4, "X") @ Matrix.Rotation(math.radians(lean_deg[1]), 4, "Y")
+        built.root.matrix_world = Matrix.Translation(Vector(location)) @ rotation @ Matrix.Scale(scale, 4)
+        return built
+
+    def viewpoint(self, name: str, position: tuple[float, float, float], pan0_bearing_deg: float, description: str) -> None:
+        self.viewpoints.append(Viewpoint(name, position, pan0_bearing_deg, description))
+
+    def preset(
+        self, name: str, viewpoint: str, pan_deg: float, tilt_deg: float, zoom: float, description: str, *, home: bool = False
+    ) -> None:
+        self.presets.append(Preset(name, viewpoint, pan_deg, tilt_deg, zoom, description))
+        if home:
+            self.home_preset = name

@@ -1,0 +1,1 @@
+"""The scenes, each one module with a ``build(stage)`` function."""
