@@ -1,0 +1,20 @@
+"""Poses, optics and projections. Pure functions of numbers; degrees outside, radians only in here."""
+
+from scope_ptz.geometry.optics import AXIS_M5075_G, Limits, Optics
+from scope_ptz.geometry.poses import Pose, wrap_pan_deg
+from scope_ptz.geometry.projection import Equirectangular, Perspective, Projection
+from scope_ptz.geometry.sphere import angle_between_deg, direction, pan_tilt_deg
+
+__all__ = [
+    "AXIS_M5075_G",
+    "Equirectangular",
+    "Limits",
+    "Optics",
+    "Perspective",
+    "Pose",
+    "Projection",
+    "angle_between_deg",
+    "direction",
+    "pan_tilt_deg",
+    "wrap_pan_deg",
+]

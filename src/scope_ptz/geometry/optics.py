@@ -1,0 +1,97 @@
+"""Zoom to field of view, and the limits of a camera's motion."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from scope_ptz.geometry.poses import Pose, wrap_pan_deg
+
+
+@dataclass(frozen=True, slots=True)
+class Optics:
+    """The zoom curve as a table of ``(magnification, horizontal field of view in degrees)``, widest first.
+
+    Between the rows, focal length (1 / tan(hfov / 2)) is interpolated linearly in magnification: real zoom curves are close to
+    that and no formula fits all lenses (an M5075-G is 5x by name and 5.8x by its two field angles).
+    """
+
+    table: tuple[tuple[float, float], ...]
+
+    def __post_init__(self) -> None:
+        zooms = [z for z, _ in self.table]
+        fields = [h for _, h in self.table]
+        if len(self.table) < 2 or sorted(set(zooms)) != zooms or sorted(set(fields), reverse=True) != fields:
+            raise ValueError("a zoom table needs two or more rows of rising magnification and falling field of view")
+
+    @property
+    def min_zoom(self) -> float:
+        return self.table[0][0]
+
+    @property
+    def max_zoom(self) -> float:
+        return self.table[-1][0]
+
+    def _focals(self) -> list[float]:
+        return [1.0 / math.tan(math.radians(h) / 2) for _, h in self.table]
+
+    def focal(self, zoom: float) -> float:
+        """Focal length in units of half the image width: 1 / tan(hfov / 2)."""
+        return float(np.interp(zoom, [z for z, _ in self.table], self._focals()))
+
+    def hfov_deg(self, zoom: float) -> float:
+        """Horizontal field of view in degrees at a magnification (clamped to the table)."""
+        return math.degrees(2 * math.atan(1.0 / self.focal(zoom)))
+
+    def zoom_for_focal(self, focal: float) -> float:
+        """The magnification with that focal length (in half widths), clamped to the table."""
+        return float(np.interp(focal, self._focals(), [z for z, _ in self.table]))
+
+    def zoom_for_hfov(self, hfov_deg: float) -> float:
+        """The magnification that shows that horizontal field of view, clamped to the table."""
+        return self.zoom_for_focal(1.0 / math.tan(math.radians(hfov_deg) / 2))
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """How far a camera goes. ``pan_endless``: no stops, pan wraps."""
+
+    min_pan_deg: float = -179.0
+    max_pan_deg: float = 179.0
+    min_tilt_deg: float = -60.0
+    max_tilt_deg: float = 30.0
+    min_zoom: float = 1.0
+    max_zoom: float = 5.0
+    pan_endless: bool = False
+
+    def clamp(self, wanted: Pose) -> tuple[Pose, tuple[str, ...]]:
+        """The nearest allowed pose and which of "pan", "tilt", "zoom" were cut.
+
+        ``wanted.pan_deg`` is taken as it is, unwrapped: 170 + 20 = 190 stops at 179 and never turns the long way round.
+        """
+        pan = wrap_pan_deg(wanted.pan_deg) if self.pan_endless else _cut(wanted.pan_deg, self.min_pan_deg, self.max_pan_deg)
+        tilt = _cut(wanted.tilt_deg, self.min_tilt_deg, self.max_tilt_deg)
+        zoom = _cut(wanted.zoom, self.min_zoom, self.max_zoom)
+        pairs = (("pan", pan, pan if self.pan_endless else wanted.pan_deg), ("tilt", tilt, wanted.tilt_deg), ("zoom", zoom, wanted.zoom))
+        return Pose(pan, tilt, zoom), tuple(name for name, got, asked in pairs if abs(got - asked) > 1e-9)
+
+    def aim_pan_deg(self, pan_deg: float) -> float:
+        """The turn-equivalent of a direction that lies within the stops if any does (a direction, not a relative move)."""
+        wrapped = wrap_pan_deg(pan_deg)
+        for candidate in (wrapped, wrapped + 360.0, wrapped - 360.0):
+            if self.min_pan_deg <= candidate <= self.max_pan_deg:
+                return candidate
+        return wrapped
+
+
+def _cut(value: float, low: float, high: float) -> float:
+    return min(max(value, low), high)
+
+
+AXIS_M5075_G = Optics(
+    ((1.0, 71.0), (1.5, 48.1), (2.0, 35.9), (2.5, 28.5), (3.0, 23.6), (3.5, 20.2), (4.0, 17.6), (4.5, 15.6), (5.0, 14.0))
+)
+"""Horizontal field of view of the AXIS M5075-G, wide and tele ends from its data sheet; the rows between are a smooth curve
+through the two, not measurements."""

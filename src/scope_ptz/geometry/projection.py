@@ -1,0 +1,95 @@
+"""From points of a picture to directions and back, for views and panoramas alike.
+
+Points are normalised to [0, 1] with the origin at the top-left corner of the picture (not the middle of its first pixel): pixel
+``i`` of ``n`` has its middle at ``(i + 0.5) / n``. Arrays of points have shape ``(..., 2)``, of directions ``(..., 3)``.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from scope_ptz.geometry.sphere import camera_axes, direction, pan_tilt_deg
+
+Floats = NDArray[np.float64]
+
+
+class Projection(Protocol):
+    """How the pixels of a picture map to directions around the camera."""
+
+    @property
+    def width(self) -> int: ...
+
+    @property
+    def height(self) -> int: ...
+
+    def directions(self, points: ArrayLike) -> Floats:
+        """Unit vectors (..., 3) through normalised points (..., 2)."""
+        ...
+
+    def points(self, directions: ArrayLike) -> Floats:
+        """Normalised points (..., 2) of directions (..., 3); NaN where a direction cannot appear at all (behind a lens)."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Perspective:
+    """A pinhole view with square pixels."""
+
+    pan_deg: float
+    tilt_deg: float
+    hfov_deg: float
+    width: int
+    height: int
+
+    @property
+    def focal_px(self) -> float:
+        """Focal length in pixels."""
+        return self.width / 2 / math.tan(math.radians(self.hfov_deg) / 2)
+
+    @property
+    def vfov_deg(self) -> float:
+        """Vertical field of view in degrees."""
+        return math.degrees(2 * math.atan(self.height / 2 / self.focal_px))
+
+    def directions(self, points: ArrayLike) -> Floats:
+        p = np.asarray(points, dtype=np.float64)
+        local = np.stack(
+            [(p[..., 0] - 0.5) * self.width, (0.5 - p[..., 1]) * self.height, np.full(p.shape[:-1], self.focal_px)], axis=-1
+        )
+        rays = local @ camera_axes(self.pan_deg, self.tilt_deg)
+        return np.asarray(rays / np.linalg.norm(rays, axis=-1, keepdims=True))
+
+    def points(self, directions: ArrayLike) -> Floats:
+        local = np.asarray(directions, dtype=np.float64) @ camera_axes(self.pan_deg, self.tilt_deg).T
+        depth = np.where(local[..., 2] > 1e-9, local[..., 2], np.nan)
+        x = 0.5 + self.focal_px * local[..., 0] / depth / self.width
+        y = 0.5 - self.focal_px * local[..., 1] / depth / self.height
+        return np.stack([x, y], axis=-1)
+
+
+@dataclass(frozen=True, slots=True)
+class Equirectangular:
+    """A panorama: columns are pan, rows are tilt, both linear. ``pan_span_deg`` up to 360, clockwise from ``left_pan_deg``."""
+
+    left_pan_deg: float
+    pan_span_deg: float
+    top_tilt_deg: float
+    bottom_tilt_deg: float
+    width: int
+    height: int
+
+    def directions(self, points: ArrayLike) -> Floats:
+        p = np.asarray(points, dtype=np.float64)
+        pan = self.left_pan_deg + p[..., 0] * self.pan_span_deg
+        tilt = self.top_tilt_deg + p[..., 1] * (self.bottom_tilt_deg - self.top_tilt_deg)
+        return direction(pan, tilt)
+
+    def points(self, directions: ArrayLike) -> Floats:
+        pan, tilt = pan_tilt_deg(directions)
+        turn = np.mod(pan - self.left_pan_deg, 360.0)
+        return np.stack([turn / self.pan_span_deg, (self.top_tilt_deg - tilt) / (self.top_tilt_deg - self.bottom_tilt_deg)], axis=-1)

@@ -1,0 +1,38 @@
+"""Directions on the sphere around a camera.
+
+The camera's own frame: x right and y forward at pan 0, z up. A direction is a unit vector; arrays have shape ``(..., 3)``.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Floats = NDArray[np.float64]
+
+
+def direction(pan_deg: ArrayLike, tilt_deg: ArrayLike) -> Floats:
+    """Unit vectors ``(..., 3)`` towards pan/tilt angles in degrees."""
+    pan, tilt = np.radians(pan_deg), np.radians(tilt_deg)
+    return np.stack(np.broadcast_arrays(np.sin(pan) * np.cos(tilt), np.cos(pan) * np.cos(tilt), np.sin(tilt)), axis=-1)
+
+
+def pan_tilt_deg(vectors: ArrayLike) -> tuple[Floats, Floats]:
+    """Pan in (-180, 180] and tilt in [-90, 90] degrees of vectors ``(..., 3)`` of any length above zero."""
+    v = np.asarray(vectors, dtype=np.float64)
+    pan = np.degrees(np.arctan2(v[..., 0], v[..., 1]))
+    tilt = np.degrees(np.arctan2(v[..., 2], np.hypot(v[..., 0], v[..., 1])))
+    return np.where(pan <= -180.0, 180.0, pan), tilt
+
+
+def angle_between_deg(a: ArrayLike, b: ArrayLike) -> Floats:
+    """Angle between vectors ``(..., 3)``, exact for small angles too (atan2 of cross and dot)."""
+    u, v = np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)
+    return np.degrees(np.arctan2(np.linalg.norm(np.cross(u, v), axis=-1), np.sum(u * v, axis=-1)))
+
+
+def camera_axes(pan_deg: float, tilt_deg: float) -> Floats:
+    """Rows right, up, forward (3, 3): multiply by a direction to get its coordinates in the view of a pose."""
+    p, t = np.radians(pan_deg), np.radians(tilt_deg)
+    sp, cp, st, ct = np.sin(p), np.cos(p), np.sin(t), np.cos(t)
+    return np.array([[cp, -sp, 0.0], [-sp * st, -cp * st, ct], [sp * ct, cp * ct, st]])

@@ -1,0 +1,394 @@
+"""Car bodies: paints with printed details, lofted shells with glazing, number plates and lettering."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import bmesh
+import bpy
+from mathutils import Vector
+from mathutils.bvhtree import BVHTree
+
+from scope_ptz.studio.kit import mesh, shading, wheels
+from scope_ptz.studio.kit.parts import Flat, Parts, Point
+from scope_ptz.studio.kit.stage import Built, TextMark
+
+PAINTS: dict[str, tuple[float, float, float]] = {
+    "white": (0.78, 0.78, 0.76),
+    "black": (0.010, 0.010, 0.012),
+    "silver": (0.50, 0.52, 0.53),
+    "grey": (0.12, 0.125, 0.13),
+    "light grey": (0.36, 0.37, 0.37),
+    "red": (0.46, 0.010, 0.012),
+    "dark red": (0.14, 0.006, 0.010),
+    "blue": (0.012, 0.10, 0.48),
+    "dark blue": (0.006, 0.018, 0.085),
+    "light blue": (0.20, 0.43, 0.66),
+    "green": (0.012, 0.19, 0.045),
+    "dark green": (0.006, 0.055, 0.022),
+    "yellow": (0.82, 0.50, 0.006),
+    "orange": (0.78, 0.17, 0.006),
+    "brown": (0.10, 0.045, 0.020),
+    "beige": (0.50, 0.42, 0.29),
+    "purple": (0.11, 0.018, 0.20),
+}
+"""Paint colours by plain name, linear RGB."""
+
+_METALLIC = {"silver", "grey", "light grey", "blue", "dark blue", "dark red", "dark green", "brown"}
+Range = tuple[float, float]
+ANY: Range = (-99.0, 99.0)
+
+
+@dataclass(frozen=True)
+class Patch:
+    """A detail printed on the paint: everything with ``|x|``, y and z inside the ranges (metres, object frame).
+
+    ``y_per_z`` slants lines that are upright otherwise, ``z_per_x`` and ``z_per_y`` those that are level.
+    """
+
+    colour: tuple[float, float, float]
+    x: Range = ANY
+    y: Range = ANY
+    z: Range = ANY
+    roughness: float = 0.5
+    emission: float = 0.0
+    y_per_z: float = 0.0
+    y_per_x: float = 0.0
+    z_per_x: float = 0.0
+    z_per_y: float = 0.0
+
+
+GAP = (0.004, 0.004, 0.004)
+TRIM = (0.016, 0.016, 0.017)
+HEADLAMP = (0.72, 0.75, 0.78)
+REAR_LAMP = (0.55, 0.006, 0.008)
+AMBER = (0.80, 0.22, 0.01)
+
+
+def paint(model: str, colour: str, patches: Sequence[Patch] = (), *, dirt_top_m: float = 0.55, dirt: float = 0.55) -> bpy.types.Material:
+    """Lacquered paint of one colour with the model's patches and road dirt fading out at ``dirt_top_m``."""
+    name = f"paint {model} {colour}"
+    found = bpy.data.materials.get(name)
+    if found is not None:
+        return found
+    sh = shading.Shader(name)
+    coords = sh.object_coords()
+    x, y, z = sh.xyz(coords)
+    x = sh.math("ABSOLUTE", x)
+    base, rough, glow = sh.mix(0.0, PAINTS[colour], PAINTS[colour]), 0.32, sh.mix(0.0, (0, 0, 0), (0, 0, 0))
+    metal = 0.35 if colour in _METALLIC else 0.0
+    coat: shading.Value = 1.0
+    for patch in patches:
+        mask = _patch_mask(sh, patch, x, y, z)
+        base = sh.mix(mask, base, patch.colour)
+        rough = sh.math("ADD", rough, sh.math("MULTIPLY", mask, patch.roughness - 0.32), clamp=True)
+        metal = sh.math("MULTIPLY", metal, sh.ramp(mask, 0, 1, 1, 0, smooth=False))
+        if patch.roughness > 0.5:
+            coat = sh.math("MULTIPLY", coat, sh.ramp(mask, 0, 1, 1, 0, smooth=False))
+        if patch.emission:
+            strength = tuple(c * patch.emission for c in patch.colour)
+            glow = sh.mix(mask, glow, strength)
+    grime = sh.math("MULTIPLY", sh.ramp(z, 0.15, dirt_top_m, dirt, 0.0), sh.ramp(sh.noise(coords, 4.0), 0.3, 0.7, 0.35, 1.0))
+    base = sh.mix(grime, base, (0.085, 0.075, 0.062))
+    coat = sh.math("MULTIPLY", coat, sh.ramp(grime, 0, 0.4, 1, 0))
+    rough = sh.math("ADD", rough, grime, clamp=True)
+    return sh.surface(
+        base_color=base, roughness=rough, metallic=metal, coat_weight=coat, coat_roughness=0.04, emission_color=glow, emission_strength=1.0
+    )
+
+
+def _patch_mask(sh: shading.Shader, patch: Patch, x: shading.Value, y: shading.Value, z: shading.Value) -> shading.Value:
+    if patch.y_per_z:
+        y = sh.math("SUBTRACT", y, sh.math("MULTIPLY", z, patch.y_per_z))
+    if patch.y_per_x:
+        y = sh.math("SUBTRACT", y, sh.math("MULTIPLY", x, patch.y_per_x))
+    if patch.z_per_x:
+        z = sh.math("SUBTRACT", z, sh.math("MULTIPLY", x, patch.z_per_x))
+    if patch.z_per_y:
+        z = sh.math("SUBTRACT", z, sh.math("MULTIPLY", y, patch.z_per_y))
+    bands = [sh.band(v, *r) for v, r in ((x, patch.x), (y, patch.y), (z, patch.z)) if r != ANY]
+    mask = bands[0]
+    for other in bands[1:]:
+        mask = sh.math("MULTIPLY", mask, other)
+    return mask
+
+
+def upright_gap(y: float, z: Range, *, x: Range = (0.5, 9.0), y_per_z: float = 0.0, width: float = 0.009) -> Patch:
+    """A door's edge: an upright dark line on the sides at ``y`` (where z = 0 if slanted)."""
+    return Patch(GAP, x=x, y=(y - width / 2, y + width / 2), z=z, y_per_z=y_per_z, roughness=0.9)
+
+
+def level_gap(z: float, y: Range, *, x: Range = (0.5, 9.0), z_per_y: float = 0.0, width: float = 0.009) -> Patch:
+    """A door's bottom edge or a swage line: a level dark line on the sides at height ``z`` (where y = 0 if slanted)."""
+    return Patch(GAP, x=x, y=y, z=(z - width / 2, z + width / 2), z_per_y=z_per_y, roughness=0.9)
+
+
+def glass() -> bpy.types.Material:
+    return shading.plain("vehicle glass", (0.012, 0.015, 0.017), 0.03)
+
+
+def black_trim() -> bpy.types.Material:
+    return shading.plain("vehicle black trim", TRIM, 0.55)
+
+
+def lamp(colour: str) -> bpy.types.Material:
+    """Lamp covers: "white", "red", "amber", or "beacon" (an orange warning light, lit)."""
+    rgb, glow = {"white": (HEADLAMP, 0.35), "red": (REAR_LAMP, 0.25), "amber": (AMBER, 0.2), "beacon": ((1.0, 0.25, 0.01), 1.2)}[colour]
+    name = f"vehicle lamp {colour}"
+    return bpy.data.materials.get(name) or shading.Shader(name).surface(
+        base_color=rgb, roughness=0.12, emission_color=rgb, emission_strength=glow, coat_weight=1.0
+    )
+
+
+def paint_slot(number: int = 0) -> bpy.types.Material:
+    """The placeholder that ``finish`` replaces by the vehicle's own paint."""
+    return shading.plain(f"vehicle paint slot {number}", (0.5, 0.5, 0.5))
+
+
+@dataclass(frozen=True)
+class Station:
+    """A cross-section of a body at ``y``: right-hand ``(x, z)`` points from the floor's middle round to the roof's middle.
+
+    ``dy`` moves single points along y, which rakes and bows the section.
+    """
+
+    y: float
+    section: Sequence[Flat]
+    dy: dict[int, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Pane:
+    """A window: the cage between two stations and two rows, on both sides, or joined ``across`` the middle."""
+
+    stations: tuple[int, int]
+    rows: tuple[int, int]
+    across: bool = False
+    frame_m: float = 0.025
+
+
+def shell(
+    stations: Sequence[Station],
+    panes: Sequence[Pane],
+    *,
+    creased_rows: dict[int, float],
+    bulge: tuple[float, float],
+    cutters: Parts | None = None,
+    levels: int = 3,
+) -> bpy.types.Mesh:
+    """A closed body lofted through ``stations`` from front to rear and subdivided; windows are framed in black trim.
+
+    ``bulge`` bows the front and rear ends outwards; ``cutters`` are solids taken away (wheel arches), leaving their own material.
+    """
+    bm = bmesh.new()
+    crease = bm.edges.layers.float.new("crease_edge")
+    corner = bm.verts.layers.float.new("crease_vert")
+    rows = len(stations[0].section)
+    ring = 2 * rows - 2
+    grid = [[bm.verts.new(_ring_point(s, j, rows)) for j in range(ring)] for s in stations]
+    quads = {}
+    for i in range(len(grid) - 1):
+        for j in range(ring):
+            k = (j + 1) % ring
+            quads[i, j] = bm.faces.new((grid[i][j], grid[i + 1][j], grid[i + 1][k], grid[i][k]))
+    for end, push in ((grid[0], bulge[0]), (grid[-1], -bulge[1])):
+        _cap(bm, end, rows, push)
+    bm.edges.ensure_lookup_table()
+    for row, strength in creased_rows.items():
+        for column in {row, (ring - row) % ring}:
+            for i in range(len(grid) - 1):
+                bm.edges.get((grid[i][column], grid[i + 1][column]))[crease] = strength
+    for pane in panes:
+        span = range(*pane.stations)
+        right = [quads[i, j] for i in span for j in range(*pane.rows)]
+        left = [quads[i, ring - 1 - j] for i in span for j in range(*pane.rows)]
+        for region in [right + left] if pane.across else [right, left]:
+            _glaze(bm, region, pane.frame_m, crease, corner)
+    bmesh.ops.recalc_face_normals(bm, faces=bm.faces[:])
+    data = bpy.data.meshes.new("shell")
+    bm.to_mesh(data)
+    bm.free()
+    for material in (paint_slot(), black_trim(), glass()):
+        data.materials.append(material)
+    data.polygons.foreach_set("use_smooth", [True] * len(data.polygons))
+    return _evaluated(data, cutters, levels)
+
+
+def _ring_point(station: Station, j: int, rows: int) -> Point:
+    row = j if j < rows else 2 * rows - 2 - j
+    x, z = station.section[row]
+    return (x if j < rows else -x, station.y + station.dy.get(row, 0.0), z)
+
+
+def _cap(bm: bmesh.types.BMesh, end: list[bmesh.types.BMVert], rows: int, push: float) -> None:
+    ring = 2 * rows - 2
+    spine = [end[0]]
+    for row in range(2, rows - 2):
+        middle = end[row].co.copy()
+        middle.x, middle.y = 0.0, middle.y + push
+        spine.append(bm.verts.new(middle))
+    spine.append(end[rows - 1])
+    for step in range(rows - 3):
+        low, high = step + 1, step + 2
+        bm.faces.new((end[low], end[high], spine[step + 1], spine[step]))
+        bm.faces.new((spine[step], spine[step + 1], end[ring - high], end[ring - low]))
+
+
+def _glaze(
+    bm: bmesh.types.BMesh, region: list[bmesh.types.BMFace], frame_m: float, crease: bmesh.types.BMLayerItem, corner: bmesh.types.BMLayerItem
+) -> None:
+    bmesh.ops.inset_region(bm, faces=region, thickness=frame_m, use_even_offset=True, use_boundary=True)
+    _crease_border(region, 0.9, crease, corner)
+    rim = bmesh.ops.inset_region(bm, faces=region, thickness=0.016, depth=-0.010, use_even_offset=True, use_boundary=True)
+    _crease_border(region, 0.9, crease, corner)
+    for face in rim["faces"]:
+        face.material_index = 1
+    for face in region:
+        face.material_index = 2
+
+
+def _crease_border(
+    region: list[bmesh.types.BMFace], strength: float, crease: bmesh.types.BMLayerItem, corner: bmesh.types.BMLayerItem
+) -> None:
+    inside = set(region)
+    for face in region:
+        for edge in face.edges:
+            if sum(f in inside for f in edge.link_faces) == 1:
+                edge[crease] = strength
+        for vert in face.verts:
+            if sum(f in inside for f in vert.link_faces) == 1:
+                vert[corner] = 0.72
+
+
+def _evaluated(data: bpy.types.Mesh, cutters: Parts | None, levels: int) -> bpy.types.Mesh:
+    collection = bpy.context.scene.collection
+    obj = bpy.data.objects.new("shell", data)
+    collection.objects.link(obj)
+    smooth = obj.modifiers.new("smooth", "SUBSURF")
+    smooth.levels, smooth.render_levels = levels, levels
+    tool = None
+    if cutters is not None:
+        tool = bpy.data.objects.new("cutters", cutters.build("cutters"))
+        collection.objects.link(tool)
+        cut = obj.modifiers.new("cut", "BOOLEAN")
+        cut.object, cut.operation, cut.solver, cut.material_mode = tool, "DIFFERENCE", "EXACT", "TRANSFER"
+    graph = bpy.context.evaluated_depsgraph_get()
+    made = bpy.data.meshes.new_from_object(obj.evaluated_get(graph), depsgraph=graph)
+    for used in (obj, tool):
+        if used is not None:
+            spent = used.data
+            bpy.data.objects.remove(used, do_unlink=True)
+            bpy.data.meshes.remove(spent)
+    return made
+
+
+class Surface:
+    """Ray casts against a made mesh: where fittings and lettering touch the body."""
+
+    def __init__(self, made: bpy.types.Mesh) -> None:
+        self.tree = BVHTree.FromPolygons([v.co for v in made.vertices], [p.vertices for p in made.polygons])
+
+    def side(self, y: float, z: float) -> float:
+        """The body's half width at ``(y, z)`` on the right."""
+        hit = self.tree.ray_cast(Vector((9.0, y, z)), Vector((-1, 0, 0)))[0]
+        return hit.x if hit is not None else 0.0
+
+    def end(self, x: float, z: float, front: bool) -> float:
+        """Where the front or rear of the body is (y) at ``(x, z)``."""
+        sign = 1.0 if front else -1.0
+        hit = self.tree.ray_cast(Vector((x, 20.0 * sign, z)), Vector((0, -sign, 0)))[0]
+        return hit.y if hit is not None else 0.0
+
+    def top(self, x: float, y: float) -> float:
+        """The height of the body at ``(x, y)``."""
+        hit = self.tree.ray_cast(Vector((x, y, 20.0)), Vector((0, 0, -1)))[0]
+        return hit.z if hit is not None else 0.0
+
+
+Lettering = tuple[bpy.types.Object, TextMark]
+
+
+def ink(colour: str = "black") -> bpy.types.Material:
+    rgb = PAINTS.get(colour, (0.006, 0.006, 0.006))
+    return shading.plain(f"lettering {colour}", rgb, 0.6)
+
+
+def words(
+    body: str, cap_m: float, centre: Point, facing: str, colour: str = "black", *, width_m: float = math.inf, onto: Surface | None = None
+) -> Lettering:
+    """Lettering that fits ``width_m``; ``onto`` lays the letters on a curved side instead of a plane."""
+    obj, mark = mesh.text("lettering", body, cap_m, centre, ink(colour), facing=facing, thickness_m=0.0 if onto else 0.002)
+    axis = 0 if facing in ("+Y", "-Y") else 1
+    squeeze = min(1.0, width_m / mark.width_m)
+    mark.width_m *= squeeze
+    sign = -1.0 if facing == "-X" else 1.0
+    reach = []
+    for vertex in obj.data.vertices:
+        vertex.co[axis] = mark.centre[axis] + (vertex.co[axis] - mark.centre[axis]) * squeeze
+        if onto is not None:
+            reach.append(onto.side(vertex.co.y * 1.0, vertex.co.z))
+            vertex.co.x = sign * (reach[-1] + 0.004)
+    if reach:
+        mark.centre = (sign * (sum(reach) / len(reach) + 0.004), mark.centre[1], mark.centre[2])
+    return obj, mark
+
+
+def both_sides(body: str, cap_m: float, y: float, z: float, colour: str, *, x: float = 0.0, width_m: float = math.inf, onto: Surface | None = None) -> list[Lettering]:
+    """The same lettering on the right and on the left, proud of the panel at ``x`` or laid ``onto`` the surface."""
+    return [
+        words(body, cap_m, (sign * (x + 0.003), y, z), facing, colour, width_m=width_m, onto=onto) for sign, facing in ((1, "+X"), (-1, "-X"))
+    ]
+
+
+def plates(plate: str, front: tuple[float, float], rear: tuple[float, float]) -> tuple[Parts, list[Lettering]]:
+    """UK number plates, white in front and yellow behind; ``front`` and ``rear`` are the (y, z) of the plate's face."""
+    parts, letters = Parts(), []
+    for (y, z), colour, rgb, sign in ((front, "white", (0.82, 0.82, 0.80), 1), (rear, "yellow", (0.86, 0.52, 0.01), -1)):
+        parts.box((0.55, 0.016, 0.135), (0, y - sign * 0.004, z), black_trim(), bevel_m=0.004)
+        face = shading.plain(f"number plate {colour}", rgb, 0.35)
+        parts.box((0.52, 0.012, 0.111), (0, y, z), face, bevel_m=0.003)
+        letters.append(words(plate, 0.079, (0, y + sign * 0.0085, z), "+Y" if sign > 0 else "-Y", width_m=0.47))
+    return parts, letters
+
+
+def body_mesh(model: str, make: Callable[[], Parts]) -> bpy.types.Mesh:
+    """The model's mesh, made on first use and shared by every vehicle of that model in the file."""
+    return bpy.data.meshes.get(f"kit {model}") or make().build(f"kit {model}")
+
+
+def finish(
+    name: str, body: bpy.types.Mesh, paints: Sequence[bpy.types.Material], letters: Sequence[Lettering] = (), fittings: Parts | None = None
+) -> Built:
+    """A vehicle from the shared mesh in its own paint, with its own lettering and fittings in a second object."""
+    obj = bpy.data.objects.new(name, body)
+    bpy.context.scene.collection.objects.link(obj)
+    for number, material in enumerate(paints):
+        slot = next(s for s in obj.material_slots if s.material == paint_slot(number))
+        slot.link = "OBJECT"
+        slot.material = material
+    own = fittings or Parts()
+    marks = []
+    for lettering, mark in letters:
+        own.mesh(lettering.data)
+        marks.append(mark)
+        spent = lettering.data
+        bpy.data.objects.remove(lettering, do_unlink=True)
+        bpy.data.meshes.remove(spent)
+    objects = [obj]
+    if own.materials:
+        extra = bpy.data.objects.new(f"{name} fittings", own.build(f"{name} fittings"))
+        bpy.context.scene.collection.objects.link(extra)
+        objects.append(extra)
+    return Built.of(name, objects, marks)
+
+
+def arches(axles: Sequence[float], radius: float, inner_x: float) -> Parts:
+    """Cutters for the wheel arches of axles at y, reaching from ``inner_x`` outwards on both sides."""
+    tools = Parts()
+    for y in axles:
+        for sign in (-1, 1):
+            low, high = sorted((sign * inner_x, sign * 1.6))
+            tools.disc(radius, low, high, (0, y, radius * 0.86), wheels.shade(), axis="X", steps=40)
+    return tools

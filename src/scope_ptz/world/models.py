@@ -1,0 +1,211 @@
+"""The pack format: what a scene folder and its viewpoint folders hold, as validated models.
+
+Layout of a scene folder::
+
+    scene.json                    SceneFile: instances, texts, presets, actors, absences
+    <viewpoint>/manifest.json     Manifest: optics-free geometry of every layer, with checksums
+    <viewpoint>/base.webp         equirectangular colour
+    <viewpoint>/ids.png           equirectangular instance numbers, 16 bit
+    <viewpoint>/depth.png         equirectangular distance, 16 bit, logarithmic
+    <viewpoint>/tiles/NN.webp     perspective colour where zooming pays, NN-ids.png its instance numbers
+    <viewpoint>/actors/ID.webp    sprites of a moving actor along its path (colour, alpha), ID-depth.png their distances
+
+All angles are in the camera's own frame (pan 0 = the viewpoint's ``pan0_bearing_deg``), all lengths in metres.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+FORMAT_VERSION = 1
+"""Raised when an older program could misread a pack."""
+
+INJECTED_FROM = 60000
+"""Instance numbers from here on belong to objects that were injected at run time, never to a bake."""
+
+Number = Annotated[float, Field(allow_inf_nan=False)]
+Vec3 = tuple[Number, Number, Number]
+PanTilt = tuple[Number, Number]
+Kebab = Annotated[str, Field(pattern=r"^[a-z0-9]+(-[a-z0-9]+)*$")]
+Attribute = str | bool | int | float
+
+
+class Model(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class SceneInstance(Model):
+    """One annotated thing. ``box_min_m``/``box_max_m``: axis-aligned world box."""
+
+    id: str
+    number: int = Field(gt=0, lt=INJECTED_FROM)
+    category: str
+    name: str
+    attributes: dict[str, Attribute] = {}
+    parent: str | None = None
+    box_min_m: Vec3
+    box_max_m: Vec3
+
+
+class SceneText(Model):
+    """One readable text: a flat block of letters on an instance (``parent``), in world coordinates.
+
+    A reader sees ``right`` along the line and ``up`` towards the tops of the letters; the normal is ``right x up``.
+    """
+
+    id: str
+    text: str
+    parent: str
+    centre_m: Vec3
+    right: Vec3
+    up: Vec3
+    width_m: Number = Field(gt=0)
+    height_m: Number = Field(gt=0)
+    cap_height_m: Number = Field(gt=0)
+
+
+class ScenePreset(Model):
+    name: Kebab
+    viewpoint: Kebab
+    pan_deg: Number
+    tilt_deg: Number
+    zoom: Number = Field(gt=0)
+    description: str = ""
+
+
+class SceneViewpoint(Model):
+    name: Kebab
+    position_m: Vec3
+    pan0_bearing_deg: Number
+    description: str = ""
+
+
+class SceneActor(Model):
+    """A moving thing. ``waypoints`` are ``(t_s, x, y, z)``, joined by straight lines; the path repeats every ``period_s``.
+
+    Outside the time between the first and the last waypoint the actor is not in the scene.
+    """
+
+    id: str
+    number: int = Field(gt=0, lt=INJECTED_FROM)
+    category: str
+    name: str
+    attributes: dict[str, Attribute] = {}
+    waypoints: list[tuple[Number, Number, Number, Number]] = Field(min_length=2)
+    period_s: Number = Field(gt=0)
+    size_m: Vec3
+
+
+class SceneFile(Model):
+    """``scene.json``."""
+
+    format: Literal[1] = 1
+    name: Kebab
+    title: str
+    version: str
+    blender_version: str
+    viewpoints: list[SceneViewpoint] = Field(min_length=1)
+    presets: list[ScenePreset] = Field(min_length=1)
+    home_preset: Kebab
+    instances: list[SceneInstance]
+    texts: list[SceneText]
+    actors: list[SceneActor] = []
+    absent: list[str] = []
+
+
+class Layer(Model):
+    """A file of a pack, relative to the viewpoint folder, with its SHA-256 in hex and its size in pixels."""
+
+    file: str = Field(pattern=r"^[a-z0-9][a-z0-9./-]*$")
+    sha256: str = Field(pattern=r"^[0-9a-f]{64}$")
+    width: int = Field(gt=0)
+    height: int = Field(gt=0)
+
+
+class Band(Model):
+    """The part of the sphere that an equirectangular layer covers: all pans from -180 to 180, these tilts."""
+
+    top_tilt_deg: Number
+    bottom_tilt_deg: Number
+
+
+class Depth(Layer):
+    """Value v in 1..65535 is a distance of ``near_m * (far_m / near_m) ** ((v - 1) / 65534)`` metres; 0 is the sky."""
+
+    near_m: Number = Field(gt=0)
+    far_m: Number = Field(gt=0)
+
+
+class Tile(Model):
+    """A sharper perspective picture and its instance numbers (same size), aimed at pan/tilt without roll."""
+
+    pan_deg: Number
+    tilt_deg: Number
+    hfov_deg: Number = Field(gt=0, lt=120)
+    colour: Layer
+    ids: Layer
+
+
+class Extent(Model):
+    """The whole silhouette of one instance from this viewpoint, hidden parts included.
+
+    ``hull`` is the convex outline of the silhouette as pan/tilt directions; ``distance_m`` is to the nearest point.
+    """
+
+    number: int
+    solid_angle_sr: Number = Field(ge=0)
+    hull: list[PanTilt]
+    distance_m: Number = Field(gt=0)
+
+
+class Sprite(Model):
+    """One picture of an actor: where it stood on its path, and the perspective view that shows it.
+
+    ``left, top, width, height`` (pixels) is its place in the actor's sheet, which is the whole view of
+    ``hfov_deg`` across ``width`` aimed at ``pan_deg``/``tilt_deg``. ``position_m`` is the actor's ground point then.
+    """
+
+    path_s: Number
+    position_m: Vec3
+    pan_deg: Number
+    tilt_deg: Number
+    hfov_deg: Number
+    left: int
+    top: int
+    width: int
+    height: int
+
+
+class ActorSheet(Model):
+    """Sprites of an actor as seen from this viewpoint, in order of time along the path.
+
+    ``colour`` holds straight RGBA, shadow included (black with alpha); ``depth`` the distance of the actor's own
+    pixels coded as in the depth layer, 0 where there is only shadow or nothing.
+    """
+
+    number: int
+    colour: Layer
+    depth: Layer
+    sprites: list[Sprite] = Field(min_length=1)
+
+
+class Manifest(Model):
+    """``manifest.json`` of a viewpoint pack."""
+
+    format: Literal[1] = 1
+    scene: Kebab
+    scene_version: str
+    viewpoint: Kebab
+    position_m: Vec3
+    pan0_bearing_deg: Number
+    blender_version: str
+    samples: int
+    band: Band
+    base: Layer
+    ids: Layer
+    depth: Depth
+    tiles: list[Tile]
+    extents: list[Extent]
+    actors: list[ActorSheet] = []
