@@ -1,0 +1,54 @@
+# Two commands are all that a newcomer needs: make demo, make test.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+UV := $(shell command -v uv 2>/dev/null || echo $(BIN)/uv)
+BASE := $(VENV)/.base-installed
+DEV := $(VENV)/.dev-installed
+DEMO := Go to the highway preset, then pan right in 15 degree steps until you see at least six cones
+
+.PHONY: demo test test-full check format bench requirements clean
+
+demo: $(BASE)
+	@$(BIN)/scope ask "$(DEMO)"
+
+test: $(DEV)
+	$(BIN)/pytest -q -n 2 -m "not full" tests
+
+test-full: test
+	SCOPE_FULL_TESTS=1 $(BIN)/pytest -q -m full tests
+
+check: $(DEV)
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+format: $(DEV)
+	$(BIN)/ruff format .
+	$(BIN)/ruff check --fix .
+
+bench: $(DEV)
+	$(BIN)/python benchmarks/reprojection.py
+	$(BIN)/python benchmarks/plan_latency.py
+
+$(VENV)/pyvenv.cfg:
+	@if command -v uv >/dev/null 2>&1; then uv venv -q --python ">=3.11" $(VENV); \
+	else $(PYTHON) -m venv $(VENV) && $(BIN)/python -m pip install -q --disable-pip-version-check uv; fi
+
+$(BASE): requirements/base.txt pyproject.toml | $(VENV)/pyvenv.cfg
+	@$(UV) pip install -q --python $(BIN)/python -r requirements/base.txt
+	@$(UV) pip install -q --python $(BIN)/python --no-deps -e .
+	@touch $@
+
+$(DEV): requirements/dev.txt $(BASE)
+	@$(UV) pip install -q --python $(BIN)/python -r requirements/dev.txt
+	@touch $@
+
+# Pins without index lines: `make requirements` after a change of dependencies in pyproject.toml.
+requirements: | $(VENV)/pyvenv.cfg
+	$(UV) pip compile -q --universal --python-version 3.11 --no-header --no-emit-index-url pyproject.toml -o requirements/base.txt
+	$(UV) pip compile -q --universal --python-version 3.11 --no-header --no-emit-index-url --group dev pyproject.toml -o requirements/dev.txt
+
+clean:
+	rm -rf $(VENV) .pytest_cache .ruff_cache .mypy_cache .hypothesis

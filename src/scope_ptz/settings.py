@@ -1,0 +1,35 @@
+"""The one place that reads the environment: variables named ``SCOPE_...``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from platformdirs import user_cache_path
+from pydantic import Field, ValidationError
+from pydantic_settings import BaseSettings, SettingsConfigDict
+
+from scope_ptz.errors import ConfigError
+
+
+class ScopeSettings(BaseSettings):
+    """Defaults for every command. Options on the command line win over these."""
+
+    model_config = SettingsConfigDict(env_prefix="SCOPE_", extra="ignore")
+
+    runs_dir: Path = Field(Path("runs"), description="Where run folders are made.")
+    scenes_dir: Path | None = Field(None, description="A folder of scene packs beside the built-in ones.")
+    cache_dir: Path = Field(
+        default_factory=lambda: user_cache_path("scope-ptz"), description="Where the Blender environment and unfinished bakes live."
+    )
+    blender_python: Path | None = Field(None, description="A Python interpreter that can import bpy.")
+    blender: Path | None = Field(None, description="A blender program to use instead of the bpy wheel.")
+
+
+def load_settings() -> ScopeSettings:
+    """Read the environment; a wrong value raises ``ConfigError`` that names the variable."""
+    try:
+        return ScopeSettings()
+    except ValidationError as error:
+        first = error.errors()[0]
+        name = "SCOPE_" + "_".join(str(part) for part in first["loc"]).upper()
+        raise ConfigError(f"The environment variable {name} is wrong: {first['msg']}.") from error
