@@ -312,7 +312,7 @@ Lettering = tuple[bpy.types.Object, TextMark]
 
 def ink(colour: str = "black") -> bpy.types.Material:
     rgb = PAINTS.get(colour, (0.006, 0.006, 0.006))
-    return shading.plain(f"lettering {colour}", rgb, 0.6)
+    return shading.plain(f"vehicle lettering {colour}", rgb, 0.6)
 
 
 def words(

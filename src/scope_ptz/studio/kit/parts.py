@@ -135,8 +135,9 @@ class Parts:
         axis: str = "Z",
         steps: int = 24,
         smooth: bool = True,
+        caps: bool = True,
     ) -> None:
-        """A closed surface of revolution from ``(radius, height)`` pairs about ``axis`` through ``centre``."""
+        """A surface of revolution from ``(radius, height)`` pairs about ``axis`` through ``centre``, closed by ``caps``."""
         place = _AXES[axis]
         points: list[Point] = []
         for radius, height in profile:
@@ -150,12 +151,13 @@ class Parts:
                 a0, b0 = ring * steps + k, ring * steps + (k + 1) % steps
                 faces.append((a0, b0, b0 + steps, a0 + steps))
         last = (len(profile) - 1) * steps
-        caps = [tuple(range(steps))[::-1], tuple(range(last, last + steps))]
+        ends = [tuple(range(steps))[::-1], tuple(range(last, last + steps))]
         turn = (profile[-1][1] < profile[0][1]) ^ (axis == "Y")
         if turn:
-            faces, caps = [f[::-1] for f in faces], [c[::-1] for c in caps]
+            faces, ends = [f[::-1] for f in faces], [e[::-1] for e in ends]
         self.add(points, faces, material, smooth=smooth)
-        self.add(points, caps, material)
+        if caps:
+            self.add(points, ends, material)
 
     def disc(self, radius: float, low: float, high: float, centre: Point, material: bpy.types.Material, *, axis: str = "X", steps: int = 24) -> None:
         """A short cylinder with a small chamfer."""

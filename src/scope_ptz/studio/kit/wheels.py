@@ -41,7 +41,7 @@ def _tyre(parts: Parts, radius: float, width: float, rim: float) -> None:
         (radius - 0.010, h * 0.23), (radius - 0.010, h * 0.27), (radius, h * 0.30), (radius, h * 0.66), (radius - 0.012, h * 0.86),
         (radius - 0.05, h * 1.04), (rim + 0.02, h), (rim, h * 0.85),
     ]  # fmt: skip
-    parts.lathe(profile, (0, 0, 0), rubber(), axis="X", steps=36)
+    parts.lathe(profile, (0, 0, 0), rubber(), axis="X", steps=36, caps=False)
 
 
 def car_wheel(parts: Parts, centre: Point, radius: float, side: int, *, width: float = 0.21, spokes: int = 5) -> None:
@@ -51,7 +51,7 @@ def car_wheel(parts: Parts, centre: Point, radius: float, side: int, *, width: f
     _tyre(parts, radius, width, rim)
     h = width / 2
     parts.lathe([(rim, h * 0.88), (rim + 0.012, h * 1.0), (rim + 0.004, h * 1.02), (rim - 0.012, h * 0.9), (rim - 0.02, h * 0.2)],
-                (0, 0, 0), alloy(), axis="X", steps=36)  # fmt: skip
+                (0, 0, 0), alloy(), axis="X", steps=36, caps=False)  # fmt: skip
     parts.disc(rim - 0.015, -0.02, h * 0.25, (0, 0, 0), shade(), steps=28)
     parts.disc(rim * 0.62, h * 0.25, h * 0.34, (0, 0, 0), steel(), steps=24)
     hub = parts.matrix.copy()
@@ -79,7 +79,7 @@ def steel_wheel(parts: Parts, centre: Point, radius: float, side: int, *, width:
     h = width / 2
     parts.lathe([(rim, h * 0.86), (rim + 0.012, h * 1.0), (rim - 0.008, h * 0.98), (rim - 0.03, h * 0.55), (rim * 0.62, h * 0.62),
                  (rim * 0.52, h * 0.86), (0.06, h * 0.9), (0.05, h * 1.05), (0.02, h * 1.07)],
-                (0, 0, 0), steel(), axis="X", steps=32)  # fmt: skip
+                (0, 0, 0), steel(), axis="X", steps=32, caps=False)  # fmt: skip
     for k in range(10):
         a = 2 * math.pi * k / 10
         y, z = rim * 0.76 * math.cos(a), rim * 0.76 * math.sin(a)
@@ -96,7 +96,7 @@ def lorry_wheel(parts: Parts, centre: Point, radius: float, side: int, *, width:
     sink = -0.75 if twin else 0.45
     parts.lathe([(rim, h * 0.86), (rim + 0.014, h * 1.0), (rim - 0.012, h * 0.98), (rim - 0.035, h * 0.6), (rim - 0.045, h * sink),
                  (rim * 0.62, h * (sink + 0.2)), (rim * 0.48, h * (sink + 0.35))],
-                (0, 0, 0), steel(), axis="X", steps=32)  # fmt: skip
+                (0, 0, 0), steel(), axis="X", steps=32, caps=False)  # fmt: skip
     for k in range(8):
         a = 2 * math.pi * (k + 0.5) / 8
         parts.disc(0.028, h * sink, h * (sink + 0.17), (0, rim * 0.73 * math.cos(a), rim * 0.73 * math.sin(a)), shade(), steps=8)
