@@ -192,12 +192,12 @@ def hills(road: Carriageway) -> Callable[[float, float], float]:
     def height(x: float, y: float) -> float:
         r = math.hypot(x, y)
         off = abs(x - road.centre_x(max(-road.length_m, min(road.length_m, y))))
-        away = _smooth(off, 45.0, 260.0) * _smooth(r, 120.0, 420.0)
+        away = _smooth(off, 70.0, 280.0) * _smooth(r, 120.0, 420.0)
         roll = 4.0 * math.sin(x / 97.0 + 0.4) * math.cos(y / 121.0 - 0.9) + 2.2 * math.sin((x + 1.7 * y) / 63.0)
         bearing = math.atan2(x, y)
         ridge = 34 + 16 * math.sin(3 * bearing + 0.7) + 9 * math.sin(7 * bearing + 2.1) + 5 * math.sin(13 * bearing)
         far = _smooth(r, 500.0, 1900.0) + 0.75 * _smooth(r, 1900.0, 3000.0)
-        return -0.03 + away * roll + max(_smooth(off, 60.0, 400.0), _smooth(r, 900.0, 1200.0)) * ridge * far
+        return -0.03 + away * roll + max(_smooth(off, 80.0, 420.0), _smooth(r, 900.0, 1200.0)) * ridge * far
 
     return height
 
