@@ -1,0 +1,189 @@
+"""Finding scenes and opening their packs. Nothing is decoded before it is needed, and no file is used before its checksum matched."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable, Mapping
+from functools import cached_property
+from importlib.resources import files
+from pathlib import Path
+from threading import RLock
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ValidationError
+
+from scope_ptz.errors import PackError, UnknownNameError
+from scope_ptz.world import layers
+from scope_ptz.world.models import FORMAT_VERSION, Layer, Manifest, SceneActor, SceneFile, SceneInstance, SceneViewpoint
+
+_File = TypeVar("_File", bound=BaseModel)
+
+
+def find_scenes(search: Iterable[Path] = ()) -> dict[str, Path]:
+    """Scene name to folder: every folder with a ``scene.json`` in the extra folders ``search`` and in the package, first found wins."""
+    found: dict[str, Path] = {}
+    for root in (*search, Path(str(files("scope_ptz"))) / "data" / "scenes"):
+        if root.is_dir():
+            for folder in sorted(root.iterdir()):
+                if (folder / "scene.json").is_file():
+                    found.setdefault(folder.name, folder)
+    return found
+
+
+def list_scenes(search: Iterable[Path] = ()) -> list[str]:
+    """Names of the scenes that can be loaded, sorted."""
+    return sorted(find_scenes(search))
+
+
+def load_scene(name: str, search: Iterable[Path] = ()) -> Scene:
+    """Open a scene by name. ``UnknownNameError`` when there is none, ``PackError`` when its files are damaged."""
+    folders = find_scenes(search)
+    if name not in folders:
+        raise UnknownNameError("scene", name, folders)
+    return Scene(folders[name])
+
+
+class Scene:
+    """A scene folder: its instance table at once, its viewpoints when asked for. Safe to share between threads and cameras."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.file = _read_json(folder / "scene.json", SceneFile)
+        if self.file.name != folder.name:
+            raise PackError(f"{folder} holds the scene '{self.file.name}': a scene folder must bear its scene's name. Rename it.")
+        self._viewpoints: dict[str, Viewpoint] = {}
+        self._lock = RLock()
+        _check_references(self.file, folder)
+
+    @property
+    def name(self) -> str:
+        return self.file.name
+
+    @cached_property
+    def by_number(self) -> Mapping[int, SceneInstance | SceneActor]:
+        """Instances and actors by their number in the id layers."""
+        return {thing.number: thing for thing in (*self.file.instances, *self.file.actors)}
+
+    @cached_property
+    def by_id(self) -> Mapping[str, SceneInstance | SceneActor]:
+        """Instances and actors by their string id."""
+        return {thing.id: thing for thing in (*self.file.instances, *self.file.actors)}
+
+    def viewpoint(self, name: str) -> Viewpoint:
+        """One optical centre of the scene, opened once and shared."""
+        known = {v.name: v for v in self.file.viewpoints}
+        if name not in known:
+            raise UnknownNameError("viewpoint", name, known)
+        with self._lock:
+            if name not in self._viewpoints:
+                self._viewpoints[name] = Viewpoint(self.folder / name, self.file, known[name])
+            return self._viewpoints[name]
+
+
+class Viewpoint:
+    """A viewpoint folder. Layers are read on demand; each read is checked against the manifest."""
+
+    def __init__(self, folder: Path, scene: SceneFile, place: SceneViewpoint) -> None:
+        self.folder = folder
+        self.manifest = manifest = _read_json(folder / "manifest.json", Manifest)
+        self.name = place.name
+        if (manifest.scene, manifest.viewpoint, manifest.scene_version) != (scene.name, place.name, scene.version):
+            raise PackError(
+                f"{folder} was baked for viewpoint '{manifest.viewpoint}' of scene '{manifest.scene}' version "
+                f"{manifest.scene_version}, but lies in '{place.name}' of '{scene.name}' version {scene.version}. Bake it again."
+            )
+
+    @cached_property
+    def position_m(self) -> NDArray[np.float64]:
+        """World position of the optical centre."""
+        return np.array(self.manifest.position_m, dtype=np.float64)
+
+    @cached_property
+    def world_to_camera(self) -> NDArray[np.float64]:
+        """(3, 3) rotation from world axes (x east, y north) to the camera's own frame (y forward at pan 0)."""
+        bearing = np.radians(self.manifest.pan0_bearing_deg)
+        c, s = np.cos(bearing), np.sin(bearing)
+        return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+    def offset(self, points_m: NDArray[np.float64]) -> NDArray[np.float64]:
+        """World points (..., 3) as vectors from the optical centre in the camera's own frame, metres."""
+        return np.asarray((points_m - self.position_m) @ self.world_to_camera.T)
+
+    def colour(self, layer: Layer) -> NDArray[np.uint8]:
+        """(H, W, 3) RGB, or (H, W, 4) for the sheets of actors."""
+        return self._sized(layer, layers.read_colour(self._verified(layer)))
+
+    def ids(self, layer: Layer) -> NDArray[np.uint16]:
+        """(H, W) instance numbers, 0 = nothing annotated."""
+        return self._sized(layer, layers.read_ids(self._verified(layer)))
+
+    def depth(self, layer: Layer) -> NDArray[np.uint16]:
+        """(H, W) distance codes; see ``depth_metres``."""
+        return self._sized(layer, layers.read_ids(self._verified(layer)))
+
+    @cached_property
+    def depth_metres(self) -> NDArray[np.float32]:
+        """(65536,) table from a distance code to metres; the sky is infinitely far."""
+        depth = self.manifest.depth
+        codes = np.arange(65536, dtype=np.float64)
+        metres = depth.near_m * (depth.far_m / depth.near_m) ** ((codes - 1) / 65534)
+        metres[0] = np.inf
+        return metres.astype(np.float32)
+
+    def _verified(self, layer: Layer) -> Path:
+        path = (self.folder / layer.file).resolve()
+        if not path.is_relative_to(self.folder.resolve()):
+            raise PackError(f"{self.folder / 'manifest.json'} names a file outside its own folder: {layer.file}. Do not use this pack.")
+        try:
+            digest = hashlib.sha256(path.read_bytes()).hexdigest()
+        except OSError as error:
+            raise PackError(f"{path} is missing or cannot be read ({error.strerror}). Restore the pack or bake it again.") from error
+        if digest != layer.sha256:
+            raise PackError(f"{path} is damaged: its checksum differs from the manifest. Restore the pack or bake it again.")
+        return path
+
+    def _sized(self, layer: Layer, image: NDArray[np.generic]) -> NDArray:  # type: ignore[type-arg]
+        if image.shape[:2] != (layer.height, layer.width):
+            raise PackError(
+                f"{self.folder / layer.file} is {image.shape[1]}x{image.shape[0]} pixels, its manifest says "
+                f"{layer.width}x{layer.height}. Bake it again."
+            )
+        image.flags.writeable = False
+        return image
+
+
+def _read_json(path: Path, model: type[_File]) -> _File:
+    try:
+        content = json.loads(path.read_bytes())
+    except OSError as error:
+        raise PackError(f"{path} is missing or cannot be read ({error.strerror}). Restore the pack or bake it again.") from error
+    except ValueError as error:
+        raise PackError(f"{path} is no valid JSON ({error}). Restore the pack or bake it again.") from error
+    version = content.get("format") if isinstance(content, dict) else None
+    if isinstance(version, int) and version > FORMAT_VERSION:
+        raise PackError(f"{path} has format {version}, this program reads up to {FORMAT_VERSION}. Install a newer scope-ptz.")
+    try:
+        return model.model_validate(content)
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(str(part) for part in first["loc"])
+        raise PackError(f"{path} is not as it should be: {where}: {first['msg']}. Restore the pack or bake it again.") from error
+
+
+def _check_references(file: SceneFile, folder: Path) -> None:
+    """Every name that one table uses from another must exist, and no number may be given twice."""
+    things = [*file.instances, *file.actors]
+    ids, numbers = {t.id for t in things}, {t.number for t in things}
+    viewpoints, presets = {v.name for v in file.viewpoints}, {p.name for p in file.presets}
+    faults = [f"preset '{p.name}' names the viewpoint '{p.viewpoint}'" for p in file.presets if p.viewpoint not in viewpoints]
+    faults += [f"text '{t.id}' names the instance '{t.parent}'" for t in file.texts if t.parent not in ids]
+    faults += [f"instance '{i.id}' names the parent '{i.parent}'" for i in file.instances if i.parent and i.parent not in ids]
+    if file.home_preset not in presets:
+        faults.append(f"the home preset is '{file.home_preset}'")
+    if faults:
+        raise PackError(f"{folder / 'scene.json'}: {faults[0]}, which does not exist. Restore the pack or build the scene again.")
+    if len(ids) != len(things) or len(numbers) != len(things):
+        raise PackError(f"{folder / 'scene.json'} gives an id or a number to two things. Restore the pack or build the scene again.")
