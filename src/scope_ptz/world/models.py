@@ -165,9 +165,11 @@ class Sprite(Model):
 
     ``left, top, width, height`` (pixels) is its place in the actor's sheet, which is the whole view of
     ``hfov_deg`` across ``width`` aimed at ``pan_deg``/``tilt_deg``. ``position_m`` is the actor's ground point then.
+    ``phase`` is where in its stride a walker was, 0 to 1; things without legs have 0.
     """
 
     path_s: Number
+    phase: Number = 0.0
     position_m: Vec3
     pan_deg: Number
     tilt_deg: Number
@@ -182,13 +184,16 @@ class ActorSheet(Model):
     """Sprites of an actor as seen from this viewpoint, in order of time along the path.
 
     ``colour`` holds straight RGBA, shadow included (black with alpha); ``depth`` the distance of the actor's own
-    pixels coded as in the depth layer, 0 where there is only shadow or nothing.
+    pixels coded as in the depth layer, 0 where there is only shadow or nothing. A thing with legs has ``stride_m``, the
+    ground it covers in one gait cycle: sprites of several phases then share each ``path_s``, and whoever draws it takes
+    the nearest place first and the phase of the distance walked next.
     """
 
     number: int
     colour: Layer
     depth: Layer
     sprites: list[Sprite] = Field(min_length=1)
+    stride_m: Number | None = None
 
 
 class Manifest(Model):
