@@ -23,7 +23,7 @@ PALETTE: dict[str, Colour] = {
     "black": (0.012, 0.012, 0.013),
     "red": (0.58, 0.016, 0.014),
     "dark red": (0.24, 0.012, 0.014),
-    "orange": (0.90, 0.125, 0.006),
+    "orange": (0.80, 0.088, 0.004),
     "hi-vis orange": (1.0, 0.16, 0.010),
     "amber": (1.0, 0.36, 0.010),
     "yellow": (0.86, 0.50, 0.010),
@@ -65,7 +65,9 @@ def soiled(s: Shader, colour: Value, amount: float, splash_m: float = 0.35) -> V
     patches = s.ramp(s.noise(where, 3.2, 6.0, 0.62), 0.48, 0.80, 0.0, amount)
     streaks = s.ramp(s.noise(s.scaled(where, (22.0, 22.0, 0.9)), 1.0, 3.0), 0.55, 0.85, 0.0, amount * 0.7)
     _, _, z = s.xyz(s.object_coords())
-    splash = s.math("MULTIPLY", s.ramp(z, 0.0, splash_m, 1.0, 0.0), s.ramp(s.noise(where, 9.0, 5.0), 0.3, 0.7, 0.1, amount * 1.6))
+    splash = s.math(
+        "MULTIPLY", s.ramp(z, 0.0, splash_m, 1.0, 0.0), s.ramp(s.noise(where, 9.0, 5.0), 0.3, 0.7, 0.1, amount * 1.6)
+    )
     return s.mix(s.math("MAXIMUM", s.math("MAXIMUM", patches, streaks), splash), colour, DIRT)
 
 
@@ -73,7 +75,7 @@ def paint(colour: str, *, dirt: float = 0.30, roughness: float = 0.38) -> bpy.ty
     """Painted metal or moulded plastic."""
 
     def make(s: Shader) -> bpy.types.Material:
-        fade = s.mix(s.ramp(s.noise(_coords(s), 5.0, 4.0), 0.35, 0.7, 0.0, 0.16), PALETTE[colour], (0.6, 0.6, 0.58))
+        fade = s.mix(s.ramp(s.noise(_coords(s), 5.0, 4.0), 0.35, 0.7, 0.0, 0.10), PALETTE[colour], (0.6, 0.6, 0.58))
         rough = s.ramp(s.noise(_coords(s), 14.0), 0.3, 0.7, roughness - 0.06, roughness + 0.14)
         return s.surface(base_color=soiled(s, fade, dirt), roughness=rough)
 
@@ -88,8 +90,12 @@ def steel(*, dark: bool = False) -> bpy.types.Material:
         spangle = s.voronoi(where, 38.0, output="Color")
         value = s.ramp(spangle, 0.0, 1.0, 0.24 if not dark else 0.09, 0.36 if not dark else 0.15, smooth=False)
         weather = s.ramp(s.noise(where, 4.0, 5.0), 0.35, 0.7)
-        base = s.mix(weather, s.mix(value, (0, 0, 0), (1, 1, 1.02)), (0.27, 0.28, 0.29) if not dark else (0.10, 0.10, 0.11))
-        return s.surface(base_color=soiled(s, base, 0.25), metallic=0.55, roughness=s.ramp(spangle, 0.0, 1.0, 0.42, 0.58))
+        base = s.mix(
+            weather, s.mix(value, (0, 0, 0), (1, 1, 1.02)), (0.27, 0.28, 0.29) if not dark else (0.10, 0.10, 0.11)
+        )
+        return s.surface(
+            base_color=soiled(s, base, 0.25), metallic=0.55, roughness=s.ramp(spangle, 0.0, 1.0, 0.42, 0.58)
+        )
 
     return _shared("steel dark" if dark else "steel", make)
 
@@ -109,7 +115,10 @@ def sheet(colour: str, *, dirt: float = 0.16) -> bpy.types.Material:
 def glow(colour: str, strength: float = 6.0) -> bpy.types.Material:
     """A lit lamp."""
     c = PALETTE[colour]
-    return _shared(f"glow {colour} {strength:g}", lambda s: s.surface(base_color=c, emission_color=c, emission_strength=strength, roughness=0.3))
+    return _shared(
+        f"glow {colour} {strength:g}",
+        lambda s: s.surface(base_color=c, emission_color=c, emission_strength=strength, roughness=0.3),
+    )
 
 
 def lens(colour: str) -> bpy.types.Material:
@@ -149,7 +158,11 @@ def timber(*, fresh: bool = True) -> bpy.types.Material:
         where = s.scaled(_coords(s), (2.0, 26.0, 26.0))
         grain = s.noise(where, 1.0, 6.0, 0.6, 0.8)
         low, high = ((0.20, 0.105, 0.042), (0.44, 0.28, 0.13)) if fresh else ((0.10, 0.085, 0.07), (0.24, 0.20, 0.16))
-        return s.surface(base_color=soiled(s, s.mix(s.ramp(grain, 0.3, 0.7), low, high), 0.3), roughness=0.8, normal=s.bump(grain, 0.3, 0.004))
+        return s.surface(
+            base_color=soiled(s, s.mix(s.ramp(grain, 0.3, 0.7), low, high), 0.3),
+            roughness=0.8,
+            normal=s.bump(grain, 0.3, 0.004),
+        )
 
     return _shared("timber fresh" if fresh else "timber worn", make)
 
@@ -174,6 +187,8 @@ def cloth(colour: str, roughness: float = 0.9) -> bpy.types.Material:
     def make(s: Shader) -> bpy.types.Material:
         where = _coords(s)
         creases = s.noise(where, 7.0, 5.0, 0.6, 0.6)
-        return s.surface(base_color=soiled(s, PALETTE[colour], 0.25), roughness=roughness, normal=s.bump(creases, 0.6, 0.02))
+        return s.surface(
+            base_color=soiled(s, PALETTE[colour], 0.25), roughness=roughness, normal=s.bump(creases, 0.6, 0.02)
+        )
 
     return _shared(f"cloth {colour} {roughness:.2f}", make)

@@ -22,7 +22,9 @@ def sans() -> bpy.types.VectorFont:
     return bpy.data.fonts.load(str(Path(bpy.utils.system_resource("DATAFILES", path="fonts")) / FONT_FILE))
 
 
-def letters(body: str, cap_height_m: float, *, bold: bool = True, spacing: float = 1.04) -> tuple[list[Point], list[tuple[int, ...]]]:
+def letters(
+    body: str, cap_height_m: float, *, bold: bool = True, spacing: float = 1.04
+) -> tuple[list[Point], list[tuple[int, ...]]]:
     """Flat letters in the xy plane, baseline of the (single) line on y = 0, starting near x = 0. Returns points and faces."""
     scale = cap_height_m / _cap_height_em(bold)
     points, faces = _outline(body, bold, spacing)

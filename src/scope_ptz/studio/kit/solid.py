@@ -35,10 +35,20 @@ class Solid:
         self.slots: list[bpy.types.Material] = []
         self.face_slots: list[int] = []
         self.texts: list[TextMark] = []
+        self.rest: dict[int, Point] = {}
         self.frame = Matrix.Identity(4)
 
     @contextmanager
-    def at(self, x: float = 0.0, y: float = 0.0, z: float = 0.0, *, turn: float = 0.0, pitch: float = 0.0, roll: float = 0.0) -> Iterator[None]:
+    def at(
+        self,
+        x: float = 0.0,
+        y: float = 0.0,
+        z: float = 0.0,
+        *,
+        turn: float = 0.0,
+        pitch: float = 0.0,
+        roll: float = 0.0,
+    ) -> Iterator[None]:
         """Work in a frame moved to ``(x, y, z)`` and rotated (degrees) about z, then x (pitch), then y (roll)."""
         saved = self.frame
         rotation = Matrix.Rotation(math.radians(turn), 4, "Z")
@@ -49,14 +59,22 @@ class Solid:
         finally:
             self.frame = saved
 
-    def add(self, points: Sequence[Point], faces: Sequence[Sequence[int]], material: bpy.types.Material) -> None:
-        """Raw polygons in the current frame."""
+    def add(
+        self,
+        points: Sequence[Point],
+        faces: Sequence[Sequence[int]],
+        material: bpy.types.Material,
+        rest: Sequence[Point] | None = None,
+    ) -> None:
+        """Raw polygons in the current frame; ``rest`` gives each point a value of the "rest" attribute, for shader masks."""
         if material not in self.slots:
             self.slots.append(material)
         base, slot = len(self.points), self.slots.index(material)
         self.points += [tuple(self.frame @ Vector(p)) for p in points]
         self.faces += [tuple(base + i for i in face) for face in faces]
         self.face_slots += [slot] * len(faces)
+        if rest is not None:
+            self.rest.update((base + i, tuple(r)) for i, r in enumerate(rest))
 
     def box(self, size: Point, centre: Point, material: bpy.types.Material, chamfer: float = 0.006) -> None:
         """A box with chamfered edges."""
@@ -94,7 +112,14 @@ class Solid:
             face([index[sign, 0], index[sign, 1], index[sign, 2]], sign)
         self.add(points, faces, material)
 
-    def lathe(self, profile: Sequence[tuple[float, float]], material: bpy.types.Material, centre: Point = (0, 0, 0), axis: str = "Z", steps: int = 24) -> None:
+    def lathe(
+        self,
+        profile: Sequence[tuple[float, float]],
+        material: bpy.types.Material,
+        centre: Point = (0, 0, 0),
+        axis: str = "Z",
+        steps: int = 24,
+    ) -> None:
         """A surface of revolution from ``(radius, height)`` pairs, listed from bottom to top, capped at both ends."""
         place = {"Z": lambda u, v, h: (u, v, h), "Y": lambda u, v, h: (v, h, u), "X": lambda u, v, h: (h, u, v)}[axis]
         points = []
@@ -112,12 +137,28 @@ class Solid:
         faces.append(tuple(range((len(profile) - 1) * steps, len(profile) * steps)))
         self.add(points, faces, material)
 
-    def rod(self, a: Point, b: Point, radius: float, material: bpy.types.Material, *, radius_b: float | None = None, sides: int = 10) -> None:
+    def rod(
+        self,
+        a: Point,
+        b: Point,
+        radius: float,
+        material: bpy.types.Material,
+        *,
+        radius_b: float | None = None,
+        sides: int = 10,
+    ) -> None:
         """A straight round bar, tapered when ``radius_b`` is given."""
         self.tube([a, b], radius, material, sides=sides, radius_b=radius_b)
 
     def tube(
-        self, path: Sequence[Point], radius: float, material: bpy.types.Material, *, sides: int = 8, radius_b: float | None = None, closed: bool = False
+        self,
+        path: Sequence[Point],
+        radius: float,
+        material: bpy.types.Material,
+        *,
+        sides: int = 8,
+        radius_b: float | None = None,
+        closed: bool = False,
     ) -> None:
         """A round tube along a path, mitred at the corners."""
         line = [Vector(p) for p in path]
@@ -144,7 +185,12 @@ class Solid:
         rings = count if closed else count - 1
         total = len(ring_points)
         faces: list[tuple[int, ...]] = [
-            ((i * sides + k) % total, (i * sides + (k + 1) % sides) % total, ((i + 1) * sides + (k + 1) % sides) % total, ((i + 1) * sides + k) % total)
+            (
+                (i * sides + k) % total,
+                (i * sides + (k + 1) % sides) % total,
+                ((i + 1) * sides + (k + 1) % sides) % total,
+                ((i + 1) * sides + k) % total,
+            )
             for i in range(rings)
             for k in range(sides)
         ]
@@ -152,9 +198,17 @@ class Solid:
             faces += [tuple(range(sides))[::-1], tuple(range(total - sides, total))]
         self.add(ring_points, faces, material)
 
-    def prism(self, outline: Sequence[tuple[float, float]], depth: tuple[float, float], material: bpy.types.Material, plane: str = "XZ") -> None:
+    def prism(
+        self,
+        outline: Sequence[tuple[float, float]],
+        depth: tuple[float, float],
+        material: bpy.types.Material,
+        plane: str = "XZ",
+    ) -> None:
         """A polygon (convex or not) extruded between two depths along the axis that ``plane`` leaves out."""
-        place = {"XZ": lambda u, v, d: (u, d, v), "XY": lambda u, v, d: (u, v, d), "YZ": lambda u, v, d: (d, u, v)}[plane]
+        place = {"XZ": lambda u, v, d: (u, d, v), "XY": lambda u, v, d: (u, v, d), "YZ": lambda u, v, d: (d, u, v)}[
+            plane
+        ]
         count = len(outline)
         area = sum(outline[i - 1][0] * outline[i][1] - outline[i][0] * outline[i - 1][1] for i in range(count))
         ring = list(outline) if area > 0 else list(outline)[::-1]
@@ -196,7 +250,9 @@ class Solid:
         if mark:
             turn = self.frame.to_3x3()
             middle = self.frame @ lay((low + high) / 2, (max(ys) + min(ys)) / 2)
-            self.texts.append(TextMark(body, tuple(middle), tuple(turn @ right), tuple(turn @ up), width, height, cap_height_m))
+            self.texts.append(
+                TextMark(body, tuple(middle), tuple(turn @ right), tuple(turn @ up), width, height, cap_height_m)
+            )
         return width, height
 
     def object(self) -> bpy.types.Object:
@@ -208,6 +264,11 @@ class Solid:
         mesh.polygons.foreach_set("material_index", self.face_slots)
         mesh.polygons.foreach_set("use_smooth", [True] * len(self.faces))
         mesh.set_sharp_from_angle(angle=SHARP_ANGLE)
+        if self.rest:
+            layer = mesh.attributes.new("rest", "FLOAT_VECTOR", "POINT")
+            layer.data.foreach_set(
+                "vector", [c for i in range(len(self.points)) for c in self.rest.get(i, (0.0, 0.0, 0.0))]
+            )
         mesh.update()
         obj = bpy.data.objects.new(self.name, mesh)
         bpy.context.scene.collection.objects.link(obj)
@@ -217,13 +278,17 @@ class Solid:
         return Built.of(self.name, [self.object()], self.texts)
 
 
-def arc(centre: tuple[float, float], radius: float, start_deg: float, stop_deg: float, steps: int = 8) -> list[tuple[float, float]]:
+def arc(
+    centre: tuple[float, float], radius: float, start_deg: float, stop_deg: float, steps: int = 8
+) -> list[tuple[float, float]]:
     """Points of a circular arc in a plane, both ends included."""
     angles = [math.radians(start_deg + (stop_deg - start_deg) * k / steps) for k in range(steps + 1)]
     return [(centre[0] + radius * math.cos(a), centre[1] + radius * math.sin(a)) for a in angles]
 
 
-def rounded(width: float, height: float, radius: float, centre: tuple[float, float] = (0.0, 0.0), steps: int = 5) -> list[tuple[float, float]]:
+def rounded(
+    width: float, height: float, radius: float, centre: tuple[float, float] = (0.0, 0.0), steps: int = 5
+) -> list[tuple[float, float]]:
     """Outline of a rectangle with rounded corners, anticlockwise."""
     u, v = width / 2 - radius, height / 2 - radius
     corners = [(u, v, 0), (-u, v, 90), (-u, -v, 180), (u, -v, 270)]

@@ -1,0 +1,207 @@
+"""The clothed human figure: trunk, sleeves, trousers, boots, hands and head around solved joints."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from mathutils import Matrix, Vector
+
+from scope_ptz.studio.kit.poses import SIDES, Joints
+from scope_ptz.studio.kit.volumes import Skin, Volume, crease
+
+# Height, half width, half depth and forward shift of the clothed trunk, from hem to collar.
+TRUNK = [
+    (0.850, 0.152, 0.112, 0.000),
+    (0.930, 0.166, 0.122, 0.000),
+    (1.030, 0.154, 0.114, 0.006),
+    (1.120, 0.156, 0.114, 0.010),
+    (1.220, 0.168, 0.121, 0.012),
+    (1.320, 0.178, 0.122, 0.008),
+    (1.400, 0.170, 0.108, -0.002),
+    (1.455, 0.125, 0.084, -0.010),
+    (1.490, 0.076, 0.070, -0.012),
+]
+
+
+def _trunk_rows(joints: Joints, swell: float, girth: float, low: float, high: float) -> list[list[Vector]]:
+    rows = []
+    heights = np.arange(low, high + 1e-6, 0.02)
+    table = np.array(TRUNK)
+    for z in heights:
+        w, d, shift = (float(np.interp(z, table[:, 0], table[:, k])) for k in (1, 2, 3))
+        belly = (girth - 1.0) * math.exp(-(((z - 1.05) / 0.16) ** 2))
+        row = []
+        for k in range(28):
+            a = 2 * math.pi * k / 28
+            c, s = math.cos(a), math.sin(a)
+            x = (w * (1 + 0.4 * (girth - 1)) + swell) * math.copysign(abs(c) ** 0.84, c)
+            y = (d + swell + (0.13 * belly if s > 0 else 0.04 * belly)) * math.copysign(abs(s) ** 0.84, s) + shift
+            row.append(joints.torso(Vector((x, y, z))))
+        rows.append(row)
+    return rows
+
+
+def jacket(
+    joints: Joints, *, girth: float, loose: float, hem: float, hood: bool, seed: float, hide_trunk: bool = False
+) -> Skin:
+    """Trunk and sleeves in one piece. ``loose`` adds cloth to the sleeves (m); ``hem`` is the rest height of the lower edge (m)."""
+    v = Volume()
+    v.rings(_trunk_rows(joints, -0.012 if hide_trunk else loose * 0.5, girth, hem, 1.49))
+    for i, side in enumerate(SIDES):
+        shoulder, elbow, wrist = joints.shoulders[i], joints.elbows[i], joints.wrists[i]
+        v.capsule(joints.torso(Vector((side * 0.055, -0.012, 1.470))), shoulder, 0.046, 0.060 + loose)
+        v.capsule(shoulder, shoulder.lerp(elbow, 0.5), 0.064 + loose, 0.054 + loose)
+        v.capsule(shoulder.lerp(elbow, 0.5), elbow, 0.054 + loose, 0.047 + loose)
+        v.capsule(elbow, elbow.lerp(wrist, 0.45), 0.047 + loose, 0.044 + loose)
+        v.capsule(elbow.lerp(wrist, 0.45), elbow.lerp(wrist, 0.93), 0.044 + loose, 0.034 + loose)
+    if hood:
+        for k in range(7):
+            a = math.radians(180 + 30 * k)
+            b = math.radians(180 + 30 * (k + 1))
+            p, q = (joints.torso(Vector((0.082 * math.cos(t), -0.018 + 0.070 * math.sin(t), 1.492))) for t in (a, b))
+            v.capsule(p, q, 0.030, 0.030)
+    else:
+        collar = []
+        for z, r in ((1.47, 0.078), (1.50, 0.072), (1.535, 0.070)):
+            collar.append(
+                [
+                    joints.torso(Vector((r * math.cos(t), -0.012 + r * 0.95 * math.sin(t), z + 0.012 * -math.sin(t))))
+                    for t in np.linspace(0, 2 * math.pi, 20, endpoint=False)
+                ]
+            )
+        v.rings(collar)
+    elbows = np.array([tuple(e) for e in joints.elbows])
+
+    def amount(points: np.ndarray) -> np.ndarray:
+        near = np.linalg.norm(points[:, None] - elbows, axis=2).min(axis=1)
+        return 0.0045 + 0.0085 * np.exp(-((near / 0.10) ** 2))
+
+    return crease(crease(v.melt(0.013, 4), amount, (9.0, 9.0, 16.0), seed), 0.0025, (26.0, 26.0, 30.0), seed + 5)
+
+
+def vest(joints: Joints, *, girth: float, seed: float) -> tuple[Skin, np.ndarray]:
+    """A loose waistcoat over the jacket, and the upright (rest) coordinates of its points for the reflective bands."""
+    upright = Joints(Matrix.Identity(4), Matrix.Identity(4), Matrix.Identity(4), [])
+    v = Volume()
+    v.rings(_trunk_rows(upright, 0.026, girth, 0.835, 1.462))
+    for side in SIDES:
+        v.capsule((side * 0.05, -0.010, 1.452), (side * 0.152, -0.008, 1.437), 0.072, 0.070)
+        v.capsule((side * 0.150, -0.006, 1.437), (side * 0.135, -0.004, 1.30), 0.070, 0.090)
+    points, faces = crease(
+        v.melt(0.012, 4), lambda p: 0.005 + 0.010 * np.clip((1.15 - p[:, 2]) / 0.3, 0, 1), (7.0, 7.0, 9.0), seed
+    )
+    posed = np.array([tuple(joints.torso(Vector(p))) for p in points])
+    return (posed, faces), points
+
+
+def trousers(joints: Joints, *, loose: float, girth: float, seed: float) -> tuple[Skin, np.ndarray]:
+    """Both legs and the seat, and for each point its height along the leg (m above the sole, upright)."""
+    v = Volume()
+    w = 1 + 0.5 * (girth - 1)
+    v.ellipsoid((0, -0.004, 0.955), (0.150 * w, 0.108 * w, 0.105), joints.pelvis)
+    ankles = []
+    for i, side in enumerate(SIDES):
+        hip, knee, ankle = joints.hips[i], joints.knees[i], joints.ankles[i]
+        cuff = knee.lerp(ankle, 0.98)
+        ankles.append(ankle)
+        v.ellipsoid((side * 0.075, -0.035, 0.905), (0.085 * w, 0.092 * w, 0.095), joints.pelvis)
+        v.capsule(hip, hip.lerp(knee, 0.5), 0.089 * w + loose * 0.4, 0.078 + loose * 0.6)
+        v.capsule(hip.lerp(knee, 0.5), knee, 0.078 + loose * 0.6, 0.062 + loose)
+        v.capsule(knee, knee.lerp(ankle, 0.4), 0.062 + loose, 0.060 + loose)
+        v.capsule(knee.lerp(ankle, 0.4), cuff, 0.060 + loose, 0.054 + loose)
+    points, faces = v.melt(0.013, 4)
+    along = _leg_height(points, joints)
+
+    def amount(_: np.ndarray) -> np.ndarray:
+        knee = np.exp(-(((along - 0.50) / 0.09) ** 2))
+        cuff = np.exp(-(((along - 0.10) / 0.10) ** 2))
+        crotch = np.exp(-(((along - 0.86) / 0.07) ** 2))
+        return 0.0045 + 0.008 * knee + 0.012 * cuff + 0.005 * crotch
+
+    points, faces = crease((points, faces), amount, (8.0, 8.0, 17.0), seed)
+    return crease((points, faces), 0.0025, (24.0, 24.0, 30.0), seed + 3), along
+
+
+def _leg_height(points: np.ndarray, joints: Joints) -> np.ndarray:
+    best = np.full(len(points), 1e9)
+    height = np.zeros(len(points))
+    for i in range(2):
+        for a, b, za, zb in (
+            (joints.hips[i], joints.knees[i], 0.92, 0.495),
+            (joints.knees[i], joints.ankles[i], 0.495, 0.085),
+        ):
+            p, q = np.array(a), np.array(b)
+            raw = (points - p) @ (q - p) / max(1e-9, float((q - p) @ (q - p)))
+            t = np.clip(raw, 0, 1)
+            d = np.linalg.norm(points - (p + t[:, None] * (q - p)), axis=1)
+            nearer = d < best
+            best = np.where(nearer, d, best)
+            height = np.where(nearer, za + (zb - za) * raw, height)
+    return height
+
+
+def boots(joints: Joints, *, shoe: bool) -> Skin:
+    """Upper parts of both boots (or low shoes)."""
+    v = Volume()
+    for i in range(2):
+        f = joints.feet[i]
+        v.ellipsoid((0, 0.150, 0.048), (0.047, 0.062, 0.040 if not shoe else 0.030), f)
+        v.capsule(f @ Vector((0, 0.06, 0.052)), f @ Vector((0, 0.13, 0.044)), 0.046, 0.044)
+        v.capsule(f @ Vector((0, -0.035, 0.055)), f @ Vector((0, 0.07, 0.058)), 0.043, 0.043)
+        v.ellipsoid((0, -0.045, 0.048), (0.040, 0.044, 0.044), f)
+        if not shoe:
+            v.capsule(f @ Vector((0, -0.012, 0.07)), joints.ankles[i].lerp(joints.knees[i], 0.22), 0.048, 0.049)
+    return v.melt(0.009, 3)
+
+
+def sole_outline(foot: Matrix, side: int, low: float, high: float) -> list[list[tuple[float, float, float]]]:
+    """Two rings of a boot sole, lower and upper, in world coordinates."""
+    half = [
+        (-0.088, 0.0),
+        (-0.080, 0.026),
+        (-0.05, 0.038),
+        (0.0, 0.038),
+        (0.06, 0.043),
+        (0.12, 0.051),
+        (0.165, 0.047),
+        (0.198, 0.026),
+        (0.206, 0.0),
+    ]
+    ring = [(x, y) for y, x in half] + [(-x, y) for y, x in half[-2:0:-1]]
+    return [[tuple(foot @ Vector((x + side * -0.004 * (y > 0.1), y, z))) for x, y in ring] for z in (low, high)]
+
+
+def hands(
+    joints: Joints, curls: tuple[float, float], palms: tuple[Vector | None, Vector | None], *, glove: bool
+) -> Skin:
+    """Both hands with fingers; ``curl`` -1 points the index finger, 0 is flat, 1 a fist."""
+    v = Volume()
+    fat = 0.0015 if glove else 0.0
+    for i, side in enumerate(SIDES):
+        wrist, elbow = joints.wrists[i], joints.elbows[i]
+        along = (wrist - elbow).normalized()
+        inward = palms[i] or joints.chest.to_3x3() @ Vector((-side * 1.0, 0.25, -0.1))
+        normal = (inward - along * along.dot(inward)).normalized()  # out of the palm
+        across = along.cross(normal)  # towards or away from the thumb, by side
+        thumb_side = across * (-side if across.dot(Vector((0, 1, 0.3))) * -side > 0 else side)
+        curl = curls[i]
+        v.capsule(wrist - along * 0.045, wrist + along * 0.01, 0.029 + fat, 0.027 + fat, flat=0.78, across=across)
+        v.capsule(wrist + along * 0.015, wrist + along * 0.075, 0.032 + fat, 0.040 + fat, flat=0.40, across=across)
+        for k in range(4):
+            straight = curl < 0 and k == 0
+            bend = 0.12 if straight else (abs(curl) if curl >= 0 else 1.0)
+            a1, a2 = bend * 1.15, bend * 2.5
+            base = wrist + along * (0.085 - 0.004 * abs(k - 1.2)) + thumb_side * (0.029 - 0.0195 * k)
+            length = (0.038, 0.043, 0.040, 0.032)[k]
+            mid = base + (along * math.cos(a1) + normal * math.sin(a1)) * length
+            tip = mid + (along * math.cos(a2) + normal * math.sin(a2)) * length * 0.85
+            v.capsule(base, mid, 0.0105 + fat, 0.0095 + fat, sides=8)
+            v.capsule(mid, tip, 0.0095 + fat, 0.008 + fat, sides=8)
+        root = wrist + along * 0.025 + thumb_side * 0.026 + normal * 0.006
+        joint = root + along * 0.036 + thumb_side * 0.022 + normal * 0.014
+        v.capsule(root, joint, 0.014 + fat, 0.011 + fat, sides=8)
+        v.capsule(
+            joint, joint + along * 0.028 + normal * 0.010 * (1 + max(0.0, curl)), 0.011 + fat, 0.008 + fat, sides=8
+        )
+    return v.melt(0.0055, 2)

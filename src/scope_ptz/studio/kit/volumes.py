@@ -1,0 +1,124 @@
+"""Soft bodies: capsules, ellipsoids and lofts melted into one skin by a voxel remesh. What people and other rounded things are made of."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import bpy
+import numpy as np
+from mathutils import Matrix, Vector, noise
+
+Vec = Vector | tuple[float, float, float]
+Skin = tuple[np.ndarray, list[tuple[int, ...]]]
+"""Points (n, 3) and faces."""
+
+
+class Volume:
+    """Overlapping closed shapes, to be melted into one surface."""
+
+    def __init__(self) -> None:
+        self.points: list[tuple[float, float, float]] = []
+        self.faces: list[tuple[int, ...]] = []
+
+    def rings(self, rows: Sequence[Sequence[Vec]]) -> None:
+        """A closed tube through rings of equal length."""
+        base, n = len(self.points), len(rows[0])
+        for row in rows:
+            self.points += [tuple(p) for p in row]
+        for i in range(len(rows) - 1):
+            for k in range(n):
+                a, b = base + i * n + k, base + i * n + (k + 1) % n
+                self.faces.append((a, b, b + n, a + n))
+        self.faces.append(tuple(range(base, base + n))[::-1])
+        self.faces.append(tuple(range(base + (len(rows) - 1) * n, base + len(rows) * n)))
+
+    def capsule(
+        self, a: Vec, b: Vec, ra: float, rb: float, *, sides: int = 16, flat: float = 1.0, across: Vec = (1, 0, 0)
+    ) -> None:
+        """A tapered bar with round ends; ``flat`` < 1 thins it at right angles to ``across``."""
+        a, b = Vector(a), Vector(b)
+        axis = (b - a).normalized()
+        u = Vector(across) - axis * axis.dot(Vector(across))
+        u = u.normalized() if u.length > 1e-3 else axis.orthogonal().normalized()
+        v = axis.cross(u)
+        rows = []
+        for centre, radius, angles in ((a, ra, (-80, -50, -25, 0)), (b, rb, (0, 25, 50, 80))):
+            for angle in angles:
+                w, h = math.cos(math.radians(angle)) * radius, math.sin(math.radians(angle)) * radius
+                rows.append(
+                    [
+                        centre
+                        + axis * h
+                        + u * (w * math.cos(2 * math.pi * k / sides))
+                        + v * (w * flat * math.sin(2 * math.pi * k / sides))
+                        for k in range(sides)
+                    ]
+                )
+        self.rings(rows)
+
+    def ellipsoid(self, centre: Vec, radii: tuple[float, float, float], frame: Matrix | None = None) -> None:
+        """An axis-aligned ellipsoid, optionally carried by a frame."""
+        rows = []
+        for i in range(13):
+            t = math.radians(-84 + 14 * i)
+            row = []
+            for k in range(20):
+                a = 2 * math.pi * k / 20
+                p = Vector(centre) + Vector(
+                    (radii[0] * math.cos(t) * math.cos(a), radii[1] * math.cos(t) * math.sin(a), radii[2] * math.sin(t))
+                )
+                row.append(frame @ p if frame else p)
+            rows.append(row)
+        self.rings(rows)
+
+    def melt(self, voxel_m: float, smooth: int = 4) -> Skin:
+        """One watertight surface around everything, smoothed."""
+        mesh = bpy.data.meshes.new("melt")
+        mesh.from_pydata(self.points, [], self.faces)
+        obj = bpy.data.objects.new("melt", mesh)
+        remesh = obj.modifiers.new("remesh", "REMESH")
+        remesh.mode, remesh.voxel_size = "VOXEL", voxel_m
+        if smooth:
+            soft = obj.modifiers.new("smooth", "SMOOTH")
+            soft.factor, soft.iterations = 0.5, smooth
+        scratch = bpy.data.scenes.new("melt")  # a scene of its own: evaluating it does not touch the rest of the stage
+        scratch.collection.objects.link(obj)
+        layer = scratch.view_layers[0]
+        layer.update()
+        made = bpy.data.meshes.new_from_object(obj.evaluated_get(layer.depsgraph), depsgraph=layer.depsgraph)
+        points = np.empty(len(made.vertices) * 3)
+        made.vertices.foreach_get("co", points)
+        faces = [tuple(p.vertices) for p in made.polygons]
+        bpy.data.scenes.remove(scratch)
+        bpy.data.objects.remove(obj)
+        bpy.data.meshes.remove(made)
+        bpy.data.meshes.remove(mesh)
+        return points.reshape(-1, 3), faces
+
+
+def normals(skin: Skin) -> np.ndarray:
+    """Unit vertex normals of a quad skin, (n, 3)."""
+    points, faces = skin
+    quads = np.array([f if len(f) == 4 else (*f, f[-1]) for f in faces])
+    cross = np.cross(points[quads[:, 2]] - points[quads[:, 0]], points[quads[:, 3]] - points[quads[:, 1]])
+    total = np.zeros_like(points)
+    for k in range(4):
+        np.add.at(total, quads[:, k], cross)
+    return total / np.maximum(np.linalg.norm(total, axis=1, keepdims=True), 1e-12)
+
+
+def crease(
+    skin: Skin, amount: Callable[[np.ndarray], np.ndarray] | float, scale: tuple[float, float, float], seed: float
+) -> Skin:
+    """Push the surface in and out by folded noise: cloth. ``amount`` is metres, or metres for each of the points (n, 3)."""
+    points, faces = skin
+    size = amount(points) if callable(amount) else np.full(len(points), amount)
+    shift = np.array(
+        [
+            noise.noise((x * scale[0] + seed, y * scale[1], z * scale[2]))
+            + 0.5 * noise.noise((x * scale[0] * 2.1, y * scale[1] * 2.1 + seed, z * scale[2] * 2.3))
+            for x, y, z in points
+        ]
+    )
+    return points + normals(skin) * (shift * size)[:, None], faces
