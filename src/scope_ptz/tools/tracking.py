@@ -1,0 +1,135 @@
+"""track_object: localise, correct, repeat for the time asked."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from scope_ptz.camera.base import Frame
+from scope_ptz.geometry import pan_tilt_deg
+from scope_ptz.perception.base import Box
+from scope_ptz.tools.aiming import Floats, lookahead, nearest, outline, pose_towards
+from scope_ptz.tools.arguments import TrackObject
+from scope_ptz.tools.context import ToolContext
+from scope_ptz.tools.results import PoseData, TrackPoint, TrackResult
+
+PERIOD_S = 0.5
+"""Time between two looks: the paper's 2 Hz control loop."""
+
+DEAD_ZONE = 0.06
+"""Offsets below this share of the frame are not corrected: it spares the motors."""
+
+FILL_RANGE = (0.12, 0.5)
+WANTED_FILL = 0.28
+"""Outside the range the zoom is corrected: room to move on one side, enough pixels to recognise on the other."""
+
+
+class _Target:
+    """What is known of the target while it is followed: its outline and where its middle was at the last two sightings."""
+
+    def __init__(self, frame: Frame, box: Box) -> None:
+        self.outline = outline(frame, box)
+        self.middle = _middle(frame, box)
+        self.time_s = frame.time_s
+        self.before: tuple[Floats, float] | None = None
+
+    def update(self, frame: Frame, box: Box) -> None:
+        self.before = (self.middle, self.time_s)
+        self.outline, self.middle, self.time_s = outline(frame, box), _middle(frame, box), frame.time_s
+
+    def at(self, time_s: float) -> Floats:
+        """Where the middle will be, by the motion between the last two sightings; no guess beyond two periods."""
+        if self.before is None or self.time_s <= self.before[1]:
+            return self.middle
+        ahead = min(max(time_s - self.time_s, 0.0), 2 * PERIOD_S)
+        return lookahead(self.before[0], self.middle, ahead / (self.time_s - self.before[1]))
+
+    def outline_at(self, time_s: float) -> Floats:
+        """The outline moved along with the middle."""
+        moved = self.outline + (self.at(time_s) - self.middle)
+        return np.asarray(moved / np.linalg.norm(moved, axis=-1, keepdims=True))
+
+
+def _middle(frame: Frame, box: Box) -> Floats:
+    return frame.projection.directions(np.array(box.centre))
+
+
+async def track_object(context: ToolContext, arguments: TrackObject) -> TrackResult:
+    """Keep an object in the middle. Of several matches the first that perception names is followed, by nearness to where it was."""
+    camera, description = context.camera, arguments.description
+    frame = await camera.frame()
+    found = await context.perception.detect(frame, description)
+    saved = [context.images.save_look(frame)]
+    if not found.boxes:
+        return TrackResult(
+            message=f"Nothing that fits '{description}' is in view; the camera stayed where it was.",
+            pose=PoseData.of(frame.pose), source=found.source, frames=tuple(saved), description=description,
+            found=False, duration_s=0.0, held_share=0.0,
+        )  # fmt: skip
+    target, box = _Target(frame, found.boxes[0]), found.boxes[0]
+    started, clamped = frame.time_s, set[str]()
+    path = [TrackPoint(time_s=0.0, pose=PoseData.of(frame.pose), seen=True)]
+    seen: Box | None = box
+    while True:
+        if seen is not None:
+            clamped |= set(await _correct(context, frame, seen, target))
+        left_s = arguments.duration_s - (camera.clock.now_s() - started)
+        if left_s <= 1e-6:
+            break
+        due_s = started + PERIOD_S * len(path)
+        await camera.clock.sleep(min(max(due_s - camera.clock.now_s(), 0.05), left_s))
+        frame = await camera.frame()
+        found = await context.perception.detect(frame, description)
+        seen = nearest(camera.info, frame, found.boxes, target.outline_at(frame.time_s))
+        if seen is not None:
+            target.update(frame, seen)
+        path.append(
+            TrackPoint(time_s=round(frame.time_s - started, 3), pose=PoseData.of(frame.pose), seen=seen is not None)
+        )
+    saved.append(context.images.save_look(frame))
+    return _report(arguments, found.source, frame, path, clamped, saved)
+
+
+async def _correct(context: ToolContext, frame: Frame, seen: Box, target: _Target) -> tuple[str, ...]:
+    """Aim at where the target will be at the next look, and mind its size."""
+    info = context.camera.info
+    fill = max(seen.width, seen.height)
+    offset = max(abs(seen.centre[0] - 0.5), abs(seen.centre[1] - 0.5))
+    pose = await context.camera.pose()
+    if offset <= DEAD_ZONE and FILL_RANGE[0] <= fill <= FILL_RANGE[1]:
+        return ()
+    pan, tilt = (float(v) for v in pan_tilt_deg(target.at(frame.time_s + PERIOD_S)))
+    wanted = pose_towards(info, pan, tilt, pose.zoom)
+    if not FILL_RANGE[0] <= fill <= FILL_RANGE[1]:
+        focal = info.optics.focal(pose.zoom) * WANTED_FILL / max(fill, 1e-3)
+        wanted = replace(wanted, zoom=info.optics.zoom_for_focal(focal))
+    arrival = await context.camera.move(wanted)
+    return arrival.clamped
+
+
+def _report(
+    arguments: TrackObject, source: str, frame: Frame, path: list[TrackPoint], clamped: set[str], saved: list[str]
+) -> TrackResult:
+    held = _held_share(path, arguments.duration_s)
+    stops = tuple(name for name in ("pan", "tilt", "zoom") if name in clamped)
+    bound = f" The {' and '.join(stops)} limit was reached." if stops else ""
+    return TrackResult(
+        message=f"Followed '{arguments.description}' for {arguments.duration_s:g} s; it was in view {held:.0%} of the time.{bound}",
+        pose=PoseData.of(frame.pose),
+        clamped=stops,
+        source=source,
+        frames=tuple(saved),
+        description=arguments.description,
+        found=True,
+        duration_s=arguments.duration_s,
+        held_share=round(held, 4),
+        path=tuple(path),
+    )  # fmt: skip
+
+
+def _held_share(path: list[TrackPoint], duration_s: float) -> float:
+    """Share of the time during which the target was seen: each look stands for the time since the one before it."""
+    held = sum((now.time_s - before.time_s) for before, now in zip(path, path[1:], strict=False) if now.seen)
+    span = max(path[-1].time_s, 1e-9)
+    return min(held / span, 1.0) if len(path) > 1 else 1.0
