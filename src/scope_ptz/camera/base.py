@@ -11,7 +11,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from scope_ptz.geometry import Limits, Optics, Pose, Projection
+from scope_ptz.geometry import Axis, Limits, Optics, Pose, Projection
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +28,7 @@ class CameraInfo:
 
 @dataclass(frozen=True, slots=True)
 class FrameOrigin:
-    """Where a simulated frame comes from. Only ``world`` and the ground-truth perception read it; real cameras' frames have none."""
+    """Where a simulated frame comes from. Only ``world`` and the ground-truth perception read it; real cameras have none."""
 
     scene: str
     viewpoint: str
@@ -77,7 +77,7 @@ class Arrival:
     """Where a move ended, and which of "pan", "tilt", "zoom" a limit cut."""
 
     pose: Pose
-    clamped: tuple[str, ...] = field(default=())
+    clamped: tuple[Axis, ...] = field(default=())
 
 
 class Clock(Protocol):

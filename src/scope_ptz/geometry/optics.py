@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from scope_ptz.geometry.poses import Pose, wrap_pan_deg
+
+Axis = Literal["pan", "tilt", "zoom"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +69,7 @@ class Limits:
     max_zoom: float = 5.0
     pan_endless: bool = False
 
-    def clamp(self, wanted: Pose) -> tuple[Pose, tuple[str, ...]]:
+    def clamp(self, wanted: Pose) -> tuple[Pose, tuple[Axis, ...]]:
         """The nearest allowed pose and which of "pan", "tilt", "zoom" were cut.
 
         ``wanted.pan_deg`` is taken as it is, unwrapped: 170 + 20 = 190 stops at 179 and never turns the long way round.
@@ -74,8 +77,14 @@ class Limits:
         pan = wrap_pan_deg(wanted.pan_deg) if self.pan_endless else _cut(wanted.pan_deg, self.min_pan_deg, self.max_pan_deg)
         tilt = _cut(wanted.tilt_deg, self.min_tilt_deg, self.max_tilt_deg)
         zoom = _cut(wanted.zoom, self.min_zoom, self.max_zoom)
-        pairs = (("pan", pan, pan if self.pan_endless else wanted.pan_deg), ("tilt", tilt, wanted.tilt_deg), ("zoom", zoom, wanted.zoom))
-        return Pose(pan, tilt, zoom), tuple(name for name, got, asked in pairs if abs(got - asked) > 1e-9)
+        cut: list[Axis] = []
+        if not self.pan_endless and abs(pan - wanted.pan_deg) > 1e-9:
+            cut.append("pan")
+        if abs(tilt - wanted.tilt_deg) > 1e-9:
+            cut.append("tilt")
+        if abs(zoom - wanted.zoom) > 1e-9:
+            cut.append("zoom")
+        return Pose(pan, tilt, zoom), tuple(cut)
 
     def aim_pan_deg(self, pan_deg: float) -> float:
         """The turn-equivalent of a direction that lies within the stops if any does (a direction, not a relative move)."""

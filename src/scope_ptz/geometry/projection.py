@@ -92,4 +92,6 @@ class Equirectangular:
     def points(self, directions: ArrayLike) -> Floats:
         pan, tilt = pan_tilt_deg(directions)
         turn = np.mod(pan - self.left_pan_deg, 360.0)
-        return np.stack([turn / self.pan_span_deg, (self.top_tilt_deg - tilt) / (self.top_tilt_deg - self.bottom_tilt_deg)], axis=-1)
+        return np.stack(
+            [turn / self.pan_span_deg, (self.top_tilt_deg - tilt) / (self.top_tilt_deg - self.bottom_tilt_deg)], axis=-1
+        )

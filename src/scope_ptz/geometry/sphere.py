@@ -28,7 +28,8 @@ def pan_tilt_deg(vectors: ArrayLike) -> tuple[Floats, Floats]:
 def angle_between_deg(a: ArrayLike, b: ArrayLike) -> Floats:
     """Angle between vectors ``(..., 3)``, exact for small angles too (atan2 of cross and dot)."""
     u, v = np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)
-    return np.degrees(np.arctan2(np.linalg.norm(np.cross(u, v), axis=-1), np.sum(u * v, axis=-1)))
+    angle: Floats = np.degrees(np.arctan2(np.linalg.norm(np.cross(u, v), axis=-1), np.sum(u * v, axis=-1)))
+    return angle
 
 
 def camera_axes(pan_deg: float, tilt_deg: float) -> Floats:

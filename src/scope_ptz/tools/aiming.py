@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.camera.base import CameraInfo, Frame
-from scope_ptz.geometry import Perspective, Pose, direction, pan_tilt_deg
+from scope_ptz.geometry import Axis, Perspective, Pose, direction, pan_tilt_deg
 from scope_ptz.perception.base import Box
 
 Floats = NDArray[np.float64]
@@ -28,7 +28,7 @@ class Aim:
     pose: Pose
     fill: float
     offset: tuple[float, float]
-    limited_by: tuple[str, ...]
+    limited_by: tuple[Axis, ...]
 
 
 def outline(frame: Frame, box: Box, per_side: int = 9) -> Floats:
@@ -36,17 +36,13 @@ def outline(frame: Frame, box: Box, per_side: int = 9) -> Floats:
     t = np.linspace(0.0, 1.0, per_side)
     xs, ys = box.x_min + t * box.width, box.y_min + t * box.height
     low_x, high_x, low_y, high_y = (np.full(per_side, v) for v in (box.x_min, box.x_max, box.y_min, box.y_max))
-    border = np.concatenate(
-        [np.stack(pair, axis=-1) for pair in ((xs, low_y), (xs, high_y), (low_x, ys), (high_x, ys))]
-    )
+    border = np.concatenate([np.stack(pair, axis=-1) for pair in ((xs, low_y), (xs, high_y), (low_x, ys), (high_x, ys))])
     return frame.projection.directions(border)
 
 
 def view(info: CameraInfo, pose: Pose) -> Perspective:
     """The camera's picture at a pose."""
-    return Perspective(
-        pose.pan_deg, pose.tilt_deg, info.optics.hfov_deg(pose.zoom), info.frame_width, info.frame_height
-    )
+    return Perspective(pose.pan_deg, pose.tilt_deg, info.optics.hfov_deg(pose.zoom), info.frame_width, info.frame_height)
 
 
 def spans(points: Floats) -> tuple[float, float, float, float]:
@@ -72,7 +68,7 @@ def aim(info: CameraInfo, start: Pose, target: Floats, fill: float = TARGET_FILL
     """
     middle = target.mean(axis=0)
     limits = info.limits
-    pose, clamped = start, set[str]()
+    pose, clamped = start, set[Axis]()
     for _ in range(8):
         pan, tilt = (float(v) for v in pan_tilt_deg(middle))
         zoom = _zoom_for(info, Pose(pan, tilt, start.zoom), target, fill)
@@ -87,7 +83,13 @@ def aim(info: CameraInfo, start: Pose, target: Floats, fill: float = TARGET_FILL
     if not math.isclose(reached, fill, rel_tol=0.02) and "zoom" not in clamped:
         at_stop = math.isclose(pose.zoom, limits.min_zoom) or math.isclose(pose.zoom, limits.max_zoom)
         clamped |= {"zoom"} if at_stop else set()
-    return Aim(pose, reached, offset, tuple(name for name in ("pan", "tilt", "zoom") if name in clamped))
+    return Aim(pose, reached, offset, in_order(clamped))
+
+
+def in_order(axes: set[Axis]) -> tuple[Axis, ...]:
+    """Axes in the order in which people name them."""
+    order: tuple[Axis, ...] = ("pan", "tilt", "zoom")
+    return tuple(name for name in order if name in axes)
 
 
 def _zoom_for(info: CameraInfo, pose: Pose, target: Floats, fill: float) -> float:
@@ -110,9 +112,7 @@ def nearest(info: CameraInfo, frame: Frame, boxes: tuple[Box, ...], target: Floa
     if not boxes or not math.isfinite(left):
         return None
     x, y = (left + right) / 2, (top + bottom) / 2
-    best = min(
-        boxes, key=lambda b: math.hypot(b.centre[0] - x, (b.centre[1] - y) * info.frame_height / info.frame_width)
-    )
+    best = min(boxes, key=lambda b: math.hypot(b.centre[0] - x, (b.centre[1] - y) * info.frame_height / info.frame_width))
     near_x, near_y = max(right - left, 0.05), max(bottom - top, 0.05)
     if abs(best.centre[0] - x) > near_x or abs(best.centre[1] - y) > near_y:
         return None

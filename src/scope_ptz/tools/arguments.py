@@ -28,9 +28,7 @@ class AdjustPtz(Arguments):
     zoom_percent: Annotated[float, Field(gt=-100, allow_inf_nan=False)] | None = Field(
         None, description="Change of magnification in percent: 50 = 1.5 times as close, -50 = half as close."
     )
-    zoom_limit: Literal["in", "out"] | None = Field(
-        None, description="Zoom to the stop: 'in' = closest, 'out' = widest."
-    )
+    zoom_limit: Literal["in", "out"] | None = Field(None, description="Zoom to the stop: 'in' = closest, 'out' = widest.")
 
     @model_validator(mode="after")
     def _one_zoom(self) -> AdjustPtz:
@@ -61,18 +59,14 @@ class CountObjects(Arguments):
     """Count the objects that fit a description."""
 
     description: Phrase = Field(description="What to count, for example 'traffic cones' or 'red cars'.")
-    view: View = Field(
-        "current", description="'current' = this view only, 'full' = sweep everything around the camera."
-    )
+    view: View = Field("current", description="'current' = this view only, 'full' = sweep everything around the camera.")
 
 
 class QueryAnswer(Arguments):
     """Answer a question about what the camera sees: existence, colour, text, position, state."""
 
     question: Phrase = Field(description="The question, in plain words.")
-    view: View = Field(
-        "current", description="'current' = this view only, 'full' = sweep everything around the camera."
-    )
+    view: View = Field("current", description="'current' = this view only, 'full' = sweep everything around the camera.")
 
 
 class ZoomToObject(Arguments):
@@ -85,6 +79,4 @@ class TrackObject(Arguments):
     """Keep a moving object in the middle of the view for some time."""
 
     description: Phrase = Field(description="What to follow, for example 'the white van'.")
-    duration_s: Annotated[float, Field(gt=0, le=600, allow_inf_nan=False)] = Field(
-        10.0, description="For how many seconds."
-    )
+    duration_s: Annotated[float, Field(gt=0, le=600, allow_inf_nan=False)] = Field(10.0, description="For how many seconds.")

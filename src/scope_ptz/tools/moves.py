@@ -42,9 +42,7 @@ async def go_to_preset(context: ToolContext, arguments: GoToPreset) -> MoveResul
 
 async def go_home(context: ToolContext, arguments: GoHome) -> MoveResult:
     arrival = await context.camera.go_home()
-    return MoveResult(
-        message=f"At home; {pose_text(arrival)}.", pose=PoseData.of(arrival.pose), clamped=arrival.clamped
-    )
+    return MoveResult(message=f"At home; {pose_text(arrival)}.", pose=PoseData.of(arrival.pose), clamped=arrival.clamped)
 
 
 async def get_presets(context: ToolContext, arguments: GetPresets) -> PresetsResult:

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
 from pydantic import BaseModel, ConfigDict
 
-from scope_ptz.geometry import Pose
+from scope_ptz.geometry import Axis, Pose
 from scope_ptz.perception.base import Box
 from scope_ptz.tools.arguments import View
 
@@ -30,7 +28,7 @@ class Result(BaseModel):
 
     message: str
     pose: PoseData
-    clamped: tuple[Literal["pan", "tilt", "zoom"], ...] = ()
+    clamped: tuple[Axis, ...] = ()
 
 
 class MoveResult(Result):
@@ -81,7 +79,7 @@ class ZoomResult(Seen):
     chosen: str = ""
     fill: float | None = None
     offset: tuple[float, float] | None = None
-    limited_by: tuple[Literal["pan", "tilt", "zoom"], ...] = ()
+    limited_by: tuple[Axis, ...] = ()
     box: Box | None = None
 
 

@@ -98,9 +98,7 @@ def stitch(blocks: list[Block], frames: list[Frame], pose: Pose) -> Frame:
             raise CameraError("A sweep needs perspective frames.")
         map_x, map_y = _block_maps(whole, frame.projection, x0, y0, x1, y1)
         panorama[y0:y1, x0:x1] = cv2.remap(frame.image, map_x, map_y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
-    return Frame(
-        panorama, pose, span, first.time_s, Equirectangular(left, span, top, bottom, width, height), origin=first.origin
-    )
+    return Frame(panorama, pose, span, first.time_s, Equirectangular(left, span, top, bottom, width, height), origin=first.origin)
 
 
 @lru_cache(maxsize=64)
@@ -113,8 +111,6 @@ def _block_maps(
     ys = (y0 + 0.5 + np.arange(rows) * _GRID_PX) / whole.height
     points = view.points(whole.directions(np.stack(np.meshgrid(xs, ys), axis=-1)))
     coarse = (points * [view.width, view.height] - 0.5).astype(np.float32)
-    at_x, at_y = np.meshgrid(
-        np.arange(x1 - x0, dtype=np.float32) / _GRID_PX, np.arange(y1 - y0, dtype=np.float32) / _GRID_PX
-    )
+    at_x, at_y = np.meshgrid(np.arange(x1 - x0, dtype=np.float32) / _GRID_PX, np.arange(y1 - y0, dtype=np.float32) / _GRID_PX)
     fine = cv2.remap(coarse, at_x, at_y, cv2.INTER_LINEAR)
     return np.ascontiguousarray(fine[..., 0]), np.ascontiguousarray(fine[..., 1])

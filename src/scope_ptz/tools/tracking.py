@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
 from scope_ptz.camera.base import Frame
-from scope_ptz.geometry import pan_tilt_deg
+from scope_ptz.geometry import Axis, pan_tilt_deg
 from scope_ptz.perception.base import Box
-from scope_ptz.tools.aiming import Floats, lookahead, nearest, outline, pose_towards
+from scope_ptz.tools.aiming import Floats, in_order, lookahead, nearest, outline, pose_towards
 from scope_ptz.tools.arguments import TrackObject
 from scope_ptz.tools.context import ToolContext
 from scope_ptz.tools.results import PoseData, TrackPoint, TrackResult
@@ -68,7 +69,7 @@ async def track_object(context: ToolContext, arguments: TrackObject) -> TrackRes
             found=False, duration_s=0.0, held_share=0.0,
         )  # fmt: skip
     target, box = _Target(frame, found.boxes[0]), found.boxes[0]
-    started, clamped = frame.time_s, set[str]()
+    started, clamped = frame.time_s, set[Axis]()
     path = [TrackPoint(time_s=0.0, pose=PoseData.of(frame.pose), seen=True)]
     seen: Box | None = box
     while True:
@@ -84,14 +85,12 @@ async def track_object(context: ToolContext, arguments: TrackObject) -> TrackRes
         seen = nearest(camera.info, frame, found.boxes, target.outline_at(frame.time_s))
         if seen is not None:
             target.update(frame, seen)
-        path.append(
-            TrackPoint(time_s=round(frame.time_s - started, 3), pose=PoseData.of(frame.pose), seen=seen is not None)
-        )
+        path.append(TrackPoint(time_s=round(frame.time_s - started, 3), pose=PoseData.of(frame.pose), seen=seen is not None))
     saved.append(context.images.save_look(frame))
     return _report(arguments, found.source, frame, path, clamped, saved)
 
 
-async def _correct(context: ToolContext, frame: Frame, seen: Box, target: _Target) -> tuple[str, ...]:
+async def _correct(context: ToolContext, frame: Frame, seen: Box, target: _Target) -> tuple[Axis, ...]:
     """Aim at where the target will be at the next look, and mind its size."""
     info = context.camera.info
     fill = max(seen.width, seen.height)
@@ -109,10 +108,10 @@ async def _correct(context: ToolContext, frame: Frame, seen: Box, target: _Targe
 
 
 def _report(
-    arguments: TrackObject, source: str, frame: Frame, path: list[TrackPoint], clamped: set[str], saved: list[str]
+    arguments: TrackObject, source: str, frame: Frame, path: list[TrackPoint], clamped: set[Axis], saved: list[str]
 ) -> TrackResult:
-    held = _held_share(path, arguments.duration_s)
-    stops = tuple(name for name in ("pan", "tilt", "zoom") if name in clamped)
+    held = _held_share(path)
+    stops = in_order(clamped)
     bound = f" The {' and '.join(stops)} limit was reached." if stops else ""
     return TrackResult(
         message=f"Followed '{arguments.description}' for {arguments.duration_s:g} s; it was in view {held:.0%} of the time.{bound}",
@@ -128,8 +127,8 @@ def _report(
     )  # fmt: skip
 
 
-def _held_share(path: list[TrackPoint], duration_s: float) -> float:
+def _held_share(path: list[TrackPoint]) -> float:
     """Share of the time during which the target was seen: each look stands for the time since the one before it."""
-    held = sum((now.time_s - before.time_s) for before, now in zip(path, path[1:], strict=False) if now.seen)
+    held = sum((now.time_s - before.time_s) for before, now in pairwise(path) if now.seen)
     span = max(path[-1].time_s, 1e-9)
     return min(held / span, 1.0) if len(path) > 1 else 1.0

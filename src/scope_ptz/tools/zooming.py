@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from scope_ptz.camera.base import Frame
-from scope_ptz.geometry import Pose, angle_between_deg
+from scope_ptz.camera.base import Arrival, Frame
+from scope_ptz.geometry import Pose, angle_between_deg, direction
 from scope_ptz.perception.base import Box
 from scope_ptz.tools.aiming import TARGET_FILL, Aim, Floats, aim, is_cut, measure, nearest, outline
 from scope_ptz.tools.arguments import ZoomToObject
@@ -86,8 +86,6 @@ def _framed(context: ToolContext, pose: Pose, target: Floats, plan: Aim) -> bool
 
 
 def _axis(pose: Pose) -> Floats:
-    from scope_ptz.geometry import direction
-
     return direction(pose.pan_deg, pose.tilt_deg)
 
 
@@ -113,9 +111,7 @@ async def _nothing(context: ToolContext, description: str, frame: Frame) -> Zoom
     )
 
 
-async def _report(
-    context: ToolContext, description: str, first: _Look, target: Floats, frames: tuple[str, ...]
-) -> ZoomResult:
+async def _report(context: ToolContext, description: str, first: _Look, target: Floats, frames: tuple[str, ...]) -> ZoomResult:
     frame = await context.camera.frame()
     info = context.camera.info
     fill, offset = measure(info, frame.pose, target)
@@ -125,8 +121,6 @@ async def _report(
     points = frame.projection.points(target)
     low, high = points.min(axis=0).clip(0, 1), points.max(axis=0).clip(0, 1)
     name = first.box.label or description
-    from scope_ptz.camera.base import Arrival
-
     return ZoomResult(
         message=f"Zoomed to {name}{several}: it fills {fill:.0%} of the frame; {pose_text(Arrival(frame.pose))}.{bound}",
         pose=PoseData.of(frame.pose),
