@@ -17,7 +17,11 @@ from pydantic import BaseModel, ValidationError
 
 from scope_ptz.errors import PackError, UnknownNameError
 from scope_ptz.world import layers
+from scope_ptz.world.atlas import Atlas
 from scope_ptz.world.models import FORMAT_VERSION, Layer, Manifest, SceneActor, SceneFile, SceneInstance, SceneViewpoint
+
+COLOUR_SCALES = (1.0, 2**-0.5, 0.5, 2**-1.5, 0.25)
+"""Scales at which colour is kept: half an octave apart, so that a view samples its source neither much too finely nor too coarsely."""
 
 _File = TypeVar("_File", bound=BaseModel)
 
@@ -96,6 +100,12 @@ class Viewpoint:
                 f"{manifest.scene_version}, but lies in '{place.name}' of '{scene.name}' version {scene.version}. Bake it again."
             )
 
+        tiles = manifest.tiles
+        colours, ids = [manifest.base, *(t.colour for t in tiles)], [manifest.ids, *(t.ids for t in tiles)]
+        self.colour_atlas = Atlas([_size(c) for c in colours], lambda i: self.colour(colours[i]), np.uint8, 3, COLOUR_SCALES)
+        self.id_atlas = Atlas([_size(n) for n in ids], lambda i: self.ids(ids[i]), np.uint16, 1, (1.0,))
+        self.depth_atlas = Atlas([_size(manifest.depth)], lambda _: self.depth(manifest.depth), np.uint16, 1, (1.0,))
+
     @cached_property
     def position_m(self) -> NDArray[np.float64]:
         """World position of the optical centre."""
@@ -153,6 +163,10 @@ class Viewpoint:
             )
         image.flags.writeable = False
         return image
+
+
+def _size(layer: Layer) -> tuple[int, int]:
+    return layer.width, layer.height
 
 
 def _read_json(path: Path, model: type[_File]) -> _File:

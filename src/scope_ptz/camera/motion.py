@@ -1,0 +1,73 @@
+"""How a pan-tilt-zoom head gets from one pose to another: each axis speeds up, cruises, slows down."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from scope_ptz.geometry import Pose
+
+
+@dataclass(frozen=True, slots=True)
+class Drive:
+    """One motor: top speed in units/s and acceleration in units/s^2."""
+
+    speed: float
+    acceleration: float
+
+    def duration_s(self, distance: float) -> float:
+        """Time from rest to rest."""
+        d = abs(distance)
+        if d < self.speed**2 / self.acceleration:
+            return 2 * math.sqrt(d / self.acceleration)
+        return d / self.speed + self.speed / self.acceleration
+
+    def travelled(self, distance: float, time_s: float) -> float:
+        """How far along ``distance`` (signed) the motor is after ``time_s``."""
+        d, total = abs(distance), self.duration_s(distance)
+        t = min(max(time_s, 0.0), total)
+        if t >= total:
+            return distance
+        ramp = min(self.speed / self.acceleration, total / 2)
+        if t <= ramp:
+            gone = self.acceleration * t**2 / 2
+        elif t >= total - ramp:
+            gone = d - self.acceleration * (total - t) ** 2 / 2
+        else:
+            gone = self.acceleration * ramp**2 / 2 + self.speed * (t - ramp)
+        return math.copysign(gone, distance)
+
+
+@dataclass(frozen=True, slots=True)
+class Head:
+    """The motors of a camera. Zoom runs in octaves (a doubling of magnification), as operators see it."""
+
+    pan: Drive
+    tilt: Drive
+    zoom: Drive
+    settle_s: float
+
+    def duration_s(self, start: Pose, end: Pose) -> float:
+        """Time until all axes stand still and the picture has settled; nothing to do takes no time."""
+        pan, tilt, octaves = _distances(start, end)
+        moving = max(self.pan.duration_s(pan), self.tilt.duration_s(tilt), self.zoom.duration_s(octaves))
+        return moving + self.settle_s if moving > 0 else 0.0
+
+    def at(self, start: Pose, end: Pose, time_s: float) -> Pose:
+        """The pose ``time_s`` after the move began; exactly ``end`` once all axes have arrived."""
+        pan, tilt, octaves = _distances(start, end)
+        if time_s >= self.duration_s(start, end) - self.settle_s:
+            return end
+        return Pose(
+            start.pan_deg + self.pan.travelled(pan, time_s),
+            start.tilt_deg + self.tilt.travelled(tilt, time_s),
+            start.zoom * 2 ** self.zoom.travelled(octaves, time_s),
+        )
+
+
+def _distances(start: Pose, end: Pose) -> tuple[float, float, float]:
+    return end.pan_deg - start.pan_deg, end.tilt_deg - start.tilt_deg, math.log2(end.zoom / start.zoom)
+
+
+AXIS_M5075_G_HEAD = Head(pan=Drive(100.0, 400.0), tilt=Drive(100.0, 400.0), zoom=Drive(1.5, 6.0), settle_s=0.1)
+"""Pan speed from the data sheet; tilt, zoom, acceleration and settling are plausible, not measured."""
