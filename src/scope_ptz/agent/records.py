@@ -1,0 +1,140 @@
+"""What happens in a run, as records: the loop emits them, a trace is a file of them, and whoever watches listens to them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from datetime import datetime
+from typing import Annotated, Literal, get_args
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+
+from scope_ptz.agent.timing import Reply, Timings
+from scope_ptz.geometry import Pose
+from scope_ptz.planner.base import CallTools, Exchange, Finish, PastTurn, ToolOutcome, Usage
+
+FORMAT_VERSION = 1
+"""Raised when an older program could misread a trace."""
+
+Outcome = Literal["answered", "clarification", "refused", "step_limit", "budget", "planner_error", "camera_error", "cancelled"]
+OUTCOMES: tuple[str, ...] = get_args(Outcome)
+
+Fault = Literal["bad_call", "perception", "camera", "skipped"]
+"""Why a call failed: it was wrong, the view could not be read, the camera failed, or a call before it in the step had failed."""
+
+
+class _Record(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Place(_Record):
+    """A pose in full precision, so that a replay starts exactly there."""
+
+    pan_deg: float
+    tilt_deg: float
+    zoom: float
+
+    @classmethod
+    def of(cls, pose: Pose) -> Place:
+        return cls(pan_deg=pose.pan_deg, tilt_deg=pose.tilt_deg, zoom=pose.zoom)
+
+    def pose(self) -> Pose:
+        return Pose(self.pan_deg, self.tilt_deg, self.zoom)
+
+
+class Budgets(_Record):
+    """When a run is over without an answer: planner steps (T_max), wall seconds, tokens in and out together."""
+
+    max_steps: int = Field(default=60, ge=1)
+    time_s: float | None = Field(default=None, gt=0)
+    tokens: int | None = Field(default=None, gt=0)
+
+
+class Labels(_Record):
+    """What a trace should say about a run beyond what the loop can see."""
+
+    perception_note: str = ""
+    seed: int | None = None
+
+
+class Started(_Record):
+    """The header. ``scene`` and ``viewpoint``: simulated cameras only. ``frame``: the picture before the first step."""
+
+    event: Literal["start"] = "start"
+    format: Literal[1] = 1
+    version: str
+    python: str
+    started: datetime
+    instruction: str
+    planner: str
+    perception: str
+    camera: str
+    simulated: bool
+    frame_width: int
+    frame_height: int
+    scene: str | None
+    viewpoint: str | None
+    scene_time_s: float
+    pose: Place
+    presets: tuple[str, ...]
+    budgets: Budgets
+    labels: Labels
+    conversation: tuple[PastTurn, ...] = ()
+    frame: str | None = None
+
+
+class Decided(_Record):
+    """What the planner wants at a step."""
+
+    event: Literal["decision"] = "decision"
+    step: int
+    decision: Annotated[CallTools | Finish, Field(discriminator="kind")]
+    planner_s: float
+
+
+class Called(_Record):
+    """A call and what came back. ``scene_time_s``: when it began; ``frame``: the view after it, kept when the pose changed."""
+
+    event: Literal["call"] = "call"
+    step: int
+    index: int
+    outcome: ToolOutcome
+    fault: Fault | None = None
+    scene_time_s: float
+    pose: Place
+    timings: Timings
+    replies: tuple[Reply, ...] = ()
+    frame: str | None = None
+
+
+class Ended(_Record):
+    """How it ended. ``text``: the answer, question or reason; ``detail``: for whoever has to find a fault."""
+
+    event: Literal["end"] = "end"
+    outcome: Outcome
+    text: str
+    detail: str = ""
+    steps: int
+    bad_calls: int
+    perception_failures: int
+    usage: Usage
+    pose: Place
+    scene_time_s: float
+    timings: Timings
+    ended: datetime
+
+
+Record = Annotated[Started | Decided | Called | Ended, Field(discriminator="event")]
+RECORD: TypeAdapter[Started | Decided | Called | Ended] = TypeAdapter(Record)
+Listener = Callable[[Started | Decided | Called | Ended], None]
+
+
+class Run(_Record):
+    """A finished run."""
+
+    instruction: str
+    exchanges: tuple[Exchange, ...]
+    ended: Ended
+
+    def past_turn(self) -> PastTurn:
+        """The run as an earlier turn of a conversation."""
+        return PastTurn(instruction=self.instruction, exchanges=self.exchanges, reply=self.ended.text)

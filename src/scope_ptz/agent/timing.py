@@ -1,0 +1,166 @@
+"""Where the time of a run goes: proxies around the two contracts that measure what passes through them."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable, Iterator
+from contextlib import contextmanager
+from time import perf_counter
+from typing import Any, Literal, TypeVar
+
+from pydantic import BaseModel, ConfigDict
+
+from scope_ptz.camera.base import Arrival, Camera, CameraInfo, Frame, PresetInfo
+from scope_ptz.errors import PerceptionError, TraceError
+from scope_ptz.geometry import Pose
+from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
+
+Part = Literal["planner", "perception", "camera", "render"]
+Question = Literal["caption", "query", "detect", "point"]
+Seen = Caption | Answer | Detections | Points
+_Looked = TypeVar("_Looked", Caption, Answer, Detections, Points)
+
+
+class Timings(BaseModel):
+    """Wall seconds. ``render_s`` is the making of simulated frames; what is left of ``total_s`` is the loop's own work."""
+
+    model_config = ConfigDict(frozen=True)
+
+    planner_s: float = 0.0
+    perception_s: float = 0.0
+    camera_s: float = 0.0
+    render_s: float = 0.0
+    total_s: float = 0.0
+
+    def __sub__(self, earlier: Timings) -> Timings:
+        return Timings(**{name: round(getattr(self, name) - getattr(earlier, name), 6) for name in Timings.model_fields})
+
+
+class Stopwatch:
+    """Adds up wall time by part of the system."""
+
+    def __init__(self) -> None:
+        self._began = perf_counter()
+        self._spent: dict[Part, float] = {"planner": 0.0, "perception": 0.0, "camera": 0.0, "render": 0.0}
+
+    @contextmanager
+    def measure(self, part: Part) -> Iterator[None]:
+        began = perf_counter()
+        try:
+            yield
+        finally:
+            self._spent[part] += perf_counter() - began
+
+    def read(self) -> Timings:
+        spent = {f"{part}_s": round(seconds, 6) for part, seconds in self._spent.items()}
+        return Timings(**spent, total_s=round(perf_counter() - self._began, 6))
+
+
+class TimedCamera(Camera):
+    """A camera whose calls are timed: frames of a simulated one as rendering, everything else as the camera."""
+
+    def __init__(self, camera: Camera, watch: Stopwatch) -> None:
+        self._camera, self._watch = camera, watch
+        self.clock = camera.clock
+        self._frame_part: Part = "render" if camera.info.simulated else "camera"
+
+    @property
+    def info(self) -> CameraInfo:
+        return self._camera.info
+
+    async def pose(self) -> Pose:
+        with self._watch.measure("camera"):
+            return await self._camera.pose()
+
+    async def move(self, pose: Pose) -> Arrival:
+        with self._watch.measure("camera"):
+            return await self._camera.move(pose)
+
+    async def presets(self) -> list[PresetInfo]:
+        with self._watch.measure("camera"):
+            return await self._camera.presets()
+
+    async def go_to_preset(self, name: str) -> Arrival:
+        with self._watch.measure("camera"):
+            return await self._camera.go_to_preset(name)
+
+    async def go_home(self) -> Arrival:
+        with self._watch.measure("camera"):
+            return await self._camera.go_home()
+
+    async def frame(self) -> Frame:
+        with self._watch.measure(self._frame_part):
+            return await self._camera.frame()
+
+    async def stop(self) -> None:
+        with self._watch.measure("camera"):
+            await self._camera.stop()
+
+    @contextmanager
+    def hold_time(self) -> Iterator[None]:
+        with self._camera.hold_time():
+            yield
+
+
+class Reply(BaseModel):
+    """What perception was asked and what it said: ``result`` or ``error`` is set. ``frame_time_s``: scene time of the frame."""
+
+    model_config = ConfigDict(frozen=True)
+
+    kind: Question
+    asked: str = ""
+    result: dict[str, Any] | None = None
+    error: str | None = None
+    frame_time_s: float
+    wall_s: float
+
+    def restore(self, as_type: type[_Looked]) -> _Looked:
+        """The typed result; an error is raised again as ``PerceptionError``."""
+        if self.error is not None or self.result is None:
+            raise PerceptionError(self.error or "The recorded reply is empty.")
+        try:
+            return as_type.model_validate(self.result)
+        except ValueError as error:
+            raise TraceError(f"A recorded reply to '{self.kind}' is damaged: {error}") from error
+
+
+class TimedPerception(Perception):
+    """Perception whose calls are timed and whose replies are kept for the trace until they are drained."""
+
+    def __init__(self, perception: Perception, watch: Stopwatch) -> None:
+        self._perception, self._watch = perception, watch
+        self.name = perception.name
+        self._replies: list[Reply] = []
+
+    def drain(self) -> tuple[Reply, ...]:
+        """The replies since the last call, oldest first."""
+        replies, self._replies = tuple(self._replies), []
+        return replies
+
+    async def caption(self, frame: Frame) -> Caption:
+        return await self._ask("caption", "", frame, lambda: self._perception.caption(frame))
+
+    async def query(self, frame: Frame, question: str) -> Answer:
+        return await self._ask("query", question, frame, lambda: self._perception.query(frame, question))
+
+    async def detect(self, frame: Frame, description: str) -> Detections:
+        return await self._ask("detect", description, frame, lambda: self._perception.detect(frame, description))
+
+    async def point(self, frame: Frame, description: str) -> Points:
+        return await self._ask("point", description, frame, lambda: self._perception.point(frame, description))
+
+    async def _ask(self, kind: Question, asked: str, frame: Frame, look: Callable[[], Awaitable[_Looked]]) -> _Looked:
+        began, result, error = perf_counter(), None, None
+        try:
+            with self._watch.measure("perception"):
+                seen = await look()
+            result = seen.model_dump(mode="json")
+        except PerceptionError as failure:
+            error = str(failure)
+            raise
+        finally:
+            if result is not None or error is not None:
+                wall_s = round(perf_counter() - began, 6)
+                self._replies.append(
+                    Reply(kind=kind, asked=asked, result=result, error=error, frame_time_s=frame.time_s, wall_s=wall_s)
+                )
+        return seen

@@ -1,0 +1,93 @@
+"""Traces on disk: one JSON record a line, appended and flushed as the run goes, so that a crash leaves all that happened."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import IO
+
+from pydantic import ValidationError
+
+from scope_ptz.agent.records import FORMAT_VERSION, RECORD, Called, Decided, Ended, Started
+from scope_ptz.errors import OutputError, TraceError
+
+FILE_NAME = "trace.jsonl"
+
+
+class TraceWriter:
+    """A listener that appends each record to a new file."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        try:
+            self._file: IO[str] = path.open("x", encoding="utf-8")
+        except OSError as error:
+            raise OutputError(f"The trace {path} cannot be written: {error.strerror}.") from error
+
+    def __call__(self, record: Started | Decided | Called | Ended) -> None:
+        try:
+            self._file.write(record.model_dump_json() + "\n")
+            self._file.flush()
+        except OSError as error:
+            raise OutputError(f"The trace {self._path} cannot be written: {error.strerror}.") from error
+
+    def close(self) -> None:
+        self._file.close()
+
+    def __enter__(self) -> TraceWriter:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.close()
+
+
+@dataclass(frozen=True, slots=True)
+class Trace:
+    """A run as it was recorded. ``ended`` is None when the program was killed before the run was over."""
+
+    folder: Path
+    started: Started
+    decisions: tuple[Decided, ...]
+    calls: tuple[Called, ...]
+    ended: Ended | None
+
+
+def read_trace(run: Path) -> Trace:
+    """Read the trace of a run folder (or the file itself). A last line that was cut off is left out; other damage is an error."""
+    path = run / FILE_NAME if run.is_dir() else run
+    try:
+        lines = path.read_bytes().decode("utf-8", errors="replace").split("\n")
+    except OSError as error:
+        raise TraceError(f"There is no trace at {path} ({error.strerror}).") from error
+    cut = lines.pop()  # What follows the last newline: nothing, or a line that was never finished.
+    records = [_parse(line, number, path) for number, line in enumerate(lines, 1) if line.strip()]
+    if not records or not isinstance(records[0], Started):
+        raise TraceError(f"{path} does not begin with a header{' (it was cut off)' if cut else ''}: it is no trace of a run.")
+    if any(isinstance(record, Started) for record in records[1:]) or any(isinstance(r, Ended) for r in records[:-1]):
+        raise TraceError(f"{path} holds more than one run, or goes on after its end.")
+    last = records[-1]
+    return Trace(
+        folder=path.parent,
+        started=records[0],
+        decisions=tuple(r for r in records if isinstance(r, Decided)),
+        calls=tuple(r for r in records if isinstance(r, Called)),
+        ended=last if isinstance(last, Ended) else None,
+    )
+
+
+def _parse(line: str, number: int, path: Path) -> Started | Decided | Called | Ended:
+    try:
+        content = json.loads(line)
+    except ValueError as error:
+        raise TraceError(f"{path}, line {number} is damaged: {error}.") from error
+    version = content.get("format") if isinstance(content, dict) else None
+    if number == 1 and isinstance(version, int) and version > FORMAT_VERSION:
+        raise TraceError(f"{path} has format {version}; this program reads {FORMAT_VERSION}. Install a newer scope-ptz.")
+    try:
+        return RECORD.validate_python(content)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        where = ".".join(str(part) for part in first["loc"])
+        raise TraceError(f"{path}, line {number} is no record of a run: {where}: {first['msg']}.") from error
