@@ -1,0 +1,129 @@
+"""The main program's end of the pipe to a Blender worker."""
+
+from __future__ import annotations
+
+import json
+import os
+import queue
+import subprocess
+import threading
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import IO, Any
+
+from scope_ptz.errors import BlenderError
+
+MARK = "@scope "
+START_TIMEOUT_S = 120.0
+QUIT_TIMEOUT_S = 10.0
+Progress = Callable[[int, int], None]
+
+
+class BlenderWorker:
+    """One worker process. Requests are answered in turn; use from one thread at a time is enforced by a lock."""
+
+    def __init__(self, command: Sequence[str], log_file: Path) -> None:
+        self._command = list(command)
+        self._log_file = log_file
+        self._lock = threading.Lock()
+        self._replies: queue.Queue[dict[str, Any] | None] = queue.Queue()
+        self._process: subprocess.Popen[str] | None = None
+        self._requests = 0
+        self.version = ""
+
+    def __enter__(self) -> BlenderWorker:
+        self.start()
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.close()
+
+    @property
+    def running(self) -> bool:
+        return self._process is not None and self._process.poll() is None
+
+    def start(self) -> None:
+        """Start the process and wait until Blender has come up."""
+        self._log_file.parent.mkdir(parents=True, exist_ok=True)
+        environment = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "VIRTUAL_ENV"))}
+        try:
+            with self._log_file.open("w") as log:
+                self._process = subprocess.Popen(
+                    self._command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=log, text=True, env=environment
+                )
+        except OSError as error:
+            raise BlenderError(f"Blender could not be started with `{' '.join(self._command)}`: {error}.") from error
+        assert self._process.stdout is not None
+        threading.Thread(target=self._listen, args=(self._process.stdout,), daemon=True).start()
+        self.version = str(self._next(time.monotonic() + START_TIMEOUT_S, "start").get("hello", ""))
+
+    def request(
+        self, op: str, params: dict[str, Any] | None = None, *, timeout_s: float = 3600.0, progress: Progress | None = None
+    ) -> Any:
+        """Do one operation and return its result. Raises ``BlenderError`` on failure, crash or timeout (the worker is ended then)."""
+        with self._lock:
+            if self._process is None or self._process.stdin is None:
+                raise BlenderError("The Blender worker is not running.")
+            self._requests += 1
+            message = {"id": self._requests, "op": op, "params": params or {}}
+            try:
+                self._process.stdin.write(json.dumps(message) + "\n")
+                self._process.stdin.flush()
+            except OSError as error:
+                raise self._crashed(op) from error
+            deadline = time.monotonic() + timeout_s
+            while True:
+                reply = self._next(deadline, op)
+                if "progress" in reply:
+                    if progress is not None:
+                        progress(*reply["progress"])
+                elif "error" in reply:
+                    raise BlenderError(f"Blender could not do '{op}': {reply['error']}")
+                else:
+                    return reply["result"]
+
+    def close(self) -> None:
+        """Ask the worker to quit; end it when it does not."""
+        process, self._process = self._process, None
+        if process is None:
+            return
+        if process.poll() is None and process.stdin is not None:
+            try:
+                process.stdin.write(json.dumps({"id": 0, "op": "quit"}) + "\n")
+                process.stdin.close()
+                process.wait(QUIT_TIMEOUT_S)
+            except (OSError, subprocess.TimeoutExpired):
+                process.kill()
+                process.wait()
+
+    def _listen(self, pipe: IO[str]) -> None:
+        for line in pipe:
+            if line.startswith(MARK):
+                self._replies.put(json.loads(line[len(MARK) :]))
+        self._replies.put(None)
+
+    def _next(self, deadline: float, op: str) -> dict[str, Any]:
+        try:
+            reply = self._replies.get(timeout=max(0.0, deadline - time.monotonic()))
+        except queue.Empty:
+            self._kill()
+            raise BlenderError(f"Blender did not finish '{op}' in time and was ended. {self._tail()}") from None
+        if reply is None:
+            raise self._crashed(op)
+        return reply
+
+    def _crashed(self, op: str) -> BlenderError:
+        self._kill()
+        return BlenderError(f"Blender ended during '{op}'. {self._tail()}")
+
+    def _kill(self) -> None:
+        process, self._process = self._process, None
+        if process is not None:
+            process.kill()
+            process.wait()
+
+    def _tail(self) -> str:
+        lines = self._log_file.read_text(errors="replace").strip().splitlines()[-6:]
+        return f"The end of its log ({self._log_file}):\n" + "\n".join(lines)

@@ -1,0 +1,107 @@
+"""What the worker can be asked to do. Every operation takes plain JSON values and ``progress``; pictures go to files."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import bpy
+
+from scope_ptz.studio import describe, meshes, render, sprites
+from scope_ptz.studio.actors import Troupe
+from scope_ptz.studio.kit.stage import Stage, Viewpoint
+
+Progress = Callable[[int, int], None]
+
+
+class Studio:
+    """The one scene that is loaded."""
+
+    def __init__(self) -> None:
+        self._stage: Stage | None = None
+        self._troupe: Troupe | None = None
+
+    @property
+    def stage(self) -> Stage:
+        if self._stage is None:
+            raise RuntimeError("no scene is loaded")
+        return self._stage
+
+    @property
+    def troupe(self) -> Troupe:
+        if self._troupe is None:
+            self._troupe = Troupe(self.stage)
+        return self._troupe
+
+    def viewpoint(self, name: str) -> Viewpoint:
+        for candidate in self.stage.viewpoints:
+            if candidate.name == name:
+                return candidate
+        raise ValueError(f"the scene has no viewpoint '{name}'")
+
+    def load_scene(self, source: str, progress: Progress) -> dict[str, Any]:
+        """Build a scene: the name of a module in ``scope_ptz.studio.scenes`` (kebab-case), or the path of a Python file."""
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        bpy.context.preferences.filepaths.use_scripts_auto_execute = False
+        self._troupe = None
+        build = _builder(source)
+        stage = Stage(Path(source).stem.replace("_", "-"), source)
+        stage = build(stage) or stage
+        bpy.context.view_layer.update()
+        self._stage = stage
+        return {"name": stage.name, "title": stage.title, "instances": len(stage.instances)}
+
+    def describe(self, progress: Progress) -> dict[str, Any]:
+        return describe.scene(self.stage, self.troupe)
+
+    def save(self, path: str, progress: Progress) -> None:
+        """Write the scene as a .blend file to look at in Blender."""
+        bpy.ops.wm.save_as_mainfile(filepath=path, compress=True)
+
+    def meshes(self, out: str, progress: Progress) -> None:
+        meshes.write(self.stage, Path(out))
+
+    def colour(
+        self, viewpoint: str, projection: dict[str, float], samples: int, seed: int, out: str, progress: Progress, time_s: float | None = None
+    ) -> None:
+        """A denoised picture (8-bit PNG). With ``time_s``, moving actors stand where they are at that time."""
+        with self._cast(time_s):
+            render.colour(self.viewpoint(viewpoint), projection, samples, seed, Path(out))
+
+    def truth(
+        self, viewpoint: str, projection: dict[str, float], out: str, progress: Progress, time_s: float | None = None
+    ) -> None:
+        """Instance numbers (uint16) and distances in metres (float32, 0 = sky) of the same picture, as one .npz file."""
+        with self._cast(time_s):
+            render.truth(self.viewpoint(viewpoint), projection, Path(out))
+
+    def sprites(self, actor: str, viewpoint: str, frames: list[dict[str, Any]], samples: int, out_dir: str, progress: Progress) -> None:
+        sprites.render_frames(self.stage, self.troupe, actor, self.viewpoint(viewpoint), frames, samples, Path(out_dir), progress)
+
+    def _cast(self, time_s: float | None) -> Any:
+        """Actors are only built when a picture wants them."""
+        from contextlib import nullcontext
+
+        return nullcontext() if time_s is None else self.troupe.on_stage(time_s)
+
+
+def _builder(source: str) -> Callable[[Stage], Stage | None]:
+    if not source.endswith(".py"):
+        return importlib.import_module(f"scope_ptz.studio.scenes.{source.replace('-', '_')}").build
+    spec = importlib.util.spec_from_file_location("scope_user_scene", source)
+    if spec is None or spec.loader is None:
+        raise ValueError(f"cannot load {source}")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module.build
+
+
+def operations() -> dict[str, Callable[..., Any]]:
+    """By name."""
+    studio = Studio()
+    return {
+        name: getattr(studio, name) for name in ("load_scene", "describe", "save", "meshes", "colour", "truth", "sprites")
+    }

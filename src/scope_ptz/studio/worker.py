@@ -1,0 +1,81 @@
+"""The Blender side of the pipe: reads requests as JSON lines, does them, answers in JSON lines.
+
+Run by its path, with Blender's own Python or as ``blender --background --python worker.py``. Every answer starts with ``MARK``, so that
+whatever Blender prints cannot be mistaken for one; its own output goes to the error stream.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import os
+import sys
+import traceback
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+MARK = "@scope "
+
+
+def adopt_package() -> None:
+    """Make ``scope_ptz`` importable without putting its folder's neighbours (another NumPy, perhaps) on the path."""
+    home = Path(__file__).resolve().parents[1]
+    spec = importlib.util.spec_from_file_location("scope_ptz", home / "__init__.py", submodule_search_locations=[str(home)])
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["scope_ptz"] = module
+    spec.loader.exec_module(module)
+
+
+class Channel:
+    """The worker's end of the pipe."""
+
+    def __init__(self) -> None:
+        self._out = os.fdopen(os.dup(1), "w", encoding="utf-8")
+        os.dup2(2, 1)
+        self._in = sys.stdin
+
+    def send(self, message: dict[str, Any]) -> None:
+        self._out.write(f"{MARK}{json.dumps(message)}\n")
+        self._out.flush()
+
+    def serve(self, operations: dict[str, Callable[..., Any]]) -> None:
+        """Answer requests until the pipe closes or one says "quit"."""
+        for line in self._in:
+            request = json.loads(line)
+            if request["op"] == "quit":
+                return
+            number = request["id"]
+
+            def progress(done: int, total: int, number: int = number) -> None:
+                self.send({"id": number, "progress": [done, total]})
+
+            try:
+                result = operations[request["op"]](progress=progress, **request["params"])
+            except Exception as error:  # whatever went wrong in Blender is the answer
+                traceback.print_exc()
+                self.send({"id": number, "error": f"{type(error).__name__}: {error}"})
+            else:
+                self.send({"id": number, "result": result})
+
+
+def main() -> None:
+    """Announce the Blender version, then serve."""
+    channel = Channel()
+    import bpy
+
+    from scope_ptz.studio.operations import operations
+
+    channel.send({"hello": bpy.app.version_string})
+    channel.serve(operations())
+
+
+if __name__ == "__main__":
+    folder = str(Path(__file__).resolve().parent)
+    sys.path[:] = [p for p in sys.path if p != folder]
+    adopt_package()
+    from scope_ptz.studio.worker import main as adopted_main
+
+    adopted_main()
+    os._exit(0)  # Blender's own teardown can hang or crash with nothing left to save

@@ -1,0 +1,89 @@
+"""How pictures of a pack lie on disk: colour lossy, instance numbers and distances exact. The file suffix names the coding."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from scope_ptz.errors import PackError
+
+Image.MAX_IMAGE_PIXELS = None
+"""Panoramas are larger than what Pillow suspects of being an attack; every file is checksum-verified before it is decoded."""
+
+COLOUR_SUFFIXES = (".webp", ".avif", ".png")
+NUMBER_SUFFIXES = (".png", ".webp")
+
+
+def read_colour(path: Path) -> NDArray[np.uint8]:
+    """(H, W, 3) RGB, or (H, W, 4) straight RGBA when the picture has transparency."""
+    image = _open(path, COLOUR_SUFFIXES)
+    with image:
+        return np.array(image.convert("RGBA" if image.has_transparency_data else "RGB"))
+
+
+def write_colour(path: Path, picture: NDArray[np.uint8], quality: int) -> None:
+    """Write (H, W, 3) RGB or (H, W, 4) straight RGBA. ``quality`` 0 to 100 is the coder's own scale; PNG has none."""
+    image = Image.fromarray(picture)
+    match path.suffix:
+        case ".webp":
+            image.save(path, "WEBP", quality=quality, method=6, alpha_quality=80)
+        case ".avif":
+            image.save(path, "AVIF", quality=quality, speed=4, subsampling="4:2:0")
+        case ".png":
+            image.save(path, "PNG", optimize=True)
+        case suffix:
+            raise ValueError(f"colour is written as one of {', '.join(COLOUR_SUFFIXES)}, not {suffix}")
+
+
+def read_ids(path: Path) -> NDArray[np.uint16]:
+    """(H, W) numbers from 0 to 65535, exactly as written: instance numbers, or distance codes."""
+    image = _open(path, NUMBER_SUFFIXES)
+    with image:
+        if path.suffix == ".png":
+            return np.array(image).astype(np.uint16)
+        channels = np.array(image.convert("RGB")).astype(np.uint16)
+    return channels[..., 0] << np.uint16(8) | channels[..., 1]
+
+
+def write_ids(path: Path, numbers: NDArray[np.uint16]) -> None:
+    """Write (H, W) numbers exactly, as 16-bit PNG or as lossless WebP with the high byte in red and the low one in green."""
+    match path.suffix:
+        case ".png":
+            Image.fromarray(numbers).save(path, "PNG", optimize=True)
+        case ".webp":
+            high, low = (numbers >> np.uint16(8)).astype(np.uint8), numbers.astype(np.uint8)
+            channels = np.stack([high, low, np.zeros_like(low)], axis=-1)
+            Image.fromarray(channels).save(path, "WEBP", lossless=True, quality=100, method=6, exact=True)
+        case suffix:
+            raise ValueError(f"numbers are written as one of {', '.join(NUMBER_SUFFIXES)}, not {suffix}")
+
+
+def encode_depth(metres: NDArray[np.floating], near_m: float, far_m: float, step: int = 1) -> NDArray[np.uint16]:
+    """Distance codes 1 to 65535, logarithmic from ``near_m`` to ``far_m``, 0 where ``metres`` is 0 or infinite (the sky).
+
+    ``step`` rounds codes to its multiples: files shrink, and distances lose no more than half a step.
+    """
+    real = np.isfinite(metres) & (metres > 0)
+    share = np.log(np.where(real, metres, near_m) / near_m) / np.log(far_m / near_m)
+    codes = 1 + np.rint(np.clip(share, 0, 1) * 65534 / step) * step
+    return np.where(real, np.minimum(codes, 65535), 0).astype(np.uint16)
+
+
+def decode_depth(codes: NDArray[np.uint16], near_m: float, far_m: float) -> NDArray[np.float32]:
+    """Metres, infinite where the code is 0."""
+    metres = near_m * (far_m / near_m) ** ((codes.astype(np.float64) - 1) / 65534)
+    return np.where(codes == 0, np.inf, metres).astype(np.float32)
+
+
+def _open(path: Path, suffixes: tuple[str, ...]) -> Image.Image:
+    if path.suffix not in suffixes:
+        raise PackError(f"{path} is no picture that this program reads ({', '.join(suffixes)}).")
+    try:
+        image = Image.open(path)
+        image.load()
+    except (OSError, ValueError) as error:
+        raise PackError(f"{path} cannot be decoded ({error}). Restore the pack or bake it again.") from error
+    return image
