@@ -116,7 +116,7 @@ def _cracks(s: Shader, uv: Value) -> Value:
     s.feed(made.inputs[0], s.scaled(uv, (1.0, 0.6, 1.0)))
     s.feed(made.inputs[1], warp)
     distance = s.voronoi(made.outputs[0], 0.34, feature="DISTANCE_TO_EDGE")
-    thin = s.ramp(distance, 0.002, 0.010, 1.0, 0.0)
+    thin = s.ramp(distance, 0.0008, 0.0045, 1.0, 0.0)
     return s.math("MULTIPLY", thin, s.ramp(s.noise(uv, 0.06, detail=3.0), 0.50, 0.58))
 
 
@@ -222,7 +222,8 @@ def land_material(road: Carriageway, bare: Sequence[tuple[float, float, float, f
     across = s.math("ABSOLUTE", x)
     colour = s.mix(s.ramp(s.math("ADD", across, s.math("MULTIPLY", y, 0.04)), 58, 62), grass, fields)
     soil = s.mix(s.ramp(fine, 0.3, 0.7), (0.105, 0.083, 0.058), (0.185, 0.158, 0.122))
-    soil = s.mix(s.ramp(s.voronoi(p, 9.0), 0.18, 0.32, 1.0, 0.0), soil, (0.24, 0.22, 0.19))
+    soil = s.mix(s.ramp(s.voronoi(p, 6.0), 0.10, 0.30, 0.35, 0.0), soil, (0.24, 0.22, 0.19))
+    soil = s.mix(s.ramp(s.noise(p, 0.3, detail=5.0), 0.45, 0.62, 0.0, 0.75), soil, (0.088, 0.070, 0.050))
     ragged = s.math("MULTIPLY", s.math("SUBTRACT", middle, 0.5), 3.2)
     for x0, x1, y0, y1 in bare:
         mask = s.math(

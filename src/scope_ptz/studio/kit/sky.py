@@ -9,8 +9,8 @@ from mathutils import Vector
 
 from scope_ptz.studio.kit.shading import Shader, Value
 
-HORIZON = (0.66, 0.75, 0.85)
-ZENITH = (0.15, 0.33, 0.67)
+HORIZON = (0.62, 0.74, 0.88)
+ZENITH = (0.10, 0.26, 0.62)
 HAZE = (0.50, 0.60, 0.70)
 """Colour that distance turns things into; a little darker than the horizon so that far hills stand out against the sky."""
 
@@ -28,17 +28,17 @@ def setup(
     *,
     sun_bearing_deg: float = 236.0,
     sun_elevation_deg: float = 40.0,
-    sun_strength: float = 3.4,
-    sky_strength: float = 0.95,
+    sun_strength: float = 4.6,
+    sky_strength: float = 0.85,
     cloud_cover: float = 0.5,
-    exposure: float = 0.15,
+    exposure: float = 0.30,
 ) -> None:
     """Give ``scene`` its world, sun and view transform. The sun stands at a bearing clockwise from north."""
     _world(scene, sky_strength, cloud_cover)
     _sun(sun_bearing_deg, sun_elevation_deg, sun_strength)
     scene.display_settings.display_device = "sRGB"
     scene.view_settings.view_transform = "AgX"
-    scene.view_settings.look = "AgX - Medium High Contrast"
+    scene.view_settings.look = "AgX - High Contrast"
     scene.view_settings.exposure = exposure
     scene.view_settings.gamma = 1.0
 
@@ -88,18 +88,18 @@ def _clouds(s: Shader, x: Value, y: Value, height: Value, clear: Value, cover: f
     p = plane.outputs[0]
     lumps = s.noise(p, 0.62, detail=9.0, roughness=0.56, distortion=0.25)
     sunward = s.noise(s.scaled(p, (1, 1, 1), (0.16, 0.11, 0)), 0.62, detail=5.0, roughness=0.56, distortion=0.25)
-    edge = 0.60 - 0.16 * cover
-    mask = s.ramp(lumps, edge, edge + 0.13)
-    mask = s.math("MULTIPLY", mask, s.ramp(height, 0.015, 0.12, 0.35, 1.0))
+    edge = 0.58 - 0.18 * cover
+    mask = s.ramp(lumps, edge, edge + 0.09)
+    mask = s.math("MULTIPLY", mask, s.ramp(height, 0.01, 0.09, 0.45, 1.0))
     lit = s.ramp(s.math("SUBTRACT", lumps, sunward), -0.10, 0.10)
     thick = s.ramp(lumps, edge + 0.05, edge + 0.26)
-    body = s.mix(lit, (0.66, 0.71, 0.79), (1.0, 0.99, 0.97))
+    body = s.mix(lit, (0.62, 0.68, 0.78), (1.25, 1.23, 1.20))
     body = s.mix(s.math("MULTIPLY", thick, 0.55), body, (0.58, 0.62, 0.69))
-    body = s.mix(s.ramp(height, 0.02, 0.30, 0.55, 0.0), body, HORIZON)
+    body = s.mix(s.ramp(height, 0.01, 0.20, 0.5, 0.0), body, HORIZON)
     return s.mix(mask, clear, body)
 
 
-def finish_materials(*, visibility_m: float = 2600.0, spare: tuple[str, ...] = ()) -> None:
+def finish_materials(*, visibility_m: float = 3600.0, spare: tuple[str, ...] = ()) -> None:
     """Last step of a scene: aerial haze on every material, and no mesh sampled as a lamp (which would only add noise).
 
     ``visibility_m`` is the distance at which 63% of a thing's light is replaced by haze. Materials named in ``spare`` stay as they are.

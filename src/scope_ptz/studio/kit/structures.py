@@ -152,7 +152,10 @@ def approach(*, length_m: float, width_m: float, height_m: float, side: int, gra
         x = side * length_m * t
         foot = edge + 2.0 * z + 0.4
         points += [(x, -foot, -0.1), (x, -edge, z), (x, edge, z), (x, foot, -0.1)]
-    bank, road = [], []
+    toe = len(points)
+    points += [(-side * 10.0, -edge, -0.1), (-side * 10.0, edge, -0.1)]
+    bank: list[tuple[int, ...]] = [(0, toe, 1), (2, toe + 1, 3)]
+    road = []
     for i in range(steps):
         a = 4 * i
         bank += [(a, a + 1, a + 5, a + 4), (a + 2, a + 3, a + 7, a + 6)]

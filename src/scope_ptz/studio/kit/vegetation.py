@@ -33,13 +33,13 @@ class Species:
     slim: float = 0.62
 
 
-OAK = Species("oak", 11.5, 5.0, 0.20, "round", 0.20, (0.030, 0.058, 0.012), (0.105, 0.150, 0.030), (0.085, 0.068, 0.050))
-LIME = Species("lime", 10.0, 3.6, 0.22, "round", 0.18, (0.045, 0.085, 0.014), (0.150, 0.205, 0.040), (0.095, 0.080, 0.062))
-BIRCH = Species("birch", 9.5, 2.5, 0.22, "weeping", 0.13, (0.055, 0.090, 0.018), (0.170, 0.210, 0.050), (0.52, 0.50, 0.46))
-POPLAR = Species("poplar", 17.0, 1.9, 0.10, "column", 0.17, (0.036, 0.070, 0.015), (0.110, 0.160, 0.036), (0.10, 0.088, 0.07))
-PINE = Species("pine", 13.0, 3.0, 0.12, "cone", 0.34, (0.014, 0.034, 0.014), (0.042, 0.075, 0.026), (0.088, 0.056, 0.036), 0.16)
-COPPER = Species("copper beech", 10.5, 4.4, 0.18, "round", 0.19, (0.050, 0.020, 0.018), (0.120, 0.052, 0.040), (0.1, 0.09, 0.08))
-BUSH = Species("bush", 2.4, 1.7, 0.02, "round", 0.12, (0.036, 0.066, 0.014), (0.120, 0.165, 0.036), (0.08, 0.065, 0.05))
+OAK = Species("oak", 11.5, 5.0, 0.20, "round", 0.20, (0.043, 0.084, 0.017), (0.152, 0.217, 0.043), (0.085, 0.068, 0.050))
+LIME = Species("lime", 10.0, 3.6, 0.22, "round", 0.18, (0.065, 0.123, 0.020), (0.217, 0.297, 0.058), (0.095, 0.080, 0.062))
+BIRCH = Species("birch", 9.5, 2.5, 0.22, "weeping", 0.13, (0.080, 0.131, 0.026), (0.246, 0.304, 0.072), (0.52, 0.50, 0.46))
+POPLAR = Species("poplar", 17.0, 1.9, 0.10, "column", 0.17, (0.052, 0.102, 0.022), (0.160, 0.232, 0.052), (0.10, 0.088, 0.07))
+PINE = Species("pine", 13.0, 3.0, 0.12, "cone", 0.34, (0.020, 0.049, 0.020), (0.061, 0.109, 0.038), (0.088, 0.056, 0.036), 0.16)
+COPPER = Species("copper beech", 10.5, 4.4, 0.18, "round", 0.19, (0.072, 0.029, 0.026), (0.174, 0.075, 0.058), (0.1, 0.09, 0.08))
+BUSH = Species("bush", 2.4, 1.7, 0.02, "round", 0.12, (0.052, 0.096, 0.020), (0.174, 0.239, 0.052), (0.08, 0.065, 0.05))
 
 
 def tree(species: Species, seed: int, *, detail: float = 1.0) -> Built:
@@ -69,7 +69,7 @@ def _grow(sp: Species, rng: random.Random) -> tuple[list[Limb], list[tuple[Vecto
         lean += Vector((rng.uniform(-0.06, 0.06), rng.uniform(-0.06, 0.06), 0))
         trunk.append(trunk[-1] + lean.normalized() * (top / 8))
     limbs.append((trunk, girth, girth * 0.18))
-    boughs = {"round": 17, "weeping": 20, "column": 26, "cone": 34}[sp.crown]
+    boughs = {"round": 22, "weeping": 24, "column": 28, "cone": 40}[sp.crown]
     azimuth = rng.uniform(0, 6.28)
     for k in range(boughs):
         share = (k + 0.5) / boughs
@@ -162,13 +162,13 @@ def _leaves(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Folded leaf cards in loose sprays around the twigs. Fewer and larger ones when ``detail`` is low."""
     gen = np.random.default_rng(rng.randrange(2**31))
-    each = max(4, round(40 * detail))
+    each = max(5, round(42 * detail))
     size = sp.leaf_m * detail**-0.42
     starts, ends = np.array([tuple(a) for a, _ in twigs]), np.array([tuple(b) for _, b in twigs])
     which = np.repeat(np.arange(len(twigs)), each)
     share = gen.random(len(which))[:, None]
     centres = starts[which] * (1 - share) + ends[which] * share
-    spread = np.linalg.norm(ends - starts, axis=1)[which][:, None] * 0.22 + sp.leaf_m * 0.55
+    spread = np.linalg.norm(ends - starts, axis=1)[which][:, None] * 0.26 + sp.leaf_m * 0.8
     centres = centres + gen.normal(size=centres.shape) * spread * np.array([1, 1, 0.75])
     outward = (ends - starts)[which]
     outward /= np.linalg.norm(outward, axis=1, keepdims=True) + 1e-9
@@ -261,7 +261,7 @@ def bark_material(sp: Species) -> bpy.types.Material:
     return s.surface(base_color=colour, roughness=0.9, normal=s.bump(ridges, 0.5, 0.02))
 
 
-HAWTHORN = Species("hawthorn", 1.9, 0.7, 0.0, "round", 0.085, (0.034, 0.060, 0.014), (0.110, 0.150, 0.036), (0.05, 0.04, 0.03), 0.7)
+HAWTHORN = Species("hawthorn", 1.9, 0.7, 0.0, "round", 0.085, (0.049, 0.087, 0.020), (0.160, 0.217, 0.052), (0.05, 0.04, 0.03), 0.7)
 
 
 def hedge(length_m: float, *, height_m: float = 1.9, depth_m: float = 1.2, seed: int = 0, detail: float = 1.0) -> Built:
@@ -293,8 +293,8 @@ def hedge(length_m: float, *, height_m: float = 1.9, depth_m: float = 1.2, seed:
 def grass_patch(size_m: float, *, blades: int, height_m: float, seed: int, flowers: int = 0) -> Built:
     """A square of grass in uneven tufts, with a few flower heads. Meant to be strewn as linked copies."""
     gen = np.random.default_rng(104729 + seed)
-    tufts = gen.uniform(-size_m / 2, size_m / 2, size=(max(1, blades // 22), 2))
-    roots = tufts[gen.integers(len(tufts), size=blades)] + gen.normal(size=(blades, 2)) * 0.055
+    tufts = gen.uniform(-size_m / 2, size_m / 2, size=(max(1, blades // 7), 2))
+    roots = tufts[gen.integers(len(tufts), size=blades)] + gen.normal(size=(blades, 2)) * 0.075
     tall = height_m * gen.uniform(0.45, 1.15, size=(blades, 1)) * gen.choice([0.7, 1.0, 1.25], size=(blades, 1))
     lean = gen.normal(size=(blades, 2)) * 0.42 * tall
     facing = gen.uniform(0, math.pi, size=blades)
@@ -330,7 +330,7 @@ def grass_material() -> bpy.types.Material:
     s = Shader("grass blades")
     tint = s.node("ShaderNodeAttribute", attribute_name="tint").outputs["Fac"]
     place = s.noise(s.position(), 0.5, detail=3.0)
-    colour = s.mix(tint, (0.055, 0.095, 0.020), (0.150, 0.195, 0.055))
+    colour = s.mix(tint, (0.095, 0.135, 0.032), (0.215, 0.250, 0.080))
     dry = s.math("MULTIPLY", s.ramp(place, 0.45, 0.68), s.ramp(tint, 0.2, 0.9))
-    colour = s.mix(dry, colour, (0.25, 0.215, 0.105))
+    colour = s.mix(dry, colour, (0.30, 0.26, 0.13))
     return s.surface(base_color=colour, roughness=0.6, specular_ior_level=0.2)
