@@ -16,13 +16,13 @@ class ScopeSettings(BaseSettings):
 
     model_config = SettingsConfigDict(env_prefix="SCOPE_", extra="ignore")
 
-    runs_dir: Path = Field(Path("runs"), description="Where run folders are made.")
-    scenes_dir: Path | None = Field(None, description="A folder of scene packs beside the built-in ones.")
+    runs_dir: Path = Field(default=Path("runs"), description="Where run folders are made.")
+    scenes_dir: Path | None = Field(default=None, description="A folder of scene packs beside the built-in ones.")
     cache_dir: Path = Field(
         default_factory=lambda: user_cache_path("scope-ptz"), description="Where the Blender environment and unfinished bakes live."
     )
-    blender_python: Path | None = Field(None, description="A Python interpreter that can import bpy.")
-    blender: Path | None = Field(None, description="A blender program to use instead of the bpy wheel.")
+    blender_python: Path | None = Field(default=None, description="A Python interpreter that can import bpy.")
+    blender: Path | None = Field(default=None, description="A blender program to use instead of the bpy wheel.")
 
 
 def load_settings() -> ScopeSettings:

@@ -23,11 +23,10 @@ TARGET_FILL = 0.75
 
 @dataclass(frozen=True, slots=True)
 class Aim:
-    """A pose and what it does to a target: fill of the limiting side, offset of its middle (shares of width and height)."""
+    """A pose for framing a target: the fill of the limiting side that it aims at, and the limits that keep it from that."""
 
     pose: Pose
-    fill: float
-    offset: tuple[float, float]
+    fill_wanted: float | None
     limited_by: tuple[Axis, ...]
 
 
@@ -72,18 +71,21 @@ def aim(info: CameraInfo, start: Pose, target: Floats, fill: float = TARGET_FILL
     for _ in range(8):
         pan, tilt = (float(v) for v in pan_tilt_deg(middle))
         zoom = _zoom_for(info, Pose(pan, tilt, start.zoom), target, fill)
-        wanted = Pose(pan if limits.pan_endless else limits.aim_pan_deg(pan), tilt, zoom)
+        wanted = pose_towards(info, pan, tilt, zoom)
         pose, cut = limits.clamp(wanted)
         clamped = set(cut)
         left, top, right, bottom = spans(view(info, wanted).points(target))
         if not math.isfinite(left):
             break
         middle = view(info, wanted).directions(np.array([(left + right) / 2, (top + bottom) / 2]))
-    reached, offset = measure(info, pose, target)
-    if not math.isclose(reached, fill, rel_tol=0.02) and "zoom" not in clamped:
-        at_stop = math.isclose(pose.zoom, limits.min_zoom) or math.isclose(pose.zoom, limits.max_zoom)
-        clamped |= {"zoom"} if at_stop else set()
-    return Aim(pose, reached, offset, in_order(clamped))
+    return Aim(pose, fill, in_order(clamped))
+
+
+def aim_at_zoom(info: CameraInfo, target: Floats, zoom: float) -> Aim:
+    """The pose within the limits that looks at the middle of a target with a given magnification."""
+    pan, tilt = (float(v) for v in pan_tilt_deg(target.mean(axis=0)))
+    pose, clamped = info.limits.clamp(pose_towards(info, pan, tilt, zoom))
+    return Aim(pose, None, clamped)
 
 
 def in_order(axes: set[Axis]) -> tuple[Axis, ...]:
@@ -93,12 +95,20 @@ def in_order(axes: set[Axis]) -> tuple[Axis, ...]:
 
 
 def _zoom_for(info: CameraInfo, pose: Pose, target: Floats, fill: float) -> float:
-    """Magnification at which the target fills its share: sizes in a centred view grow in proportion to the focal length."""
+    """Magnification at which the target fills its share: sizes in a centred view grow in proportion to the focal length.
+
+    What lies beyond the lens's range comes out beyond the camera's limits, so that clamping tells.
+    """
     optics = info.optics
     reached, _ = measure(info, pose, target)
     if not math.isfinite(reached):
         return optics.min_zoom
-    return optics.zoom_for_focal(optics.focal(pose.zoom) * fill / max(reached, 1e-6))
+    focal = optics.focal(pose.zoom) * fill / max(reached, 1e-6)
+    if focal > optics.focal(optics.max_zoom):
+        return optics.max_zoom * focal / optics.focal(optics.max_zoom)
+    if focal < optics.focal(optics.min_zoom):
+        return optics.min_zoom * focal / optics.focal(optics.min_zoom)
+    return optics.zoom_for_focal(focal)
 
 
 def is_cut(box: Box, margin: float = 0.004) -> bool:
@@ -113,7 +123,8 @@ def nearest(info: CameraInfo, frame: Frame, boxes: tuple[Box, ...], target: Floa
         return None
     x, y = (left + right) / 2, (top + bottom) / 2
     best = min(boxes, key=lambda b: math.hypot(b.centre[0] - x, (b.centre[1] - y) * info.frame_height / info.frame_width))
-    near_x, near_y = max(right - left, 0.05), max(bottom - top, 0.05)
+    # What was seen before may have been a sliver of it, or it of what is seen now.
+    near_x, near_y = max(right - left, best.width, 0.05), max(bottom - top, best.height, 0.05)
     if abs(best.centre[0] - x) > near_x or abs(best.centre[1] - y) > near_y:
         return None
     return best

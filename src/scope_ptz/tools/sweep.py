@@ -39,8 +39,8 @@ def plan_sweep(info: CameraInfo) -> list[Block]:
     half_height = math.tan(math.radians(hfov) / 2) * info.frame_height / info.frame_width
     columns = math.ceil(_pan_span_deg(limits) / (hfov * 0.85))
     step = _pan_span_deg(limits) / columns
-    # Off its axis a frame covers less height; at the edge of a column this much is left.
-    reach = math.degrees(math.atan(half_height * math.cos(math.radians(step / 2))))
+    # Off its axis a frame covers less height; at the edge of a column this much is left, and a degree less when tilted.
+    reach = math.degrees(math.atan(half_height * math.cos(math.radians(step / 2)))) - 1.0
     top = min(limits.max_tilt_deg + reach, 30.0)
     low, high = limits.min_tilt_deg, min(limits.max_tilt_deg, top - reach)
     rows = max(1, math.ceil((high - low) / (2 * reach - 3.0)) + 1)

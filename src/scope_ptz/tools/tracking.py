@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
 from scope_ptz.camera.base import Frame
-from scope_ptz.geometry import Axis, pan_tilt_deg
+from scope_ptz.geometry import Axis, angle_between_deg, pan_tilt_deg
 from scope_ptz.perception.base import Box
-from scope_ptz.tools.aiming import Floats, in_order, lookahead, nearest, outline, pose_towards
+from scope_ptz.tools.aiming import Floats, in_order, lookahead, pose_towards
 from scope_ptz.tools.arguments import TrackObject
 from scope_ptz.tools.context import ToolContext
 from scope_ptz.tools.results import PoseData, TrackPoint, TrackResult
@@ -25,19 +24,27 @@ FILL_RANGE = (0.12, 0.5)
 WANTED_FILL = 0.28
 """Outside the range the zoom is corrected: room to move on one side, enough pixels to recognise on the other."""
 
+FREE_RATE_DEG_S = 25.0
+STEADY_RATE_DEG_S = 10.0
+"""How fast a target may turn out to move, unknown or beside its known motion, and still be taken for the same one."""
+
+LOST_LOOKS = 2
+LOST_ZOOM = 0.6
+"""After so many looks without the target the view is widened by this factor, once for every further one."""
+
 
 class _Target:
-    """What is known of the target while it is followed: its outline and where its middle was at the last two sightings."""
+    """What is known of the target while it is followed: its size and where its middle was at the last two sightings."""
 
     def __init__(self, frame: Frame, box: Box) -> None:
-        self.outline = outline(frame, box)
+        self.size_deg = _size_deg(frame, box)
         self.middle = _middle(frame, box)
         self.time_s = frame.time_s
         self.before: tuple[Floats, float] | None = None
 
     def update(self, frame: Frame, box: Box) -> None:
         self.before = (self.middle, self.time_s)
-        self.outline, self.middle, self.time_s = outline(frame, box), _middle(frame, box), frame.time_s
+        self.size_deg, self.middle, self.time_s = _size_deg(frame, box), _middle(frame, box), frame.time_s
 
     def at(self, time_s: float) -> Floats:
         """Where the middle will be, by the motion between the last two sightings; no guess beyond two periods."""
@@ -46,14 +53,24 @@ class _Target:
         ahead = min(max(time_s - self.time_s, 0.0), 2 * PERIOD_S)
         return lookahead(self.before[0], self.middle, ahead / (self.time_s - self.before[1]))
 
-    def outline_at(self, time_s: float) -> Floats:
-        """The outline moved along with the middle."""
-        moved = self.outline + (self.at(time_s) - self.middle)
-        return np.asarray(moved / np.linalg.norm(moved, axis=-1, keepdims=True))
+    def find(self, frame: Frame, boxes: tuple[Box, ...]) -> Box | None:
+        """The box that continues the target: the nearest to where it should be, if it could have come that far."""
+        expected = self.at(frame.time_s)
+        angles = [float(angle_between_deg(_middle(frame, box), expected)) for box in boxes]
+        if not angles:
+            return None
+        best = min(range(len(boxes)), key=angles.__getitem__)
+        rate = FREE_RATE_DEG_S if self.before is None else STEADY_RATE_DEG_S
+        return boxes[best] if angles[best] <= self.size_deg + rate * (frame.time_s - self.time_s) else None
 
 
 def _middle(frame: Frame, box: Box) -> Floats:
     return frame.projection.directions(np.array(box.centre))
+
+
+def _size_deg(frame: Frame, box: Box) -> float:
+    corners = frame.projection.directions(np.array([[box.x_min, box.y_min], [box.x_max, box.y_max]]))
+    return float(angle_between_deg(corners[0], corners[1]))
 
 
 async def track_object(context: ToolContext, arguments: TrackObject) -> TrackResult:
@@ -72,9 +89,13 @@ async def track_object(context: ToolContext, arguments: TrackObject) -> TrackRes
     started, clamped = frame.time_s, set[Axis]()
     path = [TrackPoint(time_s=0.0, pose=PoseData.of(frame.pose), seen=True)]
     seen: Box | None = box
+    lost = 0
     while True:
         if seen is not None:
             clamped |= set(await _correct(context, frame, seen, target))
+        elif lost >= LOST_LOOKS:
+            pose = await camera.pose()
+            clamped |= set(await _turn(context, target.at(frame.time_s + PERIOD_S), pose.zoom * LOST_ZOOM)) - {"zoom"}
         left_s = arguments.duration_s - (camera.clock.now_s() - started)
         if left_s <= 1e-6:
             break
@@ -82,9 +103,10 @@ async def track_object(context: ToolContext, arguments: TrackObject) -> TrackRes
         await camera.clock.sleep(min(max(due_s - camera.clock.now_s(), 0.05), left_s))
         frame = await camera.frame()
         found = await context.perception.detect(frame, description)
-        seen = nearest(camera.info, frame, found.boxes, target.outline_at(frame.time_s))
+        seen = target.find(frame, found.boxes)
         if seen is not None:
             target.update(frame, seen)
+        lost = 0 if seen is not None else lost + 1
         path.append(TrackPoint(time_s=round(frame.time_s - started, 3), pose=PoseData.of(frame.pose), seen=seen is not None))
     saved.append(context.images.save_look(frame))
     return _report(arguments, found.source, frame, path, clamped, saved)
@@ -98,13 +120,16 @@ async def _correct(context: ToolContext, frame: Frame, seen: Box, target: _Targe
     pose = await context.camera.pose()
     if offset <= DEAD_ZONE and FILL_RANGE[0] <= fill <= FILL_RANGE[1]:
         return ()
-    pan, tilt = (float(v) for v in pan_tilt_deg(target.at(frame.time_s + PERIOD_S)))
-    wanted = pose_towards(info, pan, tilt, pose.zoom)
-    if not FILL_RANGE[0] <= fill <= FILL_RANGE[1]:
-        focal = info.optics.focal(pose.zoom) * WANTED_FILL / max(fill, 1e-3)
-        wanted = replace(wanted, zoom=info.optics.zoom_for_focal(focal))
-    arrival = await context.camera.move(wanted)
-    return arrival.clamped
+    zoom = pose.zoom
+    # Zooming in before its motion is known would lose a fast target.
+    if fill > FILL_RANGE[1] or (fill < FILL_RANGE[0] and target.before is not None):
+        zoom = info.optics.zoom_for_focal(info.optics.focal(pose.zoom) * WANTED_FILL / max(fill, 1e-3))
+    return await _turn(context, target.at(frame.time_s + PERIOD_S), zoom)
+
+
+async def _turn(context: ToolContext, towards: Floats, zoom: float) -> tuple[Axis, ...]:
+    pan, tilt = (float(v) for v in pan_tilt_deg(towards))
+    return (await context.camera.move(pose_towards(context.camera.info, pan, tilt, zoom))).clamped
 
 
 def _report(

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from scope_ptz.camera.base import Arrival, Frame
+from scope_ptz.camera.base import Arrival, CameraInfo, Frame
 from scope_ptz.geometry import Pose, angle_between_deg, direction
 from scope_ptz.perception.base import Box
-from scope_ptz.tools.aiming import TARGET_FILL, Aim, Floats, aim, is_cut, measure, nearest, outline
+from scope_ptz.tools.aiming import TARGET_FILL, Aim, Floats, aim, aim_at_zoom, is_cut, measure, nearest, outline
 from scope_ptz.tools.arguments import ZoomToObject
 from scope_ptz.tools.context import ToolContext, pose_text
 from scope_ptz.tools.results import PoseData, ZoomResult
@@ -18,10 +18,12 @@ MAX_LOOKS = 3
 SMALL_SHARE = 0.05
 """A target below this share of its limiting side is localised again from closer: its box is too coarse to frame by."""
 
-FIRST_FILL = 0.45
-"""How large an unsure target is made for the next look: big enough to measure, with room for what was cut off."""
+CLOSER_FILL = 0.45
+"""How large a small target is made for the next look."""
 
-SETTLED_DEG = 1.0
+CUT_ZOOM = 0.4
+"""Change of magnification for the next look at a target that goes on outside the frame: room for the part not seen yet."""
+
 SETTLED_OFFSET = 0.012
 SETTLED_FILL = (0.64, 0.86)
 
@@ -52,8 +54,8 @@ async def zoom_to_object(context: ToolContext, arguments: ZoomToObject) -> ZoomR
     frames = [context.images.save_look(first.frame)]
     try:
         while True:
-            unsure = looks < MAX_LOOKS and (is_cut(seen.box) or max(seen.box.width, seen.box.height) < SMALL_SHARE)
-            plan = aim(context.camera.info, await context.camera.pose(), target, FIRST_FILL if unsure else TARGET_FILL)
+            plan = _plan(context.camera.info, await context.camera.pose(), seen.box, target, looks)
+            unsure = plan.fill_wanted != TARGET_FILL
             if not unsure and _framed(context, await context.camera.pose(), target, plan):
                 break
             before = await context.camera.pose()
@@ -74,6 +76,17 @@ async def zoom_to_object(context: ToolContext, arguments: ZoomToObject) -> ZoomR
         await context.camera.move(start)
         raise
     return await _report(context, arguments.description, first, target, tuple(frames))
+
+
+def _plan(info: CameraInfo, pose: Pose, box: Box, target: Floats, looks: int) -> Aim:
+    """The next move: to the final framing only when the box can be trusted to be the whole target, else to a better look."""
+    if looks < MAX_LOOKS and is_cut(box):
+        # After a second cut look, or when it spans the frame, only the widest view is sure to hold all of it.
+        spans_frame = max(box.width, box.height) > 0.98
+        zoom = info.limits.min_zoom if looks > 1 or spans_frame else max(pose.zoom * CUT_ZOOM, info.limits.min_zoom)
+        return aim_at_zoom(info, target, zoom)
+    small = looks < MAX_LOOKS and max(box.width, box.height) < SMALL_SHARE
+    return aim(info, pose, target, CLOSER_FILL if small else TARGET_FILL)
 
 
 def _framed(context: ToolContext, pose: Pose, target: Floats, plan: Aim) -> bool:

@@ -1,0 +1,73 @@
+"""track_object keeps a moving target in view and tells honestly how long it did."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import anyio
+import pytest
+
+from scope_ptz.geometry import Limits, Pose
+from scope_ptz.perception.base import Detections
+from scope_ptz.tools.context import ToolContext
+from scope_ptz.tools.registry import run_tool
+from scope_ptz.tools.results import TrackResult
+from tests.support.analytic import AnalyticCamera, AnalyticEyes, MemoryStore, solid, thing_moving
+
+
+def track(camera: AnalyticCamera, eyes: AnalyticEyes, duration_s: float = 10) -> TrackResult:
+    arguments = {"description": "van", "duration_s": duration_s}
+    result = anyio.run(run_tool, ToolContext(camera, eyes, MemoryStore()), "track_object", arguments)
+    assert isinstance(result, TrackResult)
+    return result
+
+
+@pytest.mark.parametrize("rate", [(8.0, 0.0), (-12.0, 0.5), (0.0, -2.0), (0.0, 0.0)])
+def test_a_drifting_target_is_held(rate: tuple[float, float]) -> None:
+    camera = AnalyticCamera(start=Pose(0, -5, 1))
+    result = track(camera, AnalyticEyes([thing_moving("van", 5, -8, rate)]))
+    assert result.found
+    assert result.held_share == 1.0
+    assert camera.clock.now_s() == pytest.approx(10, abs=0.2)
+    assert camera.now.pan_deg == pytest.approx(5 + 10 * rate[0], abs=8)
+    assert all(point.seen for point in result.path)
+
+
+def test_the_nearest_of_many_is_followed() -> None:
+    moving, still = thing_moving("van", 5, -8, (8, 0)), solid("van", -20, -8, (2, 4, 2), 25)
+    camera = AnalyticCamera(start=Pose(0, -5, 1))
+    track(camera, AnalyticEyes([moving, still]))
+    assert camera.now.pan_deg == pytest.approx(85, abs=8)
+
+
+def test_a_target_beyond_the_stop_is_lost_and_told() -> None:
+    camera = AnalyticCamera(start=Pose(130, -5, 1), limits=Limits(min_pan_deg=-140, max_pan_deg=140))
+    result = track(camera, AnalyticEyes([thing_moving("van", 130, -5, (12, 0))]))
+    assert result.clamped == ("pan",)
+    assert result.held_share < 1.0
+    assert "pan limit" in result.message
+
+
+def test_a_target_that_crosses_the_stop_is_followed_from_the_other_side() -> None:
+    camera = AnalyticCamera(start=Pose(150, -5, 1))
+    result = track(camera, AnalyticEyes([thing_moving("van", 150, -5, (8, 0))]))
+    assert result.held_share > 0.9
+    assert camera.now.pan_deg == pytest.approx(-130, abs=8)
+
+
+def test_nothing_to_follow() -> None:
+    camera = AnalyticCamera()
+    result = track(camera, AnalyticEyes([]))
+    assert (result.found, result.held_share, camera.visited) == (False, 0.0, [])
+
+
+def test_a_target_that_vanishes_counts_as_lost_time() -> None:
+    eyes = AnalyticEyes([thing_moving("van", 0, -5, (2, 0))])
+    detect = eyes.detect
+
+    async def half(frame: Any, description: str) -> Detections:
+        found = await detect(frame, description)
+        return found if frame.time_s < 5 else found.model_copy(update={"boxes": ()})
+
+    eyes.detect = half  # type: ignore[method-assign]
+    assert track(AnalyticCamera(), eyes).held_share == pytest.approx(0.5, abs=0.1)

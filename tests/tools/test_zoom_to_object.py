@@ -1,0 +1,103 @@
+"""zoom_to_object frames a target from any start, or says which limit kept it from doing so."""
+
+from __future__ import annotations
+
+import anyio
+import numpy as np
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from scope_ptz.camera.base import CameraInfo
+from scope_ptz.geometry import Perspective, Pose
+from scope_ptz.tools.context import ToolContext
+from scope_ptz.tools.registry import run_tool
+from scope_ptz.tools.results import ZoomResult
+from tests.support.analytic import HEIGHT, WIDTH, AnalyticCamera, AnalyticEyes, MemoryStore, Thing, solid
+
+
+def truth(info: CameraInfo, pose: Pose, thing: Thing) -> tuple[float, float, float]:
+    """Fill of the limiting side and offsets of the middle, from the whole cloud."""
+    view = Perspective(pose.pan_deg, pose.tilt_deg, info.optics.hfov_deg(pose.zoom), WIDTH, HEIGHT)
+    points = view.points(thing.cloud)
+    low, high = points.min(axis=0), points.max(axis=0)
+    middle = (low + high) / 2 - 0.5
+    return float((high - low).max()), float(middle[0]), float(middle[1])
+
+
+def zoom(camera: AnalyticCamera, eyes: AnalyticEyes, description: str = "van") -> ZoomResult:
+    result = anyio.run(run_tool, ToolContext(camera, eyes, MemoryStore()), "zoom_to_object", {"description": description})
+    assert isinstance(result, ZoomResult)
+    return result
+
+
+@settings(max_examples=200, deadline=None)
+@given(
+    start=st.builds(Pose, st.floats(-179, 179), st.floats(-60, 30), st.floats(1, 5)),
+    place=st.tuples(st.floats(0.02, 0.98), st.floats(0.02, 0.98)),
+    size=st.tuples(st.floats(0.3, 12), st.floats(0.3, 12), st.floats(0.3, 4)),
+    distance_m=st.floats(9, 80),
+    spin_deg=st.floats(0, 180),
+)
+def test_target_ends_in_the_middle_at_its_size(
+    start: Pose, place: tuple[float, float], size: tuple[float, float, float], distance_m: float, spin_deg: float
+) -> None:
+    camera = AnalyticCamera(start=start)
+    view = Perspective(start.pan_deg, start.tilt_deg, camera.info.optics.hfov_deg(start.zoom), WIDTH, HEIGHT)
+    towards = view.directions(np.array(place))
+    pan, tilt = np.degrees(np.arctan2(towards[0], towards[1])), np.degrees(np.arcsin(towards[2]))
+    thing = solid("van", float(pan), float(tilt), size, distance_m, spin_deg)
+    eyes = AnalyticEyes([thing])
+    result = zoom(camera, eyes)
+    assume(result.found)
+    assert len(eyes.asked) <= 3
+    fill, dx, dy = truth(camera.info, camera.now, thing)
+    if not result.limited_by:
+        assert abs(dx) <= 0.02
+        assert abs(dy) <= 0.02
+        assert 0.6 <= fill <= 0.9
+    else:
+        at_stop = {
+            "pan": abs(abs(camera.now.pan_deg) - 179) < 1e-6,
+            "tilt": camera.now.tilt_deg in (-60, 30),
+            "zoom": camera.now.zoom in (1, 5),
+        }
+        assert all(at_stop[axis] for axis in result.limited_by)
+
+
+@given(start=st.builds(Pose, st.floats(-150, 150), st.floats(-55, 25), st.floats(1, 5)))
+@settings(max_examples=25, deadline=None)
+def test_nothing_found_moves_nothing(start: Pose) -> None:
+    camera = AnalyticCamera(start=start)
+    result = zoom(camera, AnalyticEyes([]), "unicorn")
+    assert not result.found
+    assert camera.visited == []
+    assert "Nothing" in result.message
+
+
+def test_of_several_the_first_named_is_taken_and_the_count_is_told() -> None:
+    camera = AnalyticCamera()
+    near, far = solid("van", -12, -5, (2, 5, 2), 20), solid("van", 14, -3, (2, 5, 2), 30)
+    result = zoom(camera, AnalyticEyes([near, far]))
+    assert result.matches == 2
+    assert "2 match" in result.message
+    assert abs(camera.now.pan_deg - -12) < 3
+
+
+def test_a_failed_look_leaves_the_camera_where_it_was() -> None:
+    camera = AnalyticCamera(start=Pose(10, -5, 1))
+    eyes = AnalyticEyes([solid("van", 20, -5, (2, 5, 2), 40)])
+    detect = eyes.detect
+
+    async def once(frame, description):  # type: ignore[no-untyped-def]
+        found = await detect(frame, description)
+        eyes.fail = True
+        return found
+
+    eyes.detect = once  # type: ignore[method-assign]
+    try:
+        zoom(camera, eyes)
+    except Exception as error:
+        assert "shut" in str(error)
+        assert camera.now == Pose(10, -5, 1)
+    else:
+        raise AssertionError("the failure was swallowed")
