@@ -45,7 +45,12 @@ class Atlas:
     """
 
     def __init__(
-        self, sizes: Sequence[Size], load: Callable[[int], NDArray[Any]], dtype: type[np.generic], channels: int, scales: Sequence[float]
+        self,
+        sizes: Sequence[Size],
+        load: Callable[[int], NDArray[Any]],
+        dtype: type[np.generic],
+        channels: int,
+        scales: Sequence[float],
     ) -> None:
         self.slots, (width, height) = _lay_out(sizes, scales)
         self._load = load
@@ -70,9 +75,8 @@ class Atlas:
             else:
                 scaled = picture
             b = BORDER_PX
-            mode = "wrap" if index == 0 else "edge"
-            colour = ((0, 0),) * (picture.ndim - 2)
-            padded = np.pad(np.pad(scaled, ((0, 0), (b, b), *colour), mode=mode), ((b, b), (0, 0), *colour), mode="edge")
+            sides = cv2.BORDER_WRAP if index == 0 else cv2.BORDER_REPLICATE
+            padded = cv2.copyMakeBorder(cv2.copyMakeBorder(scaled, 0, 0, b, b, sides), b, b, 0, 0, cv2.BORDER_REPLICATE)
             self.sheet[slot.y - b : slot.y + slot.height + b, slot.x - b : slot.x + slot.width + b] = padded
 
 

@@ -11,7 +11,7 @@ import anyio.lowlevel
 
 
 class SceneClock:
-    """Seconds of scene time. In evaluation it advances at once by what is slept; while a person watches it follows the wall clock."""
+    """Seconds of scene time. In evaluation it advances at once by what is slept; watched by a person it follows the wall clock."""
 
     def __init__(self, start_s: float = 0.0, *, realtime: bool = False) -> None:
         self._realtime = realtime

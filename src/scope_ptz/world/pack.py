@@ -1,4 +1,4 @@
-"""Finding scenes and opening their packs. Nothing is decoded before it is needed, and no file is used before its checksum matched."""
+"""Finding scenes and opening their packs. Nothing is decoded before it is needed, nor used before its checksum matched."""
 
 from __future__ import annotations
 
@@ -18,16 +18,26 @@ from pydantic import BaseModel, ValidationError
 from scope_ptz.errors import PackError, UnknownNameError
 from scope_ptz.world import layers
 from scope_ptz.world.atlas import Atlas
-from scope_ptz.world.models import FORMAT_VERSION, Layer, Manifest, SceneActor, SceneFile, SceneInstance, SceneViewpoint
+from scope_ptz.world.models import (
+    FORMAT_VERSION,
+    ActorSheet,
+    Extent,
+    Layer,
+    Manifest,
+    SceneActor,
+    SceneFile,
+    SceneInstance,
+    SceneViewpoint,
+)
 
 COLOUR_SCALES = (1.0, 2**-0.5, 0.5, 2**-1.5, 0.25)
-"""Scales at which colour is kept: half an octave apart, so that a view samples its source neither much too finely nor too coarsely."""
+"""Scales at which colour is kept: half an octave apart, so that no view samples its source much too finely or too coarsely."""
 
 _File = TypeVar("_File", bound=BaseModel)
 
 
 def find_scenes(search: Iterable[Path] = ()) -> dict[str, Path]:
-    """Scene name to folder: every folder with a ``scene.json`` in the extra folders ``search`` and in the package, first found wins."""
+    """Scene name to folder: folders with a ``scene.json`` in ``search`` and in the package; the first of a name wins."""
     found: dict[str, Path] = {}
     for root in (*search, Path(str(files("scope_ptz"))) / "data" / "scenes"):
         if root.is_dir():
@@ -66,15 +76,38 @@ class Scene:
     def name(self) -> str:
         return self.file.name
 
+    @property
+    def things(self) -> list[SceneInstance | SceneActor]:
+        """Instances, then actors."""
+        return [*self.file.instances, *self.file.actors]
+
     @cached_property
     def by_number(self) -> Mapping[int, SceneInstance | SceneActor]:
         """Instances and actors by their number in the id layers."""
-        return {thing.number: thing for thing in (*self.file.instances, *self.file.actors)}
+        return {thing.number: thing for thing in self.things}
 
     @cached_property
     def by_id(self) -> Mapping[str, SceneInstance | SceneActor]:
         """Instances and actors by their string id."""
-        return {thing.id: thing for thing in (*self.file.instances, *self.file.actors)}
+        return {thing.id: thing for thing in self.things}
+
+    @cached_property
+    def families(self) -> Mapping[str, frozenset[int]]:
+        """For each id the numbers of everything that hangs together with it: what it is a part of, and the parts of that."""
+        parents = {i.id: i.parent for i in self.file.instances}
+
+        def root(name: str) -> str:
+            seen = {name}
+            while (parent := parents.get(name)) is not None and parent not in seen:
+                seen.add(parent)
+                name = parent
+            return name
+
+        roots = {name: root(name) for name in self.by_id}
+        members: dict[str, set[int]] = {}
+        for name, top in roots.items():
+            members.setdefault(top, set()).add(self.by_id[name].number)
+        return {name: frozenset(members[top]) for name, top in roots.items()}
 
     def viewpoint(self, name: str) -> Viewpoint:
         """One optical centre of the scene, opened once and shared."""
@@ -94,6 +127,8 @@ class Viewpoint:
         self.folder = folder
         self.manifest = manifest = _read_json(folder / "manifest.json", Manifest)
         self.name = place.name
+        self._sheets: dict[int, tuple[NDArray[np.uint8], NDArray[np.uint16]]] = {}
+        self._lock = RLock()
         if (manifest.scene, manifest.viewpoint, manifest.scene_version) != (scene.name, place.name, scene.version):
             raise PackError(
                 f"{folder} was baked for viewpoint '{manifest.viewpoint}' of scene '{manifest.scene}' version "
@@ -118,6 +153,11 @@ class Viewpoint:
         c, s = np.cos(bearing), np.sin(bearing)
         return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
+    @cached_property
+    def extents(self) -> dict[int, Extent]:
+        """Whole silhouettes of the instances that can be seen from here, by number."""
+        return {extent.number: extent for extent in self.manifest.extents}
+
     def offset(self, points_m: NDArray[np.float64]) -> NDArray[np.float64]:
         """World points (..., 3) as vectors from the optical centre in the camera's own frame, metres."""
         return np.asarray((points_m - self.position_m) @ self.world_to_camera.T)
@@ -138,19 +178,28 @@ class Viewpoint:
     def depth_metres(self) -> NDArray[np.float32]:
         """(65536,) table from a distance code to metres; the sky is infinitely far."""
         depth = self.manifest.depth
-        codes = np.arange(65536, dtype=np.float64)
-        metres = depth.near_m * (depth.far_m / depth.near_m) ** ((codes - 1) / 65534)
-        metres[0] = np.inf
-        return metres.astype(np.float32)
+        return layers.decode_depth(np.arange(65536).astype(np.uint16), depth.near_m, depth.far_m)
+
+    def sprites(self, sheet: ActorSheet) -> tuple[NDArray[np.uint8], NDArray[np.uint16]]:
+        """An actor's sheet: (H, W, 4) colour premultiplied by alpha, and (H, W) distance codes. Read once and shared."""
+        with self._lock:
+            if sheet.number not in self._sheets:
+                colour = self.colour(sheet.colour)
+                if colour.shape[2] != 4:
+                    raise PackError(f"{self.folder / sheet.colour.file} has no transparency: no sheet of sprites. Bake it again.")
+                alpha = colour[..., 3:].astype(np.uint16)
+                rgb = ((colour[..., :3] * alpha + 127) // 255).astype(np.uint8)
+                self._sheets[sheet.number] = np.concatenate([rgb, colour[..., 3:]], axis=-1), self.depth(sheet.depth)
+            return self._sheets[sheet.number]
 
     def _verified(self, layer: Layer) -> Path:
         path = (self.folder / layer.file).resolve()
         if not path.is_relative_to(self.folder.resolve()):
-            raise PackError(f"{self.folder / 'manifest.json'} names a file outside its own folder: {layer.file}. Do not use this pack.")
+            raise PackError(f"{self.folder / 'manifest.json'} names a file outside its folder: {layer.file}. Do not use this pack.")
         try:
             digest = hashlib.sha256(path.read_bytes()).hexdigest()
         except OSError as error:
-            raise PackError(f"{path} is missing or cannot be read ({error.strerror}). Restore the pack or bake it again.") from error
+            raise PackError(f"{path} is missing or cannot be read ({error.strerror}). Restore it or bake again.") from error
         if digest != layer.sha256:
             raise PackError(f"{path} is damaged: its checksum differs from the manifest. Restore the pack or bake it again.")
         return path
@@ -173,7 +222,7 @@ def _read_json(path: Path, model: type[_File]) -> _File:
     try:
         content = json.loads(path.read_bytes())
     except OSError as error:
-        raise PackError(f"{path} is missing or cannot be read ({error.strerror}). Restore the pack or bake it again.") from error
+        raise PackError(f"{path} is missing or cannot be read ({error.strerror}). Restore it or bake again.") from error
     except ValueError as error:
         raise PackError(f"{path} is no valid JSON ({error}). Restore the pack or bake it again.") from error
     version = content.get("format") if isinstance(content, dict) else None
@@ -189,7 +238,7 @@ def _read_json(path: Path, model: type[_File]) -> _File:
 
 def _check_references(file: SceneFile, folder: Path) -> None:
     """Every name that one table uses from another must exist, and no number may be given twice."""
-    things = [*file.instances, *file.actors]
+    things: list[SceneInstance | SceneActor] = [*file.instances, *file.actors]
     ids, numbers = {t.id for t in things}, {t.number for t in things}
     viewpoints, presets = {v.name for v in file.viewpoints}, {p.name for p in file.presets}
     faults = [f"preset '{p.name}' names the viewpoint '{p.viewpoint}'" for p in file.presets if p.viewpoint not in viewpoints]
@@ -200,4 +249,4 @@ def _check_references(file: SceneFile, folder: Path) -> None:
     if faults:
         raise PackError(f"{folder / 'scene.json'}: {faults[0]}, which does not exist. Restore the pack or build the scene again.")
     if len(ids) != len(things) or len(numbers) != len(things):
-        raise PackError(f"{folder / 'scene.json'} gives an id or a number to two things. Restore the pack or build the scene again.")
+        raise PackError(f"{folder / 'scene.json'} gives an id or a number to two things. Restore it or build the scene again.")

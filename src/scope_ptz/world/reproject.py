@@ -51,19 +51,19 @@ def density(projection: Projection) -> float:
     """Pixels per radian in the middle of a picture."""
     if isinstance(projection, Perspective):
         return projection.focal_px
-    assert isinstance(projection, Equirectangular)
-    return projection.width / math.radians(projection.pan_span_deg)
+    middle, below = projection.directions((0.5, 0.5)), projection.directions((0.5, 0.5 + 1 / projection.height))
+    return 1.0 / math.radians(float(angle_between_deg(middle, below)))
 
 
 def _look_up(viewpoint: Viewpoint, atlas: Atlas, projection: Projection, interpolation: int) -> NDArray[Any]:
     where = atlas_map(viewpoint, atlas, projection)
-    return cv2.remap(atlas.sheet, where, None, interpolation)
+    return np.asarray(cv2.remap(atlas.sheet, where, None, interpolation))
 
 
 def atlas_map(viewpoint: Viewpoint, atlas: Atlas, projection: Projection) -> Map:
     """(H, W, 2): for each pixel of the view its x, y on the sheet of an atlas."""
     needed = density(projection)
-    grid = _Grid(projection, _step_px(projection))
+    grid = Grid(projection, step_px(projection))
     patches: list[tuple[Map, NDArray[np.uint8] | None, slice, slice]] = []
     if needed > TILE_GAIN * atlas.slots[0][0].width / (2 * math.pi):
         for index in _tiles_in(viewpoint.manifest.tiles[: len(atlas.slots) - 1], projection):
@@ -79,7 +79,7 @@ def atlas_map(viewpoint: Viewpoint, atlas: Atlas, projection: Projection) -> Map
     return where
 
 
-class _Grid:
+class Grid:
     """Nodes ``step`` pixels apart over a picture and one step beyond it, and the way back from nodes to pixels."""
 
     def __init__(self, projection: Projection, step: int) -> None:
@@ -92,6 +92,7 @@ class _Grid:
 
     @property
     def directions(self) -> Floats:
+        """(rows, columns, 3) unit vectors at the nodes."""
         if self._directions is None:
             self._directions = self.projection.directions(self.points)
         return self._directions
@@ -99,11 +100,11 @@ class _Grid:
     def to_pixels(self, nodes: Floats) -> Map:
         """Values at nodes (rows, columns, 2), bilinear between them, at the middle of every pixel (H, W, 2)."""
         n, rows, columns = self.step, nodes.shape[0], nodes.shape[1]
-        fine = cv2.resize(nodes.astype(np.float32), (columns * n, rows * n), interpolation=cv2.INTER_LINEAR)
+        fine: Map = cv2.resize(nodes.astype(np.float32), (columns * n, rows * n), interpolation=cv2.INTER_LINEAR)
         return fine[n : n + self.projection.height, n : n + self.projection.width]
 
 
-def _step_px(projection: Projection) -> int:
+def step_px(projection: Projection) -> int:
     """The widest power of two that keeps ``step ** 2 / 8 * curvature`` within the error allowed."""
     if isinstance(projection, Equirectangular):
         return 8
@@ -117,7 +118,7 @@ def _step_px(projection: Projection) -> int:
     return int(min(MAX_STEP_PX, 2 ** math.floor(math.log2(max(1.0, widest)))))
 
 
-def _base_map(band: Band, slot: Slot, grid: _Grid) -> Map:
+def _base_map(band: Band, slot: Slot, grid: Grid) -> Map:
     projection = grid.projection
     if isinstance(projection, Equirectangular):
         middle = projection.left_pan_deg + projection.pan_span_deg / 2
@@ -140,12 +141,8 @@ def _base_map(band: Band, slot: Slot, grid: _Grid) -> Map:
 
 def _tiles_in(tiles: list[Tile], projection: Projection) -> list[int]:
     """Indices of the tiles that may show in a view, sharpest first (then in the order of the manifest)."""
-    reach = _reach_deg(projection)
-    middle = projection.directions((0.5, 0.5))
     views = [tile_view(tile) for tile in tiles]
-    near = [
-        i for i, view in enumerate(views) if angle_between_deg(view.directions((0.5, 0.5)), middle) < reach + _reach_deg(view)
-    ]
+    near = [i for i, view in enumerate(views) if bounds(view, projection) is not None]
     return sorted(near, key=lambda i: (-views[i].focal_px, i))
 
 
@@ -161,11 +158,11 @@ def _reach_deg(projection: Projection) -> float:
     return float(angle_between_deg(projection.directions((0.0, 0.0)), projection.directions((0.5, 0.5))))
 
 
-def _tile_patch(tile: Tile, atlas: Atlas, index: int, grid: _Grid) -> tuple[Map, NDArray[np.uint8] | None, slice, slice] | None:
+def _tile_patch(tile: Tile, atlas: Atlas, index: int, grid: Grid) -> tuple[Map, NDArray[np.uint8] | None, slice, slice] | None:
     """Where a tile shows in the view: its map, the pixels that it covers (None: all of the view), and their rows and columns."""
     view = tile_view(tile)
-    bounds = _bounds(view, grid.projection)
-    if bounds is None:
+    place = bounds(view, grid.projection)
+    if place is None:
         return None
     slot = _level(atlas.need(index), view.focal_px, density(grid.projection))
     uv = np.nan_to_num(view.points(grid.directions), nan=-1e3)
@@ -173,13 +170,16 @@ def _tile_patch(tile: Tile, atlas: Atlas, index: int, grid: _Grid) -> tuple[Map,
     low, high = (slot.x, slot.y), (slot.x + slot.width - 1, slot.y + slot.height - 1)
     if np.all((xy >= low) & (xy <= high)):
         return grid.to_pixels(xy), None, slice(None), slice(None)
-    rows, columns = bounds
+    rows, columns = place
     where = grid.to_pixels(xy)[rows, columns]
     return where, cv2.inRange(where, low, high), rows, columns
 
 
-def _bounds(view: Perspective, projection: Projection) -> tuple[slice, slice] | None:
-    """Rows and columns of a picture that a tile's outline spans; None when it does not reach into the picture."""
+def bounds(view: Perspective, projection: Projection) -> tuple[slice, slice] | None:
+    """Rows and columns of a picture that the outline of a perspective view spans; None when it does not reach into the picture."""
+    apart = angle_between_deg(view.directions((0.5, 0.5)), projection.directions((0.5, 0.5)))
+    if apart > _reach_deg(view) + _reach_deg(projection):
+        return None
     side = np.linspace(0.0, 1.0, 9)
     zero, one = np.zeros(9), np.ones(9)
     outline = np.concatenate([np.stack(p, axis=-1) for p in ((side, zero), (one, side), (side, one), (zero, side))])

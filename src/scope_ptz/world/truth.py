@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-from scope_ptz.geometry import Projection
-from scope_ptz.world.models import SceneActor, SceneInstance, SceneText
-from scope_ptz.world.pack import Scene
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from scope_ptz.errors import PackError
+from scope_ptz.geometry import Equirectangular, Projection, angle_between_deg, direction, pan_tilt_deg
+from scope_ptz.world.actors import appearances, extent
+from scope_ptz.world.models import Extent, SceneActor, SceneInstance, SceneText
+from scope_ptz.world.pack import Scene, Viewpoint
+from scope_ptz.world.runs import measure
+from scope_ptz.world.views import instance_numbers
 
 MIN_VISIBLE_PX = 100
-"""An instance is visible when it covers at least this many pixels of the frame: about 10 x 10, below which a person sees a speck."""
+"""An instance is visible when it covers at least this many pixels of the frame; 10 x 10 is about what a person can name."""
 
 MIN_VISIBLE_SHARE = 0.3
 """... and when at least this share of its own silhouette is neither hidden nor cut off by the frame."""
@@ -22,6 +31,9 @@ MAX_READING_ANGLE_DEG = 55.0
 
 MIN_UNHIDDEN_SHARE = 0.9
 """... and at least this share of it is inside the frame and unhidden."""
+
+UNOCCLUDED_SHARE = 0.95
+"""What shows this much of what the frame takes in counts as not hidden by anything: boundaries are never measured exactly."""
 
 BoxTuple = tuple[float, float, float, float]
 """``(x_min, y_min, x_max, y_max)``, normalised to [0, 1], origin top-left."""
@@ -89,4 +101,100 @@ class ViewTruth:
 
 def view_truth(scene: Scene, viewpoint: str, projection: Projection, time_s: float) -> ViewTruth:
     """The ground truth of a picture taken from ``viewpoint`` at scene time ``time_s`` through ``projection``."""
-    raise NotImplementedError
+    here = scene.viewpoint(viewpoint)
+    numbers = instance_numbers(scene, viewpoint, projection, time_s)
+    extents = here.extents | {a.actor.number: extent(here, a) for a in appearances(scene, here, time_s)}
+    return ViewTruth(_sightings(scene, projection, numbers, extents), _texts(scene, here, projection, numbers))
+
+
+def _sightings(
+    scene: Scene, projection: Projection, numbers: NDArray[np.uint16], extents: Mapping[int, Extent]
+) -> tuple[Sighting, ...]:
+    seen = measure(numbers, projection)
+    pan, tilt = pan_tilt_deg(projection.directions(seen.middle))
+    found = []
+    for k, number in enumerate(seen.numbers.tolist()):
+        if number not in scene.by_number:
+            raise PackError(
+                f"A pixel of scene '{scene.name}' shows instance {number}, which scene.json does not know. Bake it again."
+            )
+        if number not in extents:
+            continue  # from here it never covers as much as a pixel of the bake: nobody could call it visible
+        extent = extents[number]
+        share = min(1.0, float(seen.solid_angle_sr[k]) / max(extent.solid_angle_sr, 1e-12))
+        inside = _share_inside(extent, projection)
+        found.append(
+            Sighting(
+                instance=scene.by_number[number],
+                box=_box(seen.box[k]),
+                point=(float(seen.point[k, 0]), float(seen.point[k, 1])),
+                pixels=int(seen.pixels[k]),
+                share=share,
+                pan_deg=float(pan[k]),
+                tilt_deg=float(tilt[k]),
+                distance_m=extent.distance_m,
+                cut=inside < 1.0,
+                occluded=share < UNOCCLUDED_SHARE * inside,
+            )
+        )
+    return tuple(sorted(found, key=lambda s: (s.distance_m, s.instance.number)))
+
+
+def _share_inside(extent: Extent, projection: Projection) -> float:
+    """How much of the area of an outline lies inside the frame, 1 when nothing is cut off."""
+    hull = np.array(extent.hull, dtype=np.float64).reshape(-1, 2)
+    points = projection.points(direction(hull[:, 0], hull[:, 1]))
+    if isinstance(projection, Equirectangular) and projection.pan_span_deg >= 360.0:
+        # The picture closes on itself: nothing is cut at its left and right edge.
+        points[:, 0] = 0.5
+        return float(np.mean((points[:, 1] >= 0) & (points[:, 1] <= 1))) if len(points) else 1.0
+    points = points[~np.isnan(points).any(axis=-1)]
+    if np.all((points >= 0) & (points <= 1)):
+        return 1.0
+    outline = points.astype(np.float32)
+    frame = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=np.float32)
+    whole = abs(float(cv2.contourArea(outline)))
+    shared, _ = cv2.intersectConvexConvex(cv2.convexHull(outline), frame)
+    return min(1.0 - 1e-9, float(shared) / whole) if whole > 0 else 1.0 - 1e-9
+
+
+def _texts(scene: Scene, viewpoint: Viewpoint, projection: Projection, numbers: NDArray[np.uint16]) -> tuple[TextSighting, ...]:
+    families = scene.families
+    seen = (_text(text, families[text.parent], viewpoint, projection, numbers) for text in scene.file.texts)
+    return tuple(s for s in seen if s is not None)
+
+
+def _text(
+    text: SceneText, family: frozenset[int], viewpoint: Viewpoint, projection: Projection, numbers: NDArray[np.uint16]
+) -> TextSighting | None:
+    """None when no part of the text is in the frame or only its back is."""
+    centre, right, up = (np.array(v, dtype=np.float64) for v in (text.centre_m, text.right, text.up))
+    towards = viewpoint.position_m - centre
+    angle_deg = float(angle_between_deg(np.cross(right, up), towards))
+    if angle_deg >= 90.0:
+        return None
+    # One look-up per cell of a grid over the letters; the corners for the box.
+    across, along = np.meshgrid((np.arange(24) + 0.5) / 24 - 0.5, (np.arange(8) + 0.5) / 8 - 0.5)
+    cells = centre + across[..., None] * text.width_m * right + along[..., None] * text.height_m * up
+    points = projection.points(viewpoint.offset(cells.reshape(-1, 3)))
+    inside = np.all((points >= 0) & (points < 1), axis=-1)
+    if not inside.any():
+        return None
+    height, width = numbers.shape
+    pixels = (points[inside] * (width, height)).astype(int)
+    own = np.isin(numbers[pixels[:, 1], pixels[:, 0]], list(family))
+    cap = projection.points(viewpoint.offset(centre + np.array([[-0.5], [0.5]]) * text.cap_height_m * up))
+    cap_height_px = float(np.linalg.norm((cap[1] - cap[0]) * (width, height)))
+    low, high = points[inside].min(axis=0), points[inside].max(axis=0)
+    return TextSighting(
+        text=text,
+        box=_box(np.concatenate([low, high])),
+        cap_height_px=0.0 if np.isnan(cap_height_px) else cap_height_px,
+        angle_deg=angle_deg,
+        unhidden_share=float(own.sum() / len(points)),
+    )
+
+
+def _box(box: NDArray[np.float64]) -> BoxTuple:
+    x_min, y_min, x_max, y_max = (float(v) for v in np.clip(box, 0.0, 1.0))
+    return x_min, y_min, x_max, y_max

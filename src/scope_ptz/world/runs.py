@@ -1,0 +1,127 @@
+"""Instance numbers of a picture as runs: the pixels of a row that carry one number. All measures of instances come from them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scope_ptz.geometry import Equirectangular, Perspective, Projection
+
+Ints = NDArray[np.int64]
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Measures:
+    """One entry for each number that shows, in rising order.
+
+    ``box`` (n, 4) and ``point`` (n, 2) are normalised, ``middle`` (n, 2) is the centroid, which may lie on something else;
+    ``pixels`` and ``solid_angle_sr`` are (n,).
+    """
+
+    numbers: Ints
+    pixels: Ints
+    solid_angle_sr: Floats
+    box: Floats
+    middle: Floats
+    point: Floats
+
+
+def measure(numbers: NDArray[np.uint16], projection: Projection) -> Measures:
+    """Measure every instance in an (H, W) picture of instance numbers."""
+    runs = _Runs(numbers)
+    height, width = numbers.shape
+    whole_turn = isinstance(projection, Equirectangular) and projection.pan_span_deg >= 360.0 - 1e-9
+    main = runs.mainland(width) if whole_turn else np.ones(len(runs.number), dtype=bool)
+    length = runs.stop - runs.start
+    solid = _solid_angles(projection, runs.row, runs.start, runs.stop)
+
+    def total(values: Floats | Ints) -> Floats:
+        return np.asarray(np.add.reduceat(values * 1.0, runs.first)) if len(runs.first) else np.zeros(0)
+
+    def lowest(values: Ints, otherwise: int) -> Floats:
+        chosen = np.where(main, values, otherwise)
+        return np.asarray(np.minimum.reduceat(chosen, runs.first) * 1.0) if len(runs.first) else np.zeros(0)
+
+    weight = length * main.astype(np.int64)
+    mainland = np.maximum(total(weight), 1.0)
+    middle_x = total((runs.start + runs.stop) / 2 * weight) / mainland
+    middle_y = total((runs.row + 0.5) * weight) / mainland
+    x_min, y_min = lowest(runs.start, width), lowest(runs.row, height)
+    x_max, y_max = -lowest(-runs.stop, 0), -lowest(-runs.row - 1, 0)
+    point_x, point_y = runs.nearest(middle_x, middle_y, main)
+    size = np.array([width, height], dtype=np.float64)
+    return Measures(
+        numbers=runs.number[runs.first],
+        pixels=total(length).astype(np.int64),
+        solid_angle_sr=total(solid),
+        box=np.stack([x_min, y_min, x_max, y_max], axis=-1) / np.tile(size, 2),
+        middle=np.stack([middle_x, middle_y], axis=-1) / size,
+        point=np.stack([point_x, point_y], axis=-1) / size,
+    )
+
+
+class _Runs:
+    """``number``, ``row``, ``start``, ``stop`` of every run that is not 0, by number; ``first`` indexes each number's first."""
+
+    def __init__(self, numbers: NDArray[np.uint16]) -> None:
+        height, width = numbers.shape
+        begins = np.ones((height, width), dtype=bool)
+        np.not_equal(numbers[:, 1:], numbers[:, :-1], out=begins[:, 1:])
+        at = np.flatnonzero(begins)
+        stops = np.append(at[1:], height * width)
+        number = numbers.reshape(-1)[at].astype(np.int64)
+        keep = number > 0
+        order = np.argsort(number[keep], kind="stable")
+        at, stops = at[keep][order], stops[keep][order]
+        self.number: Ints = number[keep][order]
+        self.row: Ints = at // width
+        self.start: Ints = at - self.row * width
+        self.stop: Ints = self.start + stops - at
+        self.first: Ints = np.flatnonzero(np.diff(self.number, prepend=-1))
+        self.group: Ints = np.cumsum(np.diff(self.number, prepend=-1) != 0) - 1
+
+    def mainland(self, width: int) -> NDArray[np.bool_]:
+        """In a picture that closes on itself, which runs belong to the larger half of a thing that lies across the seam."""
+        main = np.ones(len(self.number), dtype=bool)
+        edges = np.intersect1d(self.number[self.start == 0], self.number[self.stop == width])
+        for number in edges:
+            own = self.number == number
+            left = own & (self.start + self.stop < width)
+            length = self.stop - self.start
+            smaller = left if length[left].sum() * 2 < length[own].sum() else own & ~left
+            main[smaller] = False
+        return main
+
+    def nearest(self, x: Floats, y: Floats, main: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+        """For each number the middle of its own pixel nearest to a point (in pixels)."""
+        if not len(self.first):
+            return np.zeros(0), np.zeros(0)
+        near_x = np.clip(x[self.group], self.start + 0.5, self.stop - 0.5)
+        away = np.where(main, np.hypot(near_x - x[self.group], self.row + 0.5 - y[self.group]), np.inf)
+        best = np.lexsort((away, self.number))[self.first]
+        return np.asarray(near_x[best]), np.asarray(self.row[best] + 0.5)
+
+
+def _solid_angles(projection: Projection, row: Ints, start: Ints, stop: Ints) -> Floats:
+    """Steradians of runs of pixels, exact."""
+    if isinstance(projection, Perspective):
+        f = projection.focal_px
+        y = row + 0.5 - projection.height / 2
+
+        def integral(column: Ints) -> Floats:
+            # of f / (f^2 + x^2 + y^2)^(3/2), the solid angle of a unit of image plane, over x
+            x = column - projection.width / 2
+            return np.asarray(f * x / ((f**2 + y**2) * np.sqrt(f**2 + y**2 + x**2)))
+
+        return integral(stop) - integral(start)
+    if isinstance(projection, Equirectangular):
+        slope = (projection.bottom_tilt_deg - projection.top_tilt_deg) / projection.height
+        top = np.radians(projection.top_tilt_deg + slope * row)
+        bottom = np.radians(projection.top_tilt_deg + slope * (row + 1))
+        turn = math.radians(projection.pan_span_deg) / projection.width * (stop - start)
+        return np.asarray(np.abs(np.sin(top) - np.sin(bottom)) * turn)
+    raise TypeError(f"no solid angles for {type(projection).__name__}")
