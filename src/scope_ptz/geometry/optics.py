@@ -86,6 +86,15 @@ class Limits:
             cut.append("zoom")
         return Pose(pan, tilt, zoom), tuple(cut)
 
+    def at_stop(self, pose: Pose, axis: Axis) -> bool:
+        """Whether a pose is at an end of one of its axes."""
+        value, low, high = {
+            "pan": (pose.pan_deg, self.min_pan_deg, self.max_pan_deg),
+            "tilt": (pose.tilt_deg, self.min_tilt_deg, self.max_tilt_deg),
+            "zoom": (pose.zoom, self.min_zoom, self.max_zoom),
+        }[axis]
+        return not (axis == "pan" and self.pan_endless) and (value <= low + 1e-6 or value >= high - 1e-6)
+
     def aim_pan_deg(self, pan_deg: float) -> float:
         """The turn-equivalent of a direction that lies within the stops if any does (a direction, not a relative move)."""
         wrapped = wrap_pan_deg(pan_deg)

@@ -81,9 +81,9 @@ async def zoom_to_object(context: ToolContext, arguments: ZoomToObject) -> ZoomR
 def _plan(info: CameraInfo, pose: Pose, box: Box, target: Floats, looks: int) -> Aim:
     """The next move: to the final framing only when the box can be trusted to be the whole target, else to a better look."""
     if looks < MAX_LOOKS and is_cut(box):
-        # After a second cut look, or when it spans the frame, only the widest view is sure to hold all of it.
-        spans_frame = max(box.width, box.height) > 0.98
-        zoom = info.limits.min_zoom if looks > 1 or spans_frame else max(pose.zoom * CUT_ZOOM, info.limits.min_zoom)
+        # When much of it shows already, or a second look cut it again, only the widest view is sure to hold all of it.
+        large = max(box.width, box.height) > 0.25
+        zoom = info.limits.min_zoom if looks > 1 or large else max(pose.zoom * CUT_ZOOM, info.limits.min_zoom)
         return aim_at_zoom(info, target, zoom)
     small = looks < MAX_LOOKS and max(box.width, box.height) < SMALL_SHARE
     return aim(info, pose, target, CLOSER_FILL if small else TARGET_FILL)
@@ -128,7 +128,7 @@ async def _report(context: ToolContext, description: str, first: _Look, target: 
     frame = await context.camera.frame()
     info = context.camera.info
     fill, offset = measure(info, frame.pose, target)
-    limited = aim(info, frame.pose, target).limited_by
+    limited = tuple(axis for axis in aim(info, frame.pose, target).limited_by if info.limits.at_stop(frame.pose, axis))
     several = f" ({first.matches} match; this is the first that {first.source} names)" if first.matches > 1 else ""
     bound = f" The {' and '.join(limited)} limit keeps it from being framed better." if limited else ""
     points = frame.projection.points(target)
