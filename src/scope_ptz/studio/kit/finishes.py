@@ -131,6 +131,11 @@ def glass() -> bpy.types.Material:
     return _shared("glazing", lambda s: s.surface(base_color=(0.018, 0.021, 0.023), roughness=0.04))
 
 
+def clear_glass() -> bpy.types.Material:
+    """Clear panes: faintly green, mostly see-through."""
+    return _shared("clear pane", lambda s: s.surface(base_color=(0.55, 0.62, 0.60), roughness=0.04, alpha=0.22))
+
+
 def rubber() -> bpy.types.Material:
     return _shared("rubber", lambda s: s.surface(base_color=soiled(s, (0.018, 0.018, 0.018), 0.5, 0.2), roughness=0.75))
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from mathutils import Matrix, Vector
 
-from scope_ptz.studio.kit.finishes import glass, paint, sheet, steel, timber
+from scope_ptz.studio.kit.finishes import paint, sheet, steel, timber
 from scope_ptz.studio.kit.poses import Joints
 from scope_ptz.studio.kit.solid import Solid
 

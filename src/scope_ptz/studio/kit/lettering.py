@@ -10,8 +10,8 @@ import bpy
 from scope_ptz.studio.kit.mesh import Point
 
 FONT_FILE = "Inter.woff2"
-BOLD_OFFSET = 0.021
-"""Outline growth that turns the regular weight into a road-sign bold, in em."""
+EMBOLDEN = ((-0.045, -0.03), (-0.045, 0.03), (0.045, -0.03), (0.045, 0.03))
+"""Shifts, in cap heights, of the copies that together make the bold: outline offsets break this font's counters."""
 
 
 def sans() -> bpy.types.VectorFont:
@@ -23,29 +23,49 @@ def sans() -> bpy.types.VectorFont:
 
 
 def letters(
-    body: str, cap_height_m: float, *, bold: bool = True, spacing: float = 1.04
+    body: str, cap_height_m: float, *, bold: bool = True, spacing: float | None = None
 ) -> tuple[list[Point], list[tuple[int, ...]]]:
-    """Flat letters in the xy plane, baseline of the (single) line on y = 0, starting near x = 0. Returns points and faces."""
-    scale = cap_height_m / _cap_height_em(bold)
-    points, faces = _outline(body, bold, spacing)
-    low = BOLD_OFFSET if bold else 0.0
-    return [(x * scale, (y + low) * scale, 0.0) for x, y in points], faces
+    """Flat letters in the xy plane, baseline of the (single) line on y = 0, starting near x = 0. Returns points and faces.
+
+    The copies of a bold lie a twentieth of a millimetre apart in z.
+    """
+    outline, polygons = _outline(body, _spacing(bold, spacing))
+    points: list[Point] = []
+    faces: list[tuple[int, ...]] = []
+    grow = max(y for _, y in EMBOLDEN) if bold else 0.0
+    for k, (dx, dy) in enumerate(EMBOLDEN if bold else ((0.0, 0.0),)):
+        base = len(points)
+        scale = cap_height_m / (1 + 2 * grow)
+        points += [((x + dx) * scale, (y + dy + grow) * scale, 0.00005 * k) for x, y in outline]
+        faces += [tuple(base + i for i in face) for face in polygons]
+    return points, faces
+
+
+def extent(body: str, cap_height_m: float, *, bold: bool = True, spacing: float | None = None) -> float:
+    """Width of a line in metres."""
+    xs = [x for x, _, _ in letters(body, cap_height_m, bold=bold, spacing=spacing)[0]]
+    return max(xs) - min(xs) if xs else 0.0
+
+
+def _spacing(bold: bool, spacing: float | None) -> float:
+    return spacing if spacing is not None else (1.12 if bold else 1.05)
 
 
 @cache
-def _cap_height_em(bold: bool) -> float:
-    points, _ = _outline("H", bold, 1.0)
-    return max(y for _, y in points) - min(y for _, y in points)
+def _outline(body: str, spacing: float) -> tuple[list[tuple[float, float]], list[tuple[int, ...]]]:
+    """Letters of cap height 1."""
+    points, faces = _filled(body, spacing)
+    cap = max(y for _, y in _filled("H", 1.0)[0])
+    return [(x / cap, y / cap) for x, y in points], faces
 
 
 @cache
-def _outline(body: str, bold: bool, spacing: float) -> tuple[list[tuple[float, float]], list[tuple[int, ...]]]:
+def _filled(body: str, spacing: float) -> tuple[list[tuple[float, float]], list[tuple[int, ...]]]:
     curve = bpy.data.curves.new("letters", "FONT")
     curve.body = body
     curve.font = sans()
-    curve.offset = BOLD_OFFSET if bold else 0.0
     curve.space_character = spacing
-    curve.resolution_u = 4
+    curve.resolution_u = 3
     obj = bpy.data.objects.new("letters", curve)
     mesh = bpy.data.meshes.new_from_object(obj)
     points = [(v.co.x, v.co.y) for v in mesh.vertices]

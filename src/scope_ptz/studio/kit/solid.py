@@ -230,7 +230,7 @@ class Solid:
         facing: str = "+Y",
         align: str = "CENTER",
         bold: bool = True,
-        spacing: float = 1.04,
+        spacing: float | None = None,
         mark: bool = True,
     ) -> tuple[float, float]:
         """One line of lettering towards ``facing``; its mark is exact. ``centre`` is where the mid-height of the capitals lies, at the
@@ -240,12 +240,12 @@ class Solid:
         low, high = min(xs), max(xs)
         shift = {"CENTER": -(low + high) / 2, "LEFT": -low, "RIGHT": -high}[align]
         right, up = (Vector(v) for v in READER[facing])
-        origin = Vector(centre)
+        origin, out = Vector(centre), right.cross(up)
 
-        def lay(x: float, y: float) -> Vector:
-            return origin + right * (x + shift) + up * (y - cap_height_m / 2)
+        def lay(x: float, y: float, z: float = 0.0) -> Vector:
+            return origin + right * (x + shift) + up * (y - cap_height_m / 2) + out * z
 
-        self.add([tuple(lay(x, y)) for x, y, _ in flat], faces, material)
+        self.add([tuple(lay(*p)) for p in flat], faces, material)
         width, height = high - low, max(ys) - min(ys)
         if mark:
             turn = self.frame.to_3x3()

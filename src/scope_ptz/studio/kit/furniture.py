@@ -1,0 +1,30 @@
+"""Street and roadside furniture; see the modules that it gathers."""
+
+from scope_ptz.studio.kit.furniture_road import (
+    bollard,
+    cabinet,
+    cctv_pole,
+    chevron_board,
+    drain,
+    emergency_phone,
+    guardrail,
+    lamp_post,
+    noise_barrier,
+)
+from scope_ptz.studio.kit.furniture_street import bench, bicycle, bin, bus_shelter
+
+__all__ = [
+    "bench",
+    "bicycle",
+    "bin",
+    "bollard",
+    "bus_shelter",
+    "cabinet",
+    "cctv_pole",
+    "chevron_board",
+    "drain",
+    "emergency_phone",
+    "guardrail",
+    "lamp_post",
+    "noise_barrier",
+]
