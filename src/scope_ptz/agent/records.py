@@ -50,10 +50,14 @@ class Budgets(_Record):
 
 
 class Labels(_Record):
-    """What a trace should say about a run beyond what the loop can see."""
+    """What a trace should say about a run beyond what the loop can see.
+
+    ``home_viewpoint``: the viewpoint that the camera was put at, when that is not where the scene's home is.
+    """
 
     perception_note: str = ""
     seed: int | None = None
+    home_viewpoint: str | None = None
 
 
 class Started(_Record):

@@ -1,0 +1,134 @@
+"""Typography and marks of the filmstrip. Everything is drawn at twice its size and scaled down, which smooths edges and text."""
+
+from __future__ import annotations
+
+import unicodedata
+from functools import lru_cache
+
+from PIL import Image, ImageDraw, ImageFont
+
+SCALE = 2
+"""Drawing pixels per picture pixel."""
+
+GROUND = "#0E131A"
+SURFACE = "#18202B"
+EDGE = "#2A3645"
+INK = "#F2F5F9"
+FAINT = "#93A1B3"
+CYAN = "#4CC3F7"
+GREEN = "#57D68D"
+AMBER = "#FFC94A"
+RED = "#FF7B6E"
+
+_STAND_INS = str.maketrans({"×": "x", "–": "-", "—": "-", "−": "-", "→": ">", "‑": "-"})
+_BOLD = 0.28  # Width of the stroke that thickens the one built-in weight, per picture pixel of line width at size 16.
+
+
+def drawable(text: str) -> str:
+    """The text on one line, in characters that the built-in font has: accents are dropped, unknown ones become "?"."""
+    return "".join(_drawable(c) for c in " ".join(text.translate(_STAND_INS).split()))
+
+
+def _drawable(character: str) -> str:
+    if (character.isascii() and character.isprintable()) or character in "°·…“”‘’›±":
+        return character
+    base = unicodedata.normalize("NFKD", character)[0]
+    return base if base.isascii() and base.isprintable() else "?"
+
+
+@lru_cache(maxsize=32)
+def _font(size: float) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
+    """The font that Pillow carries, ``size`` in picture pixels: the same on every machine."""
+    return ImageFont.load_default(size * SCALE)
+
+
+def width_of(text: str, size: float) -> float:
+    """Width of a line in picture pixels."""
+    return _font(size).getlength(text) / SCALE
+
+
+def cut(text: str, size: float, width: float) -> str:
+    """The text, ended by an ellipsis when it is wider than ``width``."""
+    if width_of(text, size) <= width:
+        return text
+    while text and width_of(text + "…", size) > width:
+        text = text[:-1]
+    return text.rstrip(" ,.;:") + "…"
+
+
+def wrap(text: str, size: float, width: float, max_lines: int) -> list[str]:
+    """Lines no wider than ``width``; the last one is cut when there are more."""
+    lines, words = [""], drawable(text).split()
+    for word in words:
+        longer = f"{lines[-1]} {word}".strip()
+        if width_of(longer, size) <= width or not lines[-1]:
+            lines[-1] = longer
+        else:
+            lines.append(word)
+    if len(lines) > max_lines:
+        lines = [*lines[: max_lines - 1], " ".join(lines[max_lines - 1 :])]
+    return [cut(line, size, width) for line in lines]
+
+
+class Canvas:
+    """A picture under way. All lengths are in picture pixels."""
+
+    def __init__(self, width: float, height: float) -> None:
+        self.width, self.height = width, height
+        self._image = Image.new("RGB", (round(width * SCALE), round(height * SCALE)), GROUND)
+        self._draw = ImageDraw.Draw(self._image, "RGBA")
+
+    def panel(
+        self, x: float, y: float, width: float, height: float, fill: str, *, radius: float = 10, edge: str | None = None
+    ) -> None:
+        """A rounded rectangle; ``fill`` may carry alpha (#RRGGBBAA)."""
+        box = tuple(round(v * SCALE) for v in (x, y, x + width, y + height))
+        self._draw.rounded_rectangle(box, round(radius * SCALE), fill=fill, outline=edge, width=SCALE)
+
+    def text(self, x: float, y: float, text: str, size: float, fill: str = INK, *, bold: bool = False, anchor: str = "ls") -> None:
+        """A line of text; ``anchor`` as in Pillow ("ls": left end of the baseline)."""
+        stroke = _BOLD * SCALE * size / 16 if bold else 0
+        self._draw.text(
+            (x * SCALE, y * SCALE),
+            drawable(text),
+            font=_font(size),
+            fill=fill,
+            anchor=anchor,
+            stroke_width=stroke,
+            stroke_fill=fill,
+        )
+
+    def picture(self, image: Image.Image, x: float, y: float, width: float, height: float, *, radius: float = 10) -> None:
+        """An image, scaled to fit, with rounded corners."""
+        size = (round(width * SCALE), round(height * SCALE))
+        mask = Image.new("L", size, 0)
+        ImageDraw.Draw(mask).rounded_rectangle((0, 0, size[0] - 1, size[1] - 1), round(radius * SCALE), fill=255)
+        self._image.paste(image.resize(size, Image.Resampling.LANCZOS), (round(x * SCALE), round(y * SCALE)), mask)
+
+    def frame(self, x: float, y: float, width: float, height: float, colour: str) -> None:
+        """A thin box around something, legible on light and dark ground."""
+        for grow, thickness, fill in ((1.2, 4.2, "#0E131AB0"), (0.0, 2.0, colour)):
+            edges = (x - grow, y - grow, x + width + grow, y + height + grow)
+            box = tuple(round(v * SCALE) for v in edges)
+            self._draw.rounded_rectangle(box, round(3 * SCALE), outline=fill, width=round(thickness * SCALE))
+
+    def tag(self, x: float, y: float, text: str, size: float, *, fill: str, ink: str, pad: float = 7, anchor: str = "l") -> float:
+        """A pill with text whose middle line is at ``y``; ``anchor`` says which end is at ``x``. Gives its width."""
+        text = drawable(text)
+        width, height = max(width_of(text, size) + 2 * pad, size * 1.55), size * 1.55
+        left = {"l": x, "r": x - width, "m": x - width / 2}[anchor]
+        self.panel(left, y - height / 2, width, height, fill, radius=height / 2)
+        self.text(left + width / 2, y, text, size, ink, bold=True, anchor="mm")
+        return width
+
+    def arrow(self, x: float, y: float, colour: str) -> float:
+        """A small arrow pointing right, its shaft at ``y``. Gives its width."""
+        width = 16.0
+        points = [(x + width - 6, y - 4.5), (x + width, y), (x + width - 6, y + 4.5)]
+        self._draw.line([(x * SCALE, y * SCALE), ((x + width - 1) * SCALE, y * SCALE)], fill=colour, width=2 * SCALE)
+        self._draw.line([(px * SCALE, py * SCALE) for px, py in points], fill=colour, width=2 * SCALE, joint="curve")
+        return width
+
+    def finish(self) -> Image.Image:
+        """The picture at its own size."""
+        return self._image.resize((round(self.width), round(self.height)), Image.Resampling.LANCZOS)

@@ -1,0 +1,232 @@
+"""``filmstrip.png``: a whole run in one picture, in the manner of the paper's Figure 1."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from PIL import Image
+
+from scope_ptz.agent.drawing import (
+    AMBER,
+    CYAN,
+    EDGE,
+    FAINT,
+    GREEN,
+    GROUND,
+    INK,
+    RED,
+    SURFACE,
+    Canvas,
+    cut,
+    drawable,
+    width_of,
+    wrap,
+)
+from scope_ptz.agent.panels import Panel, panels_of
+from scope_ptz.agent.trace import Trace
+from scope_ptz.errors import OutputError, TraceError
+
+WIDTH = 1600
+MARGIN = 32
+GAP = 20
+CAPTION = 66
+MAX_PANELS = 12
+NUMBERED_UP_TO = 40
+"""Boxes are numbered up to this many; more would be clutter."""
+
+_HEADLINES = {
+    "answered": ("ANSWER", GREEN),
+    "clarification": ("QUESTION BACK", AMBER),
+    "refused": ("REFUSED", AMBER),
+    "step_limit": ("STEP LIMIT", RED),
+    "budget": ("BUDGET SPENT", RED),
+    "planner_error": ("PLANNER FAILED", RED),
+    "camera_error": ("CAMERA FAILED", RED),
+    "cancelled": ("CANCELLED", RED),
+}
+
+
+def write_filmstrip(trace: Trace) -> Path | None:
+    """Draw the filmstrip into the run folder. None when the run kept no picture at all."""
+    image = draw_filmstrip(trace)
+    if image is None:
+        return None
+    path = trace.folder / "filmstrip.png"
+    try:
+        image.save(path, optimize=False, compress_level=6)
+    except OSError as error:
+        raise OutputError(f"{path} cannot be written: {error}.") from error
+    return path
+
+
+def draw_filmstrip(trace: Trace) -> Image.Image | None:
+    """The picture, ``WIDTH`` pixels wide."""
+    panels = [p for p in panels_of(trace) if p.file is not None]
+    if not panels:
+        return None
+    tiles = [_Tile(panel, _open(trace.folder, panel)) for panel in panels]
+    tiles, left_out = _elide(tiles)
+    rows = _rows(tiles)
+    heights = [_row_height(row) for row in rows]
+    head = _Banner("INSTRUCTION", CYAN, trace.started.instruction)
+    label, colour = _HEADLINES[trace.ended.outcome] if trace.ended else ("CUT OFF", RED)
+    tail = _Banner(label, colour, trace.ended.text if trace.ended else "The program ended before the run was over.")
+    total = MARGIN + head.height + GAP + sum(heights) + GAP * len(rows) + tail.height + 22 + MARGIN
+    canvas = Canvas(WIDTH, total)
+    head.draw(canvas, MARGIN)
+    y = MARGIN + head.height + GAP
+    for row, height in zip(rows, heights, strict=True):
+        _draw_row(canvas, row, y)
+        y += height + GAP
+    tail.draw(canvas, y)
+    _draw_footer(canvas, trace, left_out, y + tail.height + 26)
+    return canvas.finish()
+
+
+@dataclass(frozen=True, slots=True)
+class _Tile:
+    panel: Panel
+    image: Image.Image
+
+    @property
+    def aspect(self) -> float:
+        return self.image.width / self.image.height
+
+
+class _Banner:
+    """A labelled line or three of text across the whole picture."""
+
+    def __init__(self, label: str, colour: str, text: str) -> None:
+        self._label, self._colour = label, colour
+        width = WIDTH - 2 * MARGIN - 56
+        self._size = 30 if width_of(drawable(text), 30) <= 2 * width else 24
+        self._lines = wrap(text, self._size, width, 3)
+        self.height = 52 + len(self._lines) * self._size * 1.3
+
+    def draw(self, canvas: Canvas, y: float) -> None:
+        canvas.panel(MARGIN, y, WIDTH - 2 * MARGIN, self.height, SURFACE, radius=12, edge=EDGE)
+        canvas.panel(MARGIN + 14, y + 16, 5, self.height - 32, self._colour, radius=2.5)
+        canvas.text(MARGIN + 34, y + 32, self._label, 15, self._colour, bold=True)
+        for number, line in enumerate(self._lines):
+            canvas.text(MARGIN + 34, y + 40 + (number + 0.85) * self._size * 1.3, line, self._size, INK, bold=True)
+
+
+def _open(folder: Path, panel: Panel) -> Image.Image:
+    path = (folder / (panel.file or "")).resolve()
+    if not path.is_relative_to(folder.resolve()):
+        raise TraceError(f"The trace in {folder} names a picture outside its own folder: {panel.file}.")
+    try:
+        with Image.open(path) as image:
+            return image.convert("RGB")
+    except OSError as error:
+        raise TraceError(f"The picture {path} of the run is missing or damaged.") from error
+
+
+def _elide(tiles: list[_Tile]) -> tuple[list[_Tile], int]:
+    """At most ``MAX_PANELS``: the beginning and the end of a longer run."""
+    if len(tiles) <= MAX_PANELS:
+        return tiles, 0
+    first = MAX_PANELS // 2 - 1
+    last = MAX_PANELS - first
+    return [*tiles[:first], *tiles[-last:]], len(tiles) - MAX_PANELS
+
+
+def _rows(tiles: list[_Tile]) -> list[list[_Tile]]:
+    """Panoramas get a row each; what stands between them is spread evenly over rows, fuller ones first."""
+    rows: list[list[_Tile]] = []
+    group: list[_Tile] = []
+    for tile in [*tiles, None]:
+        if tile is not None and not tile.panel.whole:
+            group.append(tile)
+            continue
+        rows += _spread(group)
+        group = []
+        if tile is not None:
+            rows.append([tile])
+    return rows
+
+
+def _spread(group: list[_Tile]) -> list[list[_Tile]]:
+    if not group:
+        return []
+    columns = 2 if len(group) in (2, 4) else 4 if len(group) in (7, 8) or len(group) > 9 else 3
+    count = -(-len(group) // columns)
+    rows, taken = [], 0
+    for number in range(count):
+        size = -(-(len(group) - taken) // (count - number))
+        rows.append(group[taken : taken + size])
+        taken += size
+    return rows
+
+
+def _picture_height(row: list[_Tile]) -> float:
+    """Height at which the pictures of a row fill its width side by side; a lone picture is kept from being huge."""
+    return min((WIDTH - 2 * MARGIN - GAP * (len(row) - 1)) / sum(tile.aspect for tile in row), 640.0)
+
+
+def _row_height(row: list[_Tile]) -> float:
+    return _picture_height(row) + CAPTION
+
+
+def _draw_row(canvas: Canvas, row: list[_Tile], y: float) -> None:
+    height = _picture_height(row)
+    used = sum(tile.aspect for tile in row) * height + GAP * (len(row) - 1)
+    x = (WIDTH - used) / 2
+    for tile in row:
+        width = tile.aspect * height
+        _draw_tile(canvas, tile, x, y, width, height)
+        x += width + GAP
+
+
+def _draw_tile(canvas: Canvas, tile: _Tile, x: float, y: float, width: float, height: float) -> None:
+    panel = tile.panel
+    canvas.panel(x, y, width, height + CAPTION, SURFACE, radius=12, edge=EDGE)
+    canvas.picture(tile.image, x + 1, y + 1, width - 2, height - 1, radius=11)
+    _draw_boxes(canvas, panel, x, y, width, height)
+    pose = panel.pose.as_dict()
+    where = f"pan {pose['pan_deg']:+.1f}°   tilt {pose['tilt_deg']:+.1f}°   {pose['zoom']:.1f}x"
+    readout = "full scene" if panel.whole else where
+    canvas.tag(x + 12, y + height - 22, readout, 14, fill="#0E131AC8", ink=INK, pad=10)
+    if panel.badge:
+        canvas.tag(x + width - 12, y + 28, panel.badge, 20, fill=AMBER, ink=GROUND, pad=13, anchor="r")
+    _draw_caption(canvas, panel, x + 16, y + height + CAPTION / 2, width - 32)
+
+
+def _draw_boxes(canvas: Canvas, panel: Panel, x: float, y: float, width: float, height: float) -> None:
+    for box in panel.boxes:
+        canvas.frame(x + box.x_min * width, y + box.y_min * height, box.width * width, box.height * height, AMBER)
+    if not panel.badge or len(panel.boxes) > NUMBERED_UP_TO:
+        return
+    # Numbers run from left to right, as people count, whatever order perception found the things in.
+    for number, box in enumerate(sorted(panel.boxes, key=lambda b: b.centre[0]), 1):
+        top = y + box.y_min * height - 11
+        at_y = top if top > y + 10 else y + box.y_max * height + 11
+        canvas.tag(x + box.centre[0] * width, at_y, str(number), 11, fill=AMBER, ink=GROUND, pad=4, anchor="m")
+
+
+def _draw_caption(canvas: Canvas, panel: Panel, x: float, y: float, width: float) -> None:
+    """``2  pan right 15° -> 4 cones``; the finding goes to a second line when both do not fit on one."""
+    chip = canvas.tag(x, y, str(panel.number), 17, fill=CYAN, ink=GROUND, pad=7) + 12 if panel.number else 0.0
+    left, room, colour = x + chip, width - chip, RED if panel.failed else AMBER
+    action, finding = drawable(panel.action), drawable(panel.finding)
+    if width_of(action, 20) + 36 + width_of(finding, 20) <= room or not finding:
+        shown = cut(action, 20, room)
+        canvas.text(left, y, shown, 20, INK, anchor="lm")
+        if finding:
+            at = left + width_of(shown, 20) + 12
+            at += canvas.arrow(at, y, FAINT) + 9
+            canvas.text(at, y, finding, 20, colour, bold=True, anchor="lm")
+        return
+    canvas.text(left, y - 13, cut(action, 18, room), 18, INK, anchor="lm")
+    at = left + canvas.arrow(left, y + 13, FAINT) + 8
+    canvas.text(at, y + 13, cut(finding, 18, room - 26), 18, colour, bold=True, anchor="lm")
+
+
+def _draw_footer(canvas: Canvas, trace: Trace, left_out: int, y: float) -> None:
+    started = trace.started
+    seen_by = f"planner: {started.planner}   ·   perception: {started.perception}"
+    canvas.text(MARGIN + 4, y, f"SCOPE   ·   {started.camera}   ·   {seen_by}", 15, FAINT)
+    if left_out:
+        note = f"{left_out} steps between {MAX_PANELS // 2 - 1} and {MAX_PANELS // 2 + left_out} are not shown"
+        canvas.text(WIDTH - MARGIN - 4, y, note, 15, FAINT, anchor="rs")

@@ -1,0 +1,152 @@
+"""What a filmstrip shows of a run: one captioned panel a step, where a move and the look after it are one step."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+from pydantic import ValidationError
+
+from scope_ptz.agent.records import Called
+from scope_ptz.agent.trace import Trace
+from scope_ptz.geometry import Pose
+from scope_ptz.perception.base import Box
+from scope_ptz.perception.language.words import counted, singular
+from scope_ptz.planner.base import ToolOutcome
+
+_MOVES = ("adjust_ptz", "go_to_preset", "go_home")
+
+
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """``action`` and ``finding`` are the caption's two halves; ``file`` a picture in the run folder; ``badge`` a count, in words.
+
+    ``whole``: the picture is a panorama of the full scene. ``failed``: the finding is an error.
+    """
+
+    number: int
+    action: str
+    pose: Pose
+    file: str | None
+    finding: str = ""
+    boxes: tuple[Box, ...] = ()
+    badge: str = ""
+    whole: bool = False
+    failed: bool = False
+
+
+def panels_of(trace: Trace) -> list[Panel]:
+    """Panels in order. A run without any step has one: what the camera saw at the start."""
+    panels: list[Panel] = []
+    mergeable = False
+    for call in trace.calls:
+        name = call.outcome.call.name
+        if name == "get_presets" and call.outcome.error is None:
+            continue
+        panel = _panel(call)
+        looks_here = name not in _MOVES and call.outcome.error is None and not panel.whole and name != "zoom_to_object"
+        if mergeable and looks_here:
+            panels[-1] = replace(panel, number=panels[-1].number, action=_joined(panels[-1].action, panel))
+        else:
+            panels.append(replace(panel, number=len(panels) + 1))
+        mergeable = name in _MOVES and call.outcome.error is None
+    if not panels:
+        panels.append(Panel(0, "start", trace.started.pose.pose(), trace.started.frame))
+    return _with_pictures(panels, trace.started.frame)
+
+
+def _joined(move: str, look: Panel) -> str:
+    return f"{move}, {look.action}" if not look.finding else move
+
+
+def _with_pictures(panels: list[Panel], first: str | None) -> list[Panel]:
+    """A step that left no picture (an error, a move that changed nothing) shows the last view before it."""
+    shown, last = [], first
+    for panel in panels:
+        shown.append(panel if panel.file else replace(panel, file=last))
+        last = last if panel.whole or not panel.file else panel.file
+    return shown
+
+
+def _panel(call: Called) -> Panel:
+    outcome, pose = call.outcome, call.pose.pose()
+    if outcome.error is not None or outcome.result is None:
+        return Panel(0, _action(outcome), pose, None, finding=outcome.error or "", failed=True)
+    result = outcome.result
+    frames = result.get("frames") or [None]
+    return Panel(
+        number=0,
+        action=_action(outcome),
+        pose=pose,
+        file=call.frame or frames[-1] or result.get("file"),
+        finding=_finding(outcome.call.name, result),
+        boxes=_boxes(result),
+        badge=_count(result) if outcome.call.name == "count_objects" else "",
+        whole=result.get("view") == "full",
+    )
+
+
+def _boxes(result: dict[str, Any]) -> tuple[Box, ...]:
+    found = result.get("boxes") or ([result["box"]] if result.get("box") else [])
+    try:
+        return tuple(Box.model_validate(box) for box in found)
+    except ValidationError:
+        return ()
+
+
+def _count(result: dict[str, Any]) -> str:
+    words = str(result["description"]).split()
+    return counted(int(result["count"]), " ".join([*words[:-1], singular(words[-1])])) if words else str(result["count"])
+
+
+def _finding(name: str, result: dict[str, Any]) -> str:
+    match name:
+        case "count_objects":
+            return _count(result)
+        case "query_answer":
+            return str(result["answer"])
+        case "zoom_to_object":
+            return f"fills {result['fill']:.0%} of the frame" if result.get("found") else "nothing found"
+        case "track_object":
+            return f"in view {result['held_share']:.0%} of the time" if result.get("found") else "nothing found"
+    clamped = result.get("clamped") or ()
+    return f"stopped by the {' and '.join(clamped)} limit" if clamped else ""
+
+
+def _action(outcome: ToolOutcome) -> str:
+    """A call in a few words."""
+    name, arguments = outcome.call.name, outcome.call.arguments
+    full = "sweep, " if arguments.get("view") == "full" else ""
+    match name:
+        case "adjust_ptz":
+            return ", ".join(_turns(arguments)) or "stay"
+        case "go_to_preset":
+            return f"go to {arguments.get('name', '?')}"
+        case "go_home":
+            return "go home"
+        case "take_image":
+            return "take a picture"
+        case "count_objects":
+            return f"{full}count {arguments.get('description', '?')}"
+        case "query_answer":
+            return f"{full}{arguments.get('question', '?')}"
+        case "zoom_to_object":
+            return f"zoom to {arguments.get('description', '?')}"
+        case "track_object":
+            return f"track {arguments.get('description', '?')} for {arguments.get('duration_s', 10)} s"
+    return name.replace("_", " ")
+
+
+def _turns(arguments: dict[str, Any]) -> list[str]:
+    parts = []
+    for key, less, more in (("pan_deg", "pan left", "pan right"), ("tilt_deg", "tilt down", "tilt up")):
+        angle = arguments.get(key)
+        if isinstance(angle, int | float) and angle:
+            parts.append(f"{more if angle > 0 else less} {abs(angle):g}°")
+    if arguments.get("zoom_factor") is not None:
+        parts.append(f"zoom x{arguments['zoom_factor']}")
+    if arguments.get("zoom_percent") is not None:
+        parts.append(f"zoom {arguments['zoom_percent']}%")
+    if arguments.get("zoom_limit") is not None:
+        parts.append(f"zoom all the way {arguments['zoom_limit']}")
+    return parts

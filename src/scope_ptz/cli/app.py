@@ -1,0 +1,209 @@
+"""The commands and their options. Bodies import lazily so that ``scope --help`` is instant."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from scope_ptz.cli.endings import ending
+
+if TYPE_CHECKING:
+    from scope_ptz.cli.asking import Asking
+
+app = typer.Typer(
+    help="Talk to a pan-tilt-zoom camera in plain language.",
+    epilog="Exit codes: 0 done, 1 the run failed, 2 wrong input or a damaged pack, 130 cancelled.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+scene_app = typer.Typer(help="The scenes: list, show, view, build and bake them.", no_args_is_help=True)
+app.add_typer(scene_app, name="scene")
+
+SceneOption = Annotated[str, typer.Option("--scene", help="Scene to look at; see `scope scene list`.")]
+ViewpointOption = Annotated[str | None, typer.Option("--viewpoint", help="Where the camera stands.")]
+PresetOption = Annotated[str | None, typer.Option("--preset", help="Preset to start at.")]
+PlannerOption = Annotated[str, typer.Option("--planner", help="Who plans: grammar.")]
+PerceptionOption = Annotated[str, typer.Option("--perception", help="Who looks: ground-truth or noisy.")]
+RunsDirOption = Annotated[Path | None, typer.Option("--runs-dir", help="Where run folders are made (default: runs).")]
+MaxStepsOption = Annotated[int, typer.Option("--max-steps", min=1, help="Steps after which a run is given up.")]
+TimeBudgetOption = Annotated[float | None, typer.Option("--time-budget", min=0.001, help="Wall seconds a run may take.")]
+SeedOption = Annotated[int, typer.Option("--seed", help="Seed of everything random.")]
+RealtimeOption = Annotated[
+    bool | None,
+    typer.Option("--realtime/--fast", help="Move in real time, or at once (default: real time on a terminal)."),
+]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON and nothing else.")]
+Output = Annotated[Path, typer.Option("--out", "-o", help="File to write.")]
+SceneName = Annotated[str, typer.Argument(help="Name of the scene.")]
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from scope_ptz import __version__
+
+        sys.stdout.write(f"scope-ptz {__version__}\n")
+        raise typer.Exit
+
+
+@app.callback()
+def _root(
+    version: Annotated[bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")] = False,
+) -> None:
+    """Talk to a pan-tilt-zoom camera in plain language."""
+
+
+def _asking(
+    scene: str, viewpoint: str | None, preset: str | None, planner: str, perception: str, runs_dir: Path | None,
+    max_steps: int, time_budget: float | None, realtime: bool | None, seed: int, as_json: bool = False,
+) -> Asking:  # fmt: skip
+    from scope_ptz.agent.records import Budgets
+    from scope_ptz.cli.asking import Asking
+    from scope_ptz.cli.session import Start
+    from scope_ptz.settings import load_settings
+
+    return Asking(
+        start=Start(scene=scene, viewpoint=viewpoint, preset=preset),
+        planner=planner,
+        perception=perception,
+        runs_dir=runs_dir or load_settings().runs_dir,
+        budgets=Budgets(max_steps=max_steps, time_s=time_budget),
+        seed=seed,
+        realtime=realtime,
+        as_json=as_json,
+    )
+
+
+@app.command()
+def ask(
+    instruction: Annotated[str, typer.Argument(help="What the camera should do, in plain words.")],
+    scene: SceneOption = "highway-works",
+    viewpoint: ViewpointOption = None,
+    preset: PresetOption = None,
+    planner: PlannerOption = "grammar",
+    perception: PerceptionOption = "ground-truth",
+    runs_dir: RunsDirOption = None,
+    max_steps: MaxStepsOption = 60,
+    time_budget: TimeBudgetOption = None,
+    realtime: RealtimeOption = None,
+    seed: SeedOption = 0,
+    as_json: JsonOption = False,
+) -> None:
+    """Carry out one instruction and keep the run: trace, frames and a filmstrip."""
+    with ending(as_json=as_json):
+        from scope_ptz.cli.asking import ask as run
+
+        options = _asking(scene, viewpoint, preset, planner, perception, runs_dir, max_steps, time_budget, realtime, seed, as_json)
+        sys.exit(run(instruction, options))
+
+
+@app.command()
+def chat(
+    scene: SceneOption = "highway-works",
+    viewpoint: ViewpointOption = None,
+    preset: PresetOption = None,
+    planner: PlannerOption = "grammar",
+    perception: PerceptionOption = "ground-truth",
+    runs_dir: RunsDirOption = None,
+    max_steps: MaxStepsOption = 60,
+    time_budget: TimeBudgetOption = None,
+    realtime: RealtimeOption = None,
+    seed: SeedOption = 0,
+) -> None:
+    """Several instructions in one conversation. /pose, /save and /quit do what they say."""
+    with ending():
+        from scope_ptz.cli.chatting import chat as run
+
+        options = _asking(scene, viewpoint, preset, planner, perception, runs_dir, max_steps, time_budget, realtime, seed)
+        sys.exit(run(options))
+
+
+@app.command()
+def plan(
+    instruction: Annotated[str | None, typer.Argument(help="What the camera should do, in plain words.")] = None,
+    presets: Annotated[str | None, typer.Option("--presets", help="Preset names, joined by commas.")] = None,
+    source: Annotated[Path | None, typer.Option("--from", help='File of {"instruction", "presets"} lines ("-": stdin).')] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Show which calls an instruction leads to, without moving anything."""
+    with ending(as_json=as_json):
+        from scope_ptz.cli.planning import plan as run
+
+        sys.exit(run(instruction, presets, source, as_json=as_json))
+
+
+@app.command()
+def replay(
+    run_dir: Annotated[Path, typer.Argument(metavar="RUN", help="Run folder, or a trace file.")],
+    as_json: JsonOption = False,
+) -> None:
+    """Repeat a run from its trace, without models, and say whether it came out the same."""
+    with ending(as_json=as_json):
+        from scope_ptz.cli.replaying import replay as run
+
+        sys.exit(run(run_dir, as_json=as_json))
+
+
+@app.command()
+def tools(
+    as_json: Annotated[bool, typer.Option("--json", help="JSON on one line instead of indented.")] = False,
+) -> None:
+    """Print the tools' schemas in the OpenAI function format."""
+    with ending(as_json=as_json):
+        from scope_ptz.cli.endings import put_json
+        from scope_ptz.tools.registry import schemas
+
+        put_json(schemas(), indent=None if as_json else 2)
+
+
+@app.command()
+def doctor(as_json: JsonOption = False) -> None:
+    """Say what is installed, reachable and missing, and how to get it."""
+    with ending(as_json=as_json):
+        from scope_ptz.cli.doctor import doctor as run
+
+        sys.exit(run(as_json=as_json))
+
+
+@scene_app.command("list")
+def scene_list(as_json: JsonOption = False) -> None:
+    """List the scenes that can be loaded."""
+    with ending(as_json=as_json):
+        from scope_ptz.cli.scenes import list_scenes
+
+        list_scenes(as_json=as_json)
+
+
+@scene_app.command("show")
+def scene_show(
+    name: SceneName,
+    contact_sheet: Annotated[
+        Path | None, typer.Option("--contact-sheet", help="Write a picture of all presets to this PNG file.")
+    ] = None,
+) -> None:
+    """Print a scene's card: viewpoints, presets, what is in it and what is not."""
+    with ending():
+        from scope_ptz.cli.scenes import show_scene
+
+        show_scene(name, contact_sheet)
+
+
+@scene_app.command("view")
+def scene_view(
+    name: SceneName,
+    out: Output,
+    viewpoint: ViewpointOption = None,
+    preset: PresetOption = None,
+    pan: Annotated[float | None, typer.Option("--pan", help="Pan in degrees, positive = right.")] = None,
+    tilt: Annotated[float | None, typer.Option("--tilt", help="Tilt in degrees, positive = up.")] = None,
+    zoom: Annotated[float | None, typer.Option("--zoom", help="Magnification, 1 = widest.")] = None,
+) -> None:
+    """Write what the camera sees at a pose to a picture file."""
+    with ending():
+        from scope_ptz.cli.scenes import view_scene
+        from scope_ptz.cli.session import Start
+
+        view_scene(Start(name, viewpoint, preset), (pan, tilt, zoom), out)

@@ -1,0 +1,115 @@
+"""What a person sees of a run while it happens, and at its end."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.status import Status
+from rich.table import Table
+from rich.text import Text
+
+from scope_ptz.agent.records import Called, Decided, Ended, Started
+from scope_ptz.agent.timing import Timings
+from scope_ptz.planner.base import CallTools, ToolCall
+
+_OUTCOME_WORDS = {
+    "answered": ("Answer", "bold green"),
+    "clarification": ("Question", "bold yellow"),
+    "refused": ("Refused", "bold yellow"),
+    "step_limit": ("Step limit", "bold red"),
+    "budget": ("Budget spent", "bold red"),
+    "planner_error": ("Planner failed", "bold red"),
+    "camera_error": ("Camera failed", "bold red"),
+    "cancelled": ("Cancelled", "bold red"),
+}
+
+
+def plain(text: str) -> str:
+    """Text from outside without control characters: a sign or a model must not steer the terminal."""
+    return "".join(c if c.isprintable() or c == "\n" else " " for c in text)
+
+
+def arguments_text(arguments: dict[str, Any]) -> str:
+    """Arguments as people read them: ``pan_deg=15, view=current``."""
+    parts = (f"{k}={v if isinstance(v, str) and v.isprintable() else json.dumps(v)}" for k, v in arguments.items())
+    return plain(", ".join(parts))
+
+
+def seconds(value: float) -> str:
+    """A duration with two useful digits."""
+    return f"{value:.1f} s" if value >= 1 else f"{value * 1000:.0f} ms"
+
+
+class LiveView:
+    """A listener that prints each step as it happens."""
+
+    def __init__(self, console: Console) -> None:
+        self.console = console
+        self._status: Status | None = None
+
+    def __call__(self, record: Started | Decided | Called | Ended) -> None:
+        self._wait_for(None)
+        match record:
+            case Started():
+                self._start(record)
+            case Decided(decision=CallTools(calls=calls)):
+                self._wait_for(calls[0])
+            case Called():
+                self._call(record)
+
+    def _wait_for(self, call: ToolCall | None) -> None:
+        if self._status is not None:
+            self._status.stop()
+            self._status = None
+        if call is not None and self.console.is_terminal:
+            line = Text.assemble("  ", (plain(call.name), "bold"), "  ", (arguments_text(call.arguments), "dim"))
+            self._status = self.console.status(line, spinner="dots")
+            self._status.start()
+
+    def _start(self, record: Started) -> None:
+        self.console.print(Text.assemble(("› ", "bold cyan"), (plain(record.instruction), "bold")))
+        about = f"  {record.camera} · planner {record.planner} · perception {record.perception}"
+        self.console.print(Text(plain(about), style="dim"))
+        self.console.print()
+
+    def _call(self, record: Called) -> None:
+        call, outcome = record.outcome.call, record.outcome
+        table = Table.grid(padding=(0, 2, 0, 0), expand=True)
+        table.add_column(justify="right", width=3, no_wrap=True)
+        table.add_column(width=14, no_wrap=True)
+        table.add_column(ratio=1)
+        table.add_column(justify="right", no_wrap=True)
+        table.add_row(
+            Text(str(record.step), style="cyan"),
+            Text(plain(call.name), style="bold"),
+            Text(arguments_text(call.arguments)),
+            Text(seconds(record.timings.total_s), style="dim"),
+        )
+        if outcome.error is not None:
+            table.add_row("", "", Text(plain(outcome.error), style="red"), "")
+        elif outcome.result is not None:
+            table.add_row("", "", Text(plain(str(outcome.result["message"])), style="green"), "")
+        self.console.print(table)
+
+
+def show_end(console: Console, ended: Ended, note: str, folder: Path, filmstrip: Path | None) -> None:
+    """The answer, what it rests on, where the time went, and where everything is kept."""
+    title, style = _OUTCOME_WORDS[ended.outcome]
+    console.print()
+    console.print(Text.assemble((f"{title}: ", style), (plain(ended.text), "bold")))
+    if note:
+        console.print(Text(note, style="yellow"))
+    console.print(Text(timings_text(ended.timings), style="dim"))
+    console.print(Text(f"Run folder: {folder}", style="dim"), soft_wrap=True)
+    if filmstrip is not None:
+        console.print(Text(f"Filmstrip:  {filmstrip}", style="dim"), soft_wrap=True)
+
+
+def timings_text(timings: Timings) -> str:
+    """Where the time went."""
+    parts = (("planner", timings.planner_s), ("perception", timings.perception_s), ("camera", timings.camera_s))
+    split = ", ".join(f"{name} {seconds(value)}" for name, value in (*parts, ("rendering", timings.render_s)))
+    return f"{seconds(timings.total_s)} in all: {split}."

@@ -1,0 +1,83 @@
+"""The one place where the command line builds concrete cameras, perception and planners."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from scope_ptz.errors import InputError, UnknownNameError
+from scope_ptz.settings import ScopeSettings, load_settings
+
+if TYPE_CHECKING:
+    from scope_ptz.camera.simulated import SimulatedCamera
+    from scope_ptz.perception.base import Perception
+    from scope_ptz.planner.base import Planner
+    from scope_ptz.world.pack import Scene
+
+DEFAULT_SCENE = "highway-works"
+GROUND_TRUTH_NOTE = "Perception is the simulator's own ground truth, not a model."
+NOISY_NOTE = "Perception is the simulator's ground truth with seeded mistakes, not a model."
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """Where a session begins: a scene, and in it a viewpoint or a preset (the scene's home when neither is given)."""
+
+    scene: str = DEFAULT_SCENE
+    viewpoint: str | None = None
+    preset: str | None = None
+
+
+def scene_search(settings: ScopeSettings) -> tuple[Path, ...]:
+    """Extra folders in which scenes are looked for before the built-in ones."""
+    return (settings.scenes_dir,) if settings.scenes_dir else ()
+
+
+def open_scene(name: str) -> Scene:
+    """A scene by name, from the configured folder or the package."""
+    from scope_ptz.world.pack import load_scene
+
+    return load_scene(name, scene_search(load_settings()))
+
+
+async def open_camera(start: Start, *, realtime: bool) -> SimulatedCamera:
+    """A simulated camera at its start."""
+    from scope_ptz.camera.simulated import SimulatedCamera
+    from scope_ptz.world.clock import SceneClock
+
+    if start.viewpoint and start.preset:
+        raise InputError("Give --viewpoint or --preset, not both: a preset names its viewpoint.")
+    camera = SimulatedCamera(open_scene(start.scene), viewpoint=start.viewpoint, clock=SceneClock(realtime=realtime))
+    if start.preset:
+        await camera.go_to_preset(start.preset)
+    return camera
+
+
+def make_planner(name: str) -> Planner:
+    """A planner by name."""
+    makers: dict[str, Callable[[], Planner]] = {"grammar": _grammar}
+    if name not in makers:
+        raise UnknownNameError("planner", name, makers)
+    return makers[name]()
+
+
+def _grammar() -> Planner:
+    from scope_ptz.planner.grammar import GrammarPlanner
+
+    return GrammarPlanner()
+
+
+def make_perception(name: str, scene: str, seed: int) -> tuple[Perception, str]:
+    """A perception backend by name, and the note that says what it is."""
+    if name not in ("ground-truth", "noisy"):
+        raise UnknownNameError("perception", name, ("ground-truth", "noisy"))
+    from scope_ptz.perception.ground_truth import GroundTruthPerception
+
+    truth = GroundTruthPerception(open_scene(scene))
+    if name == "ground-truth":
+        return truth, GROUND_TRUTH_NOTE
+    from scope_ptz.perception.noisy import NoisyPerception
+
+    return NoisyPerception(truth, seed=seed), NOISY_NOTE

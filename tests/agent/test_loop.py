@@ -1,0 +1,210 @@
+"""The loop: every outcome, what counts as whose fault, budgets, and what the planner gets to see."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import anyio
+import pytest
+
+from scope_ptz.agent.records import Budgets, Called, Ended, Run, Started
+from scope_ptz.errors import CameraError, InputError, PackError, PerceptionError, PlannerError
+from scope_ptz.geometry import Pose
+from scope_ptz.planner.base import Finish, PastTurn, State
+from tests.agent.scripted import ScriptedCamera, ScriptedPlanner, answer, calls, make_agent
+
+MOVE = ("adjust_ptz", {"pan_deg": 15.0})
+COUNT = ("count_objects", {"description": "cones"})
+
+
+def run(*script: Any, **options: Any) -> tuple[Run, list[Any]]:
+    records: list[Any] = []
+    conversation = options.pop("conversation", ())
+
+    async def work() -> Run:
+        return await make_agent(*script, **options).run("do it", conversation=conversation, listener=records.append)
+
+    return anyio.run(work), records
+
+
+def test_results_are_appended_until_the_planner_answers() -> None:
+    done, records = run(calls(MOVE), calls(COUNT), answer("Four."), counts=[4])
+    assert (done.ended.outcome, done.ended.text, done.ended.steps) == ("answered", "Four.", 3)
+    assert [e.outcomes[0].call.name for e in done.exchanges] == ["adjust_ptz", "count_objects"]
+    counted = done.exchanges[1].outcomes[0].result
+    assert counted is not None
+    assert counted["count"] == 4
+    assert [r.event for r in records] == ["start", "decision", "call", "decision", "call", "decision", "end"]
+    assert done.ended.pose.pan_deg == 15.0
+
+
+def test_the_planner_sees_instruction_history_conversation_and_tools() -> None:
+    earlier = PastTurn(instruction="hello", exchanges=(), reply="hi")
+    agent = make_agent(calls(MOVE), answer())
+    planner = agent.planner
+    assert isinstance(planner, ScriptedPlanner)
+    anyio.run(lambda: agent.run("  look right ", conversation=(earlier,)))
+    first, second = planner.states
+    assert first.instruction == "look right"
+    assert first.conversation == (earlier,)
+    assert first.briefing.presets == ("gate", "highway")
+    assert len(first.tools) == 9
+    assert (first.history, len(second.history)) == ((), 1)
+
+
+@pytest.mark.parametrize("kind", ["answered", "clarification", "refused"])
+def test_a_planner_can_finish_in_three_ways(kind: Any) -> None:
+    done, _ = run(Finish(kind=kind, text="words"))
+    assert (done.ended.outcome, done.ended.text) == (kind, "words")
+
+
+def test_step_limit() -> None:
+    camera = ScriptedCamera()
+    done, _ = run(calls(MOVE), camera=camera, budgets=Budgets(max_steps=3))
+    assert (done.ended.outcome, done.ended.steps, len(done.exchanges)) == ("step_limit", 3, 3)
+    assert camera.log[-1] == "stop"
+
+
+def test_time_budget_also_ends_a_planner_that_hangs() -> None:
+    class Hanging(ScriptedPlanner):
+        async def step(self, state: State) -> Any:
+            await anyio.sleep(30)
+
+    agent = make_agent(answer(), budgets=Budgets(time_s=0.05))
+    agent.planner = Hanging()
+    done = anyio.run(agent.run, "wait")
+    assert done.ended.outcome == "budget"
+    assert "time" in done.ended.text
+
+
+def test_token_budget_is_checked_before_the_calls_are_made() -> None:
+    done, _ = run(calls(MOVE, tokens=60), calls(MOVE, tokens=60), budgets=Budgets(tokens=100))
+    assert (done.ended.outcome, len(done.exchanges), done.ended.usage.input_tokens) == ("budget", 1, 120)
+
+
+def test_an_answer_that_spends_the_last_tokens_still_counts() -> None:
+    done, _ = run(
+        calls(MOVE, tokens=90), Finish(kind="answered", text="x", usage=calls(MOVE, tokens=50).usage), budgets=Budgets(tokens=100)
+    )
+    assert done.ended.outcome == "answered"
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        ("pan_camera", {}),
+        ("adjust_ptz", {"pan_deg": "a lot"}),
+        ("adjust_ptz", {"pan_deg": float("nan")}),
+        ("adjust_ptz", {"speed": 3}),
+        ("go_to_preset", {"name": "nowhere"}),
+        ("go_to_preset", {"name": "../../etc/passwd"}),
+    ],
+)
+def test_bad_calls_go_back_to_the_planner_and_are_counted(bad: tuple[str, dict[str, Any]]) -> None:
+    done, records = run(calls(bad), answer())
+    assert (done.ended.outcome, done.ended.bad_calls) == ("answered", 1)
+    outcome = done.exchanges[0].outcomes[0]
+    assert outcome.error
+    assert outcome.result is None
+    assert [r.fault for r in records if isinstance(r, Called)] == ["bad_call"]
+
+
+def test_calls_after_a_failed_one_are_not_done() -> None:
+    done, _ = run(calls(("go_to_preset", {"name": "nowhere"}), MOVE), answer())
+    first, second = done.exchanges[0].outcomes
+    assert first.error is not None
+    assert second.error == "Not done, because the call before it failed."
+    assert done.ended.pose.pose() == Pose()
+    assert done.ended.bad_calls == 1
+
+
+def test_a_failed_look_is_an_error_and_never_a_count() -> None:
+    done, _ = run(calls(COUNT), answer(), counts=[PerceptionError("the model timed out")])
+    outcome = done.exchanges[0].outcomes[0]
+    assert (outcome.result, outcome.error) == (None, "the model timed out")
+    assert (done.ended.outcome, done.ended.perception_failures, done.ended.bad_calls) == ("answered", 1, 0)
+
+
+@pytest.mark.parametrize("failure", [CameraError("no route to the camera"), RuntimeError("a bug")])
+def test_a_camera_that_fails_ends_the_run(failure: Exception) -> None:
+    done, records = run(calls(MOVE), answer(), camera=ScriptedCamera(failures={"move": failure}))
+    assert done.ended.outcome == "camera_error"
+    assert str(failure) in done.ended.text
+    assert len(done.exchanges) == 1
+    assert [r.fault for r in records if isinstance(r, Called)] == ["camera"]
+    assert bool(done.ended.detail) == isinstance(failure, RuntimeError)
+
+
+@pytest.mark.parametrize("failure", [PlannerError("no decision"), ZeroDivisionError("a bug")])
+def test_a_planner_that_fails_ends_the_run(failure: Exception) -> None:
+    done, _ = run(failure)
+    assert done.ended.outcome == "planner_error"
+    assert str(failure) in done.ended.text
+
+
+def test_a_planner_that_says_something_that_is_no_decision() -> None:
+    done, _ = run(lambda _: "42")
+    assert done.ended.outcome == "planner_error"
+
+
+def test_damaged_packs_are_recorded_and_raised() -> None:
+    records: list[Any] = []
+    camera = ScriptedCamera()
+    agent = make_agent(calls(MOVE), answer(), camera=camera)
+    camera.failures["move"] = PackError("ids.png is damaged")
+
+    async def work() -> None:
+        await agent.run("go", listener=records.append)
+
+    with pytest.raises(PackError):
+        anyio.run(work)
+    assert isinstance(records[-1], Ended)
+    assert records[-1].outcome == "camera_error"
+
+
+def test_cancelling_stops_the_camera_and_closes_the_record() -> None:
+    records: list[Any] = []
+    camera = ScriptedCamera()
+
+    async def work() -> None:
+        with anyio.CancelScope() as scope:
+
+            def listener(record: Any) -> None:
+                records.append(record)
+                if isinstance(record, Called):
+                    scope.cancel()
+
+            await make_agent(calls(MOVE), camera=camera).run("go on for ever", listener=listener)
+            raise AssertionError("a cancelled run must not return")
+
+    anyio.run(work)
+    assert (records[-1].event, records[-1].outcome) == ("end", "cancelled")
+    assert camera.log[-1] == "stop"
+    assert records[-1].pose.pan_deg == 15.0
+
+
+@pytest.mark.parametrize("instruction", ["", "  \n\t", "x" * 5000])
+def test_instructions_that_cannot_be_meant(instruction: str) -> None:
+    with pytest.raises(InputError):
+        anyio.run(make_agent(answer()).run, instruction)
+
+
+def test_timings_are_split_and_add_up() -> None:
+    done, records = run(calls(MOVE), calls(COUNT), answer(), counts=[2])
+    timings = done.ended.timings
+    parts = timings.planner_s + timings.perception_s + timings.camera_s + timings.render_s
+    assert 0 < parts <= timings.total_s
+    looked = next(r for r in records if isinstance(r, Called) and r.outcome.call.name == "count_objects")
+    assert looked.timings.render_s > 0
+    assert looked.timings.total_s >= looked.timings.perception_s > 0
+    assert [(r.kind, r.asked) for r in looked.replies] == [("detect", "cones")]
+    header = records[0]
+    assert isinstance(header, Started)
+    assert header.labels.seed == 7
+
+
+def test_nothing_is_kept_between_runs() -> None:
+    agent = make_agent(calls(MOVE), answer())
+    first, second = anyio.run(agent.run, "one"), anyio.run(agent.run, "two")
+    assert len(first.exchanges) == len(second.exchanges) == 1
+    assert second.ended.pose.pan_deg == 30.0  # The camera is where the first run left it; the loop remembers nothing.
