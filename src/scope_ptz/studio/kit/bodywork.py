@@ -11,7 +11,7 @@ import bpy
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
-from scope_ptz.studio.kit import mesh, shading, wheels
+from scope_ptz.studio.kit import lettering, shading, wheels
 from scope_ptz.studio.kit.parts import Flat, Parts, Point
 from scope_ptz.studio.kit.stage import Built, TextMark
 
@@ -45,7 +45,7 @@ ANY: Range = (-99.0, 99.0)
 class Patch:
     """A detail printed on the paint: everything with ``|x|``, y and z inside the ranges (metres, object frame).
 
-    ``y_per_z`` slants lines that are upright otherwise, ``z_per_x`` and ``z_per_y`` those that are level.
+    ``y_per_z`` slants lines that are upright otherwise, ``z_per_x`` and ``z_per_y`` those that are level. A ``round`` patch is the ellipse inside its x and z.
     """
 
     colour: tuple[float, float, float]
@@ -58,6 +58,7 @@ class Patch:
     y_per_x: float = 0.0
     z_per_x: float = 0.0
     z_per_y: float = 0.0
+    round: bool = False
 
 
 GAP = (0.004, 0.004, 0.004)
@@ -67,8 +68,13 @@ REAR_LAMP = (0.55, 0.006, 0.008)
 AMBER = (0.80, 0.22, 0.01)
 
 
-def paint(model: str, colour: str, patches: Sequence[Patch] = (), *, dirt_top_m: float = 0.55, dirt: float = 0.55) -> bpy.types.Material:
-    """Lacquered paint of one colour with the model's patches and road dirt fading out at ``dirt_top_m``."""
+def paint(
+    model: str, colour: str, patches: Sequence[Patch] = (), *, dirt_top_m: float = 0.55, dirt: float = 0.55, gloss: float = 0.6
+) -> bpy.types.Material:
+    """Lacquered paint of one colour with the model's patches and road dirt fading out at ``dirt_top_m``.
+
+    ``gloss`` is the lacquer's weight: kept below 1 so that a white sky does not wash the colour out.
+    """
     name = f"paint {model} {colour}"
     found = bpy.data.materials.get(name)
     if found is not None:
@@ -79,7 +85,7 @@ def paint(model: str, colour: str, patches: Sequence[Patch] = (), *, dirt_top_m:
     x = sh.math("ABSOLUTE", x)
     base, rough, glow = sh.mix(0.0, PAINTS[colour], PAINTS[colour]), 0.32, sh.mix(0.0, (0, 0, 0), (0, 0, 0))
     metal = 0.35 if colour in _METALLIC else 0.0
-    coat: shading.Value = 1.0
+    coat: shading.Value = gloss
     for patch in patches:
         mask = _patch_mask(sh, patch, x, y, z)
         base = sh.mix(mask, base, patch.colour)
@@ -95,7 +101,7 @@ def paint(model: str, colour: str, patches: Sequence[Patch] = (), *, dirt_top_m:
     coat = sh.math("MULTIPLY", coat, sh.ramp(grime, 0, 0.4, 1, 0))
     rough = sh.math("ADD", rough, grime, clamp=True)
     return sh.surface(
-        base_color=base, roughness=rough, metallic=metal, coat_weight=coat, coat_roughness=0.04, emission_color=glow, emission_strength=1.0
+        specular_ior_level=0.3, base_color=base, roughness=rough, metallic=metal, coat_weight=coat, coat_roughness=0.04, emission_color=glow, emission_strength=1.0
     )
 
 
@@ -109,6 +115,10 @@ def _patch_mask(sh: shading.Shader, patch: Patch, x: shading.Value, y: shading.V
     if patch.z_per_y:
         z = sh.math("SUBTRACT", z, sh.math("MULTIPLY", y, patch.z_per_y))
     bands = [sh.band(v, *r) for v, r in ((x, patch.x), (y, patch.y), (z, patch.z)) if r != ANY]
+    if patch.round:
+        u, v = (sh.ramp(c, *r, -1.0, 1.0, smooth=False) for c, r in ((x, patch.x), (z, patch.z)))
+        square = sh.math("ADD", sh.math("MULTIPLY", u, u), sh.math("MULTIPLY", v, v))
+        bands.append(sh.ramp(square, 0.85, 1.0, 1.0, 0.0))
     mask = bands[0]
     for other in bands[1:]:
         mask = sh.math("MULTIPLY", mask, other)
@@ -127,6 +137,12 @@ def level_gap(z: float, y: Range, *, x: Range = (0.5, 9.0), z_per_y: float = 0.0
 
 def glass() -> bpy.types.Material:
     return shading.plain("vehicle glass", (0.012, 0.015, 0.017), 0.03)
+
+
+def clear_glass(tint: float = 0.55) -> bpy.types.Material:
+    """Glass that shows the cabin behind it; ``tint`` is its opacity (kept above one half, so that ID passes see the glass)."""
+    name = f"vehicle clear glass {tint:.2f}"
+    return bpy.data.materials.get(name) or shading.Shader(name).surface(base_color=(0.006, 0.009, 0.010), roughness=0.02, alpha=tint)
 
 
 def black_trim() -> bpy.types.Material:
@@ -167,6 +183,7 @@ class Pane:
     rows: tuple[int, int]
     across: bool = False
     frame_m: float = 0.025
+    tinted: bool = False
 
 
 def shell(
@@ -205,12 +222,12 @@ def shell(
         right = [quads[i, j] for i in span for j in range(*pane.rows)]
         left = [quads[i, ring - 1 - j] for i in span for j in range(*pane.rows)]
         for region in [right + left] if pane.across else [right, left]:
-            _glaze(bm, region, pane.frame_m, crease, corner)
+            _glaze(bm, region, pane, crease, corner)
     bmesh.ops.recalc_face_normals(bm, faces=bm.faces[:])
     data = bpy.data.meshes.new("shell")
     bm.to_mesh(data)
     bm.free()
-    for material in (paint_slot(), black_trim(), glass()):
+    for material in (paint_slot(), black_trim(), clear_glass(), clear_glass(0.78)):
         data.materials.append(material)
     data.polygons.foreach_set("use_smooth", [True] * len(data.polygons))
     return _evaluated(data, cutters, levels)
@@ -237,16 +254,16 @@ def _cap(bm: bmesh.types.BMesh, end: list[bmesh.types.BMVert], rows: int, push: 
 
 
 def _glaze(
-    bm: bmesh.types.BMesh, region: list[bmesh.types.BMFace], frame_m: float, crease: bmesh.types.BMLayerItem, corner: bmesh.types.BMLayerItem
+    bm: bmesh.types.BMesh, region: list[bmesh.types.BMFace], pane: Pane, crease: bmesh.types.BMLayerItem, corner: bmesh.types.BMLayerItem
 ) -> None:
-    bmesh.ops.inset_region(bm, faces=region, thickness=frame_m, use_even_offset=True, use_boundary=True)
+    bmesh.ops.inset_region(bm, faces=region, thickness=pane.frame_m, use_even_offset=True, use_boundary=True)
     _crease_border(region, 0.9, crease, corner)
     rim = bmesh.ops.inset_region(bm, faces=region, thickness=0.016, depth=-0.010, use_even_offset=True, use_boundary=True)
     _crease_border(region, 0.9, crease, corner)
     for face in rim["faces"]:
         face.material_index = 1
     for face in region:
-        face.material_index = 2
+        face.material_index = 3 if pane.tinted else 2
 
 
 def _crease_border(
@@ -259,7 +276,7 @@ def _crease_border(
                 edge[crease] = strength
         for vert in face.verts:
             if sum(f in inside for f in vert.link_faces) == 1:
-                vert[corner] = 0.72
+                vert[corner] = 0.85
 
 
 def _evaluated(data: bpy.types.Mesh, cutters: Parts | None, levels: int) -> bpy.types.Mesh:
@@ -307,32 +324,72 @@ class Surface:
         return hit.z if hit is not None else 0.0
 
 
-Lettering = tuple[bpy.types.Object, TextMark]
+@dataclass
+class Lettering:
+    """A line of letters standing in its place on a vehicle, and its mark."""
+
+    points: list[Point]
+    faces: list[tuple[int, ...]]
+    colour: str
+    mark: TextMark
 
 
-def ink(colour: str = "black") -> bpy.types.Material:
-    rgb = PAINTS.get(colour, (0.006, 0.006, 0.006))
-    return shading.plain(f"vehicle lettering {colour}", rgb, 0.6)
+_READERS: dict[str, tuple[Point, Point]] = {
+    "-Y": ((1, 0, 0), (0, 0, 1)),
+    "+Y": ((-1, 0, 0), (0, 0, 1)),
+    "+X": ((0, 1, 0), (0, 0, 1)),
+    "-X": ((0, -1, 0), (0, 0, 1)),
+}
 
 
 def words(
     body: str, cap_m: float, centre: Point, facing: str, colour: str = "black", *, width_m: float = math.inf, onto: Surface | None = None
 ) -> Lettering:
-    """Lettering that fits ``width_m``; ``onto`` lays the letters on a curved side instead of a plane."""
-    obj, mark = mesh.text("lettering", body, cap_m, centre, ink(colour), facing=facing, thickness_m=0.0 if onto else 0.002)
-    axis = 0 if facing in ("+Y", "-Y") else 1
-    squeeze = min(1.0, width_m / mark.width_m)
-    mark.width_m *= squeeze
-    sign = -1.0 if facing == "-X" else 1.0
-    reach = []
-    for vertex in obj.data.vertices:
-        vertex.co[axis] = mark.centre[axis] + (vertex.co[axis] - mark.centre[axis]) * squeeze
+    """A line of lettering around ``centre``, narrowed to fit ``width_m``; ``onto`` lays it on a curved side instead of a plane."""
+    flat, faces = lettering.letters(body, cap_m)
+    if onto is not None:
+        flat, faces = _fine(flat, faces)
+    xs, ys = [p[0] for p in flat], [p[1] for p in flat]
+    width, height = max(xs) - min(xs), max(ys) - min(ys)
+    squeeze = min(1.0, width_m / width)
+    right, up = _READERS[facing]
+    points: list[Point] = []
+    for x, y, _ in flat:
+        u, v = (x - (max(xs) + min(xs)) / 2) * squeeze, y - cap_m / 2
+        px, py, pz = (centre[k] + right[k] * u + up[k] * v for k in range(3))
         if onto is not None:
-            reach.append(onto.side(vertex.co.y * 1.0, vertex.co.z))
-            vertex.co.x = sign * (reach[-1] + 0.004)
-    if reach:
-        mark.centre = (sign * (sum(reach) / len(reach) + 0.004), mark.centre[1], mark.centre[2])
-    return obj, mark
+            px = math.copysign(onto.side(py, pz) + 0.004, -1 if facing == "-X" else 1)
+        points.append((px, py, pz))
+    if onto is not None:
+        centre = (sum(p[0] for p in points) / len(points), centre[1], centre[2])
+    return Lettering(points, faces, colour, TextMark(body, centre, right, up, width * squeeze, height, cap_m))
+
+
+def _fine(points: list[Point], faces: list[tuple[int, ...]]) -> tuple[list[Point], list[tuple[int, ...]]]:
+    """Split long triangles, so that letters can follow a curve."""
+    bm = bmesh.new()
+    verts = [bm.verts.new(p) for p in points]
+    for face in faces:
+        if len(set(face)) > 2:
+            bm.faces.new([verts[k] for k in face])
+    for _ in range(4):
+        bmesh.ops.triangulate(bm, faces=bm.faces[:])
+        long = [e for e in bm.edges if e.calc_length() > 0.07]
+        if not long:
+            break
+        bmesh.ops.subdivide_edges(bm, edges=long, cuts=1)
+    bm.verts.index_update()
+    made = [tuple(v.co) for v in bm.verts], [tuple(v.index for v in f.verts) for f in bm.faces]
+    bm.free()
+    return made
+
+
+def ink(colour: str) -> bpy.types.Material:
+    """Lettering film of a paint's colour; "display" is a destination screen's glowing amber."""
+    if colour == "display":
+        amber, name = (1.0, 0.50, 0.03), "vehicle display letters"
+        return bpy.data.materials.get(name) or shading.Shader(name).surface(base_color=amber, emission_color=amber, emission_strength=1.6)
+    return shading.plain(f"vehicle lettering {colour}", PAINTS[colour], 0.6)
 
 
 def both_sides(body: str, cap_m: float, y: float, z: float, colour: str, *, x: float = 0.0, width_m: float = math.inf, onto: Surface | None = None) -> list[Lettering]:
@@ -370,12 +427,9 @@ def finish(
         slot.material = material
     own = fittings or Parts()
     marks = []
-    for lettering, mark in letters:
-        own.mesh(lettering.data)
-        marks.append(mark)
-        spent = lettering.data
-        bpy.data.objects.remove(lettering, do_unlink=True)
-        bpy.data.meshes.remove(spent)
+    for line in letters:
+        own.add(line.points, line.faces, ink(line.colour))
+        marks.append(line.mark)
     objects = [obj]
     if own.materials:
         extra = bpy.data.objects.new(f"{name} fittings", own.build(f"{name} fittings"))

@@ -367,18 +367,9 @@ def coach(colour: str, *, plate: str, lettering: str, destination: str) -> Built
     """A single-deck coach, 11.7 m long, door on the left (kerb) side; the destination glows above the windscreen."""
     own, letters = bw.plates(plate, (_COACH_FRONT + 0.01, 0.52), (_COACH_REAR - 0.012, 0.66))
     letters += bw.both_sides(lettering, 0.30, 0.2, 1.38, _contrast(colour), x=_COACH_HALF, width_m=4.4)
-    screen = shading.plain("destination letters", (0.9, 0.45, 0.02), 0.5)
-    letters.append(_glowing(bw.words(destination, 0.20, (0, _COACH_FRONT - 0.116, 2.84), "+Y", "orange", width_m=2.05), screen))
+    letters.append(bw.words(destination, 0.20, (0, _COACH_FRONT - 0.116, 2.84), "+Y", "display", width_m=2.05))
     patches = [
         Patch(TRIM, z=(0.0, 0.46), roughness=0.6),
         Patch(GAP, x=(0, 9), y=(-9, -5.5), z=(1.60, 1.61), roughness=0.9),
     ]
     return bw.finish("coach", bw.body_mesh("coach", _coach_parts), [bw.paint("coach", colour, patches, dirt_top_m=1.0)], letters, own)
-
-
-def _glowing(lettering: bw.Lettering, material: bpy.types.Material) -> bw.Lettering:
-    principled = next(n for n in material.node_tree.nodes if n.type == "BSDF_PRINCIPLED")
-    principled.inputs["Emission Color"].default_value = (1.0, 0.50, 0.03, 1.0)
-    principled.inputs["Emission Strength"].default_value = 1.6
-    lettering[0].data.materials[0] = material
-    return lettering

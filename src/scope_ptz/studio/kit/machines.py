@@ -31,7 +31,7 @@ def _worn_steel() -> bpy.types.Material:
 
 
 def _paint(model: str, colour: str) -> bpy.types.Material:
-    return bw.paint(model, colour, dirt_top_m=1.3, dirt=0.6)
+    return bw.paint(model, colour, dirt_top_m=1.3, dirt=0.6, gloss=0.2)
 
 
 def _turn(origin: Point, degrees: float) -> Matrix:
@@ -143,12 +143,12 @@ def excavator(
     _upper_works(parts)
     _arm(parts, upper, boom_deg, stick_deg, bucket_deg)
     letters = []
-    panel_x, panel = 1.255, (-0.95, 1.62)
     for sign, facing in ((1, "+X"), (-1, "-X")):
-        letters.append(bw.words(number, 0.28, (sign * panel_x, *panel), facing, "black", width_m=1.1))
+        letters.append(bw.words(number, 0.26, (sign * 1.255, -1.10, 1.64), facing, "black", width_m=0.80))
     letters.append(bw.words(number, 0.30, (0, -2.315, 1.62), "-Y", "black", width_m=1.3))
-    for obj, mark in letters:
-        obj.data.transform(upper)
+    for line in letters:
+        mark = line.mark
+        line.points = [tuple(upper @ Vector(p)) for p in line.points]
         mark.centre, mark.right, mark.up = (tuple(upper @ Vector(v)) for v in (mark.centre, mark.right, mark.up))
     return bw.finish("excavator", parts.build("excavator"), [_paint("excavator", colour)], letters)
 
@@ -167,8 +167,7 @@ def _upper_works(parts: Parts) -> None:
     parts.box((1.02, 0.95, 0.62), (0.72, 0.75, 1.46), paint, bevel_m=0.05)
     parts.tube([(-0.4, -1.35, 2.0), (-0.4, -1.35, 2.35), (-0.4, -1.45, 2.45)], 0.05, iron, sides=10)
     for k in range(7):
-        for x in (1.256, -1.256):
-            parts.box((0.012, 0.50, 0.02), (x, -0.25 if x > 0 else -1.9, 1.36 + 0.075 * k), bw.black_trim(), bevel_m=0.0)
+        parts.box((0.012, 0.55, 0.02), (1.252, -0.22, 1.36 + 0.075 * k), bw.black_trim(), bevel_m=0.0)
     for side, y0, y1 in ((1.22, -1.55, 1.15), (-1.22, -1.6, -0.7)):
         rail: list[Point] = [(side, y0, 2.02), (side, y0, 2.36), (side, y1, 2.36), (side, y1, 1.8 if side > 0 else 2.02)]
         parts.tube(rail, 0.02, iron, sides=6)
@@ -274,7 +273,7 @@ def _roller_parts() -> Parts:
         parts.disc(0.22, -0.86, 0.86, (0, y, 0.68), paint, steps=24)
         front = 1 if y > 0 else -1
         for sign in (-1, 1):
-            yoke: list[Flat] = [(y - 0.14, 0.56), (y + 0.14, 0.56), (y + 0.16, 1.0), (y - front * 0.10, 1.46), (y - front * 0.70, 1.46), (y - front * 0.62, 1.28)]
+            yoke: list[Flat] = [(y - front * 0.14, 0.54), (y + front * 0.14, 0.54), (y + front * 0.16, 0.95), (y + front * 0.02, 1.46), (y - front * 0.70, 1.46), (y - front * 0.60, 1.26)]
             parts.prism(yoke, sign * 0.90 - 0.05, sign * 0.90 + 0.05, paint, bevel_m=0.02)
         deck: list[Flat] = [(y + front * 0.72, 1.16), (y + front * 0.74, 1.42), (y + front * 0.60, 1.54), (y - front * 0.75, 1.54), (y - front * 0.75, 1.40), (y + front * 0.40, 1.40)]
         parts.prism(deck, -0.95, 0.95, paint, bevel_m=0.03, segments=2)
@@ -310,7 +309,7 @@ def _roller_parts() -> Parts:
 def dumper(colour: str, *, number: str) -> Built:
     """A nine-tonne forward-tipping site dumper with a skip of earth, four big wheels and a roll bar; 4.6 m long."""
     mesh = bw.body_mesh("dumper", _dumper_parts)
-    letters = bw.both_sides(number, 0.24, -1.35, 1.22, "black", x=0.70, width_m=0.6)
+    letters = bw.both_sides(number, 0.24, 0.95, 1.40, "black", x=0.86, width_m=0.8)
     return bw.finish("dumper", mesh, [_paint("dumper", colour)], letters)
 
 

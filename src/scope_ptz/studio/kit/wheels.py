@@ -16,11 +16,11 @@ def rubber() -> bpy.types.Material:
 
 
 def alloy() -> bpy.types.Material:
-    return shading.plain("vehicle alloy", (0.56, 0.57, 0.58), 0.28, 0.75)
+    return shading.plain("vehicle alloy", (0.40, 0.41, 0.42), 0.32, 0.6)
 
 
 def steel() -> bpy.types.Material:
-    return shading.plain("vehicle wheel steel", (0.42, 0.43, 0.44), 0.45, 0.4)
+    return shading.plain("vehicle wheel steel", (0.30, 0.31, 0.32), 0.5, 0.3)
 
 
 def shade() -> bpy.types.Material:
@@ -53,7 +53,7 @@ def car_wheel(parts: Parts, centre: Point, radius: float, side: int, *, width: f
     parts.lathe([(rim, h * 0.88), (rim + 0.012, h * 1.0), (rim + 0.004, h * 1.02), (rim - 0.012, h * 0.9), (rim - 0.02, h * 0.2)],
                 (0, 0, 0), alloy(), axis="X", steps=36, caps=False)  # fmt: skip
     parts.disc(rim - 0.015, -0.02, h * 0.25, (0, 0, 0), shade(), steps=28)
-    parts.disc(rim * 0.62, h * 0.25, h * 0.34, (0, 0, 0), steel(), steps=24)
+    parts.disc(rim * 0.60, h * 0.25, h * 0.34, (0, 0, 0), shading.plain("vehicle brake disc", (0.07, 0.07, 0.07), 0.4, 0.5), steps=24)
     hub = parts.matrix.copy()
     for k in range(spokes):
         turn = Matrix.Rotation(2 * math.pi * k / spokes, 4, "X")
