@@ -27,6 +27,16 @@ class Projection(Protocol):
     @property
     def height(self) -> int: ...
 
+    @property
+    def reach_deg(self) -> float:
+        """No pixel is farther than this angle from the middle of the picture."""
+        ...
+
+    @property
+    def density(self) -> float:
+        """Pixels per radian in the middle of the picture, from top to bottom."""
+        ...
+
     def directions(self, points: ArrayLike) -> Floats:
         """Unit vectors (..., 3) through normalised points (..., 2)."""
         ...
@@ -56,6 +66,14 @@ class Perspective:
         """Vertical field of view in degrees."""
         return math.degrees(2 * math.atan(self.height / 2 / self.focal_px))
 
+    @property
+    def reach_deg(self) -> float:
+        return math.degrees(math.atan(math.hypot(self.width, self.height) / 2 / self.focal_px))
+
+    @property
+    def density(self) -> float:
+        return self.focal_px
+
     def directions(self, points: ArrayLike) -> Floats:
         p = np.asarray(points, dtype=np.float64)
         local = np.stack(
@@ -82,6 +100,14 @@ class Equirectangular:
     bottom_tilt_deg: float
     width: int
     height: int
+
+    @property
+    def reach_deg(self) -> float:
+        return 180.0
+
+    @property
+    def density(self) -> float:
+        return self.height / math.radians(self.top_tilt_deg - self.bottom_tilt_deg)
 
     def directions(self, points: ArrayLike) -> Floats:
         p = np.asarray(points, dtype=np.float64)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scope_ptz.geometry import Perspective, Projection, pan_tilt_deg
 from scope_ptz.world.models import ActorSheet, Extent, SceneActor, Sprite
 from scope_ptz.world.pack import Scene, Viewpoint
-from scope_ptz.world.reproject import Grid, bounds, density, step_px
+from scope_ptz.world.reproject import Grid, bounds, step_px
 from scope_ptz.world.runs import measure
 
 TOLERANCE_M = 0.15
@@ -45,29 +45,51 @@ class Appearance:
         return float(np.linalg.norm(self.offset_m))
 
 
-def position_at(actor: SceneActor, time_s: float) -> tuple[float, Floats] | None:
-    """Time on its path and ground point (3,) of an actor, or None while it is out of the scene."""
+@dataclass(frozen=True, slots=True)
+class Whereabouts:
+    """Where an actor is on its path: time on it, metres gone since its start, ground point (3,) in world coordinates."""
+
+    path_s: float
+    walked_m: float
+    position_m: Floats
+
+
+def whereabouts(actor: SceneActor, time_s: float) -> Whereabouts | None:
+    """Where an actor is at a scene time, None while it is out of the scene."""
     path = np.array(actor.waypoints, dtype=np.float64)
     path_s = time_s % actor.period_s
     if not path[0, 0] <= path_s <= path[-1, 0]:
         return None
-    return path_s, np.array([np.interp(path_s, path[:, 0], path[:, axis]) for axis in (1, 2, 3)])
+    walked = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(path[:, 1:], axis=0), axis=-1)))
+    position_m = np.array([np.interp(path_s, path[:, 0], path[:, axis]) for axis in (1, 2, 3)])
+    return Whereabouts(path_s, float(np.interp(path_s, path[:, 0], walked)), position_m)
 
 
 def appearances(scene: Scene, viewpoint: Viewpoint, time_s: float) -> list[Appearance]:
     """The actors that are in the scene at a time and have sprites from this viewpoint, farthest first."""
     sheets = {sheet.number: sheet for sheet in viewpoint.manifest.actors}
     seen = [
-        _appearance(viewpoint, actor, sheets[actor.number], *here)
+        _appearance(viewpoint, actor, sheets[actor.number], here)
         for actor in scene.file.actors
-        if actor.number in sheets and (here := position_at(actor, time_s)) is not None
+        if actor.number in sheets and (here := whereabouts(actor, time_s)) is not None
     ]
     return sorted(seen, key=lambda a: (-a.distance_m, a.actor.number))
 
 
-def _appearance(viewpoint: Viewpoint, actor: SceneActor, sheet: ActorSheet, path_s: float, position_m: Floats) -> Appearance:
-    sprite = min(sheet.sprites, key=lambda s: abs(s.path_s - path_s))
-    then, now = viewpoint.offset(np.array(sprite.position_m)), viewpoint.offset(position_m)
+def _sprite(sheet: ActorSheet, here: Whereabouts) -> Sprite:
+    """The nearest place on the path, and of a thing with legs the nearest moment of its stride there."""
+    phase = here.walked_m / sheet.stride_m % 1.0 if sheet.stride_m else 0.0
+
+    def misfit(sprite: Sprite) -> tuple[float, float]:
+        off = abs(sprite.phase - phase)
+        return abs(sprite.path_s - here.path_s), min(off, 1.0 - off)
+
+    return min(sheet.sprites, key=misfit)
+
+
+def _appearance(viewpoint: Viewpoint, actor: SceneActor, sheet: ActorSheet, here: Whereabouts) -> Appearance:
+    sprite = _sprite(sheet, here)
+    then, now = viewpoint.offset(np.array(sprite.position_m)), viewpoint.offset(here.position_m)
     scale = float(np.linalg.norm(then) / np.linalg.norm(now))
     rendered = Perspective(sprite.pan_deg, sprite.tilt_deg, sprite.hfov_deg, sprite.width, sprite.height)
     hfov_deg = float(np.degrees(2 * np.arctan(sprite.width / 2 * scale / rendered.focal_px)))
@@ -111,16 +133,16 @@ def draw(
     place = bounds(appearance.view, projection)
     if place is None:
         return
-    grid = Grid(projection, step_px(projection))
+    grid = Grid(projection, step_px(projection), place)
     uv = np.nan_to_num(appearance.view.points(grid.directions), nan=-1e3)
-    where = grid.to_pixels(uv * (appearance.sprite.width, appearance.sprite.height) - 0.5)[place]
+    where = grid.to_pixels(uv * (appearance.sprite.width, appearance.sprite.height) - 0.5)
     distance_m = cv2.remap(_distances(viewpoint, appearance), where, None, cv2.INTER_NEAREST, borderValue=0.0)
     still_m = depth_m[place] * (1 + TOLERANCE_SHARE) + TOLERANCE_M
     own = distance_m > 0
     if numbers is not None:
         numbers[place][own & (distance_m <= still_m)] = appearance.actor.number
     if picture is not None:
-        directions = grid.to_pixels(grid.directions)[place]
+        directions = grid.to_pixels(grid.directions)
         drop = directions[..., 2] / np.linalg.norm(directions, axis=-1)
         height_m = float(appearance.offset_m[2])
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -132,7 +154,7 @@ def draw(
 def _sample(viewpoint: Viewpoint, appearance: Appearance, where: NDArray[np.float32], projection: Projection) -> NDArray[np.uint8]:
     """(H, W, 4) premultiplied colour of the sprite at the places of a map; shrunk first when it is denser than the view."""
     colour = _crop(appearance.sprite, viewpoint.sprites(appearance.sheet)[0])
-    shrink = density(projection) / appearance.view.focal_px
+    shrink = projection.density / appearance.view.focal_px
     if shrink < 0.75:
         size = max(1, round(colour.shape[1] * shrink)), max(1, round(colour.shape[0] * shrink))
         factor = np.array([size[0] / colour.shape[1], size[1] / colour.shape[0]], dtype=np.float32)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ValidationError
 
 from scope_ptz.errors import PackError, UnknownNameError
+from scope_ptz.geometry import Perspective
 from scope_ptz.world import layers
 from scope_ptz.world.atlas import Atlas
 from scope_ptz.world.models import (
@@ -127,6 +128,9 @@ class Viewpoint:
         self.folder = folder
         self.manifest = manifest = _read_json(folder / "manifest.json", Manifest)
         self.name = place.name
+        self.tile_views = [Perspective(t.pan_deg, t.tilt_deg, t.hfov_deg, t.colour.width, t.colour.height) for t in manifest.tiles]
+        self.tile_directions = np.array([view.directions((0.5, 0.5)) for view in self.tile_views])
+        self.tile_reach_deg = np.array([view.reach_deg for view in self.tile_views])
         self._sheets: dict[int, tuple[NDArray[np.uint8], NDArray[np.uint16]]] = {}
         self._lock = RLock()
         if (manifest.scene, manifest.viewpoint, manifest.scene_version) != (scene.name, place.name, scene.version):

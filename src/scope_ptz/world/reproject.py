@@ -8,7 +8,7 @@ a result: the same pack and projection give the same bytes.
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import cv2
 import numpy as np
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from scope_ptz.geometry import Equirectangular, Perspective, Projection, angle_between_deg, pan_tilt_deg, wrap_pan_deg
 from scope_ptz.world.atlas import Atlas, Slot
-from scope_ptz.world.models import Band, Tile
+from scope_ptz.world.models import Band
 from scope_ptz.world.pack import Viewpoint
 
 MAX_MAP_ERROR_PX = 0.04
@@ -47,14 +47,6 @@ def depth_view(viewpoint: Viewpoint, projection: Projection) -> NDArray[np.float
     return np.take(viewpoint.depth_metres, codes)
 
 
-def density(projection: Projection) -> float:
-    """Pixels per radian in the middle of a picture."""
-    if isinstance(projection, Perspective):
-        return projection.focal_px
-    middle, below = projection.directions((0.5, 0.5)), projection.directions((0.5, 0.5 + 1 / projection.height))
-    return 1.0 / math.radians(float(angle_between_deg(middle, below)))
-
-
 def _look_up(viewpoint: Viewpoint, atlas: Atlas, projection: Projection, interpolation: int) -> NDArray[Any]:
     where = atlas_map(viewpoint, atlas, projection)
     return np.asarray(cv2.remap(atlas.sheet, where, None, interpolation))
@@ -62,32 +54,41 @@ def _look_up(viewpoint: Viewpoint, atlas: Atlas, projection: Projection, interpo
 
 def atlas_map(viewpoint: Viewpoint, atlas: Atlas, projection: Projection) -> Map:
     """(H, W, 2): for each pixel of the view its x, y on the sheet of an atlas."""
-    needed = density(projection)
+    needed = projection.density
     grid = Grid(projection, step_px(projection))
-    patches: list[tuple[Map, NDArray[np.uint8] | None, slice, slice]] = []
+    patches: list[Patch] = []
     if needed > TILE_GAIN * atlas.slots[0][0].width / (2 * math.pi):
-        for index in _tiles_in(viewpoint.manifest.tiles[: len(atlas.slots) - 1], projection):
-            patch = _tile_patch(viewpoint.manifest.tiles[index], atlas, 1 + index, grid)
+        for index in _tiles_in(viewpoint, projection, len(atlas.slots) - 1):
+            patch = _tile_patch(viewpoint.tile_views[index], atlas, 1 + index, grid)
             if patch is not None:
                 patches.append(patch)
-                if patch[1] is None:
-                    return patch[0]
+                if patch.inside is None:
+                    return patch.where
     slots = atlas.need(0)
     where = _base_map(viewpoint.manifest.band, _level(slots, slots[0].width / (2 * math.pi), needed), grid)
-    for patch_map, inside, rows, columns in reversed(patches):
-        cv2.copyTo(patch_map, inside, where[rows, columns])
+    for patch in reversed(patches):
+        cv2.copyTo(patch.where, patch.inside, where[patch.place])
     return where
 
 
-class Grid:
-    """Nodes ``step`` pixels apart over a picture and one step beyond it, and the way back from nodes to pixels."""
+class Patch(NamedTuple):
+    """Where a tile shows: its map over a part of the view, and which pixels it covers (None: the tile fills the view)."""
 
-    def __init__(self, projection: Projection, step: int) -> None:
+    where: Map
+    inside: NDArray[np.uint8] | None
+    place: tuple[slice, slice]
+
+
+class Grid:
+    """Nodes ``step`` pixels apart over a part of a picture and one step beyond it, and the way back from nodes to pixels."""
+
+    def __init__(self, projection: Projection, step: int, place: tuple[slice, slice] | None = None) -> None:
         self.projection, self.step = projection, step
-        columns, rows = -(-projection.width // step) + 2, -(-projection.height // step) + 2
-        x = (np.arange(columns) - 0.5) * step / projection.width
-        y = (np.arange(rows) - 0.5) * step / projection.height
-        self.points: Floats = np.stack(np.broadcast_arrays(x[None, :], y[:, None]), axis=-1)
+        self.place = place or (slice(0, projection.height), slice(0, projection.width))
+        rows, columns = self.place
+        x = columns.start + (np.arange(-(-(columns.stop - columns.start) // step) + 2) - 0.5) * step
+        y = rows.start + (np.arange(-(-(rows.stop - rows.start) // step) + 2) - 0.5) * step
+        self.points: Floats = np.stack(np.broadcast_arrays(x[None, :] / projection.width, y[:, None] / projection.height), axis=-1)
         self._directions: Floats | None = None
 
     @property
@@ -97,11 +98,16 @@ class Grid:
             self._directions = self.projection.directions(self.points)
         return self._directions
 
-    def to_pixels(self, nodes: Floats) -> Map:
-        """Values at nodes (rows, columns, 2), bilinear between them, at the middle of every pixel (H, W, 2)."""
-        n, rows, columns = self.step, nodes.shape[0], nodes.shape[1]
-        fine: Map = cv2.resize(nodes.astype(np.float32), (columns * n, rows * n), interpolation=cv2.INTER_LINEAR)
-        return fine[n : n + self.projection.height, n : n + self.projection.width]
+    def part(self, place: tuple[slice, slice]) -> Grid:
+        """A grid as fine as this over another part of the picture."""
+        return self if place == self.place else Grid(self.projection, self.step, place)
+
+    def to_pixels(self, nodes: Floats) -> NDArray[np.float32]:
+        """Values at nodes (rows, columns, n), bilinear between them, at the middle of every pixel of the part."""
+        n, (rows, columns) = self.step, self.place
+        size = nodes.shape[1] * n, nodes.shape[0] * n
+        fine: NDArray[np.float32] = cv2.resize(nodes.astype(np.float32), size, interpolation=cv2.INTER_LINEAR)
+        return fine[n : n + rows.stop - rows.start, n : n + columns.stop - columns.start]
 
 
 def step_px(projection: Projection) -> int:
@@ -114,7 +120,7 @@ def step_px(projection: Projection) -> int:
         return 1
     _, tilt = pan_tilt_deg(projection.directions(corners))
     from_pole = math.radians(90.0 - float(np.abs(tilt).max()))
-    widest = math.sqrt(8 * MAX_MAP_ERROR_PX * density(projection) * math.sin(from_pole))
+    widest = math.sqrt(8 * MAX_MAP_ERROR_PX * projection.density * math.sin(from_pole))
     return int(min(MAX_STEP_PX, 2 ** math.floor(math.log2(max(1.0, widest)))))
 
 
@@ -132,53 +138,42 @@ def _base_map(band: Band, slot: Slot, grid: Grid) -> Map:
     y = slot.y - 0.5 + (band.top_tilt_deg - tilt) / (band.top_tilt_deg - band.bottom_tilt_deg) * slot.height
     where = grid.to_pixels(np.stack([x, np.clip(y, slot.y - 0.5, slot.y + slot.height - 0.5)], axis=-1))
     left, right = slot.x - 0.5, slot.x + slot.width - 0.5
-    if x.min() < left:
-        np.add(where[..., 0], slot.width, out=where[..., 0], where=where[..., 0] < left)
-    if x.max() > right:
-        np.subtract(where[..., 0], slot.width, out=where[..., 0], where=where[..., 0] > right)
+    for beyond, turn_px in ((x.min() < left, slot.width), (x.max() > right, -slot.width)):
+        if beyond:
+            outside = where[..., 0] < left if turn_px > 0 else where[..., 0] > right
+            cv2.add(where, (turn_px, 0), dst=where, mask=outside.view(np.uint8))
     return where
 
 
-def _tiles_in(tiles: list[Tile], projection: Projection) -> list[int]:
+def _tiles_in(viewpoint: Viewpoint, projection: Projection, count: int) -> list[int]:
     """Indices of the tiles that may show in a view, sharpest first (then in the order of the manifest)."""
-    views = [tile_view(tile) for tile in tiles]
-    near = [i for i, view in enumerate(views) if bounds(view, projection) is not None]
-    return sorted(near, key=lambda i: (-views[i].focal_px, i))
+    views = viewpoint.tile_views[:count]
+    if not views:
+        return []
+    apart = angle_between_deg(viewpoint.tile_directions[:count], projection.directions((0.5, 0.5)))
+    near = np.flatnonzero(apart <= viewpoint.tile_reach_deg[:count] + projection.reach_deg)
+    return sorted(near.tolist(), key=lambda i: (-views[i].focal_px, i))
 
 
-def tile_view(tile: Tile) -> Perspective:
-    """The view that a tile's picture is."""
-    return Perspective(tile.pan_deg, tile.tilt_deg, tile.hfov_deg, tile.colour.width, tile.colour.height)
-
-
-def _reach_deg(projection: Projection) -> float:
-    """Angle from the middle of a picture to its farthest corner."""
-    if isinstance(projection, Equirectangular):
-        return 180.0
-    return float(angle_between_deg(projection.directions((0.0, 0.0)), projection.directions((0.5, 0.5))))
-
-
-def _tile_patch(tile: Tile, atlas: Atlas, index: int, grid: Grid) -> tuple[Map, NDArray[np.uint8] | None, slice, slice] | None:
-    """Where a tile shows in the view: its map, the pixels that it covers (None: all of the view), and their rows and columns."""
-    view = tile_view(tile)
+def _tile_patch(view: Perspective, atlas: Atlas, index: int, grid: Grid) -> Patch | None:
     place = bounds(view, grid.projection)
     if place is None:
         return None
-    slot = _level(atlas.need(index), view.focal_px, density(grid.projection))
-    uv = np.nan_to_num(view.points(grid.directions), nan=-1e3)
+    part = grid.part(place)
+    slot = _level(atlas.need(index), view.focal_px, grid.projection.density)
+    uv = np.nan_to_num(view.points(part.directions), nan=-1e3)
     xy = uv * (slot.width, slot.height) + (slot.x - 0.5, slot.y - 0.5)
+    where = part.to_pixels(xy)
     low, high = (slot.x, slot.y), (slot.x + slot.width - 1, slot.y + slot.height - 1)
-    if np.all((xy >= low) & (xy <= high)):
-        return grid.to_pixels(xy), None, slice(None), slice(None)
-    rows, columns = place
-    where = grid.to_pixels(xy)[rows, columns]
-    return where, cv2.inRange(where, low, high), rows, columns
+    if place == grid.place and np.all((xy >= low) & (xy <= high)):
+        return Patch(where, None, place)
+    return Patch(where, cv2.inRange(where, low, high), place)
 
 
 def bounds(view: Perspective, projection: Projection) -> tuple[slice, slice] | None:
     """Rows and columns of a picture that the outline of a perspective view spans; None when it does not reach into the picture."""
     apart = angle_between_deg(view.directions((0.5, 0.5)), projection.directions((0.5, 0.5)))
-    if apart > _reach_deg(view) + _reach_deg(projection):
+    if apart > view.reach_deg + projection.reach_deg:
         return None
     side = np.linspace(0.0, 1.0, 9)
     zero, one = np.zeros(9), np.ones(9)

@@ -151,10 +151,10 @@ def _share_inside(extent: Extent, projection: Projection) -> float:
     points = points[~np.isnan(points).any(axis=-1)]
     if np.all((points >= 0) & (points <= 1)):
         return 1.0
-    outline = points.astype(np.float32)
+    outline = cv2.convexHull(points.astype(np.float32))
     frame = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=np.float32)
     whole = abs(float(cv2.contourArea(outline)))
-    shared, _ = cv2.intersectConvexConvex(cv2.convexHull(outline), frame)
+    shared, _ = cv2.intersectConvexConvex(outline, frame)
     return min(1.0 - 1e-9, float(shared) / whole) if whole > 0 else 1.0 - 1e-9
 
 

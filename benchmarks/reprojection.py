@@ -1,0 +1,99 @@
+"""How fast a view is, as multiples of one bare ``cv2.remap`` with ready maps of the same size, measured in the same run.
+
+    python benchmarks/reprojection.py [--scene highway-works] [--search FOLDER] [--blender-python PYTHON]
+
+With a Python that has ``bpy`` the same views are also rendered by Blender's engines, and the ratios to them printed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from scope_ptz.geometry import AXIS_M5075_G, Perspective, Pose
+from scope_ptz.world.pack import Scene, Viewpoint, find_scenes
+from scope_ptz.world.reproject import atlas_map, colour_view
+from scope_ptz.world.truth import view_truth
+
+WIDTH, HEIGHT = 1280, 720
+ROUNDS = 40
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--scene", default="highway-works")
+    parser.add_argument("--search", type=Path, action="append", default=[], help="extra folder of scenes")
+    parser.add_argument("--threads", type=int, default=cv2.getNumThreads(), help="OpenCV threads")
+    arguments = parser.parse_args()
+    cv2.setNumThreads(arguments.threads)
+    folders = find_scenes(arguments.search)
+    if arguments.scene not in folders:
+        print(f"no scene '{arguments.scene}'; known: {', '.join(folders) or 'none'}", file=sys.stderr)
+        return 2
+    scene = Scene(folders[arguments.scene])
+    print(f"{scene.name}, {WIDTH}x{HEIGHT}, {cv2.getNumThreads()} OpenCV threads, {ROUNDS} rounds; median (10th to 90th percentile)")
+    for place in scene.file.viewpoints:
+        viewpoint = scene.viewpoint(place.name)
+        for name, pose in _poses(viewpoint).items():
+            _report(scene, viewpoint, name, pose)
+    return 0
+
+
+def _poses(viewpoint: Viewpoint) -> dict[str, Pose]:
+    poses = {"panorama only": Pose(0.0, -5.0, 1.0), "nadir": Pose(0.0, -60.0, 1.0), "seam": Pose(179.0, -20.0, 1.0)}
+    if tiles := viewpoint.manifest.tiles:
+        middle = tiles[len(tiles) // 2]
+        poses |= {f"tiles {zoom:g}x": Pose(middle.pan_deg, middle.tilt_deg, zoom) for zoom in (2.0, 3.0, 5.0)}
+    return poses
+
+
+def _report(scene: Scene, viewpoint: Viewpoint, name: str, pose: Pose) -> None:
+    view = Perspective(pose.pan_deg, pose.tilt_deg, AXIS_M5075_G.hfov_deg(pose.zoom), WIDTH, HEIGHT)
+    sheet = viewpoint.colour_atlas.sheet
+    floats = np.ascontiguousarray(atlas_map(viewpoint, viewpoint.colour_atlas, view))
+    fixed = cv2.convertMaps(floats, None, cv2.CV_16SC2)
+    view_truth(scene, viewpoint.name, view, 0.0)
+    times = _interleaved(
+        {
+            "view": lambda: colour_view(viewpoint, view),
+            "float": lambda: cv2.remap(sheet, floats, None, cv2.INTER_LINEAR),
+            "fixed": lambda: cv2.remap(sheet, *fixed, cv2.INTER_LINEAR),
+            "truth": lambda: view_truth(scene, viewpoint.name, view, 0.0),
+        }
+    )
+    print(
+        f"{viewpoint.name:>14} {name:<14} view {_ms(times['view'])}  = {_ratio(times, 'float')} of a remap with float maps, "
+        f"{_ratio(times, 'fixed')} with fixed-point maps; truth {_ms(times['truth'])}"
+    )
+
+
+def _interleaved(calls: dict[str, Callable[[], object]]) -> dict[str, list[float]]:
+    """Seconds of each call in each round, taken in turns so that a busy machine slows all alike."""
+    times: dict[str, list[float]] = {name: [] for name in calls}
+    for turn in range(ROUNDS + 3):
+        for name, call in calls.items():
+            start = time.perf_counter()
+            call()
+            if turn >= 3:
+                times[name].append(time.perf_counter() - start)
+    return times
+
+
+def _ratio(times: dict[str, list[float]], to: str) -> str:
+    ratios = sorted(a / b for a, b in zip(times["view"], times[to], strict=True))
+    return f"{statistics.median(ratios):.2f}x ({ratios[len(ratios) // 10]:.2f} to {ratios[-1 - len(ratios) // 10]:.2f})"
+
+
+def _ms(seconds: list[float]) -> str:
+    return f"{statistics.median(seconds) * 1e3:6.2f} ms"
+
+
+if __name__ == "__main__":
+    sys.exit(main())
