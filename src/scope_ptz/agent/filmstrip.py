@@ -30,7 +30,7 @@ from scope_ptz.errors import OutputError, TraceError
 WIDTH = 1600
 MARGIN = 32
 GAP = 20
-CAPTION = 66
+CAPTION = 60
 MAX_PANELS = 12
 NUMBERED_UP_TO = 40
 """Boxes are numbered up to this many; more would be clutter."""
@@ -185,11 +185,12 @@ def _draw_tile(canvas: Canvas, tile: _Tile, x: float, y: float, width: float, he
     canvas.picture(tile.image, x + 1, y + 1, width - 2, height - 1, radius=11)
     _draw_boxes(canvas, panel, x, y, width, height)
     pose = panel.pose.as_dict()
-    where = f"pan {pose['pan_deg']:+.1f}°   tilt {pose['tilt_deg']:+.1f}°   {pose['zoom']:.1f}x"
+    where = f"pan {pose['pan_deg']:+.1f}° · tilt {pose['tilt_deg']:+.1f}° · {pose['zoom']:.1f}x"
     readout = "full scene" if panel.whole else where
     canvas.tag(x + 12, y + height - 22, readout, 14, fill="#0E131AC8", ink=INK, pad=10)
     if panel.badge:
-        canvas.tag(x + width - 12, y + 28, panel.badge, 20, fill=AMBER, ink=GROUND, pad=13, anchor="r")
+        fill, ink = (AMBER, GROUND) if panel.boxes else ("#0E131AC8", INK)
+        canvas.tag(x + width - 12, y + 28, panel.badge, 20, fill=fill, ink=ink, pad=13, anchor="r")
     _draw_caption(canvas, panel, x + 16, y + height + CAPTION / 2, width - 32)
 
 
@@ -225,8 +226,8 @@ def _draw_caption(canvas: Canvas, panel: Panel, x: float, y: float, width: float
 
 def _draw_footer(canvas: Canvas, trace: Trace, left_out: int, y: float) -> None:
     started = trace.started
-    seen_by = f"planner: {started.planner}   ·   perception: {started.perception}"
-    canvas.text(MARGIN + 4, y, f"SCOPE   ·   {started.camera}   ·   {seen_by}", 15, FAINT)
+    seen_by = f"planner: {started.planner} · perception: {started.perception}"
+    canvas.text(MARGIN + 4, y, f"SCOPE · {started.camera} · {seen_by}", 15, FAINT)
     if left_out:
         note = f"{left_out} steps between {MAX_PANELS // 2 - 1} and {MAX_PANELS // 2 + left_out} are not shown"
         canvas.text(WIDTH - MARGIN - 4, y, note, 15, FAINT, anchor="rs")

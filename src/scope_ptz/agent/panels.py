@@ -46,7 +46,7 @@ def panels_of(trace: Trace) -> list[Panel]:
         panel = _panel(call)
         looks_here = name not in _MOVES and call.outcome.error is None and not panel.whole and name != "zoom_to_object"
         if mergeable and looks_here:
-            panels[-1] = replace(panel, number=panels[-1].number, action=_joined(panels[-1].action, panel))
+            panels[-1] = replace(panel, number=panels[-1].number, action=_joined(panels[-1], panel))
         else:
             panels.append(replace(panel, number=len(panels) + 1))
         mergeable = name in _MOVES and call.outcome.error is None
@@ -55,8 +55,9 @@ def panels_of(trace: Trace) -> list[Panel]:
     return _with_pictures(panels, trace.started.frame)
 
 
-def _joined(move: str, look: Panel) -> str:
-    return f"{move}, {look.action}" if not look.finding else move
+def _joined(move: Panel, look: Panel) -> str:
+    action = f"{move.action} ({move.finding})" if move.finding else move.action
+    return action if look.badge else f"{action}, {look.action}"
 
 
 def _with_pictures(panels: list[Panel], first: str | None) -> list[Panel]:
@@ -110,7 +111,7 @@ def _finding(name: str, result: dict[str, Any]) -> str:
         case "track_object":
             return f"in view {result['held_share']:.0%} of the time" if result.get("found") else "nothing found"
     clamped = result.get("clamped") or ()
-    return f"stopped by the {' and '.join(clamped)} limit" if clamped else ""
+    return f"at the {' and '.join(clamped)} limit" if clamped else ""
 
 
 def _action(outcome: ToolOutcome) -> str:
@@ -144,9 +145,9 @@ def _turns(arguments: dict[str, Any]) -> list[str]:
         if isinstance(angle, int | float) and angle:
             parts.append(f"{more if angle > 0 else less} {abs(angle):g}°")
     if arguments.get("zoom_factor") is not None:
-        parts.append(f"zoom x{arguments['zoom_factor']}")
+        parts.append(f"zoom {arguments['zoom_factor']:g}x")
     if arguments.get("zoom_percent") is not None:
-        parts.append(f"zoom {arguments['zoom_percent']}%")
+        parts.append(f"zoom {arguments['zoom_percent']:+g}%")
     if arguments.get("zoom_limit") is not None:
         parts.append(f"zoom all the way {arguments['zoom_limit']}")
     return parts

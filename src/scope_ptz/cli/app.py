@@ -18,6 +18,7 @@ app = typer.Typer(
     epilog="Exit codes: 0 done, 1 the run failed, 2 wrong input or a damaged pack, 130 cancelled.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
+    add_completion=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 scene_app = typer.Typer(help="The scenes: list, show, view, build and bake them.", no_args_is_help=True)
@@ -39,6 +40,7 @@ RealtimeOption = Annotated[
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON and nothing else.")]
 Output = Annotated[Path, typer.Option("--out", "-o", help="File to write.")]
 SceneName = Annotated[str, typer.Argument(help="Name of the scene.")]
+SceneSource = Annotated[str, typer.Argument(help="Name of a built-in scene, or a Python file with `build(stage)`.")]
 
 
 def _version(wanted: bool) -> None:
@@ -207,3 +209,29 @@ def scene_view(
         from scope_ptz.cli.session import Start
 
         view_scene(Start(name, viewpoint, preset), (pan, tilt, zoom), out)
+
+
+@scene_app.command("build")
+def scene_build(
+    name: SceneSource,
+    out: Annotated[Path | None, typer.Option("--out", "-o", help="Blender file to write (default: NAME.blend).")] = None,
+) -> None:
+    """Build a scene from its code in Blender and save it as a .blend file."""
+    with ending():
+        from scope_ptz.cli.baking import build_scene
+
+        build_scene(name, out)
+
+
+@scene_app.command("bake")
+def scene_bake(
+    name: SceneSource,
+    quality: Annotated[str, typer.Option("--quality", help="draft, standard or high.")] = "standard",
+    out: Annotated[Path | None, typer.Option("--out", "-o", help="Scene folder to write (default: scenes/NAME).")] = None,
+    viewpoint: Annotated[list[str] | None, typer.Option("--viewpoint", help="Only this viewpoint; may be repeated.")] = None,
+) -> None:
+    """Render a scene's viewpoints into packs. An interrupted bake goes on where it stopped."""
+    with ending():
+        from scope_ptz.cli.baking import bake_scene
+
+        bake_scene(name, out, quality, viewpoint or [])

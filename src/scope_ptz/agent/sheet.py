@@ -1,0 +1,27 @@
+"""A sheet of captioned pictures, in the manner of the filmstrip."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PIL import Image
+
+from scope_ptz.agent.drawing import EDGE, INK, SURFACE, Canvas, cut, drawable
+
+_WIDTH, _MARGIN, _GAP, _CAPTION, _TITLE, _COLUMNS = 1600, 32, 20, 44, 64, 3
+
+
+def contact_sheet(title: str, pictures: Sequence[tuple[str, Image.Image]]) -> Image.Image:
+    """``pictures``: captions and images of one size."""
+    width = (_WIDTH - 2 * _MARGIN - _GAP * (_COLUMNS - 1)) / _COLUMNS
+    height = width * pictures[0][1].height / pictures[0][1].width
+    rows = -(-len(pictures) // _COLUMNS)
+    canvas = Canvas(_WIDTH, _TITLE + rows * (height + _CAPTION + _GAP) + _MARGIN)
+    canvas.text(_MARGIN, 46, title, 26, bold=True)
+    for number, (caption, image) in enumerate(pictures):
+        row, column = divmod(number, _COLUMNS)
+        x, y = _MARGIN + column * (width + _GAP), _TITLE + row * (height + _CAPTION + _GAP)
+        canvas.panel(x, y, width, height + _CAPTION, SURFACE, radius=12, edge=EDGE)
+        canvas.picture(image, x + 1, y + 1, width - 2, height - 1, radius=11)
+        canvas.text(x + 16, y + height + _CAPTION / 2, cut(drawable(caption), 18, width - 32), 18, INK, anchor="lm")
+    return canvas.finish()

@@ -1,0 +1,109 @@
+"""``scope scene build`` and ``scope scene bake``: from code to a Blender file, and to the frozen packs."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.text import Text
+
+from scope_ptz.blender.bake import bake
+from scope_ptz.blender.client import BlenderWorker
+from scope_ptz.blender.environment import is_ready, worker_command
+from scope_ptz.blender.quality import QUALITIES
+from scope_ptz.errors import OutputError, UnknownNameError
+from scope_ptz.settings import ScopeSettings, load_settings
+
+
+def build_scene(source: str, out: Path | None) -> None:
+    """Build a scene by its code in Blender and save it as a .blend file to look at."""
+    settings, console = load_settings(), Console(highlight=False)
+    _check(source)
+    target = (out or Path(f"{Path(source).stem}.blend")).absolute()
+    _make_folder(target.parent)
+    began = time.monotonic()
+    with BlenderWorker(_command(settings, console), settings.cache_dir / "build.log") as worker:
+        worker.request("load_scene", {"source": source})
+        facts: dict[str, Any] = worker.request("describe")
+        worker.request("save", {"path": str(target)})
+    counts = f"{len(facts['instances'])} things, {len(facts['texts'])} texts, {len(facts['viewpoints'])} viewpoints"
+    console.print(Text(f"Wrote {target}: {counts}, {time.monotonic() - began:.0f} s"), soft_wrap=True)
+
+
+def bake_scene(source: str, out: Path | None, quality: str, viewpoints: list[str]) -> None:
+    """Bake a scene's packs. A bake that was interrupted goes on where it stopped."""
+    settings, console = load_settings(), Console(highlight=False)
+    _check(source)
+    if quality not in QUALITIES:
+        raise UnknownNameError("quality", quality, QUALITIES)
+    folder = (out or Path("scenes") / Path(source).stem.replace("_", "-")).absolute()
+    _make_folder(folder.parent)
+    command = _command(settings, console)
+    with _Bars(console) as bars:
+        baked = bake(
+            source,
+            folder,
+            quality=quality,
+            command=command,
+            cache_dir=settings.cache_dir,
+            viewpoints=viewpoints or None,
+            progress=bars,
+        )
+    for pack in baked:
+        line = f"{pack.folder}: {pack.weight_bytes / 1e6:.2f} MB, {pack.tiles} tiles"
+        console.print(Text(line), soft_wrap=True)
+        if pack.uncovered:
+            console.print(Text(f"  not in a tile: {', '.join(pack.uncovered)}", style="yellow"))
+    console.print(
+        Text(f"To look at it: SCOPE_SCENES_DIR={folder.parent} scope scene show {folder.name}", style="dim"), soft_wrap=True
+    )
+
+
+class _Bars:
+    """A bar for every part of a bake, with the time that is left."""
+
+    def __init__(self, console: Console) -> None:
+        self._progress = Progress(
+            TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn(),
+            console=console,
+        )  # fmt: skip
+        self._tasks: dict[str, TaskID] = {}
+
+    def __enter__(self) -> _Bars:
+        self._progress.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._progress.stop()
+
+    def __call__(self, part: str, done: int, total: int, seconds: float) -> None:  # noqa: ARG002 - the bar keeps its own time
+        if part not in self._tasks:
+            self._tasks[part] = self._progress.add_task(part, total=total)
+        self._progress.update(self._tasks[part], completed=done, total=total)
+
+
+def _check(source: str) -> None:
+    """A wrong name is told before Blender starts."""
+    if source.endswith(".py") and Path(source).is_file():
+        return
+    modules = Path(__file__).resolve().parents[1] / "studio" / "scenes"
+    known = [p.stem.replace("_", "-") for p in modules.glob("*.py") if "\ndef build(" in p.read_text(encoding="utf-8")]
+    if source not in known:
+        raise UnknownNameError("scene", source, known)
+
+
+def _command(settings: ScopeSettings, console: Console) -> list[str]:
+    chosen = settings.blender_python or settings.blender
+    if chosen is None and not is_ready(settings.cache_dir):
+        console.print("Installing Blender's Python module, about 400 MB; this happens once.", style="yellow")
+    return worker_command(settings.cache_dir, chosen)
+
+
+def _make_folder(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"{folder} cannot be made: {error.strerror}.") from error
