@@ -1,0 +1,52 @@
+"""Is there, how many."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from scope_ptz.perception.answers.naming import Reply, are, none_of, noun, plural, reply, several
+from scope_ptz.perception.language import syntax as s
+from scope_ptz.perception.language import words as w
+from scope_ptz.perception.matching import find
+from scope_ptz.perception.view import Thing, View
+
+TOLD_APART = 3
+"""Up to this many things are named one by one."""
+
+
+def narrowed(description: s.Description, tests: tuple[s.Test, ...]) -> s.Description:
+    """The description with more tests; a superlative among them becomes its order."""
+    orders = [t for t in tests if isinstance(t, s.Order)]
+    rest = tuple(t for t in tests if not isinstance(t, s.Order))
+    return s.Description(
+        tuple(replace(p, tests=(*p.tests, *rest), order=orders[0] if orders else p.order) for p in description.phrases)
+    )
+
+
+def exists(view: View, question: s.Exists) -> Reply:
+    found = find(view, question.what)
+    if not found:
+        return reply(f"{'yes' if question.negated else 'no'}, {none_of(view, question.what)}")
+    return reply(f"{'no' if question.negated else 'yes'}, {there_are(view, question.what, found)}")
+
+
+def there_are(view: View, what: s.Description, found: list[Thing]) -> str:
+    """ "there are 2 cars: a red car on the left and a white car in the middle"."""
+    if len(found) == 1:
+        return f"there is {several(found)}"
+    said = f"there are {len(found)} {noun(view, what, many=True)}"
+    return f"{said}: {several(found)}" if len(found) <= TOLD_APART else said
+
+
+def count(view: View, question: s.Count) -> Reply:
+    what = narrowed(question.what, question.tests)
+    total = len(find(view, what))
+    if len(what.phrases) == 1:
+        return reply(f"there {are(total)} {total} {noun(view, what, many=total != 1)} in view")
+    parts = [s.Description((p,)) for p in what.phrases]
+    counts = [(len(find(view, p)), p) for p in parts]
+    listed = w.listing([f"{n} {noun(view, p, many=n != 1)}" for n, p in counts])
+    return reply(f"there {are(total)} {total} in view: {listed}")
+
+
+__all__ = ["count", "exists", "narrowed", "plural", "there_are"]

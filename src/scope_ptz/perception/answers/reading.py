@@ -1,0 +1,86 @@
+"""Texts: only what is legible is read; what is not is said to be there, with the reason."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from scope_ptz.perception.answers.naming import Reply, none_of, plural, reply, the, unknown
+from scope_ptz.perception.language import syntax as s
+from scope_ptz.perception.language import words as w
+from scope_ptz.perception.matching import find
+from scope_ptz.perception.view import Thing, View
+from scope_ptz.world.truth import MAX_READING_ANGLE_DEG, MIN_CAP_HEIGHT_PX, TextSighting
+
+
+def read(view: View, question: s.Read) -> Reply:
+    """What a thing says; a thing's number plate; or everything that can be read."""
+    if question.what is None:
+        return _read(view, None, [t for t in view.texts if not question.plate or is_plate(view, t)], question.plate)
+    things = find(view.for_reading(), question.what)
+    if not things:
+        return unknown(f"I cannot tell: {none_of(view, question.what)}")
+    texts = _texts(view, things, question.plate)
+    return _read(view, question.what, texts, question.plate)
+
+
+def _texts(view: View, things: Sequence[Thing], plate: bool) -> list[TextSighting]:
+    found = [t for t in view.texts if any(view.belongs(t.text.parent, x.id) for x in things)]
+    return [t for t in found if is_plate(view, t) == plate] or ([] if plate else found)
+
+
+def is_plate(view: View, text: TextSighting) -> bool:
+    """Whether a text is a vehicle's number plate, by its own id or by what it is on."""
+    return "plate" in text.text.id.lower() or "plate" in view.names.get(text.text.parent, "").lower().split()
+
+
+def _read(view: View, what: s.Description | None, texts: Sequence[TextSighting], plate: bool) -> Reply:
+    subject = the(view, what, plural(what)) if what else "the picture"
+    legible = list(dict.fromkeys(t.text.text for t in texts if t.legible))
+    if legible:
+        quoted = w.listing([f'"{t}"' for t in legible])
+        if plate:
+            return Reply(w.sentence(f"the number plate reads {quoted}"))
+        return Reply(
+            w.sentence(
+                f"{subject} {'read' if what and plural(what) else 'reads'} {quoted}" if what else f"I can read {quoted}"
+            )
+        )
+    if texts:
+        thing = "a number plate" if plate else "text"
+        return unknown(f"there is {thing} {'on ' + subject if what else 'in view'}, but it is {why_not(texts)} to read")
+    if plate:
+        return unknown(f"I cannot tell: I can see no number plate {'on ' + subject if what else 'in view'}")
+    return reply(f"there is no text on {subject}" if what else "there is no text in view")
+
+
+def why_not(texts: Sequence[TextSighting]) -> str:
+    """Why the largest of some illegible texts cannot be read."""
+    best = max(texts, key=lambda t: t.cap_height_px)
+    if best.cap_height_px < MIN_CAP_HEIGHT_PX:
+        return "too small"
+    return "too oblique" if best.angle_deg > MAX_READING_ANGLE_DEG else "too much hidden or cut off"
+
+
+def text_exists(view: View, question: s.TextExists) -> Reply:
+    """Whether there is text, and what it says."""
+    if question.what is None:
+        texts: Sequence[TextSighting] = view.texts
+        where = "in view"
+    else:
+        things = find(view.for_reading(), question.what)
+        if not things:
+            return unknown(f"I cannot tell: {none_of(view, question.what)}")
+        texts = [t for t in view.texts if any(view.belongs(t.text.parent, x.id) for x in things)]
+        where = f"on {the(view, question.what, plural(question.what))}"
+    legible = list(dict.fromkeys(t.text.text for t in texts if t.legible))
+    if legible:
+        return reply(f"yes, I can read {w.listing([f'{chr(34)}{t}{chr(34)}' for t in legible])} {where}")
+    if texts:
+        return unknown(f"there is text {where}, but it is {why_not(texts)} to read")
+    return reply(f"no, there is no text {where}")
+
+
+def spoken_texts(view: View, signs: Sequence[Thing]) -> Reply | None:
+    """The legible texts of some signs, None when they have none at all."""
+    texts = _texts(view, signs, plate=False)
+    return _read(view, None, texts, plate=False) if texts else None

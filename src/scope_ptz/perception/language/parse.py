@@ -1,0 +1,54 @@
+"""Reading descriptions and questions: lark finds every reading that the grammar allows, the cheapest one wins."""
+
+from __future__ import annotations
+
+from functools import cache, lru_cache
+from importlib.resources import files
+
+from lark import Lark
+from lark.exceptions import LarkError
+from lark.visitors import CollapseAmbiguities
+
+from scope_ptz.perception.language.build import Builder
+from scope_ptz.perception.language.choose import cost
+from scope_ptz.perception.language.syntax import Description, Phrase, Question
+from scope_ptz.perception.language.tokens import Passed, tokenise
+
+MAX_TOKENS = 40
+"""Longer input is no description of a picture, and would take long to parse."""
+
+
+@cache
+def _grammar() -> Lark:
+    text = files(__package__).joinpath("grammar.lark").read_text("utf-8")
+    return Lark(text, parser="earley", lexer=Passed, ambiguity="explicit", start=["description", "question"])
+
+
+@lru_cache(maxsize=512)
+def parse_description(text: str) -> Description:
+    """The best reading of a noun phrase; one that fits no rule is taken as a bag of words, which must all apply."""
+    found = _best(text, "description")
+    if isinstance(found, Description):
+        return found
+    return Description(
+        (Phrase(tuple(str(t) for t in tokenise(text) if t.type in {"W", "COLOUR", "SIDE", "NUM", "TEXTNOUN"})),)
+    )
+
+
+@lru_cache(maxsize=512)
+def parse_question(text: str) -> Question | None:
+    """The best reading of a question, None when it fits no rule."""
+    found = _best(text, "question")
+    return None if isinstance(found, Description) else found
+
+
+def _best(text: str, start: str) -> Description | Question | None:
+    tokens = tokenise(text)
+    if not 0 < len(tokens) <= MAX_TOKENS:
+        return None
+    try:
+        forest = _grammar().parse(tokens, start=start)  # type: ignore[arg-type]
+    except LarkError:
+        return None
+    readings = [Builder().transform(tree) for tree in CollapseAmbiguities().transform(forest)]
+    return min(readings, key=cost, default=None)

@@ -1,0 +1,129 @@
+"""From text to typed tokens: the closed-class phrases of the vocabulary, numbers, ordinals, quoted text, and ``W`` for all else."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+from lark import Token
+from lark.lexer import Lexer
+
+from scope_ptz.perception.language import words as w
+
+_FRAME_WORDS = frozenset(
+    "frame picture image view screen shot photo photograph scene panorama footage video camera surroundings sight".split()
+)
+_FRAME_FILLERS = frozenset(
+    "the this that your our current entire whole full present camera visible given overall same".split()
+)
+_FRAME_PREPOSITIONS = frozenset("in of from on across within throughout inside around for".split())
+_TEXT_ENDS = frozenset({"visible", "there", "?"})
+_PARTICLES = frozenset("on off up down in out".split())
+
+
+class Passed(Lexer):
+    """Hands lark the tokens that were made here."""
+
+    __future_interface__ = 1
+
+    def __init__(self, lexer_conf: Any) -> None:
+        pass
+
+    def lex(self, lexer_state: Any, parser_state: Any) -> Iterator[Token]:
+        yield from lexer_state.text
+
+
+@cache
+def _phrases() -> tuple[dict[tuple[str, ...], tuple[str, str]], int]:
+    """Every closed-class phrase with its type and value, and the length of the longest."""
+    table: dict[tuple[str, ...], tuple[str, str]] = {}
+    for line in files(__package__).joinpath("vocabulary.txt").read_text("utf-8").splitlines():
+        if not line.strip() or line.startswith("#"):
+            continue
+        kind, _, phrases = line.partition(" : ")
+        name, _, value = kind.strip().partition("=")
+        listed = [",", ";"] if name == "COMMA" else [p.strip().strip('"') for p in phrases.split(",")]
+        for phrase in listed:
+            table.setdefault(tuple(phrase.split()), (name, value or phrase))
+    for word, name in (("which", "WHICH"), ("who", "WHO")):
+        table[(word,)] = (name, word)
+    return table, max(map(len, table))
+
+
+def tokenise(text: str) -> list[Token]:
+    """Typed tokens of a description or question."""
+    words = _without_frame(w.split(text))
+    table, longest = _phrases()
+    tokens: list[Token] = []
+    i = 0
+    while i < len(words):
+        for size in range(min(longest, len(words) - i), 0, -1):
+            found = table.get(tuple(words[i : i + size]))
+            if found and (tokens or found[0] != "THAT"):
+                break
+        else:
+            tokens.append(_open(words[i]))
+            i += 1
+            continue
+        kind, value = found
+        last = i + size == len(words)
+        if size == 1 and last and words[i] in _PARTICLES:
+            tokens.append(Token("W", words[i]))
+        elif kind != "SKIP":
+            tokens.append(Token(kind, value if kind not in {"SAYS", "READ"} else words[i]))
+        i += size
+        if kind == "SAYS" and not (tokens[0].type == "WHAT" and any(t.type == "DOES" for t in tokens)):
+            literal, i = _literal(words, i)
+            if literal:
+                tokens.append(Token("TEXT", literal))
+    return tokens
+
+
+def _open(word: str) -> Token:
+    if word[0] in "\"'" and len(word) > 2:
+        return Token("TEXT", word[1:-1])
+    if w.ordinal(word) is not None:
+        return Token("ORD", str(w.ordinal(word)))
+    if w.number(word) is not None and word != "one":
+        return Token("NUM", word)
+    return Token("W", word)
+
+
+def _literal(words: list[str], start: int) -> tuple[str, int]:
+    """The text after "says": the quoted string, or everything up to the end."""
+    if start < len(words) and words[start][0] in "\"'":
+        return words[start].strip("\"'"), start + 1
+    end = start
+    while end < len(words) and words[end] not in _TEXT_ENDS:
+        end += 1
+    while end > start + 1 and tuple(words[end - 2 : end]) in {("on", "it"), ("on", "them")}:
+        end -= 2
+    return " ".join(words[start:end]), end + (2 if words[end : end + 2] in (["on", "it"], ["on", "them"]) else 0)
+
+
+def _without_frame(words: list[str]) -> list[str]:
+    """Drops "in the picture", "of the whole scene" and the like: everything is about the picture."""
+    kept: list[str] = []
+    i = 0
+    while i < len(words):
+        end = i + 1
+        if words[i] in _FRAME_PREPOSITIONS and i > 0:
+            while (
+                end < len(words)
+                and words[end] in _FRAME_FILLERS
+                and not (words[end] in _FRAME_WORDS and _closes(words, end))
+            ):
+                end += 1
+            if end < len(words) and words[end] in _FRAME_WORDS and _closes(words, end) and end > i + 1:
+                i = end + 1
+                continue
+        kept.append(words[i])
+        i += 1
+    return kept
+
+
+def _closes(words: list[str], at: int) -> bool:
+    """Whether the frame word ends its phrase ("the camera" but not "the camera van")."""
+    return at + 1 >= len(words) or words[at + 1] not in _FRAME_WORDS

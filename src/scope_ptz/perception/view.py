@@ -1,0 +1,197 @@
+"""What a frame shows, ready for questions: visible things with their facts, and the texts on them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scope_ptz.geometry import direction
+from scope_ptz.perception.base import Box
+from scope_ptz.perception.language import words as w
+from scope_ptz.perception.language.lexicon import lexicon, singular_phrase
+from scope_ptz.world.models import Attribute, SceneActor, SceneFile, SceneInstance
+from scope_ptz.world.truth import Sighting, TextSighting, ViewTruth
+
+Floats = NDArray[np.float64]
+
+PART_WORDS = (" with ", " of ", " on ", " in ", " at ", " for ", " by ", " from ", " near ")
+"""What ends the head of a name: "lorry with crane" is a lorry."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Thing:
+    """A visible instance. ``low_m``/``high_m``: its world box; ``motion``: "moving", "stationary" or nothing known."""
+
+    sighting: Sighting
+    low_m: Floats
+    high_m: Floats
+    concepts: frozenset[str]
+    motion: str
+    texts: tuple[str, ...] = ()
+
+    @property
+    def id(self) -> str:
+        return self.sighting.instance.id
+
+    @property
+    def name(self) -> str:
+        return self.sighting.instance.name or self.sighting.instance.category
+
+    @property
+    def category(self) -> str:
+        return self.sighting.instance.category
+
+    @property
+    def attributes(self) -> Mapping[str, Attribute]:
+        return self.sighting.instance.attributes
+
+    @property
+    def parent(self) -> str | None:
+        instance = self.sighting.instance
+        return instance.parent if isinstance(instance, SceneInstance) else None
+
+    @property
+    def box(self) -> Box:
+        x0, y0, x1, y1 = self.sighting.box
+        return Box(x_min=max(x0, 0.0), y_min=max(y0, 0.0), x_max=min(x1, 1.0), y_max=min(y1, 1.0), label=self.name)
+
+    @property
+    def distance_m(self) -> float:
+        return self.sighting.distance_m
+
+    def gap_m(self, other: Thing) -> float:
+        """Metres of air between the two world boxes."""
+        apart = np.maximum(0.0, np.maximum(self.low_m - other.high_m, other.low_m - self.high_m))
+        return float(np.linalg.norm(apart))
+
+
+@dataclass(frozen=True)
+class View:
+    """Everything visible in a frame, nearest first."""
+
+    things: tuple[Thing, ...]
+    texts: tuple[TextSighting, ...]
+    parents: Mapping[str, str]
+    """Instance id to its parent's id, for the whole scene."""
+    names: Mapping[str, str]
+    values: Mapping[str, frozenset[str]]
+    """Attribute key to every word that it takes anywhere in the scene."""
+    nouns: frozenset[str] = field(default=frozenset())
+    """Nouns of the scene beside the lexicon's."""
+    hosts: tuple[Thing, ...] = ()
+    """Things too cut off to count as visible that bear a legible text: a sign that more than fills the frame."""
+
+    @cached_property
+    def by_id(self) -> dict[str, Thing]:
+        return {thing.id: thing for thing in self.things}
+
+    def belongs(self, part: str, whole: str) -> bool:
+        """Whether ``part`` is the instance ``whole`` or hangs on it, directly or not."""
+        current: str | None = part
+        while current is not None:
+            if current == whole:
+                return True
+            current = self.parents.get(current)
+        return False
+
+    def texts_on(self, thing: Thing) -> tuple[TextSighting, ...]:
+        """Texts on a thing and on its parts, top to bottom and left to right."""
+        return tuple(t for t in self.texts if self.belongs(t.text.parent, thing.id))
+
+    def for_reading(self) -> View:
+        """The view with the hosts of legible texts among its things."""
+        return replace(self, things=(*self.things, *self.hosts))
+
+    def top_level(self) -> tuple[Thing, ...]:
+        """Things that are no part of another visible thing."""
+        return tuple(t for t in self.things if t.parent is None or t.parent not in self.by_id)
+
+
+def read_view(truth: ViewTruth, scene: SceneFile, viewpoint: str, time_s: float) -> View:
+    """The view of a frame from its ground truth."""
+    everything = (*scene.instances, *scene.actors)
+    parents = {i.id: i.parent for i in scene.instances if i.parent}
+    values: dict[str, set[str]] = {}
+    nouns: set[str] = set()
+    for instance in everything:
+        nouns |= {singular_phrase(n.lower()) for n in (instance.category, _head(instance.name)) if n.strip()}
+        for key, value in instance.attributes.items():
+            values.setdefault(key, set()).update(w.letters(str(value)).split())
+    texts = tuple(sorted(truth.texts, key=lambda t: (round(t.box[1], 2), t.box[0])))
+    origin = next(v for v in scene.viewpoints if v.name == viewpoint)
+    legible: dict[str, list[str]] = {}
+    for text in (t for t in texts if t.legible):
+        holder: str | None = text.text.parent
+        while holder is not None:
+            legible.setdefault(holder, []).append(text.text.text)
+            holder = parents.get(holder)
+
+    def thing(sighting: Sighting) -> Thing:
+        low, high = _world_box(sighting, np.array(origin.position_m), origin.pan0_bearing_deg)
+        instance = sighting.instance
+        return Thing(
+            sighting, low, high, _concepts(instance), _motion(instance, time_s), tuple(legible.get(instance.id, ()))
+        )
+
+    return View(
+        things=tuple(thing(x) for x in truth.visible),
+        texts=texts,
+        parents=parents,
+        names={i.id: i.name for i in everything},
+        values={k: frozenset(v) for k, v in values.items()},
+        nouns=frozenset(nouns),
+        hosts=tuple(thing(x) for x in truth.sightings if not x.visible and x.instance.id in legible),
+    )
+
+
+def _head(name: str) -> str:
+    """The part of a name that says what the thing is."""
+    head = name.lower()
+    for mark in PART_WORDS:
+        head = head.partition(mark)[0]
+    return head
+
+
+def _concepts(instance: SceneInstance | SceneActor) -> frozenset[str]:
+    """Every concept that the instance falls under: by category, by kind, by the noun at the end of its name."""
+    table = lexicon()
+    found: set[str] = set()
+    for phrase in (
+        instance.category.lower(),
+        str(instance.attributes.get("kind", "")).lower(),
+        str(instance.attributes.get("type", "")).lower(),
+    ):
+        if phrase and (concept := table.concept(phrase)):
+            found |= table.kinds(concept)
+    name = _head(instance.name).split()
+    for start in range(len(name)):
+        if concept := table.concept(" ".join(name[start:])):
+            found |= table.kinds(concept)
+            break
+    return frozenset(found or {"thing"})
+
+
+def _world_box(sighting: Sighting, camera_m: Floats, bearing_deg: float) -> tuple[Floats, Floats]:
+    instance = sighting.instance
+    if isinstance(instance, SceneInstance):
+        return np.array(instance.box_min_m), np.array(instance.box_max_m)
+    half = np.array(instance.size_m) / 2
+    centre = camera_m + direction(sighting.pan_deg + bearing_deg, sighting.tilt_deg) * (
+        sighting.distance_m + half.min()
+    )
+    return centre - half, centre + half
+
+
+def _motion(instance: SceneInstance | SceneActor, time_s: float) -> str:
+    """Actors move while their path does; what is baked stands still. Only vehicles, machines and people are asked about."""
+    if isinstance(instance, SceneInstance):
+        return "stationary"
+    now = time_s % instance.period_s
+    for (t0, *a), (t1, *b) in zip(instance.waypoints, instance.waypoints[1:], strict=False):
+        if t0 <= now <= t1:
+            return "moving" if a != b else "stationary"
+    return "stationary"
