@@ -159,18 +159,16 @@ def _boundaries(stage: Stage, height: Height) -> None:
     """Timber fences along the highway boundary, hedges behind them. Unannotated: they run on for ever."""
     fence = structures.post_and_rail(9.0)
     first = True
-    for x, spans in ((27.5, ((-190, 64), (106, 190))), (-21.2, ((6, 62), (106, 190))), (-21.2, ((-190, -36),))):
+    for x, spans in ((27.5, ((-190, 64), (106, 190))), (-21.2, ((106, 190), (-190, -50)))):
         for start, end in spans:
             for y in range(start, end - 8, 9):
-                if x < 0 and 8 < y < 26 or (x < 0 and -46 < y < -34):
-                    continue
                 stage.put(fence if first else fence.copy(), (x, y + 4.5, height(x, y)), 90)
                 first = False
     hedge = [vegetation.hedge(8.4, seed=k, detail=0.8) for k in range(2)]
     used = [False, False]
     rng = random.Random("hedges")
     lines = [((30.0, -190.0), (30.0, -66.0)), ((33.0, 108.0), (33.0, 200.0)), ((-24.5, 108.0), (-24.5, 200.0)), ((-24.5, -190.0), (-24.5, -62.0)),
-             ((-54.5, -60.0), (-54.5, 4.0)), ((-58.0, 14.0), (-150.0, 6.0)), ((-54.0, -60.0), (-24.5, -62.0)), ((30.0, 64.0), (36.0, 64.0))]  # fmt: skip
+             ((-54.5, -60.0), (-54.5, 4.0)), ((-58.0, 14.0), (-150.0, 6.0)), ((-58.0, 14.0), (-52.0, 70.0)), ((-54.5, -60.0), (-190.0, -84.0)), ((-96.0, 10.0), (-104.0, -64.0)), ((-54.0, -60.0), (-24.5, -62.0)), ((30.0, 64.0), (36.0, 64.0))]  # fmt: skip
     for (x0, y0), (x1, y1) in lines:
         length = math.hypot(x1 - x0, y1 - y0)
         bearing = math.degrees(math.atan2(x1 - x0, y1 - y0)) - 90
@@ -216,12 +214,12 @@ def _countryside(stage: Stage, height: Height) -> None:
         x, y = rng.gauss(-100, 22), rng.gauss(66, 26)
         if min(math.hypot(x - hx, y - hy) for hx, hy in ((-74, 30), (-86, 44), (-70, 62), (-98, 20), (-112, 52), (-90, 78))) > 10 and x < -58:
             strew(any_tree(), x, y, rng.uniform(0, 360), rng.uniform(0.55, 0.95))
-    for _ in range(30):
+    for _ in range(60):
         x, y, heading, count = rng.uniform(-620, 620), rng.uniform(-620, 620), rng.uniform(0, 180), rng.randrange(4, 11)
         dx, dy = math.sin(math.radians(heading)), math.cos(math.radians(heading))
         for k in range(count):
             px, py = x + dx * 16 * k, y + dy * 16 * k
-            if abs(px - ROAD.centre_x(py)) < 70 or math.hypot(px, py) < 150:
+            if abs(px - ROAD.centre_x(py)) < 70 or math.hypot(px, py) < 110:
                 continue
             strew(hedgerow, px, py, heading - 90, 1.0)
             if rng.random() < 0.35:
