@@ -18,7 +18,7 @@ from scope_ptz.agent.trace import TraceWriter, read_trace
 from scope_ptz.camera.base import Camera
 from scope_ptz.cli.display import LiveView, show_end
 from scope_ptz.cli.endings import CANCELLED, exit_code, put_json
-from scope_ptz.cli.session import Start, make_perception, make_planner, open_camera
+from scope_ptz.cli.session import Start, make_perception, make_planner, open_camera, open_scene
 from scope_ptz.errors import InputError
 from scope_ptz.perception.base import Perception
 from scope_ptz.planner.base import PastTurn, Planner
@@ -52,8 +52,10 @@ class Session:
     @classmethod
     async def open(cls, options: Asking) -> Session:
         planner = make_planner(options.planner)
-        perception, note = make_perception(options.perception, options.start.scene, options.seed)
-        return cls(options, await open_camera(options.start, realtime=options.in_real_time), perception, planner, note)
+        scene = open_scene(options.start.scene)
+        perception, note = make_perception(options.perception, scene, options.seed)
+        camera = await open_camera(options.start, scene, realtime=options.in_real_time)
+        return cls(options, camera, perception, planner, note)
 
     async def run(self, instruction: str, folder: RunFolder, listener: Listener, conversation: tuple[PastTurn, ...] = ()) -> Run:
         """One run, recorded in ``folder``."""

@@ -90,7 +90,7 @@ def _check(source: str) -> None:
     if source.endswith(".py") and Path(source).is_file():
         return
     modules = Path(__file__).resolve().parents[1] / "studio" / "scenes"
-    known = [p.stem.replace("_", "-") for p in modules.glob("*.py") if "\ndef build(" in p.read_text(encoding="utf-8")]
+    known = [p.stem.replace("_", "-") for p in modules.glob("*.py") if "\nNAME = " in p.read_text(encoding="utf-8")]
     if source not in known:
         raise UnknownNameError("scene", source, known)
 

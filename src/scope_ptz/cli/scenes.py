@@ -100,7 +100,7 @@ async def _write_contact_sheet(scene: Scene, path: Path) -> None:
 
     from scope_ptz.agent.sheet import contact_sheet
 
-    camera = await open_camera(Start(scene.name), realtime=False)
+    camera = await open_camera(Start(scene.name), scene, realtime=False)
     pictures = []
     for preset in scene.file.presets:
         await camera.go_to_preset(preset.name)
@@ -114,7 +114,7 @@ def view_scene(start: Start, wanted: tuple[float | None, float | None, float | N
     from PIL import Image
 
     async def work() -> None:
-        camera = await open_camera(start, realtime=False)
+        camera = await open_camera(start, open_scene(start.scene), realtime=False)
         here = await camera.pose()
         pan, tilt, zoom = (given if given is not None else now for given, now in zip(wanted, _parts(here), strict=True))
         try:

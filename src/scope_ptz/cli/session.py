@@ -42,14 +42,14 @@ def open_scene(name: str) -> Scene:
     return load_scene(name, scene_search(load_settings()))
 
 
-async def open_camera(start: Start, *, realtime: bool) -> SimulatedCamera:
+async def open_camera(start: Start, scene: Scene, *, realtime: bool) -> SimulatedCamera:
     """A simulated camera at its start."""
     from scope_ptz.camera.simulated import SimulatedCamera
     from scope_ptz.world.clock import SceneClock
 
     if start.viewpoint and start.preset:
         raise InputError("Give --viewpoint or --preset, not both: a preset names its viewpoint.")
-    camera = SimulatedCamera(open_scene(start.scene), viewpoint=start.viewpoint, clock=SceneClock(realtime=realtime))
+    camera = SimulatedCamera(scene, viewpoint=start.viewpoint, clock=SceneClock(realtime=realtime))
     if start.preset:
         await camera.go_to_preset(start.preset)
     return camera
@@ -69,13 +69,13 @@ def _grammar() -> Planner:
     return GrammarPlanner()
 
 
-def make_perception(name: str, scene: str, seed: int) -> tuple[Perception, str]:
-    """A perception backend by name, and the note that says what it is."""
+def make_perception(name: str, scene: Scene, seed: int) -> tuple[Perception, str]:
+    """A perception backend by name, and the note that says what it is. ``scene`` is shared with the camera, not read twice."""
     if name not in ("ground-truth", "noisy"):
         raise UnknownNameError("perception", name, ("ground-truth", "noisy"))
     from scope_ptz.perception.ground_truth import GroundTruthPerception
 
-    truth = GroundTruthPerception(open_scene(scene))
+    truth = GroundTruthPerception({scene.name: scene}.__getitem__)
     if name == "ground-truth":
         return truth, GROUND_TRUTH_NOTE
     from scope_ptz.perception.noisy import NoisyPerception

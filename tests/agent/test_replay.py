@@ -1,0 +1,94 @@
+"""Replays: a run comes out the same without its models, and a changed world is noticed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import anyio
+import pytest
+
+from scope_ptz.agent.records import Budgets
+from scope_ptz.agent.replay import Replay, replay
+from scope_ptz.agent.store import RunFolder
+from scope_ptz.agent.trace import Trace, TraceWriter, read_trace
+from scope_ptz.camera.base import Camera
+from scope_ptz.errors import PerceptionError, TraceError
+from scope_ptz.geometry import Pose
+from tests.agent.scripted import ScriptedCamera, Step, answer, calls, make_agent
+
+MOVE = ("adjust_ptz", {"pan_deg": 15.0, "zoom_factor": 1.3})
+COUNT = ("count_objects", {"description": "cones"})
+
+
+def record(root: Path, *script: Step, counts: tuple[int | BaseException, ...] = (0,), budgets: Budgets | None = None) -> Trace:
+    folder = RunFolder.create(root, "x")
+
+    async def work() -> None:
+        with TraceWriter(folder.trace) as trace:
+            await make_agent(*script, counts=counts, images=folder, budgets=budgets).run("x", listener=trace)
+
+    anyio.run(work)
+    return read_trace(folder.path)
+
+
+def again(trace: Trace, camera: Camera | None = None) -> Replay:
+    return anyio.run(replay, trace, camera or ScriptedCamera())
+
+
+@pytest.mark.parametrize(
+    "script",
+    [
+        (calls(("go_to_preset", {"name": "highway"})), calls(COUNT), calls(MOVE), calls(COUNT), answer("Done.")),
+        (calls(("go_to_preset", {"name": "nowhere"}), MOVE), answer("No such preset.")),
+        (calls(("query_answer", {"question": "how many?", "view": "full"}), ("take_image", {})), answer("3")),
+        (calls(("zoom_to_object", {"description": "van"})), calls(("go_home", {})), answer("Back.")),
+        (calls(("track_object", {"description": "van", "duration_s": 3.0})), answer("Followed.")),
+        (answer("Nothing to do."),),
+    ],
+    ids=["loop", "bad call", "full view", "zoom", "track", "no calls"],
+)
+def test_a_replay_gives_the_same_results(tmp_path: Path, script: tuple[Step, ...]) -> None:
+    trace = record(tmp_path, *script, counts=(3, 5))
+    found = again(trace)
+    assert found.equal, found
+    assert len(found.comparisons) == len(trace.calls)
+
+
+def test_perception_failures_come_again(tmp_path: Path) -> None:
+    trace = record(tmp_path, calls(COUNT), calls(COUNT), answer("x"), counts=(PerceptionError("timeout"), 2))
+    assert trace.calls[0].outcome.error == "timeout"
+    assert again(trace).equal
+
+
+def test_a_step_limit_is_reached_again(tmp_path: Path) -> None:
+    assert again(record(tmp_path, calls(MOVE), budgets=Budgets(max_steps=2))).equal
+
+
+def test_a_run_that_was_cut_off_is_repeated_as_far_as_it_went(tmp_path: Path) -> None:
+    whole = record(tmp_path, calls(MOVE, MOVE), calls(COUNT), answer("x"), counts=(4,))
+    cut = replace(whole, calls=whole.calls[:1], ended=None)
+    found = again(cut)
+    assert found.equal
+    assert len(found.comparisons) == 1
+
+
+def test_another_world_is_noticed(tmp_path: Path) -> None:
+    trace = record(tmp_path, calls(("go_to_preset", {"name": "gate"})), calls(MOVE), answer("x"))
+    found = again(trace, ScriptedCamera(presets=("yard", "gate")))
+    assert not found.equal
+    assert "pose was" in found.comparisons[0].difference
+
+
+def test_another_start_is_noticed(tmp_path: Path) -> None:
+    trace = record(tmp_path, calls(MOVE), answer("x"))
+    camera = ScriptedCamera()
+    anyio.run(camera.move, Pose(1.0, 0.0, 1.0))
+    assert not again(trace, camera).equal
+
+
+def test_runs_of_real_cameras_cannot_be_repeated(tmp_path: Path) -> None:
+    trace = record(tmp_path, answer("x"))
+    real = replace(trace, started=trace.started.model_copy(update={"simulated": False}))
+    with pytest.raises(TraceError, match="real camera"):
+        again(real)
