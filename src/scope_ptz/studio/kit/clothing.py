@@ -109,7 +109,7 @@ def cloth(colour: str, *, bands: tuple[float, ...] = (), shirt: bool = False) ->
     s = Shader(name)
     where = s.object_coords()
     base = PALETTE[colour]
-    folds = s.noise(s.scaled(where, (9.0, 9.0, 15.0)), 1.0, 5.0, 0.58, 0.7)
+    folds = s.noise(s.scaled(where, (7.0, 7.0, 13.0)), 1.0, 3.0, 0.5, 0.15)
     worn = s.mix(s.ramp(s.noise(where, 5.0, 5.0), 0.40, 0.75, 0.0, 0.28), base, tuple(c * 0.72 + 0.05 for c in base))
     soil = s.mix(s.ramp(s.noise(where, 8.0, 6.0, 0.65), 0.56, 0.8, 0.0, 0.30), worn, (0.10, 0.085, 0.068))
     tone = s.mix(s.ramp(folds, 0.25, 0.5, 0.32, 0.0), soil, tuple(c * 0.3 for c in base))
@@ -136,7 +136,7 @@ def vest(colour: str, lining: str) -> bpy.types.Material:
     x, y, z = s.xyz(where)
     away = s.math("ABSOLUTE", x)
     base = PALETTE[f"hi-vis {colour}"]
-    folds = s.noise(s.scaled(where, (8.0, 8.0, 11.0)), 1.0, 5.0, 0.58, 0.6)
+    folds = s.noise(s.scaled(where, (7.0, 7.0, 10.0)), 1.0, 3.0, 0.5, 0.15)
     grime = s.mix(
         s.ramp(s.noise(where, 7.0, 6.0, 0.65), 0.55, 0.8, 0.0, 0.30), base, tuple(c * 0.45 + 0.02 for c in base)
     )

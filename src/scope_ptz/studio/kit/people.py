@@ -79,12 +79,12 @@ def _helmet(s: Solid, joints: Joints, colour: str) -> None:
         @ Matrix.Translation(Vector(heads.CENTRE) + Vector((0, -0.012, 0.047)))
         @ Matrix.Rotation(0.07, 4, "X")
     )
-    rows = [(1.00, 0.0), (0.99, 0.030), (0.94, 0.062), (0.82, 0.094), (0.62, 0.118), (0.36, 0.133), (0.10, 0.138)]
+    rows = [(1.00, 0.0), (0.99, 0.026), (0.94, 0.053), (0.82, 0.078), (0.62, 0.097), (0.36, 0.108), (0.10, 0.112)]
     points, faces, n = [], [], 40
     angles = np.linspace(0, 2 * np.pi, n, endpoint=False)
     for scale, z in rows:
         for a in angles:
-            ridge = 0.007 * np.exp(-((np.cos(a) * scale / 0.16) ** 2)) * (z > 0.05)
+            ridge = 0.007 * np.exp(-((np.cos(a) * scale / 0.16) ** 2)) * (z > 0.04)
             points.append((0.102 * scale * np.cos(a), 0.126 * scale * np.sin(a), z + ridge))
     for reach, z in ((0.006, -0.004), (0.016, -0.010), (0.015, -0.014), (-0.004, -0.010)):
         for a in angles:

@@ -119,7 +119,7 @@ def arrow(s: Solid, u: float, v: float, size: float, direction: str, material: b
     ]
     a = math.radians(ARROW_TURN[direction])
     c, w = math.cos(a) * size, math.sin(a) * size
-    flat(s, [(u + x * c - y * w, v + x * w + y * c) for x, y in shape], material)
+    flat(s, [(u + x * c - y * w, v + x * w + y * c) for x, y in shape], material, PROUD_M + 0.0005)
 
 
 def write(

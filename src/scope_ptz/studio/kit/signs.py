@@ -258,7 +258,7 @@ def project_board(
             0.003,
         )
         room, left = width - 0.36, -width / 2 + 0.18
-        caps = [0.44 * band, 0.055 * height] + [0.036 * height] * max(0, len(lines) - 4) + [0.0145 * height] * 2
+        caps = [0.44 * band, 0.062 * height] + [0.044 * height] * max(0, len(lines) - 4) + [0.019 * height] * 2
         v = height / 2 - band / 2 - 0.01
         for i, (line, cap) in enumerate(zip(lines, caps, strict=False)):
             fitted = min(cap, cap * room / max(extent(line, cap), 1e-6))

@@ -74,16 +74,14 @@ def arrow_board(direction: str = "left", *, lit: bool = True) -> Built:
     s.box((2.2, 0.012, 1.25), (0, 0.829, 2.35), lens("black"), 0.004)
     for k in range(10):
         s.box((0.22, 0.03, 0.26), (-0.99 + 0.22 * k, 0.80, 1.45), sheet("red" if k % 2 == 0 else "white"), 0.002)
-    sign = 1.0 if direction == "left" else -1.0
+    sign = -1.0 if direction == "left" else 1.0
     shaft = [(0.75 - 0.215 * i, 0.0) for i in range(8)]
     head = [(-0.75 + 0.17 * i, side * 0.16 * i) for i in range(1, 4) for side in (-1, 1)]
     lamps = {(round(u, 3), round(v, 3)) for u, v in shaft + head}
     spare = {(0.75 - 0.17 * i, side * 0.16 * i) for i in range(1, 4) for side in (-1, 1)}
     for u, v in sorted(lamps | spare):
         bright = glow("amber", 6.0) if lit and (u, v) in lamps else lens("amber")
-        s.lathe(
-            [(0.072, 0.0), (0.072, 0.03), (0.066, 0.03)], paint("black"), (sign * -u * -1, 0.835, 2.35 + v), "Y", 18
-        )
+        s.lathe([(0.072, 0.0), (0.072, 0.03), (0.066, 0.03)], paint("black"), (sign * u, 0.835, 2.35 + v), "Y", 18)
         s.lathe([(0.062, 0.012), (0.055, 0.030), (0.025, 0.042)], bright, (sign * u, 0.835, 2.35 + v), "Y", 18)
     for x in (-0.85, 0.85):
         s.lathe(
