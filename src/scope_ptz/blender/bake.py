@@ -1,0 +1,185 @@
+"""From a scene to its frozen packs: describe, truth, extents, colour, tiles, actors, pack. Killed, it goes on where it stopped."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scope_ptz.blender.band import Panorama, reachable_band
+from scope_ptz.blender.client import BlenderWorker
+from scope_ptz.blender.extents import extents
+from scope_ptz.blender.keyframes import Keyframe, keyframes, perspective_request
+from scope_ptz.blender.packing import Rendered, RenderedActor, RenderedTile, weight_bytes, write_pack
+from scope_ptz.blender.panorama import render_base, request
+from scope_ptz.blender.quality import DEPTH_STEP, FAR_M, NEAR_M, PACK_BYTES, QUALITIES, Quality
+from scope_ptz.blender.sheets import make_sheet
+from scope_ptz.blender.tiles import cover, covers, targets
+from scope_ptz.blender.workshop import Progress, Workshop, scene_key
+from scope_ptz.errors import BlenderError, UnknownNameError
+from scope_ptz.geometry import AXIS_M5075_G, Equirectangular, Limits, Perspective
+from scope_ptz.world.layers import encode_depth, read_colour
+from scope_ptz.world.models import Extent, Manifest, SceneActor, SceneFile, SceneViewpoint
+
+
+@dataclass(frozen=True, slots=True)
+class BakedViewpoint:
+    """What came out: the folder, its weight, how many tiles it has, and the targets that no tile holds."""
+
+    folder: Path
+    weight_bytes: int
+    tiles: int
+    uncovered: tuple[str, ...]
+
+
+def bake(
+    source: str,
+    out_dir: Path,
+    *,
+    quality: str,
+    command: Sequence[str],
+    cache_dir: Path,
+    viewpoints: Sequence[str] | None = None,
+    progress: Progress,
+) -> list[BakedViewpoint]:
+    """Bake a scene into the folder ``out_dir`` (which must bear the scene's name).
+
+    ``source`` is the name of a scene in ``scope_ptz.studio.scenes`` or the path of a Python file with a ``build(stage)``; ``command``
+    starts the worker. Unfinished parts are kept under ``cache_dir``.
+    """
+    if quality not in QUALITIES:
+        raise UnknownNameError("quality", quality, QUALITIES)
+    key = scene_key(source)
+    shop = Workshop(cache_dir / "bakes", key, progress)
+    with BlenderWorker(command, shop.folder / "blender.log") as worker:
+        step = shop.steps("scene", 2)
+        worker.request("load_scene", {"source": source})
+        step()
+        description = worker.request("describe")
+        step()
+        scene = scene_file(description, key.rsplit("-", 1)[1])
+        if out_dir.name != scene.name:
+            raise BlenderError(f"The folder of a scene bears its name: bake to '{out_dir.with_name(scene.name)}'.")
+        known = {v.name: v for v in scene.viewpoints}
+        wanted = list(known) if viewpoints is None else list(viewpoints)
+        for name in wanted:
+            if name not in known:
+                raise UnknownNameError("viewpoint", name, known)
+        out_dir.mkdir(parents=True, exist_ok=True)
+        baker = _Baker(worker, shop, scene, description, QUALITIES[quality])
+        baked = [baker.bake_viewpoint(known[name], out_dir / name) for name in wanted]
+        (out_dir / "scene.json").write_text(scene.model_dump_json(indent=1) + "\n")
+    return baked
+
+
+def scene_file(description: dict[str, Any], version: str) -> SceneFile:
+    """``scene.json`` from the worker's description."""
+    return SceneFile.model_validate({"version": version, **{k: v for k, v in description.items() if k in SceneFile.model_fields}})
+
+
+class _Baker:
+    """The parts of a bake that share a worker and a workshop."""
+
+    def __init__(self, worker: BlenderWorker, shop: Workshop, scene: SceneFile, description: dict[str, Any], quality: Quality) -> None:
+        self._worker, self._shop, self._scene, self._quality = worker, shop, scene, quality
+        self._strides: dict[str, float | None] = description["strides_m"]
+        self._sun = None if description["sun"] is None else np.array(description["sun"])
+        self._band = reachable_band(Limits(), AXIS_M5075_G)
+
+    def bake_viewpoint(self, viewpoint: SceneViewpoint, folder: Path) -> BakedViewpoint:
+        q, name = self._quality, viewpoint.name
+        wide = Panorama.of(q.ids_width, self._band)
+        ids, _ = self._truth(name, "ids", request(wide.band.top_tilt_deg, wide.band.bottom_tilt_deg, wide.width, wide.height))
+        coarse = Panorama.of(q.depth_width, self._band)
+        _, metres = self._truth(name, "depth", request(wide.band.top_tilt_deg, wide.band.bottom_tilt_deg, coarse.width, coarse.height))
+        silhouettes = self._extents(viewpoint)
+        panorama = Panorama.of(q.base_width, self._band)
+        base = render_base(self._worker, self._shop, name, panorama, q.base_samples)
+        projection = Equirectangular(-180.0, 360.0, wide.band.top_tilt_deg, wide.band.bottom_tilt_deg, wide.width, wide.height)
+        wanted = targets(self._scene, viewpoint, ids, projection)
+        views = [cell.view(q.tile_density_px_per_deg) for cell in cover(wanted)][: q.max_tiles]
+        tiles = self._tiles(name, views)
+        actors = [a for actor in self._scene.actors if (a := self._actor(viewpoint, actor)) is not None]
+        rendered = Rendered(panorama, base, ids, encode_depth(metres, NEAR_M, FAR_M, DEPTH_STEP), tiles, actors, silhouettes)
+        manifest = write_pack(folder, self._scene, viewpoint, rendered, q, PACK_BYTES, self._shop.steps(f"{name}/pack", 4))
+        uncovered = tuple(t.name for t in wanted if not covers(views, t))
+        return BakedViewpoint(folder, weight_bytes(folder), len(manifest.tiles), uncovered)
+
+    def _truth(self, viewpoint: str, part: str, projection: dict[str, Any]) -> tuple[NDArray[np.uint16], NDArray[np.float32]]:
+        def produce(path: Path) -> None:
+            step = self._shop.steps(f"{viewpoint}/{part}", 1)
+            self._worker.request("truth", {"viewpoint": viewpoint, "projection": projection, "out": str(path)})
+            step()
+
+        with np.load(self._shop.part(f"{viewpoint}/truth", ".npz", projection, produce)) as file:
+            return file["ids"], file["depth"]
+
+    def _colour(self, viewpoint: str, part: str, view: Perspective, samples: int) -> NDArray[np.uint8]:
+        projection = perspective_request(view)
+
+        def produce(path: Path) -> None:
+            parameters = {"viewpoint": viewpoint, "projection": projection, "samples": samples, "seed": 1, "out": str(path)}
+            self._worker.request("colour", parameters)
+
+        return read_colour(self._shop.part(part, ".png", {"projection": projection, "samples": samples}, produce))
+
+    def _extents(self, viewpoint: SceneViewpoint) -> list[Extent]:
+        def dump(path: Path) -> None:
+            self._worker.request("meshes", {"out": str(path)})
+
+        def measure(path: Path) -> None:
+            found = extents(meshes, viewpoint, self._shop.follow(f"{viewpoint.name}/extents"))
+            path.write_text(json.dumps([e.model_dump() for e in found]))
+
+        meshes = self._shop.part("meshes", ".npz", {}, dump)
+        place = viewpoint.model_dump(mode="json")
+        done = self._shop.part(f"{viewpoint.name}/extents", ".json", place, measure)
+        return [Extent.model_validate(e) for e in json.loads(done.read_text())]
+
+    def _tiles(self, viewpoint: str, views: list[Perspective]) -> list[RenderedTile]:
+        step = self._shop.steps(f"{viewpoint}/tiles", len(views))
+        tiles = []
+        for view in views:
+            colour = self._colour(viewpoint, f"{viewpoint}/tile", view, self._quality.tile_samples)
+            ids, _ = self._truth(viewpoint, "tile ids", perspective_request(view))
+            tiles.append(RenderedTile(view, colour, ids))
+            step()
+        return tiles
+
+    def _actor(self, viewpoint: SceneViewpoint, actor: SceneActor) -> RenderedActor | None:
+        q, stride_m = self._quality, self._strides[actor.id]
+        frames = keyframes(actor, stride_m, viewpoint, self._band, self._sun, q.max_sprites)
+        if not frames:
+            return None
+        folder = self._sprite_folder(viewpoint.name, actor, frames)
+        return RenderedActor(actor.number, make_sheet(frames, folder), stride_m)
+
+    def _sprite_folder(self, viewpoint: str, actor: SceneActor, frames: list[Keyframe]) -> Path:
+        requests = [f.request() for f in frames]
+        samples = self._quality.sprite_samples
+
+        def produce(stamp: Path) -> None:
+            folder = stamp.with_suffix("")
+            folder.mkdir(exist_ok=True)
+            parameters = {"actor": actor.id, "viewpoint": viewpoint, "frames": requests, "samples": samples, "out_dir": str(folder)}
+            self._worker.request("sprites", parameters, progress=self._shop.follow(f"{viewpoint}/{actor.id}"))
+            stamp.write_text("done\n")
+
+        stamp = self._shop.part(f"{viewpoint}/{actor.id}", ".done", {"frames": requests, "samples": samples}, produce)
+        return stamp.with_name(f"unfinished-{stamp.stem}")
+
+
+def load_manifest(folder: Path) -> Manifest:
+    """The manifest of a baked viewpoint."""
+    return Manifest.model_validate_json((folder / "manifest.json").read_text())
+
+
+def forget(source: str, cache_dir: Path) -> None:
+    """Throw away what was rendered of a scene so far."""
+    shutil.rmtree(cache_dir / "bakes" / scene_key(source), ignore_errors=True)

@@ -1,0 +1,81 @@
+"""Which part of the sphere a camera can ever see, and how a panorama of it is cut into strips for rendering."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from scope_ptz.geometry import Limits, Optics, Perspective, pan_tilt_deg
+from scope_ptz.world.models import Band
+
+ASPECTS = (16 / 9, 4 / 3)
+"""Shapes of frame that a pack serves."""
+
+MARGIN_DEG = 0.8
+POLE_DEG = 7.0
+"""A band that ends this close to straight down goes all the way: a hole of that size is not worth its edge."""
+
+
+def reachable_band(limits: Limits, optics: Optics) -> Band:
+    """The tilts that any frame within the limits can show."""
+    tops, bottoms = [], []
+    hfov_deg = optics.hfov_deg(limits.min_zoom)
+    side = np.linspace(0.0, 1.0, 33)
+    for aspect in ASPECTS:
+        size = (1200, round(1200 / aspect))
+        up = Perspective(0.0, limits.max_tilt_deg, hfov_deg, *size)
+        down = Perspective(0.0, limits.min_tilt_deg, hfov_deg, *size)
+        _, top = pan_tilt_deg(up.directions(np.stack([side, np.zeros(33)], axis=-1)))
+        _, bottom = pan_tilt_deg(down.directions(np.stack([side, np.ones(33)], axis=-1)))
+        tops.append(90.0 if limits.max_tilt_deg + up.vfov_deg / 2 >= 90.0 else float(top.max()))
+        bottoms.append(-90.0 if limits.min_tilt_deg - down.vfov_deg / 2 <= -90.0 else float(bottom.min()))
+    top, bottom = max(tops) + MARGIN_DEG, min(bottoms) - MARGIN_DEG
+    return Band(top_tilt_deg=90.0 if top > 90 - POLE_DEG else top, bottom_tilt_deg=-90.0 if bottom < POLE_DEG - 90 else bottom)
+
+
+@dataclass(frozen=True, slots=True)
+class Strip:
+    """Rows ``first_row`` to ``last_row`` (exclusive) of a panorama, rendered ``width`` wide."""
+
+    first_row: int
+    last_row: int
+    top_tilt_deg: float
+    bottom_tilt_deg: float
+    width: int
+
+
+@dataclass(frozen=True, slots=True)
+class Panorama:
+    """A panorama's size and band, rows exactly as high as columns are wide, in degrees (the band is rounded outwards to whole rows)."""
+
+    width: int
+    height: int
+    band: Band
+
+    @classmethod
+    def of(cls, width: int, band: Band) -> Panorama:
+        """The panorama of this width over at least this band; widths that are multiples of one another share one band."""
+        step = 1.0
+        top = min(90.0, math.ceil(band.top_tilt_deg / step) * step)
+        bottom = max(-90.0, math.floor(band.bottom_tilt_deg / step) * step)
+        height = round((top - bottom) / 360.0 * width)
+        return cls(width, height, Band(top_tilt_deg=top, bottom_tilt_deg=bottom))
+
+    def tilt_of_row(self, row: float) -> float:
+        """Tilt of the upper edge of a row."""
+        return self.band.top_tilt_deg - row / self.height * (self.band.top_tilt_deg - self.band.bottom_tilt_deg)
+
+    def strips(self, rows: int, overlap_rows: int) -> list[Strip]:
+        """Strips of about ``rows`` rows with some more on each side to blend. Towards the poles they are as wide as they need to be."""
+        count = max(1, round(self.height / rows))
+        edges = [round(k * self.height / count) for k in range(count + 1)]
+        strips = []
+        for first, last in zip(edges, edges[1:], strict=False):
+            a, b = max(0, first - overlap_rows), min(self.height, last + overlap_rows)
+            top, bottom = self.tilt_of_row(a), self.tilt_of_row(b)
+            nearest = 0.0 if top > 0 > bottom else min(abs(top), abs(bottom))
+            width = self.width if nearest < 55 else 2 * math.ceil(self.width * math.cos(math.radians(nearest)) / 2)
+            strips.append(Strip(a, b, top, bottom, width))
+        return strips

@@ -1,0 +1,188 @@
+"""The whole silhouette of every instance from a viewpoint, hidden parts included, from its triangles."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from scope_ptz.geometry import pan_tilt_deg
+from scope_ptz.geometry.sphere import camera_axes
+from scope_ptz.world.models import Extent, SceneViewpoint
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+RASTER_PX = 512
+WIDE_DEG = 60.0
+"""Silhouettes that reach further from their middle than this are drawn on the faces of a cube."""
+
+NEAR_M = 1e-3
+FRACTION_BITS = 4
+HULL_POINTS = 40
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """One instance: vertices (n, 3) in the camera's frame and triangles (m, 3)."""
+
+    number: int
+    vertices: Floats
+    triangles: Ints
+
+
+def extents(meshes: Path, viewpoint: SceneViewpoint, progress: Callable[[int, int], None]) -> list[Extent]:
+    """The extent of every instance in a file written by the worker's "meshes"."""
+    bodies = read_bodies(meshes, viewpoint)
+    found = []
+    for k, body in enumerate(bodies):
+        found.append(extent(body))
+        progress(k + 1, len(bodies))
+    return found
+
+
+def read_bodies(meshes: Path, viewpoint: SceneViewpoint) -> list[Body]:
+    """All instances in the frame of a viewpoint, in order of their numbers."""
+    bearing = math.radians(viewpoint.pan0_bearing_deg)
+    c, s = math.cos(bearing), math.sin(bearing)
+    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    with np.load(meshes) as file:
+        shapes = {int(k.split("-")[1]): (file[k], file[k.replace("vertices", "triangles")]) for k in file if k.startswith("vertices-")}
+        uses, matrices = file["uses"], file["matrices"]
+    bodies = []
+    for number in sorted({int(n) for n in uses[:, 0]}):
+        vertices, triangles, base = [], [], 0
+        for (_, shape), matrix in zip(uses[uses[:, 0] == number], matrices[uses[:, 0] == number], strict=True):
+            points, faces = shapes[int(shape)]
+            world = points.astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
+            vertices.append((world - viewpoint.position_m) @ turn.T)
+            triangles.append(faces.astype(np.int64) + base)
+            base += len(points)
+        bodies.append(Body(number, np.concatenate(vertices), np.concatenate(triangles)))
+    return bodies
+
+
+def extent(body: Body) -> Extent:
+    """Solid angle, convex outline and distance of one instance."""
+    used = body.vertices[np.unique(body.triangles)]
+    rays = used / np.linalg.norm(used, axis=1, keepdims=True)
+    middle = rays.mean(axis=0)
+    for _ in range(3):  # towards the middle of the smallest cone around the rays
+        middle = middle / max(np.linalg.norm(middle), 1e-9)
+        farthest = rays[np.argmin(rays @ middle)]
+        middle = middle + 0.25 * (farthest - middle)
+    middle = middle / np.linalg.norm(middle)
+    reach_deg = math.degrees(math.acos(np.clip(np.min(rays @ middle), -1, 1)))
+    pan, tilt = (float(v) for v in pan_tilt_deg(middle))
+    axes = camera_axes(pan, tilt)
+    if reach_deg < WIDE_DEG:
+        solid_angle = _narrow_solid_angle(body, axes)
+    else:
+        solid_angle = _wide_solid_angle(body)
+    return Extent(
+        number=body.number,
+        solid_angle_sr=float(f"{solid_angle:.6g}"),
+        hull=_hull(rays, axes) if reach_deg < 85.0 else [],
+        distance_m=round(max(_nearest_m(body), 1e-3), 3),
+    )
+
+
+def _narrow_solid_angle(body: Body, axes: Floats) -> float:
+    local = body.vertices @ axes.T
+    flat = local[:, :2] / local[:, 2:]
+    used = flat[np.unique(body.triangles)]
+    lengthwise = np.linalg.eigh(np.cov(used.T))[1]  # a leaning pole is drawn upright, so that few pixels are wasted
+    flat, used = flat @ lengthwise, used @ lengthwise
+    low, high = used.min(axis=0), used.max(axis=0)
+    coarse, fine = (_drawn(flat[body.triangles], low, high, side) for side in (RASTER_PX, 2 * RASTER_PX))
+    return _without_outline(coarse, fine)
+
+
+def _without_outline(coarse: float, fine: float) -> float:
+    """OpenCV fills every pixel that an outline touches: too much by an amount that halves when pixels do, so it can be taken off."""
+    return max(2 * fine - coarse, 0.3 * fine)
+
+
+def _drawn(triangles: Floats, low: Floats, high: Floats, side: int) -> float:
+    """Solid angle of the union of triangles (m, 3, 2) in a tangent plane, on a raster of ``side`` x ``side`` oblong pixels."""
+    pitch = np.maximum((high - low) / side, 1e-12)
+    mask = np.zeros((side + 3, side + 3), dtype=np.uint8)
+    fixed = np.rint(((triangles - low) / pitch + 1.0) * (1 << FRACTION_BITS)).astype(np.int32)
+    for corners in np.unique(fixed.reshape(-1, 6), axis=0).reshape(-1, 3, 2):
+        cv2.fillConvexPoly(mask, corners, 1, cv2.LINE_8, FRACTION_BITS)
+    x, y = (low + (np.arange(side + 3) - 1.0)[:, None] * pitch).T
+    weight = (1.0 + x[None, :] ** 2 + y[:, None] ** 2) ** -1.5
+    return float((mask * weight).sum() * pitch[0] * pitch[1])
+
+
+def _wide_solid_angle(body: Body) -> float:
+    totals = [0.0, 0.0]
+    low, high = np.array([-1.0, -1.0]), np.array([1.0, 1.0])
+    for pan, tilt in ((0, 0), (90, 0), (180, 0), (-90, 0), (0, 90), (0, -90)):
+        local = body.vertices @ camera_axes(pan, tilt).T
+        corners = _in_front(local[body.triangles])
+        flat = corners[..., :2] / corners[..., 2:]
+        touching = np.all(flat.max(axis=1) > low, axis=1) & np.all(flat.min(axis=1) < high, axis=1)
+        if touching.any():
+            for k, side in enumerate((RASTER_PX, 2 * RASTER_PX)):
+                totals[k] += _drawn(flat[touching], low, high, side)
+    return _without_outline(*totals)
+
+
+def _in_front(corners: Floats) -> Floats:
+    """Triangles (m, 3, 3), cut at a plane just in front of the eye (a quadrilateral becomes two triangles)."""
+    ahead = corners[..., 2] > NEAR_M
+    whole = corners[ahead.all(axis=1)]
+    pieces = []
+    for triangle in corners[ahead.any(axis=1) & ~ahead.all(axis=1)]:
+        ring = []
+        for a, b in zip(triangle, np.roll(triangle, -1, axis=0), strict=True):
+            if a[2] > NEAR_M:
+                ring.append(a)
+            if (a[2] > NEAR_M) != (b[2] > NEAR_M):
+                ring.append(a + (b - a) * ((NEAR_M - a[2]) / (b[2] - a[2])))
+        pieces += [np.stack([ring[0], ring[k], ring[k + 1]]) for k in range(1, len(ring) - 1)]
+    return np.concatenate([whole, np.stack(pieces)]) if pieces else whole
+
+
+def _hull(rays: Floats, axes: Floats) -> list[tuple[float, float]]:
+    local = rays @ axes.T
+    flat = (local[:, :2] / local[:, 2:]).astype(np.float32)
+    outline = cv2.convexHull(flat)
+    slack = 1e-4 * float(np.ptp(flat, axis=0).max())
+    simple = outline
+    while len(simple) > HULL_POINTS:
+        slack *= 2
+        simple = cv2.approxPolyDP(outline, slack, closed=True)
+    plane = simple.reshape(-1, 2).astype(np.float64)
+    pan, tilt = pan_tilt_deg(np.column_stack([plane, np.ones(len(plane))]) @ axes)
+    return [(round(float(p), 4), round(float(t), 4)) for p, t in zip(pan, tilt, strict=True)]
+
+
+def _nearest_m(body: Body) -> float:
+    """Distance from the origin to the nearest point of any triangle: on an edge, or inside one."""
+    a, b, c = (body.vertices[body.triangles[:, k]] for k in range(3))
+    nearest = min(_edge_distance(a, b), _edge_distance(b, c), _edge_distance(c, a))
+    normal = np.cross(b - a, c - a)
+    area2 = np.einsum("ij,ij->i", normal, normal)
+    fair = area2 > 1e-18
+    a, b, c, normal, area2 = a[fair], b[fair], c[fair], normal[fair], area2[fair]
+    foot = normal * (np.einsum("ij,ij->i", normal, a) / area2)[:, None]
+    inside = np.ones(len(a), dtype=bool)
+    for p, q in ((a, b), (b, c), (c, a)):
+        inside &= np.einsum("ij,ij->i", np.cross(q - p, foot - p), normal) >= 0
+    if inside.any():
+        nearest = min(nearest, float(np.linalg.norm(foot[inside], axis=1).min()))
+    return nearest
+
+
+def _edge_distance(a: Floats, b: Floats) -> float:
+    along = b - a
+    length2 = np.maximum(np.einsum("ij,ij->i", along, along), 1e-18)
+    share = np.clip(-np.einsum("ij,ij->i", a, along) / length2, 0.0, 1.0)
+    return float(np.linalg.norm(a + along * share[:, None], axis=1).min())

@@ -1,0 +1,157 @@
+"""Where along its path an actor is photographed, and through which view."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scope_ptz.blender.tiles import TELE_FOCAL_PX
+from scope_ptz.geometry import Perspective, pan_tilt_deg
+from scope_ptz.geometry.sphere import camera_axes
+from scope_ptz.world.models import Band, SceneActor, SceneViewpoint
+
+TURN_STEP_DEG, DISTANCE_STEP = 2.5, 1.06
+"""A new picture when the actor shows itself from an angle this much different, or its distance changed by this factor."""
+
+GAIT_PHASES = 8
+MIN_SIDE_PX = 6.0
+MAX_SIDE_PX = 420
+SAMPLES = 1200
+MARGIN = 1.06
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Keyframe:
+    """The actor at ``time_s`` of its path in a gait phase, seen through ``view``."""
+
+    time_s: float
+    phase: float
+    position_m: tuple[float, float, float]
+    view: Perspective
+
+    def request(self) -> dict[str, Any]:
+        """For the worker's "sprites"."""
+        return {
+            "time_s": self.time_s,
+            "phase": self.phase,
+            "position_m": list(self.position_m),
+            "projection": perspective_request(self.view),
+        }
+
+
+def perspective_request(view: Perspective) -> dict[str, Any]:
+    """A view in the words of the worker."""
+    return {
+        "kind": "perspective",
+        "pan_deg": view.pan_deg,
+        "tilt_deg": view.tilt_deg,
+        "hfov_deg": view.hfov_deg,
+        "width": view.width,
+        "height": view.height,
+    }
+
+
+def keyframes(
+    actor: SceneActor, stride_m: float | None, viewpoint: SceneViewpoint, band: Band, sun: Floats | None, most: int
+) -> list[Keyframe]:
+    """At most about ``most`` pictures of an actor along its path as seen from a viewpoint; walkers in all phases at each place."""
+    places = _Places.along(actor, viewpoint)
+    per_place = GAIT_PHASES if stride_m else 1
+    coarseness = 1.0
+    while len(chosen := places.distinct(coarseness)) * per_place > most:
+        coarseness *= 1.15
+    frames = []
+    for k in chosen:
+        view = _view(_corners(actor, places, k, sun), viewpoint, band)
+        if view is not None:
+            position = tuple(round(float(v), 4) for v in places.positions[k])
+            frames += [
+                Keyframe(round(float(places.times[k]), 4), p / per_place, position, view)  # type: ignore[arg-type]
+                for p in range(per_place)
+            ]
+    return frames
+
+
+@dataclass(frozen=True, slots=True)
+class _Places:
+    """The path, finely sampled: times (n,), positions (n, 3), bearings, and how it looks from the viewpoint."""
+
+    times: Floats
+    positions: Floats
+    bearings_deg: Floats
+    aspects_deg: Floats
+    elevations_deg: Floats
+    distances_m: Floats
+
+    @classmethod
+    def along(cls, actor: SceneActor, viewpoint: SceneViewpoint) -> _Places:
+        way = np.array(actor.waypoints)
+        times = np.linspace(way[0, 0], way[-1, 0], SAMPLES)
+        positions = np.stack([np.interp(times, way[:, 0], way[:, k]) for k in (1, 2, 3)], axis=-1)
+        leg = np.clip(np.searchsorted(way[:, 0], times, side="right") - 1, 0, len(way) - 2)
+        step = np.diff(way[:, 1:], axis=0)[leg]
+        bearings = np.degrees(np.arctan2(step[:, 0], step[:, 1]))
+        offset = positions - np.array(viewpoint.position_m)
+        seen, elevations = pan_tilt_deg(offset)
+        return cls(times, positions, bearings, bearings - seen, elevations, np.linalg.norm(offset, axis=1))
+
+    def distinct(self, coarseness: float) -> list[int]:
+        """Indices of samples that each look different from the one before."""
+        chosen = [0]
+        for k in range(1, len(self.times)):
+            last = chosen[-1]
+            turn = abs((self.aspects_deg[k] - self.aspects_deg[last] + 180.0) % 360.0 - 180.0)
+            turn = max(turn, abs(self.elevations_deg[k] - self.elevations_deg[last]))
+            ratio = self.distances_m[k] / self.distances_m[last]
+            if turn >= TURN_STEP_DEG * coarseness or max(ratio, 1 / ratio) >= 1 + (DISTANCE_STEP - 1) * coarseness:
+                chosen.append(k)
+        return chosen
+
+
+def _corners(actor: SceneActor, places: _Places, k: int, sun: Floats | None) -> Floats:
+    """Corners of the actor's box in the world, and where their shadows fall on level ground."""
+    bearing = math.radians(float(places.bearings_deg[k]))
+    ahead, right = np.array([math.sin(bearing), math.cos(bearing), 0.0]), np.array([math.cos(bearing), -math.sin(bearing), 0.0])
+    width, length, height = actor.size_m
+    corners = np.array(
+        [
+            places.positions[k] + right * x * width / 2 + ahead * y * length / 2 + np.array([0.0, 0.0, z * height])
+            for x in (-1, 1)
+            for y in (-1, 1)
+            for z in (0, 1)
+        ]
+    )
+    if sun is None or sun[2] < 0.2:
+        return corners
+    high = corners[corners[:, 2] > places.positions[k][2] + height / 2]
+    return np.concatenate([corners, high - sun * (height / sun[2])])
+
+
+def _view(corners: Floats, viewpoint: SceneViewpoint, band: Band) -> Perspective | None:
+    """The tight view of some points, or None when it leaves the band, is too small to matter or too close to be flat."""
+    offset = corners - np.array(viewpoint.position_m)
+    aim = offset.mean(axis=0)
+    for _ in range(3):
+        pan, tilt = (float(v) for v in pan_tilt_deg(aim))
+        axes = camera_axes(pan, tilt)
+        local = offset @ axes.T
+        if local[:, 2].min() <= 0.05 * np.linalg.norm(aim):
+            return None
+        flat = local[:, :2] / local[:, 2:]
+        middle = (flat.min(axis=0) + flat.max(axis=0)) / 2
+        aim = axes.T @ np.array([middle[0], middle[1], 1.0])
+    half = np.abs(flat).max(axis=0) * MARGIN
+    if half.max() > 1.2 or 2 * half.max() * TELE_FOCAL_PX < MIN_SIDE_PX:
+        return None
+    focal_px = min(TELE_FOCAL_PX, MAX_SIDE_PX / (2 * float(half.max())))
+    width, height = (2 * math.ceil(float(v) * focal_px) for v in half)
+    local_pan = (pan - viewpoint.pan0_bearing_deg + 180.0) % 360.0 - 180.0
+    view = Perspective(local_pan, tilt, math.degrees(2 * math.atan(width / 2 / focal_px)), width, height)
+    _, tilts = pan_tilt_deg(offset)
+    return view if tilts.max() < band.top_tilt_deg and tilts.min() > band.bottom_tilt_deg else None

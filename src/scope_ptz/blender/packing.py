@@ -1,0 +1,141 @@
+"""From rendered parts to the files of a viewpoint folder, within the weight that a pack may have."""
+
+from __future__ import annotations
+
+import hashlib
+import shutil
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scope_ptz.blender.band import Panorama
+from scope_ptz.blender.quality import FAR_M, NEAR_M, Quality
+from scope_ptz.blender.sheets import Sheet
+from scope_ptz.errors import BlenderError
+from scope_ptz.geometry import Perspective
+from scope_ptz.world.layers import write_colour, write_ids
+from scope_ptz.world.models import ActorSheet, Depth, Extent, Layer, Manifest, SceneFile, SceneViewpoint, Tile
+
+COLOUR = ".webp"
+NUMBERS = ".webp"
+SPRITE_CODING = 78
+LOWEST_TILE_CODING = 50
+CODING_STEP = 5
+
+
+@dataclass(frozen=True, slots=True)
+class RenderedTile:
+    """A tile's view, its picture (H, W, 3) and its instance numbers (H, W)."""
+
+    view: Perspective
+    colour: NDArray[np.uint8]
+    ids: NDArray[np.uint16]
+
+
+@dataclass(frozen=True, slots=True)
+class RenderedActor:
+    """An actor's number, its sheet, and the stride of a walker."""
+
+    number: int
+    sheet: Sheet
+    stride_m: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Rendered:
+    """Everything of a viewpoint, uncoded."""
+
+    panorama: Panorama
+    base: NDArray[np.uint8]
+    ids: NDArray[np.uint16]
+    depth: NDArray[np.uint16]
+    tiles: list[RenderedTile]
+    actors: list[RenderedActor]
+    extents: list[Extent]
+
+
+def write_pack(
+    folder: Path, scene: SceneFile, viewpoint: SceneViewpoint, rendered: Rendered, quality: Quality, limit_bytes: int, step: Callable[[], None]
+) -> Manifest:
+    """Write the folder (replacing one that is there). Tiles are coded more coarsely until everything fits ``limit_bytes``."""
+    fresh = folder.with_name(f".{folder.name}.new")
+    shutil.rmtree(fresh, ignore_errors=True)
+    (fresh / "tiles").mkdir(parents=True)
+    (fresh / "actors").mkdir()
+    base = _colour(fresh, f"base{COLOUR}", rendered.base, quality.base_coding)
+    step()
+    ids = _numbers(fresh, f"ids{NUMBERS}", rendered.ids)
+    depth = _numbers(fresh, "depth.png", rendered.depth)
+    step()
+    tile_ids = [_numbers(fresh, f"tiles/{k:02d}-ids{NUMBERS}", t.ids) for k, t in enumerate(rendered.tiles)]
+    actors = [_actor(fresh, a) for a in rendered.actors]
+    step()
+    tile_colours = _fitting_tiles(fresh, rendered.tiles, quality.tile_coding, limit_bytes)
+    step()
+    manifest = Manifest(
+        scene=scene.name,
+        scene_version=scene.version,
+        viewpoint=viewpoint.name,
+        position_m=viewpoint.position_m,
+        pan0_bearing_deg=viewpoint.pan0_bearing_deg,
+        blender_version=scene.blender_version,
+        samples=quality.base_samples,
+        band=rendered.panorama.band,
+        base=base,
+        ids=ids,
+        depth=Depth(**depth.model_dump(), near_m=NEAR_M, far_m=FAR_M),
+        tiles=[
+            Tile(pan_deg=t.view.pan_deg, tilt_deg=t.view.tilt_deg, hfov_deg=t.view.hfov_deg, colour=colour, ids=numbers)
+            for t, colour, numbers in zip(rendered.tiles, tile_colours, tile_ids, strict=True)
+        ],
+        extents=rendered.extents,
+        actors=actors,
+    )
+    (fresh / "manifest.json").write_text(manifest.model_dump_json() + "\n")
+    weight = weight_bytes(fresh)
+    if weight > limit_bytes:
+        raise BlenderError(f"The pack of '{viewpoint.name}' weighs {weight / 1e6:.2f} MB even with the coarsest tiles: bake fewer of them.")
+    for name in ("tiles", "actors"):
+        if not any((fresh / name).iterdir()):
+            (fresh / name).rmdir()
+    shutil.rmtree(folder, ignore_errors=True)
+    fresh.replace(folder)
+    return manifest
+
+
+def weight_bytes(folder: Path) -> int:
+    """All files of a folder together."""
+    return sum(p.stat().st_size for p in folder.rglob("*") if p.is_file())
+
+
+def _fitting_tiles(folder: Path, tiles: list[RenderedTile], coding: int, limit_bytes: int) -> list[Layer]:
+    room = limit_bytes - weight_bytes(folder) - 150_000
+    while True:
+        coded = [_colour(folder, f"tiles/{k:02d}{COLOUR}", t.colour, coding) for k, t in enumerate(tiles)]
+        if sum((folder / c.file).stat().st_size for c in coded) <= room or coding <= LOWEST_TILE_CODING:
+            return coded
+        coding -= CODING_STEP
+
+
+def _actor(folder: Path, actor: RenderedActor) -> ActorSheet:
+    colour = _colour(folder, f"actors/{actor.number}{COLOUR}", actor.sheet.colour, SPRITE_CODING)
+    depth = _numbers(folder, f"actors/{actor.number}-depth.png", actor.sheet.depth)
+    return ActorSheet(number=actor.number, colour=colour, depth=depth, sprites=actor.sheet.sprites, stride_m=actor.stride_m)
+
+
+def _colour(folder: Path, name: str, picture: NDArray[np.uint8], coding: int) -> Layer:
+    write_colour(folder / name, picture, coding)
+    return layer_of(folder, name, picture.shape[1], picture.shape[0])
+
+
+def _numbers(folder: Path, name: str, numbers: NDArray[np.uint16]) -> Layer:
+    write_ids(folder / name, numbers)
+    return layer_of(folder, name, numbers.shape[1], numbers.shape[0])
+
+
+def layer_of(folder: Path, name: str, width: int, height: int) -> Layer:
+    """The manifest's entry for a file that has been written."""
+    return Layer(file=name, sha256=hashlib.sha256((folder / name).read_bytes()).hexdigest(), width=width, height=height)

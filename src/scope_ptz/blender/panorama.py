@@ -1,0 +1,96 @@
+"""Panoramas out of the worker: rendered in strips, joined, and freed of detail that the projection only stretches."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from scope_ptz.blender.band import Panorama, Strip
+from scope_ptz.blender.client import BlenderWorker
+from scope_ptz.blender.workshop import Workshop
+from scope_ptz.world.layers import read_colour
+
+STRIP_ROWS = 384
+OVERLAP_ROWS = 8
+
+Picture = NDArray[np.uint8]
+
+
+def request(top_tilt_deg: float, bottom_tilt_deg: float, width: int, height: int) -> dict[str, Any]:
+    """A panorama in the words of the worker."""
+    return {
+        "kind": "equirectangular",
+        "top_tilt_deg": top_tilt_deg,
+        "bottom_tilt_deg": bottom_tilt_deg,
+        "width": width,
+        "height": height,
+    }
+
+
+def render_base(worker: BlenderWorker, shop: Workshop, viewpoint: str, panorama: Panorama, samples: int) -> Picture:
+    """(H, W, 3) RGB. Each strip is a part of its own, so a killed bake loses one strip at most."""
+    strips = panorama.strips(STRIP_ROWS, OVERLAP_ROWS)
+    step = shop.steps(f"{viewpoint}/base", len(strips))
+    pictures = []
+    for strip in strips:
+        projection = request(strip.top_tilt_deg, strip.bottom_tilt_deg, strip.width, strip.last_row - strip.first_row)
+
+        def produce(path: Path, projection: dict[str, Any] = projection) -> None:
+            worker.request(
+                "colour", {"viewpoint": viewpoint, "projection": projection, "samples": samples, "seed": 1, "out": str(path)}
+            )
+
+        parameters = {"projection": projection, "samples": samples}
+        pictures.append(read_colour(shop.part(f"{viewpoint}/base-{strip.first_row:04d}", ".png", parameters, produce)))
+        step()
+    return smoothed(joined(panorama, strips, pictures), panorama)
+
+
+def joined(panorama: Panorama, strips: list[Strip], pictures: list[Picture]) -> Picture:
+    """The strips at full width, cross-faded where they overlap."""
+    total = np.zeros((panorama.height, panorama.width, 3), dtype=np.float32)
+    weights = np.zeros((panorama.height, 1, 1), dtype=np.float32)
+    for strip, picture in zip(strips, pictures, strict=True):
+        rows = np.arange(strip.first_row, strip.last_row)
+        inside = np.minimum(rows - strip.first_row, strip.last_row - 1 - rows) + 1.0
+        reaches_edge = (strip.first_row == 0) & (rows < STRIP_ROWS // 2) | (strip.last_row == panorama.height) & (
+            rows >= strip.last_row - STRIP_ROWS // 2
+        )
+        weight = np.where(reaches_edge, 1e3, np.minimum(inside, 2 * OVERLAP_ROWS)).astype(np.float32)[:, None, None]
+        total[strip.first_row : strip.last_row] += _widened(picture, panorama.width).astype(np.float32) * weight
+        weights[strip.first_row : strip.last_row] += weight
+    return np.rint(total / weights).astype(np.uint8)
+
+
+def _widened(picture: Picture, width: int) -> Picture:
+    """Stretched across, knowing that the left edge follows the right one."""
+    if picture.shape[1] == width:
+        return picture
+    pad = 8
+    wrapped = np.pad(picture, ((0, 0), (pad, pad), (0, 0)), mode="wrap")
+    scale = width / picture.shape[1]
+    x = (np.arange(width, dtype=np.float32) + 0.5) / scale - 0.5 + pad
+    columns = np.broadcast_to(x, (picture.shape[0], width)).astype(np.float32)
+    rows = np.broadcast_to(np.arange(picture.shape[0], dtype=np.float32)[:, None], columns.shape)
+    return np.asarray(cv2.remap(wrapped, columns, np.ascontiguousarray(rows), cv2.INTER_CUBIC), dtype=np.uint8)
+
+
+def smoothed(picture: Picture, panorama: Panorama) -> Picture:
+    """Each row blurred across by as many pixels as one pixel of the equator is wide there: no view can show more than that."""
+    result = picture.copy()
+    for row in range(panorama.height):
+        tilt = panorama.tilt_of_row(row + 0.5)
+        spread = min(1 / max(math.cos(math.radians(tilt)), 1e-3), panorama.width / 4)
+        if spread < 1.5:
+            continue
+        reach = math.ceil(spread / 2)
+        kernel = np.clip(spread / 2 - np.abs(np.arange(-reach, reach + 1)) + 0.5, 0, 1)
+        line = np.pad(picture[row : row + 1], ((0, 0), (reach, reach), (0, 0)), mode="wrap")
+        blurred = cv2.filter2D(line, cv2.CV_32F, (kernel / kernel.sum())[None, :])
+        result[row] = np.rint(np.clip(blurred[0, reach : reach + panorama.width], 0, 255)).astype(np.uint8)
+    return result

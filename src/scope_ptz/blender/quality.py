@@ -1,0 +1,42 @@
+"""How good a bake is made, and what it may weigh."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+PACK_BYTES = 5_500_000
+"""All layers of one viewpoint together."""
+
+NEAR_M, FAR_M = 0.3, 20000.0
+"""Range of the depth coding."""
+
+DEPTH_STEP = 24
+"""Distances are rounded to this many codes: 0.4%, far less than what separates an actor from what it walks behind."""
+
+
+@dataclass(frozen=True, slots=True)
+class Quality:
+    """Sizes in pixels, samples a pixel, and the colour coder's own scale."""
+
+    name: str
+    base_width: int
+    base_samples: int
+    ids_width: int
+    depth_width: int
+    tile_samples: int
+    tile_density_px_per_deg: float
+    max_tiles: int
+    sprite_samples: int
+    max_sprites: int
+    base_coding: int
+    tile_coding: int
+
+
+QUALITIES = {
+    q.name: q
+    for q in (
+        Quality("draft", 2048, 4, 4096, 2048, 4, 48.0, 8, 4, 12, 75, 70),
+        Quality("standard", 6144, 16, 8192, 4096, 16, 96.0, 48, 16, 40, 84, 80),
+        Quality("high", 6144, 40, 8192, 4096, 40, 96.0, 48, 32, 56, 86, 82),
+    )
+}

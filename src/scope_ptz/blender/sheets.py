@@ -1,0 +1,83 @@
+"""Sprites of one actor, put on one sheet."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scope_ptz.blender.keyframes import Keyframe
+from scope_ptz.blender.quality import DEPTH_STEP, FAR_M, NEAR_M
+from scope_ptz.world.layers import encode_depth, read_colour
+from scope_ptz.world.models import Sprite
+
+MAX_SHEET_WIDTH = 4096
+SHADOW_GAMMA = 0.5
+"""Shadows are measured in linear light and drawn over display values: what passes through is raised to this power."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """(H, W, 4) straight RGBA, (H, W) distance codes, and where each sprite lies."""
+
+    colour: NDArray[np.uint8]
+    depth: NDArray[np.uint16]
+    sprites: list[Sprite]
+
+
+def make_sheet(frames: list[Keyframe], folder: Path) -> Sheet:
+    """From the pictures that the worker left in ``folder``."""
+    pictures, depths = [], []
+    for k in range(len(frames)):
+        with np.load(folder / f"{k:03d}.npz") as file:
+            metres = file["depth"]
+        picture = read_colour(folder / f"{k:03d}.png")
+        pictures.append(_display_shadow(picture, metres > 0))
+        depths.append(encode_depth(metres, NEAR_M, FAR_M, 2 * DEPTH_STEP))
+    places, (width, height) = _lay_out([(f.view.width, f.view.height) for f in frames])
+    colour = np.zeros((height, width, 4), dtype=np.uint8)
+    depth = np.zeros((height, width), dtype=np.uint16)
+    sprites = []
+    for frame, picture, codes, (left, top) in zip(frames, pictures, depths, places, strict=True):
+        rows, columns = slice(top, top + frame.view.height), slice(left, left + frame.view.width)
+        colour[rows, columns], depth[rows, columns] = picture, codes
+        sprites.append(
+            Sprite(
+                path_s=frame.time_s,
+                phase=frame.phase,
+                position_m=frame.position_m,
+                pan_deg=frame.view.pan_deg,
+                tilt_deg=frame.view.tilt_deg,
+                hfov_deg=frame.view.hfov_deg,
+                left=left,
+                top=top,
+                width=frame.view.width,
+                height=frame.view.height,
+            )
+        )
+    return Sheet(colour, depth, sprites)
+
+
+def _display_shadow(picture: NDArray[np.uint8], body: NDArray[np.bool_]) -> NDArray[np.uint8]:
+    alpha = picture[..., 3].astype(np.float32) / 255
+    light = 1 - picture[..., :3].max(axis=2).astype(np.float32) / 255
+    shadow = np.where(body, 0.0, light)
+    drawn = 1 - (1 - alpha) ** SHADOW_GAMMA
+    result = picture.copy()
+    result[..., 3] = np.rint(255 * (shadow * drawn + (1 - shadow) * alpha)).astype(np.uint8)
+    result[result[..., 3] < 3] = 0
+    return result
+
+
+def _lay_out(sizes: list[tuple[int, int]]) -> tuple[list[tuple[int, int]], tuple[int, int]]:
+    """Shelves in the order given. Returns left/top of each and the size of the sheet."""
+    places: list[tuple[int, int]] = []
+    x = y = shelf = right = 0
+    for width, height in sizes:
+        if x + width > MAX_SHEET_WIDTH:
+            x, y, shelf = 0, y + shelf, 0
+        places.append((x, y))
+        x, shelf, right = x + width, max(shelf, height), max(right, x + width)
+    return places, (right, y + shelf)

@@ -1,0 +1,175 @@
+"""Where zooming pays: which parts of the sphere get sharper pictures, decided from the scene itself."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scope_ptz.geometry import Equirectangular, Perspective, direction, pan_tilt_deg
+from scope_ptz.world.models import SceneFile, SceneText, SceneViewpoint
+
+CELL_PAN_DEG, CELL_TILT_DEG = 10.0, 6.5
+OVERLAP_DEG = 0.15
+"""A tile reaches this far beyond its cell, so that neighbours leave no seam."""
+
+GRID_DEG = 0.25
+"""Resolution of the map of what must be covered."""
+
+WIDE_FOCAL_PX, TELE_FOCAL_PX = 897.0, 5212.0
+"""Focal lengths of a 1280 pixel wide frame at both ends of the zoom."""
+
+SMALL_SIDE_PX, SMALL_AREA_PX = 48.0, 3600.0
+"""An instance that is smaller than this at the wide end is one to zoom in on,"""
+
+MIN_TELE_SIDE_PX, MIN_TELE_AREA_PX = 12.0, 70.0
+"""... if at the tele end it is big enough to be counted."""
+
+SMALL_CAPS_PX = 20.0
+MIN_TELE_CAPS_PX = 12.0
+MAX_READING_ANGLE_DEG = 58.0
+"""Texts are taken a little more generously than they are judged legible."""
+
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """Something that must lie in tiles: directions (n, 2) as pan/tilt in degrees."""
+
+    name: str
+    directions: NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A patch of the sphere between two pans and two tilts."""
+
+    pan_deg: float
+    tilt_deg: float
+    span_pan_deg: float
+    span_tilt_deg: float
+
+    def view(self, density_px_per_deg: float) -> Perspective:
+        """The smallest upright perspective picture that shows the cell and a little more, with this density in its middle."""
+        edge = np.linspace(-0.5, 0.5, 17)
+        pans, tilts = np.meshgrid(edge * (self.span_pan_deg + 2 * OVERLAP_DEG), edge * (self.span_tilt_deg + 2 * OVERLAP_DEG))
+        axes = Perspective(self.pan_deg, self.tilt_deg, 90.0, 2, 2)
+        shown = axes.points(direction(self.pan_deg + pans, self.tilt_deg + tilts))
+        half_x, half_y = (2 * float(np.abs(shown[..., k] - 0.5).max()) for k in range(2))
+        focal_px = math.degrees(density_px_per_deg)
+        width, height = (2 * math.ceil(half * focal_px) for half in (half_x, half_y))
+        return Perspective(self.pan_deg, self.tilt_deg, math.degrees(2 * math.atan(width / 2 / focal_px)), width, height)
+
+
+def targets(scene: SceneFile, viewpoint: SceneViewpoint, ids: NDArray[np.uint16], projection: Equirectangular) -> list[Target]:
+    """Every text and every small instance that can be read or counted after zooming in. ``ids`` is the panorama's id layer."""
+    found = []
+    rows, columns = np.nonzero(ids)
+    numbers = ids[rows, columns]
+    order = np.argsort(numbers, kind="stable")
+    names = {i.number: i.id for i in scene.instances}
+    ends = np.flatnonzero(np.diff(numbers[order], append=-1)) + 1
+    first = 0
+    for last in ends:
+        part = order[first:last]
+        first = int(last)
+        points = np.stack([(columns[part] + 0.5) / projection.width, (rows[part] + 0.5) / projection.height], axis=-1)
+        if _is_small(points, projection):
+            pan, tilt = pan_tilt_deg(projection.directions(points))
+            found.append(Target(names.get(int(numbers[part[0]]), str(numbers[part[0]])), np.stack([pan, tilt], axis=-1)))
+    found += [Target(t.id, spots) for t in scene.texts if (spots := _text_directions(t, viewpoint)) is not None]
+    return found
+
+
+def _is_small(points: NDArray[np.float64], projection: Equirectangular) -> bool:
+    directions = projection.directions(points)
+    _, tilt = pan_tilt_deg(directions)
+    pixel_sr = math.radians(projection.pan_span_deg / projection.width) ** 2
+    solid_angle = float(np.cos(np.radians(tilt)).sum()) * pixel_sr
+    middle_pan, middle_tilt = (float(v) for v in pan_tilt_deg(directions.mean(axis=0)))
+    shown = Perspective(middle_pan, middle_tilt, 90.0, 2, 2).points(directions)
+    if np.isnan(shown).any():
+        return False
+    side = 2 * float(np.ptp(shown, axis=0).min()) + math.sqrt(pixel_sr)
+    small = side * WIDE_FOCAL_PX < SMALL_SIDE_PX or solid_angle * WIDE_FOCAL_PX**2 < SMALL_AREA_PX
+    return small and side * TELE_FOCAL_PX >= MIN_TELE_SIDE_PX and solid_angle * TELE_FOCAL_PX**2 >= MIN_TELE_AREA_PX
+
+
+def _text_directions(text: SceneText, viewpoint: SceneViewpoint) -> NDArray[np.float64] | None:
+    """Directions of a text's block when it needs zoom and repays it; None otherwise. Whether something hides it is not asked."""
+    centre, right, up = (np.array(v) for v in (text.centre_m, text.right, text.up))
+    towards = np.array(viewpoint.position_m) - centre
+    distance = float(np.linalg.norm(towards))
+    cosine = float(np.cross(right, up) @ towards) / distance
+    angular_height = text.cap_height_m / distance
+    if cosine < math.cos(math.radians(MAX_READING_ANGLE_DEG)) or angular_height * TELE_FOCAL_PX < MIN_TELE_CAPS_PX:
+        return None
+    if angular_height * WIDE_FOCAL_PX > SMALL_CAPS_PX:
+        return None
+    u, v = np.meshgrid(np.linspace(-0.6, 0.6, 25), np.linspace(-0.7, 0.7, 9))
+    points = centre + u[..., None] * right * text.width_m + v[..., None] * up * text.height_m - viewpoint.position_m
+    pan, tilt = pan_tilt_deg(points.reshape(-1, 3))
+    return np.stack([(pan - viewpoint.pan0_bearing_deg + 180.0) % 360.0 - 180.0, tilt], axis=-1)
+
+
+def cover(wanted: Sequence[Target]) -> list[Cell]:
+    """Whole cells of a grid that hold every target. The grid is shifted to where it needs the fewest."""
+    if not wanted:
+        return []
+    needed = _needed(wanted)
+    best: list[Cell] = []
+    for shift in np.arange(0.0, CELL_TILT_DEG, GRID_DEG):
+        cells = _cells(needed, float(shift))
+        if not best or len(cells) < len(best):
+            best = cells
+    return best
+
+
+def covers(views: Sequence[Perspective], target: Target) -> bool:
+    """Whether every direction of a target lies in at least one of the views."""
+    directions = direction(target.directions[:, 0], target.directions[:, 1])
+    inside = np.zeros(len(directions), dtype=bool)
+    for view in views:
+        points = np.nan_to_num(view.points(directions), nan=-1.0)
+        inside |= np.all((points >= 0) & (points <= 1), axis=-1)
+    return bool(inside.all())
+
+
+def _needed(wanted: Sequence[Target]) -> Mask:
+    """(720, 1440) map of the sphere, row 0 at tilt -90, column 0 at pan -180."""
+    grid = np.zeros((round(180 / GRID_DEG), round(360 / GRID_DEG)), dtype=bool)
+    for target in wanted:
+        rows = np.clip(((target.directions[:, 1] + 90) / GRID_DEG).astype(int), 0, grid.shape[0] - 1)
+        grid[rows, ((target.directions[:, 0] + 180) / GRID_DEG).astype(int) % grid.shape[1]] = True
+    return grid
+
+
+def _cells(needed: Mask, shift_deg: float) -> list[Cell]:
+    cells: list[Cell] = []
+    low = -90.0 - shift_deg
+    while low < 90.0:
+        high = low + CELL_TILT_DEG
+        rows = slice(max(0, round((low + 90) / GRID_DEG)), max(0, round((high + 90) / GRID_DEG)))
+        columns = needed[rows].any(axis=0)
+        if columns.any():
+            nearest = 0.0 if low < 0 < high else min(abs(low), abs(high))
+            count = max(3, round(360 * math.cos(math.radians(min(nearest, 85.0))) / CELL_PAN_DEG))
+            starts = _best_starts(columns, 360.0 / count)
+            cells += [Cell((s + 180.0 / count) % 360.0 - 180.0, (low + high) / 2, 360.0 / count, CELL_TILT_DEG) for s in starts]
+        low = high
+    return cells
+
+
+def _best_starts(columns: Mask, span_deg: float) -> list[float]:
+    """Left edges (degrees from pan -180) of the grid columns that are needed, for the grid offset that needs the fewest."""
+    places = np.flatnonzero(columns) * GRID_DEG
+    best: list[float] = []
+    for offset in np.arange(0.0, span_deg, GRID_DEG):
+        index = np.unique(np.concatenate([((places + d - offset) % 360.0) // span_deg for d in (0.0, 0.99 * GRID_DEG)]))
+        if not best or len(index) < len(best):
+            best = [float(offset + i * span_deg) for i in index]
+    return best
