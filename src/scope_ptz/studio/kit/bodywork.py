@@ -69,7 +69,7 @@ AMBER = (0.80, 0.22, 0.01)
 
 
 def paint(
-    model: str, colour: str, patches: Sequence[Patch] = (), *, dirt_top_m: float = 0.55, dirt: float = 0.55, gloss: float = 0.6
+    model: str, colour: str, patches: Sequence[Patch] = (), *, dirt_top_m: float = 0.55, dirt: float = 0.55, gloss: float = 0.45
 ) -> bpy.types.Material:
     """Lacquered paint of one colour with the model's patches and road dirt fading out at ``dirt_top_m``.
 
@@ -190,14 +190,15 @@ def shell(
     stations: Sequence[Station],
     panes: Sequence[Pane],
     *,
-    creased_rows: dict[int, float],
+    creases: Sequence[tuple[int, float, int, int]],
     bulge: tuple[float, float],
     cutters: Parts | None = None,
     levels: int = 3,
 ) -> bpy.types.Mesh:
     """A closed body lofted through ``stations`` from front to rear and subdivided; windows are framed in black trim.
 
-    ``bulge`` bows the front and rear ends outwards; ``cutters`` are solids taken away (wheel arches), leaving their own material.
+    ``bulge`` bows the front and rear ends outwards; ``cutters`` are solids taken away (wheel arches), leaving their own material;
+    ``creases`` are (row, strength, first station, last station).
     """
     bm = bmesh.new()
     crease = bm.edges.layers.float.new("crease_edge")
@@ -213,9 +214,9 @@ def shell(
     for end, push in ((grid[0], bulge[0]), (grid[-1], -bulge[1])):
         _cap(bm, end, rows, push)
     bm.edges.ensure_lookup_table()
-    for row, strength in creased_rows.items():
+    for row, strength, first, last in creases:
         for column in {row, (ring - row) % ring}:
-            for i in range(len(grid) - 1):
+            for i in range(first, min(last, len(grid) - 1)):
                 bm.edges.get((grid[i][column], grid[i + 1][column]))[crease] = strength
     for pane in panes:
         span = range(*pane.stations)
@@ -353,12 +354,13 @@ def words(
     width, height = max(xs) - min(xs), max(ys) - min(ys)
     squeeze = min(1.0, width_m / width)
     right, up = _READERS[facing]
+    normal = Vector(right).cross(up)
     points: list[Point] = []
-    for x, y, _ in flat:
+    for x, y, lift in flat:
         u, v = (x - (max(xs) + min(xs)) / 2) * squeeze, y - cap_m / 2
-        px, py, pz = (centre[k] + right[k] * u + up[k] * v for k in range(3))
+        px, py, pz = (centre[k] + right[k] * u + up[k] * v + normal[k] * lift for k in range(3))
         if onto is not None:
-            px = math.copysign(onto.side(py, pz) + 0.004, -1 if facing == "-X" else 1)
+            px = math.copysign(onto.side(py, pz) + 0.004 + lift, -1 if facing == "-X" else 1)
         points.append((px, py, pz))
     if onto is not None:
         centre = (sum(p[0] for p in points) / len(points), centre[1], centre[2])

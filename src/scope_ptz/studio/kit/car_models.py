@@ -32,7 +32,7 @@ class CarModel:
     track_x: float
     wheel_radius: float
     bulge: tuple[float, float]
-    creases: dict[int, float]
+    creases: list[tuple[int, float, int, int]]
     patches: list[Patch]
     handles: list[tuple[float, float]]
     mirror: tuple[float, float]
@@ -128,7 +128,7 @@ SALOON = CarModel(
     track_x=0.785,
     wheel_radius=0.325,
     bulge=(0.10, 0.07),
-    creases={4: 0.7, 2: 0.35, 3: 0.2, 6: 0.3},
+    creases=[(4, 0.7, 0, 99), (2, 0.35, 0, 99), (3, 0.2, 0, 99), (6, 0.85, 3, 7)],
     patches=[
         *_door_patches([0.98, -0.36, -1.30], 0.30, 0.93, -0.03),
         Patch(GAP, x=(0.742, 0.752), y=(1.05, 2.02), z=(0.7, 1.2), roughness=0.9),
@@ -173,7 +173,7 @@ HATCHBACK = CarModel(
     track_x=0.765,
     wheel_radius=0.315,
     bulge=(0.10, 0.06),
-    creases={4: 0.7, 2: 0.35, 3: 0.2, 6: 0.3},
+    creases=[(4, 0.7, 0, 99), (2, 0.35, 0, 99), (3, 0.2, 0, 99), (6, 0.85, 3, 7)],
     patches=[
         *_door_patches([0.90, -0.32, -1.16], 0.30, 0.97, -0.03),
         Patch(GAP, x=(0.722, 0.732), y=(1.0, 1.75), z=(0.7, 1.2), roughness=0.9),
@@ -217,7 +217,7 @@ SUV = CarModel(
     track_x=0.81,
     wheel_radius=0.37,
     bulge=(0.08, 0.05),
-    creases={4: 0.75, 2: 0.4, 3: 0.25, 6: 0.3},
+    creases=[(4, 0.75, 0, 99), (2, 0.4, 0, 99), (3, 0.25, 0, 99), (6, 0.85, 3, 7)],
     patches=[
         *_door_patches([0.96, -0.28, -1.22], 0.42, 1.08, -0.02),
         Patch(GAP, x=(0.782, 0.792), y=(1.05, 1.95), z=(0.9, 1.3), roughness=0.9),
@@ -265,7 +265,7 @@ VAN = CarModel(
     track_x=0.86,
     wheel_radius=0.345,
     bulge=(0.09, 0.01),
-    creases={4: 0.4, 2: 0.35, 7: 0.2},
+    creases=[(4, 0.4, 0, 99), (2, 0.35, 0, 99), (7, 0.2, 0, 99)],
     patches=[
         bw.upright_gap(1.30, (0.42, 1.20)), bw.upright_gap(0.30, (0.42, 2.1)), bw.level_gap(0.42, (0.30, 1.30)),
         bw.upright_gap(0.24, (0.40, 2.12)), bw.upright_gap(-1.02, (0.40, 2.12)), bw.level_gap(0.40, (-1.02, 0.24)), bw.level_gap(2.12, (-1.02, 0.24)),
@@ -316,7 +316,7 @@ PICKUP = CarModel(
     track_x=0.80,
     wheel_radius=0.385,
     bulge=(0.08, 0.0),
-    creases={4: 0.75, 2: 0.4, 3: 0.25, 5: 0.4, 6: 0.3},
+    creases=[(4, 0.75, 0, 99), (2, 0.4, 0, 99), (3, 0.25, 0, 99), (5, 0.4, 0, 99), (6, 0.85, 3, 7)],
     patches=[
         *_door_patches([1.26, 0.08, -0.72], 0.46, 1.09),
         bw.upright_gap(-0.94, (0.4, 1.3), width=0.03),

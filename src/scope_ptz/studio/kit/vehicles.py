@@ -19,7 +19,7 @@ def _body(model: CarModel) -> Parts:
     cutters = bw.arches(model.axles, radius + 0.055, model.track_x - model.tyre_width / 2 - 0.10)
     for size, centre in model.extra_cutters:
         cutters.box(size, centre, bw.black_trim(), bevel_m=0.0)
-    made = bw.shell(model.stations, model.panes, creased_rows=model.creases, bulge=model.bulge, cutters=cutters)
+    made = bw.shell(model.stations, model.panes, creases=model.creases, bulge=model.bulge, cutters=cutters)
     parts = Parts()
     parts.mesh(made)
     surface = bw.Surface(made)
@@ -48,7 +48,7 @@ def _pillar(parts: Parts, surface: bw.Surface, y: float, width: float, belt_z: f
     """A black door pillar laid over the side glass."""
     heights = [belt_z + 0.05 + 0.055 * k for k in range(14)]
     edge = [(surface.side(y, z) + 0.005, z) for z in heights]
-    edge = [e for e in edge if e[0] > 0.5]
+    edge = [e for e in edge if e[0] > 0.62]
     points = [(sign * x, y + s * width / 2 - 0.06 * (z - belt_z), z) for x, z in edge for s in (-1, 1)]
     faces = [(2 * k, 2 * k + 1, 2 * k + 3, 2 * k + 2)[:: -sign] for k in range(len(edge) - 1)]
     parts.add(points, faces, bw.black_trim(), smooth=True)
@@ -56,8 +56,8 @@ def _pillar(parts: Parts, surface: bw.Surface, y: float, width: float, belt_z: f
 
 def _interior(parts: Parts, cabin: Cabin) -> None:
     """Floor, door linings, dashboard, steering wheel on the right, and seats with head rests."""
-    lining = shading.plain("vehicle lining", (0.022, 0.022, 0.023), 0.9)
-    cloth = shading.plain("vehicle seat cloth", (0.060, 0.060, 0.064), 0.9)
+    lining = shading.plain("vehicle lining", (0.035, 0.035, 0.036), 0.9)
+    cloth = shading.plain("vehicle seat cloth", (0.12, 0.12, 0.125), 0.9)
     length, middle = cabin.front_y - cabin.rear_y, (cabin.front_y + cabin.rear_y) / 2
     parts.box((2 * cabin.half_width, length, 0.03), (0, middle, cabin.floor_z), lining, bevel_m=0.0)
     height = cabin.belt_z - 0.02 - cabin.floor_z
