@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image
 
 from scope_ptz.geometry import Equirectangular, Perspective, Projection, direction, pan_tilt_deg
 from scope_ptz.world import layers
@@ -89,7 +90,7 @@ def perfect_view(
     smooth: int = 1,
     coloured: bool = True,
 ) -> tuple[NDArray[np.uint8], NDArray[np.uint16], Floats]:
-    """Colour, instance numbers and distances, ray-cast. ``time_s``: with the actor; ``smooth``: rays a pixel side for the colour."""
+    """Colour, instance numbers and distances, ray-cast. ``time_s``: with the actor; ``smooth`` ** 2 rays a pixel."""
     position, bearing = VIEWPOINTS[viewpoint]
     solids = list(SOLIDS if only is None else only)
     if time_s is not None and (ball := actor_ball(time_s)) is not None:
@@ -279,10 +280,7 @@ def _write_actor(folder: Path, name: str) -> ActorSheet:
 
 def _write(folder: Path, name: str, picture: NDArray[np.uint8] | NDArray[np.uint16]) -> Layer:
     path = folder / name
-    if picture.dtype == np.uint16:
-        layers.write_ids(path, picture.astype(np.uint16))
-    else:
-        layers.write_colour(path, picture.astype(np.uint8), 90)
+    Image.fromarray(picture).save(path, compress_level=1)
     digest = hashlib.sha256(path.read_bytes()).hexdigest()
     return Layer(file=name, sha256=digest, width=picture.shape[1], height=picture.shape[0])
 

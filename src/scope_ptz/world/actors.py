@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 from scope_ptz.geometry import Perspective, Projection, pan_tilt_deg
 from scope_ptz.world.models import ActorSheet, Extent, SceneActor, Sprite
 from scope_ptz.world.pack import Scene, Viewpoint
-from scope_ptz.world.reproject import Grid, bounds, step_px
+from scope_ptz.world.reproject import Grid, step_px
 from scope_ptz.world.runs import measure
+from scope_ptz.world.tiles import Place, Tiles
 
 TOLERANCE_M = 0.15
 TOLERANCE_SHARE = 0.01
@@ -121,6 +122,12 @@ def extent(viewpoint: Viewpoint, appearance: Appearance) -> Extent:
     )
 
 
+def place_of(appearance: Appearance, projection: Projection) -> Place | None:
+    """Rows and columns of a picture in which an actor may show, None when it is elsewhere."""
+    found = Tiles([appearance.view]).in_view(projection)
+    return found[0][1] if found else None
+
+
 def draw(
     viewpoint: Viewpoint,
     projection: Projection,
@@ -130,11 +137,11 @@ def draw(
     numbers: NDArray[np.uint16] | None,
 ) -> None:
     """Set one actor into a picture and into its instance numbers, in place. ``depth_m`` (H, W) is the still world's distance."""
-    place = bounds(appearance.view, projection)
+    place = place_of(appearance, projection)
     if place is None:
         return
     grid = Grid(projection, step_px(projection), place)
-    uv = np.nan_to_num(appearance.view.points(grid.directions), nan=-1e3)
+    uv = Tiles([appearance.view]).points(0, projection, grid.x, grid.y)
     where = grid.to_pixels(uv * (appearance.sprite.width, appearance.sprite.height) - 0.5)
     distance_m = cv2.remap(_distances(viewpoint, appearance), where, None, cv2.INTER_NEAREST, borderValue=0.0)
     still_m = depth_m[place] * (1 + TOLERANCE_SHARE) + TOLERANCE_M
@@ -142,7 +149,7 @@ def draw(
     if numbers is not None:
         numbers[place][own & (distance_m <= still_m)] = appearance.actor.number
     if picture is not None:
-        directions = grid.to_pixels(grid.directions)
+        directions = grid.to_pixels(grid.directions())
         drop = directions[..., 2] / np.linalg.norm(directions, axis=-1)
         height_m = float(appearance.offset_m[2])
         with np.errstate(divide="ignore", invalid="ignore"):

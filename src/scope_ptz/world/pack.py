@@ -30,6 +30,7 @@ from scope_ptz.world.models import (
     SceneInstance,
     SceneViewpoint,
 )
+from scope_ptz.world.tiles import Tiles
 
 COLOUR_SCALES = (1.0, 2**-0.5, 0.5, 2**-1.5, 0.25)
 """Scales at which colour is kept: half an octave apart, so that no view samples its source much too finely or too coarsely."""
@@ -128,9 +129,6 @@ class Viewpoint:
         self.folder = folder
         self.manifest = manifest = _read_json(folder / "manifest.json", Manifest)
         self.name = place.name
-        self.tile_views = [Perspective(t.pan_deg, t.tilt_deg, t.hfov_deg, t.colour.width, t.colour.height) for t in manifest.tiles]
-        self.tile_directions = np.array([view.directions((0.5, 0.5)) for view in self.tile_views])
-        self.tile_reach_deg = np.array([view.reach_deg for view in self.tile_views])
         self._sheets: dict[int, tuple[NDArray[np.uint8], NDArray[np.uint16]]] = {}
         self._lock = RLock()
         if (manifest.scene, manifest.viewpoint, manifest.scene_version) != (scene.name, place.name, scene.version):
@@ -140,6 +138,7 @@ class Viewpoint:
             )
 
         tiles = manifest.tiles
+        self.tiles = Tiles([Perspective(t.pan_deg, t.tilt_deg, t.hfov_deg, t.colour.width, t.colour.height) for t in tiles])
         colours, ids = [manifest.base, *(t.colour for t in tiles)], [manifest.ids, *(t.ids for t in tiles)]
         self.colour_atlas = Atlas([_size(c) for c in colours], lambda i: self.colour(colours[i]), np.uint8, 3, COLOUR_SCALES)
         self.id_atlas = Atlas([_size(n) for n in ids], lambda i: self.ids(ids[i]), np.uint16, 1, (1.0,))

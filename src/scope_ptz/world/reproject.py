@@ -8,16 +8,17 @@ a result: the same pack and projection give the same bytes.
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from scope_ptz.geometry import Equirectangular, Perspective, Projection, angle_between_deg, pan_tilt_deg, wrap_pan_deg
+from scope_ptz.geometry import Equirectangular, Projection, pan_tilt_deg, wrap_pan_deg
 from scope_ptz.world.atlas import Atlas, Slot
 from scope_ptz.world.models import Band
 from scope_ptz.world.pack import Viewpoint
+from scope_ptz.world.tiles import Place, Tiles
 
 MAX_MAP_ERROR_PX = 0.04
 """Largest error of an interpolated map, in pixels of the view."""
@@ -55,52 +56,39 @@ def _look_up(viewpoint: Viewpoint, atlas: Atlas, projection: Projection, interpo
 def atlas_map(viewpoint: Viewpoint, atlas: Atlas, projection: Projection) -> Map:
     """(H, W, 2): for each pixel of the view its x, y on the sheet of an atlas."""
     needed = projection.density
-    grid = Grid(projection, step_px(projection))
-    patches: list[Patch] = []
-    if needed > TILE_GAIN * atlas.slots[0][0].width / (2 * math.pi):
-        for index in _tiles_in(viewpoint, projection, len(atlas.slots) - 1):
-            patch = _tile_patch(viewpoint.tile_views[index], atlas, 1 + index, grid)
-            if patch is not None:
-                patches.append(patch)
-                if patch.inside is None:
-                    return patch.where
+    step = step_px(projection)
+    patches: list[tuple[Place, Map, NDArray[np.uint8]]] = []
+    if needed > TILE_GAIN * atlas.slots[0][0].width / (2 * math.pi) and len(atlas.slots) > 1:
+        for index, place in viewpoint.tiles.in_view(projection):
+            where, inside, filled = _tile_map(viewpoint.tiles, index, atlas, Grid(projection, step, place))
+            if filled:
+                return where
+            patches.append((place, where, inside))
     slots = atlas.need(0)
-    where = _base_map(viewpoint.manifest.band, _level(slots, slots[0].width / (2 * math.pi), needed), grid)
-    for patch in reversed(patches):
-        cv2.copyTo(patch.where, patch.inside, where[patch.place])
-    return where
-
-
-class Patch(NamedTuple):
-    """Where a tile shows: its map over a part of the view, and which pixels it covers (None: the tile fills the view)."""
-
-    where: Map
-    inside: NDArray[np.uint8] | None
-    place: tuple[slice, slice]
+    slot = _level(slots, slots[0].width / (2 * math.pi), needed)
+    everywhere = _base_map(viewpoint.manifest.band, slot, Grid(projection, step))
+    for place, where, inside in reversed(patches):
+        cv2.copyTo(where, inside, everywhere[place])
+    return everywhere
 
 
 class Grid:
-    """Nodes ``step`` pixels apart over a part of a picture and one step beyond it, and the way back from nodes to pixels."""
+    """Nodes ``step`` pixels apart over a part of a picture and one step beyond it, and the way back from nodes to pixels.
 
-    def __init__(self, projection: Projection, step: int, place: tuple[slice, slice] | None = None) -> None:
+    ``x`` and ``y`` are the columns and rows of the nodes in pixels, counted from the picture's corner.
+    """
+
+    def __init__(self, projection: Projection, step: int, place: Place | None = None) -> None:
         self.projection, self.step = projection, step
         self.place = place or (slice(0, projection.height), slice(0, projection.width))
         rows, columns = self.place
-        x = columns.start + (np.arange(-(-(columns.stop - columns.start) // step) + 2) - 0.5) * step
-        y = rows.start + (np.arange(-(-(rows.stop - rows.start) // step) + 2) - 0.5) * step
-        self.points: Floats = np.stack(np.broadcast_arrays(x[None, :] / projection.width, y[:, None] / projection.height), axis=-1)
-        self._directions: Floats | None = None
+        self.x: Floats = columns.start + (np.arange(-(-(columns.stop - columns.start) // step) + 2) - 0.5) * step
+        self.y: Floats = rows.start + (np.arange(-(-(rows.stop - rows.start) // step) + 2) - 0.5) * step
 
-    @property
     def directions(self) -> Floats:
         """(rows, columns, 3) unit vectors at the nodes."""
-        if self._directions is None:
-            self._directions = self.projection.directions(self.points)
-        return self._directions
-
-    def part(self, place: tuple[slice, slice]) -> Grid:
-        """A grid as fine as this over another part of the picture."""
-        return self if place == self.place else Grid(self.projection, self.step, place)
+        points = np.stack(np.meshgrid(self.x / self.projection.width, self.y / self.projection.height), axis=-1)
+        return self.projection.directions(points)
 
     def to_pixels(self, nodes: Floats) -> NDArray[np.float32]:
         """Values at nodes (rows, columns, n), bilinear between them, at the middle of every pixel of the part."""
@@ -128,10 +116,12 @@ def _base_map(band: Band, slot: Slot, grid: Grid) -> Map:
     projection = grid.projection
     if isinstance(projection, Equirectangular):
         middle = projection.left_pan_deg + projection.pan_span_deg / 2
-        turn = (grid.points[..., 0] - 0.5) * projection.pan_span_deg
-        tilt = projection.top_tilt_deg + grid.points[..., 1] * (projection.bottom_tilt_deg - projection.top_tilt_deg)
+        fall = projection.bottom_tilt_deg - projection.top_tilt_deg
+        turn, tilt = np.meshgrid(
+            (grid.x / projection.width - 0.5) * projection.pan_span_deg, projection.top_tilt_deg + grid.y / projection.height * fall
+        )
     else:
-        pan, tilt = pan_tilt_deg(grid.directions)
+        pan, tilt = pan_tilt_deg(grid.directions())
         middle = float(pan_tilt_deg(projection.directions((0.5, 0.5)))[0])
         turn = (pan - middle + 180.0) % 360.0 - 180.0
     x = slot.x - 0.5 + (wrap_pan_deg(middle) + 180.0 + turn) / 360.0 * slot.width
@@ -145,47 +135,15 @@ def _base_map(band: Band, slot: Slot, grid: Grid) -> Map:
     return where
 
 
-def _tiles_in(viewpoint: Viewpoint, projection: Projection, count: int) -> list[int]:
-    """Indices of the tiles that may show in a view, sharpest first (then in the order of the manifest)."""
-    views = viewpoint.tile_views[:count]
-    if not views:
-        return []
-    apart = angle_between_deg(viewpoint.tile_directions[:count], projection.directions((0.5, 0.5)))
-    near = np.flatnonzero(apart <= viewpoint.tile_reach_deg[:count] + projection.reach_deg)
-    return sorted(near.tolist(), key=lambda i: (-views[i].focal_px, i))
-
-
-def _tile_patch(view: Perspective, atlas: Atlas, index: int, grid: Grid) -> Patch | None:
-    place = bounds(view, grid.projection)
-    if place is None:
-        return None
-    part = grid.part(place)
-    slot = _level(atlas.need(index), view.focal_px, grid.projection.density)
-    uv = np.nan_to_num(view.points(part.directions), nan=-1e3)
-    xy = uv * (slot.width, slot.height) + (slot.x - 0.5, slot.y - 0.5)
-    where = part.to_pixels(xy)
+def _tile_map(tiles: Tiles, index: int, atlas: Atlas, grid: Grid) -> tuple[Map, NDArray[np.uint8], bool]:
+    """A tile's map over a part of the view, which pixels there it covers, and whether that is all of the view."""
+    projection = grid.projection
+    slot = _level(atlas.need(1 + index), tiles.views[index].focal_px, projection.density)
+    nodes = tiles.points(index, projection, grid.x, grid.y) * (slot.width, slot.height) + (slot.x - 0.5, slot.y - 0.5)
     low, high = (slot.x, slot.y), (slot.x + slot.width - 1, slot.y + slot.height - 1)
-    if place == grid.place and np.all((xy >= low) & (xy <= high)):
-        return Patch(where, None, place)
-    return Patch(where, cv2.inRange(where, low, high), place)
-
-
-def bounds(view: Perspective, projection: Projection) -> tuple[slice, slice] | None:
-    """Rows and columns of a picture that the outline of a perspective view spans; None when it does not reach into the picture."""
-    apart = angle_between_deg(view.directions((0.5, 0.5)), projection.directions((0.5, 0.5)))
-    if apart > view.reach_deg + projection.reach_deg:
-        return None
-    side = np.linspace(0.0, 1.0, 9)
-    zero, one = np.zeros(9), np.ones(9)
-    outline = np.concatenate([np.stack(p, axis=-1) for p in ((side, zero), (one, side), (side, one), (zero, side))])
-    points = projection.points(view.directions(outline))
-    if np.isnan(points).any() or (isinstance(projection, Equirectangular) and np.ptp(points[:, 0]) > 0.5):
-        return slice(0, projection.height), slice(0, projection.width)
-    low = np.floor(points.min(axis=0) * (projection.width, projection.height)).astype(int) - 1
-    high = np.ceil(points.max(axis=0) * (projection.width, projection.height)).astype(int) + 1
-    rows = slice(max(0, int(low[1])), min(projection.height, int(high[1])))
-    columns = slice(max(0, int(low[0])), min(projection.width, int(high[0])))
-    return (rows, columns) if rows.start < rows.stop and columns.start < columns.stop else None
+    where = grid.to_pixels(nodes)
+    whole = where.shape[:2] == (projection.height, projection.width)
+    return where, cv2.inRange(where, low, high), whole and bool(np.all((nodes >= low) & (nodes <= high)))
 
 
 def _level(slots: tuple[Slot, ...], finest: float, needed: float) -> Slot:

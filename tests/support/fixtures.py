@@ -1,0 +1,26 @@
+"""Fixtures that several rooms' tests share; a room's conftest imports those it needs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from scope_ptz.world.pack import Scene
+from tests.support.synthetic_pack import write_scene
+
+
+@pytest.fixture(scope="session")
+def analytic_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A scene folder of the analytic world; not to be written to."""
+    return write_scene(tmp_path_factory.mktemp("scenes"))
+
+
+@pytest.fixture(scope="session")
+def analytic_scene(analytic_folder: Path) -> Scene:
+    return Scene(analytic_folder)
+
+
+@pytest.fixture(scope="session")
+def anyio_backend() -> str:
+    return "asyncio"
