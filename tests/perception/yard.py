@@ -118,10 +118,7 @@ SCENE = SceneFile(
 
 def _sighting(instance: SceneInstance | SceneActor, low: Any, high: Any, projection: Projection) -> Sighting:
     """A box as it shows: everything unhidden, its pixels half of its box."""
-    corners = (
-        np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
-        - CAMERA_M
-    )
+    corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]) - CAMERA_M
     points = projection.points(corners / np.linalg.norm(corners, axis=1, keepdims=True))
     x0, y0 = np.clip(np.nanmin(points, axis=0), 0, 1)
     x1, y1 = np.clip(np.nanmax(points, axis=0), 0, 1)

@@ -8,23 +8,25 @@ from scope_ptz.perception.language import words as w
 from scope_ptz.perception.language.lexicon import COLOURS, lexicon, nouns_in, singular_phrase
 from scope_ptz.perception.view import Thing, View
 
-_STATES = """
-open: opened ajar
-closed: shut locked
-lit: illuminated glowing flashing alight
-unlit: dark
-moving: driving travelling traveling
-stationary: parked stopped waiting still standstill idle
-empty: unloaded unoccupied vacant
-full: loaded occupied laden
-raised: up lifted
-lowered: down
-walking: strolling
-sitting: seated
-upright: standing
-fallen: toppled overturned lying knocked
-working: operating operational active running
-""".split("\n")
+_STATES = [
+    "",
+    "open: opened ajar",
+    "closed: shut locked",
+    "lit: illuminated glowing flashing alight",
+    "unlit: dark",
+    "moving: driving travelling traveling",
+    "stationary: parked stopped waiting still standstill idle",
+    "empty: unloaded unoccupied vacant",
+    "full: loaded occupied laden",
+    "raised: up lifted",
+    "lowered: down",
+    "walking: strolling",
+    "sitting: seated",
+    "upright: standing",
+    "fallen: toppled overturned lying knocked",
+    "working: operating operational active running",
+    "",
+]
 _CANONICAL = {word: line.partition(":")[0] for line in _STATES if line for word in line.replace(":", "").split()} | {
     "gray": "grey", "amber": "orange", "violet": "purple", "golden": "gold", "metallic": "metal", "steel": "metal",
     "wood": "wooden", "timber": "wooden", "male": "man", "female": "woman",
@@ -35,16 +37,84 @@ _OPPOSITES = [
     ("working", "off"),
 ]  # fmt: skip
 SOFT = frozenset(
-    """big large small little huge tiny tall short long wide narrow whole entire main other visible nearby actual particular present
-    current certain same real single lone only different various individual standing sitting waiting hanging lying placed full-size
-    mounted shown displayed there located parked stationary moving""".split()
+    [
+        "big",
+        "large",
+        "small",
+        "little",
+        "huge",
+        "tiny",
+        "tall",
+        "short",
+        "long",
+        "wide",
+        "narrow",
+        "whole",
+        "entire",
+        "main",
+        "other",
+        "visible",
+        "nearby",
+        "actual",
+        "particular",
+        "present",
+        "current",
+        "certain",
+        "same",
+        "real",
+        "single",
+        "lone",
+        "only",
+        "different",
+        "various",
+        "individual",
+        "standing",
+        "sitting",
+        "waiting",
+        "hanging",
+        "lying",
+        "placed",
+        "full-size",
+        "mounted",
+        "shown",
+        "displayed",
+        "there",
+        "located",
+        "parked",
+        "stationary",
+        "moving",
+    ]
 )
 """Words that restrict nothing when the scene has no fact about them."""
 _FILLERS = frozenset(
-    "the a an is are it its of in on at and be being with very quite really currently colour color coloured colored".split()
+    [
+        "the",
+        "a",
+        "an",
+        "is",
+        "are",
+        "it",
+        "its",
+        "of",
+        "in",
+        "on",
+        "at",
+        "and",
+        "be",
+        "being",
+        "with",
+        "very",
+        "quite",
+        "really",
+        "currently",
+        "colour",
+        "color",
+        "coloured",
+        "colored",
+    ]
 )
 COLOUR_KEYS = ("colour", "color")
-_NONE = frozenset({"", "none", "no", "false", "nothing", "without"})
+NOTHING = frozenset({"", "none", "no", "false", "nothing", "without"})
 
 
 def canonical(word: str) -> str:
@@ -74,9 +144,9 @@ def fact_words(thing: Thing) -> set[str]:
             found |= {"on"} if "lit" in words else set()
         elif value is False:
             found |= {b for pair in _OPPOSITES for a, b in (pair, pair[::-1]) if a in {canonical(x) for x in words}}
-        elif not (
-            is_colour(value) and words[-1] not in COLOUR_KEYS and any(k in thing.attributes for k in COLOUR_KEYS)
-        ) and not (is_worn(key) and "person" in thing.concepts):
+        elif not (is_colour(value) and words[-1] not in COLOUR_KEYS and any(k in thing.attributes for k in COLOUR_KEYS)) and not (
+            is_worn(key) and "person" in thing.concepts
+        ):
             found |= set(value_words(value))
     if "lit" in found:
         found.add("on")
@@ -95,8 +165,7 @@ def is_colour(value: object) -> bool:
 def is_worn(key: str) -> bool:
     """Whether an attribute is about clothes, so that its colour is not the person's."""
     return any(
-        lexicon().concept(x) in {"hard hat", "hi-vis vest", "jacket", "trouser", "boot", "glove", "hat"}
-        for x in key_words(key)
+        lexicon().concept(x) in {"hard hat", "hi-vis vest", "jacket", "trouser", "boot", "glove", "hat"} for x in key_words(key)
     )
 
 
@@ -131,9 +200,7 @@ def fits_words(view: View, thing: Thing, words: Sequence[str]) -> bool | None:
         return True
     spans = nouns_in(rest, view.nouns)
     if spans and spans[0][1] == len(rest):
-        answers = [
-            _all([fits_noun(thing, " ".join(rest[i:])), *(_fits(view, thing, x) for x in rest[:i])]) for i, _ in spans
-        ]
+        answers = [_all([fits_noun(thing, " ".join(rest[i:])), *(_fits(view, thing, x) for x in rest[:i])]) for i, _ in spans]
         if any(answers):
             return True
     return _all([_fits(view, thing, x) for x in rest])
@@ -184,14 +251,10 @@ def wears(view: View, thing: Thing, words: Sequence[str], amount: int | None = N
     for key, value in thing.attributes.items():
         if _key_is(key, names):
             said = value_words(value)
-            if str(value).lower() not in _NONE and value is not False and all(x in said for x in others):
+            if str(value).lower() not in NOTHING and value is not False and all(x in said for x in others):
                 return amount is None or not isinstance(value, int) or isinstance(value, bool) or value == amount
         for chunk in _chunks(value):
-            if (
-                any(name in chunk for name in names)
-                and all(x in value_words(chunk) for x in others)
-                and "no" not in chunk.split()
-            ):
+            if any(name in chunk for name in names) and all(x in value_words(chunk) for x in others) and "no" not in chunk.split():
                 return True
     parts = [t for t in view.things if t.id != thing.id and view.belongs(t.id, thing.id)]
     if any(fits_noun(part, noun) and all(_fits(view, part, x) for x in others) for part in parts):

@@ -42,9 +42,7 @@ class GroundTruthPerception(Perception):
     async def query(self, frame: Frame, question: str) -> Answer:
         began = time.perf_counter()
         reply = await to_thread.run_sync(self._answer, frame, question)
-        return Answer(
-            text=reply.text, known=reply.known, source=self.name, raw=reply.text, latency_s=time.perf_counter() - began
-        )
+        return Answer(text=reply.text, known=reply.known, source=self.name, raw=reply.text, latency_s=time.perf_counter() - began)
 
     async def detect(self, frame: Frame, description: str) -> Detections:
         began = time.perf_counter()

@@ -18,12 +18,14 @@ Rules, all of them about the picture as the camera sees it:
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from typing import cast
 
-from scope_ptz.perception.facts import bears, canonical, fact_words, fits_noun, fits_words, wears
-from scope_ptz.perception.facts import SOFT as SOFT
+import numpy as np
+
+from scope_ptz.perception.facts import SOFT, bears, canonical, fact_words, fits_noun, fits_words, key_words, wears
 from scope_ptz.perception.language import syntax as s
 from scope_ptz.perception.language import words as w
-from scope_ptz.perception.language.lexicon import nouns_in
+from scope_ptz.perception.language.lexicon import lexicon, nouns_in
 from scope_ptz.perception.view import Thing, View
 
 NEAR_M = 4.0
@@ -35,7 +37,8 @@ FOREGROUND_M = 20.0
 DISTANCE_M = 40.0
 
 _SIDES: dict[str, s.OrderKey] = {"left": "left", "right": "right", "top": "top", "bottom": "bottom"}
-_BACKDROP = frozenset({"surface", "sky"})
+BACKDROP = frozenset({"surface", "sky"})
+"""Concepts that are where things are, rather than things."""
 
 
 def find(view: View, description: s.Description) -> list[Thing]:
@@ -65,19 +68,14 @@ def noun_of(view: View, words: Sequence[str]) -> tuple[tuple[str, ...], tuple[st
 def _core(view: View, phrase: s.Phrase) -> tuple[list[Thing], tuple[s.Test, ...], s.Order | None]:
     """Things that the core words fit, further tests, and the order, where the words hide one ("the left sign")."""
     words = list(phrase.words)
-    if (
-        phrase.amount is not None
-        and phrase.order is None
-        and words
-        and not w.is_plural(words[-1])
-        and phrase.amount > 1
-    ):
+    if phrase.amount is not None and phrase.order is None and words and not w.is_plural(words[-1]) and phrase.amount > 1:
         words.insert(0, str(phrase.amount))
     spans = nouns_in(words, view.nouns)
     for start, end in spans:
         noun = " ".join(words[start:end])
         others = [*words[:start], *words[end:]]
-        candidates = [t for t in view.things if fits_noun(t, noun) and not _backdrop(t, noun)]
+        anything = lexicon().concept(noun) == "thing"
+        candidates = [t for t in view.things if (_worth_naming(view, t) if anything else fits_noun(t, noun))]
         sides = [x for x in others if x in _SIDES or x == "middle"]
         plain = [x for x in others if x not in sides]
         literal = [t for t in candidates if _modified(view, t, others)]
@@ -86,17 +84,27 @@ def _core(view: View, phrase: s.Phrase) -> tuple[list[Thing], tuple[s.Test, ...]
                 return literal, (), phrase.order
             continue
         matches = [t for t in candidates if _modified(view, t, plain)]
+        if w.is_plural(words[end - 1]):
+            return matches, (s.Region(cast("tuple[s.Side, ...]", tuple(sides))),), phrase.order
         if len(sides) == 1 and sides[0] in _SIDES and phrase.order is None:
             return matches, (), s.Order(_SIDES[sides[0]])
-        return matches, (s.Region(tuple(sides)),), phrase.order  # type: ignore[arg-type]
+        return sorted(matches, key=lambda t: _from_corner(t, sides))[:1], (), phrase.order
     if spans:
         return [], (), phrase.order
     return [t for t in view.things if _all_words(view, t, words)], (), phrase.order
 
 
-def _backdrop(thing: Thing, noun: str) -> bool:
-    """Road, grass and sky are no "objects"."""
-    return bool(thing.concepts & _BACKDROP) and fits_noun(thing, noun) and w.singular(noun) in {"thing", "object", "item", "anything", "everything", "something", "one", "stuff"}  # fmt: skip
+def _from_corner(thing: Thing, sides: Sequence[str]) -> float:
+    """How far from a corner or the middle of the frame, in frames."""
+    x, y = thing.box.centre
+    to_x = 0.0 if "left" in sides else 1.0 if "right" in sides else 0.5
+    to_y = 0.0 if "top" in sides else 1.0 if "bottom" in sides else 0.5
+    return float(np.hypot(x - to_x, y - to_y))
+
+
+def _worth_naming(view: View, thing: Thing) -> bool:
+    """Road, grass and sky are no "objects", and neither is a part of something that is itself in view."""
+    return not thing.concepts & BACKDROP and (thing.parent is None or thing.parent not in view.by_id)
 
 
 def _modified(view: View, thing: Thing, others: Sequence[str]) -> bool:
@@ -110,11 +118,7 @@ def _modified(view: View, thing: Thing, others: Sequence[str]) -> bool:
 
 def _soft(view: View, thing: Thing, word: str) -> bool:
     """Whether a word like "big" may be passed over: the scene has no fact about it."""
-    return (
-        word in SOFT
-        and fits_words(view, thing, [word]) is None
-        and not any(word in values for values in view.values.values())
-    )
+    return word in SOFT and fits_words(view, thing, [word]) is None and not any(word in values for values in view.values.values())
 
 
 def _all_words(view: View, thing: Thing, words: Sequence[str]) -> bool:
@@ -146,8 +150,21 @@ def holds(view: View, thing: Thing, test: s.Test) -> bool | None:
             return _between(view, thing, first, second)
         case s.Relation(kind=kind, other=other):
             return related(view, thing, kind, other)
+        case s.Measured(key=key, other=other):
+            rank = rank_key(key)
+            return any(rank(thing) < rank(o) for o in find(view, other)[:1] if o is not thing)
+        case s.Faces(side=side):
+            return _faces(thing, side)
         case s.Order():
             return None
+
+
+def _faces(thing: Thing, side: s.Side) -> bool | None:
+    """Which way a thing points, where the scene says so."""
+    for key, value in thing.attributes.items():
+        if set(key_words(key)) & {"direction", "facing", "heading", "pointing", "orientation", "arrow"}:
+            return side in w.letters(str(value)).split()
+    return None
 
 
 def _has(view: View, thing: Thing, what: s.Description) -> bool:

@@ -133,9 +133,7 @@ def read_view(truth: ViewTruth, scene: SceneFile, viewpoint: str, time_s: float)
     def thing(sighting: Sighting) -> Thing:
         low, high = _world_box(sighting, np.array(origin.position_m), origin.pan0_bearing_deg)
         instance = sighting.instance
-        return Thing(
-            sighting, low, high, _concepts(instance), _motion(instance, time_s), tuple(legible.get(instance.id, ()))
-        )
+        return Thing(sighting, low, high, _concepts(instance), _motion(instance, time_s), tuple(legible.get(instance.id, ())))
 
     return View(
         things=tuple(thing(x) for x in truth.visible),
@@ -180,9 +178,7 @@ def _world_box(sighting: Sighting, camera_m: Floats, bearing_deg: float) -> tupl
     if isinstance(instance, SceneInstance):
         return np.array(instance.box_min_m), np.array(instance.box_max_m)
     half = np.array(instance.size_m) / 2
-    centre = camera_m + direction(sighting.pan_deg + bearing_deg, sighting.tilt_deg) * (
-        sighting.distance_m + half.min()
-    )
+    centre = camera_m + direction(sighting.pan_deg + bearing_deg, sighting.tilt_deg) * (sighting.distance_m + half.min())
     return centre - half, centre + half
 
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from scope_ptz.perception.answers.comparing import compare, compare_count, how_far, most_common, which
 from scope_ptz.perception.answers.counting import count, exists
-from scope_ptz.perception.answers.facts import ask, is_a, yes_no
 from scope_ptz.perception.answers.naming import Reply, unknown
 from scope_ptz.perception.answers.reading import read, text_exists
 from scope_ptz.perception.answers.scene import describe, happening
 from scope_ptz.perception.answers.seeing import identify, what, where
+from scope_ptz.perception.answers.values import ask
+from scope_ptz.perception.answers.verdicts import is_a, yes_no
 from scope_ptz.perception.language import syntax as s
 from scope_ptz.perception.view import View
 

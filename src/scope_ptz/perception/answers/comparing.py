@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from collections import Counter
 
-from scope_ptz.perception.answers.facts import value_of
-from scope_ptz.perception.answers.naming import Reply, metres, name, none_of, noun, place, reply, the, unknown
+from scope_ptz.perception.answers.naming import Reply, metres, name, place, reply, unknown
+from scope_ptz.perception.answers.values import value_of
+from scope_ptz.perception.answers.wording import COMPARATIVES, none_of, noun, the
 from scope_ptz.perception.language import syntax as s
 from scope_ptz.perception.language import words as w
 from scope_ptz.perception.matching import find, find_phrase, rank_key
 from scope_ptz.perception.view import Thing, View
 
-_COMPARATIVES = {
-    "left": "further to the left", "right": "further to the right", "top": "higher in the picture", "bottom": "lower in the picture",
-    "nearest": "closer", "furthest": "further away", "biggest": "bigger", "smallest": "smaller", "tallest": "taller", "widest": "wider",
-}  # fmt: skip
 _ALIKE = 0.02
 """Values that differ by no more than this share are called equal."""
 
@@ -40,7 +37,7 @@ def which(view: View, question: s.Which) -> Reply:
     detail = ""
     if question.key in {"nearest", "furthest"}:
         detail = f": it is about {metres(first.distance_m)} away, {_the(view, other)} about {metres(second.distance_m)}"
-    return reply(f"{_the(view, phrase)} is {_COMPARATIVES[question.key]}{detail}")
+    return reply(f"{_the(view, phrase)} is {COMPARATIVES[question.key]}{detail}")
 
 
 def _the(view: View, phrase: s.Phrase) -> str:
@@ -60,7 +57,7 @@ def compare(view: View, question: s.Compare) -> Reply:
     first = find(view, question.first)[0]
     second = next((t for t in find(view, question.second) if t is not first), first)
     key = rank_key(question.key)
-    said = f"{the(view, question.first)} is {{}}{_COMPARATIVES[question.key]} than {the(view, question.second)}"
+    said = f"{the(view, question.first)} is {{}}{COMPARATIVES[question.key]} than {the(view, question.second)}"
     if question.key in {"nearest", "furthest"}:
         said += f" (about {metres(first.distance_m)} against {metres(second.distance_m)})"
     ahead = key(first) < key(second) and not _equal(question.key, first, second)

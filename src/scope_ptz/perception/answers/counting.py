@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from scope_ptz.perception.answers.naming import Reply, are, none_of, noun, plural, reply, several
+from scope_ptz.perception.answers.naming import Reply, are, reply, several
+from scope_ptz.perception.answers.wording import holds_words, none_of, noun
 from scope_ptz.perception.language import syntax as s
 from scope_ptz.perception.language import words as w
 from scope_ptz.perception.matching import find
@@ -39,14 +40,17 @@ def there_are(view: View, what: s.Description, found: list[Thing]) -> str:
 
 
 def count(view: View, question: s.Count) -> Reply:
-    what = narrowed(question.what, question.tests)
-    total = len(find(view, what))
-    if len(what.phrases) == 1:
-        return reply(f"there {are(total)} {total} {noun(view, what, many=total != 1)} in view")
-    parts = [s.Description((p,)) for p in what.phrases]
-    counts = [(len(find(view, p)), p) for p in parts]
-    listed = w.listing([f"{n} {noun(view, p, many=n != 1)}" for n, p in counts])
-    return reply(f"there {are(total)} {total} in view: {listed}")
+    total = len(find(view, narrowed(question.what, question.tests)))
+    if len(question.what.phrases) > 1:
+        return reply(f"there {are(total)} {total} in view: {_each(view, question)}")
+    said = f"{total} {noun(view, question.what, many=total != 1)}"
+    if question.tests:
+        return reply(f"{said} {holds_words(view, question.tests, total)}")
+    return reply(f"there {are(total)} {said} in view")
 
 
-__all__ = ["count", "exists", "narrowed", "plural", "there_are"]
+def _each(view: View, question: s.Count) -> str:
+    """ "4 cars and 1 van"."""
+    parts = [s.Description((p,)) for p in question.what.phrases]
+    counts = [(len(find(view, narrowed(p, question.tests))), p) for p in parts]
+    return w.listing([f"{n} {noun(view, p, many=n != 1)}" for n, p in counts])

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from scope_ptz.perception.answers.naming import Reply, none_of, plural, reply, the, unknown
+from scope_ptz.perception.answers.naming import Reply, reply, unknown
+from scope_ptz.perception.answers.wording import none_of, plural, the
 from scope_ptz.perception.language import syntax as s
 from scope_ptz.perception.language import words as w
 from scope_ptz.perception.matching import find
@@ -41,9 +42,7 @@ def _read(view: View, what: s.Description | None, texts: Sequence[TextSighting],
         if plate:
             return Reply(w.sentence(f"the number plate reads {quoted}"))
         return Reply(
-            w.sentence(
-                f"{subject} {'read' if what and plural(what) else 'reads'} {quoted}" if what else f"I can read {quoted}"
-            )
+            w.sentence(f"{subject} {'read' if what and plural(what) else 'reads'} {quoted}" if what else f"I can read {quoted}")
         )
     if texts:
         thing = "a number plate" if plate else "text"
@@ -80,7 +79,10 @@ def text_exists(view: View, question: s.TextExists) -> Reply:
     return reply(f"no, there is no text {where}")
 
 
-def spoken_texts(view: View, signs: Sequence[Thing]) -> Reply | None:
-    """The legible texts of some signs, None when they have none at all."""
+def spoken_texts(view: View, signs: Sequence[Thing], fact: str) -> Reply | None:
+    """A fact ("speed limit") that stands on some signs, None when they bear no text."""
     texts = _texts(view, signs, plate=False)
+    legible = list(dict.fromkeys(t.text.text for t in texts if t.legible))
+    if legible:
+        return Reply(w.sentence(f"the {fact} reads {w.listing([f'{chr(34)}{t}{chr(34)}' for t in legible])}"))
     return _read(view, None, texts, plate=False) if texts else None

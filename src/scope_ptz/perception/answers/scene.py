@@ -10,11 +10,11 @@ from scope_ptz.perception.answers.seeing import what
 from scope_ptz.perception.facts import colour_of, fact_words
 from scope_ptz.perception.language import syntax as s
 from scope_ptz.perception.language import words as w
+from scope_ptz.perception.matching import BACKDROP
 from scope_ptz.perception.view import Thing, View
 
 MAX_GROUPS = 10
 MAX_TEXTS = 3
-_BACKDROP = frozenset({"surface", "sky"})
 _ACTIVITY_KEYS = ("activity", "action", "doing", "task")
 
 
@@ -22,7 +22,7 @@ def describe(view: View, question: s.Describe) -> Reply:
     """What can be seen, biggest first, with the texts that can be read."""
     if question.tests:
         return what(view, s.What(s.Description((s.Phrase(("thing",)),)), question.tests))
-    groups = _groups(t for t in view.top_level() if not t.concepts & _BACKDROP)
+    groups = _groups(t for t in view.top_level() if not t.concepts & BACKDROP)
     if not groups:
         return reply("I can see nothing that stands out")
     said = w.listing(groups[:MAX_GROUPS])
@@ -42,9 +42,7 @@ def _groups(things: Iterable[Thing]) -> list[str]:
             said.append(f"{w.article(name(members[0]))} {place(members[0])}")
             continue
         colours = Counter(c for c in map(colour_of, members) if c)
-        shown = (
-            f" ({w.listing([f'{n} {c}' for c, n in colours.most_common()])})" if colours and len(colours) <= 4 else ""
-        )
+        shown = f" ({w.listing([f'{n} {c}' for c, n in colours.most_common()])})" if colours and len(colours) <= 4 else ""
         said.append(f"{w.counted(len(members), kind)}{shown}")
     return said
 

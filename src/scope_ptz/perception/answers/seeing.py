@@ -3,26 +3,16 @@
 from __future__ import annotations
 
 from scope_ptz.perception.answers.counting import narrowed
-from scope_ptz.perception.answers.facts import anywhere
-from scope_ptz.perception.answers.naming import (
-    Reply,
-    are,
-    metres,
-    name,
-    names,
-    none_of,
-    noun,
-    place,
-    reply,
-    several,
-    test_words,
-)
+from scope_ptz.perception.answers.naming import Reply, metres, name, names, place, reply, several, unknown
+from scope_ptz.perception.answers.values import UNSEEN, anywhere
+from scope_ptz.perception.answers.verdicts import missing_reference
+from scope_ptz.perception.answers.wording import after_noun, holds_words, none_of, noun
 from scope_ptz.perception.language import syntax as s
 from scope_ptz.perception.language import words as w
 from scope_ptz.perception.matching import NEAR_M, find, relation_holds
 from scope_ptz.perception.view import Thing, View
 
-MAX_NAMED = 6
+MAX_PLACED = 6
 _BACKDROP = frozenset({"surface", "sky", "plant life", "mountain"})
 
 
@@ -34,7 +24,7 @@ def where(view: View, question: s.Where) -> Reply:
         return reply(
             f"the {name(found[0])} is {place(found[0])}, about {metres(found[0].distance_m)} away{neighbour(view, found[0])}"
         )
-    if len(found) > MAX_NAMED:
+    if len(found) > MAX_PLACED:
         spots = list(dict.fromkeys(place(t) for t in found))
         return reply(f"there are {len(found)} {noun(view, question.what, many=True)}: {w.listing(spots)}")
     spots = [f"{w.article(name(t))} {place(t)} about {metres(t.distance_m)} away" for t in found]
@@ -69,63 +59,41 @@ def neighbour(view: View, thing: Thing) -> str:
 
 def what(view: View, question: s.What) -> Reply:
     """Names everything that fits."""
-    missing = _missing(view, question.tests)
+    missing = next((m for m in (missing_reference(view, t) for t in question.tests) if m is not None), None)
     if missing is not None:
         return reply(none_of(view, missing))
-    if (
-        len(question.what.phrases) == 1
-        and question.what.phrases[0].order is None
-        and question.tests
-        and not question.what.phrases[0].tests
-    ):
-        said = anywhere(
-            view,
-            (*question.what.phrases[0].words, *(x for t in question.tests if isinstance(t, s.Is) for x in t.words)),
-        )
-        if said.known and not find(view, narrowed(question.what, question.tests)):
-            return said
     description = narrowed(question.what, question.tests)
-    anything = any(p.words == ("thing",) for p in description.phrases)
-    found = [
-        t for t in find(view, description) if not anything or (t in view.top_level() and not t.concepts & _BACKDROP)
-    ]
-    return told(view, description, question.tests, found)
-
-
-def told(view: View, description: s.Description, tests: tuple[s.Test, ...], found: list[Thing]) -> Reply:
-    """ "A white van and 2 traffic cones are behind the barrier"."""
-    said = (
-        w.listing([test_words(view, t) for t in tests if not isinstance(t, s.Order)])
-        if any(not isinstance(t, s.Order) for t in tests)
-        else "in view"
-    )
+    found = find(view, description)
     if not found:
-        anything = any(p.words == ("thing",) for p in description.phrases)
-        return reply(f"I can see nothing {said}" if anything else none_of(view, description))
-    if len(found) == 1:
-        where_ = place(found[0])
-        ending = f", {where_}" if where_ not in said else ""
-        if any(p.order for p in description.phrases):
-            return reply(f"it is the {name(found[0])} {where_}, about {metres(found[0].distance_m)} away")
-        return reply(f"{w.article(name(found[0]))} is {said}{ending}")
-    if said == "in view" and len(found) <= 3:
-        return reply(several(found))
-    return reply(f"{names(found)} {are(len(found))} {said}")
+        return _nothing(view, question, description)
+    return told(view, question.tests, _by_nearness(view, question.tests, found))
 
 
-def _missing(view: View, tests: tuple[s.Test, ...]) -> s.Description | None:
-    """The first thing that a relation refers to and that is not in view."""
-    for test in tests:
-        for other in (
-            (test.other,)
-            if isinstance(test, s.Relation)
-            else (test.first, test.second)
-            if isinstance(test, s.Between)
-            else ()
-        ):
-            if not find(view, other):
-                return None if isinstance(test, s.Relation) and test.kind == "on" else other
-    return None
+def _nothing(view: View, question: s.What, description: s.Description) -> Reply:
+    """What may be a fact rather than a thing ("which lane is closed"), what nothing is said about, or what is not there."""
+    loose = [x for t in question.tests if isinstance(t, s.Is) for x in t.words]
+    if loose and not find(view, question.what):
+        return anywhere(view, (*question.what.phrases[0].words, *loose))
+    if description.phrases[0].words == ("thing",):
+        return reply(f"I can see nothing {w.listing([after_noun(view, t) for t in question.tests])}")
+    return reply(none_of(view, description))
+
+
+def _by_nearness(view: View, tests: tuple[s.Test, ...], found: list[Thing]) -> list[Thing]:
+    """Things beside something are told nearest to it first."""
+    anchors = [a for t in tests if isinstance(t, s.Relation) for a in find(view, t.other)]
+    return sorted(found, key=lambda t: min(t.gap_m(a) for a in anchors)) if anchors else found
+
+
+def told(view: View, tests: tuple[s.Test, ...], found: list[Thing]) -> Reply:
+    """ "A white van and 2 traffic cones are behind the barrier"."""
+    said = tuple(t for t in tests if not isinstance(t, s.Order))
+    if len(said) < len(tests):
+        return reply(f"it is the {name(found[0])} {place(found[0])}, about {metres(found[0].distance_m)} away")
+    if not said:
+        return reply(several(found) if len(found) <= 3 else f"I can see {names(found)}")
+    where_ = f", {place(found[0])}" if len(found) == 1 and not any(isinstance(t, s.Region) for t in said) else ""
+    return reply(f"{names(found)} {holds_words(view, said, len(found))}{where_}")
 
 
 def identify(view: View, question: s.Identify) -> Reply:
@@ -136,7 +104,7 @@ def identify(view: View, question: s.Identify) -> Reply:
         return fact
     found = find(view, question.what)
     if not found:
-        return fact if fact.known else Reply(w.sentence(f"I cannot tell: {none_of(view, question.what)}"), known=False)
+        return fact if fact.known or UNSEEN & set(phrase.words) else unknown(f"I cannot tell: {none_of(view, question.what)}")
     if len(found) == 1:
         return reply(f"it is {w.article(name(found[0]))} {place(found[0])}, about {metres(found[0].distance_m)} away")
     return reply(f"there are {len(found)}: {names(found)}")

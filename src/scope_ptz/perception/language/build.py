@@ -9,6 +9,7 @@ from lark import Token, Transformer
 
 from scope_ptz.perception.language import syntax as s
 from scope_ptz.perception.language import words as w
+from scope_ptz.perception.language.lexicon import nouns_in
 
 Children = list[Any]
 EVERYTHING = s.Description((s.Phrase(("thing",)),))
@@ -28,11 +29,7 @@ def _value(children: Children, kind: str) -> str | None:
 
 
 def _descriptions(children: Children) -> list[s.Description]:
-    return [
-        s.Description((c,)) if isinstance(c, s.Phrase) else c
-        for c in children
-        if isinstance(c, s.Phrase | s.Description)
-    ]
+    return [s.Description((c,)) if isinstance(c, s.Phrase) else c for c in children if isinstance(c, s.Phrase | s.Description)]
 
 
 def _tests(children: Children) -> tuple[s.Test, ...]:
@@ -69,10 +66,22 @@ class NounPhrases(Transformer[Token, Any]):
         return cast(s.Description, c[0])
 
     def nps(self, c: Children) -> s.Description:
-        """What follows the last of several nouns goes for all: "cars and vans on the left"."""
+        """What follows the last of several nouns goes for all ("cars and vans on the left"), and so does its noun ("red or blue cars")."""
         phrases: list[s.Phrase] = _of(c, s.Phrase)
-        shared = phrases[-1].tests
-        return s.Description(tuple(p if p.tests or p.order else replace(p, tests=shared) for p in phrases))
+        last = phrases[-1]
+        spans = nouns_in(last.words)
+        if not spans and len(phrases) == 2 and nouns_in(phrases[0].words) and not last.tests and _tokens(c, "AND"):
+            return s.Description((replace(phrases[0], tests=(*phrases[0].tests, s.Is(last.words))),))
+        noun = last.words[spans[0][0] : spans[0][1]] if spans else ()
+        phrases[:-1] = [
+            replace(
+                p,
+                words=p.words if nouns_in(p.words) else (*p.words, *noun),
+                tests=p.tests or (() if p.order else last.tests),
+            )
+            for p in phrases[:-1]
+        ]
+        return s.Description(tuple(phrases))
 
     def core(self, c: Children) -> _Core:
         return _Core(word for token in c for word in str(token).split())
@@ -161,6 +170,12 @@ class NounPhrases(Transformer[Token, Any]):
     def excepted(self, c: Children) -> s.Not:
         return s.Not(s.Any(tuple(s.Is(p.words) for p in _descriptions(c)[0].phrases)))
 
+    def measured(self, c: Children) -> s.Measured:
+        return s.Measured(cast(s.OrderKey, _value(c, "CMP")), _descriptions(c)[0])
+
+    def faces(self, c: Children) -> s.Faces:
+        return s.Faces(cast(s.Side, str(_tokens(c, "SIDE")[0])))
+
     def says(self, c: Children) -> s.Says:
         literal = _value(c, "TEXT") or " ".join(x for core in _of(c, _Core) for x in core)
         return s.Says(tuple(w.letters(literal).split()))
@@ -220,7 +235,8 @@ class Builder(NounPhrases):
 
     def yesno_has(self, c: Children) -> s.YesNo:
         ((subject, scope),) = _of(c, _Subject)
-        return s.YesNo(subject, (s.Has(_descriptions(c)[0]),), scope)
+        has = s.Has(_descriptions(c)[0])
+        return s.YesNo(subject, (s.Not(has) if _tokens(c, "NONE") else has,), scope)
 
     def isa(self, c: Children) -> s.IsA:
         subject, what = _descriptions(c)

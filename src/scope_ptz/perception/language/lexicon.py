@@ -10,8 +10,36 @@ from importlib.resources import files
 from scope_ptz.perception.language.words import singular
 
 COLOURS = frozenset(
-    """red orange yellow green blue purple violet pink brown black white grey gray silver gold golden beige cream tan amber
-    turquoise teal cyan magenta maroon navy lime olive""".split()
+    [
+        "red",
+        "orange",
+        "yellow",
+        "green",
+        "blue",
+        "purple",
+        "violet",
+        "pink",
+        "brown",
+        "black",
+        "white",
+        "grey",
+        "gray",
+        "silver",
+        "gold",
+        "golden",
+        "beige",
+        "cream",
+        "tan",
+        "amber",
+        "turquoise",
+        "teal",
+        "cyan",
+        "magenta",
+        "maroon",
+        "navy",
+        "lime",
+        "olive",
+    ]
 )
 
 

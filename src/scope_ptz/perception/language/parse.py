@@ -30,9 +30,7 @@ def parse_description(text: str) -> Description:
     found = _best(text, "description")
     if isinstance(found, Description):
         return found
-    return Description(
-        (Phrase(tuple(str(t) for t in tokenise(text) if t.type in {"W", "COLOUR", "SIDE", "NUM", "TEXTNOUN"})),)
-    )
+    return Description((Phrase(tuple(str(t) for t in tokenise(text) if t.type in {"W", "COLOUR", "SIDE", "NUM", "TEXTNOUN"})),))
 
 
 @lru_cache(maxsize=512)

@@ -81,6 +81,21 @@ class Is:
 
 
 @dataclass(frozen=True, slots=True)
+class Faces:
+    """Points to one side: "facing left"."""
+
+    side: Side
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """ "Closer than the van", "bigger than the car"."""
+
+    key: OrderKey
+    other: Description
+
+
+@dataclass(frozen=True, slots=True)
 class Not:
     test: Test
 
@@ -92,7 +107,7 @@ class Any:
     tests: tuple[Test, ...]
 
 
-Test = Relation | Between | Region | Has | Says | Is | Not | Any | Order
+Test = Relation | Between | Region | Has | Says | Is | Faces | Measured | Not | Any | Order
 
 
 # Questions

@@ -13,14 +13,46 @@ from lark.lexer import Lexer
 from scope_ptz.perception.language import words as w
 
 _FRAME_WORDS = frozenset(
-    "frame picture image view screen shot photo photograph scene panorama footage video camera surroundings sight".split()
+    [
+        "frame",
+        "picture",
+        "image",
+        "view",
+        "screen",
+        "shot",
+        "photo",
+        "photograph",
+        "scene",
+        "panorama",
+        "footage",
+        "video",
+        "camera",
+        "surroundings",
+        "sight",
+    ]
 )
 _FRAME_FILLERS = frozenset(
-    "the this that your our current entire whole full present camera visible given overall same".split()
+    [
+        "the",
+        "this",
+        "that",
+        "your",
+        "our",
+        "current",
+        "entire",
+        "whole",
+        "full",
+        "present",
+        "camera",
+        "visible",
+        "given",
+        "overall",
+        "same",
+    ]
 )
-_FRAME_PREPOSITIONS = frozenset("in of from on across within throughout inside around for".split())
+_FRAME_PREPOSITIONS = frozenset(["in", "of", "from", "on", "across", "within", "throughout", "inside", "around", "for"])
 _TEXT_ENDS = frozenset({"visible", "there", "?"})
-_PARTICLES = frozenset("on off up down in out".split())
+_PARTICLES = frozenset(["on", "off", "up", "down", "in", "out"])
 
 
 class Passed(Lexer):
@@ -110,11 +142,7 @@ def _without_frame(words: list[str]) -> list[str]:
     while i < len(words):
         end = i + 1
         if words[i] in _FRAME_PREPOSITIONS and i > 0:
-            while (
-                end < len(words)
-                and words[end] in _FRAME_FILLERS
-                and not (words[end] in _FRAME_WORDS and _closes(words, end))
-            ):
+            while end < len(words) and words[end] in _FRAME_FILLERS and not (words[end] in _FRAME_WORDS and _closes(words, end)):
                 end += 1
             if end < len(words) and words[end] in _FRAME_WORDS and _closes(words, end) and end > i + 1:
                 i = end + 1
