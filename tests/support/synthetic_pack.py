@@ -57,7 +57,8 @@ VIEWPOINTS = {"mast": ((0.0, 0.0, 4.0), 0.0), "roof": ((-6.0, -6.0, 7.0), 40.0)}
 BASE_WIDTH = {"mast": 2304, "roof": 1152}
 """The mast is as fine as a real pack; the roof is there to be a second place."""
 
-TILES = {"mast": [(-16.0, 1.0, 16.0), (-4.0, -2.0, 16.0), (10.0, -6.0, 16.0), (18.5, -3.0, 10.0)], "roof": [(-36.0, -5.0, 16.0)]}
+TILE_SIZE = 600, 338
+TILES = {"mast": [(-16.0, 1.0, 16.0), (-4.0, -2.0, 16.0), (10.0, -6.0, 16.0), (18.5, -3.0, 15.0)], "roof": [(-36.0, -5.0, 16.0)]}
 
 TEXT = SceneText(
     id="board-text",
@@ -207,7 +208,7 @@ def _sphere(width: int) -> Equirectangular:
 
 
 def _write_tile(folder: Path, name: str, index: int, pan: float, tilt: float, hfov: float) -> Tile:
-    colour, ids, _ = perfect_view(name, Perspective(pan, tilt, hfov, WIDTH, HEIGHT), smooth=2)
+    colour, ids, _ = perfect_view(name, Perspective(pan, tilt, hfov, *TILE_SIZE), smooth=2)
     return Tile(
         pan_deg=pan,
         tilt_deg=tilt,

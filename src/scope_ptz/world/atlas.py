@@ -1,8 +1,8 @@
 """All pictures of one kind that a viewpoint has, side by side in one big sheet, so that a view is a single look-up.
 
 The sheet holds the panorama (with a wrapped column and a repeated row on each side, so that bilinear look-ups never see a seam) and
-every tile (with a repeated border), each at several scales. Nothing is read before it is first used; memory that is never used is
-never touched, so the sheet may be large.
+every tile (with a repeated border), each at the scales that views ask for. Nothing is read before it is first used; memory that is
+never used is never touched, so the sheet may be large.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from threading import Lock
-from typing import Any
+from typing import Any, NamedTuple
 
 import cv2
 import numpy as np
@@ -23,6 +23,8 @@ MAX_SIDE_PX = 32766
 
 BORDER_PX = 2
 """Around every slot: one pixel for the bilinear neighbour, one for rounding."""
+
+SHARPENING_SIGMA_PX = 0.7
 
 Size = tuple[int, int]
 """Width, height."""
@@ -38,10 +40,17 @@ class Slot:
     height: int
 
 
-class Atlas:
-    """``slots[0]`` are the scales of the panorama, ``slots[1 + i]`` those of tile ``i``, finest first.
+class Scale(NamedTuple):
+    """A size at which pictures are kept, relative to the stored one, and how much they are sharpened for it."""
 
-    ``load(0)`` reads the panorama and ``load(1 + i)`` tile ``i``, at full scale. ``scales`` are the sizes kept, relative to it.
+    size: float
+    sharpening: float = 0.0
+
+
+class Atlas:
+    """``slots[0]`` are the places of the panorama, one a scale, ``slots[1 + i]`` those of tile ``i``.
+
+    ``load(0)`` reads the panorama and ``load(1 + i)`` tile ``i``, at full size.
     """
 
     def __init__(
@@ -50,34 +59,38 @@ class Atlas:
         load: Callable[[int], NDArray[Any]],
         dtype: type[np.generic],
         channels: int,
-        scales: Sequence[float],
+        scales: Sequence[Scale] = (Scale(1.0),),
     ) -> None:
-        self.slots, (width, height) = _lay_out(sizes, scales)
+        self.scales = tuple(scales)
+        self.slots, (width, height) = _lay_out(sizes, [scale.size for scale in scales])
         self._load = load
-        self._ready = [False] * len(sizes)
+        self._ready: set[tuple[int, int]] = set()
         self._lock = Lock()
         self.sheet: NDArray[Any] = np.empty((height, width, channels) if channels > 1 else (height, width), dtype=dtype)
 
-    def need(self, index: int) -> tuple[Slot, ...]:
-        """The slots of one picture, filled."""
-        if not self._ready[index]:
+    def need(self, index: int, scale: int = 0) -> Slot:
+        """The slot of one picture at one scale, filled."""
+        slot = self.slots[index][scale]
+        if (index, scale) not in self._ready:
             with self._lock:
-                if not self._ready[index]:
-                    self._fill(index)
-                    self._ready[index] = True
-        return self.slots[index]
+                if (index, scale) not in self._ready:
+                    self._fill(
+                        slot,
+                        self._load(index),
+                        self.scales[scale].sharpening,
+                        cv2.BORDER_WRAP if index == 0 else cv2.BORDER_REPLICATE,
+                    )
+                    self._ready.add((index, scale))
+        return slot
 
-    def _fill(self, index: int) -> None:
-        picture = self._load(index)
-        for slot in self.slots[index]:
-            if (slot.width, slot.height) != (picture.shape[1], picture.shape[0]):
-                scaled = cv2.resize(picture, (slot.width, slot.height), interpolation=cv2.INTER_AREA)
-            else:
-                scaled = picture
-            b = BORDER_PX
-            sides = cv2.BORDER_WRAP if index == 0 else cv2.BORDER_REPLICATE
-            padded = cv2.copyMakeBorder(cv2.copyMakeBorder(scaled, 0, 0, b, b, sides), b, b, 0, 0, cv2.BORDER_REPLICATE)
-            self.sheet[slot.y - b : slot.y + slot.height + b, slot.x - b : slot.x + slot.width + b] = padded
+    def _fill(self, slot: Slot, picture: NDArray[Any], sharpening: float, sides: int) -> None:
+        if (slot.width, slot.height) != (picture.shape[1], picture.shape[0]):
+            picture = cv2.resize(picture, (slot.width, slot.height), interpolation=cv2.INTER_AREA)
+        b = BORDER_PX
+        padded = cv2.copyMakeBorder(cv2.copyMakeBorder(picture, 0, 0, b, b, sides), b, b, 0, 0, cv2.BORDER_REPLICATE)
+        if sharpening:
+            padded = cv2.addWeighted(padded, 1 + sharpening, cv2.GaussianBlur(padded, (0, 0), SHARPENING_SIGMA_PX), -sharpening, 0)
+        self.sheet[slot.y - b : slot.y + slot.height + b, slot.x - b : slot.x + slot.width + b] = padded
 
 
 def _lay_out(sizes: Sequence[Size], scales: Sequence[float]) -> tuple[list[tuple[Slot, ...]], Size]:

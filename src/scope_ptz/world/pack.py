@@ -18,7 +18,7 @@ from pydantic import BaseModel, ValidationError
 from scope_ptz.errors import PackError, UnknownNameError
 from scope_ptz.geometry import Perspective
 from scope_ptz.world import layers
-from scope_ptz.world.atlas import Atlas
+from scope_ptz.world.atlas import Atlas, Scale
 from scope_ptz.world.models import (
     FORMAT_VERSION,
     ActorSheet,
@@ -32,8 +32,9 @@ from scope_ptz.world.models import (
 )
 from scope_ptz.world.tiles import Tiles
 
-COLOUR_SCALES = (1.0, 2**-0.5, 0.5, 2**-1.5, 0.25)
-"""Scales at which colour is kept: half an octave apart, so that no view samples its source much too finely or too coarsely."""
+COLOUR_SCALES = (Scale(1.0, sharpening=0.6), *(Scale(2 ** (-k / 2)) for k in range(7)))
+"""Scales at which colour is kept. The first is for views as dense as the stored picture or denser: it makes up for what bilinear
+look-up blurs. The others are half an octave apart, so that no view samples its source much too finely."""
 
 _File = TypeVar("_File", bound=BaseModel)
 
@@ -141,8 +142,8 @@ class Viewpoint:
         self.tiles = Tiles([Perspective(t.pan_deg, t.tilt_deg, t.hfov_deg, t.colour.width, t.colour.height) for t in tiles])
         colours, ids = [manifest.base, *(t.colour for t in tiles)], [manifest.ids, *(t.ids for t in tiles)]
         self.colour_atlas = Atlas([_size(c) for c in colours], lambda i: self.colour(colours[i]), np.uint8, 3, COLOUR_SCALES)
-        self.id_atlas = Atlas([_size(n) for n in ids], lambda i: self.ids(ids[i]), np.uint16, 1, (1.0,))
-        self.depth_atlas = Atlas([_size(manifest.depth)], lambda _: self.depth(manifest.depth), np.uint16, 1, (1.0,))
+        self.id_atlas = Atlas([_size(n) for n in ids], lambda i: self.ids(ids[i]), np.uint16, 1)
+        self.depth_atlas = Atlas([_size(manifest.depth)], lambda _: self.depth(manifest.depth), np.uint16, 1)
 
     @cached_property
     def position_m(self) -> NDArray[np.float64]:
