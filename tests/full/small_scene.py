@@ -25,7 +25,9 @@ def build(stage: Stage) -> None:
         colour = list(COLOURS)[k % 4]
         size = rng.uniform(0.6, 2.0)
         crate = Built.of("crate", [mesh.box("crate", (size, size, size), (0, 0, size / 2), paints[colour], bevel_m=0.03)])
-        stage.place(crate, "crate", f"{colour} crate", (rng.uniform(-9, 9), rng.uniform(6, 22), 0), rng.uniform(0, 90), colour=colour)
+        stage.place(
+            crate, "crate", f"{colour} crate", (rng.uniform(-9, 9), rng.uniform(6, 22), 0), rng.uniform(0, 90), colour=colour
+        )
     for k in range(5):
         profile = [(0.0, 0.72), (0.03, 0.72), (0.17, 0.04), (0.2, 0.04), (0.2, 0.0)]
         cone = Built.of("cone", [mesh.lathe("cone", profile, paints["red"])])

@@ -33,7 +33,8 @@ def main() -> None:
         progress=_report,
     )
     for one in baked:
-        sys.stdout.write(f"{one.folder}: {one.weight_bytes / 1e6:.2f} MB, {one.tiles} tiles, not in tiles: {one.uncovered or 'nothing'}\n")
+        missing = ", ".join(one.uncovered) or "nothing"
+        sys.stdout.write(f"{one.folder}: {one.weight_bytes / 1e6:.2f} MB, {one.tiles} tiles, not in tiles: {missing}\n")
 
 
 def _report(part: str, done: int, total: int, seconds: float) -> None:

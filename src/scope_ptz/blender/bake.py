@@ -11,19 +11,21 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import ValidationError
 
 from scope_ptz.blender.band import Panorama, reachable_band
 from scope_ptz.blender.client import BlenderWorker
 from scope_ptz.blender.extents import extents
-from scope_ptz.blender.keyframes import Keyframe, keyframes, perspective_request
+from scope_ptz.blender.keyframes import Keyframe, keyframes
 from scope_ptz.blender.packing import Rendered, RenderedActor, RenderedTile, weight_bytes, write_pack
-from scope_ptz.blender.panorama import render_base, request
+from scope_ptz.blender.panorama import render_base
 from scope_ptz.blender.quality import DEPTH_STEP, FAR_M, NEAR_M, PACK_BYTES, QUALITIES, Quality
+from scope_ptz.blender.requests import panorama_request, perspective_request
 from scope_ptz.blender.sheets import make_sheet
-from scope_ptz.blender.tiles import cover, covers, targets
+from scope_ptz.blender.tiles import cover, covers, most_useful, targets
 from scope_ptz.blender.workshop import Progress, Workshop, scene_key
 from scope_ptz.errors import BlenderError, UnknownNameError
-from scope_ptz.geometry import AXIS_M5075_G, Equirectangular, Limits, Perspective
+from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective
 from scope_ptz.world.layers import encode_depth, read_colour
 from scope_ptz.world.models import Extent, Manifest, SceneActor, SceneFile, SceneViewpoint
 
@@ -50,8 +52,8 @@ def bake(
 ) -> list[BakedViewpoint]:
     """Bake a scene into the folder ``out_dir`` (which must bear the scene's name).
 
-    ``source`` is the name of a scene in ``scope_ptz.studio.scenes`` or the path of a Python file with a ``build(stage)``; ``command``
-    starts the worker. Unfinished parts are kept under ``cache_dir``.
+    ``source`` is the name of a scene in ``scope_ptz.studio.scenes`` or the path of a Python file with a ``build(stage)``;
+    ``command`` starts the worker. Unfinished parts are kept under ``cache_dir``.
     """
     if quality not in QUALITIES:
         raise UnknownNameError("quality", quality, QUALITIES)
@@ -80,13 +82,21 @@ def bake(
 
 def scene_file(description: dict[str, Any], version: str) -> SceneFile:
     """``scene.json`` from the worker's description."""
-    return SceneFile.model_validate({"version": version, **{k: v for k, v in description.items() if k in SceneFile.model_fields}})
+    own = {k: v for k, v in description.items() if k in SceneFile.model_fields}
+    try:
+        return SceneFile.model_validate({"version": version, **own})
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(str(part) for part in first["loc"])
+        raise BlenderError(f"The scene as built cannot be described: {where}: {first['msg']}.") from error
 
 
 class _Baker:
     """The parts of a bake that share a worker and a workshop."""
 
-    def __init__(self, worker: BlenderWorker, shop: Workshop, scene: SceneFile, description: dict[str, Any], quality: Quality) -> None:
+    def __init__(
+        self, worker: BlenderWorker, shop: Workshop, scene: SceneFile, description: dict[str, Any], quality: Quality
+    ) -> None:
         self._worker, self._shop, self._scene, self._quality = worker, shop, scene, quality
         self._strides: dict[str, float | None] = description["strides_m"]
         self._sun = None if description["sun"] is None else np.array(description["sun"])
@@ -95,15 +105,14 @@ class _Baker:
     def bake_viewpoint(self, viewpoint: SceneViewpoint, folder: Path) -> BakedViewpoint:
         q, name = self._quality, viewpoint.name
         wide = Panorama.of(q.ids_width, self._band)
-        ids, _ = self._truth(name, "ids", request(wide.band.top_tilt_deg, wide.band.bottom_tilt_deg, wide.width, wide.height))
+        ids, _ = self._truth(name, "ids", panorama_request(wide.projection))
         coarse = Panorama.of(q.depth_width, self._band)
-        _, metres = self._truth(name, "depth", request(wide.band.top_tilt_deg, wide.band.bottom_tilt_deg, coarse.width, coarse.height))
+        _, metres = self._truth(name, "depth", panorama_request(coarse.projection))
         silhouettes = self._extents(viewpoint)
         panorama = Panorama.of(q.base_width, self._band)
         base = render_base(self._worker, self._shop, name, panorama, q.base_samples)
-        projection = Equirectangular(-180.0, 360.0, wide.band.top_tilt_deg, wide.band.bottom_tilt_deg, wide.width, wide.height)
-        wanted = targets(self._scene, viewpoint, ids, projection)
-        views = [cell.view(q.tile_density_px_per_deg) for cell in cover(wanted)][: q.max_tiles]
+        wanted = targets(self._scene, viewpoint, ids, wide.projection)
+        views = most_useful([cell.view(q.tile_density_px_per_deg) for cell in cover(wanted)], wanted, q.max_tiles)
         tiles = self._tiles(name, views)
         actors = [a for actor in self._scene.actors if (a := self._actor(viewpoint, actor)) is not None]
         rendered = Rendered(panorama, base, ids, encode_depth(metres, NEAR_M, FAR_M, DEPTH_STEP), tiles, actors, silhouettes)

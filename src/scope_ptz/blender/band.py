@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
-from scope_ptz.geometry import Limits, Optics, Perspective, pan_tilt_deg
+from scope_ptz.geometry import Equirectangular, Limits, Optics, Perspective, pan_tilt_deg
 from scope_ptz.world.models import Band
 
 ASPECTS = (16 / 9, 4 / 3)
@@ -27,10 +28,10 @@ def reachable_band(limits: Limits, optics: Optics) -> Band:
         size = (1200, round(1200 / aspect))
         up = Perspective(0.0, limits.max_tilt_deg, hfov_deg, *size)
         down = Perspective(0.0, limits.min_tilt_deg, hfov_deg, *size)
-        _, top = pan_tilt_deg(up.directions(np.stack([side, np.zeros(33)], axis=-1)))
-        _, bottom = pan_tilt_deg(down.directions(np.stack([side, np.ones(33)], axis=-1)))
-        tops.append(90.0 if limits.max_tilt_deg + up.vfov_deg / 2 >= 90.0 else float(top.max()))
-        bottoms.append(-90.0 if limits.min_tilt_deg - down.vfov_deg / 2 <= -90.0 else float(bottom.min()))
+        _, upper = pan_tilt_deg(up.directions(np.stack([side, np.zeros(33)], axis=-1)))
+        _, lower = pan_tilt_deg(down.directions(np.stack([side, np.ones(33)], axis=-1)))
+        tops.append(90.0 if limits.max_tilt_deg + up.vfov_deg / 2 >= 90.0 else float(upper.max()))
+        bottoms.append(-90.0 if limits.min_tilt_deg - down.vfov_deg / 2 <= -90.0 else float(lower.min()))
     top, bottom = max(tops) + MARGIN_DEG, min(bottoms) - MARGIN_DEG
     return Band(top_tilt_deg=90.0 if top > 90 - POLE_DEG else top, bottom_tilt_deg=-90.0 if bottom < POLE_DEG - 90 else bottom)
 
@@ -48,7 +49,7 @@ class Strip:
 
 @dataclass(frozen=True, slots=True)
 class Panorama:
-    """A panorama's size and band, rows exactly as high as columns are wide, in degrees (the band is rounded outwards to whole rows)."""
+    """A panorama's size and band (whole degrees), rows as high in degrees as columns are wide."""
 
     width: int
     height: int
@@ -57,22 +58,26 @@ class Panorama:
     @classmethod
     def of(cls, width: int, band: Band) -> Panorama:
         """The panorama of this width over at least this band; widths that are multiples of one another share one band."""
-        step = 1.0
-        top = min(90.0, math.ceil(band.top_tilt_deg / step) * step)
-        bottom = max(-90.0, math.floor(band.bottom_tilt_deg / step) * step)
+        top = min(90.0, float(math.ceil(band.top_tilt_deg)))
+        bottom = max(-90.0, float(math.floor(band.bottom_tilt_deg)))
         height = round((top - bottom) / 360.0 * width)
         return cls(width, height, Band(top_tilt_deg=top, bottom_tilt_deg=bottom))
+
+    @property
+    def projection(self) -> Equirectangular:
+        """Its geometry."""
+        return Equirectangular(-180.0, 360.0, self.band.top_tilt_deg, self.band.bottom_tilt_deg, self.width, self.height)
 
     def tilt_of_row(self, row: float) -> float:
         """Tilt of the upper edge of a row."""
         return self.band.top_tilt_deg - row / self.height * (self.band.top_tilt_deg - self.band.bottom_tilt_deg)
 
     def strips(self, rows: int, overlap_rows: int) -> list[Strip]:
-        """Strips of about ``rows`` rows with some more on each side to blend. Towards the poles they are as wide as they need to be."""
+        """Strips of about ``rows`` rows with some more on each side to blend. Towards the poles they need fewer columns."""
         count = max(1, round(self.height / rows))
         edges = [round(k * self.height / count) for k in range(count + 1)]
         strips = []
-        for first, last in zip(edges, edges[1:], strict=False):
+        for first, last in pairwise(edges):
             a, b = max(0, first - overlap_rows), min(self.height, last + overlap_rows)
             top, bottom = self.tilt_of_row(a), self.tilt_of_row(b)
             nearest = 0.0 if top > 0 > bottom else min(abs(top), abs(bottom))

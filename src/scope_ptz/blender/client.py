@@ -55,14 +55,14 @@ class BlenderWorker:
                 )
         except OSError as error:
             raise BlenderError(f"Blender could not be started with `{' '.join(self._command)}`: {error}.") from error
-        assert self._process.stdout is not None
-        threading.Thread(target=self._listen, args=(self._process.stdout,), daemon=True).start()
+        if self._process.stdout is not None:
+            threading.Thread(target=self._listen, args=(self._process.stdout,), daemon=True).start()
         self.version = str(self._next(time.monotonic() + START_TIMEOUT_S, "start").get("hello", ""))
 
     def request(
         self, op: str, params: dict[str, Any] | None = None, *, timeout_s: float = 3600.0, progress: Progress | None = None
     ) -> Any:
-        """Do one operation and return its result. Raises ``BlenderError`` on failure, crash or timeout (the worker is ended then)."""
+        """Do one operation and return its result. Raises ``BlenderError`` on failure, crash or timeout (which ends the worker)."""
         with self._lock:
             if self._process is None or self._process.stdin is None:
                 raise BlenderError("The Blender worker is not running.")

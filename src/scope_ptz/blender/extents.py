@@ -52,7 +52,11 @@ def read_bodies(meshes: Path, viewpoint: SceneViewpoint) -> list[Body]:
     c, s = math.cos(bearing), math.sin(bearing)
     turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
     with np.load(meshes) as file:
-        shapes = {int(k.split("-")[1]): (file[k], file[k.replace("vertices", "triangles")]) for k in file if k.startswith("vertices-")}
+        shapes = {
+            int(k.removeprefix("vertices-")): (file[k], file[k.replace("vertices", "triangles")])
+            for k in file
+            if k.startswith("vertices-")
+        }
         uses, matrices = file["uses"], file["matrices"]
     bodies = []
     for number in sorted({int(n) for n in uses[:, 0]}):
@@ -80,10 +84,7 @@ def extent(body: Body) -> Extent:
     reach_deg = math.degrees(math.acos(np.clip(np.min(rays @ middle), -1, 1)))
     pan, tilt = (float(v) for v in pan_tilt_deg(middle))
     axes = camera_axes(pan, tilt)
-    if reach_deg < WIDE_DEG:
-        solid_angle = _narrow_solid_angle(body, axes)
-    else:
-        solid_angle = _wide_solid_angle(body)
+    solid_angle = _narrow_solid_angle(body, axes) if reach_deg < WIDE_DEG else _wide_solid_angle(body)
     return Extent(
         number=body.number,
         solid_angle_sr=float(f"{solid_angle:.6g}"),
@@ -104,7 +105,7 @@ def _narrow_solid_angle(body: Body, axes: Floats) -> float:
 
 
 def _without_outline(coarse: float, fine: float) -> float:
-    """OpenCV fills every pixel that an outline touches: too much by an amount that halves when pixels do, so it can be taken off."""
+    """OpenCV fills every pixel that an outline touches: too much, but by half as much with pixels half the size."""
     return max(2 * fine - coarse, 0.3 * fine)
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from scope_ptz.blender.requests import perspective_request
 from scope_ptz.blender.tiles import TELE_FOCAL_PX
 from scope_ptz.geometry import Perspective, pan_tilt_deg
 from scope_ptz.geometry.sphere import camera_axes
@@ -43,18 +44,6 @@ class Keyframe:
             "position_m": list(self.position_m),
             "projection": perspective_request(self.view),
         }
-
-
-def perspective_request(view: Perspective) -> dict[str, Any]:
-    """A view in the words of the worker."""
-    return {
-        "kind": "perspective",
-        "pan_deg": view.pan_deg,
-        "tilt_deg": view.tilt_deg,
-        "hfov_deg": view.hfov_deg,
-        "width": view.width,
-        "height": view.height,
-    }
 
 
 def keyframes(

@@ -58,7 +58,13 @@ class Rendered:
 
 
 def write_pack(
-    folder: Path, scene: SceneFile, viewpoint: SceneViewpoint, rendered: Rendered, quality: Quality, limit_bytes: int, step: Callable[[], None]
+    folder: Path,
+    scene: SceneFile,
+    viewpoint: SceneViewpoint,
+    rendered: Rendered,
+    quality: Quality,
+    limit_bytes: int,
+    step: Callable[[], None],
 ) -> Manifest:
     """Write the folder (replacing one that is there). Tiles are coded more coarsely until everything fits ``limit_bytes``."""
     fresh = folder.with_name(f".{folder.name}.new")
@@ -97,7 +103,9 @@ def write_pack(
     (fresh / "manifest.json").write_text(manifest.model_dump_json() + "\n")
     weight = weight_bytes(fresh)
     if weight > limit_bytes:
-        raise BlenderError(f"The pack of '{viewpoint.name}' weighs {weight / 1e6:.2f} MB even with the coarsest tiles: bake fewer of them.")
+        raise BlenderError(
+            f"The pack of '{viewpoint.name}' weighs {weight / 1e6:.2f} MB even with the coarsest tiles: bake fewer of them."
+        )
     for name in ("tiles", "actors"):
         if not any((fresh / name).iterdir()):
             (fresh / name).rmdir()

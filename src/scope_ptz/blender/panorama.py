@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 
 from scope_ptz.blender.band import Panorama, Strip
 from scope_ptz.blender.client import BlenderWorker
+from scope_ptz.blender.requests import panorama_request
 from scope_ptz.blender.workshop import Workshop
+from scope_ptz.geometry import Equirectangular
 from scope_ptz.world.layers import read_colour
 
 STRIP_ROWS = 384
@@ -21,24 +23,14 @@ OVERLAP_ROWS = 8
 Picture = NDArray[np.uint8]
 
 
-def request(top_tilt_deg: float, bottom_tilt_deg: float, width: int, height: int) -> dict[str, Any]:
-    """A panorama in the words of the worker."""
-    return {
-        "kind": "equirectangular",
-        "top_tilt_deg": top_tilt_deg,
-        "bottom_tilt_deg": bottom_tilt_deg,
-        "width": width,
-        "height": height,
-    }
-
-
 def render_base(worker: BlenderWorker, shop: Workshop, viewpoint: str, panorama: Panorama, samples: int) -> Picture:
     """(H, W, 3) RGB. Each strip is a part of its own, so a killed bake loses one strip at most."""
     strips = panorama.strips(STRIP_ROWS, OVERLAP_ROWS)
     step = shop.steps(f"{viewpoint}/base", len(strips))
     pictures = []
     for strip in strips:
-        projection = request(strip.top_tilt_deg, strip.bottom_tilt_deg, strip.width, strip.last_row - strip.first_row)
+        size = strip.width, strip.last_row - strip.first_row
+        projection = panorama_request(Equirectangular(-180.0, 360.0, strip.top_tilt_deg, strip.bottom_tilt_deg, *size))
 
         def produce(path: Path, projection: dict[str, Any] = projection) -> None:
             worker.request(
@@ -64,7 +56,7 @@ def joined(panorama: Panorama, strips: list[Strip], pictures: list[Picture]) -> 
         weight = np.where(reaches_edge, 1e3, np.minimum(inside, 2 * OVERLAP_ROWS)).astype(np.float32)[:, None, None]
         total[strip.first_row : strip.last_row] += _widened(picture, panorama.width).astype(np.float32) * weight
         weights[strip.first_row : strip.last_row] += weight
-    return np.rint(total / weights).astype(np.uint8)
+    return np.asarray(np.rint(total / weights), dtype=np.uint8)
 
 
 def _widened(picture: Picture, width: int) -> Picture:

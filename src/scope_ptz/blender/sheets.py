@@ -17,6 +17,12 @@ MAX_SHEET_WIDTH = 4096
 SHADOW_GAMMA = 0.5
 """Shadows are measured in linear light and drawn over display values: what passes through is raised to this power."""
 
+FAINT = 0.04
+"""The dimming that a body spreads far around itself has no edge; it ends where it falls below this."""
+
+FEATHER_SHARE = 0.06
+"""Over this share of a sprite's size the shadow fades out towards the border of the picture."""
+
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
@@ -64,11 +70,17 @@ def _display_shadow(picture: NDArray[np.uint8], body: NDArray[np.bool_]) -> NDAr
     alpha = picture[..., 3].astype(np.float32) / 255
     light = 1 - picture[..., :3].max(axis=2).astype(np.float32) / 255
     shadow = np.where(body, 0.0, light)
-    drawn = 1 - (1 - alpha) ** SHADOW_GAMMA
+    drawn = np.maximum(1 - (1 - alpha) ** SHADOW_GAMMA - FAINT, 0) / (1 - FAINT) * _feather(body.shape)
     result = picture.copy()
     result[..., 3] = np.rint(255 * (shadow * drawn + (1 - shadow) * alpha)).astype(np.uint8)
     result[result[..., 3] < 3] = 0
     return result
+
+
+def _feather(shape: tuple[int, ...]) -> NDArray[np.float32]:
+    """(H, W): 0 at the border, 1 inside."""
+    rows, columns = (np.minimum(np.arange(n) + 0.5, n - np.arange(n) - 0.5) / (FEATHER_SHARE * n) for n in shape)
+    return np.asarray(np.clip(np.minimum(rows[:, None], columns[None, :]), 0, 1), dtype=np.float32)
 
 
 def _lay_out(sizes: list[tuple[int, int]]) -> tuple[list[tuple[int, int]], tuple[int, int]]:

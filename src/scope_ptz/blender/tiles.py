@@ -131,12 +131,19 @@ def cover(wanted: Sequence[Target]) -> list[Cell]:
 
 def covers(views: Sequence[Perspective], target: Target) -> bool:
     """Whether every direction of a target lies in at least one of the views."""
-    directions = direction(target.directions[:, 0], target.directions[:, 1])
-    inside = np.zeros(len(directions), dtype=bool)
-    for view in views:
-        points = np.nan_to_num(view.points(directions), nan=-1.0)
-        inside |= np.all((points >= 0) & (points <= 1), axis=-1)
-    return bool(inside.all())
+    return bool(np.any([_inside(view, target) for view in views], axis=0).all()) if views else False
+
+
+def _inside(view: Perspective, target: Target) -> Mask:
+    points = np.nan_to_num(view.points(direction(target.directions[:, 0], target.directions[:, 1])), nan=-1.0)
+    return np.asarray(np.all((points >= 0) & (points <= 1), axis=-1))
+
+
+def most_useful(views: Sequence[Perspective], wanted: Sequence[Target], most: int) -> list[Perspective]:
+    """The ``most`` views that show parts of the most targets, in their old order."""
+    shown = [sum(bool(_inside(view, target).any()) for target in wanted) for view in views]
+    kept = sorted(sorted(range(len(views)), key=lambda k: (-int(shown[k]), k))[:most])
+    return [views[k] for k in kept]
 
 
 def _needed(wanted: Sequence[Target]) -> Mask:
@@ -154,7 +161,7 @@ def _cells(needed: Mask, shift_deg: float) -> list[Cell]:
     while low < 90.0:
         high = low + CELL_TILT_DEG
         rows = slice(max(0, round((low + 90) / GRID_DEG)), max(0, round((high + 90) / GRID_DEG)))
-        columns = needed[rows].any(axis=0)
+        columns = np.asarray(needed[rows].any(axis=0))
         if columns.any():
             nearest = 0.0 if low < 0 < high else min(abs(low), abs(high))
             count = max(3, round(360 * math.cos(math.radians(min(nearest, 85.0))) / CELL_PAN_DEG))

@@ -41,7 +41,7 @@ def scene(stage: Stage, troupe: Troupe) -> dict[str, Any]:
             }
             for p in stage.presets
         ],
-        "home_preset": stage.home_preset or stage.presets[0].name,
+        "home_preset": stage.home_preset or "",
         "instances": [_instance(i, depsgraph, corners) for i in stage.instances],
         "texts": [text for i in stage.instances for text in _texts(i)],
         "actors": [

@@ -1,10 +1,11 @@
-"""What the worker can be asked to do. Every operation takes plain JSON values and ``progress``; pictures go to files."""
+"""What the worker can be asked to do. Every operation takes and returns plain JSON values; pictures go to files."""
 
 from __future__ import annotations
 
 import importlib
 import importlib.util
 from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,8 @@ Progress = Callable[[int, int], None]
 class Studio:
     """The one scene that is loaded."""
 
-    def __init__(self) -> None:
+    def __init__(self, progress: Progress) -> None:
+        self._progress = progress
         self._stage: Stage | None = None
         self._troupe: Troupe | None = None
 
@@ -42,7 +44,7 @@ class Studio:
                 return candidate
         raise ValueError(f"the scene has no viewpoint '{name}'")
 
-    def load_scene(self, source: str, progress: Progress) -> dict[str, Any]:
+    def load_scene(self, source: str) -> dict[str, Any]:
         """Build a scene: the name of a module in ``scope_ptz.studio.scenes`` (kebab-case), or the path of a Python file."""
         bpy.ops.wm.read_factory_settings(use_empty=True)
         bpy.context.preferences.filepaths.use_scripts_auto_execute = False
@@ -54,37 +56,35 @@ class Studio:
         self._stage = stage
         return {"name": stage.name, "title": stage.title, "instances": len(stage.instances)}
 
-    def describe(self, progress: Progress) -> dict[str, Any]:
+    def describe(self) -> dict[str, Any]:
         return describe.scene(self.stage, self.troupe)
 
-    def save(self, path: str, progress: Progress) -> None:
+    def save(self, path: str) -> None:
         """Write the scene as a .blend file to look at in Blender."""
         bpy.ops.wm.save_as_mainfile(filepath=path, compress=True)
 
-    def meshes(self, out: str, progress: Progress) -> None:
+    def meshes(self, out: str) -> None:
         meshes.write(self.stage, Path(out))
 
     def colour(
-        self, viewpoint: str, projection: dict[str, float], samples: int, seed: int, out: str, progress: Progress, time_s: float | None = None
+        self, viewpoint: str, projection: dict[str, float], samples: int, seed: int, out: str, time_s: float | None = None
     ) -> None:
         """A denoised picture (8-bit PNG). With ``time_s``, moving actors stand where they are at that time."""
         with self._cast(time_s):
             render.colour(self.viewpoint(viewpoint), projection, samples, seed, Path(out))
 
-    def truth(
-        self, viewpoint: str, projection: dict[str, float], out: str, progress: Progress, time_s: float | None = None
-    ) -> None:
+    def truth(self, viewpoint: str, projection: dict[str, float], out: str, time_s: float | None = None) -> None:
         """Instance numbers (uint16) and distances in metres (float32, 0 = sky) of the same picture, as one .npz file."""
         with self._cast(time_s):
             render.truth(self.viewpoint(viewpoint), projection, Path(out))
 
-    def sprites(self, actor: str, viewpoint: str, frames: list[dict[str, Any]], samples: int, out_dir: str, progress: Progress) -> None:
-        sprites.render_frames(self.stage, self.troupe, actor, self.viewpoint(viewpoint), frames, samples, Path(out_dir), progress)
+    def sprites(self, actor: str, viewpoint: str, frames: list[dict[str, Any]], samples: int, out_dir: str) -> None:
+        sprites.render_frames(
+            self.stage, self.troupe, actor, self.viewpoint(viewpoint), frames, samples, Path(out_dir), self._progress
+        )
 
-    def _cast(self, time_s: float | None) -> Any:
+    def _cast(self, time_s: float | None) -> AbstractContextManager[None]:
         """Actors are only built when a picture wants them."""
-        from contextlib import nullcontext
-
         return nullcontext() if time_s is None else self.troupe.on_stage(time_s)
 
 
@@ -99,9 +99,7 @@ def _builder(source: str) -> Callable[[Stage], Stage | None]:
     return module.build
 
 
-def operations() -> dict[str, Callable[..., Any]]:
+def operations(progress: Progress) -> dict[str, Callable[..., Any]]:
     """By name."""
-    studio = Studio()
-    return {
-        name: getattr(studio, name) for name in ("load_scene", "describe", "save", "meshes", "colour", "truth", "sprites")
-    }
+    studio = Studio(progress)
+    return {name: getattr(studio, name) for name in ("load_scene", "describe", "save", "meshes", "colour", "truth", "sprites")}

@@ -35,7 +35,8 @@ def render_frames(
             picture = out_dir / f"{k:03d}.png"
             if not picture.with_suffix(".npz").exists():
                 built = troupe.stand(actor, frame["time_s"], frame["phase"])
-                assert built is not None
+                if built is None:
+                    raise ValueError(f"{actor_id} is not in the scene at {frame['time_s']} s")
                 ground.location = frame["position_m"]
                 ground.hide_render = False
                 bpy.context.view_layer.update()

@@ -1,7 +1,7 @@
 """The Blender side of the pipe: reads requests as JSON lines, does them, answers in JSON lines.
 
-Run by its path, with Blender's own Python or as ``blender --background --python worker.py``. Every answer starts with ``MARK``, so that
-whatever Blender prints cannot be mistaken for one; its own output goes to the error stream.
+Run by its path, with Blender's own Python or as ``blender --background --python worker.py``. Every answer starts with ``MARK``,
+so that whatever Blender prints cannot be mistaken for one; its own output goes to the error stream.
 """
 
 from __future__ import annotations
@@ -22,7 +22,8 @@ def adopt_package() -> None:
     """Make ``scope_ptz`` importable without putting its folder's neighbours (another NumPy, perhaps) on the path."""
     home = Path(__file__).resolve().parents[1]
     spec = importlib.util.spec_from_file_location("scope_ptz", home / "__init__.py", submodule_search_locations=[str(home)])
-    assert spec is not None and spec.loader is not None
+    if spec is None or spec.loader is None:
+        raise ImportError(f"no package at {home}")
     module = importlib.util.module_from_spec(spec)
     sys.modules["scope_ptz"] = module
     spec.loader.exec_module(module)
@@ -35,6 +36,7 @@ class Channel:
         self._out = os.fdopen(os.dup(1), "w", encoding="utf-8")
         os.dup2(2, 1)
         self._in = sys.stdin
+        self._number = 0
 
     def send(self, message: dict[str, Any]) -> None:
         self._out.write(f"{MARK}{json.dumps(message)}\n")
@@ -46,18 +48,18 @@ class Channel:
             request = json.loads(line)
             if request["op"] == "quit":
                 return
-            number = request["id"]
-
-            def progress(done: int, total: int, number: int = number) -> None:
-                self.send({"id": number, "progress": [done, total]})
-
+            self._number = request["id"]
             try:
-                result = operations[request["op"]](progress=progress, **request["params"])
+                result = operations[request["op"]](**request["params"])
             except Exception as error:  # whatever went wrong in Blender is the answer
                 traceback.print_exc()
-                self.send({"id": number, "error": f"{type(error).__name__}: {error}"})
+                self.send({"id": self._number, "error": f"{type(error).__name__}: {error}"})
             else:
-                self.send({"id": number, "result": result})
+                self.send({"id": self._number, "result": result})
+
+    def progress(self, done: int, total: int) -> None:
+        """How far the operation under way has come."""
+        self.send({"id": self._number, "progress": [done, total]})
 
 
 def main() -> None:
@@ -68,7 +70,7 @@ def main() -> None:
     from scope_ptz.studio.operations import operations
 
     channel.send({"hello": bpy.app.version_string})
-    channel.serve(operations())
+    channel.serve(operations(channel.progress))
 
 
 if __name__ == "__main__":

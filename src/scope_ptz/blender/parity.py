@@ -1,0 +1,59 @@
+"""How alike two pictures of one view are, and how alike two sets of instance boxes."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+WINDOW_PX = 7
+K1, K2 = 0.01, 0.03
+
+
+def ssim(a: NDArray[np.uint8], b: NDArray[np.uint8]) -> float:
+    """Mean structural similarity on grey of two (H, W, 3) RGB pictures.
+
+    Wang et al., "Image quality assessment: from error visibility to structural similarity", 2004, with a uniform 7x7 window,
+    sample covariance, and the border where the window does not fit left out.
+    """
+    x, y = _grey(a), _grey(b)
+    size = (WINDOW_PX, WINDOW_PX)
+    unbiased = WINDOW_PX**2 / (WINDOW_PX**2 - 1)
+    mx, my = cv2.blur(x, size), cv2.blur(y, size)
+    vx = unbiased * (cv2.blur(x * x, size) - mx * mx)
+    vy = unbiased * (cv2.blur(y * y, size) - my * my)
+    cov = unbiased * (cv2.blur(x * y, size) - mx * my)
+    c1, c2 = (K1 * 255) ** 2, (K2 * 255) ** 2
+    index = (2 * mx * my + c1) * (2 * cov + c2) / ((mx * mx + my * my + c1) * (vx + vy + c2))
+    border = WINDOW_PX // 2
+    return float(index[border:-border, border:-border].mean())
+
+
+def sharpness(picture: NDArray[np.uint8]) -> float:
+    """Variance of the Laplacian of the grey picture."""
+    return float(cv2.Laplacian(_grey(picture), cv2.CV_64F).var())
+
+
+def box_ious(a: NDArray[np.uint16], b: NDArray[np.uint16], min_pixels: int) -> dict[int, float]:
+    """Intersection over union of the boxes of every instance with more than ``min_pixels`` in ``b`` (the reference), by number."""
+    numbers, counts = np.unique(b[b > 0], return_counts=True)
+    return {int(n): _iou(_box(a == n), _box(b == n)) for n, count in zip(numbers, counts, strict=True) if count > min_pixels}
+
+
+def _box(mask: NDArray[np.bool_]) -> tuple[int, int, int, int] | None:
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    if not len(rows):
+        return None
+    return int(columns[0]), int(rows[0]), int(columns[-1]) + 1, int(rows[-1]) + 1
+
+
+def _iou(a: tuple[int, int, int, int] | None, b: tuple[int, int, int, int] | None) -> float:
+    if a is None or b is None:
+        return 0.0
+    across, down = min(a[2], b[2]) - max(a[0], b[0]), min(a[3], b[3]) - max(a[1], b[1])
+    both = max(across, 0) * max(down, 0)
+    return both / ((a[2] - a[0]) * (a[3] - a[1]) + (b[2] - b[0]) * (b[3] - b[1]) - both)
+
+
+def _grey(picture: NDArray[np.uint8]) -> NDArray[np.float64]:
+    return np.asarray(cv2.cvtColor(picture, cv2.COLOR_RGB2GRAY), dtype=np.float64)
