@@ -9,10 +9,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from scope_ptz.geometry import direction
 from scope_ptz.perception.base import Box
 from scope_ptz.perception.language import words as w
 from scope_ptz.perception.language.lexicon import lexicon, singular_phrase
+from scope_ptz.world.actors import whereabouts
 from scope_ptz.world.models import Attribute, SceneActor, SceneFile, SceneInstance
 from scope_ptz.world.truth import Sighting, TextSighting, ViewTruth
 
@@ -111,7 +111,7 @@ class View:
         return tuple(t for t in self.things if t.parent is None or t.parent not in self.by_id)
 
 
-def read_view(truth: ViewTruth, scene: SceneFile, viewpoint: str, time_s: float) -> View:
+def read_view(truth: ViewTruth, scene: SceneFile, time_s: float) -> View:
     """The view of a frame from its ground truth."""
     everything = (*scene.instances, *scene.actors)
     parents = {i.id: i.parent for i in scene.instances if i.parent}
@@ -122,7 +122,6 @@ def read_view(truth: ViewTruth, scene: SceneFile, viewpoint: str, time_s: float)
         for key, value in instance.attributes.items():
             values.setdefault(key, set()).update(w.letters(str(value)).split())
     texts = tuple(sorted(truth.texts, key=lambda t: (round(t.box[1], 2), t.box[0])))
-    origin = next(v for v in scene.viewpoints if v.name == viewpoint)
     legible: dict[str, list[str]] = {}
     for text in (t for t in texts if t.legible):
         holder: str | None = text.text.parent
@@ -131,8 +130,8 @@ def read_view(truth: ViewTruth, scene: SceneFile, viewpoint: str, time_s: float)
             holder = parents.get(holder)
 
     def thing(sighting: Sighting) -> Thing:
-        low, high = _world_box(sighting, np.array(origin.position_m), origin.pan0_bearing_deg)
         instance = sighting.instance
+        low, high = _world_box(instance, time_s)
         return Thing(sighting, low, high, _concepts(instance), _motion(instance, time_s), tuple(legible.get(instance.id, ())))
 
     return View(
@@ -173,21 +172,22 @@ def _concepts(instance: SceneInstance | SceneActor) -> frozenset[str]:
     return frozenset(found or {"thing"})
 
 
-def _world_box(sighting: Sighting, camera_m: Floats, bearing_deg: float) -> tuple[Floats, Floats]:
-    instance = sighting.instance
+def _world_box(instance: SceneInstance | SceneActor, time_s: float) -> tuple[Floats, Floats]:
+    """Lowest and highest corner in the world; an actor's stands on its path, unturned."""
     if isinstance(instance, SceneInstance):
         return np.array(instance.box_min_m), np.array(instance.box_max_m)
-    half = np.array(instance.size_m) / 2
-    centre = camera_m + direction(sighting.pan_deg + bearing_deg, sighting.tilt_deg) * (sighting.distance_m + half.min())
-    return centre - half, centre + half
+    here = whereabouts(instance, time_s)
+    foot = np.zeros(3) if here is None else here.position_m
+    width, depth, height = instance.size_m
+    return foot - (width / 2, depth / 2, 0.0), foot + (width / 2, depth / 2, height)
 
 
 def _motion(instance: SceneInstance | SceneActor, time_s: float) -> str:
-    """Actors move while their path does; what is baked stands still. Only vehicles, machines and people are asked about."""
+    """Actors move while their path does; what is baked stands still."""
     if isinstance(instance, SceneInstance):
         return "stationary"
-    now = time_s % instance.period_s
-    for (t0, *a), (t1, *b) in zip(instance.waypoints, instance.waypoints[1:], strict=False):
-        if t0 <= now <= t1:
-            return "moving" if a != b else "stationary"
-    return "stationary"
+    now, soon = whereabouts(instance, time_s), whereabouts(instance, time_s + _STEP_S)
+    return "moving" if now and soon and abs(soon.walked_m - now.walked_m) > _STEP_M else "stationary"
+
+
+_STEP_S, _STEP_M = 0.1, 0.005

@@ -1,0 +1,133 @@
+"""What every perception must do, as checks that any ``Perception`` can be put through.
+
+With pytest, subclass it and say how to make the backend and a frame; every ``test_`` method then is a test::
+
+    @pytest.mark.anyio
+    class TestMyEyes(PerceptionConformance):
+        @asynccontextmanager
+        async def perception(self):
+            yield MyEyes(...)
+
+        def frame(self):
+            return Frame(...)
+
+Without pytest, ``await TestMyEyes().findings()`` runs all checks and names what failed.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from contextlib import AbstractAsyncContextManager
+
+from scope_ptz.camera.base import Frame
+from scope_ptz.errors import PerceptionError
+from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
+
+
+class PerceptionConformance(ABC):
+    """Checks against the ``Perception`` contract; they say nothing of how well a backend sees."""
+
+    present: str = "thing"
+    """A description that fits something in the frame."""
+    absent: str = "purple unicorn"
+    """A description that fits nothing in the frame."""
+
+    @abstractmethod
+    def perception(self) -> AbstractAsyncContextManager[Perception]:
+        """A backend ready for use, released afterwards."""
+
+    @abstractmethod
+    def frame(self) -> Frame:
+        """A frame that the backend can read."""
+
+    def unreadable_frame(self) -> Frame | None:
+        """A frame that the backend must refuse, None when there is no such thing."""
+        return None
+
+    async def findings(self) -> dict[str, str]:
+        """Run all checks; name and reason of each that failed."""
+        failed = {}
+        for name in sorted(n for n in dir(self) if n.startswith("test_")):
+            try:
+                await getattr(self, name)()
+            except Exception as error:  # a check that breaks in any way has failed
+                failed[name] = f"{type(error).__name__}: {error}"
+        return failed
+
+    async def test_caption_is_text(self) -> None:
+        async with self.perception() as perception:
+            caption = await perception.caption(self.frame())
+            _expect(isinstance(caption, Caption), f"caption returned a {type(caption).__name__}")
+            _expect(bool(caption.text.strip()), "the caption is empty")
+            self._expect_result(caption)
+
+    async def test_query_answers(self) -> None:
+        async with self.perception() as perception:
+            answer = await perception.query(self.frame(), f"Is there a {self.present}?")
+            _expect(isinstance(answer, Answer), f"query returned a {type(answer).__name__}")
+            _expect(bool(answer.text.strip()), "the answer is empty")
+            self._expect_result(answer)
+
+    async def test_detect_returns_boxes_inside_the_frame(self) -> None:
+        async with self.perception() as perception:
+            found = await perception.detect(self.frame(), self.present)
+            _expect(isinstance(found, Detections), f"detect returned a {type(found).__name__}")
+            _expect(len(found.boxes) > 0, f"nothing fits '{self.present}', which is in the frame")
+            for box in found.boxes:
+                _expect(0 <= box.x_min < box.x_max <= 1 and 0 <= box.y_min < box.y_max <= 1, f"{box} is no box inside the frame")
+                _expect(box.score is None or 0 <= box.score <= 1, f"score {box.score} is not between 0 and 1")
+            self._expect_result(found)
+
+    async def test_point_returns_points_inside_the_frame(self) -> None:
+        async with self.perception() as perception:
+            found = await perception.point(self.frame(), self.present)
+            _expect(isinstance(found, Points), f"point returned a {type(found).__name__}")
+            _expect(len(found.points) > 0, f"nothing fits '{self.present}', which is in the frame")
+            _expect(all(0 <= p.x <= 1 and 0 <= p.y <= 1 for p in found.points), "a point lies outside the frame")
+            self._expect_result(found)
+
+    async def test_absent_things_are_an_empty_list(self) -> None:
+        async with self.perception() as perception:
+            boxes = (await perception.detect(self.frame(), self.absent)).boxes
+            points = (await perception.point(self.frame(), self.absent)).points
+            _expect(boxes == () and points == (), f"'{self.absent}' was found, and is not in the frame")
+
+    async def test_the_same_question_twice_is_answered_alike(self) -> None:
+        async with self.perception() as perception:
+            first, second = [(await perception.detect(self.frame(), self.present)).boxes for _ in range(2)]
+            _expect(first == second, "the same frame and description gave two different results")
+
+    async def test_failure_is_an_error(self) -> None:
+        frame = self.unreadable_frame()
+        if frame is None:
+            return
+        async with self.perception() as perception:
+            for ask in (
+                lambda: perception.caption(frame),
+                lambda: perception.query(frame, "How many things are there?"),
+                lambda: perception.detect(frame, self.present),
+                lambda: perception.point(frame, self.present),
+            ):
+                try:
+                    result = await ask()
+                except PerceptionError as error:
+                    _expect(bool(str(error)), "the error says nothing")
+                else:
+                    raise AssertionError(f"a frame that cannot be read gave {result!r} instead of a PerceptionError")
+
+    async def test_frame_is_left_alone(self) -> None:
+        async with self.perception() as perception:
+            frame = self.frame()
+            before = frame.image.copy()
+            await perception.detect(frame, self.present)
+            _expect(bool((frame.image == before).all()), "looking at a frame changed its pixels")
+
+    def _expect_result(self, result: Caption | Answer | Detections | Points) -> None:
+        _expect(bool(result.source), "the result does not say who looked")
+        _expect(math.isfinite(result.latency_s) and result.latency_s > 0, f"latency {result.latency_s} s cannot be")
+
+
+def _expect(condition: bool, complaint: str) -> None:
+    if not condition:
+        raise AssertionError(complaint)

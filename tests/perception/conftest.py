@@ -1,0 +1,5 @@
+"""Shared fixtures."""
+
+from tests.support.fixtures import anyio_backend
+
+__all__ = ["anyio_backend"]
