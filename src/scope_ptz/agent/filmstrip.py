@@ -226,8 +226,8 @@ def _draw_caption(canvas: Canvas, panel: Panel, x: float, y: float, width: float
 
 def _draw_footer(canvas: Canvas, trace: Trace, left_out: int, y: float) -> None:
     started = trace.started
-    seen_by = f"planner: {started.planner} · perception: {started.perception}"
-    canvas.text(MARGIN + 4, y, f"SCOPE · {started.camera} · {seen_by}", 15, FAINT)
+    eyes = started.labels.perception_note.rstrip(".") or f"Perception: {started.perception}"
+    canvas.text(MARGIN + 4, y, f"SCOPE · {started.camera} · Planner: {started.planner} · {eyes}", 15, FAINT)
     if left_out:
         note = f"{left_out} steps between {MAX_PANELS // 2 - 1} and {MAX_PANELS // 2 + left_out} are not shown"
         canvas.text(WIDTH - MARGIN - 4, y, note, 15, FAINT, anchor="rs")

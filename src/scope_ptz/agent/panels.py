@@ -134,7 +134,7 @@ def _action(outcome: ToolOutcome) -> str:
         case "zoom_to_object":
             return f"zoom to {arguments.get('description', '?')}"
         case "track_object":
-            return f"track {arguments.get('description', '?')} for {arguments.get('duration_s', 10)} s"
+            return f"track {arguments.get('description', '?')} for {_number(arguments.get('duration_s', 10))} s"
     return name.replace("_", " ")
 
 
@@ -145,9 +145,14 @@ def _turns(arguments: dict[str, Any]) -> list[str]:
         if isinstance(angle, int | float) and angle:
             parts.append(f"{more if angle > 0 else less} {abs(angle):g}°")
     if arguments.get("zoom_factor") is not None:
-        parts.append(f"zoom {arguments['zoom_factor']:g}x")
+        parts.append(f"zoom {_number(arguments['zoom_factor'])}x")
     if arguments.get("zoom_percent") is not None:
-        parts.append(f"zoom {arguments['zoom_percent']:+g}%")
+        parts.append(f"zoom {_number(arguments['zoom_percent'])}%")
     if arguments.get("zoom_limit") is not None:
         parts.append(f"zoom all the way {arguments['zoom_limit']}")
     return parts
+
+
+def _number(value: Any) -> str:
+    """A number without needless zeros; what a planner gave instead of one as it is (calls may be wrong)."""
+    return f"{value:g}" if isinstance(value, int | float) else str(value)

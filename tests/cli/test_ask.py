@@ -1,0 +1,169 @@
+"""``scope ask`` from end to end on a small scene: output, exit codes, run folders."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+from PIL import Image
+
+from tests.agent.scripted import ScriptedPlanner, Step, answer, calls
+from tests.cli.conftest import SCENE, Scope
+
+COUNT = "how many balls are visible right now?"
+
+
+def runs(root: Path) -> list[Path]:
+    folder = root / "runs"
+    return sorted(folder.iterdir()) if folder.is_dir() else []
+
+
+def follow(monkeypatch: pytest.MonkeyPatch, *script: Step) -> None:
+    """Let a script plan instead of the built-in planner."""
+    monkeypatch.setattr("scope_ptz.cli.asking.make_planner", lambda _: ScriptedPlanner(*script))
+
+
+def test_json_is_one_object_with_the_promised_fields(scope: Scope, tmp_path: Path) -> None:
+    done = scope("ask", COUNT, "--scene", SCENE, "--json")
+    assert (done.code, done.err) == (0, "")
+    said = done.json
+    assert set(said) == {"answer", "outcome", "tool_calls", "pose", "timings", "run_dir"}
+    assert said["outcome"] == "answered"
+    assert "3" in said["answer"] or "three" in said["answer"].lower()
+    (call,) = said["tool_calls"]
+    assert set(call) == {"name", "arguments", "result", "error"}
+    assert call["name"] == "count_objects"
+    assert call["result"]["count"] == 3
+    assert call["error"] is None
+    assert set(said["pose"]) == {"pan_deg", "tilt_deg", "zoom"}
+    assert set(said["timings"]) == {"planner_s", "perception_s", "camera_s", "render_s", "total_s"}
+    assert [Path(said["run_dir"])] == runs(tmp_path)
+
+
+def test_a_person_sees_steps_answer_truth_note_and_folder(scope: Scope, tmp_path: Path) -> None:
+    done = scope("ask", "go to board, then go home", "--scene", SCENE)
+    assert done.code == 0
+    (folder,) = runs(tmp_path)
+    assert "go_to_preset" in done.out
+    assert "name=board" in done.out
+    assert "go_home" in done.out
+    assert "not a model" in done.out
+    assert str(folder) in done.out
+    assert {p.name for p in folder.iterdir()} == {"trace.jsonl", "frames", "filmstrip.png"}
+    with Image.open(folder / "filmstrip.png") as strip:
+        assert strip.width == 1600
+    header = json.loads((folder / "trace.jsonl").read_text().splitlines()[0])
+    assert (header["scene"], header["viewpoint"], header["planner"]) == (SCENE, "mast", "grammar")
+    assert "not a model" in header["labels"]["perception_note"]
+
+
+def test_where_the_camera_starts(scope: Scope) -> None:
+    def pose(*options: str) -> Any:
+        done = scope("ask", "take a picture", "--scene", SCENE, "--json", *options)
+        return done.json["pose"]
+
+    assert pose() == {"pan_deg": 0.0, "tilt_deg": -8.0, "zoom": 1.0}
+    assert pose("--preset", "board") == {"pan_deg": -16.0, "tilt_deg": -2.0, "zoom": 4.0}
+    assert pose("--viewpoint", "roof") == {"pan_deg": 10.0, "tilt_deg": -20.0, "zoom": 1.5}
+
+
+def test_the_same_seed_gives_the_same_run(scope: Scope) -> None:
+    def results() -> Any:
+        done = scope(
+            "ask", "count the balls, pan right 15 and count the blocks", "--scene", SCENE, "--perception", "noisy", "--json"
+        )
+        calls_made = done.json["tool_calls"]
+        return [(c["name"], c["arguments"], c["result"]) for c in calls_made]
+
+    assert results() == results()
+
+
+BAD_INPUT = {
+    "empty instruction": ("ask", "", "--scene", SCENE),
+    "blank instruction": ("ask", "  ", "--scene", SCENE),
+    "unknown scene": ("ask", "go home", "--scene", "mars"),
+    "a path for a scene": ("ask", "go home", "--scene", "../../etc"),
+    "unknown viewpoint": ("ask", "go home", "--scene", SCENE, "--viewpoint", "moon"),
+    "unknown preset": ("ask", "go home", "--scene", SCENE, "--preset", "moon"),
+    "viewpoint and preset": ("ask", "go home", "--scene", SCENE, "--preset", "yard", "--viewpoint", "mast"),
+    "unknown planner": ("ask", "go home", "--scene", SCENE, "--planner", "oracle"),
+    "unknown perception": ("ask", "go home", "--scene", SCENE, "--perception", "oracle"),
+}
+
+
+@pytest.mark.parametrize("case", BAD_INPUT)
+@pytest.mark.parametrize("as_json", [False, True])
+def test_bad_input_is_one_line_and_exit_code_2(scope: Scope, tmp_path: Path, case: str, as_json: bool) -> None:
+    done = scope(*BAD_INPUT[case], *(["--json"] if as_json else []))
+    assert done.code == 2
+    assert done.err.startswith("scope: ")
+    assert done.err.count("\n") == 1
+    if as_json:
+        assert set(done.json) == {"error"}
+    else:
+        assert done.out == ""
+    assert runs(tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    "arguments", [("ask",), ("ask", "x", "--max-steps", "0"), ("ask", "x", "--time-budget", "soon"), ("dance",)]
+)
+def test_wrong_usage_is_exit_code_2(scope: Scope, arguments: tuple[str, ...]) -> None:
+    assert scope(*arguments).code == 2
+
+
+def test_a_runs_folder_that_cannot_be_written(scope: Scope, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("in the way")
+    done = scope("ask", "go home", "--scene", SCENE, "--runs-dir", str(tmp_path / "file"))
+    assert (done.code, done.err.count("\n")) == (2, 1)
+    assert "--runs-dir" in done.err
+
+
+@pytest.mark.parametrize("damaged", ["scene.json", "manifest.json", "base.*"])
+@pytest.mark.parametrize("how", ["changed", "missing"])
+def test_damaged_packs_are_told(
+    scope: Scope, scenes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, damaged: str, how: str
+) -> None:
+    copy = tmp_path / "scenes"
+    shutil.copytree(scenes, copy)
+    monkeypatch.setenv("SCOPE_SCENES_DIR", str(copy))
+    (file,) = (*(copy / SCENE).glob(damaged), *(copy / SCENE / "mast").glob(damaged))
+    if how == "changed":
+        file.write_bytes(file.read_bytes()[:-7] + b"damaged")
+    else:
+        file.unlink()
+    done = scope("ask", COUNT, "--scene", SCENE)
+    assert (done.code, done.err.count("\n")) == (2, 1)
+    assert done.err.startswith("scope: ")
+
+
+@pytest.mark.parametrize(
+    ("script", "options", "outcome", "code"),
+    [
+        ((calls(("adjust_ptz", {"pan_deg": 1.0})),), ("--max-steps", "2"), "step_limit", 1),
+        ((RuntimeError("a bug"),), (), "planner_error", 1),
+        ((answer("Fine."),), (), "answered", 0),
+    ],
+)
+def test_exit_codes_tell_outcomes(
+    scope: Scope, monkeypatch: pytest.MonkeyPatch, script: tuple[Step, ...], options: tuple[str, ...], outcome: str, code: int
+) -> None:
+    follow(monkeypatch, *script)
+    done = scope("ask", "do it", "--scene", SCENE, "--json", *options)
+    assert (done.code, done.json["outcome"]) == (code, outcome)
+
+
+def test_a_question_back_is_no_failure(scope: Scope) -> None:
+    done = scope("ask", "florp the wibble sideways", "--scene", SCENE, "--json")
+    assert (done.code, done.json["outcome"], done.json["tool_calls"]) == (0, "clarification", [])
+
+
+def test_control_characters_do_not_reach_the_terminal(scope: Scope, monkeypatch: pytest.MonkeyPatch) -> None:
+    follow(monkeypatch, calls(("go_to_preset", {"name": "\x1b[2Jgate"})), answer("\x1b]0;owned\x07 [bold]done[/bold]"))
+    done = scope("ask", "do it", "--scene", SCENE)
+    assert "\x1b" not in done.out
+    assert "\x07" not in done.out
+    assert "[bold]done[/bold]" in done.out

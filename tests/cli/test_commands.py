@@ -1,0 +1,208 @@
+"""plan, tools, replay, chat, scene and doctor."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from io import StringIO
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from tests.cli.conftest import SCENE, Scope
+
+
+def test_plan_prints_what_would_be_done(scope: Scope) -> None:
+    done = scope("plan", "pan right 20, then tilt down 10", "--json")
+    assert (done.code, done.json) == (
+        0,
+        {
+            "instruction": "pan right 20, then tilt down 10",
+            "understood": True,
+            "calls": [
+                {"name": "adjust_ptz", "arguments": {"pan_deg": 20}},
+                {"name": "adjust_ptz", "arguments": {"tilt_deg": -10}},
+            ],
+            "clarification": None,
+        },
+    )
+    assert "adjust_ptz(pan_deg=20" in scope("plan", "pan right 20").out
+
+
+def test_plan_knows_the_presets_given(scope: Scope) -> None:
+    done = scope("plan", "go to gate", "--presets", "gate, highway", "--json")
+    assert done.json["calls"] == [{"name": "go_to_preset", "arguments": {"name": "gate"}}]
+
+
+def test_what_is_not_understood_is_asked_back(scope: Scope) -> None:
+    done = scope("plan", "florp the wibble sideways", "--json")
+    assert done.code == 0
+    assert (done.json["understood"], done.json["calls"]) == (False, [])
+    assert done.json["clarification"]
+
+
+def test_plan_of_a_file_gives_a_line_for_a_line(scope: Scope, tmp_path: Path) -> None:
+    file = tmp_path / "instructions.jsonl"
+    lines = [{"instruction": "go to gate", "presets": ["gate"]}, {"instruction": "go home", "expected": "ignored"}]
+    file.write_text("\n".join(map(json.dumps, lines)) + "\n\n")
+    done = scope("plan", "--from", str(file), "--json")
+    planned = [json.loads(line) for line in done.out.splitlines()]
+    assert done.code == 0
+    assert [p["instruction"] for p in planned] == ["go to gate", "go home"]
+    assert [p["calls"][0]["name"] for p in planned] == ["go_to_preset", "go_home"]
+
+
+@pytest.mark.parametrize(
+    "bad", ["{", "[]", '{"presets": []}', '{"instruction": 3}', '{"instruction": ""}', '{"instruction": "x", "presets": "gate"}']
+)
+def test_a_bad_line_is_told_by_its_number_and_the_others_are_planned(scope: Scope, tmp_path: Path, bad: str) -> None:
+    file = tmp_path / "instructions.jsonl"
+    file.write_text(f'{{"instruction": "go home"}}\n{bad}\n{{"instruction": "take a picture"}}\n')
+    done = scope("plan", "--from", str(file), "--json")
+    assert done.code == 2
+    assert "line 2" in done.err
+    assert len(done.err.splitlines()) == 1
+    assert len(done.out.splitlines()) == 2
+
+
+@pytest.mark.parametrize(
+    "arguments", [(), ("x", "--from", "y"), ("--from", "/nowhere/file.jsonl"), ("",), ("--from", "y", "--presets", "a")]
+)
+def test_plan_needs_one_source(scope: Scope, arguments: tuple[str, ...]) -> None:
+    done = scope("plan", *arguments)
+    assert (done.code, len(done.err.splitlines())) == (2, 1)
+
+
+def test_tools_prints_nine_schemas(scope: Scope) -> None:
+    for options in ((), ("--json",)):
+        schemas = json.loads(scope("tools", *options).out)
+        assert len(schemas) == 9
+        assert {s["type"] for s in schemas} == {"function"}
+
+
+def test_replay_repeats_a_run(scope: Scope, tmp_path: Path) -> None:
+    made = scope("ask", "go to from-the-roof, pan right 15 and count the balls, then go home", "--scene", SCENE, "--json").json
+    assert made["outcome"] == "answered"
+    done = scope("replay", made["run_dir"])
+    assert done.code == 0
+    assert "all" in done.out
+    assert "the same results" in done.out
+    said = scope("replay", made["run_dir"], "--json").json
+    assert (said["repeated"], said["equal"]) == (True, True)
+    assert said["recorded"]["tool_calls"] == made["tool_calls"]
+
+
+def test_replay_notices_a_trace_that_was_changed(scope: Scope) -> None:
+    made = scope("ask", "pan right 15", "--scene", SCENE, "--json").json
+    trace = Path(made["run_dir"]) / "trace.jsonl"
+    trace.write_text(
+        trace.read_text()
+        .replace('"result":{"message":"Moved', '"result":{"message":"Moved')
+        .replace('"pan_deg":15.0,"tilt_deg":-8.0,"zoom":1.0},"clamped"', '"pan_deg":25.0,"tilt_deg":-8.0,"zoom":1.0},"clamped"')
+    )
+    done = scope("replay", made["run_dir"])
+    assert done.code == 1
+    assert "differs: pose was" in done.out
+
+
+def test_replay_without_the_scene_shows_the_trace_and_says_so(
+    scope: Scope, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = scope("ask", "pan right 15", "--scene", SCENE, "--json").json
+    monkeypatch.setenv("SCOPE_SCENES_DIR", str(tmp_path))
+    done = scope("replay", made["run_dir"])
+    assert done.code == 0
+    assert "from the trace only" in done.out
+    assert "adjust_ptz" in done.out
+
+
+@pytest.mark.parametrize("content", [None, "", "not json\n", '{"event":"end"}\n'])
+def test_replay_of_no_trace(scope: Scope, tmp_path: Path, content: str | None) -> None:
+    if content is not None:
+        (tmp_path / "trace.jsonl").write_text(content)
+    done = scope("replay", str(tmp_path))
+    assert (done.code, len(done.err.splitlines())) == (2, 1)
+
+
+def test_chat_keeps_the_camera_and_obeys_small_commands(scope: Scope, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.stdin", StringIO("pan right 15\n/pose\n/save\n/dance\n\npan right 15\n/pose\n/quit\nnever reached\n"))
+    done = scope("chat", "--scene", SCENE)
+    assert done.code == 0
+    assert "pan 15°" in done.out
+    assert "pan 30°" in done.out
+    assert "/dance" in done.err
+    assert "never" not in done.out
+    assert len(list((tmp_path / "runs").glob("*/trace.jsonl"))) == 2
+    assert len(list((tmp_path / "runs").glob("*/pictures/001.png"))) == 1
+    second = max((tmp_path / "runs").glob("*/trace.jsonl"), key=lambda p: p.stat().st_mtime_ns)
+    header = json.loads(second.read_text().splitlines()[0])
+    assert [turn["instruction"] for turn in header["conversation"]] == ["pan right 15"]
+
+
+def test_chat_ends_with_its_input(scope: Scope, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.stdin", StringIO(""))
+    assert scope("chat", "--scene", SCENE).code == 0
+
+
+def test_scene_list(scope: Scope) -> None:
+    found = {s["name"]: s for s in scope("scene", "list", "--json").json}
+    scene = found[SCENE]
+    assert set(scene) == {"name", "viewpoints", "instances", "texts", "bytes"}
+    assert {v["name"]: v["presets"] for v in scene["viewpoints"]} == {"mast": ["yard", "board"], "roof": ["from-the-roof"]}
+    assert SCENE in scope("scene", "list").out
+
+
+def test_scene_show(scope: Scope, tmp_path: Path) -> None:
+    sheet = tmp_path / "sheet.png"
+    done = scope("scene", "show", SCENE, "--contact-sheet", str(sheet))
+    assert done.code == 0
+    for words in ("from-the-roof", "NO ENTRY", "white roller", "zebra", "5 ball"):
+        assert words in done.out
+    with Image.open(sheet) as image:
+        assert image.width == 1600
+
+
+def test_scene_view(scope: Scope, tmp_path: Path) -> None:
+    picture = tmp_path / "view.png"
+    done = scope("scene", "view", SCENE, "--pan", "30", "--zoom", "9", "--out", str(picture))
+    assert done.code == 0
+    assert "pan 30, tilt -8, zoom 5x (stopped by the zoom limit)" in done.out
+    with Image.open(picture) as image:
+        assert image.size == (1280, 720)
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("show", "mars"),
+        ("view", "mars", "--out", "x.png"),
+        ("view", SCENE, "--pan", "nan", "--out", "x.png"),
+        ("view", SCENE, "--zoom", "0", "--out", "x.png"),
+        ("view", SCENE, "--out", "/nowhere/at/all.png"),
+        ("view", SCENE, "--out", "picture.unknown"),
+        ("build", "mars"),
+        ("bake", "mars"),
+        ("bake", "highway-works", "--quality", "divine"),
+    ],
+)
+def test_bad_scene_commands(scope: Scope, arguments: tuple[str, ...]) -> None:
+    done = scope("scene", *arguments)
+    assert (done.code, len(done.err.splitlines())) == (2, 1)
+
+
+def test_doctor_names_what_is_there_and_how_to_get_the_rest(scope: Scope) -> None:
+    findings = {f["what"]: f for f in scope("doctor", "--json").json}
+    assert findings[f"scene {SCENE}"]["verdict"] == "ok"
+    assert findings["Python"]["verdict"] == "ok"
+    assert "Blender" in findings
+    assert all(f["remedy"] for f in findings.values() if f["verdict"] != "ok")
+
+
+def test_doctor_finds_a_damaged_file(scope: Scope, scenes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shutil.copytree(scenes, tmp_path / "scenes")
+    (tmp_path / "scenes" / SCENE / "mast" / "ids.png").write_bytes(b"oops")
+    monkeypatch.setenv("SCOPE_SCENES_DIR", str(tmp_path / "scenes"))
+    done = scope("doctor")
+    assert done.code == 1
+    assert "damaged" in done.out
