@@ -101,28 +101,73 @@ def hair(colour: str) -> bpy.types.Material:
     return s.surface(base_color=tint, roughness=0.48, normal=s.bump(strands, 0.7, 0.006))
 
 
-def cloth(colour: str, *, bands: tuple[float, ...] = (), shirt: bool = False) -> bpy.types.Material:
-    """Woven cloth with folds; ``bands`` are heights (m, upright) of 5 cm reflective tape. Worn paler where it rubs."""
-    name = f"garment {colour} {bands} {shirt}"
-    if name in bpy.data.materials:
-        return bpy.data.materials[name]
-    s = Shader(name)
+def _woven(s: Shader, colour: str) -> tuple[Value, Value, Value]:
+    """Tone, fold height and weave of a cloth in a plain colour: worn paler where it rubs, soiled in patches, dark in the folds."""
     where = s.object_coords()
     base = PALETTE[colour]
     folds = s.noise(s.scaled(where, (7.0, 7.0, 13.0)), 1.0, 3.0, 0.5, 0.15)
-    worn = s.mix(s.ramp(s.noise(where, 5.0, 5.0), 0.40, 0.75, 0.0, 0.28), base, tuple(c * 0.72 + 0.05 for c in base))
-    soil = s.mix(s.ramp(s.noise(where, 8.0, 6.0, 0.65), 0.56, 0.8, 0.0, 0.30), worn, (0.10, 0.085, 0.068))
-    tone = s.mix(s.ramp(folds, 0.25, 0.5, 0.32, 0.0), soil, tuple(c * 0.3 for c in base))
+    worn = s.mix(s.ramp(s.noise(where, 5.0, 5.0), 0.40, 0.75, 0.0, 0.25), base, tuple(c * 0.72 + 0.05 for c in base))
+    soil = s.mix(s.ramp(s.noise(where, 8.0, 6.0, 0.65), 0.58, 0.82, 0.0, 0.28), worn, (0.10, 0.085, 0.068))
+    tone = s.mix(s.ramp(folds, 0.25, 0.5, 0.30, 0.0), soil, tuple(c * 0.3 for c in base))
+    return tone, folds, s.noise(where, 420.0, 1.0)
+
+
+def cloth(colour: str, *, bands: tuple[float, ...] = ()) -> bpy.types.Material:
+    """Woven cloth; ``bands`` are positions along the limb (m, the third rest coordinate) of 5 cm reflective tape."""
+    name = f"garment {colour} {bands}"
+    if name in bpy.data.materials:
+        return bpy.data.materials[name]
+    s = Shader(name)
+    tone, folds, weave = _woven(s, colour)
     _, _, z = s.xyz(_rest(s))
-    mask: Value = 0.0
-    for height in bands:
-        mask = s.math("MAXIMUM", mask, s.band(z, height - 0.026, height + 0.026, 0.0015))
-    weave = s.noise(where, 420.0, 1.0)
-    bump = s.bump(s.math("ADD", folds, s.math("MULTIPLY", weave, 0.08)), 0.75, 0.03)
+    for position in bands:
+        tone = s.mix(s.band(z, position - 0.026, position + 0.026, 0.0015), tone, (0.62, 0.63, 0.64))
+    bump = s.bump(s.math("ADD", folds, s.math("MULTIPLY", weave, 0.08)), 0.7, 0.03)
     vivid = 0.14 if colour.startswith("hi-vis") else 0.0
-    colour_out = s.mix(mask, tone, (0.62, 0.63, 0.64)) if bands else tone
+    return s.surface(base_color=tone, roughness=0.88, normal=bump, emission_color=tone, emission_strength=vivid)
+
+
+def top(colour: str, style: str, inner: str, low: float) -> bpy.types.Material:
+    """The body of an upper garment, hem at height ``low``: "jumper" (ribbed hem), "jacket" (open on an ``inner`` shirt, zip, pockets)
+    or "shirt" (button line, paler collar)."""
+    name = f"top {colour} {style} {inner} {low:.2f}"
+    if name in bpy.data.materials:
+        return bpy.data.materials[name]
+    s = Shader(name)
+    tone, folds, weave = _woven(s, colour)
+    x, y, z = s.xyz(_rest(s))
+    away, front = s.math("ABSOLUTE", x), s.ramp(y, 0.0, 0.012)
+    dark = tuple(c * 0.45 for c in PALETTE[colour])
+    height = s.math("ADD", folds, s.math("MULTIPLY", weave, 0.08))
+    if style == "jumper":
+        angle = s.math("ARCTAN2", y, x)
+        ribs = s.math("SINE", s.math("MULTIPLY", angle, 90.0))
+        rib_zone = s.math("MAXIMUM", s.ramp(z, low + 0.066, low + 0.060), s.ramp(z, 1.494, 1.498))
+        tone = s.mix(s.math("MULTIPLY", rib_zone, s.ramp(ribs, -0.5, 0.5, 0.5, 0.15)), tone, dark)
+    if style == "jacket":
+        opening = s.math("SUBTRACT", s.math("MULTIPLY", s.math("SUBTRACT", z, 1.18), 0.21), away)
+        shirt = s.math("MULTIPLY", s.ramp(opening, -0.002, 0.002), front)
+        edge = s.math("MULTIPLY", s.band(opening, -0.012, 0.0), front)
+        tone = s.mix(edge, tone, dark)
+        tone = s.mix(shirt, tone, PALETTE[inner])
+        height = s.math("SUBTRACT", height, s.math("MULTIPLY", shirt, 0.5))
+        zip_line = s.math(
+            "MULTIPLY", s.math("MULTIPLY", s.band(away, -0.01, 0.004, 0.001), s.ramp(z, 1.185, 1.18)), front
+        )
+        tone = s.mix(zip_line, tone, (0.03, 0.03, 0.03))
+        slant = s.math("ADD", away, s.math("MULTIPLY", z, 0.35))
+        pocket = s.math(
+            "MULTIPLY", s.math("MULTIPLY", s.band(slant, 0.470, 0.477, 0.001), s.band(z, 0.97, 1.10)), front
+        )
+        tone = s.mix(pocket, tone, dark)
+        tone = s.mix(s.math("MULTIPLY", s.band(z, low + 0.045, low + 0.050), 0.8), tone, dark)
+    if style == "shirt":
+        buttons = s.math("MULTIPLY", s.band(away, 0.014, 0.0165, 0.001), front)
+        tone = s.mix(s.math("MULTIPLY", buttons, 0.7), tone, dark)
+        tone = s.mix(s.ramp(z, 1.492, 1.496, 0.0, 0.8), tone, tuple(c * 0.6 + 0.25 for c in PALETTE[colour]))
+    vivid = 0.14 if colour.startswith("hi-vis") else 0.0
     return s.surface(
-        base_color=colour_out, roughness=0.88, normal=bump, emission_color=colour_out, emission_strength=vivid
+        base_color=tone, roughness=0.88, normal=s.bump(height, 0.7, 0.03), emission_color=tone, emission_strength=vivid
     )
 
 

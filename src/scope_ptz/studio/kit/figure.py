@@ -12,14 +12,14 @@ from scope_ptz.studio.kit.volumes import Skin, Volume, crease
 
 # Height, half width, half depth and forward shift of the clothed trunk, from hem to collar.
 TRUNK = [
-    (0.850, 0.152, 0.112, 0.000),
-    (0.930, 0.166, 0.122, 0.000),
+    (0.850, 0.160, 0.124, -0.008),
+    (0.930, 0.168, 0.126, -0.006),
     (1.030, 0.154, 0.114, 0.006),
     (1.120, 0.156, 0.114, 0.010),
     (1.220, 0.168, 0.121, 0.012),
-    (1.320, 0.178, 0.122, 0.008),
-    (1.400, 0.170, 0.108, -0.002),
-    (1.455, 0.125, 0.084, -0.010),
+    (1.320, 0.176, 0.122, 0.008),
+    (1.395, 0.160, 0.106, -0.002),
+    (1.445, 0.118, 0.084, -0.010),
     (1.490, 0.076, 0.070, -0.012),
 ]
 
@@ -42,57 +42,76 @@ def _trunk_rows(joints: Joints, swell: float, girth: float, low: float, high: fl
     return rows
 
 
-def jacket(
-    joints: Joints, *, girth: float, loose: float, hem: float, hood: bool, seed: float, hide_trunk: bool = False
-) -> Skin:
-    """Trunk and sleeves in one piece. ``loose`` adds cloth to the sleeves (m); ``hem`` is the rest height of the lower edge (m)."""
-    v = Volume()
-    v.rings(_trunk_rows(joints, -0.012 if hide_trunk else loose * 0.5, girth, hem, 1.49))
-    for i, side in enumerate(SIDES):
-        shoulder, elbow, wrist = joints.shoulders[i], joints.elbows[i], joints.wrists[i]
-        v.capsule(joints.torso(Vector((side * 0.055, -0.012, 1.470))), shoulder, 0.046, 0.060 + loose)
-        v.capsule(shoulder, shoulder.lerp(elbow, 0.5), 0.064 + loose, 0.054 + loose)
-        v.capsule(shoulder.lerp(elbow, 0.5), elbow, 0.054 + loose, 0.047 + loose)
-        v.capsule(elbow, elbow.lerp(wrist, 0.45), 0.047 + loose, 0.044 + loose)
-        v.capsule(elbow.lerp(wrist, 0.45), elbow.lerp(wrist, 0.93), 0.044 + loose, 0.034 + loose)
-    if hood:
-        for k in range(7):
-            a = math.radians(180 + 30 * k)
-            b = math.radians(180 + 30 * (k + 1))
-            p, q = (joints.torso(Vector((0.082 * math.cos(t), -0.018 + 0.070 * math.sin(t), 1.492))) for t in (a, b))
-            v.capsule(p, q, 0.030, 0.030)
-    else:
-        collar = []
-        for z, r in ((1.47, 0.078), (1.50, 0.072), (1.535, 0.070)):
-            collar.append(
-                [
-                    joints.torso(Vector((r * math.cos(t), -0.012 + r * 0.95 * math.sin(t), z + 0.012 * -math.sin(t))))
-                    for t in np.linspace(0, 2 * math.pi, 20, endpoint=False)
-                ]
-            )
-        v.rings(collar)
-    elbows = np.array([tuple(e) for e in joints.elbows])
+def trunk(
+    joints: Joints,
+    *,
+    swell: float,
+    low: float,
+    girth: float,
+    woman: bool = False,
+    neck: str | None = None,
+    flare: float = 0.0,
+    seed: float,
+) -> tuple[Skin, np.ndarray]:
+    """The body of a garment and the upright (rest) coordinates of its points.
 
-    def amount(points: np.ndarray) -> np.ndarray:
-        near = np.linalg.norm(points[:, None] - elbows, axis=2).min(axis=1)
-        return 0.0045 + 0.0085 * np.exp(-((near / 0.10) ** 2))
-
-    return crease(crease(v.melt(0.013, 4), amount, (9.0, 9.0, 16.0), seed), 0.0025, (26.0, 26.0, 30.0), seed + 5)
-
-
-def vest(joints: Joints, *, girth: float, seed: float) -> tuple[Skin, np.ndarray]:
-    """A loose waistcoat over the jacket, and the upright (rest) coordinates of its points for the reflective bands."""
+    ``swell`` is how far the cloth stands off the body (m), ``low`` the height of the hem, ``neck`` "collar", "hood" or None,
+    ``flare`` extra looseness of the folds at the hem (m).
+    """
     upright = Joints(Matrix.Identity(4), Matrix.Identity(4), Matrix.Identity(4), [])
     v = Volume()
-    v.rings(_trunk_rows(upright, 0.026, girth, 0.835, 1.462))
+    v.rings(_trunk_rows(upright, swell, girth, low, 1.462))
+    reach = max(0.0, swell)
     for side in SIDES:
-        v.capsule((side * 0.05, -0.010, 1.452), (side * 0.152, -0.008, 1.437), 0.072, 0.070)
-        v.capsule((side * 0.150, -0.006, 1.437), (side * 0.135, -0.004, 1.30), 0.070, 0.090)
-    points, faces = crease(
-        v.melt(0.012, 4), lambda p: 0.005 + 0.010 * np.clip((1.15 - p[:, 2]) / 0.3, 0, 1), (7.0, 7.0, 9.0), seed
+        v.capsule((side * 0.05, -0.010, 1.446), (side * 0.150, -0.008, 1.414), 0.050 + reach, 0.054 + reach)
+        v.capsule((side * 0.146, -0.006, 1.415), (side * 0.130, -0.004, 1.30), 0.048 + reach, 0.064 + reach)
+        if woman:
+            v.ellipsoid((side * 0.068, 0.082, 1.265), (0.066, 0.052 + reach * 0.5, 0.066))
+    if neck == "hood":
+        arc = [math.radians(180 + 30 * k) for k in range(7)]
+        ring = [(0.082 * math.cos(t), -0.020 + 0.070 * math.sin(t), 1.490) for t in arc]
+        for p, q in zip(ring, ring[1:], strict=False):
+            v.capsule(p, q, 0.030, 0.030)
+    elif neck == "collar":
+        turns = np.linspace(0, 2 * math.pi, 20, endpoint=False)
+        heights = ((1.45, 0.080), (1.49, 0.074), (1.528, 0.072))
+        v.rings(
+            [
+                [(r * math.cos(t), -0.012 + r * 0.95 * math.sin(t), z - 0.014 * math.sin(t)) for t in turns]
+                for z, r in heights
+            ]
+        )
+    skin = crease(
+        v.melt(0.012, 4),
+        lambda p: 0.004 + (0.004 + flare) * np.clip((1.15 - p[:, 2]) / 0.3, 0, 1),
+        (7.0, 7.0, 10.0),
+        seed,
     )
+    points, faces = crease(skin, 0.002, (22.0, 22.0, 26.0), seed + 5)
     posed = np.array([tuple(joints.torso(Vector(p))) for p in points])
     return (posed, faces), points
+
+
+def sleeves(joints: Joints, *, loose: float, seed: float) -> tuple[Skin, np.ndarray]:
+    """Both sleeves, and for each point its distance along the arm from the shoulder (m). ``loose`` adds cloth (m)."""
+    v = Volume()
+    for i in range(2):
+        shoulder, elbow, wrist = joints.shoulders[i], joints.elbows[i], joints.wrists[i]
+        v.capsule(shoulder.lerp(elbow, 0.03), shoulder.lerp(elbow, 0.5), 0.054 + loose, 0.053 + loose)
+        v.capsule(shoulder.lerp(elbow, 0.5), elbow, 0.053 + loose, 0.046 + loose)
+        v.capsule(elbow, elbow.lerp(wrist, 0.45), 0.046 + loose, 0.043 + loose)
+        v.capsule(elbow.lerp(wrist, 0.45), elbow.lerp(wrist, 0.93), 0.043 + loose, 0.034 + loose)
+    points, faces = v.melt(0.012, 4)
+    bones = []
+    for i in range(2):
+        bones.append((joints.shoulders[i], joints.elbows[i], 0.0, 0.295))
+        bones.append((joints.elbows[i], joints.wrists[i], 0.295, 0.55))
+    along = _along(points, bones)
+    bend = [(e - s).angle(w - e) for s, e, w in zip(joints.shoulders, joints.elbows, joints.wrists, strict=True)]
+    deep = 0.006 + 0.006 * min(1.0, max(bend))
+    near = np.exp(-(((along - 0.295) / 0.09) ** 2))
+    skin = crease((points, faces), 0.0035 + deep * near, (9.0, 9.0, 17.0), seed)
+    return crease(skin, 0.002, (26.0, 26.0, 30.0), seed + 5), along
 
 
 def trousers(joints: Joints, *, loose: float, girth: float, seed: float) -> tuple[Skin, np.ndarray]:
@@ -100,45 +119,40 @@ def trousers(joints: Joints, *, loose: float, girth: float, seed: float) -> tupl
     v = Volume()
     w = 1 + 0.5 * (girth - 1)
     v.ellipsoid((0, -0.004, 0.955), (0.150 * w, 0.108 * w, 0.105), joints.pelvis)
-    ankles = []
     for i, side in enumerate(SIDES):
         hip, knee, ankle = joints.hips[i], joints.knees[i], joints.ankles[i]
         cuff = knee.lerp(ankle, 0.98)
-        ankles.append(ankle)
-        v.ellipsoid((side * 0.075, -0.035, 0.905), (0.085 * w, 0.092 * w, 0.095), joints.pelvis)
+        v.ellipsoid((side * 0.072, -0.026, 0.905), (0.086 * w, 0.090 * w, 0.105), joints.pelvis)
         v.capsule(hip, hip.lerp(knee, 0.5), 0.089 * w + loose * 0.4, 0.078 + loose * 0.6)
         v.capsule(hip.lerp(knee, 0.5), knee, 0.078 + loose * 0.6, 0.062 + loose)
         v.capsule(knee, knee.lerp(ankle, 0.4), 0.062 + loose, 0.060 + loose)
         v.capsule(knee.lerp(ankle, 0.4), cuff, 0.060 + loose, 0.054 + loose)
     points, faces = v.melt(0.013, 4)
-    along = _leg_height(points, joints)
-
-    def amount(_: np.ndarray) -> np.ndarray:
-        knee = np.exp(-(((along - 0.50) / 0.09) ** 2))
-        cuff = np.exp(-(((along - 0.10) / 0.10) ** 2))
-        crotch = np.exp(-(((along - 0.86) / 0.07) ** 2))
-        return 0.0045 + 0.008 * knee + 0.012 * cuff + 0.005 * crotch
-
-    points, faces = crease((points, faces), amount, (8.0, 8.0, 17.0), seed)
-    return crease((points, faces), 0.0025, (24.0, 24.0, 30.0), seed + 3), along
-
-
-def _leg_height(points: np.ndarray, joints: Joints) -> np.ndarray:
-    best = np.full(len(points), 1e9)
-    height = np.zeros(len(points))
+    bones = []
     for i in range(2):
-        for a, b, za, zb in (
-            (joints.hips[i], joints.knees[i], 0.92, 0.495),
-            (joints.knees[i], joints.ankles[i], 0.495, 0.085),
-        ):
-            p, q = np.array(a), np.array(b)
-            raw = (points - p) @ (q - p) / max(1e-9, float((q - p) @ (q - p)))
-            t = np.clip(raw, 0, 1)
-            d = np.linalg.norm(points - (p + t[:, None] * (q - p)), axis=1)
-            nearer = d < best
-            best = np.where(nearer, d, best)
-            height = np.where(nearer, za + (zb - za) * raw, height)
-    return height
+        bones.append((joints.hips[i], joints.knees[i], 0.92, 0.495))
+        bones.append((joints.knees[i], joints.ankles[i], 0.495, 0.085))
+    along = _along(points, bones)
+
+    knee = np.exp(-(((along - 0.50) / 0.09) ** 2))
+    cuff = np.exp(-(((along - 0.10) / 0.10) ** 2))
+    crotch = np.exp(-(((along - 0.86) / 0.07) ** 2))
+    skin = crease((points, faces), 0.0035 + 0.007 * knee + 0.012 * cuff + 0.005 * crotch, (8.0, 8.0, 15.0), seed)
+    return crease(skin, 0.002, (24.0, 24.0, 30.0), seed + 3), along
+
+
+def _along(points: np.ndarray, bones: list[tuple[Vector, Vector, float, float]]) -> np.ndarray:
+    """For each point the value that runs from one end of its nearest bone to the other; bones are (from, to, value, value)."""
+    best = np.full(len(points), 1e9)
+    value = np.zeros(len(points))
+    for a, b, va, vb in bones:
+        p, q = np.array(a), np.array(b)
+        raw = (points - p) @ (q - p) / max(1e-9, float((q - p) @ (q - p)))
+        d = np.linalg.norm(points - (p + np.clip(raw, 0, 1)[:, None] * (q - p)), axis=1)
+        nearer = d < best
+        best = np.where(nearer, d, best)
+        value = np.where(nearer, va + (vb - va) * raw, value)
+    return value
 
 
 def boots(joints: Joints, *, shoe: bool) -> Skin:
@@ -172,16 +186,14 @@ def sole_outline(foot: Matrix, side: int, low: float, high: float) -> list[list[
     return [[tuple(foot @ Vector((x + side * -0.004 * (y > 0.1), y, z))) for x, y in ring] for z in (low, high)]
 
 
-def hands(
-    joints: Joints, curls: tuple[float, float], palms: tuple[Vector | None, Vector | None], *, glove: bool
-) -> Skin:
+def hands(joints: Joints, curls: tuple[float, float], *, glove: bool) -> Skin:
     """Both hands with fingers; ``curl`` -1 points the index finger, 0 is flat, 1 a fist."""
     v = Volume()
     fat = 0.0015 if glove else 0.0
     for i, side in enumerate(SIDES):
         wrist, elbow = joints.wrists[i], joints.elbows[i]
         along = (wrist - elbow).normalized()
-        inward = palms[i] or joints.chest.to_3x3() @ Vector((-side * 1.0, 0.25, -0.1))
+        inward = joints.chest.to_3x3() @ Vector((-side * 1.0, 0.25, -0.1))
         normal = (inward - along * along.dot(inward)).normalized()  # out of the palm
         across = along.cross(normal)  # towards or away from the thumb, by side
         thumb_side = across * (-side if across.dot(Vector((0, 1, 0.3))) * -side > 0 else side)

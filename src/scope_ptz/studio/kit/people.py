@@ -76,8 +76,8 @@ def _helmet(s: Solid, joints: Joints, colour: str) -> None:
     saved = s.frame
     s.frame = (
         joints.head
-        @ Matrix.Translation(Vector(heads.CENTRE) + Vector((0, -0.012, 0.047)))
-        @ Matrix.Rotation(0.07, 4, "X")
+        @ Matrix.Translation(Vector(heads.CENTRE) + Vector((0, -0.014, 0.055)))
+        @ Matrix.Rotation(0.09, 4, "X")
     )
     rows = [(1.00, 0.0), (0.99, 0.026), (0.94, 0.053), (0.82, 0.078), (0.62, 0.097), (0.36, 0.108), (0.10, 0.112)]
     points, faces, n = [], [], 40
@@ -99,38 +99,50 @@ def _helmet(s: Solid, joints: Joints, colour: str) -> None:
     s.frame = saved
 
 
+@dataclass(frozen=True)
+class _Outfit:
+    """What is worn; ``vest`` and ``helmet`` make a worker."""
+
+    top: str
+    legs: str
+    style: str
+    inner: str
+    neck: str
+    glove: str | None
+    vest: str | None
+    helmet: str | None
+
+
 def _dress(
-    s: Solid,
-    joints: Joints,
-    random: Random,
-    looks: _Looks,
-    *,
-    top: str,
-    legs: str,
-    shoe: bool,
-    hood: bool,
-    glove: str | None,
-    arms: tuple[float, float],
-    vest: str | None,
+    s: Solid, joints: Joints, random: Random, looks: _Looks, outfit: _Outfit, curls: tuple[float, float]
 ) -> None:
+    """Clothes and hands."""
     seed = random.uniform(0, 50)
-    sleeve = clothing.cloth(top, bands=())
-    body = figure.jacket(
+    vest = outfit.vest
+    loose = random.uniform(0.004, 0.012)
+    low = 0.87 if vest else round(random.uniform(0.87, 0.92), 2)
+    body, rest = figure.trunk(
         joints,
+        swell=-0.012 if vest else loose * 0.6,
+        low=low,
         girth=looks.girth,
-        loose=0.010 if vest else random.uniform(0.003, 0.012),
-        hem=0.87 if vest else random.uniform(0.85, 0.90),
-        hood=hood,
+        woman=looks.woman,
+        neck=outfit.neck,
         seed=seed,
-        hide_trunk=vest is not None,
     )
-    _wear(s, body, sleeve)
+    _wear(s, body, clothing.top(outfit.top, outfit.style, outfit.inner, low), rest)
+    sleeve, along = figure.sleeves(joints, loose=0.008 if vest else loose * 0.7, seed=seed + 4)
+    bands = (0.17, 0.40) if outfit.top.startswith("hi-vis") else ()
+    _wear(s, sleeve, clothing.cloth(outfit.top, bands=bands), _limb(along))
     if vest:
-        skin, rest = figure.vest(joints, girth=looks.girth, seed=seed + 1)
-        _wear(s, skin, clothing.vest(vest, top), rest)
+        skin, rest = figure.trunk(
+            joints, swell=0.024, low=0.835, girth=looks.girth, woman=looks.woman, flare=0.007, seed=seed + 1
+        )
+        _wear(s, skin, clothing.vest(vest, outfit.top), rest)
     leg_skin, along = figure.trousers(joints, loose=0.008 if vest else 0.002, girth=looks.girth, seed=seed + 2)
-    bands = (0.27, 0.40) if legs.startswith("hi-vis") else ()
-    _wear(s, leg_skin, clothing.cloth(legs, bands=bands), np.column_stack([np.zeros((len(along), 2)), along]))
+    bands = (0.27, 0.40) if outfit.legs.startswith("hi-vis") else ()
+    _wear(s, leg_skin, clothing.cloth(outfit.legs, bands=bands), _limb(along))
+    shoe = vest is None
     upper = paint("black" if shoe else random.choice(["brown", "black", "dark grey"]), dirt=0.5, roughness=0.62)
     _wear(s, figure.boots(joints, shoe=shoe), upper)
     for i, side in enumerate((-1, 1)):
@@ -145,25 +157,24 @@ def _dress(
             ],
             rubber(),
         )
-    paw = figure.hands(joints, arms, (None, None), glove=glove is not None)
-    if glove:
-        _wear(s, paw, paint(glove, dirt=0.5, roughness=0.8))
+    paw = figure.hands(joints, curls, glove=outfit.glove is not None)
+    if outfit.glove:
+        _wear(s, paw, paint(outfit.glove, dirt=0.5, roughness=0.8))
     else:
         _wear(s, paw, clothing.skin(looks.tone, looks.hair, stubble=False), np.full_like(paw[0], 5.0) + normals(paw))
 
 
+def _limb(along: np.ndarray) -> np.ndarray:
+    """Rest coordinates of a limb: only the position along it matters."""
+    return np.column_stack([np.zeros((len(along), 2)), along])
+
+
+IN_HAND = {"shovel": "shovel", "phone": "phone", "clipboard": "clipboard", "carry": "box", "kneel": "trowel"}
+"""What a pose holds unless told otherwise."""
+
+
 def _person(
-    name: str,
-    pose: str,
-    phase: float,
-    random: Random,
-    looks: _Looks,
-    *,
-    holding: str | None,
-    helmet: str | None,
-    vest: str | None,
-    top: str,
-    legs: str,
+    name: str, pose: str, phase: float, random: Random, looks: _Looks, outfit: _Outfit, holding: str | None
 ) -> Built:
     if holding is not None and holding not in HOLDABLE:
         raise ValueError(f"cannot hold {holding!r}; known: {sorted(HOLDABLE)}")
@@ -171,23 +182,12 @@ def _person(
     joints = solve(stance)
     s = Solid(name)
     scale = looks.height_m / 1.77
-    s.frame = Matrix.Scale(scale, 4)
-    working = vest is not None
-    _dress(
-        s, joints, random, looks, top=top, legs=legs, shoe=not working, hood=not working and random.random() < 0.35,
-        glove=random.choice(["dark grey", "hi-vis orange", "black", None]) if working and pose not in ("phone", "clipboard") else None,
-        arms=(stance.arms[0].curl, stance.arms[1].curl), vest=vest,
-    )  # fmt: skip
-    _head(s, joints, looks, helmet is not None)
-    if helmet:
-        _helmet(s, joints, helmet)
-    prop = holding or {
-        "shovel": "shovel",
-        "phone": "phone",
-        "clipboard": "clipboard",
-        "carry": "box",
-        "kneel": "trowel",
-    }.get(pose)
+    s.frame = Matrix.Diagonal((scale * (0.93 if looks.woman else 1.0), scale, scale, 1.0))
+    _dress(s, joints, random, looks, outfit, (stance.arms[0].curl, stance.arms[1].curl))
+    _head(s, joints, looks, outfit.helmet is not None)
+    if outfit.helmet:
+        _helmet(s, joints, outfit.helmet)
+    prop = holding or IN_HAND.get(pose)
     if prop:
         hold(s, joints, prop)
     return s.built()
@@ -211,9 +211,11 @@ def worker(
     looks = _looks(random, None, 0.15)
     legs = trousers or random.choice(["navy", "dark grey", f"hi-vis {vest}", "khaki", "navy"])
     top = random.choice(["navy", "dark grey", "grey", f"hi-vis {vest}", "navy"])
-    return _person(
-        f"worker in {vest}", pose, phase, random, looks, holding=holding, helmet=helmet, vest=vest, top=top, legs=legs
-    )
+    glove = random.choice(["dark grey", "hi-vis orange", "black", None])
+    if pose in ("phone", "clipboard"):
+        glove = None
+    outfit = _Outfit(top, legs, "shirt", "white", "collar", glove, vest, helmet)
+    return _person(f"worker in {vest}", pose, phase, random, looks, outfit, holding)
 
 
 def pedestrian(
@@ -232,16 +234,11 @@ def pedestrian(
     upper = top or random.choice(
         ["dark red", "navy", "grey", "green", "beige", "light blue", "black", "purple", "yellow"]
     )
-    legs = trousers or random.choice(["denim", "denim", "black", "dark grey", "beige", "khaki"])
-    return _person(
-        f"pedestrian in {upper}",
-        pose,
-        phase,
-        random,
-        looks,
-        holding=holding,
-        helmet=None,
-        vest=None,
-        top=upper,
-        legs=legs,
+    choices = ["denim", "denim", "black", "dark grey", "beige", "khaki"]
+    legs = trousers or random.choice([c for c in choices if c != upper])
+    style, neck = random.choice(
+        [("jacket", "collar"), ("jacket", "hood"), ("jumper", "hood"), ("jumper", "collar"), ("shirt", "collar")]
     )
+    inner = random.choice([c for c in ("white", "light grey", "black", "light blue") if c != upper])
+    outfit = _Outfit(upper, legs, style, inner, neck, None, None, None)
+    return _person(f"pedestrian in {upper}", pose, phase, random, looks, outfit, holding)

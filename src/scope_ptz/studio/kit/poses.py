@@ -17,7 +17,7 @@ STRIDE_M = 1.32
 HIP, WAIST, NECK = 0.925, 1.06, 1.525
 THIGH, SHIN, ANKLE = 0.435, 0.410, 0.085
 UPPER_ARM, FOREARM = 0.295, 0.255
-SHOULDER = (0.182, -0.008, 1.425)
+SHOULDER = (0.178, -0.008, 1.412)
 
 
 @dataclass(frozen=True)
@@ -181,7 +181,7 @@ def walking(phase: float) -> Pose:
     """The walk at a gait phase in [0, 1)."""
     swing = math.cos(2 * math.pi * phase)
     right, left = _gait_foot(phase, 0.075), _gait_foot(phase + 0.5, -0.075)
-    arms = tuple(Arm(5 + s * 27 * swing * -1, 8, 20 + 14 * max(0.0, -s * swing)) for s in SIDES)
+    arms = tuple(Arm(5 + s * 22 * swing * -1, 8, 18 + 12 * max(0.0, -s * swing)) for s in SIDES)
     sway = 0.018 * math.cos(2 * math.pi * (phase - 0.3))
     return Pose(
         (left, right),

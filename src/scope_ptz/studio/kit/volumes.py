@@ -109,11 +109,14 @@ def normals(skin: Skin) -> np.ndarray:
 
 
 def crease(
-    skin: Skin, amount: Callable[[np.ndarray], np.ndarray] | float, scale: tuple[float, float, float], seed: float
+    skin: Skin,
+    amount: Callable[[np.ndarray], np.ndarray] | np.ndarray | float,
+    scale: tuple[float, float, float],
+    seed: float,
 ) -> Skin:
-    """Push the surface in and out by folded noise: cloth. ``amount`` is metres, or metres for each of the points (n, 3)."""
+    """Push the surface in and out by folded noise: cloth. ``amount`` is metres, or an array (n,) of metres, or a function of the points (n, 3) that gives one."""
     points, faces = skin
-    size = amount(points) if callable(amount) else np.full(len(points), amount)
+    size = amount(points) if callable(amount) else amount
     shift = np.array(
         [
             noise.noise((x * scale[0] + seed, y * scale[1], z * scale[2]))
