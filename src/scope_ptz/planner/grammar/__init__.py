@@ -1,0 +1,53 @@
+"""The built-in planner: a grammar of camera operation, an interpreter, and no model.
+
+Text becomes lexemes (``tokens``, ``lexicon``, ``numbers``), lexemes a tree (``language.lark``, ``chart``), the tree typed steps
+(``build``, ``compose``), names are bound (``resolve``), and ``program`` runs the steps against the history.
+"""
+
+from __future__ import annotations
+
+from scope_ptz.errors import PlannerError
+from scope_ptz.geometry import Pose
+from scope_ptz.planner.base import CallTools, Decision, Finish, Planner, State, ToolCall, ToolOutcome
+from scope_ptz.planner.grammar.program import Program
+from scope_ptz.planner.grammar.understand import Understanding, understand
+
+__all__ = ["GrammarPlanner", "Understanding", "understand"]
+
+
+class GrammarPlanner(Planner):
+    """Plans by rules. Each step replays the program against the recorded outcomes, so nothing is kept in between."""
+
+    name = "grammar"
+
+    async def step(self, state: State) -> Decision:
+        return decide(state)
+
+
+def decide(state: State) -> Decision:
+    """The next decision, from the state alone."""
+    meaning = understand(state.instruction, state.briefing.presets, state.conversation)
+    if meaning.refusal:
+        return Finish(kind="refused", text=meaning.refusal)
+    if meaning.clarification:
+        return Finish(kind="clarification", text=meaning.clarification)
+    program = Program(state.briefing.limits, state.briefing.pose, preset=meaning.preset)
+    outcomes = [outcome for exchange in state.history for outcome in exchange.outcomes]
+    wanted = _replay(program, meaning, outcomes)
+    if wanted is None:
+        return Finish(kind="answered", text=program.answer())
+    tool, arguments = wanted
+    return CallTools(calls=(ToolCall(id=f"call-{len(outcomes) + 1}", name=tool, arguments=arguments),))
+
+
+def _replay(program: Program, meaning: Understanding, outcomes: list[ToolOutcome]) -> tuple[str, dict[str, object]] | None:
+    run = program.run(meaning.steps)
+    try:
+        wanted = next(run)
+        for outcome in outcomes:
+            if outcome.call.name != wanted[0]:
+                raise PlannerError(f"the history holds {outcome.call.name} where this instruction calls {wanted[0]}")
+            wanted = run.send(outcome)
+    except StopIteration:
+        return None
+    return wanted

@@ -1,0 +1,175 @@
+"""From the parser's tree to the typed syntax tree: one method a rule of ``language.lark``.
+
+The rules about motion are in ``build_moves``, those about seeing, comparing and conditions in ``build_scene``.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from scope_ptz.planner.grammar.build_moves import MoveRules
+from scope_ptz.planner.grammar.build_scene import SceneRules
+from scope_ptz.planner.grammar.chart import Branch
+from scope_ptz.planner.grammar.compose import compose
+from scope_ptz.planner.grammar.syntax import (
+    AtPlaces,
+    Bound,
+    Condition,
+    DoAgain,
+    EachTime,
+    Forbid,
+    GoPreset,
+    If,
+    Linked,
+    Loop,
+    Negated,
+    Repeat,
+    Snap,
+    Step,
+    Sweep,
+)
+from scope_ptz.planner.grammar.trees import Node
+
+
+class Builder(MoveRules, SceneRules):
+    """Builds the steps of one instruction."""
+
+    def extend(self, tree: Branch, before: list[Step]) -> list[Step]:
+        """The steps so far with those of one more sentence."""
+        return compose(self._linked(Node(tree)), before)
+
+    def _linked(self, node: Node) -> list[Linked]:
+        out: list[Linked] = []
+        link = "." if node.name == "sentence" else ""
+        for child in node.branches():
+            if child.name == "sep":
+                link = {"AND": "and", "COMMA": ",", "THEN": "then"}[child.leaf_kinds()[0]]
+                continue
+            for step in self._as_steps(self.visit(child)):
+                out.append(Linked(link, step))
+                link = "then"
+        return out
+
+    @staticmethod
+    def _as_steps(made: Any) -> tuple[Step, ...]:
+        return made if isinstance(made, tuple) else (made,)
+
+    def _body(self, node: Node, index: int) -> tuple[Step, ...]:
+        """The steps of the child at ``index`` among the branches."""
+        return self._as_steps(self.visit(node.branches()[index]))
+
+    # Steps -------------------------------------------------------------------------------------------------------------
+    def plain(self, node: Node) -> Any:
+        return self.visit(node.branches()[0])
+
+    def block(self, node: Node) -> tuple[Step, ...]:
+        return tuple(compose(self._linked(node), []))
+
+    def repeated(self, node: Node) -> Step:
+        parts = [self.visit(b) for b in node.branches()]
+        times = next(p for p in parts if isinstance(p, int) and not isinstance(p, bool))
+        body = next(p for p in parts if not isinstance(p, int))
+        return Repeat(self._as_steps(body), times, group=node.has("COMMA"))
+
+    def _loop(self, node: Node, negate: bool = False) -> Step:
+        condition: Condition | None = None
+        bound: Bound | None = None
+        body: tuple[Step, ...] = ()
+        for branch in node.branches():
+            made = self.visit(branch)
+            if isinstance(made, Bound):
+                bound = made
+            elif isinstance(made, Condition):
+                condition = made
+            else:
+                body = self._as_steps(made)
+        assert condition is not None
+        return Loop(body, Negated(condition) if negate else condition, bound)
+
+    def loop(self, node: Node) -> Step:
+        return self._loop(node)
+
+    loop_bound = loop_first = loop
+
+    def loop_while(self, node: Node) -> Step:
+        return self._loop(node, negate=True)
+
+    loop_while_first = loop_while
+
+    def each_time(self, node: Node) -> Step:
+        return EachTime(self._body(node, 0))
+
+    def with_picture(self, node: Node) -> tuple[Step, ...]:
+        return (*self._body(node, 0), EachTime((Snap(),)))
+
+    def before_first(self, node: Node) -> tuple[Step, ...]:
+        return (*self._body(node, 1), *self._body(node, 0))
+
+    def before(self, node: Node) -> tuple[Step, ...]:
+        return (*self._body(node, 0), *self._body(node, 1))
+
+    after_first = before
+    after = before_first
+
+    def if_then(self, node: Node) -> Step:
+        condition, *blocks = (self.visit(b) for b in node.branches())
+        return If(condition, blocks[0], blocks[1] if len(blocks) > 1 else ())
+
+    def unless_then(self, node: Node) -> Step:
+        condition, *blocks = (self.visit(b) for b in node.branches())
+        return If(Negated(condition), blocks[0], blocks[1] if len(blocks) > 1 else ())
+
+    def if_last(self, node: Node) -> Step:
+        act, condition, *block = (self.visit(b) for b in node.branches())
+        return If(condition, self._as_steps(act), block[0] if block else ())
+
+    def unless_last(self, node: Node) -> Step:
+        act, condition, *block = (self.visit(b) for b in node.branches())
+        return If(Negated(condition), self._as_steps(act), block[0] if block else ())
+
+    def at_places(self, node: Node) -> Step:
+        places, act = (self.visit(b) for b in node.branches())
+        return AtPlaces(places, self._as_steps(act))
+
+    def at_places_last(self, node: Node) -> Step:
+        act, places = (self.visit(b) for b in node.branches())
+        return AtPlaces(places, self._as_steps(act))
+
+    def visit_places(self, node: Node) -> Any:
+        places = self.visit(node.branches()[-1])
+        if len(places) == 1:
+            return GoPreset(places[0])
+        return AtPlaces(places, ())
+
+    def forbid(self, node: Node) -> Step:
+        return Forbid()
+
+    def do_times(self, node: Node) -> Step:
+        return DoAgain(self.visit(node.branches()[0]), more=node.has("MORE"))
+
+    def do_again(self, node: Node) -> Step:
+        return DoAgain()
+
+    def sweep(self, node: Node) -> Step:
+        return Sweep()
+
+    # Quantities --------------------------------------------------------------------------------------------------------
+    def n_times(self, node: Node) -> int:
+        return max(1, min(round(self.number(node)), 50))
+
+    def twice(self, node: Node) -> int:
+        return self.how_often(node)
+
+    def once(self, node: Node) -> int:
+        return 1
+
+    def at_most(self, node: Node) -> Bound:
+        if node.has("NUM"):
+            return Bound(moves=max(1, round(self.number(node))))
+        return Bound(moves=1 if node.has("ONCE") else self.how_often(node))
+
+    def at_most_degrees(self, node: Node) -> Bound:
+        return Bound(degrees=abs(self.number(node)))
+
+    def no_bound(self, node: Node) -> Bound:
+        return Bound()

@@ -1,0 +1,156 @@
+"""How neighbouring steps of a sentence act together: moves joined by "and", "each time", "do that again"."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+from scope_ptz.planner.grammar.syntax import (
+    Aim,
+    AtPlaces,
+    Bound,
+    DoAgain,
+    EachTime,
+    GoPreset,
+    Home,
+    If,
+    Linked,
+    Loop,
+    Move,
+    Part,
+    Repeat,
+    Snap,
+    Step,
+    Turn,
+    Unclear,
+)
+
+_CONTRADICTION = "Those two directions contradict each other. Which way shall I turn?"
+
+
+def compose(linked: Sequence[Linked], before: Sequence[Step]) -> list[Step]:
+    """The steps so far with one sentence's steps added."""
+    out = list(before)
+    for item in linked:
+        _add(out, item.link, item.step)
+    return out
+
+
+def _add(out: list[Step], link: str, step: Step) -> None:
+    last = out[-1] if out else None
+    if isinstance(step, EachTime):
+        _add_each_time(out, step)
+    elif isinstance(step, DoAgain) and out:
+        _add_again(out, step)
+    elif isinstance(step, Repeat) and link in {"and", ","} and last is not None and _covers_before(step, last):
+        out[-1] = Repeat((last, *step.body), step.times)
+    elif isinstance(step, Loop | Repeat) and link == "and" and isinstance(last, Move) and _leans(step.body[0]):
+        joined = _joined(last, step.body[0])
+        out[-1:] = [replace(step, body=(joined[0], *step.body[1:]))] if len(joined) == 1 else [*joined[:-1], step]
+    elif isinstance(step, Move) and link == "and" and isinstance(last, Move):
+        out[-1:] = _joined(last, step)
+    elif isinstance(last, AtPlaces) and not last.body and not last.places:
+        out[-1] = replace(last, body=(step,))
+    elif isinstance(last, AtPlaces) and last.body and link == "and" and not isinstance(step, GoPreset | Home | AtPlaces):
+        out[-1] = replace(last, body=tuple(compose([Linked("and", step)], last.body)))
+    elif isinstance(step, Loop | Repeat):
+        out.append(_stepped_loop(step))
+    else:
+        out.append(_stepped(step))
+
+
+def _covers_before(step: Repeat, last: Step) -> bool:
+    """Whether "three times" covers the step before too: set off by a comma, or a picture after a move."""
+    pictured = isinstance(step.body[-1], Snap) and isinstance(last, Move)
+    return (step.group or pictured) and not isinstance(last, GoPreset | Home | Repeat | Loop)
+
+
+def _leans(step: Step) -> bool:
+    return isinstance(step, Move) and not step.verb
+
+
+def _joined(first: Move, second: Step) -> list[Step]:
+    """Two moves with "and" between them: one move where the axes differ."""
+    assert isinstance(second, Move)
+    axes = [_axis(p) for p in (*first.parts, *second.parts)]
+    if len(set(axes)) == len(axes):
+        parts = first.parts if second.verb else tuple(_shared(p, second.parts) for p in first.parts)
+        return [_stepped(Move((*parts, *second.parts), first.verb))]
+    one, other = first.parts[-1], second.parts[0]
+    unsaid = isinstance(one, Turn) and one.amount is None and not second.verb
+    if unsaid and isinstance(one, Turn) and isinstance(other, Turn) and one.axis == other.axis and one.sign != other.sign:
+        return [Unclear(_CONTRADICTION)]
+    return [_stepped(first), _stepped(second)]
+
+
+def _axis(part: Part) -> str:
+    return part.axis if isinstance(part, Turn | Aim) else "zoom"
+
+
+def _shared(part: Part, others: tuple[Part, ...]) -> Part:
+    """ "Up and left 20": the amount said last holds for both."""
+    last = others[-1]
+    if isinstance(part, Turn) and part.amount is None and part.step is None and isinstance(last, Turn):
+        return replace(part, amount=last.amount, step=last.step, steps=last.steps)
+    return part
+
+
+def _step_size(step: Step) -> Turn | None:
+    if isinstance(step, Move):
+        return next((p for p in step.parts if isinstance(p, Turn) and p.step), None)
+    return None
+
+
+def _stepped(step: Step) -> Step:
+    """ "90 degrees in 30 degree steps" is three moves; "in 30 degree steps" alone is one."""
+    turn = _step_size(step)
+    if turn is None or turn.step is None or not isinstance(step, Move):
+        return step
+    single = Move(tuple(replace(p, amount=p.step, step=None, steps=None) if isinstance(p, Turn) and p.step else p for p in step.parts), step.verb)
+    total = 0.0
+    if turn.amount and turn.amount.kind == "degrees":
+        total = abs(turn.amount.degrees)
+    elif turn.amount and turn.amount.kind == "limit":
+        total = 358.0 if turn.axis == "pan" else 90.0
+    times = turn.steps or math.ceil(round(total / turn.step.degrees, 6)) if turn.step.degrees else 0
+    return Repeat((single,), min(times, 24)) if times > 1 else single
+
+
+def _stepped_loop(step: Loop | Repeat) -> Step:
+    """In a loop the step is what moves; the total is its bound."""
+    turn = _step_size(step.body[0])
+    if turn is None or not isinstance(step.body[0], Move):
+        return step
+    inner = _stepped(step.body[0])
+    single = inner.body[0] if isinstance(inner, Repeat) else inner
+    body = (single, *step.body[1:])
+    if isinstance(step, Loop) and isinstance(inner, Repeat) and step.bound is None:
+        return Loop(body, step.until, Bound(moves=inner.times))
+    return replace(step, body=body) if isinstance(step, Loop) else Repeat(body, step.times)
+
+
+def _add_each_time(out: list[Step], step: EachTime) -> None:
+    for i in range(len(out) - 1, -1, -1):
+        target = out[i]
+        if isinstance(target, Repeat | Loop | AtPlaces):
+            out[i] = replace(target, body=(*target.body, *step.body))
+            return
+        if isinstance(target, GoPreset):
+            first = i
+            while first and isinstance(out[first - 1], GoPreset):
+                first -= 1
+            out[first:] = [s for place in out[first:] for s in (place, *step.body)]
+            return
+    out.extend(step.body)
+
+
+def _add_again(out: list[Step], step: DoAgain) -> None:
+    """Repeat what came before, from the last step that goes to a place."""
+    first = max((i + 1 for i, s in enumerate(out) if isinstance(s, GoPreset | Home)), default=0)
+    first = first if first < len(out) else 0
+    body = tuple(out[first:])
+    if any(isinstance(s, If | Unclear) for s in body) and step.times is None:
+        body = body[-1:]
+    times = (step.times or 1) + (1 if step.more or step.times is None else 0)
+    out[first:] = [Repeat(body, times)]

@@ -1,0 +1,72 @@
+"""From text to syntax tree, with the grammar of ``language.lark``."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from importlib.resources import files
+
+from scope_ptz.planner.grammar.chart import ChartParser
+from scope_ptz.planner.grammar.syntax import Step
+from scope_ptz.planner.grammar.tokens import SEPARATORS, Lexeme, Lexer
+
+_BINDING = frozenset({*SEPARATORS, "OR", "THAN", "IF", "UNLESS", "OTHERWISE", "UNTIL"})
+_FREE = frozenset({"TEXT", "PRESETNAME", "COMPASS", "METRE"})
+_SOFT = frozenset(
+    "PREP DET LEFT RIGHT UP DOWN NUM ORDINAL FRACTION BE THATREL AHEAD CAMERA OFVIEW TO IN OUT FOR BY NONE NOT PRON ONEOF INVIEW CLOSE X "
+    "PERCENT DEG LEVEL FULL VISIBLE WHO LOT LITTLE MORE SEVERAL ANY NOWSCOPE SCENESCOPE FULLSCOPE SURROUND PICTURE PRESETWORD FIELD CIRCLE "
+    "THERE SAYS AROUND COMPASS SECONDS MINUTES HOURS MORETHAN FEWERTHAN HIGHER ORMORE YOUSEE AFTER BEFORE".split()
+)
+LONGEST_TEXT = 2000
+MOST_LEXEMES = 120
+
+
+
+@dataclass(frozen=True, slots=True)
+class Parsed:
+    """``steps`` is None when the text is not in the language."""
+
+    text: str
+    steps: tuple[Step, ...] | None
+
+
+@lru_cache(maxsize=1)
+def parser() -> ChartParser:
+    """The compiled grammar; made on first use, as this takes a moment."""
+    from lark import Lark
+
+    rules = files(__package__).joinpath("language.lark").read_text(encoding="utf-8")
+    return ChartParser(Lark(rules, parser="earley", lexer="basic", maybe_placeholders=False).rules)
+
+
+@lru_cache(maxsize=512)
+def roles(kinds: frozenset[str]) -> frozenset[str]:
+    """The terminals that a lexeme may be, with what it is inside a description: WORD (free), SOFT or HARD (at a cost)."""
+    if kinds & _FREE:
+        return kinds | {"WORD"}
+    if kinds & _BINDING:
+        return kinds
+    return kinds | {"SOFT" if kinds & _SOFT else "HARD"}
+
+
+@lru_cache(maxsize=512)
+def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
+    """The syntax tree of an instruction. Never raises on any text."""
+    from scope_ptz.planner.grammar.build import Builder
+
+    lexemes = Lexer(presets).lexemes(text[:LONGEST_TEXT])
+    if not lexemes or len(lexemes) > MOST_LEXEMES:
+        return Parsed(text, None)
+    steps: list[Step] = []
+    for first, last in _sentences(lexemes):
+        tree = parser().parse([roles(lexeme.kinds) for lexeme in lexemes[first:last]], "sentence")
+        if tree is None:
+            return Parsed(text, None)
+        steps = Builder(text, lexemes[first:last]).extend(tree, steps)
+    return Parsed(text, tuple(steps))
+
+
+def _sentences(lexemes: list[Lexeme]) -> list[tuple[int, int]]:
+    stops = [i for i, lexeme in enumerate(lexemes) if "STOP" in lexeme.kinds]
+    edges = [-1, *stops, len(lexemes)]
+    return [(a + 1, b) for a, b in zip(edges, edges[1:], strict=False) if b > a + 1]

@@ -1,0 +1,258 @@
+"""Binding names: presets to the camera's list, pronouns to what was named last, and the scope that a sweep sets."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from difflib import SequenceMatcher
+
+from scope_ptz.planner.base import PastTurn
+from scope_ptz.planner.grammar import syntax as ast
+from scope_ptz.planner.grammar.offtopic import is_about_the_scene
+from scope_ptz.planner.grammar.tokens import preset_key
+
+_CLOSE_ENOUGH = 0.8
+_PRONOUN = re.compile(r"\b(it|they|them|that one|this one)\b", re.IGNORECASE)
+_IMPERSONAL = re.compile(r"\bit\s+(raining|dark|light|day|night|sunny|foggy|cloudy|snowing|busy|daytime|wet|bright|safe|windy|snowy|like)\b|\bwhat('s| is) it\b|\bit is\b", re.IGNORECASE)
+
+
+class Unresolved(Exception):
+    """Something that needs a question back to the person; the message is that question."""
+
+
+def match_preset(name: str, presets: Sequence[str]) -> str | None:
+    """The preset that a name means: exact but for case, spaces and hyphens, else one that is clearly closest."""
+    wanted = "".join(preset_key(name))
+    keys = {preset: "".join(preset_key(preset)) for preset in presets}
+    exact = [preset for preset, key in keys.items() if key == wanted]
+    if exact or not wanted:
+        return exact[0] if exact else None
+    inside = [p for p in presets if len(wanted) >= 3 and set(preset_key(name)) < set(preset_key(p))]
+    if len(inside) == 1:
+        return inside[0]
+    scored = sorted(((SequenceMatcher(None, wanted, key).ratio(), preset) for preset, key in keys.items()), reverse=True)
+    clear = scored and scored[0][0] >= _CLOSE_ENOUGH and (len(scored) < 2 or scored[1][0] < scored[0][0] - 0.05)
+    return scored[0][1] if clear else None
+
+
+@dataclass(slots=True)
+class Resolver:
+    """Binds one instruction. ``presets`` None: not known, names are taken as said."""
+
+    presets: tuple[str, ...] | None
+    conversation: tuple[PastTurn, ...] = ()
+    antecedent: str = ""
+    preset: str = ""
+    compared: bool = False
+    sweeping: bool = False
+
+    def __post_init__(self) -> None:
+        for turn in self.conversation:
+            for exchange in turn.exchanges:
+                for outcome in exchange.outcomes:
+                    arguments = outcome.call.arguments
+                    self.antecedent = str(arguments.get("description", self.antecedent))
+                    if outcome.call.name == "go_to_preset" and outcome.error is None:
+                        self.preset = str(arguments.get("name", ""))
+
+    def bind(self, steps: Sequence[ast.Step]) -> tuple[ast.Step, ...]:
+        """The steps with all names bound. Raises ``Unresolved``."""
+        out: list[ast.Step] = []
+        for step in steps:
+            out.extend(self._bind(step))
+        return tuple(out)
+
+    # Names -------------------------------------------------------------------------------------------------------------
+    def thing(self, thing: ast.Thing) -> ast.Thing:
+        if thing.text:
+            self.antecedent = thing.text
+            return thing
+        if not self.antecedent:
+            raise Unresolved("What do you mean by 'it'? Please name the thing.")
+        return ast.Thing(self.antecedent, definite=True)
+
+    def place(self, ref: ast.PresetRef) -> ast.PresetRef:
+        found = self.find_place(ref)
+        if found is None:
+            listing = ", ".join(self.presets or ()) or "none"
+            raise Unresolved(f"There is no preset '{ref.name}'. Presets: {listing}. Which one do you mean?")
+        self.preset = found
+        return ast.PresetRef(found, sure=True)
+
+    def find_place(self, ref: ast.PresetRef) -> str | None:
+        if self.presets is None:
+            return ref.name if ref.number is None else ref.name.replace(" ", "-")
+        named = match_preset(ref.name, self.presets)
+        if named or ref.number is None:
+            return named
+        index = ref.number - 1 if ref.number > 0 else len(self.presets) + ref.number
+        return self.presets[index] if 0 <= index < len(self.presets) else None
+
+    def _places(self, refs: tuple[ast.PresetRef, ...]) -> tuple[ast.PresetRef, ...]:
+        if not refs:
+            if not self.presets:
+                raise Unresolved("Which presets do you mean? I know of none.")
+            return tuple(ast.PresetRef(name, sure=True) for name in self.presets)
+        return tuple(self.place(ref) for ref in refs)
+
+    def _view(self, view: ast.View | None) -> ast.View:
+        return view or ("full" if self.sweeping else "current")
+
+    # Steps -------------------------------------------------------------------------------------------------------------
+    def _bind(self, step: ast.Step) -> Sequence[ast.Step]:
+        if isinstance(step, ast.Unclear):
+            raise Unresolved(step.question)
+        if isinstance(step, ast.Sweep):
+            self.sweeping = True
+            return [step]
+        if isinstance(step, ast.Move | ast.Home | ast.GoPreset | ast.GoThere | ast.Back | ast.AtPlaces | ast.WhichPreset):
+            self.sweeping = False
+        method = getattr(self, f"_{type(step).__name__.lower()}", None)
+        return method(step) if method else [step]
+
+    def _gopreset(self, step: ast.GoPreset) -> Sequence[ast.Step]:
+        ref = step.ref
+        found = self.find_place(ref) if self.presets is not None else (ref.name if step.how == "go" or ref.sure else None)
+        if step.how == "look" and not ref.sure:
+            return [ast.ZoomTo(self.thing(ast.Thing(ref.name, definite=True)))]
+        if step.how == "show" and not ref.sure and found is None:
+            return [ast.ZoomTo(self.thing(ast.Thing(ref.name)))]
+        if step.how == "bare" and found is None and not ref.sure:
+            raise Unresolved(f"What shall I do with '{ref.name}': count, look at, track, or go there?")
+        return [ast.GoPreset(self.place(ref))]
+
+    def _gothere(self, step: ast.GoThere) -> Sequence[ast.Step]:
+        if self.compared:
+            return [step]
+        if not self.preset:
+            raise Unresolved("Where is 'there'? Please name a preset.")
+        return [ast.GoPreset(ast.PresetRef(self.preset, sure=True))]
+
+    def _snap(self, step: ast.Snap) -> Sequence[ast.Step]:
+        if step.of is None:
+            return [step]
+        if step.of.text and self.presets and match_preset(step.of.text, self.presets):
+            return [ast.GoPreset(self.place(ast.PresetRef(step.of.text))), replace(step, of=None)]
+        return [replace(step, of=self.thing(step.of))]
+
+    def _count(self, step: ast.Count) -> Sequence[ast.Step]:
+        return [replace(step, things=tuple(self.thing(t) for t in step.things), view=self._view(step.view))]
+
+    def _ask(self, step: ast.Ask) -> Sequence[ast.Step]:
+        if not is_about_the_scene(step.question):
+            raise Unresolved("I can only move the camera and answer questions about what it sees. What shall I look at?")
+        question = direct_question(step.question)
+        if self.antecedent and not _IMPERSONAL.search(question) and not re.search(r"\bthe \w+.*\b(it|they|them)\b", question):
+            question = _PRONOUN.sub(f"the {self.antecedent}", question, count=1)
+        return [ast.Ask(question, self._view(step.view))]
+
+    def _read(self, step: ast.Read) -> Sequence[ast.Step]:
+        return [ast.Read(self.thing(step.thing), self._view(step.view))]
+
+    def _zoomto(self, step: ast.ZoomTo) -> Sequence[ast.Step]:
+        return [ast.ZoomTo(self.thing(step.thing))]
+
+    def _track(self, step: ast.Track) -> Sequence[ast.Step]:
+        return [replace(step, thing=self.thing(step.thing))]
+
+    def _whatabout(self, step: ast.WhatAbout) -> Sequence[ast.Step]:
+        thing = self.thing(step.thing)
+        if self.presets and (name := match_preset(thing.text, self.presets)):
+            return [ast.GoPreset(ast.PresetRef(name, sure=True)), *self._last_look()]
+        if not self.conversation:
+            return self._count(ast.Count((thing,)))
+        return [ast.Count((thing,), self._view(None))]
+
+    def _last_look(self) -> list[ast.Step]:
+        for turn in reversed(self.conversation):
+            for exchange in reversed(turn.exchanges):
+                for outcome in reversed(exchange.outcomes):
+                    if outcome.call.name == "count_objects":
+                        return [ast.Count((ast.Thing(str(outcome.call.arguments["description"])),), "current")]
+                    if outcome.call.name == "query_answer":
+                        return [ast.Ask(str(outcome.call.arguments["question"]), "current")]
+        return []
+
+    def _doagain(self, step: ast.DoAgain) -> Sequence[ast.Step]:
+        from scope_ptz.planner.grammar.parse import parse
+
+        for turn in reversed(self.conversation):
+            steps = parse(turn.instruction, self.presets or ()).steps
+            if steps and not any(isinstance(s, ast.DoAgain) for s in steps):
+                return self.bind(steps * (step.times or 1))
+        raise Unresolved("What shall I do again?")
+
+    # Steps with steps inside -------------------------------------------------------------------------------------------
+    def _repeat(self, step: ast.Repeat) -> Sequence[ast.Step]:
+        return [replace(step, body=self.bind(step.body))]
+
+    def _eachtime(self, step: ast.EachTime) -> Sequence[ast.Step]:
+        return self.bind(step.body)
+
+    def _loop(self, step: ast.Loop) -> Sequence[ast.Step]:
+        named = next((s.thing for s in step.body if isinstance(s, ast.ZoomTo) and s.thing.text), None)
+        if named:
+            self.antecedent = named.text
+        until = self.condition(step.until)
+        return [replace(step, until=until, body=self.bind(step.body))]
+
+    def _if(self, step: ast.If) -> Sequence[ast.Step]:
+        for inner in step.then:
+            if isinstance(inner, ast.ZoomTo | ast.Track | ast.Read) and inner.thing.text:
+                self.antecedent = inner.thing.text
+                break
+        condition = self.condition(step.condition)
+        return [ast.If(condition, self.bind(step.then), self.bind(step.otherwise))]
+
+    def _atplaces(self, step: ast.AtPlaces) -> Sequence[ast.Step]:
+        places = self._places(step.places)
+        out: list[ast.Step] = []
+        for place in places:
+            self.preset = place.name
+            out += [ast.GoPreset(place), *self.bind(step.body)]
+        return out
+
+    def _whichpreset(self, step: ast.WhichPreset) -> Sequence[ast.Step]:
+        self.compared = True
+        return [replace(step, thing=self.thing(step.thing), places=self._places(step.places))]
+
+    def _compare(self, step: ast.Compare) -> Sequence[ast.Step]:
+        first, second = self.thing(step.first), self.thing(step.second)
+        places = [match_preset(t.text, self.presets) if self.presets else None for t in (first, second)]
+        if all(places):
+            return self._whichpreset(ast.WhichPreset(ast.Thing(), step.wish, tuple(ast.PresetRef(p or "") for p in places)))
+        return [replace(step, first=first, second=second, view=self._view(step.view))]
+
+    def _beforeafter(self, step: ast.BeforeAfter) -> Sequence[ast.Step]:
+        return [replace(step, thing=self.thing(step.thing), moves=self.bind(step.moves))]
+
+    def condition(self, condition: ast.Condition) -> ast.Condition:
+        """A condition with its things bound."""
+        if isinstance(condition, ast.Seen):
+            return replace(condition, thing=self.thing(condition.thing), view=self._view(condition.view))
+        if isinstance(condition, ast.Readable):
+            return ast.Readable(self.thing(condition.thing))
+        if isinstance(condition, ast.Holds):
+            return replace(condition, subject=self.thing(condition.subject))
+        if isinstance(condition, ast.Outnumbers):
+            return replace(condition, first=self.thing(condition.first), second=self.thing(condition.second))
+        if isinstance(condition, ast.Negated):
+            return ast.Negated(self.condition(condition.part))
+        return replace(condition, parts=tuple(self.condition(part) for part in condition.parts))
+
+
+def direct_question(question: str) -> str:
+    """ "What colour the door is" as "what colour is the door?", "if there is a bus" as "is there a bus?"."""
+    text = question.strip()
+    if inner := re.fullmatch(r"(?:if|whether) there (is|are|s) (.+)", text, re.IGNORECASE):
+        return f"{inner[1]} there {inner[2]}?"
+    if inner := re.fullmatch(r"(?:if|whether) (the .+?|any .+?|any\w+) (is|are) (.+)", text, re.IGNORECASE):
+        return f"{inner[2]} {inner[1]} {inner[3]}?"
+    if inner := re.fullmatch(r"(?:if|whether) you (?:can )?see (.+)", text, re.IGNORECASE):
+        return f"can you see {inner[1]}?"
+    if inner := re.fullmatch(r"((?:what|which)(?: \w+)?|where|who) (the .+) (is|are)", text, re.IGNORECASE):
+        return f"{inner[1]} {inner[3]} {inner[2]}?"
+    if inner := re.fullmatch(r"what (the .+) (says|reads)", text, re.IGNORECASE):
+        return f"what does {inner[1]} say?"
+    return text

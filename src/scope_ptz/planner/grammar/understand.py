@@ -1,0 +1,64 @@
+"""What an instruction means, or what to ask back."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from scope_ptz.planner.base import PastTurn
+from scope_ptz.planner.grammar import syntax as ast
+from scope_ptz.planner.grammar.offtopic import REFUSAL, is_about_the_scene, is_harmful
+from scope_ptz.planner.grammar.parse import parse
+from scope_ptz.planner.grammar.resolve import Resolver, Unresolved
+
+_EXAMPLES = "'pan right 20 degrees', 'how many cars are there?', or 'zoom in on the sign and read it'"
+
+
+@dataclass(frozen=True, slots=True)
+class Understanding:
+    """Bound steps, or a question back, or a refusal. ``preset``: where the camera stands, if the conversation tells."""
+
+    steps: tuple[ast.Step, ...] = ()
+    clarification: str | None = None
+    refusal: str | None = None
+    preset: str | None = None
+
+
+def understand(instruction: str, presets: Sequence[str] | None, conversation: Sequence[PastTurn] = ()) -> Understanding:
+    """The meaning of an instruction; ``presets`` None takes preset names as they are said. Never raises on any text."""
+    if not instruction.strip():
+        return Understanding(clarification=f"What shall I do? For example: {_EXAMPLES}.")
+    if is_harmful(instruction):
+        return Understanding(refusal=REFUSAL)
+    known = None if presets is None else tuple(presets)
+    resolver = Resolver(known, tuple(conversation))
+    steps = parse(instruction, known or ()).steps
+    try:
+        bound = resolver.bind(steps) if steps is not None else _as_question(resolver, instruction)
+    except Unresolved as question:
+        return Understanding(clarification=str(question))
+    if all(isinstance(step, ast.Forbid) for step in bound):
+        return Understanding(clarification="I will not do that. What shall I do instead?")
+    if all(isinstance(step, ast.Sweep | ast.Forbid) for step in bound):
+        return Understanding(clarification="What shall I look for when I look all around?")
+    return Understanding(bound, preset=_standing_at(conversation))
+
+
+def _as_question(resolver: Resolver, instruction: str) -> tuple[ast.Step, ...]:
+    """A question that no rule covers is still a question about the scene."""
+    text = instruction.strip()
+    if text.endswith("?") and len(text.split()) > 1 and text.count("?") == 1 and is_about_the_scene(text):
+        return resolver.bind([ast.Ask(text)])
+    raise Unresolved(f"I did not understand that. Please say it another way, for example: {_EXAMPLES}.")
+
+
+def _standing_at(conversation: Sequence[PastTurn]) -> str | None:
+    """The preset that the camera still stands at, when the last move was to one."""
+    for turn in reversed(conversation):
+        for exchange in reversed(turn.exchanges):
+            for outcome in reversed(exchange.outcomes):
+                if outcome.error is None and outcome.call.name in {"adjust_ptz", "go_home", "zoom_to_object", "track_object"}:
+                    return None
+                if outcome.error is None and outcome.call.name == "go_to_preset":
+                    return str(outcome.call.arguments.get("name"))
+    return None
