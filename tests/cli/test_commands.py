@@ -96,11 +96,9 @@ def test_replay_repeats_a_run(scope: Scope, tmp_path: Path) -> None:
 def test_replay_notices_a_trace_that_was_changed(scope: Scope) -> None:
     made = scope("ask", "pan right 15", "--scene", SCENE, "--json").json
     trace = Path(made["run_dir"]) / "trace.jsonl"
-    trace.write_text(
-        trace.read_text()
-        .replace('"result":{"message":"Moved', '"result":{"message":"Moved')
-        .replace('"pan_deg":15.0,"tilt_deg":-8.0,"zoom":1.0},"clamped"', '"pan_deg":25.0,"tilt_deg":-8.0,"zoom":1.0},"clamped"')
-    )
+    records = [json.loads(line) for line in trace.read_text().splitlines()]
+    records[2]["outcome"]["result"]["pose"]["pan_deg"] = 25.0
+    trace.write_text("".join(f"{json.dumps(record)}\n" for record in records))
     done = scope("replay", made["run_dir"])
     assert done.code == 1
     assert "differs: pose was" in done.out

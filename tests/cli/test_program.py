@@ -50,7 +50,14 @@ def test_version(scope: Scope) -> None:
 def test_ctrl_c_ends_a_run_cleanly(scenes: Path, tmp_path: Path) -> None:
     environment = {**os.environ, "SCOPE_SCENES_DIR": str(scenes), "SCOPE_RUNS_DIR": str(tmp_path)}
     command = [*SCOPE, "ask", "count the zebras in the whole scene", "--scene", SCENE, "--realtime", "--json"]
-    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+
+    def hear() -> None:
+        """A test run in the background ignores Ctrl-C, and children inherit that."""
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+    with subprocess.Popen(
+        command, env=environment, preexec_fn=hear, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as process:
         deadline = time.monotonic() + 30
         while not (list(tmp_path.glob("*/trace.jsonl")) and next(tmp_path.glob("*/trace.jsonl")).read_text().count("\n") >= 2):
             assert time.monotonic() < deadline, "the run did not begin"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -73,13 +72,7 @@ def _lines(source: Path) -> Iterator[str]:
 def _planned(instruction: str, presets: list[str]) -> dict[str, Any]:
     if not instruction.strip():
         raise InputError("The instruction is empty. Say what the camera should do.")
-    planned = make_plan(instruction, presets)
-    return {
-        "instruction": instruction,
-        "understood": planned.understood,
-        "calls": [{"name": call.name, "arguments": call.arguments} for call in planned.calls],
-        "clarification": planned.clarification,
-    }
+    return make_plan(instruction, presets).as_dict()
 
 
 def _show(planned: dict[str, Any], *, as_json: bool) -> None:
@@ -89,8 +82,7 @@ def _show(planned: dict[str, Any], *, as_json: bool) -> None:
     console = Console(highlight=False)
     console.print(Text.assemble(("› ", "bold cyan"), (plain(planned["instruction"]), "bold")))
     for number, call in enumerate(planned["calls"], 1):
-        arguments = json.loads(json.dumps(call["arguments"]))
-        line = Text.assemble((f"{number:3d}  ", "cyan"), (call["name"], "bold"), f"({arguments_text(arguments)})")
+        line = Text.assemble((f"{number:3d}  ", "cyan"), (call["name"], "bold"), f"({arguments_text(call['arguments'])})")
         console.print(line)
     if planned["clarification"] is not None:
         console.print(Text(plain(planned["clarification"]), style="yellow"))
