@@ -144,6 +144,7 @@ class Viewpoint:
         self.colour_atlas = Atlas([_size(c) for c in colours], lambda i: self.colour(colours[i]), np.uint8, 3, COLOUR_SCALES)
         self.id_atlas = Atlas([_size(n) for n in ids], lambda i: self.ids(ids[i]), np.uint16, 1)
         self.depth_atlas = Atlas([_size(manifest.depth)], lambda _: self.depth(manifest.depth), np.uint16, 1)
+        self.owner_atlas = Atlas([_size(manifest.depth)], lambda _: self._owners(), np.uint16, 1)
 
     @cached_property
     def position_m(self) -> NDArray[np.float64]:
@@ -195,6 +196,13 @@ class Viewpoint:
                 rgb = ((colour[..., :3] * alpha + 127) // 255).astype(np.uint8)
                 self._sheets[sheet.number] = np.concatenate([rgb, colour[..., 3:]], axis=-1), self.depth(sheet.depth)
             return self._sheets[sheet.number]
+
+    def _owners(self) -> NDArray[np.uint16]:
+        """As large as the depth layer: the instance on which each of its distances was measured."""
+        slot, depth = self.id_atlas.need(0), self.manifest.depth
+        rows = slot.y + ((np.arange(depth.height) + 0.5) / depth.height * slot.height).astype(int)
+        columns = slot.x + ((np.arange(depth.width) + 0.5) / depth.width * slot.width).astype(int)
+        return np.ascontiguousarray(self.id_atlas.sheet[rows[:, None], columns])
 
     def _verified(self, layer: Layer) -> Path:
         path = (self.folder / layer.file).resolve()

@@ -32,6 +32,9 @@ OVERSAMPLING = 1.18
 """Bilinear look-up in a picture this much to 1.7 times as dense as the view keeps the sharpness of a rendered view: less blurs,
 more shimmers."""
 
+_AROUND = ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (-1, 1), (1, -1), (-1, -1))
+"""The eight neighbours, those above and below first: they are the likeliest to be equally far on the ground."""
+
 Floats = NDArray[np.float64]
 Map = NDArray[np.float32]
 
@@ -50,6 +53,28 @@ def depth_view(viewpoint: Viewpoint, projection: Projection) -> NDArray[np.float
     """(H, W) distance of the still world from the optical centre in metres, infinite for the sky."""
     codes = _look_up(viewpoint, viewpoint.depth_atlas, projection, cv2.INTER_NEAREST)
     return np.take(viewpoint.depth_metres, codes)
+
+
+def outlined_depth_view(viewpoint: Viewpoint, projection: Projection, numbers: NDArray[np.uint16]) -> NDArray[np.float32]:
+    """Like ``depth_view``, with the edges of instances where the finer ``numbers`` (H, W) of the same view have them.
+
+    Where a distance was measured on another instance than the pixel shows, a neighbour's that was not is taken.
+    """
+    where = atlas_map(viewpoint, viewpoint.depth_atlas, projection)
+    metres: NDArray[np.float32] = np.take(viewpoint.depth_metres, cv2.remap(viewpoint.depth_atlas.sheet, where, None, cv2.INTER_NEAREST))
+    viewpoint.owner_atlas.need(0)
+    owners = cv2.remap(viewpoint.owner_atlas.sheet, where, None, cv2.INTER_NEAREST)
+    ys, xs = np.nonzero(owners != numbers)
+    texel_px = max(1.0, projection.density / (viewpoint.manifest.depth.width / (2 * math.pi)))
+    refined = metres.copy()
+    for reach in (1.0, 2.0):
+        for dx, dy in _AROUND:
+            y = np.clip(ys + round(dy * reach * texel_px), 0, projection.height - 1)
+            x = np.clip(xs + round(dx * reach * texel_px), 0, projection.width - 1)
+            fits = (owners[y, x] == numbers[ys, xs]) & (owners[y, x] == numbers[y, x])
+            refined[ys[fits], xs[fits]] = metres[y[fits], x[fits]]
+            ys, xs = ys[~fits], xs[~fits]
+    return refined
 
 
 def _look_up(viewpoint: Viewpoint, atlas: Atlas, projection: Projection, interpolation: int) -> NDArray[Any]:

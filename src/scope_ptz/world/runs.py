@@ -107,7 +107,7 @@ class _Runs:
 
 
 def _solid_angles(projection: Projection, row: Ints, start: Ints, stop: Ints) -> Floats:
-    """Steradians of runs of pixels, exact."""
+    """Steradians of runs of pixels: integrated along the row, its middle standing for its height."""
     if isinstance(projection, Perspective):
         f = projection.focal_px
         y = row + 0.5 - projection.height / 2

@@ -8,14 +8,17 @@ from numpy.typing import NDArray
 from scope_ptz.geometry import Projection
 from scope_ptz.world.actors import Appearance, appearances, draw, place_of
 from scope_ptz.world.pack import Scene, Viewpoint
-from scope_ptz.world.reproject import colour_view, depth_view, id_view
+from scope_ptz.world.reproject import colour_view, id_view, outlined_depth_view
 
 
 def picture(scene: Scene, viewpoint: str, projection: Projection, time_s: float) -> NDArray[np.uint8]:
     """(H, W, 3) RGB: what a camera at a viewpoint sees at a time."""
     here = scene.viewpoint(viewpoint)
     image = colour_view(here, projection)
-    _draw_actors(here, projection, _in_view(scene, here, projection, time_s), image, None)
+    if actors := _in_view(scene, here, projection, time_s):
+        depth_m = outlined_depth_view(here, projection, id_view(here, projection))
+        for actor in actors:
+            draw(here, projection, actor, depth_m, image, None)
     return image
 
 
@@ -23,22 +26,12 @@ def instance_numbers(scene: Scene, viewpoint: str, projection: Projection, time_
     """(H, W): which instance or actor each pixel of that picture shows, 0 for none."""
     here = scene.viewpoint(viewpoint)
     numbers = id_view(here, projection)
-    _draw_actors(here, projection, _in_view(scene, here, projection, time_s), None, numbers)
+    if actors := _in_view(scene, here, projection, time_s):
+        depth_m = outlined_depth_view(here, projection, numbers)
+        for actor in actors:
+            draw(here, projection, actor, depth_m, None, numbers)
     return numbers
 
 
 def _in_view(scene: Scene, viewpoint: Viewpoint, projection: Projection, time_s: float) -> list[Appearance]:
     return [a for a in appearances(scene, viewpoint, time_s) if place_of(a, projection) is not None]
-
-
-def _draw_actors(
-    viewpoint: Viewpoint,
-    projection: Projection,
-    actors: list[Appearance],
-    image: NDArray[np.uint8] | None,
-    numbers: NDArray[np.uint16] | None,
-) -> None:
-    if actors:
-        depth_m = depth_view(viewpoint, projection)
-        for actor in actors:
-            draw(viewpoint, projection, actor, depth_m, image, numbers)
