@@ -1,4 +1,4 @@
-"""Shared fixtures."""
+"""Fixtures for all rooms."""
 
 from tests.support.fixtures import analytic_folder, analytic_scene, anyio_backend
 

@@ -1,5 +1,0 @@
-"""Shared fixtures."""
-
-from tests.support.fixtures import analytic_folder, analytic_scene, anyio_backend
-
-__all__ = ["analytic_folder", "analytic_scene", "anyio_backend"]
