@@ -32,7 +32,7 @@ ROAD = ground.Carriageway(
         markings.Patch("repair", -4.9, -2.6, 57.0, 61.0),
     ),
 )
-COMPOUND = (-47.0, -22.6, -31.0, 4.0)
+COMPOUND = (-44.4, -22.6, -24.4, 4.0)
 """West, east, south and north fence lines of the site compound, metres."""
 BRIDGE_Y = 85.0
 DECK_M = 6.9

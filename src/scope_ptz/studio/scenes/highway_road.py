@@ -76,7 +76,7 @@ def _works_signs(stage: Stage) -> None:
         (signs.panel(("FREE RECOVERY", "AWAIT RESCUE"), width=2.6, height=1.2, background="yellow", cap_height=0.22, post_height=1.3), "yellow recovery sign", 17.6, -27.5, NORTH, "free recovery await rescue", "yellow"),
         (signs.triangle("Works traffic", symbol="exclamation"), "works traffic sign", 16.9, 62.0, NORTH, "works traffic", "red and white"),
         (signs.project_board(
-            ("CASTELL HIGHWAYS", "A482 Resurfacing, Junctions 4 to 6", "Completion: March", "Client: County Roads Board", "Help line 0900 555 0142, open day and night",
+            ("CASTELL HIGHWAYS", "A482 Resurfacing, Junctions 4 to 6", "Completion: March 2027", "Client: County Roads Board", "Designer: Aldous Peake", "Night closures from 9 pm", "Plan ahead, allow more time", "Help line 0900 555 0142, open day and night",
              "Contract CH-2207. Unauthorised persons must not enter the site."),
             width=4.2, height=3.3, background="blue", post_height=0.7), "blue project board", -21.9, 6.2, 166.0, "castell highways a482 resurfacing", "blue"),
     ]  # fmt: skip
@@ -106,13 +106,13 @@ def _small_signs(stage: Stage) -> None:
 
 
 def _guardrails(stage: Stage) -> None:
-    length, mould = 48.0, furniture.guardrail(48.0)
+    length, mould = 108.0, furniture.guardrail(108.0)
     fresh = True
     for x, bearing in ((-0.95, 180.0), (0.95, 0.0)):
-        for k in range(9):
+        for k in range(4):
             built = mould if fresh else mould.copy()
             fresh = False
-            stage.place(built, "guardrail", "steel guardrail", (x, -204.0 + length * k, 0.07), bearing, material="steel", colour="grey")
+            stage.place(built, "guardrail", "steel guardrail", (x, -162.0 + length * k, 0.07), bearing, material="steel", colour="grey")
     short = furniture.guardrail(16.0)
     stage.place(short, "guardrail", "steel guardrail", (-16.35, 46.5, 0), 0, material="steel", colour="grey", guards="gantry leg")
     stage.place(short.copy(), "guardrail", "steel guardrail", (16.35, -87.0, 0), 180, material="steel", colour="grey", guards="gantry leg")
@@ -120,7 +120,7 @@ def _guardrails(stage: Stage) -> None:
 
 def _lamps(stage: Stage) -> None:
     mould = furniture.lamp_post(12.0, 2)
-    for k, y in enumerate((-190.0, -154.0, -118.0, -82.0, -46.0, -10.0, 26.0, 62.0, 112.0, 148.0, 184.0)):
+    for k, y in enumerate((-154.0, -118.0, -82.0, -46.0, -10.0, 26.0, 62.0, 112.0, 148.0)):
         built = mould if k == 0 else mould.copy()
         stage.place(built, "lamp post", "double-armed lamp post", (0, y, 0.07), 90, colour="grey", state="unlit", arms=2)
 

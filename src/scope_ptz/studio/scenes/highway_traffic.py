@@ -8,7 +8,7 @@ from scope_ptz.studio.kit import lorries, people, vehicles
 from scope_ptz.studio.kit.stage import ActorPath, Built, Stage
 
 LANE_1, LANE_2, LANE_3 = 10.75, 7.25, 3.75
-"""Distances of the lane centres from the middle of the road. Lane 3 carries the moving vehicles and stays free of others."""
+"""Distances of the lane centres from the middle of the road. The moving vehicles have a lane to themselves on either side."""
 
 FIRST_ACTOR = 60000
 """Number of the first actor in the ID layer: far above those of the instances."""
@@ -16,14 +16,14 @@ FIRST_ACTOR = 60000
 Car = Callable[..., Built]
 
 CARS: list[tuple[Car, str, str, float, float]] = [
-    # northbound, lane 2 (and lane 1 before the taper)
-    (vehicles.hatchback, "red", "KV19 RTO", -LANE_2, 36.5),
-    (vehicles.saloon, "silver", "MB68 WLN", -LANE_2, 12.5),
-    (vehicles.suv, "black", "OE21 HXD", -LANE_2, 74.0),
-    (vehicles.suv, "light blue", "YP70 CKA", -LANE_2, -29.0),
-    (vehicles.hatchback, "yellow", "FN17 ZBE", -LANE_2, -76.0),
-    (vehicles.saloon, "grey", "LD22 UMS", -LANE_2, -101.0),
-    (vehicles.saloon, "dark red", "SR16 JVY", -LANE_1, -112.0),
+    # northbound, lane 3 (and lane 1 before the taper); lane 2 belongs to the moving car
+    (vehicles.hatchback, "red", "KV19 RTO", -LANE_3, 38.5),
+    (vehicles.saloon, "silver", "MB68 WLN", -LANE_3, 21.0),
+    (vehicles.suv, "black", "OE21 HXD", -LANE_3, 66.0),
+    (vehicles.suv, "light blue", "YP70 CKA", -LANE_3, -31.0),
+    (vehicles.hatchback, "yellow", "FN17 ZBE", -LANE_3, -66.0),
+    (vehicles.saloon, "grey", "LD22 UMS", -LANE_3, -98.0),
+    (vehicles.saloon, "dark red", "SR16 JVY", -LANE_1, -88.0),
     # southbound
     (vehicles.suv, "green", "HG20 TPW", LANE_2, 58.0),
     (vehicles.saloon, "white", "VO69 EDK", LANE_2, 29.0),
@@ -58,7 +58,7 @@ def _cars(stage: Stage) -> None:
         noun = NOUNS[make]
         stage.place(make(colour, plate=plate), "car", f"{colour} {noun}", (x, y, 0), bearing, colour=colour, kind=noun.lower(), plate=plate, **facts)
     for colour, plate, lettering, x, y in (
-        ("blue", "EK66 PRB", "Corvane\nPLUMBING", -LANE_2, -12.5),
+        ("blue", "EK66 PRB", "Corvane\nPLUMBING", -LANE_3, -13.0),
         ("grey", "RF20 LWS", "NORTHLINE\nCOURIERS", LANE_2, -22.0),
     ):
         bearing, facts = _course(x)
@@ -68,9 +68,9 @@ def _cars(stage: Stage) -> None:
 
 def _heavy(stage: Stage) -> None:
     rows = [
-        (lorries.box_lorry("red", "white", plate="AY18 GTF", lettering="DRAYCOTT FOODS"), "lorry", "red and white box lorry", "red", "box lorry", -LANE_2, 54.5),
-        (lorries.tanker("blue", plate="NU70 HKD", lettering="PETRONELL"), "lorry", "blue tanker", "blue", "tanker", -LANE_2, -44.0),
-        (lorries.coach("dark green", plate="JC19 XPO", lettering="Linnet Coaches", destination="EXPRESS 7"), "bus", "green coach", "green", "coach", -LANE_2, -122.0),
+        (lorries.box_lorry("red", "white", plate="AY18 GTF", lettering="DRAYCOTT FOODS"), "lorry", "red and white box lorry", "red", "box lorry", -LANE_1, 72.0),
+        (lorries.tanker("blue", plate="NU70 HKD", lettering="PETRONELL"), "lorry", "blue tanker", "blue", "tanker", -LANE_1, -100.0),
+        (lorries.coach("dark green", plate="JC19 XPO", lettering="Linnet Coaches", destination="EXPRESS 7"), "bus", "green coach", "green", "coach", -LANE_1, -118.0),
         (lorries.coach("white", plate="BT65 SVA", lettering="SKYLARK", destination="HARROWFIELD"), "bus", "white coach", "white", "coach", LANE_1, 41.0),
         (lorries.box_lorry("dark green", "light grey", plate="OV21 RNC", lettering="HALLAM & SONS"), "lorry", "green box lorry", "green", "box lorry", LANE_1, 14.0),
         (lorries.tipper("blue", "grey", plate="KE17 UDM"), "lorry", "blue tipper lorry", "blue", "tipper", LANE_1, -33.0),
@@ -109,7 +109,7 @@ def _at_the_works(stage: Stage) -> None:
     second = vehicles.pickup("dark blue", plate="SH18 TEW")
     stage.place(second, "pickup truck", "dark blue pickup truck", (-13.9, -47.0, 0), 0, colour="dark blue", state="parked", facing="north", area="works")
     car = vehicles.hatchback("grey", plate="DP15 LXC")
-    stage.place(car, "car", "grey hatchback", (-29.5, -14.0, 0), 75, colour="grey", kind="hatchback", plate="DP15 LXC", state="parked", facing="east", area="compound")
+    stage.place(car, "car", "grey hatchback", (-36.2, -14.0, 0), 75, colour="grey", kind="hatchback", plate="DP15 LXC", state="parked", facing="east", area="compound")
 
 
 def _actors(stage: Stage) -> None:
@@ -118,8 +118,8 @@ def _actors(stage: Stage) -> None:
         ActorPath(
             "moving-car-01", FIRST_ACTOR, "car", "dark blue saloon",
             lambda phase: vehicles.saloon("dark blue", plate="HX20 DLM"),
-            [(0.0, -LANE_3, -120.0, 0.0), (240.0 / speed, -LANE_3, 120.0, 0.0)], 30.0,
-            {"colour": "dark blue", "kind": "saloon", "state": "moving", "facing": "north", "lane": 3, "carriageway": "northbound"},
+            [(0.0, -LANE_2, -120.0, 0.0), (240.0 / speed, -LANE_2, 120.0, 0.0)], 30.0,
+            {"colour": "dark blue", "kind": "saloon", "state": "moving", "facing": "north", "lane": 2, "carriageway": "northbound"},
         ),
         ActorPath(
             "moving-van-01", FIRST_ACTOR + 1, "van", "white van",
@@ -130,7 +130,7 @@ def _actors(stage: Stage) -> None:
         ActorPath(
             "moving-worker-01", FIRST_ACTOR + 2, "worker", "walking worker",
             lambda phase: people.worker(vest="yellow", helmet="blue", trousers="navy", pose="walk", phase=phase, seed=71),
-            _loop([(-13.2, -1.0), (-13.2, 22.0), (-9.95, 24.5), (-9.95, 1.5)], 1.3), 41.0,
+            _loop([(-13.2, -1.0), (-13.2, 16.6), (-9.95, 17.2), (-9.95, 22.0), (-13.2, 23.4)], 1.3), 41.0,
             {"vest": "yellow", "helmet": "blue", "state": "walking", "area": "works"}, stride_m=1.32,
         ),
     ]  # fmt: skip

@@ -22,4 +22,6 @@ def build(stage: Stage) -> None:
     stage.viewpoint("mast", (-18.5, -8.0, 8.5), 0.0, "CCTV mast on the western verge, beside the closed lane")
     stage.viewpoint("bridge", (-7.0, 79.3, 8.5), 180.0, "bracket in front of the overbridge's southern parapet")
     stage.preset("highway", "mast", -10, -14, 1.2, "the works and the northbound lanes, looking along the road")
+    stage.preset("compound", "mast", -110, -18, 1.0, "the site compound with its cabins and stores")
+    stage.preset("gate", "mast", -52, -17, 1.8, "the compound's gate and the haul road")
     sky.finish_materials()
