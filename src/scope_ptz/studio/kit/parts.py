@@ -1,4 +1,4 @@
-"""One mesh from many simple solids: vehicles and machines are assembled here, then made into a single Blender object."""
+"""One mesh from many simple solids: vehicles and machines are assembled here into a single Blender object."""
 
 from __future__ import annotations
 
@@ -37,7 +37,12 @@ class Parts:
         return self.materials.index(material)
 
     def add(
-        self, points: Sequence[Point], faces: Sequence[Sequence[int]], material: bpy.types.Material, *, smooth: bool = False
+        self,
+        points: Sequence[Point],
+        faces: Sequence[Sequence[int]],
+        material: bpy.types.Material,
+        *,
+        smooth: bool = False,
     ) -> None:
         """Polygons in the current frame; ``faces`` index ``points``, anticlockwise seen from outside."""
         base, slot = len(self._points), self.slot(material)
@@ -73,9 +78,7 @@ class Parts:
                     for axis in range(3):
                         index[(*signs, axis)] = len(points)
                         points.append(
-                            tuple(
-                                centre[k] + signs[k] * (half[k] if k == axis else half[k] - cut) for k in range(3)
-                            )  # type: ignore[arg-type]
+                            tuple(centre[k] + signs[k] * (half[k] if k == axis else half[k] - cut) for k in range(3))  # type: ignore[arg-type]
                         )
         faces: list[tuple[int, ...]] = []
         for axis in range(3):
@@ -112,7 +115,8 @@ class Parts:
         segments: int = 1,
         smooth: bool = False,
     ) -> None:
-        """An outline extruded along ``axis`` from ``low`` to ``high``; the outline is (y, z), (x, z) or (x, y) for X, Y, Z."""
+        """An outline extruded along ``axis`` from ``low`` to ``high``; the outline is (y, z), (x, z) or (x, y) for
+        X, Y, Z."""
         bm = bmesh.new()
         place = _AXES[axis]
         face = bm.faces.new([bm.verts.new(place(a, b, low)) for a, b in outline])
@@ -123,7 +127,9 @@ class Parts:
         if bevel_m > 0:
             bmesh.ops.bevel(bm, geom=bm.edges[:], offset=bevel_m, segments=segments, profile=0.5, affect="EDGES")
         bm.verts.index_update()
-        self.add([tuple(v.co) for v in bm.verts], [[v.index for v in f.verts] for f in bm.faces], material, smooth=smooth)
+        self.add(
+            [tuple(v.co) for v in bm.verts], [[v.index for v in f.verts] for f in bm.faces], material, smooth=smooth
+        )
         bm.free()
 
     def lathe(
@@ -137,7 +143,8 @@ class Parts:
         smooth: bool = True,
         caps: bool = True,
     ) -> None:
-        """A surface of revolution from ``(radius, height)`` pairs about ``axis`` through ``centre``, closed by ``caps``."""
+        """A surface of revolution from ``(radius, height)`` pairs about ``axis`` through ``centre``, closed by
+        ``caps``."""
         place = _AXES[axis]
         points: list[Point] = []
         for radius, height in profile:
@@ -159,7 +166,17 @@ class Parts:
         if caps:
             self.add(points, ends, material)
 
-    def disc(self, radius: float, low: float, high: float, centre: Point, material: bpy.types.Material, *, axis: str = "X", steps: int = 24) -> None:
+    def disc(
+        self,
+        radius: float,
+        low: float,
+        high: float,
+        centre: Point,
+        material: bpy.types.Material,
+        *,
+        axis: str = "X",
+        steps: int = 24,
+    ) -> None:
         """A short cylinder with a small chamfer."""
         cut = min(0.006, radius * 0.2, abs(high - low) * 0.3)
         self.lathe(
@@ -167,7 +184,15 @@ class Parts:
             centre, material, axis=axis, steps=steps, smooth=False,
         )  # fmt: skip
 
-    def tube(self, path: Sequence[Point], radius: float, material: bpy.types.Material, *, sides: int = 8, closed: bool = False) -> None:
+    def tube(
+        self,
+        path: Sequence[Point],
+        radius: float,
+        material: bpy.types.Material,
+        *,
+        sides: int = 8,
+        closed: bool = False,
+    ) -> None:
         """A round (or, with 4 sides, square) tube along a path."""
         line = [Vector(p) for p in path]
         count = len(line)
