@@ -19,7 +19,9 @@ from tests.perception import yard
 
 
 def ground_truth() -> GroundTruthPerception:
-    return GroundTruthPerception(cast(Any, lambda _: yard.StandInScene()), look=lambda _s, _v, projection, _t: yard.truth(projection))
+    return GroundTruthPerception(
+        cast(Any, lambda _: yard.StandInScene()), look=lambda _s, _v, projection, _t: yard.truth(projection)
+    )
 
 
 @pytest.mark.anyio
@@ -135,4 +137,6 @@ async def test_things_are_seen_twice_and_texts_misread() -> None:
 async def test_no_noise_is_the_truth() -> None:
     clean = NoisyPerception(ground_truth(), seed=1, noise=Noise(miss=0.0, duplicate=0.0, misread=0.0, jitter=0.0))
     for description in ("cars", "signs", "workers with helmets"):
-        assert (await clean.detect(yard.frame(), description)).boxes == (await ground_truth().detect(yard.frame(), description)).boxes
+        assert (await clean.detect(yard.frame(), description)).boxes == (
+            await ground_truth().detect(yard.frame(), description)
+        ).boxes

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from scope_ptz.perception.language import words as w
 from scope_ptz.perception.language.lexicon import COLOURS, lexicon, nouns_in, singular_phrase
 from scope_ptz.perception.view import Thing, View
+from scope_ptz.world.models import Attribute
 
 _STATES = [
     "",
@@ -29,7 +30,7 @@ _STATES = [
 ]
 _CANONICAL = {word: line.partition(":")[0] for line in _STATES if line for word in line.replace(":", "").split()} | {
     "gray": "grey", "amber": "orange", "violet": "purple", "golden": "gold", "metallic": "metal", "steel": "metal",
-    "wood": "wooden", "timber": "wooden", "male": "man", "female": "woman",
+    "standing": "upright", "stand": "upright", "wood": "wooden", "timber": "wooden", "male": "man", "female": "woman",
 }  # fmt: skip
 _OPPOSITES = [
     ("open", "closed"), ("lit", "unlit"), ("lit", "off"), ("on", "off"), ("moving", "stationary"), ("empty", "full"), ("raised", "lowered"),
@@ -87,32 +88,11 @@ SOFT = frozenset(
 )
 """Words that restrict nothing when the scene has no fact about them."""
 _FILLERS = frozenset(
-    [
-        "the",
-        "a",
-        "an",
-        "is",
-        "are",
-        "it",
-        "its",
-        "of",
-        "in",
-        "on",
-        "at",
-        "and",
-        "be",
-        "being",
-        "with",
-        "very",
-        "quite",
-        "really",
-        "currently",
-        "colour",
-        "color",
-        "coloured",
-        "colored",
-    ]
+    """the a an is are it its of in on at and be being with very quite really currently colour color coloured colored one ones
+    parts""".split()
 )
+TEXT_KEYS = frozenset("reads text plate lettering number signal sign label readable_by inscription".split())
+"""Attributes that repeat what is written on a thing. They are never used: only legible texts are read."""
 COLOUR_KEYS = ("colour", "color")
 NOTHING = frozenset({"", "none", "no", "false", "nothing", "without"})
 
@@ -137,7 +117,7 @@ def value_words(value: object) -> list[str]:
 def fact_words(thing: Thing) -> set[str]:
     """Every word that says something of a thing: names, values, true flags, what it is doing. Clothes of people excluded."""
     found = {canonical(x) for x in w.letters(f"{thing.name} {thing.category}").split()}
-    for key, value in thing.attributes.items():
+    for key, value in facts(thing):
         words = key_words(key)
         if value is True:
             found |= {canonical(x) for x in words}
@@ -148,6 +128,8 @@ def fact_words(thing: Thing) -> set[str]:
             is_worn(key) and "person" in thing.concepts
         ):
             found |= set(value_words(value))
+        if words[-1] in {"load", "cargo"} and str(value).lower() not in NOTHING:
+            found.add("full")
     if "lit" in found:
         found.add("on")
     if "unlit" in found:
@@ -155,6 +137,11 @@ def fact_words(thing: Thing) -> set[str]:
     if thing.motion and not found & {"moving", "stationary"}:
         found.add(thing.motion)
     return found
+
+
+def facts(thing: Thing) -> list[tuple[str, Attribute]]:
+    """The attributes that may be told: all but what is written on the thing."""
+    return [(k, v) for k, v in thing.attributes.items() if k not in TEXT_KEYS]
 
 
 def is_colour(value: object) -> bool:
@@ -183,24 +170,27 @@ def colour_of(thing: Thing) -> str | None:
     return named[0] if named else None
 
 
-def fits_noun(thing: Thing, noun: str) -> bool:
-    """Whether a noun (singular or plural) names the thing."""
-    concept = lexicon().concept(noun)
-    if concept is not None and concept in thing.concepts:
-        return True
+def fits_noun(view: View, thing: Thing, noun: str) -> bool:
+    """Whether a noun (singular or plural) names the thing.
+
+    A word that the scene itself uses for something means that ("pylon" for an electricity pylon), whatever else it may mean.
+    """
     one = w.letters(singular_phrase(noun))
     name, category = w.letters(thing.name), w.letters(thing.category)
-    return one == category or one == name or name.endswith(f" {one}")
+    if one == category or one == name or name.endswith(f" {one}"):
+        return True
+    concept = lexicon().concept(noun)
+    return concept is not None and concept in thing.concepts and (concept == one or one not in view.nouns)
 
 
 def fits_words(view: View, thing: Thing, words: Sequence[str]) -> bool | None:
     """Whether loose words ("parked", "dark blue", "a van") hold for a thing."""
-    rest = [x for x in words if x not in _FILLERS]
+    rest = [x for x in words if x not in _FILLERS] or [x for x in words if x in {"on", "in"}]
     if not rest:
         return True
     spans = nouns_in(rest, view.nouns)
     if spans and spans[0][1] == len(rest):
-        answers = [_all([fits_noun(thing, " ".join(rest[i:])), *(_fits(view, thing, x) for x in rest[:i])]) for i, _ in spans]
+        answers = [_all([fits_noun(view, thing, " ".join(rest[i:])), *(_fits(view, thing, x) for x in rest[:i])]) for i, _ in spans]
         if any(answers):
             return True
     return _all([_fits(view, thing, x) for x in rest])
@@ -213,10 +203,14 @@ def _all(answers: Iterable[bool | None]) -> bool | None:
 
 def _fits(view: View, thing: Thing, word: str) -> bool | None:
     """Whether one word holds for a thing."""
+    if word.startswith("non-"):
+        answer = _fits(view, thing, word.removeprefix("non-"))
+        return None if answer is None else not answer
     known = fact_words(thing)
     meant = canonical(word)
-    one = canonical(w.singular(word))
-    if meant in known or one in known or fits_noun(thing, word):
+    if _forms(word) & {f for x in known for f in _forms(x)} or fits_noun(view, thing, word):
+        return True
+    if lexicon().concept(word) is not None and "person" in thing.concepts and wears(view, thing, [word]):
         return True
     if _in_context(view, thing, word) or any(w.letters(word) in w.letters(text).split() for text in thing.texts):
         return True
@@ -224,9 +218,19 @@ def _fits(view: View, thing: Thing, word: str) -> bool | None:
         return False
     if meant in COLOURS and colour_of(thing) is not None:
         return False
-    if any(word in domain and key in thing.attributes for key, domain in view.values.items()):
+    if any(_forms(word) & domain and key in thing.attributes for key, domain in view.values.items() if key not in TEXT_KEYS):
         return False
     return False if lexicon().concept(word) else None
+
+
+def _forms(word: str) -> frozenset[str]:
+    """A word with its other forms, so that "kneeling" fits "kneel"."""
+    stems = {word, w.singular(word)}
+    for ending in ("ing", "ed"):
+        if word.endswith(ending) and len(word) > len(ending) + 2:
+            base = word.removesuffix(ending)
+            stems |= {base, f"{base}e"} | ({base[:-1]} if base[-1] == base[-2] else set())
+    return frozenset(canonical(x) for x in stems) | {word}
 
 
 def _in_context(view: View, thing: Thing, word: str) -> bool:
@@ -235,7 +239,7 @@ def _in_context(view: View, thing: Thing, word: str) -> bool:
     while holder is not None:
         words = w.letters(view.names.get(holder, "")).split()
         carrier = view.by_id.get(holder)
-        if w.singular(word) in words or (carrier is not None and fits_noun(carrier, word)):
+        if w.singular(word) in words or (carrier is not None and fits_noun(view, carrier, word)):
             return True
         holder = view.parents.get(holder)
     return False
@@ -248,7 +252,7 @@ def wears(view: View, thing: Thing, words: Sequence[str], amount: int | None = N
     start, end = spans[0] if spans else (len(rest) - 1, len(rest))
     noun, others = " ".join(rest[start:end]), [canonical(x) for x in (*rest[:start], *rest[end:])]
     names = names_of(noun)
-    for key, value in thing.attributes.items():
+    for key, value in facts(thing):
         if _key_is(key, names):
             said = value_words(value)
             if str(value).lower() not in NOTHING and value is not False and all(x in said for x in others):
@@ -257,7 +261,7 @@ def wears(view: View, thing: Thing, words: Sequence[str], amount: int | None = N
             if any(name in chunk for name in names) and all(x in value_words(chunk) for x in others) and "no" not in chunk.split():
                 return True
     parts = [t for t in view.things if t.id != thing.id and view.belongs(t.id, thing.id)]
-    if any(fits_noun(part, noun) and all(_fits(view, part, x) for x in others) for part in parts):
+    if any(fits_noun(view, part, noun) and all(_fits(view, part, x) for x in others) for part in parts):
         return True
     wanted = w.letters(" ".join(rest))
     return any(wanted in w.letters(text) for text in thing.texts)
@@ -272,7 +276,7 @@ def names_of(noun: str) -> frozenset[str]:
     """All names, singular, of what a noun means."""
     table = lexicon()
     concept = table.concept(noun)
-    return frozenset({singular_phrase(noun)}) | (table.other_names(concept) if concept else frozenset())
+    return frozenset({singular_phrase(noun)}) | (table.all_names(concept) if concept else frozenset())
 
 
 def _chunks(value: object) -> list[str]:

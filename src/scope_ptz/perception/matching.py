@@ -10,7 +10,7 @@ Rules, all of them about the picture as the camera sees it:
 - *on, in, at, of*: a part of it, or resting inside its outline less than 2 m away, or a fact that says so ("in the left lane").
 - *between*: the middle lies between the middles of the two, sideways, and not clearly above, below, before or behind both.
 - *on the left*: the middle lies in the left 40% of the frame; *half*: in that half; *corner*: in both 40% bands; *middle*: the
-  middle 40%. *In the foreground*: within 20 m; *in the distance*: 40 m away or more.
+  middle 40%. *In the foreground*, *in the distance*: the nearest and furthest third of the depth in view, on a logarithmic scale.
 - Of several matches the one with most pixels comes first, unless a superlative or ordinal orders them; ordinals without a side count
   from the left. Superlatives keep the best only ("the two nearest": two).
 """
@@ -22,7 +22,7 @@ from typing import cast
 
 import numpy as np
 
-from scope_ptz.perception.facts import SOFT, bears, canonical, fact_words, fits_noun, fits_words, key_words, wears
+from scope_ptz.perception.facts import SOFT, bears, canonical, fact_words, facts, fits_noun, fits_words, key_words, wears
 from scope_ptz.perception.language import syntax as s
 from scope_ptz.perception.language import words as w
 from scope_ptz.perception.language.lexicon import lexicon, nouns_in
@@ -33,8 +33,6 @@ ON_M = 2.0
 DEPTH_STEP_M = 0.5
 SIDE_BAND = 0.4
 SIDE_SLACK = 0.05
-FOREGROUND_M = 20.0
-DISTANCE_M = 40.0
 
 _SIDES: dict[str, s.OrderKey] = {"left": "left", "right": "right", "top": "top", "bottom": "bottom"}
 BACKDROP = frozenset({"surface", "sky"})
@@ -71,27 +69,41 @@ def _core(view: View, phrase: s.Phrase) -> tuple[list[Thing], tuple[s.Test, ...]
     if phrase.amount is not None and phrase.order is None and words and not w.is_plural(words[-1]) and phrase.amount > 1:
         words.insert(0, str(phrase.amount))
     spans = nouns_in(words, view.nouns)
-    for start, end in spans:
-        noun = " ".join(words[start:end])
+    carried = any(isinstance(t, s.Relation) and t.kind == "on" for t in phrase.tests)
+    for start, end in reversed(spans):
         others = [*words[:start], *words[end:]]
-        anything = lexicon().concept(noun) == "thing"
-        candidates = [t for t in view.things if (_worth_naming(view, t) if anything else fits_noun(t, noun))]
-        sides = [x for x in others if x in _SIDES or x == "middle"]
-        plain = [x for x in others if x not in sides]
+        candidates = _named(view, " ".join(words[start:end]), others, carried)
         literal = [t for t in candidates if _modified(view, t, others)]
-        if literal or not sides:
-            if literal or len(spans) == 1:
-                return literal, (), phrase.order
-            continue
-        matches = [t for t in candidates if _modified(view, t, plain)]
-        if w.is_plural(words[end - 1]):
-            return matches, (s.Region(cast("tuple[s.Side, ...]", tuple(sides))),), phrase.order
-        if len(sides) == 1 and sides[0] in _SIDES and phrase.order is None:
-            return matches, (), s.Order(_SIDES[sides[0]])
-        return sorted(matches, key=lambda t: _from_corner(t, sides))[:1], (), phrase.order
-    if spans:
-        return [], (), phrase.order
-    return [t for t in view.things if _all_words(view, t, words)], (), phrase.order
+        if literal:
+            return literal, (), phrase.order
+    for start, end in spans:
+        sides = [x for x in (*words[:start], *words[end:]) if x in _SIDES or x == "middle"]
+        plain = [x for x in (*words[:start], *words[end:]) if x not in sides]
+        matches = [t for t in _named(view, " ".join(words[start:end]), plain, carried) if _modified(view, t, plain)]
+        if sides and matches:
+            return _sided(matches, sides, w.is_plural(words[end - 1]), phrase)
+    return [] if spans else [t for t in view.things if _all_words(view, t, words)], (), phrase.order
+
+
+def _named(view: View, noun: str, others: Sequence[str], carried: bool) -> list[Thing]:
+    """Things that a noun names. "The yellow vehicle" may be a machine when no road vehicle is yellow."""
+    if lexicon().concept(noun) == "thing":
+        return [t for t in view.things if _worth_naming(view, t) or (carried and not t.concepts & BACKDROP)]
+    named = [t for t in view.things if fits_noun(view, t, noun)]
+    if lexicon().concept(noun) == "vehicle" and others and not any(_modified(view, t, others) for t in named):
+        return [t for t in view.things if "machine" in t.concepts]
+    return named
+
+
+def _sided(
+    matches: list[Thing], sides: list[str], many: bool, phrase: s.Phrase
+) -> tuple[list[Thing], tuple[s.Test, ...], s.Order | None]:
+    """ "The left sign" is the left-most, "the left signs" are those on the left, "the top right sign" is nearest that corner."""
+    if many:
+        return matches, (s.Region(cast("tuple[s.Side, ...]", tuple(sides))),), phrase.order
+    if len(sides) == 1 and sides[0] in _SIDES and phrase.order is None:
+        return matches, (), s.Order(_SIDES[sides[0]])
+    return sorted(matches, key=lambda t: _from_corner(t, sides))[:1], (), phrase.order
 
 
 def _from_corner(thing: Thing, sides: Sequence[str]) -> float:
@@ -141,11 +153,11 @@ def holds(view: View, thing: Thing, test: s.Test) -> bool | None:
             answer = fits_words(view, thing, words)
             return True if answer is None and all(_soft(view, thing, x) for x in words) else answer
         case s.Says(words=words):
-            return bears(view, thing, words)
+            return bears(view, thing, words) or (len(words) == 1 and _faces(thing, words[0]) is True)
         case s.Has(what=what):
             return _has(view, thing, what)
         case s.Region():
-            return in_region(thing, test)
+            return in_region(view, thing, test)
         case s.Between(first=first, second=second):
             return _between(view, thing, first, second)
         case s.Relation(kind=kind, other=other):
@@ -153,13 +165,16 @@ def holds(view: View, thing: Thing, test: s.Test) -> bool | None:
         case s.Measured(key=key, other=other):
             rank = rank_key(key)
             return any(rank(thing) < rank(o) for o in find(view, other)[:1] if o is not thing)
+        case s.Within(metres=metres, other=other, beyond=beyond):
+            gaps = [thing.distance_m] if other is None else [thing.gap_m(o) for o in find(view, other) if o is not thing]
+            return bool(gaps) and (min(gaps) <= metres) is not beyond
         case s.Faces(side=side):
             return _faces(thing, side)
         case s.Order():
             return None
 
 
-def _faces(thing: Thing, side: s.Side) -> bool | None:
+def _faces(thing: Thing, side: str) -> bool | None:
     """Which way a thing points, where the scene says so."""
     for key, value in thing.attributes.items():
         if set(key_words(key)) & {"direction", "facing", "heading", "pointing", "orientation", "arrow"}:
@@ -176,7 +191,7 @@ def _has(view: View, thing: Thing, what: s.Description) -> bool:
     )
 
 
-def in_region(thing: Thing, region: s.Region) -> bool:
+def in_region(view: View, thing: Thing, region: s.Region) -> bool:
     x, y = thing.box.centre
     band = 0.5 if region.half else SIDE_BAND
     checks: dict[str, Callable[[], bool]] = {
@@ -185,10 +200,17 @@ def in_region(thing: Thing, region: s.Region) -> bool:
         "top": lambda: y < band,
         "bottom": lambda: y > 1 - band,
         "middle": lambda: abs(x - 0.5) <= SIDE_BAND / 2 and (len(region.sides) > 1 or abs(y - 0.5) <= SIDE_BAND),
-        "near": lambda: thing.distance_m <= FOREGROUND_M,
-        "far": lambda: thing.distance_m >= DISTANCE_M,
+        "near": lambda: thing.distance_m <= _depth(view, 1 / 3),
+        "far": lambda: thing.distance_m >= _depth(view, 2 / 3),
     }
     return all(checks[side]() for side in region.sides)
+
+
+def _depth(view: View, share: float) -> float:
+    """A distance between the nearest and the furthest thing in view: so far along, on a logarithmic scale."""
+    distances = [t.distance_m for t in view.top_level() if not t.concepts & BACKDROP]
+    near, far = min(distances), max(distances)
+    return float(near * (far / near) ** share)
 
 
 def related(view: View, thing: Thing, kind: s.RelationKind, other: s.Description) -> bool:
@@ -201,13 +223,13 @@ def related(view: View, thing: Thing, kind: s.RelationKind, other: s.Description
 def _said(view: View, thing: Thing, other: s.Description) -> bool:
     """ "in the left lane", "in an orange vest": a fact or an outfit that says so."""
     words = [x for p in other.phrases for x in p.words]
-    if any(set(value_list) >= set(words) for value_list in _values(thing)):
+    if any(set(words) <= set(said) for said in (w.letters(thing.name).split(), *_values(thing))):
         return True
     return wears(view, thing, words)
 
 
 def _values(thing: Thing) -> Iterable[list[str]]:
-    for key, value in thing.attributes.items():
+    for key, value in facts(thing):
         yield [*w.letters(f"{key.replace('_', ' ')} {value}").split()]
 
 

@@ -26,6 +26,9 @@ def narrowed(description: s.Description, tests: tuple[s.Test, ...]) -> s.Descrip
 
 def exists(view: View, question: s.Exists) -> Reply:
     found = find(view, question.what)
+    if question.least != 1 or question.most is not None:
+        yes = question.least <= len(found) and (question.most is None or len(found) <= question.most)
+        return reply(f"{'yes' if yes else 'no'}, there {are(len(found))} {len(found)} {noun(view, question.what, len(found) != 1)}")
     if not found:
         return reply(f"{'yes' if question.negated else 'no'}, {none_of(view, question.what)}")
     return reply(f"{'no' if question.negated else 'yes'}, {there_are(view, question.what, found)}")

@@ -5,21 +5,26 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 
-from scope_ptz.perception.answers.naming import Reply, name, place, reply
+from scope_ptz.perception.answers.counting import narrowed
+from scope_ptz.perception.answers.naming import Reply, metres, name, names, place, reply
 from scope_ptz.perception.answers.seeing import what
-from scope_ptz.perception.facts import colour_of, fact_words
+from scope_ptz.perception.answers.values import pose_of
+from scope_ptz.perception.answers.wording import none_of, noun
+from scope_ptz.perception.facts import COLOUR_KEYS, colour_of, fact_words, facts, key_words
 from scope_ptz.perception.language import syntax as s
 from scope_ptz.perception.language import words as w
-from scope_ptz.perception.matching import BACKDROP
+from scope_ptz.perception.matching import BACKDROP, find
 from scope_ptz.perception.view import Thing, View
 
 MAX_GROUPS = 10
 MAX_TEXTS = 3
-_ACTIVITY_KEYS = ("activity", "action", "doing", "task")
+STILL = frozenset({None, "parked", "open", "closed", "lit", "unlit", "standing", "full", "empty", "stationary", "fallen"})
 
 
 def describe(view: View, question: s.Describe) -> Reply:
     """What can be seen, biggest first, with the texts that can be read."""
+    if question.what is not None:
+        return _describe_thing(view, question)
     if question.tests:
         return what(view, s.What(s.Description((s.Phrase(("thing",)),)), question.tests))
     groups = _groups(t for t in view.top_level() if not t.concepts & BACKDROP)
@@ -29,6 +34,27 @@ def describe(view: View, question: s.Describe) -> Reply:
     texts = list(dict.fromkeys(t.text.text for t in view.texts if t.legible))[:MAX_TEXTS]
     readable = f". I can read {w.listing([f'{chr(34)}{t}{chr(34)}' for t in texts])}" if texts else ""
     return reply(f"I can see {said}{readable}")
+
+
+def _describe_thing(view: View, question: s.Describe) -> Reply:
+    """One or several things with everything that the scene says of them."""
+    assert question.what is not None
+    found = find(view, narrowed(question.what, question.tests))
+    if not found:
+        return reply(none_of(view, question.what))
+    if len(found) > MAX_TEXTS:
+        return reply(f"there are {len(found)} {noun(view, question.what, many=True)}: {names(found)}")
+    return Reply(" ".join(w.sentence(_told(t)) for t in found))
+
+
+def _told(thing: Thing) -> str:
+    told = [
+        f"{' '.join(key_words(k))} {v}" for k, v in facts(thing) if k not in COLOUR_KEYS and not isinstance(v, bool) and k != "kind"
+    ]
+    told += [" ".join(key_words(k)) for k, v in facts(thing) if v is True]
+    texts = [f'it reads "{t}"' for t in thing.texts]
+    spot = f"there is {w.article(name(thing))} {place(thing)}, about {metres(thing.distance_m)} away"
+    return "; ".join([spot, *([", ".join(told)] if told else []), *texts])
 
 
 def _groups(things: Iterable[Thing]) -> list[str]:
@@ -56,7 +82,5 @@ def happening(view: View, question: s.Happening) -> Reply:
 
 
 def _doing(thing: Thing) -> str | None:
-    for key in _ACTIVITY_KEYS:
-        if key in thing.attributes:
-            return str(thing.attributes[key])
-    return "moving" if "moving" in fact_words(thing) else None
+    doing = pose_of(thing)
+    return doing if doing not in STILL else "moving" if "moving" in fact_words(thing) else None

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 from scope_ptz.perception.answers.counting import narrowed
 from scope_ptz.perception.answers.naming import Reply, metres, name, names, place, reply, several, unknown
 from scope_ptz.perception.answers.values import UNSEEN, anywhere
@@ -12,7 +14,7 @@ from scope_ptz.perception.language import words as w
 from scope_ptz.perception.matching import NEAR_M, find, relation_holds
 from scope_ptz.perception.view import Thing, View
 
-MAX_PLACED = 6
+MAX_PLACED = 3
 _BACKDROP = frozenset({"surface", "sky", "plant life", "mountain"})
 
 
@@ -25,10 +27,11 @@ def where(view: View, question: s.Where) -> Reply:
             f"the {name(found[0])} is {place(found[0])}, about {metres(found[0].distance_m)} away{neighbour(view, found[0])}"
         )
     if len(found) > MAX_PLACED:
-        spots = list(dict.fromkeys(place(t) for t in found))
-        return reply(f"there are {len(found)} {noun(view, question.what, many=True)}: {w.listing(spots)}")
-    spots = [f"{w.article(name(t))} {place(t)} about {metres(t.distance_m)} away" for t in found]
-    return reply(f"there are {len(found)} {noun(view, question.what, many=True)}: {w.listing(spots)}")
+        spots = Counter(place(t) for t in found)
+        said = w.listing([f"{n} {spot}" for spot, n in spots.items()])
+    else:
+        said = w.listing([f"{w.article(name(t))} {place(t)} about {metres(t.distance_m)} away" for t in found])
+    return reply(f"there are {len(found)} {noun(view, question.what, many=True)}: {said}")
 
 
 def neighbour(view: View, thing: Thing) -> str:

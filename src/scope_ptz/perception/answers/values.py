@@ -14,6 +14,7 @@ from scope_ptz.perception.facts import (
     canonical,
     colour_of,
     fact_words,
+    facts,
     is_worn,
     key_words,
     names_of,
@@ -37,6 +38,7 @@ _KEY_SYNONYMS = {
     "activity": {"activity", "action", "doing", "task", "up"},
     "material": {"material", "made"},
     "direction": {"direction", "pointing", "facing", "heading", "way"},
+    "carrying": {"carrying", "load", "cargo", "holding", "hold", "carry"},
 }
 
 
@@ -73,16 +75,33 @@ def value_of(view: View, thing: Thing, attribute: Sequence[str]) -> str | None:
         return _clothes(thing)
     wanted = {canonical(w.singular(x)) for x in attribute}
     synonyms = {x for group in _KEY_SYNONYMS.values() if group & set(attribute) for x in group}
-    for key, value in thing.attributes.items():
+    for key, value in facts(thing):
         keys = {canonical(w.singular(x)) for x in key_words(key)}
         if wanted <= keys or keys & synonyms or keys <= wanted:
             return _value(key, value)
+    if set(attribute) & _DOING and (pose := pose_of(thing)) is not None:
+        return pose
     if set(attribute) & _DOING:
         states = fact_words(thing) & {"moving", "stationary", "walking", "working", "upright", "sitting"}
         return min(states, default=None)
     if set(attribute) & _KEY_SYNONYMS["state"]:
-        facts = [f for f in sorted(fact_words(thing)) if any(opposite(f, x) for x in _POLAR)]
-        return facts[0] if facts else None
+        polar = [f for f in sorted(fact_words(thing)) if any(opposite(f, x) for x in _POLAR)]
+        return polar[0] if polar else None
+    return None
+
+
+_GERUNDS = {
+    "stand": "standing", "walk": "walking", "kneel": "kneeling", "shovel": "shovelling", "carry": "carrying something",
+    "point": "pointing", "phone": "talking on the phone", "clipboard": "holding a clipboard", "sit": "sitting", "run": "running",
+    "work": "working", "wave": "waving", "dig": "digging", "drive": "driving",
+}  # fmt: skip
+
+
+def pose_of(thing: Thing) -> str | None:
+    """What a person or machine is doing, as the scene states it."""
+    for key in ("activity", "action", "doing", "task", "pose", "state"):
+        if isinstance(value := thing.attributes.get(key), str):
+            return _GERUNDS.get(value, value)
     return None
 
 
@@ -102,7 +121,7 @@ def _is_clothes(attribute: Sequence[str]) -> bool:
 def _clothes(thing: Thing) -> str | None:
     """What a person wears: "an orange vest and a white helmet"."""
     worn: list[str] = []
-    for key, value in thing.attributes.items():
+    for key, value in facts(thing):
         if key in {"wearing", "clothing", "clothes", "outfit", "ppe"}:
             worn += [str(value)]
         elif is_worn(key):
@@ -116,22 +135,30 @@ def _of_a_part(view: View, question: s.Ask) -> Reply | None:
     """ "The colour of the worker's helmet", where the helmet is no thing of its own but a fact of the worker."""
     if question.what is None:
         return None
-    phrase = question.what.phrases[0]
-    owners = [t.other for t in phrase.tests if isinstance(t, s.Relation) and t.kind == "on"]
-    if not owners:
-        return None
-    found = [(t, v) for t in find(view, owners[0]) for v in [_part_value(t, phrase.words)] if v is not None]
+    found = part_values(view, question.what)
     if not found:
         return None
-    part = " ".join(phrase.words)
+    part = w.singular(question.what.phrases[0].words[-1])
     if len({v for _, v in found}) == 1:
-        return reply(f"{the(view, owners[0], many=len(found) > 1)}'s {part} is {found[0][1]}")
+        return reply(f"the {part} is {found[0][1]}" if len(found) == 1 else f"all {len(found)} are {found[0][1]}")
     return reply(w.listing([f"the {part} of the {t.category} {place(t)} is {v}" for t, v in found]))
+
+
+def part_values(view: View, what: s.Description) -> list[tuple[Thing, str]]:
+    """Owners and values of a part that is a fact of its owner: "helmet of the worker", "cabin door"."""
+    phrase = what.phrases[0]
+    owners = [t.other for t in phrase.tests if isinstance(t, s.Relation) and t.kind == "on"]
+    part = phrase.words
+    if not owners and len(phrase.words) > 1:
+        owners, part = [s.Description((s.Phrase(phrase.words[:-1]),))], phrase.words[-1:]
+    if not owners:
+        owners = [s.Description((s.Phrase(("thing",)),))]
+    return [(t, v) for t in find(view, owners[0]) for v in [_part_value(t, part)] if v is not None]
 
 
 def _part_value(thing: Thing, words: Sequence[str]) -> str | None:
     wanted = names_of(" ".join(words))
-    for key, value in thing.attributes.items():
+    for key, value in facts(thing):
         part = singular_phrase(" ".join(x for x in key_words(key) if x not in COLOUR_KEYS) or key)
         if part in wanted and isinstance(value, str) and value.lower() not in NOTHING:
             return value
@@ -155,7 +182,7 @@ def anywhere(view: View, attribute: Sequence[str]) -> Reply:
 def _says(thing: Thing, attribute: Sequence[str]) -> bool:
     """Whether a key of the thing speaks of every word asked for."""
     wanted = {canonical(w.singular(x)) for x in attribute}
-    return any(wanted <= {canonical(w.singular(x)) for x in (*key_words(k), *value_words(v))} for k, v in thing.attributes.items())
+    return any(wanted <= {canonical(w.singular(x)) for x in (*key_words(k), *value_words(v))} for k, v in facts(thing))
 
 
 def absent(view: View, subject: s.Description) -> Reply:

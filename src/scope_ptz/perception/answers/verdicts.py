@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from scope_ptz.perception.answers.counting import exists
 from scope_ptz.perception.answers.naming import Reply, name, place, reply, unknown
-from scope_ptz.perception.answers.values import absent
+from scope_ptz.perception.answers.values import absent, part_values
 from scope_ptz.perception.answers.wording import after_noun, as_asked, holds_words, none_of, noun, plural
 from scope_ptz.perception.facts import canonical, colour_of, fact_words, fits_noun, opposite
 from scope_ptz.perception.language import syntax as s
@@ -19,13 +19,16 @@ from scope_ptz.perception.view import Thing, View
 _ANYBODY = frozenset(["anyone", "anybody", "someone", "somebody", "anything", "something"])
 
 
+_EVERYBODY = frozenset(["everyone", "everybody", "everything"])
+
+
 def yes_no(view: View, question: s.YesNo) -> Reply:
     subject, tests = _parts(view, question)
     if not tests:
         return exists(view, s.Exists(subject))
     found = find(view, subject)
     if not found:
-        return absent(view, subject)
+        return _of_a_part(view, subject, tests) or absent(view, subject)
     missing = next((m for m in (missing_reference(view, t) for t in tests) if m is not None), None)
     if missing is not None:
         return unknown(f"I cannot tell: {none_of(view, missing)}")
@@ -37,6 +40,17 @@ def yes_no(view: View, question: s.YesNo) -> Reply:
     if choice is not None:
         return choice
     return _verdict(view, question.scope, subject, tests, found, [t for t, ok in zip(found, answers, strict=True) if ok])
+
+
+def _of_a_part(view: View, subject: s.Description, tests: tuple[s.Test, ...]) -> Reply | None:
+    """ "Is the cabin door open?", where the door is a fact of the cabin."""
+    values = part_values(view, subject)
+    if not values or len(tests) != 1 or not isinstance(tests[0], s.Is):
+        return None
+    wanted = canonical(tests[0].words[-1])
+    value = canonical(values[0][1].lower())
+    said = f"the {subject.phrases[0].words[-1]} is {value}"
+    return reply(f"{'yes' if wanted in value.split() else 'no'}, {said}")
 
 
 def missing_reference(view: View, test: s.Test) -> s.Description | None:
@@ -98,6 +112,8 @@ def _verdict(
 ) -> Reply:
     total, many = len(found), noun(view, subject, many=True)
     union = len(subject.phrases) > 1
+    if any(p.words[-1] in _EVERYBODY for p in subject.phrases if p.words):
+        scope = "all"
     some = scope == "any" or any(p.words[-1] in _ANYBODY for p in subject.phrases if p.words)
     share = f"{len(yes)} of the {total} {many} {holds_words(view, tests, len(yes))}"
     if scope == "none":
@@ -130,7 +146,7 @@ def _instead(view: View, test: s.Test, found: list[Thing]) -> str | None:
     for fact in sorted(fact_words(thing)):
         if opposite(wanted, fact):
             return f"the {kind} is {fact}" if len(found) == 1 else f"the {w.plural(kind)} are {fact}"
-    if nouns_in(test.words) and not fits_noun(thing, test.words[-1]):
+    if nouns_in(test.words) and not fits_noun(view, thing, test.words[-1]):
         return f"it is {w.article(name(thing))}"
     return None
 

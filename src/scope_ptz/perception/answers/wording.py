@@ -102,8 +102,11 @@ def after_noun(view: View, test: s.Test) -> str:
 
 def _plain(view: View, test: s.Test) -> str:
     match test:
-        case s.Relation(kind=kind, other=other):
-            return f"{_RELATIONS[kind]} {as_asked(view, other)}"
+        case s.Relation(kind=kind, other=other, said=said):
+            return f"{said if kind == 'on' and said else _RELATIONS[kind]} {as_asked(view, other)}"
+        case s.Within(metres=metres, other=other, beyond=beyond):
+            of = f" of {as_asked(view, other)}" if other else ""
+            return f"{'more than' if beyond else 'within'} {metres:g} m{of}"
         case s.Between(first=first, second=second):
             return f"between {as_asked(view, first)}" + ("" if first == second else f" and {as_asked(view, second)}")
         case s.Region(sides=sides, half=half):

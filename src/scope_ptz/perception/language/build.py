@@ -59,11 +59,37 @@ class _Rank(tuple[s.OrderKey | None, int | None, int | None]):
     """Superlative, ordinal, amount."""
 
 
+_THE_VIEW = frozenset("scene view picture image frame photo surroundings everything it this area situation".split())
+
+
+def _bearer(what: s.Description) -> s.Description | None:
+    """What bears a text: "the words on the van" are the van's; None for "the text"."""
+    phrase = what.phrases[0]
+    if phrase.words[-1] not in _TEXTS:
+        return what
+    holders = [t.other for t in phrase.tests if isinstance(t, s.Relation)]
+    return holders[0] if holders else None
+
+
+_TEXTS = frozenset("text texts writing word words lettering letters inscription message caption slogan name number it".split())
+
+
 class NounPhrases(Transformer[Token, Any]):
     """Noun phrases and what may follow them."""
 
     def description(self, c: Children) -> s.Description:
         return cast(s.Description, c[0])
+
+    def anywhere(self, c: Children) -> s.Description:
+        """ "Behind the barrier": everything there."""
+        return s.Description((s.Phrase(("thing",), _tests(c)),))
+
+    def np_to(self, c: Children) -> s.Phrase:
+        """ "The closest cone to the van"."""
+        *front, other = c
+        phrase = self.np(front)
+        key: s.OrderKey = phrase.order.key if phrase.order else "nearest"
+        return replace(phrase, order=s.Order(key, s.Description((other,))))
 
     def nps(self, c: Children) -> s.Description:
         """What follows the last of several nouns goes for all ("cars and vans on the left"), and so does its noun ("red or blue cars")."""
@@ -87,7 +113,7 @@ class NounPhrases(Transformer[Token, Any]):
         return _Core(word for token in c for word in str(token).split())
 
     def order(self, c: Children) -> _Rank:
-        key = cast("s.OrderKey | None", _value(c, "SUP"))
+        key = cast("s.OrderKey | None", _value(c, "SUP") or _value(c, "CMP"))
         ordinal, amount = _value(c, "ORD"), _value(c, "NUM")
         return _Rank((key, int(ordinal) if ordinal else None, w.number(amount) if amount else None))
 
@@ -139,10 +165,19 @@ class NounPhrases(Transformer[Token, Any]):
         return s.Not(_tests(c)[0])
 
     def relation(self, c: Children) -> s.Relation:
-        return s.Relation(cast(s.RelationKind, str(c[0])), _descriptions(c)[0])
+        kind, _, said = str(c[0]).partition(":")
+        return s.Relation(cast(s.RelationKind, kind), _descriptions(c)[0], said)
+
+    def either(self, c: Children) -> s.Any:
+        return s.Any(tuple(self.relation([t, *_descriptions(c)]) for t in _tokens(c, "REL")))
+
+    def limit(self, c: Children) -> s.Within:
+        other = _descriptions(c)
+        beyond = bool(_tokens(c, "BEYOND")) or _value(c, "CMP") == "furthest"
+        return s.Within(float(w.number(_value(c, "NUM") or "0") or 0), other[0] if other else None, beyond)
 
     def of(self, c: Children) -> s.Relation:
-        return s.Relation("on", _descriptions(c)[0])
+        return s.Relation("on", _descriptions(c)[0], "of")
 
     def between(self, c: Children) -> s.Between:
         first, second = _descriptions(c)
@@ -205,7 +240,15 @@ class Builder(NounPhrases):
         return cast(s.Question, [x for x in c if not isinstance(x, Token)][0])
 
     def exists(self, c: Children) -> s.Exists:
-        return s.Exists(_descriptions(c)[0])
+        what = _descriptions(c)[0]
+        amount = what.phrases[0].amount if len(what.phrases) == 1 and what.phrases[0].order is None else None
+        if amount is None:
+            return s.Exists(what)
+        if _tokens(c, "ATLEAST", "MORE"):
+            return s.Exists(what, least=amount + bool(_tokens(c, "MORE")))
+        if _tokens(c, "ATMOST", "FEWER"):
+            return s.Exists(what, least=0, most=amount - bool(_tokens(c, "FEWER")))
+        return s.Exists(what, least=amount, most=amount)
 
     def absent(self, c: Children) -> s.Exists:
         return s.Exists(_descriptions(c)[0], negated=True)
@@ -254,7 +297,10 @@ class Builder(NounPhrases):
         return s.Description((s.Phrase(phrase.words, (*phrase.tests, s.Relation("on", owner))),))
 
     def ask_worn(self, c: Children) -> s.Ask:
-        return s.Ask(("wearing",), _descriptions(c)[0])
+        return s.Ask((_value(c, "WITH") or "wearing",), _descriptions(c)[0])
+
+    def ask_direction(self, c: Children) -> s.Ask:
+        return s.Ask(("direction",), _descriptions(c)[0])
 
     def ask_doing(self, c: Children) -> s.Ask:
         return s.Ask((str(_value(c, "W")),), _descriptions(c)[0])
@@ -268,7 +314,7 @@ class Builder(NounPhrases):
 
     def read(self, c: Children) -> s.Read:
         found = _descriptions(c)
-        return s.Read(found[-1] if found else None)
+        return s.Read(_bearer(found[-1]) if found else None)
 
     def plate(self, c: Children) -> s.Read:
         found = _descriptions(c)
@@ -289,7 +335,14 @@ class Builder(NounPhrases):
         return s.What(_descriptions(c)[0], _tests(c))
 
     def kind_is(self, c: Children) -> s.Identify:
-        return s.Identify(_descriptions(c)[-1])
+        kind, asked = _descriptions(c)
+        spans = nouns_in(kind.phrases[0].words)
+        noun = kind.phrases[0].words[spans[0][0] : spans[0][1]] if spans else ()
+        return s.Identify(
+            s.Description(
+                tuple(replace(p, words=(*p.words[:-1], *noun)) if noun and p.words[-1] == "one" else p for p in asked.phrases)
+            )
+        )
 
     def identify(self, c: Children) -> s.Identify:
         return s.Identify(_descriptions(c)[0])
@@ -303,6 +356,8 @@ class Builder(NounPhrases):
 
     def far(self, c: Children) -> s.HowFar:
         what, *other = _descriptions(c)
+        if len(what.phrases) == 2 and not other:
+            what, *other = (s.Description((p,)) for p in what.phrases)
         return s.HowFar(what, other[0] if other else None)
 
     def compare(self, c: Children) -> s.Compare:
@@ -327,7 +382,10 @@ class Builder(NounPhrases):
         return s.MostCommon(attribute, found[-1] if found else EVERYTHING, bool(_tokens(c, "LEAST")))
 
     def describe(self, c: Children) -> s.Describe:
-        return s.Describe(_tests(c))
+        found = _descriptions(c)
+        if found and found[0].phrases[0].words[-1] not in _THE_VIEW:
+            return s.Describe(_tests(c), found[0])
+        return s.Describe(_tests(c) or (found[0].phrases[0].tests if found else ()))
 
     def happening(self, c: Children) -> s.Happening:
         return s.Happening()

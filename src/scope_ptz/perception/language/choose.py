@@ -14,6 +14,10 @@ _SPECIFIC: tuple[type[Any], ...] = (
 )  # fmt: skip
 
 
+_TEXTS = frozenset("text texts writing words lettering written printed painted name number".split())
+"""Words of texts, which are read and are no things."""
+
+
 def cost(reading: Any) -> tuple[float, str]:
     """Lower is better; the text of the reading breaks ties, so that the choice never depends on the parser's order."""
     kind = 0.0 if isinstance(reading, _SPECIFIC) else 20.0
@@ -31,8 +35,12 @@ def _cost(node: Any) -> float:
             total += 1.5
         case s.Phrase(words=words):
             total += 1.0 if nouns_in(words) else 2.0
+            total += 4.0 if words[-1] in _TEXTS else 0.0
+            total += 0.2 * max(0, len(node.tests) - 1)
         case s.Is(words=words):
             total += 3.0 if nouns_in(words) else 0.5
+        case s.Order(reference=reference):
+            total += 3.0 if reference is not None else 0.0
         case s.Ask(attribute=words):
             total += 3.0 if nouns_in(words) else 0.0
         case _:

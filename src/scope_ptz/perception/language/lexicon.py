@@ -64,8 +64,9 @@ class Lexicon:
             found |= self.kinds(parent)
         return frozenset(found)
 
-    def other_names(self, concept: str) -> frozenset[str]:
-        return frozenset(name for name, meant in self.names.items() if meant == concept)
+    def all_names(self, concept: str) -> frozenset[str]:
+        """Every noun, singular, for the concept or a kind of it."""
+        return frozenset(name for name, meant in self.names.items() if concept in self.kinds(meant))
 
 
 def singular_phrase(phrase: str) -> str:

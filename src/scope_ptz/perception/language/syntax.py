@@ -40,8 +40,11 @@ class Order:
 
 @dataclass(frozen=True, slots=True)
 class Relation:
+    """``said``: the preposition as it was said, where several mean one kind."""
+
     kind: RelationKind
     other: Description
+    said: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,6 +99,15 @@ class Measured:
 
 
 @dataclass(frozen=True, slots=True)
+class Within:
+    """Closer than so many metres to the camera or to ``other``; ``beyond``: further."""
+
+    metres: float
+    other: Description | None = None
+    beyond: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class Not:
     test: Test
 
@@ -107,7 +119,7 @@ class Any:
     tests: tuple[Test, ...]
 
 
-Test = Relation | Between | Region | Has | Says | Is | Faces | Measured | Not | Any | Order
+Test = Relation | Between | Region | Has | Says | Is | Faces | Measured | Within | Not | Any | Order
 
 
 # Questions
@@ -115,10 +127,12 @@ Test = Relation | Between | Region | Has | Says | Is | Faces | Measured | Not | 
 
 @dataclass(frozen=True, slots=True)
 class Exists:
-    """ "Is there ..."; ``negated``: "is there no ..."."""
+    """ "Is there ..."; ``negated``: "is there no ..."; ``least``/``most``: how many there must be."""
 
     what: Description
     negated: bool = False
+    least: int = 1
+    most: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -233,9 +247,10 @@ class MostCommon:
 
 @dataclass(frozen=True, slots=True)
 class Describe:
-    """ "What do you see (on the left)?" """
+    """ "What do you see (on the left)?", "describe the van"."""
 
     tests: tuple[Test, ...] = ()
+    what: Description | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -100,11 +100,12 @@ def tokenise(text: str) -> list[Token]:
             i += 1
             continue
         kind, value = found
-        last = i + size == len(words)
-        if size == 1 and last and words[i] in _PARTICLES:
-            tokens.append(Token("W", words[i]))
+        raw = " ".join(words[i : i + size])
+        if raw in _PARTICLES and i + size == len(words):
+            if not tokens or tokens[0].type not in {"WHAT", "WHICH", "WHERE"}:
+                tokens.append(Token("W", raw))
         elif kind != "SKIP":
-            tokens.append(Token(kind, value if kind not in {"SAYS", "READ"} else words[i]))
+            tokens.append(Token(kind, f"{value}:{raw}" if kind == "REL" else raw if kind in {"SAYS", "READ"} else value))
         i += size
         if kind == "SAYS" and not (tokens[0].type == "WHAT" and any(t.type == "DOES" for t in tokens)):
             literal, i = _literal(words, i)
