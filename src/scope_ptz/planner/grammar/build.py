@@ -74,17 +74,20 @@ class Builder(MoveRules, SceneRules):
     def _loop(self, node: Node, negate: bool = False) -> Step:
         condition: Condition | None = None
         bound: Bound | None = None
+        otherwise: tuple[Step, ...] = ()
         body: tuple[Step, ...] = ()
         for branch in node.branches():
             made = self.visit(branch)
-            if isinstance(made, Bound):
+            if branch.name == "block":
+                otherwise = made
+            elif isinstance(made, Bound):
                 bound = made
             elif isinstance(made, Condition):
                 condition = made
             else:
                 body = self._as_steps(made)
         assert condition is not None
-        return Loop(body, Negated(condition) if negate else condition, bound)
+        return Loop(body, Negated(condition) if negate else condition, bound, otherwise)
 
     def loop(self, node: Node) -> Step:
         return self._loop(node)
@@ -127,13 +130,10 @@ class Builder(MoveRules, SceneRules):
         act, condition, *block = (self.visit(b) for b in node.branches())
         return If(Negated(condition), self._as_steps(act), block[0] if block else ())
 
-    def at_places(self, node: Node) -> Step:
-        places, act = (self.visit(b) for b in node.branches())
-        return AtPlaces(places, self._as_steps(act))
-
-    def at_places_last(self, node: Node) -> Step:
-        act, places = (self.visit(b) for b in node.branches())
-        return AtPlaces(places, self._as_steps(act))
+    def do_at(self, node: Node) -> Step:
+        """ "At gate, count the cars", or the other way round."""
+        places, act = sorted(node.branches(), key=lambda b: b.name not in {"every_place", "place_list"})
+        return AtPlaces(self.visit(places), self._as_steps(self.visit(act)))
 
     def visit_places(self, node: Node) -> Any:
         places = self.visit(node.branches()[-1])

@@ -53,6 +53,9 @@ class MoveRules(Rules):
         count = self.number(node) if node.has("NUM") else 1.0
         return round(360 * count * self.lexemes[node.leaves("FRACTION")[0].index].value, 6)
 
+    def angle_fraction(self, node: Node) -> float:
+        return self.lexemes[node.leaves("FRACTION")[0].index].value
+
     def angle_full(self, node: Node) -> float:
         return 360.0
 
@@ -222,6 +225,9 @@ class MoveRules(Rules):
 
     def zoom_to_value(self, node: Node) -> tuple[Part, ...]:
         return (Aim("zoom", self.number(node)),)
+
+    def zoom_to_percent(self, node: Node) -> tuple[Part, ...]:
+        return (Aim("zoom", self.number(node) / 100),)
 
     def zoom_max(self, node: Node) -> tuple[Part, ...]:
         return (Zoom("in"),)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from scope_ptz.planner.grammar.syntax import (
@@ -39,6 +40,8 @@ from scope_ptz.planner.grammar.trees import Node, Rules
 from scope_ptz.tools.arguments import View
 
 _SCOPES = {"now", "full", "scene"}
+_ALL_AROUND = re.compile(r"\b(whole|entire|full) (scene|area|site|panorama|place|surroundings)\b", re.IGNORECASE)
+_DURATIONS = {"seconds", "minutes", "part_minute", "minute_and_part", "minutes_seconds", "hours"}
 
 
 class SceneRules(Rules):
@@ -73,7 +76,7 @@ class SceneRules(Rules):
         return ZoomTo(self._thing(node))
 
     def track(self, node: Node) -> Step:
-        durations = [self.visit(b) for b in node.branches() if b.name not in {"thing", "np"}]
+        durations = [self.visit(b) for b in node.branches() if b.name in _DURATIONS]
         if durations and not 0 < durations[0] <= 600:
             return Unclear("I can follow something for at most 600 seconds. For how long shall I follow it?")
         return Track(self._thing(node), durations[0] if durations else 10.0)
@@ -138,7 +141,8 @@ class SceneRules(Rules):
         return PresetRef(self._free_name(node))
 
     def _free_name(self, node: Node) -> str:
-        return self.text(node.branches("free_name")[0].branches("words")[0].all_leaves())
+        inner = node.branches("marked_name") or [node]
+        return self.text(inner[0].branches("free_name")[0].branches("words")[0].all_leaves())
 
     def every_place(self, node: Node) -> tuple[PresetRef, ...]:
         return ()
@@ -196,7 +200,7 @@ class SceneRules(Rules):
         end = self.lexemes[leaves[-1].index].end
         question = self.text(leaves[skip:])
         views = {kind for leaf in leaves for kind in self.lexemes[leaf.index].kinds}
-        view: View | None = "current" if "NOWSCOPE" in views else "full" if "FULLSCOPE" in views else None
+        view: View | None = "current" if "NOWSCOPE" in views else "full" if "FULLSCOPE" in views or _ALL_AROUND.search(question) else None
         return Ask(question + ("?" if self.source[end : end + 3].lstrip().startswith("?") else ""), view)
 
     def camera_state(self, node: Node) -> Step:
@@ -278,7 +282,7 @@ class SceneRules(Rules):
         return Compare(first, second, self._wish(node), self._view(node))
 
     def compare_where(self, node: Node) -> Step:
-        thing = self._thing(node).text
+        thing = self.visit(node.branches("np")[0]).text
         first, second = (self.text(b.all_leaves()) for b in node.branches("near_words"))
         return Compare(Thing(f"{thing} {first}"), Thing(f"{thing} {second}"), self._wish(node), self._view(node))
 

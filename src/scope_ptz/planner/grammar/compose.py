@@ -44,7 +44,7 @@ def _add(out: list[Step], link: str, step: Step) -> None:
     elif isinstance(step, DoAgain) and out:
         _add_again(out, step)
     elif isinstance(step, Repeat) and link in {"and", ","} and last is not None and _covers_before(step, last):
-        out[-1] = Repeat((last, *step.body), step.times)
+        out[-1] = Repeat(tuple(compose([Linked(link, s) for s in step.body], [last])), step.times)
     elif isinstance(step, Loop | Repeat) and link == "and" and isinstance(last, Move) and _leans(step.body[0]):
         joined = _joined(last, step.body[0])
         out[-1:] = [replace(step, body=(joined[0], *step.body[1:]))] if len(joined) == 1 else [*joined[:-1], step]
@@ -126,7 +126,7 @@ def _stepped_loop(step: Loop | Repeat) -> Step:
     single = inner.body[0] if isinstance(inner, Repeat) else inner
     body = (single, *step.body[1:])
     if isinstance(step, Loop) and isinstance(inner, Repeat) and step.bound is None:
-        return Loop(body, step.until, Bound(moves=inner.times))
+        return Loop(body, step.until, Bound(moves=inner.times), step.otherwise)
     return replace(step, body=body) if isinstance(step, Loop) else Repeat(body, step.times)
 
 

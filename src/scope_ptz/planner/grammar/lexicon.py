@@ -19,7 +19,7 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     # Glue
     "THEN": (
         "[and] then", "[and] (after that|after this|afterwards|afterward|thereafter|subsequently)", "[and] next", "followed by",
-        "after which", "[and] (when|once) (done|finished|that is done|you are done|that s done|you re done|there|you are there|you re there|you get there)",
+        "after which", "[and] (when|once) (done|finished|that is done|you are done|that s done|you re done|you are there|you re there|you get there)",
         "[and] finally", "[and] lastly", "[and] last of all", "after you are done", "[and] then after that", "[and] as (a next|the next) step",
         "upon arrival", "on arrival", "second of all",
     ),
@@ -27,24 +27,24 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "OR": ("or", "versus", "vs", "rather than", "or rather"),
     "THAN": ("than", "than there are", "compared to", "compared with", "than there are of"),
     "IF": (
-        "if", "[and] when", "whenever", "once", "as soon as", "in case", "provided [that]", "only if", "and if", "in the event [that]",
-        "the moment [that]", "assuming [that]", "but if", "so long as", "and only if", "supposing", "as long as", "whether",
+        "if", "when", "whenever", "once", "as soon as", "in case", "provided [that]", "only if", "in the event [that]",
+        "the moment [that]", "assuming [that]", "so long as", "supposing", "as long as", "whether",
     ),
     "UNLESS": ("unless", "if not for"),
-    "OTHERWISE": ("otherwise", "[or] else", "if not", "but otherwise", "or otherwise", "if that fails", "if there are none", "if there is none", "if none", "if there aren t [any]", "if there isn t [one]", "if you don t", "if you do not", "and if not", "and if there are none", "if it is not", "if it isn t", "if not then"),
+    "OTHERWISE": ("otherwise", "[or] else", "if not", "but otherwise", "or otherwise", "if that fails", "if there are none", "if there is none", "if none", "and if not", "and if there are none", "if not then", "if (you|it) (don t|doesn t|can t|cannot|do not)"),
     "UNTIL": (
-        "until", "till", "til", "up until", "untill", "unitl", "[and] stop (when|once|as soon as|if)", "stopping (when|once|as soon as|if)",
+        "until", "till", "til", "untill", "unitl", "[and] stop (when|once|as soon as|if)", "stopping (when|once|as soon as|if)",
         "[and] (halt|pause) (when|once|as soon as)", "up to the point where", "to the point where", "only stop when", "unti", "untl", "or until",
     ),
     "WHILE": ("while", "as long as", "for as long as"),
-    "BEFORE": ("before",),
-    "AFTER": ("after",),
+    "BEFORE": ("before [you]", "prior to", "but before [you]"),
+    "AFTER": ("after [you]", "after (you have|having|you ve)"),
     "EACHTIME": (
         "(each|every) time", "after (each|every) (one|step|move|pan|turn|tilt|zoom|stop|increment)", "at (each|every) (step|stop|one|of them|move|increment|position|point|place|location)",
         "at each", "on (each|every) (step|stop)", "(each|every) step", "from (each|every|each one|each of them)", "in each [one]", "between (moves|steps)", "in between",
         "for (each|each one|each of them)", "(each|every) step of the way", "along the way", "there each time", "at both", "in both", "at each of (them|these|those)", "as you go", "after each", "from both",
     ),
-    "KEEP": ("keep", "keep on", "continue", "continue to", "carry on", "go on", "proceed to", "continuously", "repeatedly", "incrementally", "gradually", "progressively", "step by step"),
+    "KEEP": ("keep", "keep on", "continue", "continue to", "carry on", "go on", "proceed to", "continuously", "again and again", "over and over [again]", "one step at a time", "bit by bit", "little by little", "step after step", "repeatedly", "incrementally", "gradually", "progressively", "step by step"),
     "NOT": ("(do not|don t|dont|never|without|no|avoid|stop|you should not|must not|you don t need to|there is no need to|no need to|refrain from|instead of|don t you|do not ever|not)",),
     "INSTEAD": ("instead",),
     # Asking
@@ -53,7 +53,7 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "NUMBEROF": ("[the] [total] (number|count|amount|quantity|tally) of", "[the] total of", "a count of", "a tally of", "the (total|exact|overall) (number|count) of", "a (headcount|head count) of"),
     "COMPARE": ("~compare", "make a comparison of", "~contrast"),
     "WHAT": ("what", "what s", "what re", "whats", "what kind of", "what type of", "what sort of"),
-    "WHICH": ("which", "which of", "which one", "which one of", "in which", "at which", "from which", "on which", "which ones", "at what", "from what"),
+    "WHICH": ("which", "which of", "which one", "which one of", "whichever", "whichever one", "whichever of", "whichever one of", "wherever", "in which", "at which", "from which", "on which", "which ones", "at what", "from what"),
     "WHO": ("who", "who s", "whose", "whom", "where", "where s", "wheres", "when is", "why", "how", "how s", "how come"),
     "THEREBE": (
         "(is|are|was|were) there [still]", "there (is|are|was|were)", "there s", "there re", "there (happens|happen|seem|seems|appear|appears) to be", "there be", "does there exist", "there exists", "there will be", "we have", "you have", "you ve got", "we ve got", "you get", "there are still", "there is still",
@@ -63,7 +63,7 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "BE": ("is", "are", "was", "were", "be", "being", "isn t", "aren t", "has been", "have been", "becomes", "become", "gets", "looks", "has", "have"),
     "DO": ("do", "does", "did", "doesn t", "don t", "didn t"),
     "YOUSEE": (
-        "(do|can|could|did) (you|we|i|the camera) [now|still|currently] (see|spot|detect|find|make out|notice|identify|observe)", "[that] (you|we|i|the camera|it) [now|still|currently|actually|finally|first|can|can now|do|re able to|are able to|have|ve|can finally] (see|sees|spot|spots|detect|detects|find|finds|make out|notice|count|counts|observe|identify|got|found|seen|spotted|counted)",
+        "(do|can|could|did) (you|we|i|the camera) [now|still|currently] (see|spot|detect|make out|notice|observe)", "do (you|we|i) find", "[that] (you|we|i|the camera|it) [now|still|currently|actually|finally|first|can|can now|do|re able to|are able to|have|ve|can finally] (see|sees|spot|spots|detect|detects|find|finds|make out|notice|count|counts|observe|identify|got|found|seen|spotted|counted)",
         "~see", "~spot", "~detect", "~notice", "~observe", "does (it|the camera) see", "can be seen", "~identify",
     ),
     "YOUREAD": ("(you|we|i|it) (can|could|are able to|re able to|can now|can finally|can clearly|can actually) [clearly] read", "(can|could) (you|we|i|it) read"),
@@ -71,7 +71,7 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "VISIBLE": (
         "[that] (is|are|was|were|becomes|become|get|gets) [clearly|still|currently|now] (visible|in view|in sight|in the view|in frame|in the frame|on screen|in shot|present|there|found|spotted|detected|seen|showing|in the picture|in the image)",
         "(appear|appears|appeared)", "(shows|turns|pops) up", "(come|comes|came) (into|in) (view|sight|frame|the frame|the picture|shot)", "(enter|enters) [the] (view|frame|picture|scene|shot)",
-        "(can|could) be [seen|spotted|found|counted|detected]", "can (you|we|i|the camera) (see|spot|make out|find|detect|count)", "do (you|we|i) (see|spot|count|have|find)", "does the camera see", "visible", 
+        "(can|could) be [seen|spotted|found|counted|detected]", "can (you|we|i|the camera) (see|spot|make out|detect)", "do (you|we|i) (see|spot|count|have|find)", "does the camera see", "visible", 
         "you can see", "you see", "are there", "is there", "there are", "in sight", "that you can see", "you can count", "you can find", "are shown", "exist", "exists", "are we seeing", "are you seeing",
     ),
     "GONE": (
@@ -87,9 +87,9 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "READ": ("~read", "~read out", "~read me", "~read off", "~transcribe", "~read aloud", "read out loud", "~ocr", "~read to me", "~decipher"),
     "SAYS": ("says", "say", "reads", "read", "shows", "is written"),
     # Camera motion
-    "PAN": ("~pan", "~turn", "~swing", "~rotate", "~swivel", "~slew", "~pivot", "~spin", "~yaw", "~veer", "~track over", "make a", "do a", "perform a", "~traverse"),
+    "PAN": ("~pan", "~turn", "~swing", "~rotate", "~swivel", "~slew", "~pivot", "~spin", "~yaw", "~veer", "~track over", "(make|do|perform|complete|give) [a|an|one]", "~traverse"),
     "TILT": ("~tilt", "~pitch", "~incline", "~angle"),
-    "LOOK": ("~look", "~aim", "~point", "~face", "~gaze", "~peer", "~direct", "~orient", "~train"),
+    "LOOK": ("(have|take) a [quick] (look|peek|glance)", "~look", "~aim", "~point", "~face", "~gaze", "~peer", "~direct", "~orient", "~train"),
     "MOVE": ("~move", "~go", "~shift", "~nudge", "~adjust", "~bring", "~jog", "~slide", "~head", "~steer", "~reposition", "~get", "~proceed", "~bump", "~step", "~scoot", "~ease", "~drop", "~continue"),
     "SWITCH": (
         "~switch [over]", "~change [over]", "~jump", "~cut", "~load", "~recall", "~call up", "~select", "~open", "~activate", "~use", "~visit", "take me", "~return", "~revert", "bring up", "pull up", "~go back", "~come back", "~move back", "take us", "~go over", "~head over", "~get back", "~move over", "~choose", "~pick", "~swing over", "~navigate", "~travel", "~snap over", "switch back", "~go straight", "~turn back", "~swing back", "~pan back", "~hop",
@@ -122,11 +122,10 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "ASFARAS": ("as far", "as far to the", "as far over to the"),
     "POSSIBLE": ("as (it goes|it will go|possible|you can|it can|it can go|you can go|it ll go)",),
     "DEG": ("degrees", "degree", "deg", "degs", "degress", "degres", "°", "dgrees", "degreees"),
-    "METRE": ("(metre|metres|meter|meters|feet|foot|inch|inches|centimetres|centimeters|cm|km|mile|miles|yard|yards|pixel|pixels)",),
     "STEPS": ("(step|steps|increment|increments|jumps|stages|intervals|hops|chunks|notches|moves)",),
     "STEPSOF": ("[in|by|using|with|at] (steps|increments|jumps|stages|intervals|hops|chunks) of",),
     "ATATIME": ("at a time", "per step", "each", "per move", "at each step", "by each step"),
-    "TO": ("to", "towards", "toward", "into", "onto", "over to", "on to", "back to", "in to"),
+    "TO": ("to", "towards", "toward", "into", "onto", "over to", "on to", "back to"),
     "BY": ("by", "through", "about", "roughly", "around", "approximately", "some", "for", "of", "exactly", "by about", "by around", "by roughly", "by exactly", "by approximately", "by another", "for about", "by a further", "by an additional", "a total of", "circa", "or so"),
     "CAMERA": ("[the|your|this] (camera|cam|lens|ptz|camera head|camera view|head|device|ptz camera)", "[the|your|this] (view|viewpoint|field of view|shot|frame|picture|image|gaze|line of sight)", "yourself"),
     "PANNOUN": ("[the|your] (pan|azimuth|heading|bearing|yaw) [angle|position|value|axis]",),
@@ -146,7 +145,7 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "WIDER": ("[~get|~go|~move|~look] (wider|further out)", "~widen", "pull (back|out)", "back (off|out|away)", "wider", "zoom back", "~broaden", "zoom back out", "go wide", "pulling back"),
     "FIELD": ("[the|your] (angle|field|field of view|fov|view|shot|lens|angle of view|zoom|magnification|framing)",),
     "X": ("x", "×", "fold", "ex"),
-    "TIMES": ("(times|time)",),
+    "TIMES": ("(times|time) [over|in a row|in total|in succession|in all]", "(tries|attempts|goes|rounds|iterations|repeats|repetitions)", "consecutive times",),
     "ONCE": ("once", "one time", "a single time", "just once"),
     "TWICE": ("twice", "two times", "thrice", "a couple of times", "a few times"),
     "PERCENT": ("%", "percent", "per cent", "pct"),
@@ -161,7 +160,7 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "ZOOMMIN": ("[to|go|set|use] [the|its] (widest|full wide|widest angle|widest view|widest shot|widest zoom|full wide angle|wide angle|minimum zoom|min zoom|lowest zoom|no zoom|smallest zoom|1x zoom)", "~reset [the] zoom", "reset [the] (zoom level|magnification)", "as wide as (possible|you can|it goes)", "undo the zoom", "unzoom", "un zoom", "wide open", "cancel the zoom", "clear the zoom", "back to (wide|1x|normal zoom)", "remove the zoom"),
     # Things
     "LOOKAT": (
-        "~zoom in (on|to|onto|into|towards|at) the", "~zoom in (on|onto|towards|at)", "~zoom (on|onto|into|towards)", "~zoom on to", "~zoom right in on", "~focus [in] [on|onto|upon]", "~look [closely|closer|carefully] (at|towards|toward)", "(take|have|get) a [good|closer|close|quick|better|proper] (look|view|shot) (at|of)",
+        "~zoom in (on|onto|into|towards|at)", "~zoom (on|onto|into|towards)", "~zoom on to", "~zoom right in on", "~focus [in] [on|onto|upon]", "~look [closely|closer|carefully] (at|towards|toward)", "(take|have|get) a [good|closer|close|quick|better|proper] (look|view|shot) (at|of)",
         "~centre (on|in on|around|onto)", "~center (on|in on|around|onto)", "~frame", "~close in on", "~home in on", "~hone in on", "~get closer to", "~move in on", "~get a closer view of", "~go closer to", "(get|give me) a (close up|closeup) (of|on)", "close up (of|on)", "~inspect", "~examine",
         "~frame up", "~point at", "~aim at", "~aim for", "point (the camera|it|the lens|yourself) (at|to|towards|toward)", "(aim|train|turn|direct|swing|orient|rotate|focus) (the camera|the lens|it|the view) (at|to|toward|towards|on|onto)", "~concentrate on", "~enlarge", "~zoom tight on", "~zoom close to", "~move closer to", "~come closer to", "~zoom in close on", "~magnify",
         "~zero in on", "~push in on", "punch in on", "(put|place|get|bring|centre|center) the camera on", "~show a (close up|closer view) of", "i (want|need|would like|d like) a (closer look at|close up of|better look at|closer view of)", "~look over at", "~look towards", "turn towards", "~zoom all the way in on", "~zoom fully in on", "~zoom in as far as possible on", "~take a peek at",
@@ -170,7 +169,7 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "FIND": ("~find", "~locate", "~look for", "~search for", "~seek", "~spot", "~hunt for", "~find me", "~seek out", "~pick out", "~pinpoint", "~detect", "~track down", "~look out for"),
     "SHOW": ("~show [me|us]", "let (me|us) see", "i (want|need|would like|d like|wanna) to (see|look at)", "~display", "~present", "put up", "get me", "bring me", "i wanna see", "have a look at", "i want to look at"),
     "GIVE": ("~give (me|us)", "~provide [me] [with]", "i (want|need|would like|d like)", "~get (me|us)"),
-    "TRACK": ("~track", "~follow", "~keep (an eye|watch|eyes|your eye|a close eye) on", "~stay (on|with)", "~lock on[to]", "~lock onto", "~lock on", "~lock on to", "~shadow", "~watch", "~keep tracking", "~keep following", "~monitor", "~trail", "~keep up with", "start (tracking|following)", "~tail", "~keep the camera on", "keep looking at", "keep with"),
+    "TRACK": ("~track", "~follow", "~keep (an eye|watch|eyes|your eye|a close eye) on", "~stay (on|with)", "~lock on[to]", "~lock onto", "~lock on", "~lock on to", "~shadow", "~watch", "~keep tracking", "~keep following", "~monitor", "~trail", "~keep up with", "~keep track of", "start (tracking|following)", "~tail", "~keep the camera on", "keep looking at", "keep with"),
     "KEEPX": ("keep", "keeping", "hold", "holding", "maintain"),
     "INVIEW": ("in (view|frame|shot|the frame|focus|sight|the picture|the middle|the centre|the center|the middle of the frame|the centre of the frame|the middle of the view)", "centred", "centered", "in the (middle|centre|center) of the (view|picture|frame|image|screen)", "on screen"),
     "FOR": ("for", "for the next", "for about", "for at least", "for around", "for up to", "during", "over the next", "for a period of", "for exactly", "for a full", "for a"),
@@ -178,9 +177,9 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "MINUTES": ("(minute|minutes|min|mins|m)",),
     "HOURS": ("(hour|hours|hr|hrs)",),
     "TAKE": ("~take", "~snap", "~grab", "~save", "~capture", "~shoot", "~get", "~make", "~record", "~store", "~snag", "i (want|need|would like|d like)", "~give me", "with", "~click", "~acquire"),
-    "PICTURE": (f"[a|an|one|another|a new|the|a quick|me a] {_PHOTO}", f"{_PHOTOS}", "a (photo|picture) or two"),
-    "SNAP": ("~capture", "~snap", f"~{'photograph'}", "screenshot", "~capture (the|this|that|what you) (view|scene|frame|image|picture|moment|see)", "~snapshot", "take (one|it)", "capture (this|that|it)", "snap (this|that|it)", "~save (the|this) (view|scene|frame|image|picture)", "~grab (the|this) (view|scene|frame)", "say cheese", "take (a screenshot|a screen grab|a screengrab)", "screen grab", "screengrab"),
-    "OFVIEW": ("of (the|this|that|your|the current|the present|my) (view|scene|frame|picture|image|current view|area|screen)", "of (this|that|it all|everything|what you see|what you can see|it)", "of what is (visible|in view)", "there", "here", "from here", "from there", "of here", "of there"),
+    "PICTURE": (f"[a|an|one|another|a new|the|a quick|me a|a second|a third|a final|one more|one last|a last|yet another|a single|one final|a further] {_PHOTO}", f"{_PHOTOS}", "a (photo|picture) or two"),
+    "SNAP": ("~capture", "~snap", f"~{'photograph'}", "screenshot", "~capture (the|this|that|what you) (view|scene|frame|image|picture|moment|see)", "~snapshot", "take (one|it|another|another one|a second one)", "another one", "capture (this|that|it)", "snap (this|that|it)", "~save (the|this) (view|scene|frame|image|picture)", "~grab (the|this) (view|scene|frame)", "say cheese", "take (a screenshot|a screen grab|a screengrab)", "screen grab", "screengrab"),
+    "OFVIEW": ("of (the|this|that|your|the current|the present|my) (view|scene|frame|picture|image|current view|area|screen)", "of (this|that|it all|everything|what you see|what you can see|it)", "of what is (visible|in view)", "of what (you are|you re|the camera is) (looking at|seeing|pointing at|viewing)", "of what (you|the camera) (see|sees)", "there", "here", "from here", "from there", "of here", "of there"),
     # Places
     "HOME": (
         "[~go|~return|~head|~move|~come|~drive|~get|~take the camera|~fly] [back] [to] [the|your] home [position|view|preset|pose|place|location|base]", "reset [the] (camera|view|position|ptz|everything|pose)", "reset", "(go|return|move|get) back to (the default|default|the original|the initial|the home) (view|position)", "[~go|~return|~move|~switch] [back] to [the|its|your] (default|home|initial|starting) (view|position|pose|orientation)", "go to home", "home", "homing", "re home", "return the camera home", "bring the camera [back] home", "move the camera [back] home", "park the camera", "send the camera home", "take the camera [back] home", "switch to home", "switch to the home (preset|view)", "return the camera to [the|its] home [position|view]",
@@ -189,14 +188,14 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "PRESETS": (
         "[the|your|all|all the|any|all available|the available|all of the|available|the camera|saved|the saved|my|our|camera|the stored|stored] (presets|preset views|preset positions|preset names|bookmarks|saved views|saved positions|stored positions|preset list|list of presets)",
     ),
-    "EVERYPRESET": ("(each|every|all|all the|all of the|every single|both|each of the|every one of the|all available|both of the|all your|all our|each available|both the|all three|all four|all five|all six|the available|these|the) (preset|presets|view|views|position|positions|preset positions|preset views|bookmark|bookmarks)", "each and every preset", "the presets one by one", "(them|the presets) all"),
-    "EACHOF": ("each of", "every one of", "both [of]", "all of", "each of the (presets|views|following|two presets|positions)", "the presets", "presets", "both presets", "the two presets", "each of the following", "the views", "both the", "either"),
-    "PREVIOUS": ("[the|that|its] (previous|last|former|original|earlier|prior|old|starting|start|initial|first) (preset|position|view|place|pose|spot|location|orientation|direction|setting|zoom|zoom level|point)", "[to] where (you|it|we) (were|was|started|began|came from|had been|are now)", "the way you came", "where you started from", "the start", "its start", "as (it|you) (was|were)"),
+    "EVERYPRESET": ("[at|in|from|for|to|of] (each|every|all|all the|all of the|every single|both|each of the|every one of the|all available|both of the|all your|all our|each available|both the|all three|all four|all five|all six|the available|these|the) (preset|presets|view|views|position|positions|preset positions|preset views|bookmark|bookmarks)", "each and every preset", "the presets one by one", "(them|the presets) all"),
+    "EACHOF": ("[in|at|from|for|to|of] (each of|every one of|both of|both the|all of)",  "both [of]", "all of", "each of the (presets|views|following|two presets|positions)", "the presets", "presets", "both presets", "the two presets", "each of the following", "the views", "both the", "either"),
+    "PREVIOUS": ("[the|that|its] (previous|last|former|original|earlier|prior|old|starting|start|initial) (preset|position|view|place|pose|spot|location|orientation|direction|setting|zoom|zoom level|point)", "[to] where (you|it|we) (were|was|started|began|came from|had been|are now)", "the way you came", "where you started from", "the start", "its start", "as (it|you) (was|were)"),
     "THERE": ("there", "that preset", "that one", "that view", "that position", "the winner", "the winning (one|preset|view)", "that place", "the one with more", "the busier (one|preset|view)"),
     "BACK": (
         "[~come|~go|~return|~turn|~move|~get|~swing|~head|~pan|~tilt|~rotate|~step] back [again]", "~return", "undo [that|it|the move|the last move|this]", "~come back", "[~go|~come|~turn] back the other way", "[~go|~come|~move] back by the same amount", "~reverse [that|it|the move]", "~go back again", "revert", "back", "put it back", "back again", "undo the (last|previous) (move|movement|command)", "bring it back", "move it back", "take that back", "~come back [again]", "return again", "undo", "undo what you did", "undo your last move", "reverse course", "back to where you were",
     ),
-    "BACKTO": ("[~come|~go|~return|~turn|~move|~get|~swing|~head|~zoom|~pan] back to", "~return to", "back to", "restore", "return the camera to", "~revert to", "~go to", "bring the camera back to", "move the camera back to"),
+    "BACKTO": ("[~come|~go|~return|~turn|~move|~get|~swing|~head|~zoom|~pan] back to", "~return to", "back to", "restore", "return the camera to", "~revert to", "~go to", "bring the camera back to", "move the camera back to", "(start|begin|starting|beginning) (at|from)", "~move on to", "~proceed to", "~carry on to"),
     # Scope
     "NOWSCOPE": (
         "right now", "at (the moment|present|this moment)", "currently", "in [the|this|your] (view|current view|present view|frame|current frame|shot|sight)", "in this (image|picture|shot|view|scene)", "in the (image|picture|current image|current picture|current scene|current shot)", "from here", "[visible|seen] on screen", "presently", "in front of you", "in your (view|field of view)", "at this point", "in the field of view", "in your current view", "within view", "within the frame", "in the current field of view", "from this (view|position|angle|viewpoint)", "in what you see", "(visible|that are visible|you can see) [right] now", "in this current view", "on the screen", "in the camera view", "in the camera s view", "on camera", "at the minute", "as of now",
@@ -207,7 +206,7 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     ),
     # Quantities
     "ATLEAST": ("at least", "no fewer than", "no less than", "a minimum of", "not less than", "not fewer than", "minimum", "min of"),
-    "ATMOST": ("at most", "no more than", "up to", "a maximum of", "not more than", "maximum", "at the most", "max", "at maximum", "with a maximum of", "with at most", "limit of", "for at most", "for a maximum of", "for up to", "with a limit of", "but not more than", "but at most", "but no more than", "but stop after", "stop after", "stopping after", "give up after", "but give up after", "trying at most", "try at most", "to a maximum of", "giving up after", "and give up after", "or after", "or at most", "capped at", "within", "in at most", "for no more than", "in no more than", "but do it at most", "do it at most", "and at most"),
+    "ATMOST": ("at most", "no more than", "up to", "a maximum of", "not more than", "maximum", "at the most", "max", "at maximum", "with a maximum of", "with at most", "limit of", "for at most", "for a maximum of", "for up to", "with a limit of", "but not more than", "but at most", "but no more than", "but stop after", "stop after", "stopping after", "give up after", "but give up after", "trying at most", "try at most", "to a maximum of", "giving up after", "and give up after", "or at most", "capped at", "in at most", "for no more than", "in no more than", "but do it at most", "do it at most", "and at most"),
     "MORETHAN": ("more than", "over", "greater than", "above", "exceeds", "exceeding", "in excess of"),
     "FEWERTHAN": ("fewer than", "less than", "under", "below"),
     "EXACTLY": ("exactly", "precisely", "only", "just exactly"),
@@ -223,12 +222,12 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "HIGHER": ("(greater|higher|larger|bigger|more|up|increased)",),
     "LESSER": ("(smaller|lower|less|fewer|down|decreased)",),
     "OUTNUMBER": ("outnumber",),
-    "SHOWS": ("shows", "show", "has", "have", "contains", "contain", "sees", "see", "includes", "include", "features", "do you see", "can you see", "are there", "is there", "shows you", "gives you", "hold", "holds", "you see", "you can see", "there are", "captures", "display", "displays", "lets you see", "let you see", "will show", "would show"),
+    "SHOWS": ("shows", "show", "has", "have", "contains", "contain", "sees", "see", "includes", "include", "features", "do you see", "can you see", "are there", "is there", "shows you", "gives you", "hold", "holds", "you see", "you can see", "there are", "captures", "reveal", "reveals", "give", "gives", "expose", "bring up", "bring into view", "display", "displays", "lets you see", "let you see", "will show", "would show"),
     "ANY": ("any", "any of the", "some of the", "one or more", "any sign of", "any kind of", "any other"),
     "NONE": ("no", "zero", "not any", "none of the", "no more", "no other", "not a single", "nobody", "neither"),
     "SEVERAL": ("several", "multiple", "some", "a number of", "various", "a group of", "lots of", "many", "a lot of"),
     "DET": ("the", "a", "an", "these", "those", "all the", "all of the", "all of", "all", "this", "that", "every", "each", "each of the", "every single", "all these", "all those", "your", "our", "my", "its", "their", "one of the", "the other", "another", "both", "every one of the", "the nearest of the"),
-    "ONEOF": ("(one|any|it|them|some|none|such) [of (them|those|these)]", "that one", "this one", "at least one", "either"),
+    "ONEOF": ("(one|any|it|them|some|none|such) [of (them|those|these)]", "that one", "this one", "either"),
     "PRON": ("it", "them", "him", "her", "that", "this", "they", "he", "she", "that one", "this one", "those", "these", "the same one", "the one", "that thing", "the thing", "the object", "that object"),
     "AGAIN": ("again", "[do|repeat] (that|it|this) (again|once more|one more time)", "once more", "one more time", "~repeat [that|it|this|the last (command|move|action|step)]", "the same again", "do the same [again]", "do that again", "same again", "and again", "repeat"),
     "DOIT": ("do (this|that|it|so|the same|these steps|all that|all this|this sequence)", "~repeat [(this|that|it|these|all of this|all that|these steps|the sequence|the whole thing|both|the process|the above|everything)]", "perform this", "doing (this|that|so)", "do all of that", "run this"),
@@ -247,7 +246,7 @@ PATTERNS: dict[str, tuple[str, ...]] = {
 }
 
 FILLER: tuple[str, ...] = (
-    "please", "pls", "plz", "kindly", "just", "simply", "hey", "hi", "hello", "ok", "okay", "alright", "all right", "right then", "so", "well", "thanks", "thank you", "cheers", "thanks a lot", "many thanks", "thank you very much", "for me", "for us", "if you can", "if possible", "if you could", "if you would",
+    "please", "pls", "plz", "kindly", "just", "simply", "hey", "hi", "hello", "ok", "okay", "alright", "all right", "right then", "so", "well", "thanks", "thank you", "cheers", "thanks a lot", "many thanks", "thank you very much", "for me", "for us", "to me", "aloud", "out loud", "if you can", "if possible", "if you could", "if you would",
     "if you don t mind", "if you please", "go ahead and", "i [would|d] (like|love) (you|the camera) to", "i (want|need|require) (you|the camera) to", "i d like for you to", "you should", "you need to", "you must", "you can", "we need to", "we should", "let s", "lets", "let us", "now", "quickly", "slowly", "carefully",
     "smoothly", "immediately", "straight away", "at once", "right away", "actually", "maybe", "perhaps", "first", "first of all", "firstly", "secondly", "thirdly", "to begin with", "to start [with]", "also", "as well", "too", "camera", "hey camera", "hello camera", "the following", "um", "uh", "er", "erm", "hmm", "yo", "dear camera", "mate", "buddy", "sir", "operator", "scope", "hey scope", "attempt to", "try to", "try and", "try", "your task is to",
     "i was wondering if you could", "i wonder if you could", "it would be great if you could", "it would be nice if you could", "be so kind as to", "be a dear and", "make sure to", "make sure you", "remember to", "be sure to", "want you to", "i want to", "i would like to", "i d like to", "i need to", "we want to", "we d like to", "started by", "start by", "begin by", "in order", "real quick", "quick", "good morning", "good afternoon", "good evening", "when you get a chance", "when you can", "when ready", "asap", "gonna", "in that case", "manually", "one after (another|the other)", "one by one", "in turn", "respectively", "in sequence", "after all", "as usual", "steadily", "swiftly", "directly", "exact", "ever so kindly", "do me a favour and", "do me a favor and", "how about you", "why don t you", "you ll need to", "you will need to", "you have to", "would be great", "much appreciated", "next please", "yes", "yeah", "yep", "sure", "and please", "task", "instruction", "command", "hey there",

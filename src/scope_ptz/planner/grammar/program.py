@@ -252,7 +252,6 @@ class Program:
         allowed, done, best = self._allowance(step), 0, -1
         last: dict[str, Any] = {}
         while True:
-            before = len(self.notes)
             met, why = yield from self._test(step.until)
             best = max(best, self._last_count)
             if met:
@@ -270,10 +269,17 @@ class Program:
                     yield from self._all([inner])
             done += 1
             if self.pose == pose and any(isinstance(s, ast.Move) for s in step.body):
-                del self.notes[before:]
-                self._note(f"I never {say.condition_text(step.until)}{_most(best)}: the camera reached its limit after {say.moves_text(last, done)}")
-                raise Halted("I stopped there")
-        raise Halted(f"I never {say.condition_text(step.until)}{_most(best)}, and stopped after {say.moves_text(last, done)}")
+                yield from self._unmet(step, best, f": the camera reached its limit after {say.moves_text(last, done)}")
+                return
+        yield from self._unmet(step, best, f", and stopped after {say.moves_text(last, done)}")
+
+    def _unmet(self, step: ast.Loop, best: int, how: str) -> Run:
+        """The end of a loop that never saw what it waited for: what was wanted otherwise, or an honest stop."""
+        reason = f"I never {say.condition_text(step.until)}{_most(best)}{how}"
+        if not step.otherwise:
+            raise Halted(reason)
+        self._note(reason)
+        yield from self._all(step.otherwise)
 
     def _allowance(self, step: ast.Loop) -> int:
         """How many times a loop may move: as said, else once over the whole range."""

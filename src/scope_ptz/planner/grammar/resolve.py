@@ -11,6 +11,7 @@ from scope_ptz.planner.base import PastTurn
 from scope_ptz.planner.grammar import syntax as ast
 from scope_ptz.planner.grammar.offtopic import is_about_the_scene
 from scope_ptz.planner.grammar.tokens import preset_key
+from scope_ptz.tools.arguments import View
 
 _CLOSE_ENOUGH = 0.8
 _PRONOUN = re.compile(r"\b(it|they|them|that one|this one)\b", re.IGNORECASE)
@@ -96,7 +97,7 @@ class Resolver:
             return tuple(ast.PresetRef(name, sure=True) for name in self.presets)
         return tuple(self.place(ref) for ref in refs)
 
-    def _view(self, view: ast.View | None) -> ast.View:
+    def _view(self, view: View | None) -> View:
         return view or ("full" if self.sweeping else "current")
 
     # Steps -------------------------------------------------------------------------------------------------------------
@@ -119,7 +120,7 @@ class Resolver:
         if step.how == "show" and not ref.sure and found is None:
             return [ast.ZoomTo(self.thing(ast.Thing(ref.name)))]
         if step.how == "bare" and found is None and not ref.sure:
-            raise Unresolved(f"What shall I do with '{ref.name}': count, look at, track, or go there?")
+            raise Unresolved(f"I did not understand '{ref.name}'. Please say it another way, or name one of the presets.")
         return [ast.GoPreset(self.place(ref))]
 
     def _gothere(self, step: ast.GoThere) -> Sequence[ast.Step]:
@@ -195,7 +196,7 @@ class Resolver:
         if named:
             self.antecedent = named.text
         until = self.condition(step.until)
-        return [replace(step, until=until, body=self.bind(step.body))]
+        return [replace(step, until=until, body=self.bind(step.body), otherwise=self.bind(step.otherwise))]
 
     def _if(self, step: ast.If) -> Sequence[ast.Step]:
         for inner in step.then:

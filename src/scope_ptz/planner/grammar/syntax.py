@@ -231,6 +231,7 @@ class Loop:
     body: tuple[Step, ...]
     until: Condition
     bound: Bound | None = None
+    otherwise: tuple[Step, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -34,6 +34,9 @@ _MARKS = {"mark": {",": "COMMA", ":": "COMMA", ";": "STOP", ".": "STOP", "!": "S
 SEPARATORS = ("COMMA", "AND", "THEN", "STOP")
 _BINDS_BACK = frozenset({"UNTIL", "OTHERWISE", "ATMOST", "EACHTIME"})
 _LONGEST_PHRASE = 9
+_LETTERS = {"r": "right", "l": "left", "u": "up", "d": "down"}
+_TURNED = frozenset({"TILT", "PAN", "MOVE", "LOOK", "CAMERA"})
+_DIAGONALS = ("UPLEFT", "UPRIGHT", "DOWNLEFT", "DOWNRIGHT")
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,11 +78,11 @@ def _words(text: str) -> list[_Word]:
 
 def _without_list_numbers(words: list[_Word]) -> list[_Word]:
     """Turn the "1." and "2)" of a numbered list into sentence ends; they must count up from one."""
-    wanted, out = 1, []
+    wanted, out = 1, list[_Word]()
     for i, word in enumerate(words):
         after = words[i + 1].text if i + 1 < len(words) else ""
         starts = i == 0 or words[i - 1].text in {"\n", ".", ";", ",", ":", "(", ")"} or wanted > 1
-        if word.kind == "num" and word.text == str(wanted) and starts and after in {".", ")"} and i + 2 < len(words):
+        if word.text in (str(wanted), chr(96 + wanted)) and starts and after in {".", ")"} and i + 2 < len(words):
             wanted += 1
             out.append(_Word(";", word.start, word.end, "mark"))
         else:
@@ -136,10 +139,18 @@ class Lexer:
             run.append(w.text)
         preset = self._longest(run, self._presets)
         phrase = self._longest(run, self._table)
+        if before and phrase > 1 and run[0] in {"up", "down"} and before[-1].kinds & _TURNED and not self._table[tuple(run[:phrase])] & {"UP", "DOWN", *_DIAGONALS}:
+            phrase = 1  # "tilt up to 10" is a direction, not a limit
         number = read_number(run, [(w.start, w.end) for w in words[i : i + len(run)]])
+        if run[:2] == ["if", "you"] and phrase > 1 and "FILLER" in self._table[tuple(run[:phrase])] and phrase < len(run):
+            phrase = 1  # "if you can see" is a condition, "if you can" at the end is politeness
+        if run[:1] == ["or"] and phrase > 1 and self._table[tuple(run[:phrase])] & {"ORMORE", "ORFEWER"} and not (before and "NUM" in before[-1].kinds):
+            phrase = 1
         if preset >= max(phrase, number.used, 1):
             return Lexeme(frozenset({"PRESETNAME"}), word.start, words[i + preset - 1].end), i + preset
         if number.used and number.used >= phrase:
+            if _starts_clause(before) and "FILLER" in self._table.get(tuple(run[: number.used]), ()):
+                return None, i + number.used  # "first, ..."
             kinds = {number.kind} | (self._table[tuple(run[:phrase])] if phrase == number.used else frozenset())
             return Lexeme(frozenset(kinds), word.start, words[i + number.used - 1].end, number.value), i + number.used
         if phrase:
@@ -151,7 +162,7 @@ class Lexer:
         start, end = words[i].start, words[i + length - 1].end
         if "FILLER" in kinds:
             in_name = before and before[-1].kinds & {"DET", "PREP", "ORD"} and not before[-1].kinds & {"PRON"}
-            addressed = i + length < len(words) and words[i + length].text == "," and (not before or bool(before[-1].kinds & {*SEPARATORS}))
+            addressed = i + length < len(words) and words[i + length].text == "," and _starts_clause(before)
             if in_name and kinds == {"FILLER"} and length == 1:
                 return Lexeme(frozenset({"TEXT"}), start, end)
             if kinds == {"FILLER"} or addressed:
@@ -160,14 +171,20 @@ class Lexer:
 
     def _unknown(self, words: list[_Word], i: int, before: list[Lexeme]) -> Lexeme:
         word = words[i]
-        at_start = not before or bool(before[-1].kinds & {*SEPARATORS, "CANYOU"})
+        at_start = _starts_clause(before)
         after_turn = bool(before) and bool(before[-1].kinds & {"PAN", "TILT", "MOVE", "NUM", "DEG", "ZOOM"})
+        if after_turn and word.text in _LETTERS:
+            return Lexeme(self._table[(_LETTERS[word.text],)], word.start, word.end)
         guess = _respelled(word.text, COMMAND_WORDS) if at_start else _respelled(word.text, DIRECTION_WORDS) if after_turn else None
         return Lexeme(self._table[(guess,)] if guess else frozenset({"TEXT"}), word.start, word.end)
 
     @staticmethod
     def _longest(run: list[str], table: dict[tuple[str, ...], frozenset[str]] | dict[tuple[str, ...], str]) -> int:
         return next((n for n in range(len(run), 0, -1) if tuple(run[:n]) in table), 0)
+
+
+def _starts_clause(before: list[Lexeme]) -> bool:
+    return not before or bool(before[-1].kinds & {*SEPARATORS, "CANYOU"})
 
 
 def _append(out: list[Lexeme], lexeme: Lexeme) -> None:
