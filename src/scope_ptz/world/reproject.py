@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from scope_ptz.geometry import Equirectangular, Projection, pan_tilt_deg, wrap_pan_deg
+from scope_ptz.geometry import Equirectangular, Perspective, Projection, pan_tilt_deg, wrap_pan_deg
 from scope_ptz.world.atlas import Atlas, Slot
 from scope_ptz.world.models import Band
 from scope_ptz.world.pack import Viewpoint
@@ -61,7 +61,9 @@ def outlined_depth_view(viewpoint: Viewpoint, projection: Projection, numbers: N
     Where a distance was measured on another instance than the pixel shows, a neighbour's that was not is taken.
     """
     where = atlas_map(viewpoint, viewpoint.depth_atlas, projection)
-    metres: NDArray[np.float32] = np.take(viewpoint.depth_metres, cv2.remap(viewpoint.depth_atlas.sheet, where, None, cv2.INTER_NEAREST))
+    metres: NDArray[np.float32] = np.take(
+        viewpoint.depth_metres, cv2.remap(viewpoint.depth_atlas.sheet, where, None, cv2.INTER_NEAREST)
+    )
     viewpoint.owner_atlas.need(0)
     owners = cv2.remap(viewpoint.owner_atlas.sheet, where, None, cv2.INTER_NEAREST)
     ys, xs = np.nonzero(owners != numbers)
@@ -141,17 +143,7 @@ def step_px(projection: Projection) -> int:
 
 
 def _base_map(band: Band, slot: Slot, grid: Grid) -> Map:
-    projection = grid.projection
-    if isinstance(projection, Equirectangular):
-        middle = projection.left_pan_deg + projection.pan_span_deg / 2
-        fall = projection.bottom_tilt_deg - projection.top_tilt_deg
-        turn, tilt = np.meshgrid(
-            (grid.x / projection.width - 0.5) * projection.pan_span_deg, projection.top_tilt_deg + grid.y / projection.height * fall
-        )
-    else:
-        pan, tilt = pan_tilt_deg(grid.directions())
-        middle = float(pan_tilt_deg(projection.directions((0.5, 0.5)))[0])
-        turn = (pan - middle + 180.0) % 360.0 - 180.0
+    middle, turn, tilt = _turn_and_tilt_deg(grid)
     x = slot.x - 0.5 + (wrap_pan_deg(middle) + 180.0 + turn) / 360.0 * slot.width
     y = slot.y - 0.5 + (band.top_tilt_deg - tilt) / (band.top_tilt_deg - band.bottom_tilt_deg) * slot.height
     where = grid.to_pixels(np.stack([x, np.clip(y, slot.y - 0.5, slot.y + slot.height - 0.5)], axis=-1))
@@ -161,6 +153,25 @@ def _base_map(band: Band, slot: Slot, grid: Grid) -> Map:
             outside = where[..., 0] < left if turn_px > 0 else where[..., 0] > right
             cv2.add(where, (turn_px, 0), dst=where, mask=outside.view(np.uint8))
     return where
+
+
+def _turn_and_tilt_deg(grid: Grid) -> tuple[float, Floats, Floats]:
+    """The pan of the middle of a picture, and for each node how far it is turned from there and its tilt."""
+    projection = grid.projection
+    if isinstance(projection, Equirectangular):
+        fall = projection.bottom_tilt_deg - projection.top_tilt_deg
+        turn, tilt = np.meshgrid(
+            (grid.x / projection.width - 0.5) * projection.pan_span_deg, projection.top_tilt_deg + grid.y / projection.height * fall
+        )
+        return projection.left_pan_deg + projection.pan_span_deg / 2, turn, tilt
+    if isinstance(projection, Perspective):
+        # A ray is (right, up, focal length) in the view; only the tilt turns it, in the plane of the last two.
+        sine, cosine = math.sin(math.radians(projection.tilt_deg)), math.cos(math.radians(projection.tilt_deg))
+        right, up = grid.x - projection.width / 2, (projection.height / 2 - grid.y)[:, None]
+        ahead, rise = projection.focal_px * cosine - up * sine, projection.focal_px * sine + up * cosine
+        level = np.sqrt(right**2 + ahead**2)
+        return projection.pan_deg, np.degrees(np.arctan2(right, ahead)), np.degrees(np.arctan2(rise, level))
+    raise TypeError(f"no map for {type(projection).__name__}")
 
 
 def _tile_map(tiles: Tiles, index: int, atlas: Atlas, grid: Grid) -> tuple[Map, NDArray[np.uint8], bool]:
