@@ -1,4 +1,5 @@
-"""Materials of people: skin with a painted face, hair, cloth, the reflective vest. Masks read the "rest" attribute (upright coordinates)."""
+"""Materials of people: skin with a painted face, hair, cloth, the reflective vest. Masks read the "rest" attribute
+(upright coordinates)."""
 
 from __future__ import annotations
 
@@ -16,8 +17,8 @@ SKIN_TONES: list[Colour] = [
     (0.48, 0.265, 0.175),
     (0.37, 0.195, 0.115),
     (0.235, 0.115, 0.062),
-    (0.12, 0.056, 0.030),
-    (0.062, 0.029, 0.017),
+    (0.14, 0.068, 0.038),
+    (0.085, 0.041, 0.024),
 ]
 
 HAIR: dict[str, Colour] = {
@@ -71,14 +72,10 @@ def skin(tone: int, hair: str | None, *, stubble: bool) -> bpy.types.Material:
         colour,
         (base[0] * 0.62, base[1] * 0.36, base[2] * 0.36),
     )
-    colour = s.mix(
-        s.math("MULTIPLY", _near(s, where, (0, 0.095, -0.0612), (0.021, 0.02, 0.0018), 0.5), 0.8), colour, dark
-    )
+    colour = s.mix(s.math("MULTIPLY", _near(s, where, (0, 0.095, -0.0612), (0.021, 0.02, 0.0018), 0.5), 0.8), colour, dark)
     for x, y, z in EYES:
         side = 1 if x > 0 else -1
-        colour = s.mix(
-            s.math("MULTIPLY", _near(s, where, (x, y, z + 0.001), (0.023, 0.03, 0.013), 0.7), 0.45), colour, dark
-        )
+        colour = s.mix(s.math("MULTIPLY", _near(s, where, (x, y, z + 0.001), (0.023, 0.03, 0.013), 0.7), 0.45), colour, dark)
         colour = s.mix(_near(s, where, (x, y, z), (0.0125, 0.03, 0.0052), 0.3), colour, (0.48, 0.45, 0.42))
         colour = s.mix(_near(s, where, (x, y, z + 0.0008), (0.0058, 0.03, 0.0056), 0.3), colour, (0.015, 0.010, 0.008))
         colour = s.mix(_near(s, where, (x, y, z + 0.0052), (0.0142, 0.03, 0.0020), 0.4), colour, (0.02, 0.013, 0.010))
@@ -102,7 +99,8 @@ def hair(colour: str) -> bpy.types.Material:
 
 
 def _woven(s: Shader, colour: str) -> tuple[Value, Value, Value]:
-    """Tone, fold height and weave of a cloth in a plain colour: worn paler where it rubs, soiled in patches, dark in the folds."""
+    """Tone, fold height and weave of a cloth in a plain colour: worn paler where it rubs, soiled in patches, dark in
+    the folds."""
     where = s.object_coords()
     base = PALETTE[colour]
     folds = s.noise(s.scaled(where, (7.0, 7.0, 13.0)), 1.0, 3.0, 0.5, 0.15)
@@ -128,8 +126,8 @@ def cloth(colour: str, *, bands: tuple[float, ...] = ()) -> bpy.types.Material:
 
 
 def top(colour: str, style: str, inner: str, low: float) -> bpy.types.Material:
-    """The body of an upper garment, hem at height ``low``: "jumper" (ribbed hem), "jacket" (open on an ``inner`` shirt, zip, pockets)
-    or "shirt" (button line, paler collar)."""
+    """The body of an upper garment, hem at height ``low``: "jumper" (ribbed hem), "jacket" (open on an ``inner``
+    shirt, zip, pockets) or "shirt" (button line, paler collar)."""
     name = f"top {colour} {style} {inner} {low:.2f}"
     if name in bpy.data.materials:
         return bpy.data.materials[name]
@@ -151,14 +149,10 @@ def top(colour: str, style: str, inner: str, low: float) -> bpy.types.Material:
         tone = s.mix(edge, tone, dark)
         tone = s.mix(shirt, tone, PALETTE[inner])
         height = s.math("SUBTRACT", height, s.math("MULTIPLY", shirt, 0.5))
-        zip_line = s.math(
-            "MULTIPLY", s.math("MULTIPLY", s.band(away, -0.01, 0.004, 0.001), s.ramp(z, 1.185, 1.18)), front
-        )
+        zip_line = s.math("MULTIPLY", s.math("MULTIPLY", s.band(away, -0.01, 0.004, 0.001), s.ramp(z, 1.185, 1.18)), front)
         tone = s.mix(zip_line, tone, (0.03, 0.03, 0.03))
         slant = s.math("ADD", away, s.math("MULTIPLY", z, 0.35))
-        pocket = s.math(
-            "MULTIPLY", s.math("MULTIPLY", s.band(slant, 0.470, 0.477, 0.001), s.band(z, 0.97, 1.10)), front
-        )
+        pocket = s.math("MULTIPLY", s.math("MULTIPLY", s.band(slant, 0.470, 0.477, 0.001), s.band(z, 0.97, 1.10)), front)
         tone = s.mix(pocket, tone, dark)
         tone = s.mix(s.math("MULTIPLY", s.band(z, low + 0.045, low + 0.050), 0.8), tone, dark)
     if style == "shirt":
@@ -182,9 +176,7 @@ def vest(colour: str, lining: str) -> bpy.types.Material:
     away = s.math("ABSOLUTE", x)
     base = PALETTE[f"hi-vis {colour}"]
     folds = s.noise(s.scaled(where, (7.0, 7.0, 10.0)), 1.0, 3.0, 0.5, 0.15)
-    grime = s.mix(
-        s.ramp(s.noise(where, 7.0, 6.0, 0.65), 0.55, 0.8, 0.0, 0.30), base, tuple(c * 0.45 + 0.02 for c in base)
-    )
+    grime = s.mix(s.ramp(s.noise(where, 7.0, 6.0, 0.65), 0.55, 0.8, 0.0, 0.30), base, tuple(c * 0.45 + 0.02 for c in base))
     tone = s.mix(s.ramp(folds, 0.28, 0.5, 0.30, 0.0), grime, tuple(c * 0.45 for c in base))
     hoops = s.math("MAXIMUM", s.band(z, 0.950, 1.003), s.band(z, 1.120, 1.173))
     braces = s.math("MULTIPLY", s.band(away, 0.078, 0.128), s.ramp(z, 1.168, 1.172))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -55,9 +56,8 @@ def trunk(
 ) -> tuple[Skin, np.ndarray]:
     """The body of a garment and the upright (rest) coordinates of its points.
 
-    ``swell`` is how far the cloth stands off the body (m), ``low`` the height of the hem, ``neck`` "collar", "hood" or None,
-    ``flare`` extra looseness of the folds at the hem (m).
-    """
+    ``swell`` is how far the cloth stands off the body (m), ``low`` the height of the hem, ``neck`` "collar", "hood"
+    or None, ``flare`` extra looseness of the folds at the hem (m)."""
     upright = Joints(Matrix.Identity(4), Matrix.Identity(4), Matrix.Identity(4), [])
     v = Volume()
     v.rings(_trunk_rows(upright, swell, girth, low, 1.462))
@@ -70,17 +70,12 @@ def trunk(
     if neck == "hood":
         arc = [math.radians(180 + 30 * k) for k in range(7)]
         ring = [(0.082 * math.cos(t), -0.020 + 0.070 * math.sin(t), 1.490) for t in arc]
-        for p, q in zip(ring, ring[1:], strict=False):
+        for p, q in itertools.pairwise(ring):
             v.capsule(p, q, 0.030, 0.030)
     elif neck == "collar":
         turns = np.linspace(0, 2 * math.pi, 20, endpoint=False)
         heights = ((1.45, 0.080), (1.49, 0.074), (1.528, 0.072))
-        v.rings(
-            [
-                [(r * math.cos(t), -0.012 + r * 0.95 * math.sin(t), z - 0.014 * math.sin(t)) for t in turns]
-                for z, r in heights
-            ]
-        )
+        v.rings([[(r * math.cos(t), -0.012 + r * 0.95 * math.sin(t), z - 0.014 * math.sin(t)) for t in turns] for z, r in heights])
     skin = crease(
         v.melt(0.012, 4),
         lambda p: 0.004 + (0.004 + flare) * np.clip((1.15 - p[:, 2]) / 0.3, 0, 1),
@@ -142,7 +137,8 @@ def trousers(joints: Joints, *, loose: float, girth: float, seed: float) -> tupl
 
 
 def _along(points: np.ndarray, bones: list[tuple[Vector, Vector, float, float]]) -> np.ndarray:
-    """For each point the value that runs from one end of its nearest bone to the other; bones are (from, to, value, value)."""
+    """For each point the value that runs from one end of its nearest bone to the other; bones are (from, to, value,
+    value)."""
     best = np.full(len(points), 1e9)
     value = np.zeros(len(points))
     for a, b, va, vb in bones:
@@ -213,7 +209,5 @@ def hands(joints: Joints, curls: tuple[float, float], *, glove: bool) -> Skin:
         root = wrist + along * 0.025 + thumb_side * 0.026 + normal * 0.006
         joint = root + along * 0.036 + thumb_side * 0.022 + normal * 0.014
         v.capsule(root, joint, 0.014 + fat, 0.011 + fat, sides=8)
-        v.capsule(
-            joint, joint + along * 0.028 + normal * 0.010 * (1 + max(0.0, curl)), 0.011 + fat, 0.008 + fat, sides=8
-        )
+        v.capsule(joint, joint + along * 0.028 + normal * 0.010 * (1 + max(0.0, curl)), 0.011 + fat, 0.008 + fat, sides=8)
     return v.melt(0.0055, 2)

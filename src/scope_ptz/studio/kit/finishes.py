@@ -1,8 +1,8 @@
 """Finishes of made things: painted metal, plastic, galvanised steel, reflective sheet, concrete, rubber, wood, lamps.
 
-Each function returns one material per colour, made on first use. Dirt and wear come from object coordinates (things are modelled
-standing on z = 0, so splash dirt sits low) shifted by the object's random number, so that linked copies are not identical.
-"""
+Each function returns one material per colour, made on first use. Dirt and wear come from object coordinates (things
+are modelled standing on z = 0, so splash dirt sits low) shifted by the object's random number, so that linked copies
+are not identical."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ PALETTE: dict[str, Colour] = {
     "black": (0.012, 0.012, 0.013),
     "red": (0.58, 0.016, 0.014),
     "dark red": (0.24, 0.012, 0.014),
-    "orange": (0.80, 0.088, 0.004),
-    "hi-vis orange": (1.0, 0.16, 0.010),
+    "orange": (0.86, 0.140, 0.005),
+    "hi-vis orange": (1.0, 0.195, 0.012),
     "amber": (1.0, 0.36, 0.010),
     "yellow": (0.86, 0.50, 0.010),
     "hi-vis yellow": (0.62, 0.90, 0.020),
@@ -65,9 +65,7 @@ def soiled(s: Shader, colour: Value, amount: float, splash_m: float = 0.35) -> V
     patches = s.ramp(s.noise(where, 3.2, 6.0, 0.62), 0.48, 0.80, 0.0, amount)
     streaks = s.ramp(s.noise(s.scaled(where, (22.0, 22.0, 0.9)), 1.0, 3.0), 0.55, 0.85, 0.0, amount * 0.7)
     _, _, z = s.xyz(s.object_coords())
-    splash = s.math(
-        "MULTIPLY", s.ramp(z, 0.0, splash_m, 1.0, 0.0), s.ramp(s.noise(where, 9.0, 5.0), 0.3, 0.7, 0.1, amount * 1.6)
-    )
+    splash = s.math("MULTIPLY", s.ramp(z, 0.0, splash_m, 1.0, 0.0), s.ramp(s.noise(where, 9.0, 5.0), 0.3, 0.7, 0.1, amount * 1.6))
     return s.mix(s.math("MAXIMUM", s.math("MAXIMUM", patches, streaks), splash), colour, DIRT)
 
 
@@ -90,12 +88,8 @@ def steel(*, dark: bool = False) -> bpy.types.Material:
         spangle = s.voronoi(where, 38.0, output="Color")
         value = s.ramp(spangle, 0.0, 1.0, 0.24 if not dark else 0.09, 0.36 if not dark else 0.15, smooth=False)
         weather = s.ramp(s.noise(where, 4.0, 5.0), 0.35, 0.7)
-        base = s.mix(
-            weather, s.mix(value, (0, 0, 0), (1, 1, 1.02)), (0.27, 0.28, 0.29) if not dark else (0.10, 0.10, 0.11)
-        )
-        return s.surface(
-            base_color=soiled(s, base, 0.25), metallic=0.55, roughness=s.ramp(spangle, 0.0, 1.0, 0.42, 0.58)
-        )
+        base = s.mix(weather, s.mix(value, (0, 0, 0), (1, 1, 1.02)), (0.27, 0.28, 0.29) if not dark else (0.10, 0.10, 0.11))
+        return s.surface(base_color=soiled(s, base, 0.25), metallic=0.55, roughness=s.ramp(spangle, 0.0, 1.0, 0.42, 0.58))
 
     return _shared("steel dark" if dark else "steel", make)
 
@@ -192,8 +186,6 @@ def cloth(colour: str, roughness: float = 0.9) -> bpy.types.Material:
     def make(s: Shader) -> bpy.types.Material:
         where = _coords(s)
         creases = s.noise(where, 7.0, 5.0, 0.6, 0.6)
-        return s.surface(
-            base_color=soiled(s, PALETTE[colour], 0.25), roughness=roughness, normal=s.bump(creases, 0.6, 0.02)
-        )
+        return s.surface(base_color=soiled(s, PALETTE[colour], 0.25), roughness=roughness, normal=s.bump(creases, 0.6, 0.02))
 
     return _shared(f"cloth {colour} {roughness:.2f}", make)

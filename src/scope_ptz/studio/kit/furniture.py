@@ -11,7 +11,7 @@ from scope_ptz.studio.kit.furniture_road import (
     lamp_post,
     noise_barrier,
 )
-from scope_ptz.studio.kit.furniture_street import bench, bicycle, bin, bus_shelter
+from scope_ptz.studio.kit.furniture_street import bench, bicycle, bin, bus_shelter  # noqa: A004
 
 __all__ = [
     "bench",

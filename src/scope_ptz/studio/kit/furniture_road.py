@@ -1,4 +1,5 @@
-"""Roadside furniture: lighting columns, guardrail, noise barrier, camera pole, emergency phone, cabinets, drains, chevrons.
+"""Roadside furniture: lighting columns, guardrail, noise barrier, camera pole, emergency phone, cabinets, drains,
+chevrons.
 
 Things that run along a road (guardrail, noise barrier) run along y; their traffic face is +x.
 """
@@ -17,15 +18,12 @@ def lamp_post(height: float = 10.0, arms: int = 1, *, lit: bool = False) -> Buil
     """Galvanised column with one or two outreach arms (towards +y, and -y) and flat LED lanterns."""
     s = Solid("lamp post")
     s.lathe([(0.20, 0.0), (0.20, 0.02)], steel(dark=True), steps=8)
-    s.lathe(
-        [(0.105, 0.02), (0.105, 1.35), (0.085, 1.42), (0.055, height - 0.9), (0.05, height - 0.85)], steel(), steps=20
-    )
+    s.lathe([(0.105, 0.02), (0.105, 1.35), (0.085, 1.42), (0.055, height - 0.9), (0.05, height - 0.85)], steel(), steps=20)
     s.box((0.11, 0.02, 0.55), (0, 0.098, 0.85), paint("light grey", dirt=0.3), 0.008)
     s.box((0.10, 0.012, 0.14), (0.0, 0.098, 1.75), sheet("yellow"), 0.002)
     for sign in (1, -1)[:arms]:
         path = [
-            (0.0, sign * (0.9 - 0.9 * math.cos(a)), height - 0.9 + 0.75 * math.sin(a))
-            for a in (k * math.pi / 14 for k in range(8))
+            (0.0, sign * (0.9 - 0.9 * math.cos(a)), height - 0.9 + 0.75 * math.sin(a)) for a in (k * math.pi / 14 for k in range(8))
         ]
         path.append((0.0, sign * 1.35, height - 0.11))
         s.tube(path, 0.036, steel(), sides=12)
@@ -53,12 +51,7 @@ def guardrail(length: float = 4.0, *, double: bool = False) -> Built:
     step = length / bays
     for side in (1, -1) if double else (1,):
         n = len(wave)
-        points = [
-            (side * (0.13 + d - t), y, 0.60 + z)
-            for y in (-length / 2, length / 2)
-            for t in (0.0, 0.004)
-            for d, z in wave
-        ]
+        points = [(side * (0.13 + d - t), y, 0.60 + z) for y in (-length / 2, length / 2) for t in (0.0, 0.004) for d, z in wave]
         outer = [(k, k + 1, 2 * n + k + 1, 2 * n + k) for k in range(n - 1)]
         inner = [(n + k + 1, n + k, 3 * n + k, 3 * n + k + 1) for k in range(n - 1)]
         rims = [(0, 2 * n, 3 * n, n), (n - 1, 2 * n - 1, 4 * n - 1, 3 * n - 1)]
@@ -80,7 +73,8 @@ def guardrail(length: float = 4.0, *, double: bool = False) -> Built:
 
 
 def noise_barrier(length: float = 4.0, height: float = 3.0, *, material: str = "timber") -> Built:
-    """Noise barrier along y: steel posts every 4 m, "timber" boards or "concrete" planks between them, concrete plinth."""
+    """Noise barrier along y: steel posts every 4 m, "timber" boards or "concrete" planks between them, concrete
+    plinth."""
     s = Solid("noise barrier")
     bays = max(1, round(length / 4.0))
     step = length / bays
@@ -150,7 +144,7 @@ def emergency_phone(number: str = "174") -> Built:
     return s.built()
 
 
-def cabinet(*, open: bool = False, colour: str = "light grey") -> Built:
+def cabinet(*, open: bool = False, colour: str = "light grey") -> Built:  # noqa: A002
     """Roadside equipment cabinet, 1.2 x 0.4 x 1.3 m, doors towards +y; open shows shelves of equipment."""
     s = Solid("roadside cabinet")
     body = paint(colour, dirt=0.36)

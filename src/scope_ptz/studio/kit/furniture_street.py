@@ -10,7 +10,7 @@ from scope_ptz.studio.kit.solid import Solid
 from scope_ptz.studio.kit.stage import Built
 
 
-def bin(*, colour: str = "dark green") -> Built:
+def bin(*, colour: str = "dark green") -> Built:  # noqa: A001
     """Litter bin: a slatted drum with a hooded top, 1.1 m."""
     s = Solid("litter bin")
     body = paint(colour, dirt=0.3)
@@ -96,13 +96,11 @@ def bicycle(colour: str = "blue") -> Built:
     r, rear, front = 0.345, (0.0, -0.52, 0.345), (0.0, 0.54, 0.345)
     for hub in (rear, front):
         ring = [
-            (0.0, hub[1] + r * 0.965 * math.cos(a), r + r * 0.965 * math.sin(a))
-            for a in (2 * math.pi * k / 40 for k in range(40))
+            (0.0, hub[1] + r * 0.965 * math.cos(a), r + r * 0.965 * math.sin(a)) for a in (2 * math.pi * k / 40 for k in range(40))
         ]
         s.tube(ring, 0.019, rubber(), sides=8, closed=True)
         rim = [
-            (0.0, hub[1] + r * 0.89 * math.cos(a), r + r * 0.89 * math.sin(a))
-            for a in (2 * math.pi * k / 40 for k in range(40))
+            (0.0, hub[1] + r * 0.89 * math.cos(a), r + r * 0.89 * math.sin(a)) for a in (2 * math.pi * k / 40 for k in range(40))
         ]
         s.tube(rim, 0.011, chrome, sides=6, closed=True)
         s.rod((-0.05, hub[1], r), (0.05, hub[1], r), 0.018, chrome)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 
 from mathutils import Matrix, Vector
@@ -66,9 +67,7 @@ def _clipboard(s: Solid, joints: Joints) -> None:
     s.box((0.210, 0.285, 0.003), (0, -0.012, 0.0045), sheet("white", dirt=0.05), 0.001)
     s.box((0.10, 0.03, 0.012), (0, 0.145, 0.008), steel(), 0.003)
     for i in range(9):
-        s.box(
-            (0.15 - 0.03 * (i % 3), 0.004, 0.001), (-0.012 * (i % 3), 0.10 - 0.025 * i, 0.0068), paint("dark grey"), 0.0
-        )
+        s.box((0.15 - 0.03 * (i % 3), 0.004, 0.001), (-0.012 * (i % 3), 0.10 - 0.025 * i, 0.0068), paint("dark grey"), 0.0)
 
 
 def _box(s: Solid, joints: Joints) -> None:
@@ -86,7 +85,7 @@ def _cone(s: Solid, joints: Joints) -> None:
     orange, white = paint("orange", dirt=0.34, roughness=0.46), sheet("white", dirt=0.3)
     s.box((0.42, 0.42, 0.035), (0, 0, 0), paint("black"), 0.012)
     cuts = [(0.16, 0.0), (0.097, 0.30), (0.076, 0.43), (0.065, 0.50), (0.047, 0.62), (0.030, 0.75)]
-    for i, (low, high) in enumerate(zip(cuts, cuts[1:], strict=False)):
+    for i, (low, high) in enumerate(itertools.pairwise(cuts)):
         s.lathe([low, high], white if i in (1, 3) else orange, steps=24)
 
 

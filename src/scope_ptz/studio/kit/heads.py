@@ -1,4 +1,5 @@
-"""Heads: face, ears, neck, hair. Head coordinates are upright rest coordinates with the head's centre at ``CENTRE``; the face looks to +y."""
+"""Heads: face, ears, neck, hair. Head coordinates are upright rest coordinates with the head's centre at ``CENTRE``;
+the face looks to +y."""
 
 from __future__ import annotations
 
@@ -76,7 +77,8 @@ def hair_cap(style: str, thickness: float, seed: float) -> Skin:
 
 
 def _hairline(points: np.ndarray, style: str) -> np.ndarray:
-    """Height of the lower edge of the hair by how far forward a point is: high over the brow, over the ears, low at the nape."""
+    """Height of the lower edge of the hair by how far forward a point is: high over the brow, over the ears, low at
+    the nape."""
     y = points[:, 1]
     table = [
         (-0.2, -0.075),

@@ -1,7 +1,7 @@
 """Lettering as meshes, with exact cap heights: Blender's built-in sans at two weights.
 
-The other Latin faces that Blender carries will not do: Inter's contours overlap, which spoils the filling of K, R and A, and Noto
-Sans CJK takes 15 s to load."""
+The other Latin faces that Blender carries will not do: Inter's contours overlap, which spoils the filling of K, R and
+A, and Noto Sans CJK takes 15 s to load."""
 
 from __future__ import annotations
 
@@ -18,7 +18,8 @@ EMBOLDEN = ((-0.040, -0.026), (-0.040, 0.026), (0.040, -0.026), (0.040, 0.026))
 def letters(
     body: str, cap_height_m: float, *, bold: bool = True, spacing: float | None = None
 ) -> tuple[list[Point], list[tuple[int, ...]]]:
-    """Flat letters in the xy plane, baseline of the (single) line on y = 0, starting near x = 0. Returns points and faces.
+    """Flat letters in the xy plane, baseline of the (single) line on y = 0, starting near x = 0. Returns points and
+    faces.
 
     The copies of a bold lie a twentieth of a millimetre apart in z.
     """
@@ -41,7 +42,7 @@ def extent(body: str, cap_height_m: float, *, bold: bool = True, spacing: float 
 
 
 def _spacing(bold: bool, spacing: float | None) -> float:
-    return spacing if spacing is not None else (1.15 if bold else 1.06)
+    return spacing if spacing is not None else (1.12 if bold else 1.06)
 
 
 @cache

@@ -1,12 +1,12 @@
 """People: road workers and pedestrians of varied height, build, skin and hair, in relaxed poses or walking.
 
-A person stands at the origin facing +y, about 22 thousand points in one object. Looks and small asymmetries come from ``seed``;
-everything else can be asked for. ``phase`` in [0, 1) is the gait phase of the poses "walk" and "carry"; one cycle covers
-``STRIDE_M`` times the person's height over 1.77 m.
-"""
+A person stands at the origin facing +y, about 22 thousand points in one object. Looks and small asymmetries come from
+``seed``; everything else can be asked for. ``phase`` in [0, 1) is the gait phase of the poses "walk" and "carry"; one
+cycle covers ``STRIDE_M`` times the person's height over 1.77 m."""
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from random import Random
 
@@ -74,11 +74,7 @@ def _helmet(s: Solid, joints: Joints, colour: str) -> None:
     """Safety helmet: dome with a ridge, short brim all round, long peak in front, badge."""
     shell = paint(colour, dirt=0.16, roughness=0.30)
     saved = s.frame
-    s.frame = (
-        joints.head
-        @ Matrix.Translation(Vector(heads.CENTRE) + Vector((0, -0.014, 0.055)))
-        @ Matrix.Rotation(0.09, 4, "X")
-    )
+    s.frame = joints.head @ Matrix.Translation(Vector(heads.CENTRE) + Vector((0, -0.014, 0.055))) @ Matrix.Rotation(0.09, 4, "X")
     rows = [(1.00, 0.0), (0.99, 0.026), (0.94, 0.053), (0.82, 0.078), (0.62, 0.097), (0.36, 0.108), (0.10, 0.112)]
     points, faces, n = [], [], 40
     angles = np.linspace(0, 2 * np.pi, n, endpoint=False)
@@ -91,7 +87,7 @@ def _helmet(s: Solid, joints: Joints, colour: str) -> None:
             peak = 0.040 * max(0.0, np.sin(a)) ** 3 * (reach > 0)
             points.append(((0.102 + reach) * np.cos(a), (0.126 + reach + peak) * np.sin(a), z - peak * 0.30))
     order = [10, 9, 8, 7, *range(7)]
-    for low, high in zip(order, order[1:], strict=False):
+    for low, high in itertools.pairwise(order):
         faces += [(low * n + k, low * n + (k + 1) % n, high * n + (k + 1) % n, high * n + k) for k in range(n)]
     faces.append(tuple(range(6 * n, 7 * n)))
     s.add([tuple(float(c) for c in p) for p in points], faces, shell)
@@ -113,9 +109,7 @@ class _Outfit:
     helmet: str | None
 
 
-def _dress(
-    s: Solid, joints: Joints, random: Random, looks: _Looks, outfit: _Outfit, curls: tuple[float, float]
-) -> None:
+def _dress(s: Solid, joints: Joints, random: Random, looks: _Looks, outfit: _Outfit, curls: tuple[float, float]) -> None:
     """Clothes and hands."""
     seed = random.uniform(0, 50)
     vest = outfit.vest
@@ -135,15 +129,13 @@ def _dress(
     bands = (0.17, 0.40) if outfit.top.startswith("hi-vis") else ()
     _wear(s, sleeve, clothing.cloth(outfit.top, bands=bands), _limb(along))
     if vest:
-        skin, rest = figure.trunk(
-            joints, swell=0.024, low=0.835, girth=looks.girth, woman=looks.woman, flare=0.007, seed=seed + 1
-        )
+        skin, rest = figure.trunk(joints, swell=0.024, low=0.835, girth=looks.girth, woman=looks.woman, flare=0.007, seed=seed + 1)
         _wear(s, skin, clothing.vest(vest, outfit.top), rest)
     leg_skin, along = figure.trousers(joints, loose=0.008 if vest else 0.002, girth=looks.girth, seed=seed + 2)
     bands = (0.27, 0.40) if outfit.legs.startswith("hi-vis") else ()
     _wear(s, leg_skin, clothing.cloth(outfit.legs, bands=bands), _limb(along))
     shoe = vest is None
-    upper = paint("black" if shoe else random.choice(["brown", "black", "dark grey"]), dirt=0.5, roughness=0.62)
+    upper = paint("black" if shoe else random.choice(["brown", "black", "dark grey"]), dirt=0.38, roughness=0.6)
     _wear(s, figure.boots(joints, shoe=shoe), upper)
     for i, side in enumerate((-1, 1)):
         low, high = figure.sole_outline(joints.feet[i], side, 0.0, 0.026)
@@ -173,9 +165,7 @@ IN_HAND = {"shovel": "shovel", "phone": "phone", "clipboard": "clipboard", "carr
 """What a pose holds unless told otherwise."""
 
 
-def _person(
-    name: str, pose: str, phase: float, random: Random, looks: _Looks, outfit: _Outfit, holding: str | None
-) -> Built:
+def _person(name: str, pose: str, phase: float, random: Random, looks: _Looks, outfit: _Outfit, holding: str | None) -> Built:
     if holding is not None and holding not in HOLDABLE:
         raise ValueError(f"cannot hold {holding!r}; known: {sorted(HOLDABLE)}")
     stance = named(pose, phase, random)
@@ -205,8 +195,8 @@ def worker(
 ) -> Built:
     """A road worker in a high-visibility vest ("orange" or "yellow"); ``helmet`` a colour or None.
 
-    ``pose``: stand, walk, point, carry, kneel, shovel, phone, clipboard. ``holding`` overrides what the pose puts in the hands.
-    """
+    ``pose``: stand, walk, point, carry, kneel, shovel, phone, clipboard. ``holding`` overrides what the pose puts in
+    the hands."""
     random = Random(f"worker {seed}")
     looks = _looks(random, None, 0.15)
     legs = trousers or random.choice(["navy", "dark grey", f"hi-vis {vest}", "khaki", "navy"])
@@ -231,9 +221,7 @@ def pedestrian(
     """A passer-by in everyday clothes; colours by plain name, drawn from the seed when not given."""
     random = Random(f"pedestrian {seed}")
     looks = _looks(random, hair, 0.5)
-    upper = top or random.choice(
-        ["dark red", "navy", "grey", "green", "beige", "light blue", "black", "purple", "yellow"]
-    )
+    upper = top or random.choice(["dark red", "navy", "grey", "green", "beige", "light blue", "black", "purple", "yellow"])
     choices = ["denim", "denim", "black", "dark grey", "beige", "khaki"]
     legs = trousers or random.choice([c for c in choices if c != upper])
     style, neck = random.choice(

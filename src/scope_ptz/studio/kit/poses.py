@@ -33,7 +33,8 @@ class Foot:
 
 @dataclass(frozen=True)
 class Arm:
-    """Either swing angles (``forward``, ``out``, ``bend`` in degrees) or a ``hand`` to reach, in the upright body's frame."""
+    """Either swing angles (``forward``, ``out``, ``bend`` in degrees) or a ``hand`` to reach, in the upright body's
+    frame."""
 
     forward: float = 4.0
     out: float = 9.0
@@ -103,16 +104,8 @@ def _bend(a: Vector, target: Vector, first: float, second: float, pole: Vector) 
 
 def _foot_frame(foot: Foot, side: int) -> Matrix:
     pivot = (0.0, 0.135, 0.0) if foot.pitch < 0 else (0.0, -0.07, 0.0)
-    rotation = (
-        Matrix.Translation(pivot)
-        @ Matrix.Rotation(math.radians(foot.pitch), 4, "X")
-        @ Matrix.Translation(-Vector(pivot))
-    )
-    return (
-        Matrix.Translation((foot.x, foot.y, foot.lift))
-        @ Matrix.Rotation(-side * math.radians(foot.out), 4, "Z")
-        @ rotation
-    )
+    rotation = Matrix.Translation(pivot) @ Matrix.Rotation(math.radians(foot.pitch), 4, "X") @ Matrix.Translation(-Vector(pivot))
+    return Matrix.Translation((foot.x, foot.y, foot.lift)) @ Matrix.Rotation(-side * math.radians(foot.out), 4, "Z") @ rotation
 
 
 def solve(pose: Pose) -> Joints:
@@ -133,9 +126,7 @@ def solve(pose: Pose) -> Joints:
     for index, side in enumerate(SIDES):
         hip = pelvis @ Vector((side * 0.09, 0, HIP))
         toes = feet[index].to_3x3() @ Vector((0, 1, 0))
-        knee, ankle = _bend(
-            hip, ankles[index], THIGH, SHIN, Vector((toes.x * 0.7 + side * 0.04, max(0.5, toes.y), 0.3))
-        )
+        knee, ankle = _bend(hip, ankles[index], THIGH, SHIN, Vector((toes.x * 0.7 + side * 0.04, max(0.5, toes.y), 0.3)))
         shoulder = chest @ Vector((side * SHOULDER[0], SHOULDER[1], SHOULDER[2]))
         elbow, wrist = _arm(pose.arms[index], side, shoulder, chest)
         joints.hips.append(hip)
@@ -272,7 +263,5 @@ def named(name: str, phase: float, random: Random) -> Pose:
             Arm(hand=(-0.13, 0.42, 1.02), elbow=(1, -0.2, -0.6), curl=0.9),
             Arm(hand=(0.17, 0.24, 1.20), elbow=(1, -0.9, 0.2), curl=0.9),
         )
-        return Pose(
-            feet, arms, hip=(0, -0.06, -0.07), hip_lean=16, hip_yaw=-10, lean=22, twist=-6, head_pitch=-10, head_yaw=8
-        )
+        return Pose(feet, arms, hip=(0, -0.06, -0.07), hip_lean=16, hip_yaw=-10, lean=22, twist=-6, head_pitch=-10, head_yaw=8)
     raise ValueError(f"no pose named {name!r}")

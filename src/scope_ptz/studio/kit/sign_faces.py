@@ -1,11 +1,11 @@
 """Faces of signs: rounded reflective boards with borders, lettering, arrows, route patches and pictograms.
 
-A face is drawn in the plane y = 0 of the current frame of a ``Solid``, towards +y. Positions on it are given as the reader sees
-them: ``u`` to the right, ``v`` up (so x = -u).
-"""
+A face is drawn in the plane y = 0 of the current frame of a ``Solid``, towards +y. Positions on it are given as the
+reader sees them: ``u`` to the right, ``v`` up (so x = -u)."""
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -39,8 +39,8 @@ class Panel:
     """A direction or information sign. Sizes in metres.
 
     A tab inside a line sends the rest of it to the right edge ("Halden\\t12"). ``arrows`` gives a direction (a key of
-    ``ARROW_TURN``) or None for each line, or a single one for the whole panel; ``route`` is a road number on a patch in the first row.
-    """
+    ``ARROW_TURN``) or None for each line, or a single one for the whole panel; ``route`` is a road number on a patch
+    in the first row."""
 
     lines: Sequence[str]
     width: float
@@ -71,9 +71,7 @@ def board(
     s.prism(rounded(width, height, corner), (-0.006, -0.004), sheet(background), "XZ")
     gap = edge * 0.45
     s.prism(rounded(width - 2 * gap, height - 2 * gap, max(0.004, corner - gap)), (-0.004, -0.002), sheet(ink), "XZ")
-    s.prism(
-        rounded(width - 2 * edge, height - 2 * edge, max(0.004, corner - edge)), (-0.002, 0.0), sheet(background), "XZ"
-    )
+    s.prism(rounded(width - 2 * edge, height - 2 * edge, max(0.004, corner - edge)), (-0.002, 0.0), sheet(background), "XZ")
     if back and height > 0.35:
         for k in range(max(2, round(height / 0.6))):
             z = height * ((k + 0.5) / max(2, round(height / 0.6)) - 0.5)
@@ -89,7 +87,7 @@ def stroke(
     s: Solid, path: Sequence[tuple[float, float]], width: float, material: bpy.types.Material, lift: float = PROUD_M
 ) -> None:
     """A thick line with round ends, as flat shapes."""
-    for (u1, v1), (u2, v2) in zip(path, path[1:], strict=False):
+    for (u1, v1), (u2, v2) in itertools.pairwise(path):
         length = math.hypot(u2 - u1, v2 - v1)
         nu, nv = -(v2 - v1) / length * width / 2, (u2 - u1) / length * width / 2
         flat(s, [(u1 + nu, v1 + nv), (u1 - nu, v1 - nv), (u2 - nu, v2 - nv), (u2 + nu, v2 + nv)], material, lift)
@@ -97,9 +95,7 @@ def stroke(
         disc(s, u, v, width / 2, material, lift)
 
 
-def disc(
-    s: Solid, u: float, v: float, radius: float, material: bpy.types.Material, lift: float = PROUD_M, sides: int = 24
-) -> None:
+def disc(s: Solid, u: float, v: float, radius: float, material: bpy.types.Material, lift: float = PROUD_M, sides: int = 24) -> None:
     angles = [2 * math.pi * k / sides for k in range(sides)]
     flat(s, [(u + radius * math.cos(a), v + radius * math.sin(a)) for a in angles], material, lift)
 
@@ -189,10 +185,10 @@ def _need(line: str) -> float:
 
 def _line(s: Solid, line: str, cap: float, left: float, right: float, v: float, ink: str, align: str) -> None:
     head, _, tail = line.partition("\t")
-    if tail:
-        write(s, tail, cap, right, v, ink, align="RIGHT")
     if head:
         write(s, head, cap, {"LEFT": left, "CENTER": (left + right) / 2, "RIGHT": right}[align], v, ink, align=align)
+    if tail:
+        write(s, tail, cap, right, v, ink, align="RIGHT")
 
 
 def _route_patch(s: Solid, spec: Panel, left: float, v: float, cap: float) -> float:

@@ -5,15 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-import numpy as np
-from mathutils import Vector
-
-from scope_ptz.studio.kit.finishes import concrete, glow, lens, paint, sheet, steel
-from scope_ptz.studio.kit.lettering import extent, letters
+from scope_ptz.studio.kit.finishes import paint, sheet, steel
+from scope_ptz.studio.kit.lettering import extent
 from scope_ptz.studio.kit.sign_faces import INK, Panel, arrow, board, disc, flat, panel_face, stroke, write
+from scope_ptz.studio.kit.sign_stands import frame_stand, posts_at
 from scope_ptz.studio.kit.signs_gantry import Signal, gantry
+from scope_ptz.studio.kit.signs_matrix import variable_message
 from scope_ptz.studio.kit.solid import Solid
-from scope_ptz.studio.kit.stage import Built, TextMark
+from scope_ptz.studio.kit.stage import Built
 
 __all__ = [
     "Panel",
@@ -29,36 +28,6 @@ __all__ = [
     "warning_plate",
     "works_access",
 ]
-
-
-def _posts(s: Solid, spread: float, top: float, radius: float, y: float = -0.10) -> None:
-    """Galvanised posts in small concrete footings; one post when ``spread`` is 0."""
-    for x in sorted({-spread, spread}):
-        s.lathe([(radius, -0.02), (radius, top), (radius * 0.6, top + 0.012)], steel(), (x, y, 0), steps=16)
-        s.lathe(
-            [(radius * 3.2, 0.0), (radius * 3.0, 0.035), (radius * 1.2, 0.05)],
-            concrete(light=False),
-            (x, y, 0),
-            steps=16,
-        )
-
-
-def _frame_stand(s: Solid, width: float, low: float) -> None:
-    """A temporary steel stand with sandbags, for signs that stand on the road."""
-    for x in (-width * 0.28, width * 0.28):
-        s.rod((x, -0.035, low + 0.5), (x, -0.035, 0.02), 0.016, steel(dark=True))
-        s.rod((x, -0.03, low + 0.5), (x, -0.46, 0.02), 0.016, steel(dark=True))
-        s.rod((x, 0.18, 0.02), (x, -0.50, 0.02), 0.016, steel(dark=True))
-    for y in (0.10, -0.40):
-        s.rod((-width * 0.32, y, 0.035), (width * 0.32, y, 0.035), 0.014, steel(dark=True))
-    for x in (-0.16, 0.17):
-        s.lathe(
-            [(0.03, -0.24), (0.085, -0.19), (0.105, 0.0), (0.085, 0.19), (0.03, 0.24)],
-            paint("khaki", roughness=0.95),
-            (x, -0.40, 0.085),
-            "X",
-            14,
-        )
 
 
 def panel(
@@ -80,7 +49,7 @@ def panel(
     with s.at(0, 0, post_height + height / 2):
         panel_face(s, Panel(lines, width, height, background, cap_height, align, arrows, route, route_background))
     if posts:
-        _posts(s, width * 0.30 if width > 0.8 else 0.0, post_height + height - 0.04, 0.045 if width < 2.5 else 0.07)
+        posts_at(s, width * 0.30 if width > 0.8 else 0.0, post_height + height - 0.04, 0.045 if width < 2.5 else 0.07)
     return s.built()
 
 
@@ -95,7 +64,7 @@ def round_limit(text: str = "50", *, diameter: float = 0.75, post_height: float 
         cap = min(0.74 * r, 1.15 * r / max(0.1, extent(text, 1.0)))
         write(s, text, cap, 0, 0, "black")
         s.box((diameter * 0.5, 0.03, 0.045), (0, -0.026, 0), steel(), 0.003)
-    _posts(s, 0.0, post_height + diameter - 0.08, 0.038, -0.078)
+    posts_at(s, 0.0, post_height + diameter - 0.08, 0.038, -0.078)
     return s.built()
 
 
@@ -111,8 +80,7 @@ def _rounded_triangle(side: float, corner: float) -> list[tuple[float, float]]:
         a = math.radians(90 + 120 * k)
         cu, cv = inner / math.sqrt(3) * math.cos(a), inner / math.sqrt(3) * math.sin(a)
         points += [
-            (cu + corner * math.cos(a + math.radians(t)), cv + corner * math.sin(a + math.radians(t)))
-            for t in range(-60, 61, 20)
+            (cu + corner * math.cos(a + math.radians(t)), cv + corner * math.sin(a + math.radians(t))) for t in range(-60, 61, 20)
         ]
     return points
 
@@ -183,15 +151,13 @@ def triangle(
             board(s, width, plate_h - 0.03, "white")
             write(s, plate, 0.10, 0, 0, "black")
     if stand == "frame":
-        _frame_stand(s, side, low)
+        frame_stand(s, side, low)
     else:
-        _posts(s, 0.0, low + plate_h + height - 0.10, 0.038, -0.078)
+        posts_at(s, 0.0, low + plate_h + height - 0.10, 0.038, -0.078)
     return s.built()
 
 
-def lane_closed(
-    lanes: int = 3, closed: Sequence[int] = (0,), distance: str | None = "400 m", *, stand: str = "frame"
-) -> Built:
+def lane_closed(lanes: int = 3, closed: Sequence[int] = (0,), distance: str | None = "400 m", *, stand: str = "frame") -> Built:
     """Lane diagram on white: an arrow for each open lane, a red T for each closed one (0 = the reader's left)."""
     s = Solid("lane closed sign")
     width, height = 0.32 * lanes + 0.30, 1.05
@@ -211,15 +177,13 @@ def lane_closed(
             board(s, width, plate_h - 0.03, "white")
             write(s, distance, 0.13, 0, 0, "black")
     if stand == "frame":
-        _frame_stand(s, width, low)
+        frame_stand(s, width, low)
     else:
-        _posts(s, width * 0.3, low + plate_h + height - 0.04, 0.045)
+        posts_at(s, width * 0.3, low + plate_h + height - 0.04, 0.045)
     return s.built()
 
 
-def works_access(
-    lines: Sequence[str] = ("WORKS", "ACCESS"), *, direction: str | None = "left", stand: str = "frame"
-) -> Built:
+def works_access(lines: Sequence[str] = ("WORKS", "ACCESS"), *, direction: str | None = "left", stand: str = "frame") -> Built:
     """White on red: where site traffic leaves the road."""
     s = Solid("works access sign")
     low, height = (0.35 if stand == "frame" else 1.7), 0.22 + 0.24 * len(lines)
@@ -227,21 +191,20 @@ def works_access(
     with s.at(0, 0, low + height / 2):
         panel_face(
             s,
-            Panel(
-                lines, width, height, "red", 0.15, "LEFT" if direction else "CENTER", (direction,) if direction else ()
-            ),
+            Panel(lines, width, height, "red", 0.15, "LEFT" if direction else "CENTER", (direction,) if direction else ()),
         )
     if stand == "frame":
-        _frame_stand(s, width, low)
+        frame_stand(s, width, low)
     else:
-        _posts(s, width * 0.3, low + height - 0.04, 0.045)
+        posts_at(s, width * 0.3, low + height - 0.04, 0.045)
     return s.built()
 
 
 def project_board(
     lines: Sequence[str], *, width: float = 3.0, height: float = 2.2, background: str = "blue", post_height: float = 0.8
 ) -> Built:
-    """Large information board. The first line is the title on a coloured band, the second large, the last two small print, the rest body."""
+    """Large information board. The first line is the title on a coloured band, the second large, the last two small
+    print, the rest body."""
     s = Solid("project board")
     with s.at(0, 0, post_height + height / 2):
         board(s, width, height, "white", border=background, edge=0.03)
@@ -321,73 +284,11 @@ def marker_post(number: str, *, kind: str = "kilometre") -> Built:
     return s.built()
 
 
-def _dots(body: str, cap: float, rows: int) -> list[tuple[float, float]]:
-    """Centres of the lit dots of a line of matrix letters, baseline on 0, centred across."""
-    points, faces = letters(body, cap, bold=True, spacing=1.18)
-    p = np.array(points)[:, :2]
-    pitch = cap / rows
-    low, high = p.min(axis=0), p.max(axis=0)
-    grid = np.array(
-        [(x, y) for y in np.arange(pitch / 2, cap, pitch) for x in np.arange(low[0] + pitch / 2, high[0], pitch)]
-    )
-    inside = np.zeros(len(grid), bool)
-    for face in faces:
-        ring = p[list(face)]
-        within = np.zeros(len(grid), bool)
-        for a, b in zip(ring, np.roll(ring, -1, axis=0), strict=True):
-            crossing = (a[1] > grid[:, 1]) != (b[1] > grid[:, 1])
-            with np.errstate(divide="ignore", invalid="ignore"):
-                at = (b[0] - a[0]) * (grid[:, 1] - a[1]) / (b[1] - a[1]) + a[0]
-            within ^= crossing & (grid[:, 0] < at)
-        inside |= within
-    middle = (low[0] + high[0]) / 2
-    return [(float(x - middle), float(y)) for x, y in grid[inside]]
-
-
-def variable_message(
-    lines: Sequence[str], *, width: float = 3.4, height: float = 1.7, post_height: float = 2.6, colour: str = "amber"
-) -> Built:
-    """Black matrix sign on posts with lit, dotted letters and a pair of corner lanterns."""
-    s = Solid("variable message sign")
-    cap = min(
-        0.34,
-        (height - 0.3) / (1.55 * len(lines)),
-        min((width - 0.4) / max(extent(t, 1.0, spacing=1.18), 0.1) for t in lines),
-    )
-    with s.at(0, 0, post_height + height / 2):
-        s.box((width, 0.30, height), (0, -0.16, 0), paint("dark grey", dirt=0.3), 0.02)
-        s.box((width - 0.08, 0.02, height - 0.08), (0, -0.008, 0), lens("black"), 0.004)
-        s.box((width + 0.06, 0.16, 0.03), (0, 0.04, height / 2 + 0.01), paint("dark grey"), 0.005)
-        lit, pitch = glow(colour, 4.0), cap / 14
-        for i, line in enumerate(lines):
-            v = (len(lines) / 2 - i - 0.5) * cap * 1.55 - cap / 2
-            dots = _dots(line, cap, 14)
-            for u, w in dots:
-                r = pitch * 0.40
-                s.add(
-                    [
-                        (-u - r, 0.006, v + w - r),
-                        (-u + r, 0.006, v + w - r),
-                        (-u + r, 0.006, v + w + r),
-                        (-u - r, 0.006, v + w + r),
-                    ],
-                    [(3, 2, 1, 0)],
-                    lit,
-                )
-            spread = max(u for u, _ in dots) - min(u for u, _ in dots) + pitch
-            here = s.frame @ Vector((0, 0.006, v + cap / 2))
-            s.texts.append(TextMark(line, tuple(here), (-1.0, 0.0, 0.0), (0.0, 0.0, 1.0), spread, cap, cap))
-        for x in (-width / 2 + 0.14, width / 2 - 0.14):
-            for z in (-height / 2 + 0.14, height / 2 - 0.14):
-                s.lathe([(0.07, 0.0), (0.06, 0.012), (0.02, 0.018)], lens("amber"), (x, 0.002, z), "Y", 16)
-    _posts(s, width * 0.3, post_height + height * 0.6, 0.09, -0.18)
-    return s.built()
-
-
 def warning_plate(
     text: str, *, background: str = "yellow", cap_height: float = 0.06, posts: bool = True, post_height: float = 1.1
 ) -> Built:
-    """Small plate, one line a newline, its lower edge at ``post_height``; on a short post, or bare for fixing to something."""
+    """Small plate, one line a newline, its lower edge at ``post_height``; on a short post, or bare for fixing to
+    something."""
     s = Solid("warning plate")
     lines = text.split("\n")
     width = max(extent(t, cap_height) for t in lines) + 1.8 * cap_height
@@ -397,5 +298,5 @@ def warning_plate(
         for i, line in enumerate(lines):
             write(s, line, cap_height, 0, (len(lines) / 2 - i - 0.5) * 1.6 * cap_height, INK.get(background, "black"))
     if posts:
-        _posts(s, 0.0, post_height + height * 0.9, 0.025, -0.037)
+        posts_at(s, 0.0, post_height + height * 0.9, 0.025, -0.037)
     return s.built()

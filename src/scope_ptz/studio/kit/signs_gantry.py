@@ -32,9 +32,8 @@ def gantry(
 ) -> Built:
     """A gantry along x with legs at x = +-span/2.
 
-    ``panels`` and ``signals`` are hung at the given x; their lower edges are ``clearance_m`` above the road. ``readable`` "-Y" shows
-    them to drivers who travel towards +y, "+Y" to the others.
-    """
+    ``panels`` and ``signals`` are hung at the given x; their lower edges are ``clearance_m`` above the road.
+    ``readable`` "-Y" shows them to drivers who travel towards +y, "+Y" to the others."""
     s = Solid("gantry")
     depth, tall = TRUSS_M
     base = clearance_m + 0.35

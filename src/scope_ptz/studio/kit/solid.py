@@ -1,4 +1,5 @@
-"""One thing, one mesh: a builder that gathers primitives with their materials and texts, and makes a single object of them."""
+"""One thing, one mesh: a builder that gathers primitives with their materials and texts, and makes a single object of
+them."""
 
 from __future__ import annotations
 
@@ -66,7 +67,8 @@ class Solid:
         material: bpy.types.Material,
         rest: Sequence[Point] | None = None,
     ) -> None:
-        """Raw polygons in the current frame; ``rest`` gives each point a value of the "rest" attribute, for shader masks."""
+        """Raw polygons in the current frame; ``rest`` gives each point a value of the "rest" attribute, for shader
+        masks."""
         if material not in self.slots:
             self.slots.append(material)
         base, slot = len(self.points), self.slots.index(material)
@@ -206,9 +208,7 @@ class Solid:
         plane: str = "XZ",
     ) -> None:
         """A polygon (convex or not) extruded between two depths along the axis that ``plane`` leaves out."""
-        place = {"XZ": lambda u, v, d: (u, d, v), "XY": lambda u, v, d: (u, v, d), "YZ": lambda u, v, d: (d, u, v)}[
-            plane
-        ]
+        place = {"XZ": lambda u, v, d: (u, d, v), "XY": lambda u, v, d: (u, v, d), "YZ": lambda u, v, d: (d, u, v)}[plane]
         count = len(outline)
         area = sum(outline[i - 1][0] * outline[i][1] - outline[i][0] * outline[i - 1][1] for i in range(count))
         ring = list(outline) if area > 0 else list(outline)[::-1]
@@ -233,8 +233,9 @@ class Solid:
         spacing: float | None = None,
         mark: bool = True,
     ) -> tuple[float, float]:
-        """One line of lettering towards ``facing``; its mark is exact. ``centre`` is where the mid-height of the capitals lies, at the
-        middle, left or right edge of the line as ``align`` says. Returns the width and height of the letters in metres."""
+        """One line of lettering towards ``facing``; its mark is exact. ``centre`` is where the mid-height of the
+        capitals lies, at the middle, left or right edge of the line as ``align`` says. Returns the width and height
+        of the letters in metres."""
         flat, faces = letters(body, cap_height_m, bold=bold, spacing=spacing)
         xs, ys = [p[0] for p in flat], [p[1] for p in flat]
         low, high = min(xs), max(xs)
@@ -250,9 +251,7 @@ class Solid:
         if mark:
             turn = self.frame.to_3x3()
             middle = self.frame @ lay((low + high) / 2, (max(ys) + min(ys)) / 2)
-            self.texts.append(
-                TextMark(body, tuple(middle), tuple(turn @ right), tuple(turn @ up), width, height, cap_height_m)
-            )
+            self.texts.append(TextMark(body, tuple(middle), tuple(turn @ right), tuple(turn @ up), width, height, cap_height_m))
         return width, height
 
     def object(self) -> bpy.types.Object:
@@ -266,9 +265,7 @@ class Solid:
         mesh.set_sharp_from_angle(angle=SHARP_ANGLE)
         if self.rest:
             layer = mesh.attributes.new("rest", "FLOAT_VECTOR", "POINT")
-            layer.data.foreach_set(
-                "vector", [c for i in range(len(self.points)) for c in self.rest.get(i, (0.0, 0.0, 0.0))]
-            )
+            layer.data.foreach_set("vector", [c for i in range(len(self.points)) for c in self.rest.get(i, (0.0, 0.0, 0.0))])
         mesh.update()
         obj = bpy.data.objects.new(self.name, mesh)
         bpy.context.scene.collection.objects.link(obj)
@@ -278,9 +275,7 @@ class Solid:
         return Built.of(self.name, [self.object()], self.texts)
 
 
-def arc(
-    centre: tuple[float, float], radius: float, start_deg: float, stop_deg: float, steps: int = 8
-) -> list[tuple[float, float]]:
+def arc(centre: tuple[float, float], radius: float, start_deg: float, stop_deg: float, steps: int = 8) -> list[tuple[float, float]]:
     """Points of a circular arc in a plane, both ends included."""
     angles = [math.radians(start_deg + (stop_deg - start_deg) * k / steps) for k in range(steps + 1)]
     return [(centre[0] + radius * math.cos(a), centre[1] + radius * math.sin(a)) for a in angles]

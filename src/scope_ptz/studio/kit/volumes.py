@@ -1,4 +1,5 @@
-"""Soft bodies: capsules, ellipsoids and lofts melted into one skin by a voxel remesh. What people and other rounded things are made of."""
+"""Soft bodies: capsules, ellipsoids and lofts melted into one skin by a voxel remesh. What people and other rounded
+things are made of."""
 
 from __future__ import annotations
 
@@ -33,9 +34,7 @@ class Volume:
         self.faces.append(tuple(range(base, base + n))[::-1])
         self.faces.append(tuple(range(base + (len(rows) - 1) * n, base + len(rows) * n)))
 
-    def capsule(
-        self, a: Vec, b: Vec, ra: float, rb: float, *, sides: int = 16, flat: float = 1.0, across: Vec = (1, 0, 0)
-    ) -> None:
+    def capsule(self, a: Vec, b: Vec, ra: float, rb: float, *, sides: int = 16, flat: float = 1.0, across: Vec = (1, 0, 0)) -> None:
         """A tapered bar with round ends; ``flat`` < 1 thins it at right angles to ``across``."""
         a, b = Vector(a), Vector(b)
         axis = (b - a).normalized()
@@ -114,7 +113,8 @@ def crease(
     scale: tuple[float, float, float],
     seed: float,
 ) -> Skin:
-    """Push the surface in and out by folded noise: cloth. ``amount`` is metres, or an array (n,) of metres, or a function of the points (n, 3) that gives one."""
+    """Push the surface in and out by folded noise: cloth. ``amount`` is metres, or an array (n,) of metres, or a
+    function of the points (n, 3) that gives one."""
     points, faces = skin
     size = amount(points) if callable(amount) else amount
     shift = np.array(

@@ -6,6 +6,7 @@ cast barrier, which is laid along a lane, runs along y.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 
@@ -32,7 +33,7 @@ def cone(height: float = 0.75) -> Built:
         return k * (0.142 + (0.030 - 0.142) * z / 0.75)
 
     cuts = [0.038, 0.30, 0.43, 0.50, 0.62, 0.75]
-    for index, (low, high) in enumerate(zip(cuts, cuts[1:], strict=False)):
+    for index, (low, high) in enumerate(itertools.pairwise(cuts)):
         sleeve = index in (1, 3)
         lift = 0.003 if sleeve else 0.0
         profile = [(radius(z) + lift * k, z * k) for z in (low, high)]
@@ -90,9 +91,7 @@ def delineator() -> Built:
     return s.built()
 
 
-def _stripes(
-    s: Solid, width: float, height: float, x0: float, y: float, z: float, count: int, depth: float = 0.03
-) -> None:
+def _stripes(s: Solid, width: float, height: float, x0: float, y: float, z: float, count: int, depth: float = 0.03) -> None:
     """A plank of alternating red and white reflective blocks, on both faces."""
     step = width / count
     for i in range(count):
@@ -138,7 +137,8 @@ def lamp(s: Solid, x: float, y: float, z: float, lit: bool, colour: str = "amber
 
 
 def water_barrier(colour: str = "red") -> Built:
-    """Plastic water-filled barrier, 1.5 m long and 0.9 m high, with interlocking ends; ``colour`` "red", "white" or "orange"."""
+    """Plastic water-filled barrier, 1.5 m long and 0.9 m high, with interlocking ends; ``colour`` "red", "white" or
+    "orange"."""
     s = Solid(f"{colour} water barrier")
     body = paint(colour, dirt=0.36, roughness=0.42)
     half = [
@@ -157,8 +157,7 @@ def water_barrier(colour: str = "red") -> Built:
     for x, wide in stations:
         ring = [(y, z) for y, z in half] + [(-y, z) for y, z in half[::-1]]
         points += [
-            (x, y * wide if 0.15 < z < 0.86 else y * (0.5 + 0.5 * wide), z - (1.0 - wide) * 0.06 * (z > 0.85))
-            for y, z in ring
+            (x, y * wide if 0.15 < z < 0.86 else y * (0.5 + 0.5 * wide), z - (1.0 - wide) * 0.06 * (z > 0.85)) for y, z in ring
         ]
     n = 2 * len(half)
     faces = [
@@ -189,18 +188,15 @@ def water_barrier(colour: str = "red") -> Built:
 
 
 def concrete_barrier(length: float = 3.0) -> Built:
-    """Cast safety barrier (New Jersey profile), 0.81 m high, ``length`` metres along y, with drain slots, loops and reflectors."""
+    """Cast safety barrier (New Jersey profile), 0.81 m high, ``length`` metres along y, with drain slots, loops and
+    reflectors."""
     s = Solid("concrete barrier")
     half = [(0.290, 0.0), (0.300, 0.01), (0.300, 0.075), (0.175, 0.255), (0.095, 0.77), (0.08, 0.80), (0.06, 0.81)]
     ring = half + [(-x, z) for x, z in half[::-1]]
     n = len(ring)
     ends = [(-length / 2, 0.94), (-length / 2 + 0.02, 1.0), (length / 2 - 0.02, 1.0), (length / 2, 0.94)]
-    points = [
-        (x * f, y, z if z < 0.3 else 0.3 + (z - 0.3) * (0.96 + 0.04 * (f == 1.0))) for y, f in ends for x, z in ring
-    ]
-    faces = [
-        (i * n + k, i * n + (k + 1) % n, (i + 1) * n + (k + 1) % n, (i + 1) * n + k) for i in range(3) for k in range(n)
-    ]
+    points = [(x * f, y, z if z < 0.3 else 0.3 + (z - 0.3) * (0.96 + 0.04 * (f == 1.0))) for y, f in ends for x, z in ring]
+    faces = [(i * n + k, i * n + (k + 1) % n, (i + 1) * n + (k + 1) % n, (i + 1) * n + k) for i in range(3) for k in range(n)]
     s.add(points, [*faces, tuple(range(n))[::-1], tuple(range(3 * n, 4 * n))], concrete())
     slots = max(1, round(length / 1.5))
     for i in range(slots):
@@ -219,7 +215,8 @@ def concrete_barrier(length: float = 3.0) -> Built:
 
 
 def chapter8_barrier() -> Built:
-    """Orange plastic pedestrian barrier, 2.0 x 1.0 m, with a red and white reflective board along the top and swivelling feet."""
+    """Orange plastic pedestrian barrier, 2.0 x 1.0 m, with a red and white reflective board along the top and
+    swivelling feet."""
     s = Solid("pedestrian barrier")
     orange = paint("orange", dirt=0.3, roughness=0.45)
     for x in (-0.97, 0.97):
@@ -272,9 +269,7 @@ def mesh_fence_panel(plate: Sequence[str] = ()) -> Built:
     wire_mesh(s, width - 0.06, 0.16, height)
     for x in (-width / 2 + 0.02, width / 2 - 0.02):
         s.rod((x, 0, 0.04), (x, 0, 0.16), 0.019, steel())
-        s.prism(
-            [(-0.36, 0.0), (0.36, 0.0), (0.33, 0.13), (-0.33, 0.13)], (x - 0.11, x + 0.11), concrete(light=False), "YZ"
-        )
+        s.prism([(-0.36, 0.0), (0.36, 0.0), (0.33, 0.13), (-0.33, 0.13)], (x - 0.11, x + 0.11), concrete(light=False), "YZ")
         s.box((0.09, 0.05, 0.05), (x, 0.0, 1.55), steel(dark=True), 0.01)
     if plate:
         s.box((0.72, 0.006, 0.16 + 0.12 * len(plate)), (0, 0.026, 1.25), sheet("yellow"), 0.001)
@@ -283,7 +278,7 @@ def mesh_fence_panel(plate: Sequence[str] = ()) -> Built:
     return s.built()
 
 
-def gate(open: bool = False) -> Built:
+def gate(open: bool = False) -> Built:  # noqa: A002
     """Double site gate, 6.2 m between posts, 2.2 m high; closed across x, or both leaves swung back towards -y."""
     s = Solid("site gate")
     leaf = 3.0

@@ -1,4 +1,5 @@
-"""Site plant and accommodation: arrow board, light tower, generator, toilet, cabin, skip, compactor, barrow. Fronts face +y."""
+"""Site plant and accommodation: arrow board, light tower, generator, toilet, cabin, skip, compactor, barrow. Fronts
+face +y."""
 
 from __future__ import annotations
 
@@ -50,9 +51,7 @@ def _trailer(s: Solid, width: float, length: float, colour: str) -> None:
     s.lathe([(0.09, -0.03), (0.09, 0.03)], rubber(), (0, -length / 2 - 0.75, 0.09), "X", 16)
     for side in (-1, 1):
         wheel(s, side * (width / 2 - 0.05), 0.0, 0.31, 0.17)
-        guard = [
-            (0.38 * math.cos(math.radians(a)), 0.31 + 0.38 * math.sin(math.radians(a))) for a in range(10, 171, 20)
-        ]
+        guard = [(0.38 * math.cos(math.radians(a)), 0.31 + 0.38 * math.sin(math.radians(a))) for a in range(10, 171, 20)]
         inner = [(u * 0.94, 0.31 + (v - 0.31) * 0.94) for u, v in guard[::-1]]
         x = side * (width / 2 - 0.05)
         s.prism([*guard, *inner], (x - 0.11, x + 0.11), paint("black"), "YZ")
@@ -63,7 +62,8 @@ def _trailer(s: Solid, width: float, length: float, colour: str) -> None:
 
 
 def arrow_board(direction: str = "left", *, lit: bool = True) -> Built:
-    """Trailer with a black board of lamps that show an arrow to the reader's left or right, on red and white stripes, facing +y."""
+    """Trailer with a black board of lamps that show an arrow to the reader's left or right, on red and white stripes,
+    facing +y."""
     s = Solid("arrow board")
     _trailer(s, 1.6, 1.9, "orange")
     s.box((0.95, 0.70, 0.40), (0, -0.30, 0.74), paint("orange", dirt=0.3), 0.03)
@@ -80,7 +80,7 @@ def arrow_board(direction: str = "left", *, lit: bool = True) -> Built:
     lamps = {(round(u, 3), round(v, 3)) for u, v in shaft + head}
     spare = {(0.75 - 0.17 * i, side * 0.16 * i) for i in range(1, 4) for side in (-1, 1)}
     for u, v in sorted(lamps | spare):
-        bright = glow("amber", 6.0) if lit and (u, v) in lamps else lens("amber")
+        bright = glow("amber", 6.0) if lit and (u, v) in lamps else lens("black")
         s.lathe([(0.072, 0.0), (0.072, 0.03), (0.066, 0.03)], paint("black"), (sign * u, 0.835, 2.35 + v), "Y", 18)
         s.lathe([(0.062, 0.012), (0.055, 0.030), (0.025, 0.042)], bright, (sign * u, 0.835, 2.35 + v), "Y", 18)
     for x in (-0.85, 0.85):
@@ -170,7 +170,8 @@ def portable_toilet(colour: str = "blue") -> Built:
 
 
 def site_cabin(colour: str = "light grey", text: str = "SITE OFFICE") -> Built:
-    """Steel site cabin, 6.0 x 2.4 x 2.7 m, corrugated walls, door, two barred windows, steps and a name board towards +y."""
+    """Steel site cabin, 6.0 x 2.4 x 2.7 m, corrugated walls, door, two barred windows, steps and a name board towards
+    +y."""
     s = Solid("site cabin")
     wall, trim = paint(colour, dirt=0.30), paint("dark grey", dirt=0.3)
     for x in (-2.6, 0.0, 2.6):

@@ -162,9 +162,7 @@ def _bag(s: Solid, material: bpy.types.Material) -> None:
             for i in range(n + 1):
                 u, v = 2 * i / n - 1, 2 * j / m - 1
                 bulge = ((1 - u**6) * (1 - v**8)) ** 0.35
-                points.append(
-                    (0.19 * u, 0.235 * v, 0.0575 + side * 0.0575 * bulge + 0.004 * noise.noise((u * 3, v * 3, side)))
-                )
+                points.append((0.19 * u, 0.235 * v, 0.0575 + side * 0.0575 * bulge + 0.004 * noise.noise((u * 3, v * 3, side))))
     row, sheet_size = n + 1, (n + 1) * (m + 1)
     top = [(j * row + i, j * row + i + 1, (j + 1) * row + i + 1, (j + 1) * row + i) for j in range(m) for i in range(n)]
     s.add(points, [*top, *(tuple(sheet_size + q for q in f[::-1]) for f in top)], material)
@@ -218,9 +216,7 @@ def shovel_standing() -> Built:
         )
         s.rod((0, 0, 0.20), (0, 0, 0.46), 0.022, steel(dark=True))
         s.rod((0, 0, 0.40), (0, 0, 1.30), 0.017, timber())
-        s.tube(
-            [(-0.055, 0, 1.40), (0.055, 0, 1.40), (0.03, 0, 1.30), (-0.03, 0, 1.30)], 0.014, paint("black"), closed=True
-        )
+        s.tube([(-0.055, 0, 1.40), (0.055, 0, 1.40), (0.03, 0, 1.30), (-0.03, 0, 1.30)], 0.014, paint("black"), closed=True)
     return s.built()
 
 
