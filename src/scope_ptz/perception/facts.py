@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from scope_ptz.perception.language import words as w
 from scope_ptz.perception.language.lexicon import COLOURS, lexicon, nouns_in, singular_phrase
-from scope_ptz.perception.view import Thing, View
+from scope_ptz.perception.view import Thing, View, head_of
 from scope_ptz.world.models import Attribute
 
 _STATES = [
@@ -33,7 +33,8 @@ _CANONICAL = {word: line.partition(":")[0] for line in _STATES if line for word 
     "standing": "upright", "stand": "upright", "wood": "wooden", "timber": "wooden", "male": "man", "female": "woman",
 }  # fmt: skip
 _OPPOSITES = [
-    ("open", "closed"), ("lit", "unlit"), ("lit", "off"), ("on", "off"), ("moving", "stationary"), ("empty", "full"), ("raised", "lowered"),
+    ("open", "closed"), ("lit", "unlit"), ("lit", "off"), ("on", "off"), ("moving", "stationary"), ("empty", "full"),
+    ("raised", "lowered"),
     ("sitting", "upright"), ("upright", "fallen"), ("walking", "upright"), ("walking", "stationary"), ("walking", "sitting"),
     ("working", "off"),
 ]  # fmt: skip
@@ -87,11 +88,37 @@ SOFT = frozenset(
     ]
 )
 """Words that restrict nothing when the scene has no fact about them."""
-_FILLERS = frozenset(
-    """the a an is are it its of in on at and be being with very quite really currently colour color coloured colored one ones
-    parts""".split()
+FILLERS = frozenset(
+    [
+        "the",
+        "a",
+        "an",
+        "is",
+        "are",
+        "it",
+        "its",
+        "of",
+        "in",
+        "on",
+        "at",
+        "and",
+        "be",
+        "being",
+        "with",
+        "very",
+        "quite",
+        "really",
+        "currently",
+        "colour",
+        "color",
+        "coloured",
+        "colored",
+        "one",
+        "ones",
+        "parts",
+    ]
 )
-TEXT_KEYS = frozenset("reads text plate lettering number signal sign label readable_by inscription".split())
+TEXT_KEYS = frozenset(["reads", "text", "plate", "lettering", "number", "signal", "sign", "label", "readable_by", "inscription"])
 """Attributes that repeat what is written on a thing. They are never used: only legible texts are read."""
 COLOUR_KEYS = ("colour", "color")
 NOTHING = frozenset({"", "none", "no", "false", "nothing", "without"})
@@ -176,8 +203,8 @@ def fits_noun(view: View, thing: Thing, noun: str) -> bool:
     A word that the scene itself uses for something means that ("pylon" for an electricity pylon), whatever else it may mean.
     """
     one = w.letters(singular_phrase(noun))
-    name, category = w.letters(thing.name), w.letters(thing.category)
-    if one == category or one == name or name.endswith(f" {one}"):
+    name, category = w.letters(head_of(thing.name)), w.letters(thing.category)
+    if one in (category, name) or name.endswith(f" {one}"):
         return True
     concept = lexicon().concept(noun)
     return concept is not None and concept in thing.concepts and (concept == one or one not in view.nouns)
@@ -185,7 +212,7 @@ def fits_noun(view: View, thing: Thing, noun: str) -> bool:
 
 def fits_words(view: View, thing: Thing, words: Sequence[str]) -> bool | None:
     """Whether loose words ("parked", "dark blue", "a van") hold for a thing."""
-    rest = [x for x in words if x not in _FILLERS] or [x for x in words if x in {"on", "in"}]
+    rest = [x for x in words if x not in FILLERS] or [x for x in words if x in {"on", "in"}]
     if not rest:
         return True
     spans = nouns_in(rest, view.nouns)
@@ -247,7 +274,7 @@ def _in_context(view: View, thing: Thing, word: str) -> bool:
 
 def wears(view: View, thing: Thing, words: Sequence[str], amount: int | None = None) -> bool:
     """Whether a thing has what the words name: an attribute, a part, or a text. What the scene does not say is not there."""
-    rest = [x for x in words if x not in _FILLERS]
+    rest = [x for x in words if x not in FILLERS]
     spans = nouns_in(rest, view.nouns)
     start, end = spans[0] if spans else (len(rest) - 1, len(rest))
     noun, others = " ".join(rest[start:end]), [canonical(x) for x in (*rest[:start], *rest[end:])]
@@ -287,7 +314,7 @@ def _chunks(value: object) -> list[str]:
     return [w.letters(" ".join([*(c.split()[:-1]), w.singular(c.split()[-1])])) for c in text.split(",") if c.strip()]
 
 
-def bears(view: View, thing: Thing, words: Sequence[str]) -> bool:
+def bears(thing: Thing, words: Sequence[str]) -> bool:
     """Whether legible text on a thing contains these words in this order (any legible text when there are none)."""
     wanted = f" {' '.join(words)} "
     return any(wanted in f" {w.letters(text)} " or not words for text in thing.texts) or _plate_is(thing, words)

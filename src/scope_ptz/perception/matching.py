@@ -1,42 +1,24 @@
 """Which things of a view a description means.
 
-Rules, all of them about the picture as the camera sees it:
-
-- *left / right of*: the middle of the box lies further left / right. *Above / below*: the middle lies higher / lower, and the boxes
-  overlap sideways or come within a tenth of the frame of it.
-- *behind / in front of*: further from / nearer to the camera by half a metre or more, and the boxes overlap sideways (a twentieth of
-  the frame is forgiven).
-- *near, next to*: no more than 4 m of air between the two in the world.
-- *on, in, at, of*: a part of it, or resting inside its outline less than 2 m away, or a fact that says so ("in the left lane").
-- *between*: the middle lies between the middles of the two, sideways, and not clearly above, below, before or behind both.
-- *on the left*: the middle lies in the left 40% of the frame; *half*: in that half; *corner*: in both 40% bands; *middle*: the
-  middle 40%. *In the foreground*, *in the distance*: the nearest and furthest third of the depth in view, on a logarithmic scale.
-- Of several matches the one with most pixels comes first, unless a superlative or ordinal orders them; ordinals without a side count
-  from the left. Superlatives keep the best only ("the two nearest": two).
+- A fact of the scene comes first ("in the left lane", "in an orange vest"), then the relations of ``relations``.
+- *between*: the middle lies between the middles of the two, sideways, and not clearly before or behind both.
+- Of several matches the one with most pixels comes first, unless a superlative or ordinal orders them; ordinals without a side
+  count from the left. Superlatives keep the best only ("the two nearest": two).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from typing import cast
 
-import numpy as np
-
-from scope_ptz.perception.facts import SOFT, bears, canonical, fact_words, facts, fits_noun, fits_words, key_words, wears
+from scope_ptz.perception.facts import FILLERS, SOFT, bears, facts, fits_noun, fits_words, wears
 from scope_ptz.perception.language import syntax as s
 from scope_ptz.perception.language import words as w
 from scope_ptz.perception.language.lexicon import lexicon, nouns_in
+from scope_ptz.perception.relations import BACKDROP, NEAR_M, faces, from_corner, in_region, pixels, rank_key, relation_holds
 from scope_ptz.perception.view import Thing, View
 
-NEAR_M = 4.0
-ON_M = 2.0
-DEPTH_STEP_M = 0.5
-SIDE_BAND = 0.4
-SIDE_SLACK = 0.05
-
 _SIDES: dict[str, s.OrderKey] = {"left": "left", "right": "right", "top": "top", "bottom": "bottom"}
-BACKDROP = frozenset({"surface", "sky"})
-"""Concepts that are where things are, rather than things."""
 
 
 def find(view: View, description: s.Description) -> list[Thing]:
@@ -44,14 +26,14 @@ def find(view: View, description: s.Description) -> list[Thing]:
     found: list[Thing] = []
     for phrase in description.phrases:
         found += [t for t in find_phrase(view, phrase) if t not in found]
-    return found if len(description.phrases) == 1 else sorted(found, key=_size, reverse=True)
+    return found if len(description.phrases) == 1 else sorted(found, key=pixels, reverse=True)
 
 
 def find_phrase(view: View, phrase: s.Phrase) -> list[Thing]:
     """Everything that one noun phrase means, best first."""
     core, extra, order = _core(view, phrase)
     matches = [t for t in core if all(holds(view, t, test) is True for test in (*phrase.tests, *extra))]
-    return _ordered(view, sorted(matches, key=_size, reverse=True), order, phrase)
+    return _ordered(view, sorted(matches, key=pixels, reverse=True), order, phrase)
 
 
 def noun_of(view: View, words: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -103,15 +85,7 @@ def _sided(
         return matches, (s.Region(cast("tuple[s.Side, ...]", tuple(sides))),), phrase.order
     if len(sides) == 1 and sides[0] in _SIDES and phrase.order is None:
         return matches, (), s.Order(_SIDES[sides[0]])
-    return sorted(matches, key=lambda t: _from_corner(t, sides))[:1], (), phrase.order
-
-
-def _from_corner(thing: Thing, sides: Sequence[str]) -> float:
-    """How far from a corner or the middle of the frame, in frames."""
-    x, y = thing.box.centre
-    to_x = 0.0 if "left" in sides else 1.0 if "right" in sides else 0.5
-    to_y = 0.0 if "top" in sides else 1.0 if "bottom" in sides else 0.5
-    return float(np.hypot(x - to_x, y - to_y))
+    return sorted(matches, key=lambda t: from_corner(t, sides))[:1], (), phrase.order
 
 
 def _worth_naming(view: View, thing: Thing) -> bool:
@@ -135,9 +109,7 @@ def _soft(view: View, thing: Thing, word: str) -> bool:
 
 def _all_words(view: View, thing: Thing, words: Sequence[str]) -> bool:
     """An unknown noun: every word must be found in the thing's own words."""
-    return bool(words) and all(
-        {canonical(x), canonical(w.singular(x))} & fact_words(thing) or bears(view, thing, [x]) for x in words
-    )
+    return not set(words) <= FILLERS and all(fits_words(view, thing, [x]) is True for x in words)
 
 
 def holds(view: View, thing: Thing, test: s.Test) -> bool | None:
@@ -153,7 +125,7 @@ def holds(view: View, thing: Thing, test: s.Test) -> bool | None:
             answer = fits_words(view, thing, words)
             return True if answer is None and all(_soft(view, thing, x) for x in words) else answer
         case s.Says(words=words):
-            return bears(view, thing, words) or (len(words) == 1 and _faces(thing, words[0]) is True)
+            return bears(thing, words) or (len(words) == 1 and faces(thing, words[0]) is True)
         case s.Has(what=what):
             return _has(view, thing, what)
         case s.Region():
@@ -169,17 +141,9 @@ def holds(view: View, thing: Thing, test: s.Test) -> bool | None:
             gaps = [thing.distance_m] if other is None else [thing.gap_m(o) for o in find(view, other) if o is not thing]
             return bool(gaps) and (min(gaps) <= metres) is not beyond
         case s.Faces(side=side):
-            return _faces(thing, side)
+            return faces(thing, side)
         case s.Order():
             return None
-
-
-def _faces(thing: Thing, side: str) -> bool | None:
-    """Which way a thing points, where the scene says so."""
-    for key, value in thing.attributes.items():
-        if set(key_words(key)) & {"direction", "facing", "heading", "pointing", "orientation", "arrow"}:
-            return side in w.letters(str(value)).split()
-    return None
 
 
 def _has(view: View, thing: Thing, what: s.Description) -> bool:
@@ -191,33 +155,12 @@ def _has(view: View, thing: Thing, what: s.Description) -> bool:
     )
 
 
-def in_region(view: View, thing: Thing, region: s.Region) -> bool:
-    x, y = thing.box.centre
-    band = 0.5 if region.half else SIDE_BAND
-    checks: dict[str, Callable[[], bool]] = {
-        "left": lambda: x < band,
-        "right": lambda: x > 1 - band,
-        "top": lambda: y < band,
-        "bottom": lambda: y > 1 - band,
-        "middle": lambda: abs(x - 0.5) <= SIDE_BAND / 2 and (len(region.sides) > 1 or abs(y - 0.5) <= SIDE_BAND),
-        "near": lambda: thing.distance_m <= _depth(view, 1 / 3),
-        "far": lambda: thing.distance_m >= _depth(view, 2 / 3),
-    }
-    return all(checks[side]() for side in region.sides)
-
-
-def _depth(view: View, share: float) -> float:
-    """A distance between the nearest and the furthest thing in view: so far along, on a logarithmic scale."""
-    distances = [t.distance_m for t in view.top_level() if not t.concepts & BACKDROP]
-    near, far = min(distances), max(distances)
-    return float(near * (far / near) ** share)
-
-
 def related(view: View, thing: Thing, kind: s.RelationKind, other: s.Description) -> bool:
     """Whether a thing stands in a relation to any thing that fits ``other``."""
-    if kind == "on" and _said(view, thing, other):
+    others = find(view, other)
+    if kind == "on" and thing not in others and _said(view, thing, other):
         return True
-    return any(relation_holds(view, thing, kind, o) for o in find(view, other) if o is not thing)
+    return any(relation_holds(view, thing, kind, o) for o in others if o is not thing)
 
 
 def _said(view: View, thing: Thing, other: s.Description) -> bool:
@@ -233,40 +176,6 @@ def _values(thing: Thing) -> Iterable[list[str]]:
         yield [*w.letters(f"{key.replace('_', ' ')} {value}").split()]
 
 
-def relation_holds(view: View, a: Thing, kind: s.RelationKind, b: Thing) -> bool:
-    """The relations of the picture between two things."""
-    (ax, ay), (bx, by) = a.box.centre, b.box.centre
-    part = view.belongs(a.id, b.id) or view.belongs(b.id, a.id)
-    match kind:
-        case "left":
-            return ax < bx and not part
-        case "right":
-            return ax > bx and not part
-        case "above":
-            return ay < by and _sideways(a, b, 0.1)
-        case "below":
-            return ay > by and _sideways(a, b, 0.1)
-        case "front":
-            return not part and a.distance_m <= b.distance_m - DEPTH_STEP_M and _sideways(a, b, SIDE_SLACK)
-        case "behind":
-            return not part and a.distance_m >= b.distance_m + DEPTH_STEP_M and _sideways(a, b, SIDE_SLACK)
-        case "near" | "facing":
-            return not part and a.gap_m(b) <= NEAR_M
-        case "on":
-            return view.belongs(a.id, b.id) or _rests_on(a, b)
-
-
-def _sideways(a: Thing, b: Thing, slack: float) -> bool:
-    return a.box.x_min <= b.box.x_max + slack and b.box.x_min <= a.box.x_max + slack
-
-
-def _rests_on(a: Thing, b: Thing) -> bool:
-    """Its foot inside the outline of the other in the picture, and close to it in the world."""
-    x = a.box.centre[0]
-    inside = b.box.x_min <= x <= b.box.x_max and b.box.y_min - 0.02 <= a.box.y_max <= b.box.y_max + 0.02
-    return inside and a.gap_m(b) <= ON_M and _size(a) < _size(b)
-
-
 def _between(view: View, thing: Thing, first: s.Description, second: s.Description) -> bool:
     ones, others = find(view, first), find(view, second)
     x = thing.box.centre[0]
@@ -279,32 +188,6 @@ def _between(view: View, thing: Thing, first: s.Description, second: s.Descripti
             if low < x < high and near - NEAR_M <= thing.distance_m <= far + NEAR_M:
                 return True
     return False
-
-
-def _size(thing: Thing) -> int:
-    return thing.sighting.pixels
-
-
-def rank_key(key: s.OrderKey) -> Callable[[Thing], float]:
-    """What a superlative sorts by, best first."""
-    keys: dict[str, Callable[[Thing], float]] = {
-        "left": lambda t: t.box.centre[0],
-        "right": lambda t: -t.box.centre[0],
-        "top": lambda t: t.box.centre[1],
-        "bottom": lambda t: -t.box.centre[1],
-        "nearest": lambda t: t.distance_m,
-        "furthest": lambda t: -t.distance_m,
-        "biggest": lambda t: -_volume(t),
-        "smallest": _volume,
-        "tallest": lambda t: -float(t.high_m[2] - t.low_m[2]),
-        "widest": lambda t: -float(max(t.high_m[:2] - t.low_m[:2])),
-    }
-    return keys[key]
-
-
-def _volume(thing: Thing) -> float:
-    """Size in the world: the diagonal of the box, which also orders flat things."""
-    return float(((thing.high_m - thing.low_m) ** 2).sum() ** 0.5)
 
 
 def _ordered(view: View, matches: list[Thing], order: s.Order | None, phrase: s.Phrase) -> list[Thing]:

@@ -113,12 +113,12 @@ class View:
 
 def read_view(truth: ViewTruth, scene: SceneFile, time_s: float) -> View:
     """The view of a frame from its ground truth."""
-    everything = (*scene.instances, *scene.actors)
+    everything: list[SceneInstance | SceneActor] = [*scene.instances, *scene.actors]
     parents = {i.id: i.parent for i in scene.instances if i.parent}
     values: dict[str, set[str]] = {}
     nouns: set[str] = set()
     for instance in everything:
-        nouns |= {singular_phrase(n.lower()) for n in (instance.category, _head(instance.name)) if n.strip()}
+        nouns |= {singular_phrase(n.lower()) for n in (instance.category, head_of(instance.name)) if n.strip()}
         for key, value in instance.attributes.items():
             values.setdefault(key, set()).update(w.letters(str(value)).split())
     texts = tuple(sorted(truth.texts, key=lambda t: (round(t.box[1], 2), t.box[0])))
@@ -145,7 +145,7 @@ def read_view(truth: ViewTruth, scene: SceneFile, time_s: float) -> View:
     )
 
 
-def _head(name: str) -> str:
+def head_of(name: str) -> str:
     """The part of a name that says what the thing is."""
     head = name.lower()
     for mark in PART_WORDS:
@@ -164,7 +164,7 @@ def _concepts(instance: SceneInstance | SceneActor) -> frozenset[str]:
     ):
         if phrase and (concept := table.concept(phrase)):
             found |= table.kinds(concept)
-    name = _head(instance.name).split()
+    name = head_of(instance.name).split()
     for start in range(len(name)):
         if concept := table.concept(" ".join(name[start:])):
             found |= table.kinds(concept)
@@ -179,7 +179,7 @@ def _world_box(instance: SceneInstance | SceneActor, time_s: float) -> tuple[Flo
     here = whereabouts(instance, time_s)
     foot = np.zeros(3) if here is None else here.position_m
     width, depth, height = instance.size_m
-    return foot - (width / 2, depth / 2, 0.0), foot + (width / 2, depth / 2, height)
+    return foot - np.array([width / 2, depth / 2, 0.0]), foot + np.array([width / 2, depth / 2, height])
 
 
 def _motion(instance: SceneInstance | SceneActor, time_s: float) -> str:

@@ -52,6 +52,6 @@ def answer(view: View, question: s.Question | None) -> Reply:
         case s.Describe():
             return describe(view, question)
         case s.Happening():
-            return happening(view, question)
+            return happening(view)
         case None:
             return unknown("I cannot tell: I can only answer about what is visible in the picture")

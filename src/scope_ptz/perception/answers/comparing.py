@@ -9,7 +9,8 @@ from scope_ptz.perception.answers.values import value_of
 from scope_ptz.perception.answers.wording import COMPARATIVES, none_of, noun, the
 from scope_ptz.perception.language import syntax as s
 from scope_ptz.perception.language import words as w
-from scope_ptz.perception.matching import find, find_phrase, rank_key
+from scope_ptz.perception.matching import find, find_phrase
+from scope_ptz.perception.relations import rank_key
 from scope_ptz.perception.view import Thing, View
 
 _ALIKE = 0.02
@@ -104,7 +105,7 @@ def most_common(view: View, question: s.MostCommon) -> Reply:
     if not found:
         return unknown(f"I cannot tell: {none_of(view, question.what)}")
     colour = question.attribute == ("colour",)
-    values = [value_of(view, t, ("colour",)) if colour else t.category for t in found]
+    values = [value_of(t, ("colour",)) if colour else t.category for t in found]
     counts = Counter(v for v in values if v is not None)
     if not counts:
         return unknown("I cannot tell: the scene does not say")

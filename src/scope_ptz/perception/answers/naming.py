@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from scope_ptz.perception.facts import colour_of
 from scope_ptz.perception.language import words as w
-from scope_ptz.perception.matching import SIDE_BAND
+from scope_ptz.perception.relations import SIDE_BAND
 from scope_ptz.perception.view import Thing
 
 MAX_NAMED = 8

@@ -13,7 +13,8 @@ from scope_ptz.perception.answers.wording import none_of, noun
 from scope_ptz.perception.facts import COLOUR_KEYS, colour_of, fact_words, facts, key_words
 from scope_ptz.perception.language import syntax as s
 from scope_ptz.perception.language import words as w
-from scope_ptz.perception.matching import BACKDROP, find
+from scope_ptz.perception.matching import find
+from scope_ptz.perception.relations import BACKDROP
 from scope_ptz.perception.view import Thing, View
 
 MAX_GROUPS = 10
@@ -24,7 +25,7 @@ STILL = frozenset({None, "parked", "open", "closed", "lit", "unlit", "standing",
 def describe(view: View, question: s.Describe) -> Reply:
     """What can be seen, biggest first, with the texts that can be read."""
     if question.what is not None:
-        return _describe_thing(view, question)
+        return _describe_things(view, question.what, question.tests)
     if question.tests:
         return what(view, s.What(s.Description((s.Phrase(("thing",)),)), question.tests))
     groups = _groups(t for t in view.top_level() if not t.concepts & BACKDROP)
@@ -36,14 +37,13 @@ def describe(view: View, question: s.Describe) -> Reply:
     return reply(f"I can see {said}{readable}")
 
 
-def _describe_thing(view: View, question: s.Describe) -> Reply:
+def _describe_things(view: View, what: s.Description, tests: tuple[s.Test, ...]) -> Reply:
     """One or several things with everything that the scene says of them."""
-    assert question.what is not None
-    found = find(view, narrowed(question.what, question.tests))
+    found = find(view, narrowed(what, tests))
     if not found:
-        return reply(none_of(view, question.what))
+        return reply(none_of(view, what))
     if len(found) > MAX_TEXTS:
-        return reply(f"there are {len(found)} {noun(view, question.what, many=True)}: {names(found)}")
+        return reply(f"there are {len(found)} {noun(view, what, many=True)}: {names(found)}")
     return Reply(" ".join(w.sentence(_told(t)) for t in found))
 
 
@@ -73,7 +73,7 @@ def _groups(things: Iterable[Thing]) -> list[str]:
     return said
 
 
-def happening(view: View, question: s.Happening) -> Reply:
+def happening(view: View) -> Reply:
     """Who and what moves or works; without that, what is to be seen."""
     busy = [f"{w.article(name(t))} is {doing}" for t in view.top_level() if (doing := _doing(t)) is not None]
     if not busy:

@@ -11,7 +11,8 @@ from scope_ptz.perception.answers.verdicts import missing_reference
 from scope_ptz.perception.answers.wording import after_noun, holds_words, none_of, noun
 from scope_ptz.perception.language import syntax as s
 from scope_ptz.perception.language import words as w
-from scope_ptz.perception.matching import NEAR_M, find, relation_holds
+from scope_ptz.perception.matching import find
+from scope_ptz.perception.relations import NEAR_M, relation_holds
 from scope_ptz.perception.view import Thing, View
 
 MAX_PLACED = 3
@@ -39,25 +40,25 @@ def neighbour(view: View, thing: Thing) -> str:
     others = [
         t
         for t in view.top_level()
-        if t is not thing and t.name != thing.name and not t.concepts & _BACKDROP and not thing.parent == t.id
+        if t is not thing and t.name != thing.name and not t.concepts & _BACKDROP and thing.parent != t.id
     ]
     near = [t for t in others if thing.gap_m(t) <= NEAR_M]
     if near:
         best = max(near, key=lambda t: t.sighting.pixels)
-        kind = (
-            "behind"
-            if relation_holds(view, thing, "behind", best)
-            else "front"
-            if relation_holds(view, thing, "front", best)
-            else "near"
-        )
-        words = {"behind": "just behind", "front": "just in front of", "near": "next to"}[kind]
-        return f", {words} the {name(best)}"
-    sides = [(t, k) for t in others for k in ("behind", "front") if relation_holds(view, thing, k, t)]  # type: ignore[arg-type]
-    if sides:
-        best, side = max(sides, key=lambda pair: pair[0].sighting.pixels)
-        return f", {'behind' if side == 'behind' else 'in front of'} the {name(best)}"
+        side = _depth_side(view, thing, best)
+        return f", {f'just {side}' if side else 'next to'} the {name(best)}"
+    aligned = [t for t in others if _depth_side(view, thing, t)]
+    if aligned:
+        best = max(aligned, key=lambda t: t.sighting.pixels)
+        return f", {_depth_side(view, thing, best)} the {name(best)}"
     return ""
+
+
+def _depth_side(view: View, thing: Thing, other: Thing) -> str:
+    """ "behind", "in front of" or nothing."""
+    if relation_holds(view, thing, "behind", other):
+        return "behind"
+    return "in front of" if relation_holds(view, thing, "front", other) else ""
 
 
 def what(view: View, question: s.What) -> Reply:
@@ -103,7 +104,8 @@ def identify(view: View, question: s.Identify) -> Reply:
     """What a thing is; or, when the words name a fact rather than a thing ("the speed limit"), that fact."""
     phrase = question.what.phrases[0]
     fact = anywhere(view, phrase.words)
-    if fact.known and not phrase.tests and phrase.order is None:
+    carried = all(isinstance(t, s.Relation) and t.kind == "on" for t in phrase.tests)
+    if fact.known and carried and phrase.order is None:
         return fact
     found = find(view, question.what)
     if not found:

@@ -49,12 +49,12 @@ def ask(view: View, question: s.Ask) -> Reply:
     found = find(view, question.what)
     if not found:
         return _of_a_part(view, question) or absent(view, question.what)
-    values = [(t, value_of(view, t, question.attribute)) for t in found]
+    values = [(t, value_of(t, question.attribute)) for t in found]
     told = [(t, v) for t, v in values if v is not None]
     if not told:
         attribute = " ".join(question.attribute)
         return unknown(f"I cannot tell: the scene does not say ({attribute} of {as_asked(view, question.what)})")
-    verb = "wearing " if _is_clothes(question.attribute) else ""
+    verb = next((v for words, v in _VERBS.items() if set(words.split()) & set(question.attribute)), "")
     distinct = Counter(v for _, v in told)
     if len(distinct) == 1:
         who = the(view, question.what, many=len(told) > 1)
@@ -66,7 +66,7 @@ def ask(view: View, question: s.Ask) -> Reply:
     )
 
 
-def value_of(view: View, thing: Thing, attribute: Sequence[str]) -> str | None:
+def value_of(thing: Thing, attribute: Sequence[str]) -> str | None:
     """An attribute of a thing in words, None when the scene has none."""
     if attribute[-1] in COLOUR_KEYS:
         colour = colour_of(thing)
@@ -90,6 +90,11 @@ def value_of(view: View, thing: Thing, attribute: Sequence[str]) -> str | None:
     return None
 
 
+_VERBS = {
+    "wearing clothes clothing outfit": "wearing ", "carrying load cargo holding": "carrying ", "made material": "made of ",
+    "direction pointing facing heading way": "pointing ", "lane": "in ", "carriageway": "on the ",
+}  # fmt: skip
+"""What goes between "is" and the value of some attributes."""
 _GERUNDS = {
     "stand": "standing", "walk": "walking", "kneel": "kneeling", "shovel": "shovelling", "carry": "carrying something",
     "point": "pointing", "phone": "talking on the phone", "clipboard": "holding a clipboard", "sit": "sitting", "run": "running",
@@ -109,6 +114,8 @@ _POLAR = ("open", "closed", "lit", "unlit", "raised", "lowered", "empty", "full"
 
 
 def _value(key: str, value: object) -> str:
+    if key == "lane":
+        return f"lane {value}" if isinstance(value, int) else f"the {value}"
     if isinstance(value, bool):
         return " ".join(key_words(key)) if value else f"not {' '.join(key_words(key))}"
     return str(value)
@@ -168,8 +175,8 @@ def _part_value(thing: Thing, words: Sequence[str]) -> str | None:
 def anywhere(view: View, attribute: Sequence[str]) -> Reply:
     """ "Which lane is closed?", "what is the speed limit?": any thing with such a fact, else a text of such a sign."""
     if tuple(attribute) == ("thing",) or set(attribute) & UNSEEN:
-        return unknown("I cannot tell: that is not something that the picture's truth holds")
-    told = [(t, v) for t in view.things for v in [value_of(view, t, attribute)] if v is not None and _says(t, attribute)]
+        return unknown("I cannot tell that from the picture")
+    told = [(t, v) for t in view.things for v in [value_of(t, attribute)] if v is not None and _says(t, attribute)]
     if told:
         values = list(dict.fromkeys(v for _, v in told))
         return reply(f"the {' '.join(attribute)} is {w.listing(values)}")
@@ -188,5 +195,5 @@ def _says(thing: Thing, attribute: Sequence[str]) -> bool:
 def absent(view: View, subject: s.Description) -> Reply:
     """The answer to a question about something that is not in view."""
     if any(p.words and p.words[-1] in UNSEEN for p in subject.phrases):
-        return unknown("I cannot tell: that is not something that the picture's truth holds")
+        return unknown("I cannot tell that from the picture")
     return unknown(f"I cannot tell: {none_of(view, subject)}")

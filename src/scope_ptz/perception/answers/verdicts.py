@@ -83,6 +83,12 @@ def _parts(view: View, question: s.YesNo) -> tuple[s.Description, tuple[s.Test, 
         tests = [last.tests[-1]]
         last = replace(last, tests=last.tests[:-1])
         others = [replace(p, tests=tuple(t for t in p.tests if t not in tests)) for p in others]
+    if tests and isinstance(hidden := tests[-1], s.Relation):
+        far = hidden.other.phrases[-1]
+        head, after = noun_of(view, far.words)
+        if after and nouns_in(far.words, view.nouns):
+            tests[-1] = replace(hidden, other=s.Description((*hidden.other.phrases[:-1], replace(far, words=head))))
+            tests.append(s.Is(after))
     while len(tests) > 1 and isinstance(tests[0], s.Region | s.Relation | s.Between):
         last = replace(last, tests=(*last.tests, tests.pop(0)))
     return s.Description((*others, last)), tuple(tests)
@@ -126,7 +132,7 @@ def _verdict(
             return reply(f"no, none of the {total} {many} in view {holds_words(view, tests, 1)}")
         return reply(f"no, {as_asked(view, subject)} {holds_words(view, tests, total, negated=True)}")
     if len(yes) == total:
-        every = f"all {total} {many}" if total > 1 and not union else as_asked(view, subject)
+        every = f"{'both' if total == 2 else f'all {total}'} {many}" if total > 1 and not union else as_asked(view, subject)
         return reply(f"yes, {every} {holds_words(view, tests, total)}")
     if scope == "all" or (plural(subject) and not some):
         return reply(f"no, only {share}")

@@ -14,12 +14,13 @@ _PRONOUNS = {
     **dict.fromkeys(("anything", "something", "everything"), "thing"),
 }
 SUPERLATIVES = {
-    "left": "left-most", "right": "right-most", "top": "top-most", "bottom": "lowest", "nearest": "nearest", "furthest": "furthest",
-    "biggest": "biggest", "smallest": "smallest", "tallest": "tallest", "widest": "widest",
+    "left": "left-most", "right": "right-most", "top": "top-most", "bottom": "lowest", "nearest": "nearest",
+    "furthest": "furthest", "biggest": "biggest", "smallest": "smallest", "tallest": "tallest", "widest": "widest",
 }  # fmt: skip
 COMPARATIVES = {
-    "left": "further to the left", "right": "further to the right", "top": "higher in the picture", "bottom": "lower in the picture",
-    "nearest": "closer", "furthest": "further away", "biggest": "bigger", "smallest": "smaller", "tallest": "taller", "widest": "wider",
+    "left": "further to the left", "right": "further to the right", "top": "higher in the picture",
+    "bottom": "lower in the picture", "nearest": "closer", "furthest": "further away", "biggest": "bigger",
+    "smallest": "smaller", "tallest": "taller", "widest": "wider",
 }  # fmt: skip
 _RELATIONS = {
     "left": "to the left of", "right": "to the right of", "above": "above", "below": "below", "front": "in front of",

@@ -14,7 +14,7 @@ _SPECIFIC: tuple[type[Any], ...] = (
 )  # fmt: skip
 
 
-_TEXTS = frozenset("text texts writing words lettering written printed painted name number".split())
+_TEXTS = frozenset(["text", "texts", "writing", "words", "lettering", "written", "printed", "painted", "name", "number"])
 """Words of texts, which are read and are no things."""
 
 

@@ -45,7 +45,7 @@ def _best(text: str, start: str) -> Description | Question | None:
     if not 0 < len(tokens) <= MAX_TOKENS:
         return None
     try:
-        forest = _grammar().parse(tokens, start=start)  # type: ignore[arg-type]
+        forest = _grammar().parse(tokens, start=start)
     except LarkError:
         return None
     readings = [Builder().transform(tree) for tree in CollapseAmbiguities().transform(forest)]

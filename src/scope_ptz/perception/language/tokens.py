@@ -63,7 +63,7 @@ class Passed(Lexer):
     def __init__(self, lexer_conf: Any) -> None:
         pass
 
-    def lex(self, lexer_state: Any, parser_state: Any) -> Iterator[Token]:
+    def lex(self, lexer_state: Any, _parser_state: Any) -> Iterator[Token]:
         yield from lexer_state.text
 
 
@@ -96,7 +96,8 @@ def tokenise(text: str) -> list[Token]:
             if found and (tokens or found[0] != "THAT"):
                 break
         else:
-            tokens.append(_open(words[i]))
+            counts = words[i] == "one" and i + 1 < len(words) and (words[i + 1],) not in table
+            tokens.append(Token("NUM", "1") if counts else _open(words[i]))
             i += 1
             continue
         kind, value = found
@@ -111,6 +112,8 @@ def tokenise(text: str) -> list[Token]:
             literal, i = _literal(words, i)
             if literal:
                 tokens.append(Token("TEXT", literal))
+    while tokens and tokens[0].type == "COMMA":
+        tokens.pop(0)
     return tokens
 
 

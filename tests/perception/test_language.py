@@ -1,0 +1,99 @@
+"""Descriptions and questions over the yard: what they find and what they are answered."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import pytest
+
+from scope_ptz.perception.answers import answer
+from scope_ptz.perception.language import parse_description, parse_question, words
+from scope_ptz.perception.matching import find
+from scope_ptz.perception.view import read_view
+from tests.perception import yard
+
+VIEW = read_view(yard.truth(), yard.SCENE, 5.0)
+HERE = Path(__file__).parent
+
+
+def table(name: str) -> list[tuple[str, str]]:
+    rows = [line.split(" => ", 1) for line in (HERE / name).read_text("utf-8").splitlines() if " => " in line]
+    return [(left.strip(), right.strip()) for left, right in rows]
+
+
+@pytest.mark.parametrize(("description", "ids"), table("descriptions.txt"))
+def test_description(description: str, ids: str) -> None:
+    assert " ".join(t.id for t in find(VIEW, parse_description(description))) == ids.replace("-", "", ids == "-")
+
+
+@pytest.mark.parametrize(("question", "expected"), table("questions.txt"))
+def test_question(question: str, expected: str) -> None:
+    text, known = answer(VIEW, parse_question(question))
+    assert ("" if known else "(?) ") + text == expected
+
+
+@pytest.mark.parametrize("absent", yard.ABSENT)
+def test_what_the_scene_calls_absent_is_absent(absent: str) -> None:
+    assert find(VIEW, parse_description(absent)) == []
+    assert answer(VIEW, parse_question(f"is there a {absent}?")) == (f"No, there is no {absent} in view.", True)
+    assert answer(VIEW, parse_question(f"how many {absent}s are there?"))[0].startswith("There are 0 ")
+
+
+@pytest.mark.parametrize("prefix", ["", "please ", "can you tell me ", "Hey, "])
+def test_courtesy_changes_nothing(prefix: str) -> None:
+    assert answer(VIEW, parse_question(prefix + "how many cars are there right now?")) == ("There are 4 cars in view.", True)
+
+
+def test_illegible_text_is_never_read() -> None:
+    for question in (
+        "what does the cabin say?",
+        "read all the text",
+        "describe the cabin",
+        "what do you see?",
+        "is there text on the cabin?",
+    ):
+        assert "SITE OFFICE" not in answer(VIEW, parse_question(question)).text
+    assert find(VIEW, parse_description("the cabin that says site office")) == []
+
+
+def test_text_like_attributes_are_not_read_from_the_table() -> None:
+    rows = [r if r[0] != "sign-03" else (*r[:5], {**r[5], "reads": "ROAD CLOSED"}, r[6]) for r in yard.ROWS]
+    (row,) = (r for r in rows if r[0] == "sign-03")
+    instance = yard.INSTANCES[0].model_copy(update={"id": row[0], "name": row[2], "category": row[1], "attributes": row[5]})
+    scene = yard.SCENE.model_copy(update={"instances": [instance if i.id == row[0] else i for i in yard.SCENE.instances]})
+    view = read_view(yard.truth(), scene, 5.0)
+    assert find(view, parse_description("the road closed sign")) == []
+    assert find(view, parse_description("the sign that says road closed")) == []
+
+
+def test_nonsense_is_answered_without_guessing() -> None:
+    for question in ("", "???", "flibber the wug", "why?", "a " * 200):
+        assert answer(VIEW, parse_question(question)).known is False
+    for description in ("???", "a " * 200, "the wug"):
+        assert find(VIEW, parse_description(description)) == []
+
+
+def test_a_question_takes_milliseconds() -> None:
+    parse_question("is there a car?")
+    began = time.perf_counter()
+    for n in range(20):
+        parse_question(f"how many cars are there next to the van with {n} doors?")
+    assert (time.perf_counter() - began) / 20 < 0.2
+
+
+@pytest.mark.parametrize(
+    ("many", "one"),
+    [
+        ("lorries", "lorry"), ("buses", "bus"), ("people", "person"), ("men", "man"), ("boxes", "box"), ("benches", "bench"),
+        ("cones", "cone"), ("passers-by", "passer-by"), ("children", "child"), ("sheep", "sheep"), ("taxis", "taxi"),
+    ],
+)  # fmt: skip
+def test_plurals(many: str, one: str) -> None:
+    assert words.singular(many) == one
+    assert words.plural(one) == many
+
+
+@pytest.mark.parametrize(("word", "value"), [("7", 7), ("twelve", 12), ("twenty-five", 25), ("zero", 0), ("fivety", None)])
+def test_numbers(word: str, value: int | None) -> None:
+    assert words.number(word) == value
