@@ -9,9 +9,10 @@ from typing import Any
 
 from scope_ptz.planner.grammar.build_moves import MoveRules
 from scope_ptz.planner.grammar.build_scene import SceneRules
-from scope_ptz.planner.grammar.chart import Branch
+from scope_ptz.planner.grammar.chart import Branch, Leaf
 from scope_ptz.planner.grammar.compose import compose
 from scope_ptz.planner.grammar.syntax import (
+    Answered,
     AtPlaces,
     Bound,
     Condition,
@@ -24,11 +25,15 @@ from scope_ptz.planner.grammar.syntax import (
     Loop,
     Negated,
     Repeat,
+    Seen,
     Snap,
     Step,
     Sweep,
 )
 from scope_ptz.planner.grammar.trees import Node
+
+
+_LINKS = {"AND": "and", "COMMA": ",", "THEN": "then"}
 
 
 class Builder(MoveRules, SceneRules):
@@ -41,9 +46,11 @@ class Builder(MoveRules, SceneRules):
     def _linked(self, node: Node) -> list[Linked]:
         out: list[Linked] = []
         link = "." if node.name == "sentence" else ""
-        for child in node.branches():
-            if child.name == "sep":
-                link = {"AND": "and", "COMMA": ",", "THEN": "then"}[child.leaf_kinds()[0]]
+        for part in node.branch.children:
+            child = Node(part) if isinstance(part, Branch) else None
+            if child is None or child.name == "sep":
+                kind = part.kind if isinstance(part, Leaf) else Node(part).leaf_kinds()[0]
+                link = _LINKS.get(kind, "")
                 continue
             for step in self._as_steps(self.visit(child)):
                 out.append(Linked(link, step))
@@ -118,6 +125,23 @@ class Builder(MoveRules, SceneRules):
         condition, *blocks = (self.visit(b) for b in node.branches())
         return If(condition, blocks[0], blocks[1] if len(blocks) > 1 else ())
 
+    def if_at(self, node: Node) -> Step:
+        """ "If there are no cars at gate, ...": the place is where the condition is tested."""
+        condition, places, *blocks = (self.visit(b) for b in node.branches())
+        return AtPlaces(places, (If(condition, blocks[0], blocks[1] if len(blocks) > 1 else ()),))
+
+    def if_so(self, node: Node) -> Step:
+        blocks = [self.visit(b) for b in node.branches()]
+        return If(Answered(), blocks[0], blocks[1] if len(blocks) > 1 else ())
+
+    def each_time_that(self, node: Node) -> tuple[Step, ...]:
+        """ "Take a picture every time you pan right": after each move."""
+        return (*self._body(node, 1), EachTime(self._body(node, 0)))
+
+    def find_by(self, node: Node) -> Step:
+        thing, move = (self.visit(b) for b in node.branches())
+        return Loop((move,), Seen(thing))
+
     def unless_then(self, node: Node) -> Step:
         condition, *blocks = (self.visit(b) for b in node.branches())
         return If(Negated(condition), blocks[0], blocks[1] if len(blocks) > 1 else ())
@@ -151,7 +175,8 @@ class Builder(MoveRules, SceneRules):
         return DoAgain()
 
     def sweep(self, node: Node) -> Step:
-        return Sweep()
+        said = " ".join(self.words_of(leaf) for leaf in node.leaves("SWEEP"))
+        return Sweep(turn="360" in said)
 
     # Quantities --------------------------------------------------------------------------------------------------------
     def n_times(self, node: Node) -> int:

@@ -185,6 +185,11 @@ class SceneRules(Rules):
         adjective = " " not in rest and leaves[0].kind == "WORD" and not rest.endswith("ing")
         return Count((Thing(f"{rest} {thing.text}" if adjective else f"{thing.text} {rest}"),), self._view(node))
 
+    def count_parts(self, node: Node) -> Step:
+        """ "How many windows does the building have"."""
+        part, whole = self._things(node)[:2]
+        return Count((Thing(f"{part.text} of the {whole.text}"),), self._view(node))
+
     def what_about(self, node: Node) -> Step:
         return WhatAbout(self._thing(node))
 

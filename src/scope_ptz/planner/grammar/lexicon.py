@@ -30,8 +30,9 @@ PATTERNS: dict[str, tuple[str, ...]] = {
         "if", "when", "whenever", "once", "as soon as", "in case", "provided [that]", "only if", "in the event [that]",
         "the moment [that]", "assuming [that]", "so long as", "supposing", "as long as", "whether",
     ),
+    "IFSO": ("if (so|yes|there is one|it does|that is the case|that s the case)", "if the answer is yes"),
     "UNLESS": ("unless", "if not for"),
-    "OTHERWISE": ("otherwise", "[or] else", "if not", "but otherwise", "or otherwise", "if that fails", "if there are none", "if there is none", "if none", "and if not", "and if there are none", "if not then", "if (you|it) (don t|doesn t|can t|cannot|do not)"),
+    "OTHERWISE": ("otherwise", "[or] else", "if not", "but otherwise", "or otherwise", "if that fails", "if there are none", "if there is none", "if none", "and if not", "and if there are none", "if not then"),
     "UNTIL": (
         "until", "till", "til", "untill", "unitl", "[and] stop (when|once|as soon as|if)", "stopping (when|once|as soon as|if)",
         "[and] (halt|pause) (when|once|as soon as)", "up to the point where", "to the point where", "only stop when", "unti", "untl", "or until",
@@ -54,7 +55,7 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "COMPARE": ("~compare", "make a comparison of", "~contrast"),
     "WHAT": ("what", "what s", "what re", "whats", "what kind of", "what type of", "what sort of"),
     "WHICH": ("which", "which of", "which one", "which one of", "whichever", "whichever one", "whichever of", "whichever one of", "wherever", "in which", "at which", "from which", "on which", "which ones", "at what", "from what"),
-    "WHO": ("who", "who s", "whose", "whom", "where", "where s", "wheres", "when is", "why", "how", "how s", "how come"),
+    "WHO": ("anyone", "anybody", "anything", "someone", "somebody", "something", "nobody", "who", "who s", "whose", "whom", "where", "where s", "wheres", "when is", "why", "how", "how s", "how come"),
     "THEREBE": (
         "(is|are|was|were) there [still]", "there (is|are|was|were)", "there s", "there re", "there (happens|happen|seem|seems|appear|appears) to be", "there be", "does there exist", "there exists", "there will be", "we have", "you have", "you ve got", "we ve got", "you get", "there are still", "there is still",
     ),
@@ -81,7 +82,7 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "ANYMORE": ("any more", "anymore", "any longer", "no longer"),
     "TELL": (
         "~tell me", "let me know", "~report [back]", "~inform me", "i (want|need|would like|d like|wish) to know", "find out", "work out", "figure out", "~tell us", "~say", "~check", "~verify", "~confirm", "~determine", "make sure", "see (if|whether)", "~tell", "~answer", "~state",
-        "~estimate", "~assess", "~establish", "~note", "i wonder", "do you know", "report to me", "have a look and tell me", "look and tell me", "take a look and tell me", "~check and tell me", "~work out", "~report on", "i am wondering", "i m wondering", "i m curious", "can you tell",
+        "~estimate", "~assess", "~establish", "~note", "i wonder", "do you know", "report to me", "have a look and tell me", "look and tell me", "take a look and tell me", "~check and tell me", "~work out", "~report on", "i am wondering", "i m wondering", "i m curious",
     ),
     "DESCRIBE": ("~describe", "~summarise", "~summarize", "~explain", "give [me] a description of", "~caption", "~list", "give me an overview of", "give [me] a summary of", ),
     "READ": ("~read", "~read out", "~read me", "~read off", "~transcribe", "~read aloud", "read out loud", "~ocr", "~read to me", "~decipher"),
@@ -97,7 +98,7 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "SET": ("~set", "~put", "~make", "~change", "~fix"),
     "SWEEP": (
         "~sweep", "~scan", "~survey", "(do|perform|make|run|carry out|complete) a [full|complete|360|360 degree|whole|panoramic] (sweep|scan|survey|panorama|look around)", "look [all|right] around", "~search", "~pan around", "check [the] (everywhere|all around)", "take a look around", "have a look around",
-        "look everywhere", "look in (all directions|every direction|each direction)", "~patrol", "~explore", "(do|with|by|using) a 360",
+        "look everywhere", "look in (all directions|every direction|each direction)", "~patrol", "~explore", "(do|with|by|using|make) a 360 [degree turn|degrees|degree spin]",
     ),
     "SURROUND": (f"{_WHOLE} {_AREA}", "the (scene|area|site|place|surroundings|environment|horizon|panorama|location|surrounding area)", "everything", "everywhere", "all around [you]", "around", "(all|in all) directions", "all 360 degrees", "the full 360 [degrees]", "your surroundings", "in every direction"),
     "LEFT": ("left", "to the left", "leftward", "leftwards", "to your left", "to its left", "towards the left", "toward the left", "counterclockwise", "counter clockwise", "anticlockwise", "anti clockwise", "on the left", "left hand", "to the left hand side", "to the left side", "over to the left", "ccw", "lefts", "westward"),
@@ -111,11 +112,11 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "DIAGONALLY": ("diagonally",),
     "AROUND": ("around", "round", "right round", "right around", "back around", "to face the other way", "to the other side", "to face backwards", "to face behind you"),
     "TURNAROUND": ("turn (around|round)", "about face", "face the other way", "face (backwards|behind you|the back|the opposite direction|the opposite way)", "look (behind|behind you|backwards)", "(do|make) (an about face|a u turn|a 180)", "turn back around", "turn to face (backwards|the other way|behind you)", "look the other way", "do a 180", "spin around", "u turn", "turning around"),
-    "CIRCLE": ("turn", "circle", "rotation", "revolution", "turns", "spin", "sweep", "full circle", "circles", "rotations"),
+    "CIRCLE": ("turn", "circle", "rotation", "revolution", "turns", "spin", "sweep", "circles", "rotations"),
     "FULL": ("full", "complete", "whole", "entire"),
-    "FULLTURN": ("all the way around", "all the way round", "right the way round", "a full 360", "[the] full way around", "through a full circle", "in a full circle"),
+    "FULLTURN": ("[a|one|the] (full|complete|whole|entire) (turn|circle|rotation|revolution|360|spin|loop|circuit|sweep around)", "all the way around", "all the way round", "right the way round", "a full 360", "[the] full way around", "through a full circle", "in a full circle"),
     "RIGHTANGLE": ("[a] right angle", "[by|through] a right angle"),
-    "LITTLE": ("[just|by|only] (a bit|a little|a little bit|a touch|a tad|a hair|a smidge|a fraction|a wee bit|a tiny bit|a small amount|a smidgen|a notch|a shade|a nudge|one notch|a small bit|just a bit|a few degrees|a couple of degrees)", "slightly", "little bit", "bit", "marginally", "a bit of", "ever so slightly", "a little way", "some", "a teeny bit", "gently"),
+    "LITTLE": ("[just|by|only] (a bit|a little|a little bit|a touch|a tad|a hair|a smidge|a fraction|a wee bit|a tiny bit|a small amount|a smidgen|a notch|a shade|a nudge|one notch|a small bit|just a bit|a few degrees|a couple of degrees)", "slightly", "little bit", "bit", "marginally", "a bit of", "ever so slightly", "a little way", "some", "a teeny bit"),
     "LOT": ("[by] (a lot|a great deal|a long way|a good bit|a good deal|a fair bit|lots|loads|quite a bit|quite a lot|a large amount|plenty)", "far", "way", "much", "much further", "much more", "sharply", "significantly", "considerably", "hard", "substantially", "strongly"),
     "MORE": ("more", "further", "farther", "another", "an additional", "additional", "some more", "extra", "an extra", "a further", "again", "once more", "even more", "even", "one more time", "yet another", "additional"),
     "LIMIT": ("all the way", "fully", "completely", "totally", "entirely", "[up] to the (limit|stop|end|maximum|end stop|edge|extreme|very end)", "to (its|your) (limit|stop|maximum|furthest point)", "[to|at] the (far|extreme|furthest)", _AS_FAR, "as much as (possible|you can)", "to the max", "right to the (stop|end)", "hard over", "to maximum", "to the very (end|top|bottom|edge)", "as (high|low) as (possible|you can|it goes|it will go)", "to (max|full)", "[until] it stops", "right over", "maximally", "until it (stops|can t go any further)", "until you can t go any further", "until you (hit|reach) the (limit|end|stop)", "until the (limit|end|stop)"),
@@ -139,8 +140,8 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "COMPASS": ("(north|south|east|west|northeast|northwest|southeast|southwest)",),
     # Zoom
     "ZOOM": ("~zoom", "~magnify", "zom", "zooom", "zoon"),
-    "IN": ("in", "inwards", "inward", "right in"),
-    "OUT": ("out", "outwards", "outward", "right out", "back out", "away"),
+    "IN": ("in", "inwards", "inward"),
+    "OUT": ("out", "outwards", "outward", "back out", "away"),
     "CLOSER": ("[~get|~go|~move|~come|~look|~step] (closer|nearer|tighter)", "(closer|nearer|tighter|narrower)", "~tighten [up]", "~narrow", "~enlarge", "tighter on", "close in", "punch in", "push in"),
     "WIDER": ("[~get|~go|~move|~look] (wider|further out)", "~widen", "pull (back|out)", "back (off|out|away)", "wider", "zoom back", "~broaden", "zoom back out", "go wide", "pulling back"),
     "FIELD": ("[the|your] (angle|field|field of view|fov|view|shot|lens|angle of view|zoom|magnification|framing)",),
@@ -157,7 +158,7 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "CLOSE": ("(close|near|large|big|tight|magnification|zoom|narrow|detailed|zoomed in)",),
     "WIDE": ("(wide|far out|broad|width|field of view|zoomed out|angle|view)",),
     "ZOOMMAX": ("(max|maximum|full|highest|greatest|fullest|most) (zoom|magnification|telephoto)", "[to] (full|max|maximum) tele [photo]", "as close as (possible|you can|it goes)", "zoom to the (max|maximum)", "full telephoto", "the maximum"),
-    "ZOOMMIN": ("[to|go|set|use] [the|its] (widest|full wide|widest angle|widest view|widest shot|widest zoom|full wide angle|wide angle|minimum zoom|min zoom|lowest zoom|no zoom|smallest zoom|1x zoom)", "~reset [the] zoom", "reset [the] (zoom level|magnification)", "as wide as (possible|you can|it goes)", "undo the zoom", "unzoom", "un zoom", "wide open", "cancel the zoom", "clear the zoom", "back to (wide|1x|normal zoom)", "remove the zoom"),
+    "ZOOMMIN": ("[to|go|set|use] [the|its] (widest|full wide|widest angle|widest view|widest shot|widest zoom|full wide angle|wide angle|minimum zoom|min zoom|lowest zoom|no zoom|smallest zoom|1x zoom)", "~reset [the] zoom", "reset [the] (zoom level|magnification)", "as wide as (possible|you can|it goes)", "undo the zoom", "unzoom", "un zoom", "wide open", "[show me] (a|the) (wide|wider|widest) (view|shot|angle|picture)", "show me everything", "so [that] you see everything", "(to see|see) everything", "[show me] the (big picture|bigger picture|overview)", "cancel the zoom", "clear the zoom", "back to (wide|1x|normal zoom)", "remove the zoom"),
     # Things
     "LOOKAT": (
         "~zoom in (on|onto|into|towards|at)", "~zoom (on|onto|into|towards)", "~zoom on to", "~zoom right in on", "~focus [in] [on|onto|upon]", "~look [closely|closer|carefully] (at|towards|toward)", "(take|have|get) a [good|closer|close|quick|better|proper] (look|view|shot) (at|of)",
@@ -166,12 +167,12 @@ PATTERNS: dict[str, tuple[str, ...]] = {
         "~zero in on", "~push in on", "punch in on", "(put|place|get|bring|centre|center) the camera on", "~show a (close up|closer view) of", "i (want|need|would like|d like) a (closer look at|close up of|better look at|closer view of)", "~look over at", "~look towards", "turn towards", "~zoom all the way in on", "~zoom fully in on", "~zoom in as far as possible on", "~take a peek at",
     ),
     "CENTRE": ("~centre", "~center"),
-    "FIND": ("~find", "~locate", "~look for", "~search for", "~seek", "~spot", "~hunt for", "~find me", "~seek out", "~pick out", "~pinpoint", "~detect", "~track down", "~look out for"),
+    "FIND": ("~find", "~locate", "~look for", "~search for", "~seek", "~spot", "~hunt for", "~find me", "~seek out", "~pick out", "~pinpoint", "~detect", "~track down", "~look out for", "~watch [out] for", "~keep an eye out for"),
     "SHOW": ("~show [me|us]", "let (me|us) see", "i (want|need|would like|d like|wanna) to (see|look at)", "~display", "~present", "put up", "get me", "bring me", "i wanna see", "have a look at", "i want to look at"),
     "GIVE": ("~give (me|us)", "~provide [me] [with]", "i (want|need|would like|d like)", "~get (me|us)"),
     "TRACK": ("~track", "~follow", "~keep (an eye|watch|eyes|your eye|a close eye) on", "~stay (on|with)", "~lock on[to]", "~lock onto", "~lock on", "~lock on to", "~shadow", "~watch", "~keep tracking", "~keep following", "~monitor", "~trail", "~keep up with", "~keep track of", "start (tracking|following)", "~tail", "~keep the camera on", "keep looking at", "keep with"),
     "KEEPX": ("keep", "keeping", "hold", "holding", "maintain"),
-    "INVIEW": ("in (view|frame|shot|the frame|focus|sight|the picture|the middle|the centre|the center|the middle of the frame|the centre of the frame|the middle of the view)", "centred", "centered", "in the (middle|centre|center) of the (view|picture|frame|image|screen)", "on screen"),
+    "INVIEW": ("into (view|frame|shot|the frame|the middle|the centre|the center|the middle of the frame|the centre of the frame|the center of the frame|focus|the picture)", "in (view|frame|shot|the frame|focus|sight|the picture|the middle|the centre|the center|the middle of the frame|the centre of the frame|the middle of the view)", "centred", "centered", "in the (middle|centre|center) of the (view|picture|frame|image|screen)", "on screen"),
     "FOR": ("for", "for the next", "for about", "for at least", "for around", "for up to", "during", "over the next", "for a period of", "for exactly", "for a full", "for a"),
     "SECONDS": ("(second|seconds|sec|secs|s)",),
     "MINUTES": ("(minute|minutes|min|mins|m)",),
@@ -188,7 +189,7 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "PRESETS": (
         "[the|your|all|all the|any|all available|the available|all of the|available|the camera|saved|the saved|my|our|camera|the stored|stored] (presets|preset views|preset positions|preset names|bookmarks|saved views|saved positions|stored positions|preset list|list of presets)",
     ),
-    "EVERYPRESET": ("[at|in|from|for|to|of] (each|every|all|all the|all of the|every single|both|each of the|every one of the|all available|both of the|all your|all our|each available|both the|all three|all four|all five|all six|the available|these|the) (preset|presets|view|views|position|positions|preset positions|preset views|bookmark|bookmarks)", "each and every preset", "the presets one by one", "(them|the presets) all"),
+    "EVERYPRESET": ("[at|in|from|for|to|of] (each|every|all|all the|all of the|every single|both|each of the|every one of the|all available|both of the|all your|all our|each available|both the|all three|all four|all five|all six|the available|these) (preset|presets|view|views|position|positions|preset positions|preset views|bookmark|bookmarks)", "[at|in|from|for] the (presets|views)", "each and every preset", "the presets one by one", "(them|the presets) all"),
     "EACHOF": ("[in|at|from|for|to|of] (each of|every one of|both of|both the|all of)",  "both [of]", "all of", "each of the (presets|views|following|two presets|positions)", "the presets", "presets", "both presets", "the two presets", "each of the following", "the views", "both the", "either"),
     "PREVIOUS": ("[the|that|its] (previous|last|former|original|earlier|prior|old|starting|start|initial) (preset|position|view|place|pose|spot|location|orientation|direction|setting|zoom|zoom level|point)", "[to] where (you|it|we) (were|was|started|began|came from|had been|are now)", "the way you came", "where you started from", "the start", "its start", "as (it|you) (was|were)"),
     "THERE": ("there", "that preset", "that one", "that view", "that position", "the winner", "the winning (one|preset|view)", "that place", "the one with more", "the busier (one|preset|view)"),
@@ -249,7 +250,7 @@ FILLER: tuple[str, ...] = (
     "please", "pls", "plz", "kindly", "just", "simply", "hey", "hi", "hello", "ok", "okay", "alright", "all right", "right then", "so", "well", "thanks", "thank you", "cheers", "thanks a lot", "many thanks", "thank you very much", "for me", "for us", "to me", "aloud", "out loud", "if you can", "if possible", "if you could", "if you would",
     "if you don t mind", "if you please", "go ahead and", "i [would|d] (like|love) (you|the camera) to", "i (want|need|require) (you|the camera) to", "i d like for you to", "you should", "you need to", "you must", "you can", "we need to", "we should", "let s", "lets", "let us", "now", "quickly", "slowly", "carefully",
     "smoothly", "immediately", "straight away", "at once", "right away", "actually", "maybe", "perhaps", "first", "first of all", "firstly", "secondly", "thirdly", "to begin with", "to start [with]", "also", "as well", "too", "camera", "hey camera", "hello camera", "the following", "um", "uh", "er", "erm", "hmm", "yo", "dear camera", "mate", "buddy", "sir", "operator", "scope", "hey scope", "attempt to", "try to", "try and", "try", "your task is to",
-    "i was wondering if you could", "i wonder if you could", "it would be great if you could", "it would be nice if you could", "be so kind as to", "be a dear and", "make sure to", "make sure you", "remember to", "be sure to", "want you to", "i want to", "i would like to", "i d like to", "i need to", "we want to", "we d like to", "started by", "start by", "begin by", "in order", "real quick", "quick", "good morning", "good afternoon", "good evening", "when you get a chance", "when you can", "when ready", "asap", "gonna", "in that case", "manually", "one after (another|the other)", "one by one", "in turn", "respectively", "in sequence", "after all", "as usual", "steadily", "swiftly", "directly", "exact", "ever so kindly", "do me a favour and", "do me a favor and", "how about you", "why don t you", "you ll need to", "you will need to", "you have to", "would be great", "much appreciated", "next please", "yes", "yeah", "yep", "sure", "and please", "task", "instruction", "command", "hey there",
+    "i was wondering if you could", "i wonder if you could", "it would be great if you could", "it would be nice if you could", "be so kind as to", "be a dear and", "make sure to", "make sure you", "remember to", "be sure to", "want you to", "i want to", "i would like to", "i d like to", "i need to", "we want to", "we d like to", "started by", "start by", "begin by", "in order", "real quick", "quick", "good morning", "good afternoon", "good evening", "when you get a chance", "when you can", "when ready", "asap", "gonna", "in that case", "manually", "one after (another|the other)", "one by one", "in turn", "respectively", "in sequence", "after all", "as usual", "steadily", "swiftly", "directly", "exact", "ever so kindly", "do me a favour and", "do me a favor and", "how about you", "why don t you", "you ll need to", "you will need to", "you have to", "would be great", "much appreciated", "next please", "yes", "yeah", "yep", "sure", "and please", "task", "instruction", "command", "hey there", "hi there", "hello there", "gently", "(very|really|nice and) (slowly|slow|carefully|gently|quickly)", "real slow", "slow",
 )
 
 NUMBER_WORDS: dict[str, float] = {

@@ -35,7 +35,8 @@ def read_number(words: list[str], spans: list[tuple[int, int]] | None = None) ->
     if used:
         extra, more = _fraction_after(words[start + used :])
         return Number(sign * (value + extra), start + used + more)
-    if words[0] in FRACTION_WORDS and words[0] not in ORDINAL_WORDS:
+    turning = words[1:2] == ["turn"] or words[1:3] in (["of", "a"], ["of", "the"], ["a", "turn"])
+    if words[0] in FRACTION_WORDS and (turning or words[0] not in ORDINAL_WORDS):
         if words[:3] == ["half", "a", "dozen"]:
             return Number(6, 3)
         return Number(FRACTION_WORDS[words[0]], 1, "FRACTION")

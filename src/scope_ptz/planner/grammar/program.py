@@ -50,6 +50,8 @@ class Program:
     _trail: list[_Place] = field(default_factory=list)
     _winner: str | None = None
     _wandered: bool = False
+    _last_count: int = -1
+    _last_yes: bool = False
 
     def run(self, steps: Sequence[ast.Step]) -> Run:
         """All steps; afterwards ``answer()`` tells the result."""
@@ -60,7 +62,7 @@ class Program:
             self._note(str(halt))
 
     def answer(self) -> str:
-        text = " ".join(say.sentence(note) for note in self.notes) or "There was nothing to do."
+        text = " ".join(say.sentence(note) for note in self.notes if note) or "There was nothing to do."
         return text + say.source_text(self.sources)
 
     def _note(self, text: str) -> None:
@@ -208,11 +210,13 @@ class Program:
         for thing in step.things:
             result = yield from self._looked("count_objects", description=thing.text, view=view)
             if result is not None:
+                self._last_yes = result["count"] > 0
                 self._note(f"I can see {say.counted(thing.text, result['count'])} {say.where(view)}")
 
     def _ask(self, step: ast.Ask) -> Run:
         result = yield from self._looked("query_answer", question=step.question, view=step.view or "current")
         if result is not None:
+            self._last_yes = bool(result.get("known", True)) and result["answer"].strip().lower().startswith("yes")
             self._note(result["answer"] if result.get("known", True) else f"I cannot tell: {result['answer']}")
 
     def _read(self, step: ast.Read) -> Run:
@@ -295,7 +299,6 @@ class Program:
         return max(1, min(whole, _MOST_MOVES))
 
     # Conditions --------------------------------------------------------------------------------------------------------
-    _last_count: int = -1
 
     def _test(self, condition: ast.Condition) -> Run:
         """Whether a condition holds, and the sentence that says what was seen."""
@@ -303,6 +306,8 @@ class Program:
         return (met or self.assume_met), why
 
     def _judge(self, condition: ast.Condition) -> Run:
+        if isinstance(condition, ast.Answered):
+            return self._last_yes, ""
         if isinstance(condition, ast.Negated):
             met, why = yield from self._judge(condition.part)
             return not met, why

@@ -14,6 +14,10 @@ from scope_ptz.planner.grammar.tokens import preset_key
 from scope_ptz.tools.arguments import View
 
 _CLOSE_ENOUGH = 0.8
+_WAITING = re.compile(r"(when|once|as soon as|whenever)\b", re.IGNORECASE)
+_EXISTENCE = re.compile(
+    r"(?:(?:is|are) there|(?:can|do) you see) (?:an? |any |the |some )?(.+?)(?: anywhere| in view| visible| right now| here)?\s*\?*$", re.IGNORECASE
+)
 _PRONOUN = re.compile(r"\b(it|they|them|that one|this one)\b", re.IGNORECASE)
 _IMPERSONAL = re.compile(r"\bit\s+(raining|dark|light|day|night|sunny|foggy|cloudy|snowing|busy|daytime|wet|bright|safe|windy|snowy|like)\b|\bwhat('s| is) it\b|\bit is\b", re.IGNORECASE)
 
@@ -22,13 +26,19 @@ class Unresolved(Exception):
     """Something that needs a question back to the person; the message is that question."""
 
 
+def match_exactly(name: str, presets: Sequence[str]) -> str | None:
+    """The preset of that name, whatever its case, spaces and hyphens."""
+    wanted = "".join(preset_key(name))
+    return next((preset for preset in presets if "".join(preset_key(preset)) == wanted), None)
+
+
 def match_preset(name: str, presets: Sequence[str]) -> str | None:
     """The preset that a name means: exact but for case, spaces and hyphens, else one that is clearly closest."""
     wanted = "".join(preset_key(name))
     keys = {preset: "".join(preset_key(preset)) for preset in presets}
-    exact = [preset for preset, key in keys.items() if key == wanted]
+    exact = match_exactly(name, presets)
     if exact or not wanted:
-        return exact[0] if exact else None
+        return exact
     inside = [p for p in presets if len(wanted) >= 3 and set(preset_key(name)) < set(preset_key(p))]
     if len(inside) == 1:
         return inside[0]
@@ -143,10 +153,23 @@ class Resolver:
     def _ask(self, step: ast.Ask) -> Sequence[ast.Step]:
         if not is_about_the_scene(step.question):
             raise Unresolved("I can only move the camera and answer questions about what it sees. What shall I look at?")
-        question = direct_question(step.question)
+        if _WAITING.match(step.question):
+            raise Unresolved("I cannot wait for something to happen. Shall I look for it now?")
+        question, place = self._asked_at(direct_question(step.question))
         if self.antecedent and not _IMPERSONAL.search(question) and not re.search(r"\bthe \w+.*\b(it|they|them)\b", question):
             question = _PRONOUN.sub(f"the {self.antecedent}", question, count=1)
-        return [ast.Ask(question, self._view(step.view))]
+        if named := _EXISTENCE.match(question):
+            self.antecedent = named[1]
+        return [*place, ast.Ask(question, self._view(step.view))]
+
+    def _asked_at(self, question: str) -> tuple[str, list[ast.Step]]:
+        """A question with the preset that it ends in ("... at gate?") taken out of it."""
+        match = re.fullmatch(r"(.+?) (?:at|from) (the )?([\w -]+?)( preset| view| position)?\?*", question.strip(), re.IGNORECASE)
+        name = match_exactly(match[3], self.presets or ()) if match and (match[4] or not match[2]) else None
+        if not match or not name:
+            return question, []
+        self.preset, self.sweeping = name, False
+        return f"{match[1]}?", [ast.GoPreset(ast.PresetRef(name, sure=True))]
 
     def _read(self, step: ast.Read) -> Sequence[ast.Step]:
         return [ast.Read(self.thing(step.thing), self._view(step.view))]
@@ -238,6 +261,8 @@ class Resolver:
             return replace(condition, subject=self.thing(condition.subject))
         if isinstance(condition, ast.Outnumbers):
             return replace(condition, first=self.thing(condition.first), second=self.thing(condition.second))
+        if isinstance(condition, ast.Answered):
+            return condition
         if isinstance(condition, ast.Negated):
             return ast.Negated(self.condition(condition.part))
         return replace(condition, parts=tuple(self.condition(part) for part in condition.parts))

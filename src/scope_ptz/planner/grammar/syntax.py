@@ -186,6 +186,11 @@ class Outnumbers:
 
 
 @dataclass(frozen=True, slots=True)
+class Answered:
+    """ "If so": the last question was answered with yes, or the last count was not zero."""
+
+
+@dataclass(frozen=True, slots=True)
 class Joined:
     """Conditions with "and" (all) or "or" (any) between them."""
 
@@ -198,7 +203,7 @@ class Negated:
     part: Condition
 
 
-Condition = Seen | Readable | Holds | Outnumbers | Joined | Negated
+Condition = Answered | Seen | Readable | Holds | Outnumbers | Joined | Negated
 
 
 @dataclass(frozen=True, slots=True)
@@ -289,7 +294,9 @@ class BeforeAfter:
 
 @dataclass(frozen=True, slots=True)
 class Sweep:
-    """Look all around: sets the scope of the questions that follow."""
+    """Look all around: sets the scope of the questions that follow. ``turn``: said so that it may also be a mere turn."""
+
+    turn: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -39,6 +39,8 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
         return Understanding(clarification=str(question))
     if all(isinstance(step, ast.Forbid) for step in bound):
         return Understanding(clarification="I will not do that. What shall I do instead?")
+    if all(isinstance(step, ast.Sweep) and step.turn for step in bound):
+        bound = (ast.Move((ast.Turn("pan", 1, ast.Amount("degrees", 360.0)),)),)
     if all(isinstance(step, ast.Sweep | ast.Forbid) for step in bound):
         return Understanding(clarification="What shall I look for when I look all around?")
     return Understanding(bound, preset=_standing_at(conversation))
