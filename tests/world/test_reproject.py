@@ -116,6 +116,23 @@ def test_the_interpolated_map_is_exact_to_a_fraction_of_a_pixel(
     assert np.radians(off).max() * view.focal_px < 0.12
 
 
+@given(st.floats(-40, 40), st.floats(-25, 15), st.floats(1, 5), st.booleans())
+@settings(max_examples=60, deadline=None)
+def test_no_view_reads_beyond_the_pictures_that_it_uses(
+    analytic_scene: Scene, pan: float, tilt: float, zoom: float, colour: bool
+) -> None:
+    """Memory that no picture was written to must never show: it would differ from run to run."""
+    viewpoint = analytic_scene.viewpoint("mast")
+    atlas = viewpoint.colour_atlas if colour else viewpoint.id_atlas
+    where = atlas_map(viewpoint, atlas, _view(pan, tilt, zoom))
+    covered = np.zeros(where.shape[:2], dtype=bool)
+    for slots in atlas.slots:
+        for slot in slots:
+            x, y = where[..., 0] - slot.x, where[..., 1] - slot.y
+            covered |= (x >= -1.01) & (x <= slot.width + 0.01) & (y >= -1.01) & (y <= slot.height + 0.01)
+    assert covered.all()
+
+
 @pytest.mark.parametrize("step", [2, 4, 8, 16, 32])
 def test_grid_values_are_met_at_the_middle_of_pixels(step: int) -> None:
     view = _view(0, 0, 1, 200, 120)

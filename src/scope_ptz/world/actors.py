@@ -125,7 +125,7 @@ def extent(viewpoint: Viewpoint, appearance: Appearance) -> Extent:
 def place_of(appearance: Appearance, projection: Projection) -> Place | None:
     """Rows and columns of a picture in which an actor may show, None when it is elsewhere."""
     found = Tiles([appearance.view]).in_view(projection)
-    return found[0][1] if found else None
+    return found[0].place if found else None
 
 
 def draw(

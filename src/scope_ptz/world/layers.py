@@ -44,8 +44,8 @@ def read_ids(path: Path) -> NDArray[np.uint16]:
     with image:
         if path.suffix == ".png":
             return np.array(image).astype(np.uint16)
-        channels = np.array(image.convert("RGB")).astype(np.uint16)
-    return channels[..., 0] << np.uint16(8) | channels[..., 1]
+        high, low = (np.asarray(image.getchannel(c), dtype=np.uint16) for c in ("R", "G"))
+    return (high << np.uint16(8)) | low
 
 
 def write_ids(path: Path, numbers: NDArray[np.uint16]) -> None:
@@ -56,7 +56,7 @@ def write_ids(path: Path, numbers: NDArray[np.uint16]) -> None:
         case ".webp":
             high, low = (numbers >> np.uint16(8)).astype(np.uint8), numbers.astype(np.uint8)
             channels = np.stack([high, low, np.zeros_like(low)], axis=-1)
-            Image.fromarray(channels).save(path, "WEBP", lossless=True, quality=100, method=6, exact=True)
+            Image.fromarray(channels).save(path, "WEBP", lossless=True, quality=70, method=4, exact=True)
         case suffix:
             raise ValueError(f"numbers are written as one of {', '.join(NUMBER_SUFFIXES)}, not {suffix}")
 

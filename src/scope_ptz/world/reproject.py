@@ -18,7 +18,7 @@ from scope_ptz.geometry import Equirectangular, Perspective, Projection, pan_til
 from scope_ptz.world.atlas import Atlas, Slot
 from scope_ptz.world.models import Band
 from scope_ptz.world.pack import Viewpoint
-from scope_ptz.world.tiles import Place, Tiles
+from scope_ptz.world.tiles import Place, Showing, Tiles
 
 MAX_MAP_ERROR_PX = 0.04
 """Largest error of an interpolated map, in pixels of the view."""
@@ -90,11 +90,11 @@ def atlas_map(viewpoint: Viewpoint, atlas: Atlas, projection: Projection) -> Map
     step = step_px(projection)
     patches: list[tuple[Place, Map, NDArray[np.uint8]]] = []
     if needed > TILE_GAIN * atlas.slots[0][0].width / (2 * math.pi) and len(atlas.slots) > 1:
-        for index, place in viewpoint.tiles.in_view(projection):
-            where, inside, filled = _tile_map(viewpoint.tiles, index, atlas, Grid(projection, step, place))
+        for showing in viewpoint.tiles.in_view(projection):
+            where, inside, filled = _tile_map(viewpoint.tiles, showing, atlas, Grid(projection, step, showing.place))
             if filled:
                 return where
-            patches.append((place, where, inside))
+            patches.append((showing.place, where, inside))
     slot = _slot(atlas, 0, atlas.slots[0][0].width / (2 * math.pi), needed)
     everywhere = _base_map(viewpoint.manifest.band, slot, Grid(projection, step))
     for place, where, inside in reversed(patches):
@@ -174,15 +174,18 @@ def _turn_and_tilt_deg(grid: Grid) -> tuple[float, Floats, Floats]:
     raise TypeError(f"no map for {type(projection).__name__}")
 
 
-def _tile_map(tiles: Tiles, index: int, atlas: Atlas, grid: Grid) -> tuple[Map, NDArray[np.uint8], bool]:
+def _tile_map(tiles: Tiles, showing: Showing, atlas: Atlas, grid: Grid) -> tuple[Map, NDArray[np.uint8], bool]:
     """A tile's map over a part of the view, which pixels there it covers, and whether that is all of the view."""
-    projection = grid.projection
+    projection, index = grid.projection, showing.index
     slot = _slot(atlas, 1 + index, tiles.views[index].focal_px, projection.density)
     nodes = tiles.points(index, projection, grid.x, grid.y) * (slot.width, slot.height) + (slot.x - 0.5, slot.y - 0.5)
     low, high = (slot.x, slot.y), (slot.x + slot.width - 1, slot.y + slot.height - 1)
     where = grid.to_pixels(nodes)
     whole = where.shape[:2] == (projection.height, projection.width)
-    return where, cv2.inRange(where, low, high), whole and bool(np.all((nodes >= low) & (nodes <= high)))
+    inside = showing.mask()
+    if inside is None:
+        inside = cv2.inRange(where, low, high)
+    return where, inside, whole and bool(np.all((nodes >= low) & (nodes <= high)))
 
 
 def _slot(atlas: Atlas, index: int, density: float, needed: float) -> Slot:

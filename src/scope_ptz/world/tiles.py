@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,6 +17,34 @@ Place = tuple[slice, slice]
 """Rows and columns of a picture."""
 
 _BEHIND = 1e-6
+_FAR_PX = 1e5
+_INSET_PX = 1.5
+_SIDE_POINTS = 8
+
+
+@dataclass(frozen=True, slots=True)
+class Showing:
+    """A tile in a picture: which, in which part, and its corners (4, 2) in pixels where straight lines join them."""
+
+    index: int
+    place: Place
+    corners: Floats | None
+
+    def mask(self) -> NDArray[np.uint8] | None:
+        """(H, W) of the part: 255 inside the tile, at least a pixel from its edge. None where the corners do not tell."""
+        if self.corners is None or np.abs(self.corners).max() > _FAR_PX:
+            return None
+        rows, columns = self.place
+        middle = self.corners.mean(axis=0)
+        sides = np.roll(self.corners, -1, axis=0) - self.corners
+        towards = middle - self.corners
+        away = np.abs(sides[:, 0] * towards[:, 1] - sides[:, 1] * towards[:, 0]) / np.maximum(np.hypot(*sides.T), 1e-9)
+        # Shrunk about its middle, so that rounding never reaches beyond the tile.
+        inset = middle + (self.corners - middle) * max(0.0, 1.0 - _INSET_PX / max(float(away.min()), 1e-9))
+        mask = np.zeros((rows.stop - rows.start, columns.stop - columns.start), dtype=np.uint8)
+        points = np.rint((inset - (columns.start + 0.5, rows.start + 0.5)) * 256).astype(np.int32)
+        cv2.fillConvexPoly(mask, points, 255, shift=8)
+        return mask
 
 
 class Tiles:
@@ -28,14 +58,18 @@ class Tiles:
         self._reach_deg = np.array([v.reach_deg for v in views])
         self._outlines = np.array([v.directions(_OUTLINE) for v in views]).reshape(-1, len(_OUTLINE), 3)
 
-    def in_view(self, projection: Projection) -> list[tuple[int, Place]]:
-        """Index and bounds in the picture of every tile that may show."""
+    def in_view(self, projection: Projection) -> list[Showing]:
+        """Every tile that may show in a picture."""
         if not self.views:
             return []
         apart = angle_between_deg(self._axes[:, 2], projection.directions((0.5, 0.5)))
         near = self._order[(apart <= self._reach_deg + projection.reach_deg)[self._order]]
-        places = bounds(projection, self._outlines[near])
-        return [(int(i), place) for i, place in zip(near, places, strict=True) if place is not None]
+        size = np.array([projection.width, projection.height])
+        outlines = projection.points(self._outlines[near])
+        plain: NDArray[np.bool_] = np.isfinite(outlines).all(axis=(1, 2))
+        plain &= isinstance(projection, Perspective)
+        shown = zip(near.tolist(), _bounds(projection, outlines), outlines[:, ::_SIDE_POINTS] * size, plain.tolist(), strict=True)
+        return [Showing(i, place, corners if simple else None) for i, place, corners, simple in shown if place is not None]
 
     def points(self, index: int, projection: Projection, x: Floats, y: Floats) -> Floats:
         """Normalised points (rows, columns, 2) of a tile under the columns ``x`` and rows ``y`` (in pixels) of a picture.
@@ -60,16 +94,15 @@ class Tiles:
         return np.where((local[2] > _BEHIND)[..., None], np.stack([u, v], axis=-1), -1e3)
 
 
-def bounds(projection: Projection, outlines: Floats) -> list[Place | None]:
-    """For each outline (n, m, 3) of directions the rows and columns that it spans; None where it misses the picture."""
+def _bounds(projection: Projection, points: Floats) -> list[Place | None]:
+    """For each outline (n, m, 2) of normalised points the rows and columns that it spans; None where it misses the picture."""
     size = np.array([projection.width, projection.height])
-    points = projection.points(outlines)
     unclear = np.isnan(points).any(axis=(1, 2))
     if isinstance(projection, Equirectangular):
         unclear |= np.ptp(points[..., 0], axis=1) > 0.5  # across the seam
-    points = np.where(np.isnan(points), 0.0, points)
-    low = np.floor(np.clip(points.min(axis=1), -1, 2) * size).astype(int) - 1
-    high = np.ceil(np.clip(points.max(axis=1), -1, 2) * size).astype(int) + 1
+    points = np.clip(np.where(np.isnan(points), 0.0, points), -1.0, 2.0)
+    low = np.floor(points.min(axis=1) * size).astype(int) - 1
+    high = np.ceil(points.max(axis=1) * size).astype(int) + 1
     low[unclear], high[unclear] = 0, size
     low, high = np.clip(low, 0, size), np.clip(high, 0, size)
     return [
@@ -79,9 +112,10 @@ def bounds(projection: Projection, outlines: Floats) -> list[Place | None]:
 
 
 def _outline() -> Floats:
-    side = np.linspace(0.0, 1.0, 9)
-    zero, one = np.zeros(9), np.ones(9)
-    return np.concatenate([np.stack(p, axis=-1) for p in ((side, zero), (one, side), (side, one), (zero, side))])
+    """Points around a picture, clockwise from its first corner."""
+    side = np.arange(_SIDE_POINTS) / _SIDE_POINTS
+    zero, one = np.zeros_like(side), np.ones_like(side)
+    return np.concatenate([np.stack(p, axis=-1) for p in ((side, zero), (one, side), (1 - side, one), (zero, 1 - side))])
 
 
 _OUTLINE = _outline()
