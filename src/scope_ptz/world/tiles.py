@@ -67,7 +67,7 @@ class Tiles:
         size = np.array([projection.width, projection.height])
         outlines = projection.points(self._outlines[near])
         plain: NDArray[np.bool_] = np.isfinite(outlines).all(axis=(1, 2))
-        plain &= isinstance(projection, Perspective)
+        plain = plain if isinstance(projection, Perspective) else np.zeros_like(plain)
         shown = zip(near.tolist(), _bounds(projection, outlines), outlines[:, ::_SIDE_POINTS] * size, plain.tolist(), strict=True)
         return [Showing(i, place, corners if simple else None) for i, place, corners, simple in shown if place is not None]
 
