@@ -22,6 +22,7 @@ class Cabin:
     half_width: float
     floor_z: float
     seat_rows: tuple[float, ...]
+    shelf_m: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,7 @@ SALOON = CarModel(
     panes=[Pane((3, 6), (5, 6), frame_m=0.03), Pane((3, 4), (6, 7), across=True, frame_m=0.035), Pane((6, 7), (6, 7),
         across=True, frame_m=0.035)],
     pillars=[(-0.37, 0.10)],
-    cabin=Cabin(0.78, -1.45, 0.90, 0.74, 0.30, (-0.05, -0.92)),
+    cabin=Cabin(0.78, -1.45, 0.90, 0.74, 0.30, (-0.05, -0.92), 0.40),
     axles=(1.42, -1.40),
     track_x=0.785,
     wheel_radius=0.325,
@@ -122,7 +123,7 @@ HATCHBACK = CarModel(
         Pane((7, 8), (6, 7), across=True, frame_m=0.04, tinted=True),
     ],
     pillars=[(-0.33, 0.10)],
-    cabin=Cabin(0.72, -1.62, 0.93, 0.72, 0.30, (-0.05, -0.88)),
+    cabin=Cabin(0.72, -1.62, 0.93, 0.72, 0.30, (-0.05, -0.88), 0.12),
     axles=(1.28, -1.28),
     track_x=0.765,
     wheel_radius=0.315,
@@ -232,7 +233,7 @@ VAN = CarModel(
         pw.upright_gap(1.30, (0.42, 1.20)), pw.upright_gap(0.30, (0.42, 2.1)), pw.level_gap(0.42, (0.30, 1.30)),
         pw.upright_gap(0.24, (0.40, 2.12)), pw.upright_gap(-1.02, (0.40, 2.12)), pw.level_gap(0.40, (-1.02, 0.24)),
             pw.level_gap(2.12, (-1.02, 0.24)),
-        pw.level_gap(1.24, (-2.62, -1.0), width=0.022),
+        pw.level_gap(1.20, (-2.62, -1.0), width=0.022),
         Patch(GAP, x=(-1, 0.006), y=(-9, -2.7), z=(0.50, 2.38), roughness=0.9),
         Patch(GAP, x=(0.885, 0.893), y=(-9, -2.7), z=(0.50, 2.2), roughness=0.9),
         Patch(GAP, x=(0, 0.90), y=(-9, -2.7), z=(0.50, 0.508), roughness=0.9),

@@ -22,7 +22,7 @@ PAINTS: dict[str, tuple[float, float, float]] = {
     "light blue": (0.20, 0.43, 0.66),
     "green": (0.012, 0.19, 0.045),
     "dark green": (0.006, 0.055, 0.022),
-    "yellow": (0.82, 0.50, 0.006),
+    "yellow": (0.80, 0.44, 0.003),
     "orange": (0.68, 0.125, 0.003),
     "brown": (0.10, 0.045, 0.020),
     "beige": (0.50, 0.42, 0.29),
@@ -170,7 +170,7 @@ def lamp(colour: str) -> bpy.types.Material:
         "white": (HEADLAMP, 0.35),
         "red": (REAR_LAMP, 0.25),
         "amber": (AMBER, 0.2),
-        "beacon": ((1.0, 0.25, 0.01), 1.2),
+        "beacon": ((0.95, 0.17, 0.002), 0.55),
     }[colour]
     name = f"vehicle lamp {colour}"
     return bpy.data.materials.get(name) or shading.Shader(name).surface(

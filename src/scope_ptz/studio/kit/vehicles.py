@@ -32,8 +32,7 @@ def _body(model: CarModel) -> Parts:
                 wheels.steel_wheel(parts, centre, radius, sign, width=model.tyre_width)
             else:
                 wheels.car_wheel(parts, centre, radius, sign, width=model.tyre_width, spokes=model.spokes)
-            if model.arch_trim:
-                _arch_trim(parts, surface, y, radius, sign)
+            _arch_lip(parts, surface, y, radius, sign, flared=model.arch_trim)
     for sign in (-1, 1):
         for y, z in model.handles:
             x = surface.side(y, z)
@@ -81,6 +80,11 @@ def _interior(parts: Parts, cabin: Cabin) -> None:
         for a in (math.pi * k / 9 for k in range(18))
     ]
     parts.tube(ring, 0.016, pw.black_trim(), sides=6, closed=True)
+    if cabin.shelf_m:
+        shelf_y = cabin.rear_y - cabin.shelf_m / 2 + 0.15
+        parts.box(
+            (2 * cabin.half_width - 0.06, cabin.shelf_m + 0.3, 0.03), (0, shelf_y, cabin.belt_z), lining, bevel_m=0.0
+        )
     top = cabin.belt_z - 0.04
     for number, y in enumerate(cabin.seat_rows):
         for x in (-0.36, 0.36) if number == 0 else (-0.40, 0.0, 0.40):
@@ -96,15 +100,20 @@ def _interior(parts: Parts, cabin: Cabin) -> None:
             parts.box((0.24, 0.10, 0.16), (x, y - 0.16, top + 0.21), cloth, bevel_m=0.045)
 
 
-def _arch_trim(parts: Parts, surface: bw.Surface, y: float, radius: float, sign: int) -> None:
+def _arch_lip(parts: Parts, surface: bw.Surface, y: float, radius: float, sign: int, *, flared: bool) -> None:
+    """The rolled edge of a wheel arch, or a black flare over it."""
+    reach = radius + (0.085 if flared else 0.060)
     path = []
-    for k in range(19):
-        a = -0.12 * math.pi + 1.24 * math.pi * k / 18
-        py, pz = y + (radius + 0.085) * math.cos(a), radius * 0.9 + (radius + 0.085) * math.sin(a)
+    for k in range(25):
+        a = -0.12 * math.pi + 1.24 * math.pi * k / 24
+        py, pz = y + reach * math.cos(a), radius * (0.9 if flared else 0.86) + reach * math.sin(a)
         x = surface.side(py, pz)
         if pz > 0.2 and x > 0.5:
-            path.append((sign * (x + 0.002), py, pz))
-    parts.tube(path, 0.038, pw.black_trim(), sides=6)
+            path.append((sign * (x + 0.002 if flared else x - 0.006), py, pz))
+    if flared:
+        parts.tube(path, 0.038, pw.black_trim(), sides=6)
+    else:
+        parts.tube(path, 0.014, pw.paint_slot(), sides=6)
 
 
 def _mirror(parts: Parts, surface: bw.Surface, y: float, z: float, sign: int) -> None:
