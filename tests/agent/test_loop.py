@@ -8,6 +8,7 @@ import anyio
 import pytest
 
 from scope_ptz.agent.records import Budgets, Called, Ended, Run, Started
+from scope_ptz.camera.base import Arrival
 from scope_ptz.errors import CameraError, InputError, PackError, PerceptionError, PlannerError
 from scope_ptz.geometry import Pose
 from scope_ptz.planner.base import Finish, PastTurn, State
@@ -208,3 +209,27 @@ def test_nothing_is_kept_between_runs() -> None:
     first, second = anyio.run(agent.run, "one"), anyio.run(agent.run, "two")
     assert len(first.exchanges) == len(second.exchanges) == 1
     assert second.ended.pose.pan_deg == 30.0  # The camera is where the first run left it; the loop remembers nothing.
+
+
+def test_a_call_that_is_broken_off_is_recorded() -> None:
+    class Slow(ScriptedCamera):
+        async def move(self, pose: Pose) -> Arrival:
+            await anyio.sleep(30)
+            return await super().move(pose)
+
+    done, records = run(calls(MOVE), camera=Slow(), budgets=Budgets(time_s=0.05))
+    assert done.ended.outcome == "budget"
+    (call,) = [r for r in records if isinstance(r, Called)]
+    assert (call.fault, call.outcome.error) == ("cancelled", "Broken off.")
+
+
+def test_a_camera_that_does_not_answer_before_the_first_step_is_an_error() -> None:
+    records: list[Any] = []
+    agent = make_agent(answer(), camera=ScriptedCamera(failures={"frame": CameraError("no route")}))
+
+    async def work() -> None:
+        await agent.run("go", listener=records.append)
+
+    with pytest.raises(CameraError, match="no route"):
+        anyio.run(work)
+    assert records == []

@@ -13,20 +13,27 @@ from scope_ptz.agent.replay import Replay, replay
 from scope_ptz.agent.store import RunFolder
 from scope_ptz.agent.trace import Trace, TraceWriter, read_trace
 from scope_ptz.camera.base import Camera
-from scope_ptz.errors import PerceptionError, TraceError
+from scope_ptz.errors import CameraError, PerceptionError, TraceError
 from scope_ptz.geometry import Pose
+from scope_ptz.planner.base import Decision, State
 from tests.agent.scripted import ScriptedCamera, Step, answer, calls, make_agent
 
 MOVE = ("adjust_ptz", {"pan_deg": 15.0, "zoom_factor": 1.3})
 COUNT = ("count_objects", {"description": "cones"})
 
 
-def record(root: Path, *script: Step, counts: tuple[int | BaseException, ...] = (0,), budgets: Budgets | None = None) -> Trace:
+def record(
+    root: Path,
+    *script: Step,
+    counts: tuple[int | BaseException, ...] = (0,),
+    budgets: Budgets | None = None,
+    camera: Camera | None = None,
+) -> Trace:
     folder = RunFolder.create(root, "x")
 
     async def work() -> None:
         with TraceWriter(folder.trace) as trace:
-            await make_agent(*script, counts=counts, images=folder, budgets=budgets).run("x", listener=trace)
+            await make_agent(*script, counts=counts, images=folder, budgets=budgets, camera=camera).run("x", listener=trace)
 
     anyio.run(work)
     return read_trace(folder.path)
@@ -69,6 +76,20 @@ def test_a_run_that_was_cut_off_is_repeated_as_far_as_it_went(tmp_path: Path) ->
     whole = record(tmp_path, calls(MOVE, MOVE), calls(COUNT), answer("x"), counts=(4,))
     cut = replace(whole, calls=whole.calls[:1], ended=None)
     found = again(cut)
+    assert found.equal
+    assert len(found.comparisons) == 1
+
+
+def test_a_run_whose_camera_failed_is_repeated_as_far_as_it_went(tmp_path: Path) -> None:
+    def fail(state: State) -> Decision:
+        camera.failures["move"] = CameraError("stuck")
+        return calls(MOVE)
+
+    camera = ScriptedCamera()
+    trace = record(tmp_path, calls(MOVE), fail, camera=camera)
+    assert trace.ended is not None
+    assert trace.ended.outcome == "camera_error"
+    found = again(trace)
     assert found.equal
     assert len(found.comparisons) == 1
 

@@ -11,7 +11,6 @@ from typing import Any
 import pytest
 
 from scope_ptz.cli import main
-from tests.support.synthetic_pack import write_scene
 
 SCENE = "analytic-yard"
 
@@ -35,11 +34,9 @@ Scope = Callable[..., Done]
 
 
 @pytest.fixture(scope="session")
-def scenes(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def scenes(analytic_folder: Path) -> Path:
     """A folder with the analytic scene. Read-only: damage a copy."""
-    root = tmp_path_factory.mktemp("scenes")
-    write_scene(root)
-    return root
+    return analytic_folder.parent
 
 
 @pytest.fixture

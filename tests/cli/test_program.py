@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -18,18 +19,20 @@ SCOPE = [sys.executable, "-m", "scope_ptz.cli"]
 
 
 def test_help_is_instant() -> None:
-    def once() -> float:
-        began = time.perf_counter()
-        done = subprocess.run([*SCOPE, "--help"], capture_output=True, text=True, check=True)
-        assert "ask" in done.stdout
-        return time.perf_counter() - began
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = subprocess.run([*SCOPE, "--help"], capture_output=True, text=True, check=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    assert "ask" in done.stdout
+    # Processor time: the wall clock also measures what else the machine is doing.
+    assert after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime < 0.3
 
-    bare = subprocess.run(
-        [sys.executable, "-X", "importtime", "-m", "scope_ptz.cli", "--help"], capture_output=True, text=True, check=True
-    )
-    heavy = [name for name in ("numpy", "cv2", "pydantic", "PIL", "lark", "anyio") if f" {name}\n" in bare.stderr]
-    assert heavy == []
-    assert min(once() for _ in range(3)) < 0.6  # A third of a second on an idle machine.
+
+def test_help_imports_nothing_heavy() -> None:
+    command = [sys.executable, "-X", "importtime", *SCOPE[1:], "--help"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    imported = {line.rpartition("|")[2].strip() for line in done.stderr.splitlines()}
+    assert "scope_ptz.cli.app" in imported
+    assert imported.isdisjoint({"numpy", "cv2", "pydantic", "PIL", "lark", "anyio"})
 
 
 def test_the_entry_point_is_installed() -> None:

@@ -35,6 +35,7 @@ MAX_PANELS = 12
 NUMBERED_UP_TO = 40
 """Boxes are numbered up to this many; more would be clutter."""
 
+_AIR = 2.0  # Between a thing and its box, so that the box does not cover small things.
 _HEADLINES = {
     "answered": ("ANSWER", GREEN),
     "clarification": ("QUESTION BACK", AMBER),
@@ -196,13 +197,14 @@ def _draw_tile(canvas: Canvas, tile: _Tile, x: float, y: float, width: float, he
 
 def _draw_boxes(canvas: Canvas, panel: Panel, x: float, y: float, width: float, height: float) -> None:
     for box in panel.boxes:
-        canvas.frame(x + box.x_min * width, y + box.y_min * height, box.width * width, box.height * height, AMBER)
+        left, top = x + box.x_min * width - _AIR, y + box.y_min * height - _AIR
+        canvas.frame(left, top, box.width * width + 2 * _AIR, box.height * height + 2 * _AIR, AMBER)
     if not panel.badge or len(panel.boxes) > NUMBERED_UP_TO:
         return
     # Numbers run from left to right, as people count, whatever order perception found the things in.
     for number, box in enumerate(sorted(panel.boxes, key=lambda b: b.centre[0]), 1):
-        top = y + box.y_min * height - 11
-        at_y = top if top > y + 10 else y + box.y_max * height + 11
+        top = y + box.y_min * height - 11 - _AIR
+        at_y = top if top > y + 10 else y + box.y_max * height + 11 + _AIR
         canvas.tag(x + box.centre[0] * width, at_y, str(number), 11, fill=AMBER, ink=GROUND, pad=4, anchor="m")
 
 

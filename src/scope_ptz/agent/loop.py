@@ -225,6 +225,9 @@ class _Episode:
         except PerceptionError as error:
             outcome, fault = ToolOutcome(call=call, error=str(error)), "perception"
             self.perception_failures += 1
+        except anyio.get_cancelled_exc_class():
+            self._record(index, ToolOutcome(call=call, error="Broken off."), "cancelled", time_s, before)
+            raise
         except (PackError, OutputError):
             raise
         except CameraError as error:

@@ -18,8 +18,9 @@ FORMAT_VERSION = 1
 Outcome = Literal["answered", "clarification", "refused", "step_limit", "budget", "planner_error", "camera_error", "cancelled"]
 OUTCOMES: tuple[str, ...] = get_args(Outcome)
 
-Fault = Literal["bad_call", "perception", "camera", "skipped"]
-"""Why a call failed: it was wrong, the view could not be read, the camera failed, or a call before it in the step had failed."""
+Fault = Literal["bad_call", "perception", "camera", "skipped", "cancelled"]
+"""Why a call failed: it was wrong, the view could not be read, the camera failed, a call before it in the step had failed, or the
+run was cancelled or out of time while it went on."""
 
 
 class _Record(BaseModel):

@@ -6,7 +6,7 @@ What must come out again are the results of every call (poses, counts, answers, 
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 from scope_ptz.agent.loop import Agent
@@ -56,7 +56,9 @@ async def replay(trace: Trace, camera: Camera) -> Replay:
     """
     if not trace.started.simulated:
         raise TraceError("This run was made with a real camera: it can be shown, not repeated.")
-    script = _Script(trace, camera)
+    # A call that failed for a reason outside the scene cannot fail again; what came before it can be repeated.
+    calls = tuple(call for call in trace.calls if call.fault not in ("camera", "cancelled"))
+    script = _Script(replace(trace, calls=calls), camera)
     agent = Agent(
         _RecordedPlanner(script),
         _PacedCamera(camera, script),
@@ -72,7 +74,7 @@ async def replay(trace: Trace, camera: Camera) -> Replay:
             made.append(record)
 
     run = await agent.run(trace.started.instruction, listener=listen)
-    pairs = [(recorded, made[i] if i < len(made) else None) for i, recorded in enumerate(trace.calls)]
+    pairs = [(recorded, made[i] if i < len(made) else None) for i, recorded in enumerate(calls)]
     comparisons = tuple(Comparison(recorded, _difference(recorded, again)) for recorded, again in pairs)
     return Replay(comparisons, _outcome_difference(trace.ended, run.ended))
 

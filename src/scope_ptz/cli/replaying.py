@@ -70,10 +70,10 @@ def _show(trace: Trace, found: Replay | None, why_not: str) -> None:
     console = Console(highlight=False)
     view = LiveView(console)
     view(trace.started)
-    differences = [c.difference for c in found.comparisons] if found else [""] * len(trace.calls)
-    for call, difference in zip(trace.calls, differences, strict=True):
+    differences = {(c.recorded.step, c.recorded.index): c.difference for c in found.comparisons} if found else {}
+    for call in trace.calls:
         view(call)
-        if difference:
+        if difference := differences.get((call.step, call.index)):
             console.print(Text(f"     differs: {plain(difference)}", style="bold red"))
     if trace.ended is None:
         console.print(Text("The recording was cut off here.", style="bold red"))
