@@ -9,6 +9,7 @@ import subprocess
 import threading
 import time
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import IO, Any
@@ -30,6 +31,7 @@ class BlenderWorker:
         self._lock = threading.Lock()
         self._replies: queue.Queue[dict[str, Any] | None] = queue.Queue()
         self._process: subprocess.Popen[str] | None = None
+        self._listener: threading.Thread | None = None
         self._requests = 0
         self.version = ""
 
@@ -56,7 +58,8 @@ class BlenderWorker:
         except OSError as error:
             raise BlenderError(f"Blender could not be started with `{' '.join(self._command)}`: {error}.") from error
         if self._process.stdout is not None:
-            threading.Thread(target=self._listen, args=(self._process.stdout,), daemon=True).start()
+            self._listener = threading.Thread(target=self._listen, args=(self._process.stdout,), daemon=True)
+            self._listener.start()
         self.version = str(self._next(time.monotonic() + START_TIMEOUT_S, "start").get("hello", ""))
 
     def request(
@@ -86,17 +89,13 @@ class BlenderWorker:
 
     def close(self) -> None:
         """Ask the worker to quit; end it when it does not."""
-        process, self._process = self._process, None
-        if process is None:
-            return
-        if process.poll() is None and process.stdin is not None:
-            try:
+        process = self._process
+        if process is not None and process.poll() is None and process.stdin is not None:
+            with suppress(OSError, subprocess.TimeoutExpired):
                 process.stdin.write(json.dumps({"id": 0, "op": "quit"}) + "\n")
-                process.stdin.close()
+                process.stdin.flush()
                 process.wait(QUIT_TIMEOUT_S)
-            except (OSError, subprocess.TimeoutExpired):
-                process.kill()
-                process.wait()
+        self._kill()
 
     def _listen(self, pipe: IO[str]) -> None:
         for line in pipe:
@@ -120,9 +119,16 @@ class BlenderWorker:
 
     def _kill(self) -> None:
         process, self._process = self._process, None
-        if process is not None:
-            process.kill()
-            process.wait()
+        if process is None:
+            return
+        process.kill()
+        process.wait()
+        if self._listener is not None:
+            self._listener.join(QUIT_TIMEOUT_S)
+        for pipe in (process.stdin, process.stdout):
+            if pipe is not None:
+                with suppress(OSError):
+                    pipe.close()
 
     def _tail(self) -> str:
         lines = self._log_file.read_text(errors="replace").strip().splitlines()[-6:]

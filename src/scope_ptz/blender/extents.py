@@ -24,7 +24,7 @@ WIDE_DEG = 60.0
 
 NEAR_M = 1e-3
 FRACTION_BITS = 4
-HULL_POINTS = 40
+HULL_POINTS = 24
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,7 +162,7 @@ def _hull(rays: Floats, axes: Floats) -> list[tuple[float, float]]:
         simple = cv2.approxPolyDP(outline, slack, closed=True)
     plane = simple.reshape(-1, 2).astype(np.float64)
     pan, tilt = pan_tilt_deg(np.column_stack([plane, np.ones(len(plane))]) @ axes)
-    return [(round(float(p), 4), round(float(t), 4)) for p, t in zip(pan, tilt, strict=True)]
+    return [(round(float(p), 3), round(float(t), 3)) for p, t in zip(pan, tilt, strict=True)]
 
 
 def _nearest_m(body: Body) -> float:

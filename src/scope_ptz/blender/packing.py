@@ -22,8 +22,8 @@ from scope_ptz.world.models import ActorSheet, Depth, Extent, Layer, Manifest, S
 COLOUR = ".webp"
 NUMBERS = ".webp"
 SPRITE_CODING = 78
-LOWEST_TILE_CODING = 50
-CODING_STEP = 5
+LOWEST_TILE_CODING = 60
+CODING_STEP = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +74,7 @@ def write_pack(
     base = _colour(fresh, f"base{COLOUR}", rendered.base, quality.base_coding)
     step()
     ids = _numbers(fresh, f"ids{NUMBERS}", rendered.ids)
-    depth = _numbers(fresh, "depth.png", rendered.depth)
+    depth = _numbers(fresh, f"depth{NUMBERS}", rendered.depth)
     step()
     tile_ids = [_numbers(fresh, f"tiles/{k:02d}-ids{NUMBERS}", t.ids) for k, t in enumerate(rendered.tiles)]
     actors = [_actor(fresh, a) for a in rendered.actors]
@@ -130,7 +130,7 @@ def _fitting_tiles(folder: Path, tiles: list[RenderedTile], coding: int, limit_b
 
 def _actor(folder: Path, actor: RenderedActor) -> ActorSheet:
     colour = _colour(folder, f"actors/{actor.number}{COLOUR}", actor.sheet.colour, SPRITE_CODING)
-    depth = _numbers(folder, f"actors/{actor.number}-depth.png", actor.sheet.depth)
+    depth = _numbers(folder, f"actors/{actor.number}-depth{NUMBERS}", actor.sheet.depth)
     return ActorSheet(number=actor.number, colour=colour, depth=depth, sprites=actor.sheet.sprites, stride_m=actor.stride_m)
 
 

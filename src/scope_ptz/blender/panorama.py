@@ -19,6 +19,7 @@ from scope_ptz.world.layers import read_colour
 
 STRIP_ROWS = 384
 OVERLAP_ROWS = 8
+SKY_TILT_DEG, NADIR_TILT_DEG = 22.0, -58.0
 
 Picture = NDArray[np.uint8]
 
@@ -32,15 +33,22 @@ def render_base(worker: BlenderWorker, shop: Workshop, viewpoint: str, panorama:
         size = strip.width, strip.last_row - strip.first_row
         projection = panorama_request(Equirectangular(-180.0, 360.0, strip.top_tilt_deg, strip.bottom_tilt_deg, *size))
 
-        def produce(path: Path, projection: dict[str, Any] = projection) -> None:
+        count = samples if not _is_plain(strip) else max(2, samples // 2)
+
+        def produce(path: Path, projection: dict[str, Any] = projection, count: int = count) -> None:
             worker.request(
-                "colour", {"viewpoint": viewpoint, "projection": projection, "samples": samples, "seed": 1, "out": str(path)}
+                "colour", {"viewpoint": viewpoint, "projection": projection, "samples": count, "seed": 1, "out": str(path)}
             )
 
-        parameters = {"projection": projection, "samples": samples}
+        parameters = {"projection": projection, "samples": count}
         pictures.append(read_colour(shop.part(f"{viewpoint}/base-{strip.first_row:04d}", ".png", parameters, produce)))
         step()
     return smoothed(joined(panorama, strips, pictures), panorama)
+
+
+def _is_plain(strip: Strip) -> bool:
+    """Sky, which has no noise, or the ground below the camera, of which each row is averaged over many pixels afterwards."""
+    return strip.bottom_tilt_deg > SKY_TILT_DEG or strip.top_tilt_deg < NADIR_TILT_DEG
 
 
 def joined(panorama: Panorama, strips: list[Strip], pictures: list[Picture]) -> Picture:

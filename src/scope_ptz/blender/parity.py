@@ -9,9 +9,12 @@ from numpy.typing import NDArray
 WINDOW_PX = 7
 K1, K2 = 0.01, 0.03
 
+Picture = NDArray[np.uint8]
+Mask = NDArray[np.bool_]
 
-def ssim(a: NDArray[np.uint8], b: NDArray[np.uint8]) -> float:
-    """Mean structural similarity on grey of two (H, W, 3) RGB pictures.
+
+def ssim(a: Picture, b: Picture, mask: Mask | None = None) -> float:
+    """Mean structural similarity on grey of two (H, W, 3) RGB pictures, over the pixels of ``mask`` when there is one.
 
     Wang et al., "Image quality assessment: from error visibility to structural similarity", 2004, with a uniform 7x7 window,
     sample covariance, and the border where the window does not fit left out.
@@ -25,13 +28,19 @@ def ssim(a: NDArray[np.uint8], b: NDArray[np.uint8]) -> float:
     cov = unbiased * (cv2.blur(x * y, size) - mx * my)
     c1, c2 = (K1 * 255) ** 2, (K2 * 255) ** 2
     index = (2 * mx * my + c1) * (2 * cov + c2) / ((mx * mx + my * my + c1) * (vx + vy + c2))
+    return float(_inside(np.asarray(index), mask).mean())
+
+
+def sharpness(picture: Picture, mask: Mask | None = None) -> float:
+    """Variance of the Laplacian of the grey picture, over the pixels of ``mask`` when there is one."""
+    return float(_inside(np.asarray(cv2.Laplacian(_grey(picture), cv2.CV_64F)), mask).var())
+
+
+def _inside(values: NDArray[np.float64], mask: Mask | None) -> NDArray[np.float64]:
+    """Values more than half a window from the border, those of the mask only."""
     border = WINDOW_PX // 2
-    return float(index[border:-border, border:-border].mean())
-
-
-def sharpness(picture: NDArray[np.uint8]) -> float:
-    """Variance of the Laplacian of the grey picture."""
-    return float(cv2.Laplacian(_grey(picture), cv2.CV_64F).var())
+    inner = (slice(border, -border), slice(border, -border))
+    return values[inner] if mask is None else values[inner][mask[inner]]
 
 
 def box_ious(a: NDArray[np.uint16], b: NDArray[np.uint16], min_pixels: int) -> dict[int, float]:
@@ -40,7 +49,7 @@ def box_ious(a: NDArray[np.uint16], b: NDArray[np.uint16], min_pixels: int) -> d
     return {int(n): _iou(_box(a == n), _box(b == n)) for n, count in zip(numbers, counts, strict=True) if count > min_pixels}
 
 
-def _box(mask: NDArray[np.bool_]) -> tuple[int, int, int, int] | None:
+def _box(mask: Mask) -> tuple[int, int, int, int] | None:
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
     if not len(rows):
         return None
@@ -55,5 +64,5 @@ def _iou(a: tuple[int, int, int, int] | None, b: tuple[int, int, int, int] | Non
     return both / ((a[2] - a[0]) * (a[3] - a[1]) + (b[2] - b[0]) * (b[3] - b[1]) - both)
 
 
-def _grey(picture: NDArray[np.uint8]) -> NDArray[np.float64]:
+def _grey(picture: Picture) -> NDArray[np.float64]:
     return np.asarray(cv2.cvtColor(picture, cv2.COLOR_RGB2GRAY), dtype=np.float64)

@@ -10,8 +10,8 @@ PACK_BYTES = 5_500_000
 NEAR_M, FAR_M = 0.3, 20000.0
 """Range of the depth coding."""
 
-DEPTH_STEP = 24
-"""Distances are rounded to this many codes: 0.4%, far less than what separates an actor from what it walks behind."""
+DEPTH_STEP = 48
+"""Distances are rounded to this many codes: 0.8%, far less than what separates an actor from what it walks behind."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +36,7 @@ QUALITIES = {
     q.name: q
     for q in (
         Quality("draft", 2048, 4, 4096, 2048, 4, 48.0, 8, 4, 12, 75, 70),
-        Quality("standard", 6144, 16, 8192, 4096, 16, 96.0, 48, 16, 40, 84, 80),
-        Quality("high", 6144, 40, 8192, 4096, 40, 96.0, 48, 32, 56, 86, 82),
+        Quality("standard", 6144, 10, 8192, 4096, 8, 96.0, 64, 12, 40, 88, 92),
+        Quality("high", 6144, 32, 8192, 4096, 24, 96.0, 64, 32, 56, 88, 92),
     )
 }

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scope_ptz.geometry import Equirectangular, Perspective, direction, pan_tilt_deg
 from scope_ptz.world.models import SceneFile, SceneText, SceneViewpoint
 
-CELL_PAN_DEG, CELL_TILT_DEG = 10.0, 6.5
+CELL_PAN_DEG, CELL_TILT_DEG = 7.5, 5.0
 OVERLAP_DEG = 0.15
 """A tile reaches this far beyond its cell, so that neighbours leave no seam."""
 
@@ -22,11 +22,11 @@ GRID_DEG = 0.25
 WIDE_FOCAL_PX, TELE_FOCAL_PX = 897.0, 5212.0
 """Focal lengths of a 1280 pixel wide frame at both ends of the zoom."""
 
-SMALL_SIDE_PX, SMALL_AREA_PX = 48.0, 3600.0
-"""An instance that is smaller than this at the wide end is one to zoom in on,"""
+SMALL_SIDE_PX = 60.0
+"""An instance whose longer side is less than this at the wide end is one to zoom in on,"""
 
 MIN_TELE_SIDE_PX, MIN_TELE_AREA_PX = 12.0, 70.0
-"""... if at the tele end it is big enough to be counted."""
+"""... if at the tele end its shorter side and its area are enough for it to be counted."""
 
 SMALL_CAPS_PX = 20.0
 MIN_TELE_CAPS_PX = 12.0
@@ -94,9 +94,10 @@ def _is_small(points: NDArray[np.float64], projection: Equirectangular) -> bool:
     shown = Perspective(middle_pan, middle_tilt, 90.0, 2, 2).points(directions)
     if np.isnan(shown).any():
         return False
-    side = 2 * float(np.ptp(shown, axis=0).min()) + math.sqrt(pixel_sr)
-    small = side * WIDE_FOCAL_PX < SMALL_SIDE_PX or solid_angle * WIDE_FOCAL_PX**2 < SMALL_AREA_PX
-    return small and side * TELE_FOCAL_PX >= MIN_TELE_SIDE_PX and solid_angle * TELE_FOCAL_PX**2 >= MIN_TELE_AREA_PX
+    shorter, longer = np.sort(2 * np.ptp(shown, axis=0) + math.sqrt(pixel_sr))
+    if longer * WIDE_FOCAL_PX >= SMALL_SIDE_PX:
+        return False
+    return bool(shorter * TELE_FOCAL_PX >= MIN_TELE_SIDE_PX and solid_angle * TELE_FOCAL_PX**2 >= MIN_TELE_AREA_PX)
 
 
 def _text_directions(text: SceneText, viewpoint: SceneViewpoint) -> NDArray[np.float64] | None:

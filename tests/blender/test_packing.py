@@ -1,0 +1,174 @@
+"""From rendered parts to files: the workshop, layer codings, sheets of sprites, and a pack within its weight."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from scope_ptz.blender.band import Panorama
+from scope_ptz.blender.keyframes import Keyframe
+from scope_ptz.blender.packing import Rendered, RenderedActor, RenderedTile, weight_bytes, write_pack
+from scope_ptz.blender.quality import FAR_M, NEAR_M, QUALITIES
+from scope_ptz.blender.sheets import make_sheet
+from scope_ptz.blender.workshop import Workshop, scene_key
+from scope_ptz.errors import BlenderError, PackError
+from scope_ptz.geometry import Perspective
+from scope_ptz.world.layers import decode_depth, encode_depth, read_colour, read_ids, write_colour, write_ids
+from scope_ptz.world.models import Band, Extent, SceneFile, ScenePreset, SceneViewpoint
+from scope_ptz.world.pack import Scene
+
+HERE = SceneViewpoint(name="mast", position_m=(0, 0, 6), pan0_bearing_deg=0)
+SCENE = SceneFile(
+    name="yard", title="Yard", version="1", blender_version="5", viewpoints=[HERE], instances=[], texts=[],
+    presets=[ScenePreset(name="home", viewpoint="mast", pan_deg=0, tilt_deg=0, zoom=1)], home_preset="home",
+)  # fmt: skip
+
+
+def silent(part: str, done: int, total: int, seconds: float) -> None:
+    """No progress."""
+
+
+def smooth_noise(height: int, width: int) -> NDArray[np.uint8]:
+    grain = np.random.default_rng(1).normal(0, 1, (height, width, 3)).cumsum(axis=0).cumsum(axis=1)
+    return np.asarray(128 + 100 * np.sin(grain / 40), dtype=np.uint8)
+
+
+@pytest.mark.parametrize("suffix", [".png", ".webp"])
+def test_numbers_come_back_exactly(tmp_path: Path, suffix: str) -> None:
+    numbers = np.random.default_rng(1).integers(0, 65536, (40, 60)).astype(np.uint16)
+    path = tmp_path / f"ids{suffix}"
+    write_ids(path, numbers)
+    assert np.array_equal(read_ids(path), numbers)
+    assert read_ids(path).dtype == np.uint16
+
+
+@pytest.mark.parametrize("suffix", [".png", ".webp", ".avif"])
+@pytest.mark.parametrize("channels", [3, 4])
+def test_colour_comes_back_nearly(tmp_path: Path, suffix: str, channels: int) -> None:
+    picture = smooth_noise(64, 80)
+    if channels == 4:
+        picture = np.dstack([picture, np.full((64, 80), 130, dtype=np.uint8)])
+        picture[:8, :, 3] = 0
+    path = tmp_path / f"colour{suffix}"
+    write_colour(path, picture, 90)
+    back = read_colour(path)
+    assert back.shape == picture.shape
+    shown = picture[8:].astype(int)
+    assert np.abs(back[8:].astype(int) - shown).mean() < 6
+
+
+def test_distances_keep_their_share_and_the_sky_stays_apart() -> None:
+    metres = np.array([[0.0, np.inf, 0.31, 7.0, 500.0, 19999.0]])
+    for step in (1, 48):
+        codes = encode_depth(metres, NEAR_M, FAR_M, step)
+        back = decode_depth(codes, NEAR_M, FAR_M)
+        assert list(codes[0, :2]) == [0, 0] and np.isinf(back[0, :2]).all()
+        assert np.abs(back[0, 2:] / metres[0, 2:] - 1).max() < 1e-4 * step
+
+
+def test_what_is_no_picture_is_a_pack_error(tmp_path: Path) -> None:
+    (tmp_path / "base.webp").write_bytes(b"not at all")
+    with pytest.raises(PackError, match="decoded"):
+        read_colour(tmp_path / "base.webp")
+    with pytest.raises(PackError, match="no picture"):
+        read_ids(tmp_path / "ids.tiff")
+
+
+def test_a_finished_part_is_not_made_again(tmp_path: Path) -> None:
+    made: list[Path] = []
+
+    def produce(path: Path) -> None:
+        made.append(path)
+        path.write_text("x")
+
+    for parameters in ({"n": 1}, {"n": 1}, {"n": 2}):
+        assert Workshop(tmp_path, "yard-1", silent).part("mast/base", ".txt", parameters, produce).read_text() == "x"
+    assert len(made) == 2
+
+
+def test_a_part_that_was_cut_off_does_not_count(tmp_path: Path) -> None:
+    def cut_off(path: Path) -> None:
+        path.write_text("half")
+        raise KeyboardInterrupt
+
+    shop = Workshop(tmp_path, "yard-1", silent)
+    with pytest.raises(KeyboardInterrupt):
+        shop.part("base", ".txt", {}, cut_off)
+    assert shop.part("base", ".txt", {}, lambda path: path.write_text("whole") and None).read_text() == "whole"
+
+
+def test_the_key_follows_the_code_of_the_scene(tmp_path: Path) -> None:
+    source = tmp_path / "my_yard.py"
+    source.write_text("a = 1\n")
+    before = scene_key(str(source))
+    assert before.startswith("my-yard-") and before == scene_key(str(source))
+    source.write_text("a = 2\n")
+    assert scene_key(str(source)) != before
+
+
+def sprite_frames(folder: Path) -> list[Keyframe]:
+    frames = []
+    for k in range(3):
+        view = Perspective(10.0 * k, -10.0, 4.0, 60 + 20 * k, 40)
+        picture = np.zeros((40, view.width, 4), dtype=np.uint8)
+        picture[10:30, 10:40] = (200, 40, 40, 255)
+        picture[30:34, 10:50] = (0, 0, 0, 140)
+        metres = np.where(picture[..., 0] > 0, 25.0, 0.0).astype(np.float32)
+        write_colour(folder / f"{k:03d}.png", picture, 0)
+        np.savez(folder / f"{k:03d}.npz", depth=metres)
+        frames.append(Keyframe(float(k), 0.0, (0.0, 20.0, 0.0), view))
+    return frames
+
+
+def test_sprites_lie_side_by_side_with_body_and_shadow(tmp_path: Path) -> None:
+    sheet = make_sheet(sprite_frames(tmp_path), tmp_path)
+    assert sheet.colour.shape == (40, 240, 4) and sheet.depth.shape == (40, 240)
+    for sprite in sheet.sprites:
+        own = sheet.colour[sprite.top : sprite.top + sprite.height, sprite.left : sprite.left + sprite.width]
+        codes = sheet.depth[sprite.top : sprite.top + sprite.height, sprite.left : sprite.left + sprite.width]
+        assert tuple(own[20, 20]) == (200, 40, 40, 255)
+        assert 0 < own[32, 25, 3] < 140, "light that passes a shadow counts for more on display values"
+        assert decode_depth(codes, NEAR_M, FAR_M)[20, 20] == pytest.approx(25, rel=0.01)
+        assert codes[32, 25] == 0
+
+
+def rendered(tmp_path: Path, tiles: int) -> Rendered:
+    panorama = Panorama.of(360, Band(top_tilt_deg=59, bottom_tilt_deg=-90))
+    ids = np.zeros((panorama.height, 360), dtype=np.uint16)
+    view = Perspective(10, -5, 8, 300, 200)
+    return Rendered(
+        panorama=panorama,
+        base=smooth_noise(panorama.height, 360),
+        ids=ids,
+        depth=ids,
+        tiles=[RenderedTile(view, smooth_noise(200, 300), np.ones((200, 300), dtype=np.uint16)) for _ in range(tiles)],
+        actors=[RenderedActor(60, make_sheet(sprite_frames(tmp_path), tmp_path), None)],
+        extents=[Extent(number=1, solid_angle_sr=0.1, hull=[(0, 0), (1, 0), (0, 1)], distance_m=4)],
+    )
+
+
+def test_a_pack_is_written_that_the_world_can_read(tmp_path: Path) -> None:
+    folder = tmp_path / "yard" / "mast"
+    folder.parent.mkdir()
+    manifest = write_pack(folder, SCENE, HERE, rendered(tmp_path, 2), QUALITIES["draft"], 2_000_000, lambda: None)
+    (folder.parent / "scene.json").write_text(SCENE.model_dump_json())
+    here = Scene(folder.parent).viewpoint("mast")
+    assert here.manifest == manifest
+    assert here.colour(manifest.base).shape == (149, 360, 3)
+    assert here.ids(manifest.tiles[1].ids).min() == 1
+    assert here.colour(manifest.actors[0].colour).shape[2] == 4
+    assert not list(folder.parent.glob(".*"))
+
+
+def test_tiles_are_coded_until_the_pack_fits_and_no_further(tmp_path: Path) -> None:
+    parts = rendered(tmp_path, 6)
+    weights = []
+    for k, limit in enumerate((2_000_000, 240_000)):
+        folder = tmp_path / f"pack-{k}"
+        write_pack(folder, SCENE, HERE, parts, QUALITIES["standard"], limit, lambda: None)
+        weights.append(weight_bytes(folder))
+    assert weights[1] < weights[0]
+    with pytest.raises(BlenderError, match="weighs"):
+        write_pack(tmp_path / "pack-3", SCENE, HERE, parts, QUALITIES["standard"], 20_000, lambda: None)
+    assert not (tmp_path / "pack-3").exists()
