@@ -17,6 +17,8 @@ from scope_ptz.world.truth import Sighting, TextSighting, ViewTruth
 CAMERA_M = np.array([0.0, 0.0, 6.0])
 PROJECTION = Perspective(pan_deg=0.0, tilt_deg=-5.0, hfov_deg=70.0, width=1280, height=720)
 
+PERSON, CONE = (0.6, 0.5, 1.8), (0.4, 0.4, 0.75)
+
 Row = tuple[str, str, str, tuple[float, float, float], tuple[float, float, float], dict[str, Any], str | None]
 
 # id, category, name, middle of the foot (x, y, z), size (x, y, z), attributes, parent
@@ -30,10 +32,10 @@ ROWS: list[Row] = [
     ("lorry-01", "lorry", "tipper lorry", (-2, 50, 0), (2.5, 8, 3.2), {"colour": "orange", "load": "gravel"}, None),
     ("excavator-01", "excavator", "excavator", (13, 35, 0), (3, 7, 3), {"colour": "yellow", "activity": "digging"}, None),
     ("roller-01", "roller", "road roller", (19, 44, 0), (2, 4, 2.6), {"colour": "yellow"}, None),
-    ("worker-01", "worker", "worker", (9.8, 33, 0), (0.6, 0.5, 1.8), {"vest": "orange", "helmet": "white", "activity": "pointing"}, None),
+    ("worker-01", "worker", "worker", (9.8, 33, 0), PERSON, {"vest": "orange", "helmet": "white", "activity": "pointing"}, None),
     ("worker-02", "worker", "worker", (-8, 26, 0), (0.6, 0.5, 1.8), {"vest": "yellow", "helmet": "yellow"}, None),
-    ("worker-03", "worker", "worker", (2, 20, 0), (0.6, 0.5, 1.8), {"vest": "orange", "helmet": "none", "activity": "walking"}, None),
-    *[("cone-0%d" % i, "traffic cone", "traffic cone", (-6.0 + i, 22, 0), (0.4, 0.4, 0.75), {"colour": "orange"}, None) for i in range(1, 6)],
+    ("worker-03", "worker", "worker", (2, 20, 0), PERSON, {"vest": "orange", "helmet": "none", "activity": "walking"}, None),
+    *[(f"cone-0{i}", "traffic cone", "traffic cone", (-6.0 + i, 22, 0), CONE, {"colour": "orange"}, None) for i in range(1, 6)],
     ("cone-06", "traffic cone", "fallen cone", (11.5, 30.5, 0), (0.4, 0.4, 0.75), {"colour": "orange", "state": "fallen"}, None),
     ("barrier-01", "barrier", "water-filled barrier", (-2, 42, 0), (6, 0.5, 1), {"colour": "red and white"}, None),
     ("sign-01", "sign", "speed limit sign", (16, 40, 1.5), (0.9, 0.1, 0.9), {"colour": "white", "shape": "round"}, None),

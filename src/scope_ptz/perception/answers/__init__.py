@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from scope_ptz.perception.answers.comparing import compare, compare_count, how_far, most_common, which
+from scope_ptz.perception.answers.comparing import compare, compare_count, count_kinds, how_far, most_common, which
 from scope_ptz.perception.answers.counting import count, exists
 from scope_ptz.perception.answers.naming import Reply, unknown
 from scope_ptz.perception.answers.reading import read, text_exists
@@ -23,6 +23,8 @@ def answer(view: View, question: s.Question | None) -> Reply:
             return exists(view, question)
         case s.Count():
             return count(view, question)
+        case s.CountKinds():
+            return count_kinds(view, question)
         case s.YesNo():
             return yes_no(view, question)
         case s.IsA():

@@ -74,9 +74,8 @@ def how_far(view: View, question: s.HowFar) -> Reply:
     if question.other is None:
         if len(first) > 1 and not any(p.order for p in question.what.phrases):
             low, high = (pick(t.distance_m for t in first) for pick in (min, max))
-            return reply(
-                f"there are {len(first)} {noun(view, question.what, many=True)}, from about {metres(low)} to about {metres(high)} away"
-            )
+            many = noun(view, question.what, many=True)
+            return reply(f"there are {len(first)} {many}, from about {metres(low)} to about {metres(high)} away")
         return reply(f"the {name(first[0])} is about {metres(first[0].distance_m)} away")
     second = [t for t in find(view, question.other) if t is not first[0]]
     if not second:
@@ -97,6 +96,19 @@ def compare_count(view: View, question: s.CompareCount) -> Reply:
     than = {"more": "more", "fewer": "fewer"}.get(question.sense)
     said = f"{than} {first} than {second}" if than else f"as many {first} as {second}"
     return reply(f"{'yes' if yes else 'no'}, there are {'' if yes else 'not '}{said}: {counts}")
+
+
+def count_kinds(view: View, question: s.CountKinds) -> Reply:
+    """How many different values an attribute takes, or how many kinds of thing there are."""
+    colour = question.attribute == ("colour",)
+    values = Counter(v for t in find(view, question.what) if (v := _kind(t, colour)) is not None)
+    many = "" if len(values) == 1 else "s"
+    listed = f": {w.listing(list(values))}" if values else ""
+    return reply(f"I can see {len(values)} {'colour' if colour else 'kind'}{many} of {noun(view, question.what)}{listed}")
+
+
+def _kind(thing: Thing, colour: bool) -> str | None:
+    return value_of(thing, ("colour",)) if colour else str(thing.attributes.get("kind", thing.category))
 
 
 def most_common(view: View, question: s.MostCommon) -> Reply:

@@ -87,6 +87,15 @@ class Builder(NounPhrases):
         what, owner = descriptions(c)
         return s.Count(what, (s.Relation("on", owner),))
 
+    def count_any(self, c: Children) -> s.Count:
+        """ "How many are wearing helmets?" is about people, "how many are red?" about anything."""
+        tests = tests_of(c)
+        worn = any(isinstance(t, s.Has) and t.worn for t in tests)
+        return s.Count(s.Description((s.Phrase(("people" if worn else "things",)),)), tests)
+
+    def count_kinds(self, c: Children) -> s.CountKinds:
+        return s.CountKinds(("colour",) if tokens_of(c, "COLOUR") else ("kind",), descriptions(c)[0])
+
     def subject(self, c: Children) -> Subject:
         return Subject((descriptions(c)[0], "the"))
 
@@ -124,7 +133,8 @@ class Builder(NounPhrases):
         return s.Description((s.Phrase(phrase.words, (*phrase.tests, s.Relation("on", owner))),))
 
     def ask_worn(self, c: Children) -> s.Ask:
-        return s.Ask((value_of(c, "WITH") or "wearing",), descriptions(c)[0])
+        held = value_of(c, "WITH")
+        return s.Ask(("wearing",) if held is None else ("carrying",), descriptions(c)[0])
 
     def ask_direction(self, c: Children) -> s.Ask:
         return s.Ask(("direction",), descriptions(c)[0])
@@ -132,7 +142,9 @@ class Builder(NounPhrases):
     def ask_doing(self, c: Children) -> s.Ask:
         return s.Ask((str(value_of(c, "W")),), descriptions(c)[0])
 
-    def ask_attribute(self, c: Children) -> s.Ask:
+    def ask_attribute(self, c: Children) -> s.Ask | s.Read:
+        if of_kind(c, Core)[0][-1] in _TEXTS:
+            return s.Read(descriptions(c)[0])
         return s.Ask(tuple(of_kind(c, Core)[0]), descriptions(c)[0])
 
     def ask_of(self, c: Children) -> s.Ask:
@@ -171,8 +183,10 @@ class Builder(NounPhrases):
             )
         )
 
-    def identify(self, c: Children) -> s.Identify:
-        return s.Identify(descriptions(c)[0])
+    def identify(self, c: Children) -> s.Identify | s.Read:
+        what = descriptions(c)[0]
+        bearer = _bearer(what)
+        return s.Identify(what) if bearer is None or bearer == what else s.Read(bearer)
 
     def who(self, _: Children) -> s.What:
         return s.What(s.Description((s.Phrase(("person",)),)))

@@ -144,6 +144,14 @@ class Count:
 
 
 @dataclass(frozen=True, slots=True)
+class CountKinds:
+    """ "How many colours/kinds of car are there?" """
+
+    attribute: Words
+    what: Description
+
+
+@dataclass(frozen=True, slots=True)
 class YesNo:
     """ "Is/are/does SUBJECT TEST?". ``tests`` may be empty: then the predicate hides in the words of the subject."""
 
@@ -259,6 +267,6 @@ class Happening:
 
 
 Question = (
-    Exists | Count | YesNo | IsA | Ask | Read | TextExists | Where | What | Identify | Which | HowFar | Compare | CompareCount
+    Exists | Count | CountKinds | YesNo | IsA | Ask | Read | TextExists | Where | What | Identify | Which | HowFar | Compare | CompareCount
     | MostCommon | Describe | Happening
 )  # fmt: skip

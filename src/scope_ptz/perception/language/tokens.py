@@ -106,6 +106,8 @@ def tokenise(text: str) -> list[Token]:
             if not tokens or tokens[0].type not in {"WHAT", "WHICH", "WHERE"}:
                 tokens.append(Token("W", raw))
         elif kind != "SKIP":
+            if kind in {"WHICH", "WHAT"} and [t.type for t in tokens] == ["REL"]:
+                tokens.pop()  # "in which lane is ..."
             tokens.append(Token(kind, f"{value}:{raw}" if kind == "REL" else raw if kind in {"SAYS", "READ"} else value))
         i += size
         if kind == "SAYS" and not (tokens[0].type == "WHAT" and any(t.type == "DOES" for t in tokens)):
