@@ -78,7 +78,7 @@ def _works_signs(stage: Stage) -> None:
         (signs.project_board(
             ("CASTELL HIGHWAYS", "A482 Resurfacing, Junctions 4 to 6", "Completion: March 2027", "Client: County Roads Board", "Designer: Aldous Peake", "Night closures from 9 pm", "Plan ahead, allow more time", "Help line 0900 555 0142, open day and night",
              "Contract CH-2207. Unauthorised persons must not enter the site."),
-            width=4.2, height=3.3, background="blue", post_height=0.7), "blue project board", -21.9, 6.2, 166.0, "castell highways a482 resurfacing", "blue"),
+            width=4.2, height=3.3, background="blue", post_height=0.7), "blue project board", -24.3, 5.6, 157.0, "castell highways a482 resurfacing", "blue"),
     ]  # fmt: skip
     for built, name, x, y, bearing, reads, colour in rows:
         _sign(stage, built, name, x, y, bearing, reads, colour, temporary="yes")
@@ -87,7 +87,7 @@ def _works_signs(stage: Stage) -> None:
 def _small_signs(stage: Stage) -> None:
     for x, y, bearing in ((-16.9, -66.0, SOUTH), (-16.7, 20.5, SOUTH), (16.8, 70.0, NORTH), (16.8, -4.0, NORTH)):
         _sign(stage, signs.round_limit("50"), "50 speed limit sign", x, y, bearing, "50", "red and white", kind="speed limit")
-    _sign(stage, signs.round_limit("10", diameter=0.6, post_height=1.5), "10 speed limit sign", -28.6, 5.4, 150.0, "10", "red and white", kind="speed limit")
+    _sign(stage, signs.round_limit("10", diameter=0.6, post_height=1.5), "10 speed limit sign", -29.3, 5.2, 150.0, "10", "red and white", kind="speed limit")
     for text, name, x, y, bearing, colour in (
         ("DEEP EXCAVATION", "yellow warning plate", -14.9, 31.5, 205.0, "yellow"),
         ("BURIED CABLE\nDIG WITH CARE", "yellow warning plate", -20.6, 1.0, 195.0, "yellow"),

@@ -145,7 +145,7 @@ def _compound(stage: Stage) -> None:
         (works.skip("yellow"), "skip", "yellow skip", -28.0, -21.0, 70, {"colour": "yellow", "state": "full"}),
         (works.skip("blue", full=False), "skip", "blue skip", -24.6, -18.2, 10, {"colour": "blue", "state": "empty"}),
         (works.generator("green"), "generator", "green generator", -38.6, -19.0, 95, {"colour": "green"}),
-        (works.light_tower(lit=False), "light tower", "lighting tower", -25.2, -11.6, 200, {"colour": "yellow", "state": "unlit"}),
+        (works.light_tower(lit=False), "light tower", "lighting tower", -39.6, -21.6, 200, {"colour": "yellow", "state": "unlit"}),
         (works.light_tower(lit=True), "light tower", "lighting tower", -14.3, 52.5, 160, {"colour": "yellow", "state": "lit"}),
         (works.arrow_board("right"), "arrow board", "lit arrow board", -12.6, -60.5, 180, {"state": "lit", "direction": "right"}),
         (works.arrow_board("right", lit=False), "arrow board", "dark arrow board", -14.2, -36.5, 0, {"state": "unlit"}),

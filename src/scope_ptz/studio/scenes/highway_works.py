@@ -10,6 +10,11 @@ from scope_ptz.studio.scenes import highway_land, highway_road, highway_site, hi
 
 NAME = "highway-works"
 TITLE = "Highway works"
+ABSENT = (
+    "ambulance", "bench", "bicycle", "bulldozer", "cow", "crane", "dog", "fire engine", "horse", "motorcycle", "police car",
+    "swimming pool", "tractor", "traffic light", "train", "wind turbine",
+)  # fmt: skip
+"""Things that a person might ask for and that are not there."""
 
 
 def build(stage: Stage) -> None:
@@ -19,9 +24,20 @@ def build(stage: Stage) -> None:
     highway_site.build(stage)
     highway_road.build(stage)
     highway_land.build(stage)  # last: lettering slows down with every object that the file already holds
+    _cameras(stage)
+    stage.absent = list(ABSENT)
+    sky.finish_materials()
+
+
+def _cameras(stage: Stage) -> None:
     stage.viewpoint("mast", (-18.5, -8.0, 8.5), 0.0, "CCTV mast on the western verge, beside the closed lane")
     stage.viewpoint("bridge", (-7.0, 79.3, 8.5), 180.0, "bracket in front of the overbridge's southern parapet")
-    stage.preset("highway", "mast", -10, -14, 1.2, "the works and the northbound lanes, looking along the road")
+    stage.preset("overview", "mast", 8, -10, 1.0, "the whole site from the mast", home=True)
+    stage.preset("highway", "mast", -10, -14, 1.2, "the works access and the closed lane, looking along the road")
+    stage.preset("works", "mast", 15, -17, 1.9, "roller, excavator and crew in the closed lane")
+    stage.preset("gantry", "mast", 10, -1, 2.8, "the northbound gantry signs")
     stage.preset("compound", "mast", -110, -18, 1.0, "the site compound with its cabins and stores")
     stage.preset("gate", "mast", -52, -17, 1.8, "the compound's gate and the haul road")
-    sky.finish_materials()
+    stage.preset("southbound", "mast", 150, -8, 1.2, "the taper and the traffic to the south")
+    stage.preset("bridge-south", "bridge", 4, -13, 1.1, "the works and both carriageways from the overbridge")
+    stage.preset("bridge-north", "bridge", 168, -6, 1.0, "across the overbridge to the north")
