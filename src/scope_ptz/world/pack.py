@@ -32,9 +32,19 @@ from scope_ptz.world.models import (
 )
 from scope_ptz.world.tiles import Tiles
 
-COLOUR_SCALES = (Scale(1.0, sharpening=0.6), *(Scale(2 ** (-k / 2)) for k in range(7)))
-"""Scales at which colour is kept. The first is for views as dense as the stored picture or denser: it makes up for what bilinear
-look-up blurs. The others are half an octave apart, so that no view samples its source much too finely."""
+COLOUR_SCALES = (
+    Scale(1.0, sharpening=0.6),
+    Scale(1.0, sharpening=0.1),
+    Scale(2**-0.5, sharpening=0.3),
+    Scale(2**-1.0),
+    Scale(2**-1.5, sharpening=0.15),
+    Scale(2**-2.0),
+    Scale(2**-2.5, sharpening=0.15),
+    Scale(2**-3.0),
+)
+"""Scales at which colour is kept, half an octave apart, so that no view samples its source much too finely. The first is for views
+about as dense as the stored picture or denser. Sharpening makes up for what shrinking and bilinear look-up blur; the amounts bring
+the Laplacian variance of views nearest to that of directly rendered ones."""
 
 _File = TypeVar("_File", bound=BaseModel)
 

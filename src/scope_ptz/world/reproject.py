@@ -28,7 +28,7 @@ MAX_STEP_PX = 32
 TILE_GAIN = 1.1
 """Tiles are used from views on that need this many times the density of the panorama."""
 
-OVERSAMPLING = 1.18
+OVERSAMPLING = 1.2
 """Bilinear look-up in a picture this much to 1.7 times as dense as the view keeps the sharpness of a rendered view: less blurs,
 more shimmers."""
 

@@ -66,9 +66,9 @@ class Tiles:
         near = self._order[(apart <= self._reach_deg + projection.reach_deg)[self._order]]
         size = np.array([projection.width, projection.height])
         outlines = projection.points(self._outlines[near])
-        plain: NDArray[np.bool_] = np.isfinite(outlines).all(axis=(1, 2))
-        plain = plain if isinstance(projection, Perspective) else np.zeros_like(plain)
-        shown = zip(near.tolist(), _bounds(projection, outlines), outlines[:, ::_SIDE_POINTS] * size, plain.tolist(), strict=True)
+        clear: NDArray[np.bool_] = np.asarray(np.isfinite(outlines).all(axis=(1, 2)))
+        plain = [isinstance(projection, Perspective) and ok for ok in clear.tolist()]
+        shown = zip(near.tolist(), _bounds(projection, outlines), outlines[:, ::_SIDE_POINTS] * size, plain, strict=True)
         return [Showing(i, place, corners if simple else None) for i, place, corners, simple in shown if place is not None]
 
     def points(self, index: int, projection: Projection, x: Floats, y: Floats) -> Floats:
