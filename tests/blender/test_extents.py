@@ -14,10 +14,7 @@ QUAD: Ints = np.array([[0, 1, 2], [1, 3, 2]])
 
 def rectangle(x: tuple[float, float], y: tuple[float, float], z: tuple[float, float]) -> Body:
     """In a plane of constant y (upright) or constant z (level)."""
-    if y[0] == y[1]:
-        corners = [(a, y[0], b) for b in z for a in x]
-    else:
-        corners = [(a, b, z[0]) for b in y for a in x]
+    corners = [(a, y[0], b) for b in z for a in x] if y[0] == y[1] else [(a, b, z[0]) for b in y for a in x]
     return Body(7, np.array(corners, dtype=float), QUAD)
 
 

@@ -95,7 +95,11 @@ def test_a_part_that_was_cut_off_does_not_count(tmp_path: Path) -> None:
     shop = Workshop(tmp_path, "yard-1", silent)
     with pytest.raises(KeyboardInterrupt):
         shop.part("base", ".txt", {}, cut_off)
-    assert shop.part("base", ".txt", {}, lambda path: path.write_text("whole") and None).read_text() == "whole"
+
+    def finish(path: Path) -> None:
+        path.write_text("whole")
+
+    assert shop.part("base", ".txt", {}, finish).read_text() == "whole"
 
 
 def test_the_key_follows_the_code_of_the_scene(tmp_path: Path) -> None:

@@ -19,7 +19,7 @@ from scope_ptz.blender.extents import extents
 from scope_ptz.blender.keyframes import Keyframe, keyframes
 from scope_ptz.blender.packing import Rendered, RenderedActor, RenderedTile, weight_bytes, write_pack
 from scope_ptz.blender.panorama import render_base
-from scope_ptz.blender.quality import DEPTH_STEP, FAR_M, NEAR_M, PACK_BYTES, QUALITIES, Quality
+from scope_ptz.blender.quality import DEPTH_STEP, FAR_M, NEAR_M, PACK_BYTES, Quality
 from scope_ptz.blender.requests import panorama_request, perspective_request
 from scope_ptz.blender.sheets import make_sheet
 from scope_ptz.blender.tiles import cover, covers, most_useful, targets
@@ -44,7 +44,7 @@ def bake(
     source: str,
     out_dir: Path,
     *,
-    quality: str,
+    quality: Quality,
     command: Sequence[str],
     cache_dir: Path,
     viewpoints: Sequence[str] | None = None,
@@ -55,8 +55,6 @@ def bake(
     ``source`` is the name of a scene in ``scope_ptz.studio.scenes`` or the path of a Python file with a ``build(stage)``;
     ``command`` starts the worker. Unfinished parts are kept under ``cache_dir``.
     """
-    if quality not in QUALITIES:
-        raise UnknownNameError("quality", quality, QUALITIES)
     key = scene_key(source)
     shop = Workshop(cache_dir / "bakes", key, progress)
     with BlenderWorker(command, shop.folder / "blender.log") as worker:
@@ -74,7 +72,7 @@ def bake(
             if name not in known:
                 raise UnknownNameError("viewpoint", name, known)
         out_dir.mkdir(parents=True, exist_ok=True)
-        baker = _Baker(worker, shop, scene, description, QUALITIES[quality])
+        baker = _Baker(worker, shop, scene, description, quality)
         baked = [baker.bake_viewpoint(known[name], out_dir / name) for name in wanted]
         (out_dir / "scene.json").write_text(scene.model_dump_json(indent=1) + "\n")
     return baked

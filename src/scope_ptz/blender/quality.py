@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from scope_ptz.errors import UnknownNameError
+
 PACK_BYTES = 5_500_000
 """All layers of one viewpoint together."""
 
@@ -30,6 +32,13 @@ class Quality:
     max_sprites: int
     base_coding: int
     tile_coding: int
+
+
+def named_quality(name: str) -> Quality:
+    """One of ``QUALITIES``; ``UnknownNameError`` when there is none of that name."""
+    if name not in QUALITIES:
+        raise UnknownNameError("quality", name, QUALITIES)
+    return QUALITIES[name]
 
 
 QUALITIES = {

@@ -45,7 +45,7 @@ class PoseReport:
 
 
 def draw_poses(scene: Scene, seed: int, wide: int, zoomed: int) -> list[tuple[str, Pose]]:
-    """``wide`` poses at the wide end over all pans and tilts, and ``zoomed`` ones at 2x to 5x that look at tiles; viewpoints in turn."""
+    """``wide`` poses at the wide end over all pans and tilts and ``zoomed`` ones at 2x to 5x on tiles, viewpoints in turn."""
     rng, limits = random.Random(seed), Limits()
     names = [v.name for v in scene.file.viewpoints]
     poses = []

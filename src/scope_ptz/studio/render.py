@@ -95,6 +95,7 @@ def _prepare(viewpoint: Viewpoint, projection: dict[str, float], samples: int, s
     scene.render.dither_intensity = 0.0
     scene.cycles.samples = samples
     scene.cycles.use_adaptive_sampling = False
+    scene.cycles.use_auto_tile = False
     scene.cycles.seed = seed
     scene.camera = _camera(scene)
     data = scene.camera.data
