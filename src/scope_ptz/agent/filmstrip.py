@@ -66,9 +66,8 @@ def draw_filmstrip(trace: Trace) -> Image.Image | None:
     panels = [p for p in panels_of(trace) if p.file is not None]
     if not panels:
         return None
-    tiles = [_Tile(panel, _open(trace.folder, panel)) for panel in panels]
-    tiles, left_out = _elide(tiles)
-    rows = _rows(tiles)
+    shown, left_out = _elide(panels)
+    rows = _rows([_Tile(panel, _open(trace.folder, panel)) for panel in shown])
     heights = [_row_height(row) for row in rows]
     head = _Banner("INSTRUCTION", CYAN, trace.started.instruction)
     label, colour = _HEADLINES[trace.ended.outcome] if trace.ended else ("CUT OFF", RED)
@@ -124,13 +123,12 @@ def _open(folder: Path, panel: Panel) -> Image.Image:
         raise TraceError(f"The picture {path} of the run is missing or damaged.") from error
 
 
-def _elide(tiles: list[_Tile]) -> tuple[list[_Tile], int]:
-    """At most ``MAX_PANELS``: the beginning and the end of a longer run."""
-    if len(tiles) <= MAX_PANELS:
-        return tiles, 0
+def _elide(panels: list[Panel]) -> tuple[list[Panel], int]:
+    """At most ``MAX_PANELS``: the beginning and the end of a longer run, and how many are left out."""
+    if len(panels) <= MAX_PANELS:
+        return panels, 0
     first = MAX_PANELS // 2 - 1
-    last = MAX_PANELS - first
-    return [*tiles[:first], *tiles[-last:]], len(tiles) - MAX_PANELS
+    return [*panels[:first], *panels[first - MAX_PANELS :]], len(panels) - MAX_PANELS
 
 
 def _rows(tiles: list[_Tile]) -> list[list[_Tile]]:
@@ -231,5 +229,5 @@ def _draw_footer(canvas: Canvas, trace: Trace, left_out: int, y: float) -> None:
     eyes = started.labels.perception_note.rstrip(".") or f"Perception: {started.perception}"
     canvas.text(MARGIN + 4, y, f"SCOPE · {started.camera} · Planner: {started.planner} · {eyes}", 15, FAINT)
     if left_out:
-        note = f"{left_out} steps between {MAX_PANELS // 2 - 1} and {MAX_PANELS // 2 + left_out} are not shown"
+        note = f"steps {MAX_PANELS // 2} to {MAX_PANELS // 2 + left_out - 1} are not shown"
         canvas.text(WIDTH - MARGIN - 4, y, note, 15, FAINT, anchor="rs")

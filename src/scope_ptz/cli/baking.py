@@ -46,7 +46,7 @@ def bake_scene(source: str, out: Path | None, quality: str, viewpoints: list[str
         baked = bake(
             source,
             folder,
-            quality=quality,
+            quality=QUALITIES[quality],
             command=command,
             cache_dir=settings.cache_dir,
             viewpoints=viewpoints or None,

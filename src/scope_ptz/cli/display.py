@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from rich.console import Console
+from rich.padding import Padding
 from rich.status import Status
 from rich.table import Table
 from rich.text import Text
@@ -71,8 +72,8 @@ class LiveView:
 
     def _start(self, record: Started) -> None:
         self.console.print(Text.assemble(("› ", "bold cyan"), (plain(record.instruction), "bold")))
-        about = f"  {record.camera} · planner {record.planner} · perception {record.perception}"
-        self.console.print(Text(plain(about), style="dim"))
+        about = f"{record.camera} · planner {record.planner} · perception {record.perception}"
+        self.console.print(Padding(Text(plain(about), style="dim"), (0, 0, 0, 2)))
         self.console.print()
 
     def _call(self, record: Called) -> None:
