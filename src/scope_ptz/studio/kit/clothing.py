@@ -60,7 +60,7 @@ def skin(tone: int, hair: str | None, *, stubble: bool) -> bpy.types.Material:
     )
     for side in (-1, 1):
         colour = s.mix(
-            s.math("MULTIPLY", _near(s, where, (side * 0.042, 0.075, -0.026), (0.024, 0.03, 0.020), 0.9), 0.35),
+            s.math("MULTIPLY", _near(s, where, (side * 0.042, 0.075, -0.026), (0.024, 0.03, 0.020), 0.9), 0.18),
             colour,
             (base[0], base[1] * 0.6, base[2] * 0.55),
         )

@@ -27,7 +27,7 @@ def face(*, woman: bool, stout: float) -> Skin:
     v.capsule((0, 0.083, 0.016), (0, 0.101, -0.022), 0.0085, 0.0115)
     for s in (-1, 1):
         v.ellipsoid((s * 0.011, 0.093, -0.027), (0.0085, 0.010, 0.0075))
-        v.ellipsoid((s * 0.040 * jaw, 0.058, -0.022), (0.022 * stout, 0.024, 0.022))
+        v.ellipsoid((s * 0.041 * jaw, 0.051, -0.018), (0.020 * stout, 0.022, 0.019))
         v.ellipsoid((s * 0.046 * jaw * stout, 0.020, -0.066), (0.020, 0.036, 0.028))
         ear = Matrix.Translation((s * 0.0745, -0.010, -0.008)) @ Matrix.Rotation(s * math.radians(-24), 4, "Z")
         v.ellipsoid((0, 0, 0), (0.009, 0.021, 0.033), ear)

@@ -1,6 +1,6 @@
 """People: road workers and pedestrians of varied height, build, skin and hair, in relaxed poses or walking.
 
-A person stands at the origin facing +y, about 22 thousand points in one object. Looks and small asymmetries come from
+A person stands at the origin facing +y, about 45 thousand points in one object. Looks and small asymmetries come from
 ``seed``; everything else can be asked for. ``phase`` in [0, 1) is the gait phase of the poses "walk" and "carry"; one
 cycle covers ``STRIDE_M`` times the person's height over 1.77 m."""
 
@@ -74,7 +74,9 @@ def _helmet(s: Solid, joints: Joints, colour: str) -> None:
     """Safety helmet: dome with a ridge, short brim all round, long peak in front, badge."""
     shell = paint(colour, dirt=0.16, roughness=0.30)
     saved = s.frame
-    s.frame = joints.head @ Matrix.Translation(Vector(heads.CENTRE) + Vector((0, -0.014, 0.055))) @ Matrix.Rotation(0.09, 4, "X")
+    s.frame = (
+        saved @ joints.head @ Matrix.Translation(Vector(heads.CENTRE) + Vector((0, -0.014, 0.055))) @ Matrix.Rotation(0.15, 4, "X")
+    )
     rows = [(1.00, 0.0), (0.99, 0.026), (0.94, 0.053), (0.82, 0.078), (0.62, 0.097), (0.36, 0.108), (0.10, 0.112)]
     points, faces, n = [], [], 40
     angles = np.linspace(0, 2 * np.pi, n, endpoint=False)

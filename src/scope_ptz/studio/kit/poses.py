@@ -206,7 +206,7 @@ def standing(random: Random) -> Pose:
         tilt=lead * 4.0,
         twist=random.uniform(-6, 6),
         head_yaw=random.uniform(-24, 24),
-        head_pitch=random.uniform(-10, 1),
+        head_pitch=random.uniform(-7, 3),
         head_roll=random.uniform(-4, 4),
     )
 
