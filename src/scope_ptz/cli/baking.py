@@ -13,7 +13,7 @@ from rich.text import Text
 from scope_ptz.blender.bake import bake
 from scope_ptz.blender.client import BlenderWorker
 from scope_ptz.blender.environment import is_ready, worker_command
-from scope_ptz.blender.quality import QUALITIES
+from scope_ptz.blender.quality import named_quality
 from scope_ptz.errors import OutputError, UnknownNameError
 from scope_ptz.settings import ScopeSettings, load_settings
 
@@ -37,8 +37,7 @@ def bake_scene(source: str, out: Path | None, quality: str, viewpoints: list[str
     """Bake a scene's packs. A bake that was interrupted goes on where it stopped."""
     settings, console = load_settings(), Console(highlight=False)
     _check(source)
-    if quality not in QUALITIES:
-        raise UnknownNameError("quality", quality, QUALITIES)
+    wanted = named_quality(quality)
     folder = (out or Path("scenes") / Path(source).stem.replace("_", "-")).absolute()
     _make_folder(folder.parent)
     command = _command(settings, console)
@@ -46,7 +45,7 @@ def bake_scene(source: str, out: Path | None, quality: str, viewpoints: list[str
         baked = bake(
             source,
             folder,
-            quality=QUALITIES[quality],
+            quality=wanted,
             command=command,
             cache_dir=settings.cache_dir,
             viewpoints=viewpoints or None,
