@@ -17,7 +17,7 @@ from scope_ptz.world.models import ActorSheet, Extent, SceneActor, Sprite
 from scope_ptz.world.pack import Scene, Viewpoint
 from scope_ptz.world.reproject import Grid, step_px
 from scope_ptz.world.runs import measure
-from scope_ptz.world.tiles import Place, Tiles
+from scope_ptz.world.tiles import Tiles
 
 TOLERANCE_M = 0.15
 TOLERANCE_SHARE = 0.01
@@ -122,10 +122,9 @@ def extent(viewpoint: Viewpoint, appearance: Appearance) -> Extent:
     )
 
 
-def place_of(appearance: Appearance, projection: Projection) -> Place | None:
-    """Rows and columns of a picture in which an actor may show, None when it is elsewhere."""
-    found = Tiles([appearance.view]).in_view(projection)
-    return found[0].place if found else None
+def shows(appearance: Appearance, projection: Projection) -> bool:
+    """Whether an actor may show in a picture, as far as directions tell."""
+    return bool(Tiles([appearance.view]).in_view(projection))
 
 
 def draw(
@@ -137,11 +136,13 @@ def draw(
     numbers: NDArray[np.uint16] | None,
 ) -> None:
     """Set one actor into a picture and into its instance numbers, in place. ``depth_m`` (H, W) is the still world's distance."""
-    place = place_of(appearance, projection)
-    if place is None:
+    sprite = Tiles([appearance.view])
+    showing = next(iter(sprite.in_view(projection)), None)
+    if showing is None:
         return
+    place = showing.place
     grid = Grid(projection, step_px(projection), place)
-    uv = Tiles([appearance.view]).points(0, projection, grid.x, grid.y)
+    uv = sprite.points(showing, projection, grid.x, grid.y)
     where = grid.to_pixels(uv * (appearance.sprite.width, appearance.sprite.height) - 0.5)
     distance_m = cv2.remap(_distances(viewpoint, appearance), where, None, cv2.INTER_NEAREST, borderValue=0.0)
     still_m = depth_m[place] * (1 + TOLERANCE_SHARE) + TOLERANCE_M
@@ -154,8 +155,7 @@ def draw(
         height_m = float(appearance.offset_m[2])
         with np.errstate(divide="ignore", invalid="ignore"):
             ground_m = np.where(drop * height_m > 0, height_m / drop, np.inf)
-        shows = np.where(own, distance_m, ground_m) <= still_m
-        _blend(picture[place], _sample(viewpoint, appearance, where, projection), shows)
+        _blend(picture[place], _sample(viewpoint, appearance, where, projection), np.where(own, distance_m, ground_m) <= still_m)
 
 
 def _sample(viewpoint: Viewpoint, appearance: Appearance, where: NDArray[np.float32], projection: Projection) -> NDArray[np.uint8]:

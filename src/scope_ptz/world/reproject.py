@@ -176,16 +176,16 @@ def _turn_and_tilt_deg(grid: Grid) -> tuple[float, Floats, Floats]:
 
 def _tile_map(tiles: Tiles, showing: Showing, atlas: Atlas, grid: Grid) -> tuple[Map, NDArray[np.uint8], bool]:
     """A tile's map over a part of the view, which pixels there it covers, and whether that is all of the view."""
-    projection, index = grid.projection, showing.index
-    slot = _slot(atlas, 1 + index, tiles.views[index].focal_px, projection.density)
-    nodes = tiles.points(index, projection, grid.x, grid.y) * (slot.width, slot.height) + (slot.x - 0.5, slot.y - 0.5)
+    projection = grid.projection
+    slot = _slot(atlas, 1 + showing.tile, tiles.views[showing.tile].focal_px, projection.density)
+    nodes = tiles.points(showing, projection, grid.x, grid.y) * (slot.width, slot.height) + (slot.x - 0.5, slot.y - 0.5)
     low, high = (slot.x, slot.y), (slot.x + slot.width - 1, slot.y + slot.height - 1)
     where = grid.to_pixels(nodes)
-    whole = where.shape[:2] == (projection.height, projection.width)
     inside = showing.mask()
     if inside is None:
         inside = cv2.inRange(where, low, high)
-    return where, inside, whole and bool(np.all((nodes >= low) & (nodes <= high)))
+    whole = where.shape[:2] == (projection.height, projection.width) and bool(np.all((nodes >= low) & (nodes <= high)))
+    return where, inside, whole
 
 
 def _slot(atlas: Atlas, index: int, density: float, needed: float) -> Slot:

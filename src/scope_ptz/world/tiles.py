@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -19,32 +19,31 @@ Place = tuple[slice, slice]
 _BEHIND = 1e-6
 _FAR_PX = 1e5
 _INSET_PX = 1.5
+_SHIFT = 8
 _SIDE_POINTS = 8
 
 
-@dataclass(frozen=True, slots=True)
-class Showing:
-    """A tile in a picture: which, in which part, and its corners (4, 2) in pixels where straight lines join them."""
+class Showing(NamedTuple):
+    """A tile in a picture: which, and in which part.
 
-    index: int
+    In a perspective picture also the turn (3, 3) from its axes to the tile's (two planes seen from one point: with it a matrix
+    leads from one to the other), and a polygon (4, 2) that lies at least a pixel inside the tile, in 1/256 pixels for OpenCV.
+    """
+
+    tile: int
     place: Place
-    corners: Floats | None
+    turn: Floats | None
+    polygon: NDArray[np.int32] | None
 
     def mask(self) -> NDArray[np.uint8] | None:
-        """(H, W) of the part: 255 inside the tile, at least a pixel from its edge. None where the corners do not tell."""
-        if self.corners is None or np.abs(self.corners).max() > _FAR_PX:
+        """(H, W) of the part: 255 inside the polygon. None without one."""
+        if self.polygon is None:
             return None
         rows, columns = self.place
-        middle = self.corners.mean(axis=0)
-        sides = np.roll(self.corners, -1, axis=0) - self.corners
-        towards = middle - self.corners
-        away = np.abs(sides[:, 0] * towards[:, 1] - sides[:, 1] * towards[:, 0]) / np.maximum(np.hypot(*sides.T), 1e-9)
-        # Shrunk about its middle, so that rounding never reaches beyond the tile.
-        inset = middle + (self.corners - middle) * max(0.0, 1.0 - _INSET_PX / max(float(away.min()), 1e-9))
         mask = np.zeros((rows.stop - rows.start, columns.stop - columns.start), dtype=np.uint8)
-        points = np.rint((inset - (columns.start + 0.5, rows.start + 0.5)) * 256).astype(np.int32)
-        cv2.fillConvexPoly(mask, points, 255, shift=8)
-        return mask
+        return np.asarray(
+            cv2.fillConvexPoly(mask, self.polygon - (columns.start << _SHIFT, rows.start << _SHIFT), 255, shift=_SHIFT)
+        )
 
 
 class Tiles:
@@ -66,36 +65,51 @@ class Tiles:
         near = self._order[(apart <= self._reach_deg + projection.reach_deg)[self._order]]
         size = np.array([projection.width, projection.height])
         outlines = projection.points(self._outlines[near])
-        clear: NDArray[np.bool_] = np.asarray(np.isfinite(outlines).all(axis=(1, 2)))
-        plain = [isinstance(projection, Perspective) and ok for ok in clear.tolist()]
-        shown = zip(near.tolist(), _bounds(projection, outlines), outlines[:, ::_SIDE_POINTS] * size, plain, strict=True)
-        return [Showing(i, place, corners if simple else None) for i, place, corners, simple in shown if place is not None]
+        places = _bounds(projection, outlines)
+        if isinstance(projection, Perspective):
+            turns = list(self._axes[near] @ camera_axes(projection.pan_deg, projection.tilt_deg).T)
+            polygons = _inset(outlines[:, ::_SIDE_POINTS] * size)
+            shown = [Showing(*fields) for fields in zip(near.tolist(), places, turns, polygons, strict=True)]
+        else:
+            shown = [Showing(i, place, None, None) for i, place in zip(near.tolist(), places, strict=True)]
+        return [showing for showing in shown if showing.place[0].start < showing.place[0].stop]
 
-    def points(self, index: int, projection: Projection, x: Floats, y: Floats) -> Floats:
+    def points(self, showing: Showing, projection: Projection, x: Floats, y: Floats) -> Floats:
         """Normalised points (rows, columns, 2) of a tile under the columns ``x`` and rows ``y`` (in pixels) of a picture.
 
         Far outside the tile, or behind it, they are merely far outside.
         """
-        tile = self.views[index]
-        if isinstance(projection, Perspective):
-            # Both pictures are planes seen from one point, so a 3x3 matrix leads from one to the other.
-            turn = self._axes[index] @ camera_axes(projection.pan_deg, projection.tilt_deg).T
+        tile = self.views[showing.tile]
+        if showing.turn is not None:
             right, up = x - projection.width / 2, projection.height / 2 - y
-            local = (
-                turn[:, 0, None, None] * right
-                + turn[:, 1, None, None] * up[:, None]
-                + (turn[:, 2] * projection.focal_px)[:, None, None]
-            )
+            constant = showing.turn[:, 1, None] * up + showing.turn[:, 2, None] * projection.density
+            local = showing.turn[:, 0, None, None] * right + constant[..., None]
         else:
             points = np.stack(np.meshgrid(x / projection.width, y / projection.height), axis=-1)
-            local = np.moveaxis(projection.directions(points) @ self._axes[index].T, -1, 0)
+            local = np.moveaxis(projection.directions(points) @ self._axes[showing.tile].T, -1, 0)
         scale = tile.focal_px / np.maximum(local[2], _BEHIND)
-        u, v = 0.5 + local[0] * scale / tile.width, 0.5 - local[1] * scale / tile.height
-        return np.where((local[2] > _BEHIND)[..., None], np.stack([u, v], axis=-1), -1e3)
+        found = np.empty((*local.shape[1:], 2))
+        found[..., 0] = local[0] * (scale / tile.width) + 0.5
+        found[..., 1] = local[1] * (scale / -tile.height) + 0.5
+        if local[2].min() <= _BEHIND:
+            found[local[2] <= _BEHIND] = -1e3
+        return found
 
 
-def _bounds(projection: Projection, points: Floats) -> list[Place | None]:
-    """For each outline (n, m, 2) of normalised points the rows and columns that it spans; None where it misses the picture."""
+def _inset(corners: Floats) -> list[NDArray[np.int32] | None]:
+    """For each quadrilateral (n, 4, 2) one that is shrunk about its middle, so that rounding never reaches beyond the tile."""
+    middle = corners.mean(axis=1, keepdims=True)
+    sides, towards = np.roll(corners, -1, axis=1) - corners, middle - corners
+    across = np.abs(sides[..., 0] * towards[..., 1] - sides[..., 1] * towards[..., 0])
+    away = (across / np.maximum(np.sqrt((sides**2).sum(axis=-1)), 1e-9)).min(axis=1)
+    inset = middle + (corners - middle) * np.maximum(0.0, 1.0 - _INSET_PX / np.maximum(away, 1e-9))[:, None, None]
+    clear = np.abs(corners).max(axis=(1, 2)) < _FAR_PX  # false for what is not a number, too
+    fixed = np.rint((np.where(clear[:, None, None], inset, 0.0) - 0.5) * (1 << _SHIFT)).astype(np.int32)
+    return [polygon if fine else None for polygon, fine in zip(fixed, clear.tolist(), strict=True)]
+
+
+def _bounds(projection: Projection, points: Floats) -> list[Place]:
+    """For each outline (n, m, 2) of normalised points the rows and columns that it spans, empty where it misses the picture."""
     size = np.array([projection.width, projection.height])
     unclear = np.isnan(points).any(axis=(1, 2))
     if isinstance(projection, Equirectangular):
@@ -105,10 +119,8 @@ def _bounds(projection: Projection, points: Floats) -> list[Place | None]:
     high = np.ceil(points.max(axis=1) * size).astype(int) + 1
     low[unclear], high[unclear] = 0, size
     low, high = np.clip(low, 0, size), np.clip(high, 0, size)
-    return [
-        (slice(y0, y1), slice(x0, x1)) if x0 < x1 and y0 < y1 else None
-        for (x0, y0), (x1, y1) in zip(low.tolist(), high.tolist(), strict=True)
-    ]
+    high[(low >= high).any(axis=1)] = 0
+    return [(slice(y0, max(y0, y1)), slice(x0, x1)) for (x0, y0), (x1, y1) in zip(low.tolist(), high.tolist(), strict=True)]
 
 
 def _outline() -> Floats:
