@@ -22,7 +22,7 @@ PAINTS: dict[str, tuple[float, float, float]] = {
     "light blue": (0.20, 0.43, 0.66),
     "green": (0.012, 0.19, 0.045),
     "dark green": (0.006, 0.055, 0.022),
-    "yellow": (0.80, 0.44, 0.003),
+    "yellow": (0.82, 0.49, 0.003),
     "orange": (0.68, 0.125, 0.003),
     "brown": (0.10, 0.045, 0.020),
     "beige": (0.50, 0.42, 0.29),
@@ -80,39 +80,62 @@ def paint(
     found = bpy.data.materials.get(name)
     if found is not None:
         return found
+    # Building hundreds of nodes takes a second, copying them a millisecond: one pattern serves all colours.
+    pattern = bpy.data.materials.get(f"paint {model}") or _pattern(f"paint {model}", patches, dirt_top_m, dirt, gloss)
+    made = pattern.copy()
+    made.name = name
+    nodes = made.node_tree.nodes
+    nodes["Colour"].outputs[0].default_value = (*PAINTS[colour], 1.0)
+    nodes["Flake"].outputs[0].default_value = 0.35 if colour in _METALLIC else 0.0
+    return made
+
+
+def _pattern(name: str, patches: Sequence[Patch], dirt_top_m: float, dirt: float, gloss: float) -> bpy.types.Material:
     sh = shading.Shader(name)
     coords = sh.object_coords()
     x, y, z = sh.xyz(coords)
     x = sh.math("ABSOLUTE", x)
-    base, rough, glow = sh.mix(0.0, PAINTS[colour], PAINTS[colour]), 0.32, sh.mix(0.0, (0, 0, 0), (0, 0, 0))
-    metal = 0.35 if colour in _METALLIC else 0.0
+    base: shading.Value = sh.node("ShaderNodeRGB", name="Colour").outputs[0]
+    metal: shading.Value = sh.node("ShaderNodeValue", name="Flake").outputs[0]
+    rough: shading.Value = 0.32
     coat: shading.Value = gloss
+    glow: shading.Value = (0.0, 0.0, 0.0)
     for patch in patches:
         mask = _patch_mask(sh, patch, x, y, z)
         base = sh.mix(mask, base, patch.colour)
-        rough = sh.math("ADD", rough, sh.math("MULTIPLY", mask, patch.roughness - 0.32), clamp=True)
-        metal = sh.math("MULTIPLY", metal, sh.ramp(mask, 0, 1, 1, 0, smooth=False))
+        rough = _blend(sh, mask, rough, patch.roughness)
+        metal = _blend(sh, mask, metal, 0.0)
         if patch.roughness > 0.5:
-            coat = sh.math("MULTIPLY", coat, sh.ramp(mask, 0, 1, 1, 0, smooth=False))
+            coat = _blend(sh, mask, coat, 0.0)
         if patch.emission:
-            strength = tuple(c * patch.emission for c in patch.colour)
-            glow = sh.mix(mask, glow, strength)
-    grime = sh.math(
-        "MULTIPLY", sh.ramp(z, 0.15, dirt_top_m, dirt, 0.0), sh.ramp(sh.noise(coords, 4.0), 0.3, 0.7, 0.35, 1.0)
-    )
-    base = sh.mix(grime, base, (0.085, 0.075, 0.062))
-    coat = sh.math("MULTIPLY", coat, sh.ramp(grime, 0, 0.4, 1, 0))
-    rough = sh.math("ADD", rough, grime, clamp=True)
+            glow = sh.mix(mask, glow, tuple(c * patch.emission for c in patch.colour))
+    height = sh.ramp(z, 0.15, dirt_top_m, dirt, 0.0)
+    grime = sh.math("MULTIPLY", height, sh.ramp(sh.noise(coords, 4.0), 0.3, 0.7, 0.35, 1.0))
     return sh.surface(
         specular_ior_level=0.3,
-        base_color=base,
-        roughness=rough,
+        base_color=sh.mix(grime, base, (0.085, 0.075, 0.062)),
+        roughness=sh.math("ADD", rough, grime, clamp=True),
         metallic=metal,
-        coat_weight=coat,
+        coat_weight=sh.math("MULTIPLY", coat, sh.ramp(grime, 0, 0.4, 1, 0)),
         coat_roughness=0.04,
         emission_color=glow,
         emission_strength=1.0,
     )
+
+
+def _blend(sh: shading.Shader, factor: shading.Value, a: shading.Value, b: shading.Value) -> shading.Value:
+    made = sh.node("ShaderNodeMix", data_type="FLOAT")
+    for socket, value in zip((0, 2, 3), (factor, a, b), strict=True):
+        sh.feed(made.inputs[socket], value)
+    return made.outputs[0]
+
+
+def _within(sh: shading.Shader, value: shading.Value, limits: Range) -> shading.Value:
+    """1 between the limits, 0 elsewhere, hard-edged: one node, where a soft band takes three."""
+    made = sh.node("ShaderNodeMath", operation="COMPARE")
+    for socket, number in enumerate((value, sum(limits) / 2, (limits[1] - limits[0]) / 2)):
+        sh.feed(made.inputs[socket], number)
+    return made.outputs[0]
 
 
 def _patch_mask(
@@ -126,13 +149,14 @@ def _patch_mask(
         z = sh.math("SUBTRACT", z, sh.math("MULTIPLY", x, patch.z_per_x))
     if patch.z_per_y:
         z = sh.math("SUBTRACT", z, sh.math("MULTIPLY", y, patch.z_per_y))
-    bands = [sh.band(v, *r) for v, r in ((x, patch.x), (y, patch.y), (z, patch.z)) if r != ANY]
     if patch.round:
         u, v = (sh.ramp(c, *r, -1.0, 1.0, smooth=False) for c, r in ((x, patch.x), (z, patch.z)))
         square = sh.math("ADD", sh.math("MULTIPLY", u, u), sh.math("MULTIPLY", v, v))
-        bands.append(sh.ramp(square, 0.85, 1.0, 1.0, 0.0))
-    mask = bands[0]
-    for other in bands[1:]:
+        masks = [_within(sh, y, patch.y), sh.math("LESS_THAN", square, 0.95)]
+    else:
+        masks = [_within(sh, v, r) for v, r in ((x, patch.x), (y, patch.y), (z, patch.z)) if r != ANY]
+    mask = masks[0]
+    for other in masks[1:]:
         mask = sh.math("MULTIPLY", mask, other)
     return mask
 
