@@ -15,6 +15,7 @@ from scope_ptz.planner.grammar.syntax import (
     Answered,
     AtPlaces,
     Bound,
+    Count,
     Condition,
     DoAgain,
     EachTime,
@@ -23,12 +24,16 @@ from scope_ptz.planner.grammar.syntax import (
     If,
     Linked,
     Loop,
+    Move,
     Negated,
     Repeat,
+    Report,
+    SameAt,
     Seen,
     Snap,
     Step,
     Sweep,
+    Turn,
 )
 from scope_ptz.planner.grammar.trees import Node
 
@@ -159,11 +164,26 @@ class Builder(MoveRules, SceneRules):
         places, act = sorted(node.branches(), key=lambda b: b.name not in {"every_place", "place_list"})
         return AtPlaces(self.visit(places), self._as_steps(self.visit(act)))
 
+    def same_at(self, node: Node) -> Step:
+        return SameAt(self.visit(node.branches()[0]))
+
+    def count_at(self, node: Node) -> tuple[Step, ...]:
+        """ "Count cars at gate and trucks at highway"."""
+        made = [self.visit(b) for b in node.branches("np", "named", "numbered", "marked", "unmarked", "known_ref")]
+        return tuple(AtPlaces((place,), (Count((thing,)),)) for thing, place in zip(made[::2], made[1::2], strict=True))
+
     def visit_places(self, node: Node) -> Any:
         places = self.visit(node.branches()[-1])
         if len(places) == 1:
             return GoPreset(places[0])
         return AtPlaces(places, ())
+
+    def roam(self, node: Node) -> Step:
+        """ "Pan until ...", no direction said: to the right."""
+        return Move((Turn("pan", 1),))
+
+    def report(self, node: Node) -> Step:
+        return Report()
 
     def forbid(self, node: Node) -> Step:
         return Forbid()

@@ -51,10 +51,10 @@ class MoveRules(Rules):
 
     def angle_part(self, node: Node) -> float:
         count = self.number(node) if node.has("NUM") else 1.0
-        return round(360 * count * self.lexemes[node.leaves("FRACTION")[0].index].value, 6)
+        return round(360 * count * self.fraction(node), 6)
 
     def angle_fraction(self, node: Node) -> float:
-        return self.lexemes[node.leaves("FRACTION")[0].index].value
+        return self.fraction(node)
 
     def angle_full(self, node: Node) -> float:
         return 360.0
@@ -85,6 +85,9 @@ class MoveRules(Rules):
             if isinstance(made, Unclear):
                 return made
             parts.extend(made)
+        axes = [p.axis if not isinstance(p, Zoom) else "zoom" for p in parts]
+        if len(set(axes)) < len(axes):
+            return Unclear("That asks for two moves about the same axis at once. Which one shall I make?")
         for leaf in node.all_leaves():
             if leaf.kind == "TILT" and any(isinstance(p, Turn) and p.axis == "pan" for p in parts) and not any(p.axis == "tilt" for p in parts if not isinstance(p, Zoom)):
                 return Unclear("The camera tilts up and down and pans left and right. Which of the two shall I do?")
@@ -143,8 +146,8 @@ class MoveRules(Rules):
     def straight_up(self, node: Node) -> tuple[Part, ...]:
         return (Turn("tilt", 1, Amount("limit")),)
 
-    def other_part(self, node: Node) -> tuple[Part, ...]:
-        made: tuple[Part, ...] = self.visit(node.branches()[0])
+    def other_part(self, node: Node) -> tuple[Part, ...] | Unclear:
+        made: tuple[Part, ...] | Unclear = self.visit(node.branches()[0])
         return made
 
     # Absolute wishes ---------------------------------------------------------------------------------------------------
@@ -171,7 +174,9 @@ class MoveRules(Rules):
     def axes(self, node: Node) -> tuple[Part, ...]:
         return tuple(part for branch in node.branches() for part in self.visit(branch))
 
-    def face_ahead(self, node: Node) -> tuple[Part, ...]:
+    def face_ahead(self, node: Node) -> tuple[Part, ...] | Unclear:
+        if node.has("MOVE", "SWITCH") and self.text(node.leaves("AHEAD")).lower().startswith("forward"):
+            return Unclear("The camera cannot travel; it turns and zooms. Shall I zoom in?")
         return (Aim("pan", 0.0),)
 
     def level(self, node: Node) -> tuple[Part, ...]:
@@ -197,7 +202,7 @@ class MoveRules(Rules):
         if kind == "percent":
             return (Zoom("percent", sign * value),)
         if kind == "fraction":
-            return (Zoom("factor", 1 / (1 - value) if sign > 0 and value < 1 else 1 - value),)
+            return (Zoom("factor", 1 + value if sign > 0 else 1 - value),)
         return (Zoom("factor", value if sign > 0 or value < 1 else 1 / value),)
 
     def zoom_rel(self, node: Node) -> tuple[Part, ...]:
@@ -243,7 +248,7 @@ class MoveRules(Rules):
         return "factor", 3.0 if "thr" in said else 4.0 if "four" in said else 2.0
 
     def z_fraction(self, node: Node) -> tuple[str, float]:
-        return "fraction", self.lexemes[node.leaves("FRACTION")[0].index].value
+        return "fraction", self.fraction(node)
 
     def z_percent(self, node: Node) -> tuple[str, float]:
         return "percent", abs(self.number(node))

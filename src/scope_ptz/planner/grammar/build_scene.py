@@ -41,6 +41,7 @@ from scope_ptz.tools.arguments import View
 
 _SCOPES = {"now", "full", "scene"}
 _ALL_AROUND = re.compile(r"\b(whole|entire|full) (scene|area|site|panorama|place|surroundings)\b", re.IGNORECASE)
+_NOUNS = frozenset({"CAMERA", "PICTURE", "WHO", "PRESETWORD", "CIRCLE", "SURROUND", "LEVEL", "STEPS", "HOME", "WIDE"})
 _DURATIONS = {"seconds", "minutes", "part_minute", "minute_and_part", "minutes_seconds", "hours"}
 
 
@@ -49,7 +50,9 @@ class SceneRules(Rules):
     def np(self, node: Node) -> Thing:
         words = node.branches("words")[0]
         determiner = any(self.words_of(leaf).split()[0] in {"the", "that", "this", "these", "those"} for leaf in node.leaves("DET"))
-        return Thing(self.text(words.all_leaves()), definite=determiner)
+        leaves = words.all_leaves()
+        odd = not any(leaf.kind == "WORD" or self.lexemes[leaf.index].kinds & _NOUNS for leaf in leaves)
+        return Thing(self.text(leaves), definite=determiner, odd=odd)
 
     def thing(self, node: Node) -> Thing:
         made: Thing = self.visit(node.branches()[0])
@@ -75,6 +78,11 @@ class SceneRules(Rules):
     def zoom_to(self, node: Node) -> Step:
         return ZoomTo(self._thing(node))
 
+    def also(self, node: Node) -> Step:
+        """ "Zoom in on the bench, then on the bin": the verb is the one before."""
+        leaves = node.branches("free_name")[0].all_leaves()
+        return GoPreset(PresetRef(self._free_name(node), determined=leaves[0].kind == "DET"), "bare")
+
     def track(self, node: Node) -> Step:
         durations = [self.visit(b) for b in node.branches() if b.name in _DURATIONS]
         if durations and not 0 < durations[0] <= 600:
@@ -90,7 +98,7 @@ class SceneRules(Rules):
         return 60.0 * (self.number(node) if node.has("NUM") else 1.0)
 
     def part_minute(self, node: Node) -> float:
-        return 60.0 * self.lexemes[node.leaves("FRACTION")[0].index].value
+        return 60.0 * self.fraction(node)
 
     def minute_and_part(self, node: Node) -> float:
         return 60.0 + self.part_minute(node)
@@ -138,7 +146,7 @@ class SceneRules(Rules):
         return PresetRef(self._free_name(node), sure=True)
 
     def unmarked(self, node: Node) -> PresetRef:
-        return PresetRef(self._free_name(node))
+        return PresetRef(self._free_name(node), determined=self.text(node.all_leaves()).lower().startswith(("the ", "a ", "an ")))
 
     def _free_name(self, node: Node) -> str:
         inner = node.branches("marked_name") or [node]
@@ -161,7 +169,7 @@ class SceneRules(Rules):
         return WhichPreset(self._thing(winner), self._wish(winner), self._places(winner), go=True)
 
     def _wish(self, node: Node) -> Any:
-        return next((b.name for b in node.branches("more", "fewer")), "fewer" if node.has("LESSER") else "more")
+        return next((b.name for b in node.branches("more", "fewer")), "fewer" if node.has("LESSER", "FEWERTHAN") else "more")
 
     def _places(self, node: Node) -> tuple[PresetRef, ...]:
         return tuple(ref for b in node.branches("every_place", "place_list", "named", "numbered", "marked", "unmarked") for ref in self._refs(b))
@@ -230,6 +238,9 @@ class SceneRules(Rules):
 
     unseen_pronoun = unseen
 
+    def not_so_many(self, node: Node) -> Condition:
+        return Negated(Seen(self._thing(node), self.visit(node.branches("quantity_said")[0].branches()[0]), self._view(node)))
+
     def readable(self, node: Node) -> Condition:
         return Readable(self._thing(node))
 
@@ -288,7 +299,11 @@ class SceneRules(Rules):
 
     def compare_where(self, node: Node) -> Step:
         thing = self.visit(node.branches("np")[0]).text
-        first, second = (self.text(b.all_leaves()) for b in node.branches("near_words"))
+        first = self.text(node.branches("near_words")[0].all_leaves())
+        side = node.branches("side")[0]
+        second = self.text(side.all_leaves())
+        if not side.branches("near_words"):
+            second = f"{first.split(' ')[0]} {second}"
         return Compare(Thing(f"{thing} {first}"), Thing(f"{thing} {second}"), self._wish(node), self._view(node))
 
     def before_after(self, node: Node) -> Step:

@@ -8,8 +8,10 @@ from dataclasses import replace
 
 from scope_ptz.planner.grammar.syntax import (
     Aim,
+    Ask,
     AtPlaces,
     Bound,
+    Count,
     DoAgain,
     EachTime,
     GoPreset,
@@ -20,6 +22,7 @@ from scope_ptz.planner.grammar.syntax import (
     Move,
     Part,
     Repeat,
+    SameAt,
     Snap,
     Step,
     Turn,
@@ -43,8 +46,12 @@ def _add(out: list[Step], link: str, step: Step) -> None:
         _add_each_time(out, step)
     elif isinstance(step, DoAgain) and out:
         _add_again(out, step)
+    elif isinstance(step, SameAt):
+        out.append(AtPlaces(step.places, _done_at_place(out)))
     elif isinstance(step, Repeat) and link in {"and", ","} and last is not None and _covers_before(step, last):
         out[-1] = Repeat(tuple(compose([Linked(link, s) for s in step.body], [last])), step.times)
+    elif isinstance(step, Loop) and link == "and" and isinstance(last, Move) and isinstance(step.body[0], Count | Snap | Ask):
+        out[-1] = _stepped_loop(replace(step, body=(last, *step.body)))
     elif isinstance(step, Loop | Repeat) and link == "and" and isinstance(last, Move) and _leans(step.body[0]):
         joined = _joined(last, step.body[0])
         out[-1:] = [replace(step, body=(joined[0], *step.body[1:]))] if len(joined) == 1 else [*joined[:-1], step]
@@ -145,8 +152,18 @@ def _add_each_time(out: list[Step], step: EachTime) -> None:
     out.extend(step.body)
 
 
+def _done_at_place(out: list[Step]) -> tuple[Step, ...]:
+    """What was done at the place that the steps end at."""
+    if out and isinstance(out[-1], AtPlaces):
+        return out[-1].body
+    return tuple(out[max((i + 1 for i, s in enumerate(out) if isinstance(s, GoPreset | Home)), default=0) :])
+
+
 def _add_again(out: list[Step], step: DoAgain) -> None:
     """Repeat what came before, from the last step that goes to a place."""
+    if isinstance(out[-1], GoPreset) and len(out) > 1:
+        out.extend(_done_at_place(out[:-1]))
+        return
     first = max((i + 1 for i, s in enumerate(out) if isinstance(s, GoPreset | Home)), default=0)
     first = first if first < len(out) else 0
     body = tuple(out[first:])

@@ -27,7 +27,7 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "OR": ("or", "versus", "vs", "rather than", "or rather"),
     "THAN": ("than", "than there are", "compared to", "compared with", "than there are of"),
     "IF": (
-        "if", "when", "whenever", "once", "as soon as", "in case", "provided [that]", "only if", "in the event [that]",
+        "should", "if", "when", "whenever", "once", "as soon as", "in case", "provided [that]", "only if", "in the event [that]",
         "the moment [that]", "assuming [that]", "so long as", "supposing", "as long as", "whether",
     ),
     "IFSO": ("if (so|yes|there is one|it does|that is the case|that s the case)", "if the answer is yes"),
@@ -49,7 +49,8 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "NOT": ("(do not|don t|dont|never|without|no|avoid|stop|you should not|must not|you don t need to|there is no need to|no need to|refrain from|instead of|don t you|do not ever|not)",),
     "INSTEAD": ("instead",),
     # Asking
-    "HOWMANY": ("how many", "how many of the", "how many of", "what number of", "how many total", "how many different", "how many are there of", "howmany", "how mny", "how many more"),
+    "HOWMANY": ("how many", "how many of the", "how many of", "what number of", "how many total", "how many different", "how many are there of", "howmany", "how mny"),
+    "HOWMANYMORE": ("how many (more|fewer|extra|additional|less)",),
     "COUNT": ("~count", "~tally", "~number up", "~enumerate", "~count up", "do a count of", "do a (headcount|head count) of", "~tot up", "give a count of", "take a count of", "get a count of", "make a count of", "get me a count of", "coutn", "cuont", "conut"),
     "NUMBEROF": ("[the] [total] (number|count|amount|quantity|tally) of", "[the] total of", "a count of", "a tally of", "the (total|exact|overall) (number|count) of", "a (headcount|head count) of"),
     "COMPARE": ("~compare", "make a comparison of", "~contrast"),
@@ -61,11 +62,11 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     ),
     "THERENOT": ("there (is|are) not", "there (isn t|aren t|wasn t|weren t)", "(isn t|aren t) there"),
     "NOTSEE": ("(you|we|i|the camera|it) (don t|do not|can t|cannot|can not|no longer|can no longer) (see|spot|find|detect)", "(don t|do not|can t|cannot) see"),
-    "BE": ("is", "are", "was", "were", "be", "being", "isn t", "aren t", "has been", "have been", "becomes", "become", "gets", "looks", "has", "have"),
+    "BE": ("s", "is", "are", "was", "were", "be", "being", "isn t", "aren t", "has been", "have been", "becomes", "become", "gets", "looks", "has", "have"),
     "DO": ("do", "does", "did", "doesn t", "don t", "didn t"),
     "YOUSEE": (
         "(do|can|could|did) (you|we|i|the camera) [now|still|currently] (see|spot|detect|make out|notice|observe)", "do (you|we|i) find", "[that] (you|we|i|the camera|it) [now|still|currently|actually|finally|first|can|can now|do|re able to|are able to|have|ve|can finally] (see|sees|spot|spots|detect|detects|find|finds|make out|notice|count|counts|observe|identify|got|found|seen|spotted|counted)",
-        "~see", "~spot", "~detect", "~notice", "~observe", "does (it|the camera) see", "can be seen", "~identify",
+        "~see", "~spot", "~detect", "~notice", "~observe", "does (it|the camera) see", "(will|would) (you|i|we|the camera) see", "can be seen", "~identify",
     ),
     "YOUREAD": ("(you|we|i|it) (can|could|are able to|re able to|can now|can finally|can clearly|can actually) [clearly] read", "(can|could) (you|we|i|it) read"),
     "READABLE": ("(is|are|becomes|become|gets) [clearly|easily|fully] (readable|legible|readible)", "can be [clearly] read", "(is|are|becomes) (clear|big|large) enough to read", "(readable|legible)"),
@@ -73,7 +74,7 @@ PATTERNS: dict[str, tuple[str, ...]] = {
         "[that] (is|are|was|were|becomes|become|get|gets) [clearly|still|currently|now] (visible|in view|in sight|in the view|in frame|in the frame|on screen|in shot|present|there|found|spotted|detected|seen|showing|in the picture|in the image)",
         "(appear|appears|appeared)", "(shows|turns|pops) up", "(come|comes|came) (into|in) (view|sight|frame|the frame|the picture|shot)", "(enter|enters) [the] (view|frame|picture|scene|shot)",
         "(can|could) be [seen|spotted|found|counted|detected]", "can (you|we|i|the camera) (see|spot|make out|detect)", "do (you|we|i) (see|spot|count|have|find)", "does the camera see", "visible", 
-        "you can see", "you see", "are there", "is there", "there are", "in sight", "that you can see", "you can count", "you can find", "are shown", "exist", "exists", "are we seeing", "are you seeing",
+        "you can see", "you see", "are there", "is there", "there are", "in sight", "that you can see", "you can count", "you can find", "are shown", "exist", "exists", "remain", "remains", "are (left|left over|remaining)", "are we seeing", "are you seeing",
     ),
     "GONE": (
         "(disappear|disappears|vanish|vanishes|leave|leaves|left) [the (view|frame|scene|picture)]", "(is|are) (gone|out of view|out of sight|out of frame|no longer visible|not visible|no longer there|no longer in view|not in view|absent|not there)",
@@ -82,8 +83,9 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "ANYMORE": ("any more", "anymore", "any longer", "no longer"),
     "TELL": (
         "~tell me", "let me know", "~report [back]", "~inform me", "i (want|need|would like|d like|wish) to know", "find out", "work out", "figure out", "~tell us", "~say", "~check", "~verify", "~confirm", "~determine", "make sure", "see (if|whether)", "~tell", "~answer", "~state",
-        "~estimate", "~assess", "~establish", "~note", "i wonder", "do you know", "report to me", "have a look and tell me", "look and tell me", "take a look and tell me", "~check and tell me", "~work out", "~report on", "i am wondering", "i m wondering", "i m curious",
+        "~estimate", "~assess", "~establish", "i wonder", "do you know", "report to me", "have a look and tell me", "look and tell me", "take a look and tell me", "~check and tell me", "~work out", "~report on", "i am wondering", "i m wondering", "i m curious",
     ),
+    "SAYSO": ("say so", "(tell|alert|notify|warn) me [so|about it|that]", "let me know [so]", "report (it|that|so)", "tell us", "raise the alarm", "sound the alarm"),
     "DESCRIBE": ("~describe", "~summarise", "~summarize", "~explain", "give [me] a description of", "~caption", "~list", "give me an overview of", "give [me] a summary of", ),
     "READ": ("~read", "~read out", "~read me", "~read off", "~transcribe", "~read aloud", "read out loud", "~ocr", "~read to me", "~decipher"),
     "SAYS": ("says", "say", "reads", "read", "shows", "is written"),
@@ -91,7 +93,7 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "PAN": ("~pan", "~turn", "~swing", "~rotate", "~swivel", "~slew", "~pivot", "~spin", "~yaw", "~veer", "~track over", "(make|do|perform|complete|give) [a|an|one]", "~traverse"),
     "TILT": ("~tilt", "~pitch", "~incline", "~angle"),
     "LOOK": ("(have|take) a [quick] (look|peek|glance)", "~look", "~aim", "~point", "~face", "~gaze", "~peer", "~direct", "~orient", "~train"),
-    "MOVE": ("~move", "~go", "~shift", "~nudge", "~adjust", "~bring", "~jog", "~slide", "~head", "~steer", "~reposition", "~get", "~proceed", "~bump", "~step", "~scoot", "~ease", "~drop", "~continue"),
+    "MOVE": ("~move", "~go", "~shift", "~nudge", "~adjust", "~bring", "~jog", "~slide", "~head", "~steer", "~reposition", "~get", "~proceed", "~bump", "~step", "~scoot", "~ease", "~continue"),
     "SWITCH": (
         "~switch [over]", "~change [over]", "~jump", "~cut", "~load", "~recall", "~call up", "~select", "~open", "~activate", "~use", "~visit", "take me", "~return", "~revert", "bring up", "pull up", "~go back", "~come back", "~move back", "take us", "~go over", "~head over", "~get back", "~move over", "~choose", "~pick", "~swing over", "~navigate", "~travel", "~snap over", "switch back", "~go straight", "~turn back", "~swing back", "~pan back", "~hop",
     ),
@@ -101,10 +103,10 @@ PATTERNS: dict[str, tuple[str, ...]] = {
         "look everywhere", "look in (all directions|every direction|each direction)", "~patrol", "~explore", "(do|with|by|using|make) a 360 [degree turn|degrees|degree spin]",
     ),
     "SURROUND": (f"{_WHOLE} {_AREA}", "the (scene|area|site|place|surroundings|environment|horizon|panorama|location|surrounding area)", "everything", "everywhere", "all around [you]", "around", "(all|in all) directions", "all 360 degrees", "the full 360 [degrees]", "your surroundings", "in every direction"),
-    "LEFT": ("left", "to the left", "leftward", "leftwards", "to your left", "to its left", "towards the left", "toward the left", "counterclockwise", "counter clockwise", "anticlockwise", "anti clockwise", "on the left", "left hand", "to the left hand side", "to the left side", "over to the left", "ccw", "lefts", "westward"),
-    "RIGHT": ("right", "to the right", "rightward", "rightwards", "to your right", "to its right", "towards the right", "toward the right", "clockwise", "on the right", "right hand", "to the right hand side", "to the right side", "over to the right", "cw", "rigth"),
-    "UP": ("up", "upward", "upwards", "higher", "higher up", "raise", "raising", "lift", "lifting", "skywards", "towards the sky", "toward the sky", "up wards", "elevate"),
-    "DOWN": ("down", "downward", "downwards", "lower", "lowering", "lower down", "towards the ground", "toward the ground", "dip", "dipping"),
+    "LEFT": ("left", "to the left", "leftward", "leftwards", "to your left", "to its left", "towards the left", "toward the left", "counterclockwise", "counter clockwise", "anticlockwise", "anti clockwise", "left hand", "to the left hand side", "to the left side", "over to the left", "ccw", "lefts", "westward"),
+    "RIGHT": ("right", "to the right", "rightward", "rightwards", "to your right", "to its right", "towards the right", "toward the right", "clockwise", "right hand", "to the right hand side", "to the right side", "over to the right", "cw", "rigth"),
+    "UP": ("up", "upward", "upwards", "higher", "higher up", "raise", "raising", "lift", "lifting", "skywards", "towards the sky", "toward the sky", "elevate", "elevating", "above [the] (horizon|horizontal|level)"),
+    "DOWN": ("down", "downward", "downwards", "lower", "lowering", "lower down", "towards the ground", "toward the ground", "dip", "dipping", "drop", "dropping", "below [the] (horizon|horizontal|level)"),
     "UPLEFT": ("(up|upper|upwards) left", "diagonally (up|upwards) [and|to the] left", "left up", "to the (upper|top) left", "to the upper left corner"),
     "UPRIGHT": ("(up|upper|upwards) right", "diagonally (up|upwards) [and|to the] right", "right up", "to the (upper|top) right"),
     "DOWNLEFT": ("(down|downwards) left", "diagonally (down|downwards) [and|to the] left", "left down", "to the (lower|bottom) left"),
@@ -114,7 +116,7 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "TURNAROUND": ("turn (around|round)", "about face", "face the other way", "face (backwards|behind you|the back|the opposite direction|the opposite way)", "look (behind|behind you|backwards)", "(do|make) (an about face|a u turn|a 180)", "turn back around", "turn to face (backwards|the other way|behind you)", "look the other way", "do a 180", "spin around", "u turn", "turning around"),
     "CIRCLE": ("turn", "circle", "rotation", "revolution", "turns", "spin", "sweep", "circles", "rotations"),
     "FULL": ("full", "complete", "whole", "entire"),
-    "FULLTURN": ("[a|one|the] (full|complete|whole|entire) (turn|circle|rotation|revolution|360|spin|loop|circuit|sweep around)", "all the way around", "all the way round", "right the way round", "a full 360", "[the] full way around", "through a full circle", "in a full circle"),
+    "FULLTURN": ("[a|one|the] (full|complete|whole|entire) (turn|circle|rotation|revolution|360|spin|loop|circuit|sweep around)", "[the] way (around|round)", "all the way around", "all the way round", "right the way round", "a full 360", "[the] full way around", "through a full circle", "in a full circle"),
     "RIGHTANGLE": ("[a] right angle", "[by|through] a right angle"),
     "LITTLE": ("[just|by|only] (a bit|a little|a little bit|a touch|a tad|a hair|a smidge|a fraction|a wee bit|a tiny bit|a small amount|a smidgen|a notch|a shade|a nudge|one notch|a small bit|just a bit|a few degrees|a couple of degrees)", "slightly", "little bit", "bit", "marginally", "a bit of", "ever so slightly", "a little way", "some", "a teeny bit"),
     "LOT": ("[by] (a lot|a great deal|a long way|a good bit|a good deal|a fair bit|lots|loads|quite a bit|quite a lot|a large amount|plenty)", "far", "way", "much", "much further", "much more", "sharply", "significantly", "considerably", "hard", "substantially", "strongly"),
@@ -142,7 +144,7 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "ZOOM": ("~zoom", "~magnify", "zom", "zooom", "zoon"),
     "IN": ("in", "inwards", "inward"),
     "OUT": ("out", "outwards", "outward", "back out", "away"),
-    "CLOSER": ("[~get|~go|~move|~come|~look|~step] (closer|nearer|tighter)", "(closer|nearer|tighter|narrower)", "~tighten [up]", "~narrow", "~enlarge", "tighter on", "close in", "punch in", "push in"),
+    "CLOSER": ("[~get|~go|~move|~come|~look|~step] [in] (closer|nearer|tighter)", "(closer|nearer|tighter|narrower)", "~tighten [up]", "~narrow", "~enlarge", "tighter on", "close in", "punch in", "push in"),
     "WIDER": ("[~get|~go|~move|~look] (wider|further out)", "~widen", "pull (back|out)", "back (off|out|away)", "wider", "zoom back", "~broaden", "zoom back out", "go wide", "pulling back"),
     "FIELD": ("[the|your] (angle|field|field of view|fov|view|shot|lens|angle of view|zoom|magnification|framing)",),
     "X": ("x", "×", "fold", "ex"),
@@ -161,7 +163,7 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "ZOOMMIN": ("[to|go|set|use] [the|its] (widest|full wide|widest angle|widest view|widest shot|widest zoom|full wide angle|wide angle|minimum zoom|min zoom|lowest zoom|no zoom|smallest zoom|1x zoom)", "~reset [the] zoom", "reset [the] (zoom level|magnification)", "as wide as (possible|you can|it goes)", "undo the zoom", "unzoom", "un zoom", "wide open", "[show me] (a|the) (wide|wider|widest) (view|shot|angle|picture)", "show me everything", "so [that] you see everything", "(to see|see) everything", "[show me] the (big picture|bigger picture|overview)", "cancel the zoom", "clear the zoom", "back to (wide|1x|normal zoom)", "remove the zoom"),
     # Things
     "LOOKAT": (
-        "~zoom in (on|onto|into|towards|at)", "~zoom (on|onto|into|towards)", "~zoom on to", "~zoom right in on", "~focus [in] [on|onto|upon]", "~look [closely|closer|carefully] (at|towards|toward)", "(take|have|get) a [good|closer|close|quick|better|proper] (look|view|shot) (at|of)",
+        "~zoom in (on|onto|into|towards|at)", "~zoom (on|onto|into|towards)", "~zoom on to", "~zoom right in on", "~focus [in] [on|onto|upon]", "~look [closely|closer|carefully] (at|towards|toward)", "(take|have|get) a [good|closer|close|quick|better|proper] (look|view) (at|of)",
         "~centre (on|in on|around|onto)", "~center (on|in on|around|onto)", "~frame", "~close in on", "~home in on", "~hone in on", "~get closer to", "~move in on", "~get a closer view of", "~go closer to", "(get|give me) a (close up|closeup) (of|on)", "close up (of|on)", "~inspect", "~examine",
         "~frame up", "~point at", "~aim at", "~aim for", "point (the camera|it|the lens|yourself) (at|to|towards|toward)", "(aim|train|turn|direct|swing|orient|rotate|focus) (the camera|the lens|it|the view) (at|to|toward|towards|on|onto)", "~concentrate on", "~enlarge", "~zoom tight on", "~zoom close to", "~move closer to", "~come closer to", "~zoom in close on", "~magnify",
         "~zero in on", "~push in on", "punch in on", "(put|place|get|bring|centre|center) the camera on", "~show a (close up|closer view) of", "i (want|need|would like|d like) a (closer look at|close up of|better look at|closer view of)", "~look over at", "~look towards", "turn towards", "~zoom all the way in on", "~zoom fully in on", "~zoom in as far as possible on", "~take a peek at",
@@ -183,15 +185,15 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "OFVIEW": ("of (the|this|that|your|the current|the present|my) (view|scene|frame|picture|image|current view|area|screen)", "of (this|that|it all|everything|what you see|what you can see|it)", "of what is (visible|in view)", "of what (you are|you re|the camera is) (looking at|seeing|pointing at|viewing)", "of what (you|the camera) (see|sees)", "there", "here", "from here", "from there", "of here", "of there"),
     # Places
     "HOME": (
-        "[~go|~return|~head|~move|~come|~drive|~get|~take the camera|~fly] [back] [to] [the|your] home [position|view|preset|pose|place|location|base]", "reset [the] (camera|view|position|ptz|everything|pose)", "reset", "(go|return|move|get) back to (the default|default|the original|the initial|the home) (view|position)", "[~go|~return|~move|~switch] [back] to [the|its|your] (default|home|initial|starting) (view|position|pose|orientation)", "go to home", "home", "homing", "re home", "return the camera home", "bring the camera [back] home", "move the camera [back] home", "park the camera", "send the camera home", "take the camera [back] home", "switch to home", "switch to the home (preset|view)", "return the camera to [the|its] home [position|view]",
+        "[~go|~return|~head|~move|~come|~drive|~get|~take the camera|~fly] [back] [to] [the|your] home [position|view|preset|pose|place|location|base]", "reset [the] (camera|view|position|ptz|everything|pose)", "reset", "(go|return|move|get) back to (the default|default|the original|the initial|the home) (view|position)", "[~go|~return|~move|~switch] [back] to [the|its|your] (default|home|initial|starting) (view|position|pose|orientation)", "go to home", "home", "homing", "[go|return|head] [back] to base", "reset [back] to [the] home [position|view]", "reset home", "re home", "return the camera home", "bring the camera [back] home", "move the camera [back] home", "park the camera", "send the camera home", "take the camera [back] home", "switch to home", "switch to the home (preset|view)", "return the camera to [the|its] home [position|view]",
     ),
     "PRESETWORD": ("(preset|presets|bookmark|view|position|preset view|preset position|camera position|viewpoint|camera view|spot|scene preset|preset location)",),
     "PRESETS": (
         "[the|your|all|all the|any|all available|the available|all of the|available|the camera|saved|the saved|my|our|camera|the stored|stored] (presets|preset views|preset positions|preset names|bookmarks|saved views|saved positions|stored positions|preset list|list of presets)",
     ),
     "EVERYPRESET": ("[at|in|from|for|to|of] (each|every|all|all the|all of the|every single|both|each of the|every one of the|all available|both of the|all your|all our|each available|both the|all three|all four|all five|all six|the available|these) (preset|presets|view|views|position|positions|preset positions|preset views|bookmark|bookmarks)", "[at|in|from|for] the (presets|views)", "each and every preset", "the presets one by one", "(them|the presets) all"),
-    "EACHOF": ("[in|at|from|for|to|of] (each of|every one of|both of|both the|all of)",  "both [of]", "all of", "each of the (presets|views|following|two presets|positions)", "the presets", "presets", "both presets", "the two presets", "each of the following", "the views", "both the", "either"),
-    "PREVIOUS": ("[the|that|its] (previous|last|former|original|earlier|prior|old|starting|start|initial) (preset|position|view|place|pose|spot|location|orientation|direction|setting|zoom|zoom level|point)", "[to] where (you|it|we) (were|was|started|began|came from|had been|are now)", "the way you came", "where you started from", "the start", "its start", "as (it|you) (was|were)"),
+    "EACHOF": ("(at|in|from|for) both [the]", "[in|at|from|for|to|of] (each of|every one of|both of|both the|all of)",  "both [of]", "all of", "each of the (presets|views|following|two presets|positions)", "the presets", "presets", "both presets", "the two presets", "each of the following", "the views", "both the", "either"),
+    "PREVIOUS": ("[the|that|its] last (position|view|place|pose|spot|location|orientation|direction)", "[the|that|its] (previous|former|original|earlier|prior|old|starting|start|initial) (preset|position|view|place|pose|spot|location|orientation|direction|setting|zoom|zoom level|point)", "[to] where (you|it|we) (were|was|started|began|came from|had been|are now)", "the way you came", "where you started from", "the start", "its start", "as (it|you) (was|were)"),
     "THERE": ("there", "that preset", "that one", "that view", "that position", "the winner", "the winning (one|preset|view)", "that place", "the one with more", "the busier (one|preset|view)"),
     "BACK": (
         "[~come|~go|~return|~turn|~move|~get|~swing|~head|~pan|~tilt|~rotate|~step] back [again]", "~return", "undo [that|it|the move|the last move|this]", "~come back", "[~go|~come|~turn] back the other way", "[~go|~come|~move] back by the same amount", "~reverse [that|it|the move]", "~go back again", "revert", "back", "put it back", "back again", "undo the (last|previous) (move|movement|command)", "bring it back", "move it back", "take that back", "~come back [again]", "return again", "undo", "undo what you did", "undo your last move", "reverse course", "back to where you were",
@@ -222,6 +224,8 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "DECREASE": ("~decrease", "~reduce", "~lower", "~cut down", "~step down", "~lessen"),
     "HIGHER": ("(greater|higher|larger|bigger|more|up|increased)",),
     "LESSER": ("(smaller|lower|less|fewer|down|decreased)",),
+    "NUMEROUS": ("(numerous|common|frequent|plentiful|abundant)",),
+    "LISTWORD": ("(available|defined|saved|stored|configured|known|programmed|names|name|list|options|me)", "a list of", "the names of", "the list of", "set up", "i can use", "all the", "all of the"),
     "OUTNUMBER": ("outnumber",),
     "SHOWS": ("shows", "show", "has", "have", "contains", "contain", "sees", "see", "includes", "include", "features", "do you see", "can you see", "are there", "is there", "shows you", "gives you", "hold", "holds", "you see", "you can see", "there are", "captures", "reveal", "reveals", "give", "gives", "expose", "bring up", "bring into view", "display", "displays", "lets you see", "let you see", "will show", "would show"),
     "ANY": ("any", "any of the", "some of the", "one or more", "any sign of", "any kind of", "any other"),
@@ -234,6 +238,7 @@ PATTERNS: dict[str, tuple[str, ...]] = {
     "DOIT": ("do (this|that|it|so|the same|these steps|all that|all this|this sequence)", "~repeat [(this|that|it|these|all of this|all that|these steps|the sequence|the whole thing|both|the process|the above|everything)]", "perform this", "doing (this|that|so)", "do all of that", "run this"),
     "WHATABOUT": ("what about", "how about", "and what about", "and how about", "same (question|count) for"),
     "PREP": (
+        "in terms of", "with (respect|regard) to", "regarding", "on the basis of",
         "(on|at|of|with|by|near|behind|beside|under|above|between|from|inside|outside|beyond|against|along|next to|in front of|close to|across|over|below|beneath|off|past|among|alongside|opposite|wearing|holding|carrying|nearest|closest|beneath|per|via|during|out of|on top of|in between|as)",
     ),
     "THATREL": ("that", "who", "that s", "who s", "that is", "that are", "who is", "who are", "which is", "which are"),
@@ -249,7 +254,7 @@ PATTERNS: dict[str, tuple[str, ...]] = {
 FILLER: tuple[str, ...] = (
     "please", "pls", "plz", "kindly", "just", "simply", "hey", "hi", "hello", "ok", "okay", "alright", "all right", "right then", "so", "well", "thanks", "thank you", "cheers", "thanks a lot", "many thanks", "thank you very much", "for me", "for us", "to me", "aloud", "out loud", "if you can", "if possible", "if you could", "if you would",
     "if you don t mind", "if you please", "go ahead and", "i [would|d] (like|love) (you|the camera) to", "i (want|need|require) (you|the camera) to", "i d like for you to", "you should", "you need to", "you must", "you can", "we need to", "we should", "let s", "lets", "let us", "now", "quickly", "slowly", "carefully",
-    "smoothly", "immediately", "straight away", "at once", "right away", "actually", "maybe", "perhaps", "first", "first of all", "firstly", "secondly", "thirdly", "to begin with", "to start [with]", "also", "as well", "too", "camera", "hey camera", "hello camera", "the following", "um", "uh", "er", "erm", "hmm", "yo", "dear camera", "mate", "buddy", "sir", "operator", "scope", "hey scope", "attempt to", "try to", "try and", "try", "your task is to",
+    "smoothly", "immediately", "straight away", "at once", "right away", "actually", "maybe", "perhaps", "first", "first of all", "firstly", "secondly", "thirdly", "to begin with", "to start [with]", "also", "as well", "too", "camera", "then stop", "and stop [there]", "and then stop", "hey camera", "hello camera", "the following", "um", "uh", "er", "erm", "hmm", "yo", "dear camera", "mate", "buddy", "sir", "operator", "scope", "hey scope", "attempt to", "try to", "try and", "try", "your task is to",
     "i was wondering if you could", "i wonder if you could", "it would be great if you could", "it would be nice if you could", "be so kind as to", "be a dear and", "make sure to", "make sure you", "remember to", "be sure to", "want you to", "i want to", "i would like to", "i d like to", "i need to", "we want to", "we d like to", "started by", "start by", "begin by", "in order", "real quick", "quick", "good morning", "good afternoon", "good evening", "when you get a chance", "when you can", "when ready", "asap", "gonna", "in that case", "manually", "one after (another|the other)", "one by one", "in turn", "respectively", "in sequence", "after all", "as usual", "steadily", "swiftly", "directly", "exact", "ever so kindly", "do me a favour and", "do me a favor and", "how about you", "why don t you", "you ll need to", "you will need to", "you have to", "would be great", "much appreciated", "next please", "yes", "yeah", "yep", "sure", "and please", "task", "instruction", "command", "hey there", "hi there", "hello there", "gently", "(very|really|nice and) (slowly|slow|carefully|gently|quickly)", "real slow", "slow",
 )
 

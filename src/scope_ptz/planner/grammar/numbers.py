@@ -18,11 +18,19 @@ class Number:
     used: int = 0
     kind: str = "NUM"
 
+    @property
+    def kinds(self) -> frozenset[str]:
+        """ "Third" is the third one or a third of something."""
+        return frozenset({self.kind, "FRACTION"} if self.kind == "ORDINAL" and self.value > 2 else {self.kind})
+
 
 def read_number(words: list[str], spans: list[tuple[int, int]] | None = None) -> Number:
     """The number that the words begin with. ``spans`` are their places in the text, to see "1st" and "20 5" apart."""
     if not words:
         return Number()
+    if "/" in words[0]:
+        above, below = words[0].split("/")
+        return Number(int(above) / int(below), 1, "FRACTION") if int(below) else Number()
     if _DIGITS.fullmatch(words[0]):
         return _digits(words, spans)
     sign, start = (-1, 1) if words[0] in {"minus", "negative"} else (1, 0)
@@ -35,8 +43,7 @@ def read_number(words: list[str], spans: list[tuple[int, int]] | None = None) ->
     if used:
         extra, more = _fraction_after(words[start + used :])
         return Number(sign * (value + extra), start + used + more)
-    turning = words[1:2] == ["turn"] or words[1:3] in (["of", "a"], ["of", "the"], ["a", "turn"])
-    if words[0] in FRACTION_WORDS and (turning or words[0] not in ORDINAL_WORDS):
+    if words[0] in FRACTION_WORDS and words[0] not in ORDINAL_WORDS:
         if words[:3] == ["half", "a", "dozen"]:
             return Number(6, 3)
         return Number(FRACTION_WORDS[words[0]], 1, "FRACTION")

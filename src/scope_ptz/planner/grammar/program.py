@@ -235,7 +235,7 @@ class Program:
     def _nothing(self, step: ast.Step) -> Run:
         yield from ()
 
-    _sweep = _forbid = _nothing
+    _sweep = _forbid = _report = _nothing
 
     # Control -----------------------------------------------------------------------------------------------------------
     def _repeat(self, step: ast.Repeat) -> Run:
@@ -388,7 +388,8 @@ class Program:
 
 def reading(thing: str) -> str:
     """The question that reads a thing's text."""
-    return f"What does the {thing} say?"
+    plural = say.noun(thing, 1) != thing
+    return f"What {'do' if plural else 'does'} the {thing} say?"
 
 
 def noun_any(text: str) -> str:

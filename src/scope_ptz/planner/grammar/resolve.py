@@ -9,8 +9,9 @@ from difflib import SequenceMatcher
 
 from scope_ptz.planner.base import PastTurn
 from scope_ptz.planner.grammar import syntax as ast
+from scope_ptz.planner.grammar.answers import noun
 from scope_ptz.planner.grammar.offtopic import is_about_the_scene
-from scope_ptz.planner.grammar.tokens import preset_key
+from scope_ptz.planner.grammar.tokens import distance_one, preset_key
 from scope_ptz.tools.arguments import View
 
 _CLOSE_ENOUGH = 0.8
@@ -18,6 +19,8 @@ _WAITING = re.compile(r"(when|once|as soon as|whenever)\b", re.IGNORECASE)
 _EXISTENCE = re.compile(
     r"(?:(?:is|are) there|(?:can|do) you see) (?:an? |any |the |some )?(.+?)(?: anywhere| in view| visible| right now| here)?\s*\?*$", re.IGNORECASE
 )
+_ONES = re.compile(r"\bones?\b", re.IGNORECASE)
+_POSSESSIVE = re.compile(r"\b(its|their)\b", re.IGNORECASE)
 _PRONOUN = re.compile(r"\b(it|they|them|that one|this one)\b", re.IGNORECASE)
 _IMPERSONAL = re.compile(r"\bit\s+(raining|dark|light|day|night|sunny|foggy|cloudy|snowing|busy|daytime|wet|bright|safe|windy|snowy|like)\b|\bwhat('s| is) it\b|\bit is\b", re.IGNORECASE)
 
@@ -42,6 +45,9 @@ def match_preset(name: str, presets: Sequence[str]) -> str | None:
     inside = [p for p in presets if len(wanted) >= 3 and set(preset_key(name)) < set(preset_key(p))]
     if len(inside) == 1:
         return inside[0]
+    near = [preset for preset, key in keys.items() if len(key) >= 4 and distance_one(wanted, key)]
+    if len(near) == 1:
+        return near[0]
     scored = sorted(((SequenceMatcher(None, wanted, key).ratio(), preset) for preset, key in keys.items()), reverse=True)
     clear = scored and scored[0][0] >= _CLOSE_ENOUGH and (len(scored) < 2 or scored[1][0] < scored[0][0] - 0.05)
     return scored[0][1] if clear else None
@@ -71,17 +77,38 @@ class Resolver:
         """The steps with all names bound. Raises ``Unresolved``."""
         out: list[ast.Step] = []
         for step in steps:
-            out.extend(self._bind(step))
+            out.extend(self._bind(self._completed(step, out)))
         return tuple(out)
+
+    def _completed(self, step: ast.Step, before: Sequence[ast.Step]) -> ast.Step:
+        """ "Read the left sign and then the right one": a bare thing takes the verb of the step before it."""
+        last = before[-1] if before else None
+        bare = isinstance(step, ast.GoPreset) and step.how == "bare" and step.ref.determined
+        if not bare or not isinstance(step, ast.GoPreset) or self.find_place(step.ref) is not None:
+            return step
+        thing = ast.Thing(re.sub(r"^(the|an?) ", "", step.ref.name), definite=True)
+        if isinstance(last, ast.Read):
+            return ast.Read(thing)
+        if isinstance(last, ast.ZoomTo):
+            return ast.ZoomTo(thing)
+        return ast.Count((thing,)) if isinstance(last, ast.Count) else step
 
     # Names -------------------------------------------------------------------------------------------------------------
     def thing(self, thing: ast.Thing) -> ast.Thing:
+        if thing.odd and not (_ONES.search(thing.text) and self.antecedent):
+            raise Unresolved(f"I did not understand '{thing.text}'. Which thing do you mean?")
         if thing.text:
-            self.antecedent = thing.text
-            return thing
+            text = self._with_noun(thing.text)
+            self.antecedent = text
+            return replace(thing, text=text)
         if not self.antecedent:
             raise Unresolved("What do you mean by 'it'? Please name the thing.")
         return ast.Thing(self.antecedent, definite=True)
+
+    def _with_noun(self, text: str) -> str:
+        """ "The nearest one" after cars were spoken of: the nearest car."""
+        head = re.split(r" (?:on|in|at|by|with|near|behind) ", self.antecedent)[0].split(" ")[-1]
+        return _ONES.sub(lambda match: noun(head, 2 if match[0].lower() == "ones" else 1), text) if head else text
 
     def place(self, ref: ast.PresetRef) -> ast.PresetRef:
         found = self.find_place(ref)
@@ -157,7 +184,7 @@ class Resolver:
             raise Unresolved("I cannot wait for something to happen. Shall I look for it now?")
         question, place = self._asked_at(direct_question(step.question))
         if self.antecedent and not _IMPERSONAL.search(question) and not re.search(r"\bthe \w+.*\b(it|they|them)\b", question):
-            question = _PRONOUN.sub(f"the {self.antecedent}", question, count=1)
+            question = _POSSESSIVE.sub(f"the {self.antecedent}'s", _PRONOUN.sub(f"the {self.antecedent}", question, count=1), count=1)
         if named := _EXISTENCE.match(question):
             self.antecedent = named[1]
         return [*place, ast.Ask(question, self._view(step.view))]
@@ -215,9 +242,9 @@ class Resolver:
         return self.bind(step.body)
 
     def _loop(self, step: ast.Loop) -> Sequence[ast.Step]:
-        named = next((s.thing for s in step.body if isinstance(s, ast.ZoomTo) and s.thing.text), None)
-        if named:
-            self.antecedent = named.text
+        for inner in step.body:
+            named = inner.things[0] if isinstance(inner, ast.Count) else inner.thing if isinstance(inner, ast.ZoomTo) else ast.Thing()
+            self.antecedent = named.text or self.antecedent
         until = self.condition(step.until)
         return [replace(step, until=until, body=self.bind(step.body), otherwise=self.bind(step.otherwise))]
 
@@ -257,6 +284,8 @@ class Resolver:
             return replace(condition, thing=self.thing(condition.thing), view=self._view(condition.view))
         if isinstance(condition, ast.Readable):
             return ast.Readable(self.thing(condition.thing))
+        if isinstance(condition, ast.Holds) and not condition.subject.text and _IMPERSONAL.search(f"it {condition.predicate}"):
+            return replace(condition, subject=ast.Thing("it"))
         if isinstance(condition, ast.Holds):
             return replace(condition, subject=self.thing(condition.subject))
         if isinstance(condition, ast.Outnumbers):
@@ -271,13 +300,13 @@ class Resolver:
 def direct_question(question: str) -> str:
     """ "What colour the door is" as "what colour is the door?", "if there is a bus" as "is there a bus?"."""
     text = question.strip()
-    if inner := re.fullmatch(r"(?:if|whether) there (is|are|s) (.+)", text, re.IGNORECASE):
-        return f"{inner[1]} there {inner[2]}?"
+    if inner := re.fullmatch(r"(?:if|whether) there(?: |')(is|are|s) (.+)", text, re.IGNORECASE):
+        return f"{'is' if inner[1] == 's' else inner[1]} there {inner[2].rstrip('?')}?"
     if inner := re.fullmatch(r"(?:if|whether) (the .+?|any .+?|any\w+) (is|are) (.+)", text, re.IGNORECASE):
         return f"{inner[2]} {inner[1]} {inner[3]}?"
     if inner := re.fullmatch(r"(?:if|whether) you (?:can )?see (.+)", text, re.IGNORECASE):
         return f"can you see {inner[1]}?"
-    if inner := re.fullmatch(r"((?:what|which)(?: \w+)?|where|who) (the .+) (is|are)", text, re.IGNORECASE):
+    if inner := re.fullmatch(r"((?:what|which)(?: \w+)?|where|who) (the .+|it|they) (is|are)", text, re.IGNORECASE):
         return f"{inner[1]} {inner[3]} {inner[2]}?"
     if inner := re.fullmatch(r"what (the .+) (says|reads)", text, re.IGNORECASE):
         return f"what does {inner[1]} say?"

@@ -73,11 +73,13 @@ class Home:
 
 @dataclass(frozen=True, slots=True)
 class PresetRef:
-    """A preset by name, or by its number in the list (-1: the last). ``sure``: the person said that it is a preset."""
+    """A preset by name, or by its number in the list (-1: the last). ``sure``: the person said that it is a preset;
+    ``determined``: said with "the" or "a"."""
 
     name: str = ""
     number: int | None = None
     sure: bool = False
+    determined: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,10 +102,11 @@ class ListPresets:
 
 @dataclass(frozen=True, slots=True)
 class Thing:
-    """A described thing; an empty description is a pronoun."""
+    """A described thing; an empty description is a pronoun. ``odd``: made of words that name no thing ("times", "closer")."""
 
     text: str = ""
     definite: bool = False
+    odd: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -262,6 +265,13 @@ class AtPlaces:
 
 
 @dataclass(frozen=True, slots=True)
+class SameAt:
+    """What came before, at other places."""
+
+    places: tuple[PresetRef, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class WhichPreset:
     """Count at each place and tell which has most (or fewest). ``go``: and go there. ``any_of``: which show any at all."""
 
@@ -305,6 +315,11 @@ class Forbid:
 
 
 @dataclass(frozen=True, slots=True)
+class Report:
+    """ "Say so", "let me know": the answer does that anyway."""
+
+
+@dataclass(frozen=True, slots=True)
 class CameraState:
     pass
 
@@ -330,7 +345,7 @@ class Unclear:
 
 Step = (
     Move | Back | Home | GoPreset | GoThere | ListPresets | Snap | Count | Ask | Read | ZoomTo | Track | Repeat | DoAgain
-    | Loop | If | EachTime | AtPlaces | WhichPreset | Compare | BeforeAfter | Sweep | Forbid | CameraState | Help
+    | Loop | If | EachTime | AtPlaces | SameAt | WhichPreset | Compare | BeforeAfter | Sweep | Forbid | Report | CameraState | Help
     | WhatAbout | Unclear
 )  # fmt: skip
 

@@ -7,6 +7,7 @@ in the original text, so descriptions and questions are passed on as the person 
 from __future__ import annotations
 
 import re
+import unicodedata
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
@@ -15,6 +16,7 @@ from scope_ptz.planner.grammar.lexicon import (
     COLOURS,
     COMMAND_WORDS,
     DIRECTION_WORDS,
+    NUMBER_WORDS,
     REAL_WORDS,
     SPELLING,
     phrase_table,
@@ -24,7 +26,7 @@ from scope_ptz.planner.grammar.numbers import read_number
 _TOKEN = re.compile(
     r"""(?P<quote>"[^"\n]+"|“[^”\n]+”|(?<!\w)'[^'\n]+'(?!\w))
       |(?P<arrow>->|→|=>)
-      |(?P<num>(?<![\w.])[-+−]?\d+(?:\.\d+)?|(?<=[\d ])\.\d+)
+      |(?P<num>(?<![\w./])\d/\d+(?![\w/])|(?<![\w.])[-+−]?\d+(?:\.\d+)?|(?<=[\d ])\.\d+)
       |(?P<word>[^\W\d_]+(?:['’][^\W\d_]+)*\d*|\d+)
       |(?P<mark>[,;:.!?()\n°%&×])
       |(?P<dash>\s[-–—]+\s|[–—])""",
@@ -73,7 +75,20 @@ def _words(text: str) -> list[_Word]:
             out.append(_Word(match.group(), start, match.end(), "word"))
         else:
             out.append(_Word(match.group(), start, match.end(), kind))
-    return _without_list_numbers(out)
+    return _without_list_numbers(_without_step_numbers(out))
+
+
+def _without_step_numbers(words: list[_Word]) -> list[_Word]:
+    """Turn "step 1:" into a sentence end."""
+    out, i = list[_Word](), 0
+    while i < len(words):
+        if words[i].text == "step" and [w.kind for w in words[i + 1 : i + 3]] == ["num", "mark"]:
+            out.append(_Word(";", words[i].start, words[i].end, "mark"))
+            i += 3
+        else:
+            out.append(words[i])
+            i += 1
+    return out
 
 
 def _without_list_numbers(words: list[_Word]) -> list[_Word]:
@@ -90,7 +105,7 @@ def _without_list_numbers(words: list[_Word]) -> list[_Word]:
     return out if wanted > 2 else words
 
 
-def _distance_one(a: str, b: str) -> bool:
+def distance_one(a: str, b: str) -> bool:
     """Whether one insertion, deletion, substitution or swap of neighbours makes ``a`` into ``b``."""
     if abs(len(a) - len(b)) > 1 or a == b:
         return a == b
@@ -104,7 +119,7 @@ def _respelled(word: str, candidates: Iterable[str]) -> str | None:
     """The one command word that a misspelt word can only mean, if there is exactly one."""
     if len(word) < 3 or word in REAL_WORDS or (word,) in phrase_table():
         return None
-    close = [c for c in candidates if len(c) >= 3 and _distance_one(word, c)]
+    close = [c for c in candidates if len(c) >= 3 and distance_one(word, c)]
     return close[0] if len(close) == 1 else None
 
 
@@ -137,7 +152,7 @@ class Lexer:
             if w.kind not in {"word", "num"}:
                 break
             run.append(w.text)
-        preset = self._longest(run, self._presets)
+        preset = self._longest([(preset_key(w) or (w,))[0] for w in run], self._presets) if self._presets else 0
         phrase = self._longest(run, self._table)
         if before and phrase > 1 and run[0] in {"up", "down"} and before[-1].kinds & _TURNED and not self._table[tuple(run[:phrase])] & {"UP", "DOWN", *_DIAGONALS}:
             phrase = 1  # "tilt up to 10" is a direction, not a limit
@@ -151,7 +166,7 @@ class Lexer:
         if number.used and number.used >= phrase:
             if _starts_clause(before) and "FILLER" in self._table.get(tuple(run[: number.used]), ()):
                 return None, i + number.used  # "first, ..."
-            kinds = {number.kind} | (self._table[tuple(run[:phrase])] if phrase == number.used else frozenset())
+            kinds = number.kinds | (self._table[tuple(run[:phrase])] if phrase == number.used else frozenset())
             return Lexeme(frozenset(kinds), word.start, words[i + number.used - 1].end, number.value), i + number.used
         if phrase:
             return self._phrase(words, i, phrase, before), i + phrase
@@ -206,7 +221,7 @@ def _merge_text(lexemes: list[Lexeme], text: str) -> list[Lexeme]:
     out: list[Lexeme] = []
     for i, lexeme in enumerate(lexemes):
         free = "TEXT" in lexeme.kinds
-        if free and len(out) >= 2 and "AND" in out[-1].kinds and "TEXT" in out[-2].kinds:
+        if free and len(out) >= 2 and out[-1].kinds & {"AND", "OR"} and "TEXT" in out[-2].kinds:
             left = text[out[-2].start : out[-2].end].lower().split()[-1]
             right = text[lexeme.start : lexeme.end].lower().split()[0].split("-")[0]
             follows = " " in text[lexeme.start : lexeme.end] or (i + 1 < len(lexemes) and "TEXT" in lexemes[i + 1].kinds)
@@ -222,8 +237,10 @@ def _merge_text(lexemes: list[Lexeme], text: str) -> list[Lexeme]:
 
 
 def preset_key(name: str) -> tuple[str, ...]:
-    """A preset name as the lexer sees it: lower-case words and numbers."""
-    return tuple(re.findall(r"[^\W\d_]+|\d+", name.lower()))
+    """A preset name as the lexer sees it: lower-case words without accents, and numbers in digits."""
+    plain = unicodedata.normalize("NFKD", name.lower())
+    words = re.findall(r"[^\W\d_]+|\d+", "".join(c for c in plain if not unicodedata.combining(c)))
+    return tuple(str(int(NUMBER_WORDS[w])) if w in NUMBER_WORDS and NUMBER_WORDS[w] < 100 else w for w in words)
 
 
 @lru_cache(maxsize=1)

@@ -67,6 +67,11 @@ class Rules:
         leaf = next(leaf for leaf in node.leaves() if leaf.kind in {"NUM", "ORDINAL"})
         return self.lexemes[leaf.index].value
 
+    def fraction(self, node: Node) -> float:
+        """The node's fraction: "half" as it is, "third" as one over three."""
+        lexeme = self.lexemes[node.leaves("FRACTION")[0].index]
+        return 1 / lexeme.value if "ORDINAL" in lexeme.kinds else lexeme.value
+
     def words_of(self, leaf: Leaf) -> str:
         lexeme = self.lexemes[leaf.index]
         return self.source[lexeme.start : lexeme.end].lower()
