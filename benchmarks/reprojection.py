@@ -2,21 +2,27 @@
 
     python benchmarks/reprojection.py [--scene highway-works] [--search FOLDER] [--blender-python PYTHON]
 
-With a Python that has ``bpy`` the same views are also rendered by Blender's engines, and the ratios to them printed.
+With a Python that has ``bpy``, one view of each viewpoint is also rendered by Blender's engines, and the ratios to them printed.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import statistics
+import subprocess
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import cv2
 import numpy as np
 
+from scope_ptz.blender.client import BlenderWorker
+from scope_ptz.blender.environment import worker_command
 from scope_ptz.geometry import AXIS_M5075_G, Perspective, Pose
 from scope_ptz.world.pack import Scene, Viewpoint, find_scenes
 from scope_ptz.world.reproject import atlas_map, colour_view
@@ -30,6 +36,8 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scene", default="highway-works")
     parser.add_argument("--search", type=Path, action="append", default=[], help="extra folder of scenes")
+    parser.add_argument("--blender-python", type=Path, help="a Python that has bpy")
+    parser.add_argument("--source", help="what the scene is built from, when that is not the module of its name")
     parser.add_argument("--threads", type=int, default=cv2.getNumThreads(), help="OpenCV threads")
     arguments = parser.parse_args()
     cv2.setNumThreads(arguments.threads)
@@ -38,11 +46,15 @@ def main() -> int:
         print(f"no scene '{arguments.scene}'; known: {', '.join(folders) or 'none'}", file=sys.stderr)
         return 2
     scene = Scene(folders[arguments.scene])
-    print(f"{scene.name}, {WIDTH}x{HEIGHT}, {cv2.getNumThreads()} OpenCV threads, {ROUNDS} rounds; median (10th to 90th percentile)")
+    print(
+        f"{scene.name}, {WIDTH}x{HEIGHT}, {cv2.getNumThreads()} OpenCV threads, {ROUNDS} rounds; median (10th to 90th percentile)"
+    )
     for place in scene.file.viewpoints:
         viewpoint = scene.viewpoint(place.name)
         for name, pose in _poses(viewpoint).items():
             _report(scene, viewpoint, name, pose)
+    if arguments.blender_python:
+        _report_engines(scene, arguments.source or scene.name, arguments.blender_python)
     return 0
 
 
@@ -72,6 +84,32 @@ def _report(scene: Scene, viewpoint: Viewpoint, name: str, pose: Pose) -> None:
         f"{viewpoint.name:>14} {name:<14} view {_ms(times['view'])}  = {_ratio(times, 'float')} of a remap with float maps, "
         f"{_ratio(times, 'fixed')} with fixed-point maps; truth {_ms(times['truth'])}"
     )
+
+
+def _report_engines(scene: Scene, source: str, python: Path) -> None:
+    with TemporaryDirectory() as folder:
+        blend = Path(folder) / "scene.blend"
+        with BlenderWorker(worker_command(Path(folder), python), Path(folder) / "blender.log") as worker:
+            worker.request("load_scene", {"source": source})
+            worker.request("save", {"path": str(blend)})
+        for place in scene.file.viewpoints:
+            viewpoint = scene.viewpoint(place.name)
+            view = Perspective(0.0, -5.0, AXIS_M5075_G.hfov_deg(1.0), WIDTH, HEIGHT)
+            ours = statistics.median(_interleaved({"view": partial(colour_view, viewpoint, view)})["view"])
+            request = {
+                "position_m": place.position_m,
+                "bearing_deg": place.pan0_bearing_deg,
+                "tilt_deg": view.tilt_deg,
+                "hfov_deg": view.hfov_deg,
+                "width": WIDTH,
+                "height": HEIGHT,
+            }
+            command = [str(python), str(Path(__file__).with_name("blender_engines.py")), str(blend), json.dumps(request)]
+            output = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+            line = next(line for line in output.splitlines() if line.startswith("seconds "))
+            for engine, seconds in json.loads(line.removeprefix("seconds ")).items():
+                took = "does not run here" if seconds is None else f"{seconds:7.2f} s = {seconds / ours:,.0f} views"
+                print(f"{place.name:>14} {engine:<14} {took}")
 
 
 def _interleaved(calls: dict[str, Callable[[], object]]) -> dict[str, list[float]]:
