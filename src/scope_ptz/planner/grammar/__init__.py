@@ -9,6 +9,7 @@ from __future__ import annotations
 from scope_ptz.errors import PlannerError
 from scope_ptz.geometry import Pose
 from scope_ptz.planner.base import CallTools, Decision, Finish, Planner, State, ToolCall, ToolOutcome
+from scope_ptz.planner.grammar.memory import whereabouts
 from scope_ptz.planner.grammar.program import Program
 from scope_ptz.planner.grammar.understand import Understanding, understand
 
@@ -31,7 +32,7 @@ def decide(state: State) -> Decision:
         return Finish(kind="refused", text=meaning.refusal)
     if meaning.clarification:
         return Finish(kind="clarification", text=meaning.clarification)
-    program = Program(state.briefing.limits, state.briefing.pose, preset=meaning.preset)
+    program = Program(state.briefing.limits, state.briefing.pose, been=whereabouts(state.conversation))
     outcomes = [outcome for exchange in state.history for outcome in exchange.outcomes]
     wanted = _replay(program, meaning, outcomes)
     if wanted is None:

@@ -14,6 +14,7 @@ from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import ToolOutcome
 from scope_ptz.planner.grammar import answers as say
 from scope_ptz.planner.grammar import syntax as ast
+from scope_ptz.planner.grammar.memory import Place, Whereabouts
 from scope_ptz.planner.grammar.motion import arguments_of, returning
 from scope_ptz.tools.arguments import View
 
@@ -28,26 +29,17 @@ class Halted(Exception):
 
 
 @dataclass(slots=True)
-class _Place:
-    """Where the camera was put last: a preset, home, or only a pose. ``exact``: only known moves since."""
-
-    pose: Pose
-    preset: str | None = None
-    home: bool = False
-
-
-@dataclass(slots=True)
 class Program:
     """One run. ``assume_met``: take every condition as met, to show a plan without a camera."""
 
     limits: Limits
     pose: Pose
-    preset: str | None = None
+    been: Whereabouts = Whereabouts()
     assume_met: bool = False
     notes: list[str] = field(default_factory=list)
     sources: list[str] = field(default_factory=list)
     _missing: set[str] = field(default_factory=set)
-    _trail: list[_Place] = field(default_factory=list)
+    _trail: list[Place] = field(default_factory=list)
     _winner: str | None = None
     _wandered: bool = False
     _last_count: int = -1
@@ -55,7 +47,8 @@ class Program:
 
     def run(self, steps: Sequence[ast.Step]) -> Run:
         """All steps; afterwards ``answer()`` tells the result."""
-        self._trail = [_Place(self.pose, self.preset, home=self.preset is None and self.pose == Pose())]
+        start = Place(self.pose, self.been.preset, home=self.been.before is None and self.pose == Pose())
+        self._trail = [self.been.before, start] if self.been.before else [start]
         try:
             yield from self._all(steps)
         except Halted as halt:
@@ -119,29 +112,39 @@ class Program:
     def _back(self, step: ast.Back) -> Run:
         place = self._trail[-1]
         if step.zoom_only:
-            arguments = returning(Pose(self.pose.pan_deg, self.pose.tilt_deg, place.pose.zoom), self.pose, self.limits)
-            arguments = arguments if arguments and not self._wandered else {"zoom_limit": "out"}
-        else:
-            arguments = returning(place.pose, self.pose, self.limits)
-        if self._wandered and not step.zoom_only and (place.preset or place.home):
+            yield from self._zoom_back(place)
+        elif self._wandered and (place.preset or place.home):
             yield from self._go(place)
-        elif arguments:
-            result = yield from self._moved("adjust_ptz", **arguments)
-            self._note(f"{say.move_text(arguments)} to go back; the camera is at {say.pose_text(result['pose'])}")
+        elif returning(place.pose, self.pose, self.limits):
+            yield from self._return(place.pose)
         elif len(self._trail) > 1:
             self._trail.pop()
             yield from self._go(self._trail[-1])
         else:
             self._note("The camera is still where it was")
 
-    def _go(self, place: _Place) -> Run:
+    def _zoom_back(self, place: Place) -> Run:
+        zoomed = Pose(self.pose.pan_deg, self.pose.tilt_deg, place.pose.zoom)
+        if self._wandered or not returning(zoomed, self.pose, self.limits):
+            yield from self._move(ast.Move((ast.Zoom("out"),)))
+        else:
+            yield from self._return(zoomed)
+
+    def _return(self, pose: Pose) -> Run:
+        arguments = returning(pose, self.pose, self.limits)
+        result = yield from self._moved("adjust_ptz", **arguments)
+        self._note(f"{say.move_text(arguments)} to go back; the camera is at {say.pose_text(result['pose'])}")
+
+    def _go(self, place: Place) -> Run:
         if place.preset:
             yield from self._gopreset(ast.GoPreset(ast.PresetRef(place.preset)))
-        else:
+        elif place.home:
             yield from self._home(ast.Home())
+        else:
+            yield from self._return(place.pose)
 
     def _arrived(self, preset: str | None, home: bool = False) -> None:
-        self._trail.append(_Place(self.pose, preset, home))
+        self._trail.append(Place(self.pose, preset, home))
         self._wandered = False
 
     def _home(self, step: ast.Home) -> Run:

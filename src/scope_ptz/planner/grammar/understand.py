@@ -16,12 +16,11 @@ _EXAMPLES = "'pan right 20 degrees', 'how many cars are there?', or 'zoom in on 
 
 @dataclass(frozen=True, slots=True)
 class Understanding:
-    """Bound steps, or a question back, or a refusal. ``preset``: where the camera stands, if the conversation tells."""
+    """Bound steps, or a question back, or a refusal."""
 
     steps: tuple[ast.Step, ...] = ()
     clarification: str | None = None
     refusal: str | None = None
-    preset: str | None = None
 
 
 def understand(instruction: str, presets: Sequence[str] | None, conversation: Sequence[PastTurn] = ()) -> Understanding:
@@ -43,7 +42,7 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
         bound = (ast.Move((ast.Turn("pan", 1, ast.Amount("degrees", 360.0)),)),)
     if all(isinstance(step, ast.Sweep | ast.Forbid) for step in bound):
         return Understanding(clarification="What shall I look for when I look all around?")
-    return Understanding(bound, preset=_standing_at(conversation))
+    return Understanding(bound)
 
 
 def _as_question(resolver: Resolver, instruction: str) -> tuple[ast.Step, ...]:
@@ -53,14 +52,3 @@ def _as_question(resolver: Resolver, instruction: str) -> tuple[ast.Step, ...]:
         return resolver.bind([ast.Ask(text)])
     raise Unresolved(f"I did not understand that. Please say it another way, for example: {_EXAMPLES}.")
 
-
-def _standing_at(conversation: Sequence[PastTurn]) -> str | None:
-    """The preset that the camera still stands at, when the last move was to one."""
-    for turn in reversed(conversation):
-        for exchange in reversed(turn.exchanges):
-            for outcome in reversed(exchange.outcomes):
-                if outcome.error is None and outcome.call.name in {"adjust_ptz", "go_home", "zoom_to_object", "track_object"}:
-                    return None
-                if outcome.error is None and outcome.call.name == "go_to_preset":
-                    return str(outcome.call.arguments.get("name"))
-    return None

@@ -1,0 +1,60 @@
+"""What a conversation tells about where the camera has been."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from scope_ptz.geometry import Pose
+from scope_ptz.planner.base import PastTurn, ToolOutcome
+
+_MOVES = frozenset({"adjust_ptz", "go_home", "go_to_preset", "zoom_to_object", "track_object"})
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where the camera stood: at a preset, at home, or only at a pose."""
+
+    pose: Pose
+    preset: str | None = None
+    home: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Whereabouts:
+    """``preset``: where the camera still stands; ``before``: where it stood before the last turn that moved it."""
+
+    preset: str | None = None
+    before: Place | None = None
+
+
+def whereabouts(conversation: Sequence[PastTurn]) -> Whereabouts:
+    """Read off the results of earlier turns."""
+    here: Place | None = None
+    before: Place | None = None
+    for turn in conversation:
+        at_start = here
+        for outcome in (o for exchange in turn.exchanges for o in exchange.outcomes):
+            pose = _pose(outcome.result)
+            if outcome.error is not None or pose is None or outcome.call.name not in _MOVES:
+                continue
+            at_start = at_start or _before(outcome, pose)
+            before = at_start or before
+            name = outcome.call.arguments.get("name")
+            here = Place(pose, str(name) if outcome.call.name == "go_to_preset" else None, home=outcome.call.name == "go_home")
+    return Whereabouts(here.preset if here else None, before)
+
+
+def _pose(result: dict[str, Any] | None) -> Pose | None:
+    pose = (result or {}).get("pose")
+    return Pose(pose["pan_deg"], pose["tilt_deg"], pose["zoom"]) if isinstance(pose, dict) else None
+
+
+def _before(outcome: ToolOutcome, after: Pose) -> Place | None:
+    """Where a first relative move started, as far as its arguments tell; a clamped move tells nothing."""
+    arguments = outcome.call.arguments
+    if outcome.call.name != "adjust_ptz" or (outcome.result or {}).get("clamped") or arguments.get("zoom_limit"):
+        return None
+    factor = arguments.get("zoom_factor", 1 + arguments.get("zoom_percent", 0) / 100)
+    return Place(after.turned(-arguments.get("pan_deg", 0), -arguments.get("tilt_deg", 0)).zoomed(1 / factor))

@@ -1,0 +1,76 @@
+"""A scripted camera for planner tests: it keeps its pose and answers looks from a script."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from scope_ptz.geometry import Limits, Pose
+from scope_ptz.planner.base import Briefing, CallTools, Exchange, Finish, PastTurn, State, ToolOutcome
+from scope_ptz.planner.grammar import GrammarPlanner
+
+LIMITS = Limits()
+PRESETS = ("gate", "highway")
+
+
+class Stage:
+    """``looks``: what counting, asking, zooming to and tracking give back, in order; the last one is repeated. ``fail``: tools
+    that fail, with how often."""
+
+    def __init__(self, looks: Iterable[Any] = (), fail: dict[str, int] | None = None, pose: Pose = Pose()) -> None:  # noqa: B008
+        self.looks = list(looks)
+        self.fail = dict(fail or {})
+        self.pose = pose
+        self.calls: list[tuple[str, dict[str, Any]]] = []
+
+    def _look(self) -> Any:
+        return self.looks.pop(0) if len(self.looks) > 1 else self.looks[0]
+
+    def do(self, name: str, arguments: dict[str, Any]) -> tuple[dict[str, Any] | None, str | None]:
+        self.calls.append((name, arguments))
+        if self.fail.get(name, 0) > 0:
+            self.fail[name] -= 1
+            return None, f"{name} broke"
+        clamped: tuple[str, ...] = ()
+        seen: dict[str, Any] = {"source": "ground-truth", "view": arguments.get("view", "current"), "frames": ()}
+        extra: dict[str, Callable[[], dict[str, Any]]] = {
+            "count_objects": lambda: {**seen, "description": arguments["description"], "count": self._look(), "boxes": ()},
+            "query_answer": lambda: {**seen, "question": arguments["question"], **self._look()},
+            "zoom_to_object": lambda: {**seen, "description": "", "found": (found := self._look()), "matches": int(found), "chosen": "", "limited_by": ()},
+            "track_object": lambda: {**seen, "description": "", "found": True, "duration_s": arguments["duration_s"], "held_share": 0.9, "path": ()},
+            "get_presets": lambda: {"presets": PRESETS},
+            "take_image": lambda: {"file": f"image-{len(self.calls)}.png"},
+        }
+        if name == "adjust_ptz":
+            factor = arguments.get("zoom_factor", 1 + arguments.get("zoom_percent", 0) / 100)
+            wanted = self.pose.turned(arguments.get("pan_deg", 0), arguments.get("tilt_deg", 0)).zoomed(factor)
+            self.pose, clamped = LIMITS.clamp(wanted)
+        elif name in {"go_home", "go_to_preset"}:
+            self.pose = Pose()
+        result = {"message": "", "pose": self.pose.as_dict(), "clamped": clamped, **extra.get(name, dict)()}
+        return result, None
+
+    def run(self, instruction: str, conversation: tuple[PastTurn, ...] = ()) -> Finish:
+        """The loop of the agent, without its budgets."""
+        return asyncio.run(self._run(instruction, conversation))[0]
+
+    def turn(self, instruction: str, conversation: tuple[PastTurn, ...] = ()) -> PastTurn:
+        """The same, as a turn to look back on."""
+        finish, history = asyncio.run(self._run(instruction, conversation))
+        return PastTurn(instruction=instruction, exchanges=history, reply=finish.text)
+
+    async def _run(self, instruction: str, conversation: tuple[PastTurn, ...]) -> tuple[Finish, tuple[Exchange, ...]]:
+        planner = GrammarPlanner()
+        state = State(instruction=instruction, briefing=Briefing(presets=PRESETS, pose=self.pose, limits=LIMITS), conversation=conversation)
+        for _ in range(300):
+            decision = await planner.step(state)
+            if isinstance(decision, Finish):
+                return decision, state.history
+            assert isinstance(decision, CallTools)
+            outcomes = []
+            for call in decision.calls:
+                result, error = self.do(call.name, call.arguments)
+                outcomes.append(ToolOutcome(call=call, result=result, error=error))
+            state = state.model_copy(update={"history": (*state.history, Exchange(outcomes=tuple(outcomes)))})
+        raise AssertionError("the planner never ends")
