@@ -150,8 +150,7 @@ def draw(
     if numbers is not None:
         numbers[place][own & (distance_m <= still_m)] = appearance.actor.number
     if picture is not None:
-        directions = grid.to_pixels(grid.directions())
-        drop = directions[..., 2] / np.linalg.norm(directions, axis=-1)
+        drop = grid.to_pixels(grid.directions()[..., 2])
         height_m = float(appearance.offset_m[2])
         with np.errstate(divide="ignore", invalid="ignore"):
             ground_m = np.where(drop * height_m > 0, height_m / drop, np.inf)
@@ -172,10 +171,9 @@ def _sample(viewpoint: Viewpoint, appearance: Appearance, where: NDArray[np.floa
 
 def _blend(picture: NDArray[np.uint8], premultiplied: NDArray[np.uint8], shows: NDArray[np.bool_]) -> None:
     """Lay premultiplied colour over a picture, in place, where it shows."""
-    touched = shows & (premultiplied[..., 3] > 0)
-    over = premultiplied[touched].astype(np.float32)
-    under = picture[touched].astype(np.float32) * (1 - over[:, 3:] / 255)
-    picture[touched] = np.clip(np.rint(under + over[:, :3]), 0, 255).astype(np.uint8)
+    over = cv2.bitwise_and(premultiplied, premultiplied, mask=shows.view(np.uint8))
+    through = cv2.cvtColor(255 - over[..., 3], cv2.COLOR_GRAY2RGB)
+    cv2.add(cv2.multiply(picture, through, scale=1 / 255), np.ascontiguousarray(over[..., :3]), dst=picture)
 
 
 def _distances(viewpoint: Viewpoint, appearance: Appearance) -> NDArray[np.float32]:

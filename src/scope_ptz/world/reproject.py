@@ -121,7 +121,7 @@ class Grid:
         return self.projection.directions(points)
 
     def to_pixels(self, nodes: Floats) -> NDArray[np.float32]:
-        """Values at nodes (rows, columns, n), bilinear between them, at the middle of every pixel of the part."""
+        """Values at nodes (rows, columns) or (rows, columns, n), bilinear between them, at the middle of each pixel of the part."""
         n, (rows, columns) = self.step, self.place
         size = nodes.shape[1] * n, nodes.shape[0] * n
         fine: NDArray[np.float32] = cv2.resize(nodes.astype(np.float32), size, interpolation=cv2.INTER_LINEAR)
