@@ -264,7 +264,7 @@ def _in_context(view: View, thing: Thing, word: str) -> bool:
     """Whether the word names what the thing hangs on ("the gantry sign", "the cabin door")."""
     holder = thing.parent
     while holder is not None:
-        words = w.letters(view.names.get(holder, "")).split()
+        words = w.letters(view.instances[holder].name).split()
         carrier = view.by_id.get(holder)
         if w.singular(word) in words or (carrier is not None and fits_noun(view, carrier, word)):
             return True
@@ -278,6 +278,9 @@ def wears(view: View, thing: Thing, words: Sequence[str], amount: int | None = N
     spans = nouns_in(rest, view.nouns)
     start, end = spans[0] if spans else (len(rest) - 1, len(rest))
     noun, others = " ".join(rest[start:end]), [canonical(x) for x in (*rest[:start], *rest[end:])]
+    if lexicon().concept(noun) == "thing":  # "carrying something"
+        held = [v for k, v in facts(thing) if set(key_words(k)) & {"carrying", "load", "holding"}]
+        return any(str(v).lower() not in NOTHING for v in held)
     names = names_of(noun)
     for key, value in facts(thing):
         if _key_is(key, names):

@@ -9,12 +9,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from typing import cast
 
-from scope_ptz.perception.facts import FILLERS, SOFT, bears, facts, fits_noun, fits_words, wears
+from scope_ptz.perception.facts import FILLERS, SOFT, bears, colour_of, facts, fits_noun, fits_words, wears
 from scope_ptz.perception.language import syntax as s
 from scope_ptz.perception.language import words as w
-from scope_ptz.perception.language.lexicon import lexicon, nouns_in
+from scope_ptz.perception.language.lexicon import COLOURS, lexicon, nouns_in
 from scope_ptz.perception.relations import BACKDROP, NEAR_M, faces, from_corner, in_region, pixels, rank_key, relation_holds
 from scope_ptz.perception.view import Thing, View
 
@@ -23,10 +24,25 @@ _SIDES: dict[str, s.OrderKey] = {"left": "left", "right": "right", "top": "top",
 
 def find(view: View, description: s.Description) -> list[Thing]:
     """Everything that the description means, best first."""
-    found: list[Thing] = []
+    found = _two_coloured(view, description)
+    if found:
+        return found
     for phrase in description.phrases:
         found += [t for t in find_phrase(view, phrase) if t not in found]
     return found if len(description.phrases) == 1 else sorted(found, key=pixels, reverse=True)
+
+
+def _two_coloured(view: View, description: s.Description) -> list[Thing]:
+    """ "Red and white barriers" are those of both colours, where there are such; else the red ones and the white ones."""
+    phrases = description.phrases
+    if len(phrases) != 2 or any(len(p.words) < 2 or p.words[0] not in COLOURS for p in phrases):
+        return []
+    first, second = phrases
+    if (first.words[1:], first.tests, first.order) != (second.words[1:], second.tests, second.order):
+        return []
+    wanted = {p.words[0] for p in phrases}
+    both = replace(first, words=first.words[1:])
+    return [t for t in find_phrase(view, both) if wanted <= set(w.letters(colour_of(t) or "").split())]
 
 
 def find_phrase(view: View, phrase: s.Phrase) -> list[Thing]:
@@ -171,9 +187,14 @@ def _said(view: View, thing: Thing, other: s.Description) -> bool:
     return wears(view, thing, words)
 
 
+_LANES = {1: "left inside slow nearside first", 2: "middle centre second", 3: "right outside fast third overtaking"}
+
+
 def _values(thing: Thing) -> Iterable[list[str]]:
     for key, value in facts(thing):
-        yield [*w.letters(f"{key.replace('_', ' ')} {value}").split()]
+        yield w.letters(f"{key.replace('_', ' ')} {value}").split()
+        if key == "lane" and isinstance(value, int):
+            yield ["lane", *_LANES.get(value, "").split()]
 
 
 def _between(view: View, thing: Thing, first: s.Description, second: s.Description) -> bool:

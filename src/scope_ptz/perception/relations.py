@@ -5,7 +5,7 @@
 - *behind / in front of*: further from / nearer to the camera by half a metre or more, and the boxes overlap sideways (a twentieth
   of the frame is forgiven).
 - *near, next to*: no more than 4 m of air between the two in the world.
-- *on, in, at, of*: a part of it, or resting inside its outline less than 2 m away.
+- *on, in, at, of*: a part of it, or standing on its ground plan without reaching below it.
 - *on the left*: the middle lies in the left 40% of the frame; *half*: in that half; *corner*: in both 40% bands; *middle*: the
   middle 40%. *In the foreground*, *in the distance*: the nearest and furthest third of the depth in view, on a logarithmic scale.
 """
@@ -25,7 +25,8 @@ BACKDROP = frozenset({"surface", "sky"})
 """Concepts that are where things are, rather than things."""
 
 NEAR_M = 4.0
-ON_M = 2.0
+ON_SLACK_M = 0.3
+FLAT_M = 0.5
 DEPTH_STEP_M = 0.5
 SIDE_BAND = 0.4
 SIDE_SLACK = 0.05
@@ -81,10 +82,15 @@ def _sideways(a: Thing, b: Thing, slack: float) -> bool:
 
 
 def _rests_on(a: Thing, b: Thing) -> bool:
-    """Its foot inside the outline of the other in the picture, and close to it in the world."""
-    x = a.box.centre[0]
-    inside = b.box.x_min <= x <= b.box.x_max and b.box.y_min - 0.02 <= a.box.y_max <= b.box.y_max + 0.02
-    return inside and a.gap_m(b) <= ON_M and pixels(a) < pixels(b)
+    """Its middle over the ground plan of the other and its foot above the other's, unless that is flat like a road."""
+    middle = (a.low_m + a.high_m)[:2] / 2
+    over = bool(np.all(middle >= b.low_m[:2] - ON_SLACK_M) and np.all(middle <= b.high_m[:2] + ON_SLACK_M))
+    foot, top = b.low_m[2] if b.high_m[2] - b.low_m[2] < FLAT_M else b.low_m[2] + ON_SLACK_M, b.high_m[2] + ON_SLACK_M
+    return over and bool(foot - ON_SLACK_M / 2 <= a.low_m[2] <= top) and _extent(a) < _extent(b)
+
+
+def _extent(thing: Thing) -> float:
+    return float(np.prod(np.maximum(thing.high_m - thing.low_m, 0.1)))
 
 
 def from_corner(thing: Thing, sides: Sequence[str]) -> float:

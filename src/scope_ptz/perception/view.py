@@ -77,7 +77,8 @@ class View:
     texts: tuple[TextSighting, ...]
     parents: Mapping[str, str]
     """Instance id to its parent's id, for the whole scene."""
-    names: Mapping[str, str]
+    instances: Mapping[str, SceneInstance | SceneActor]
+    """By id, for the whole scene."""
     values: Mapping[str, frozenset[str]]
     """Attribute key to every word that it takes anywhere in the scene."""
     nouns: frozenset[str] = field(default=frozenset())
@@ -97,6 +98,12 @@ class View:
                 return True
             current = self.parents.get(current)
         return False
+
+    @cached_property
+    def concepts(self) -> frozenset[str]:
+        """Concepts of the nouns that the scene uses at all, whether or not they are in view."""
+        table = lexicon()
+        return frozenset(k for n in self.nouns if (c := table.concept(n)) for k in table.kinds(c))
 
     def texts_on(self, thing: Thing) -> tuple[TextSighting, ...]:
         """Texts on a thing and on its parts, top to bottom and left to right."""
@@ -132,13 +139,13 @@ def read_view(truth: ViewTruth, scene: SceneFile, time_s: float) -> View:
     def thing(sighting: Sighting) -> Thing:
         instance = sighting.instance
         low, high = _world_box(instance, time_s)
-        return Thing(sighting, low, high, _concepts(instance), _motion(instance, time_s), tuple(legible.get(instance.id, ())))
+        return Thing(sighting, low, high, concepts_of(instance), _motion(instance, time_s), tuple(legible.get(instance.id, ())))
 
     return View(
         things=tuple(thing(x) for x in truth.visible),
         texts=texts,
         parents=parents,
-        names={i.id: i.name for i in everything},
+        instances={i.id: i for i in everything},
         values={k: frozenset(v) for k, v in values.items()},
         nouns=frozenset(nouns),
         hosts=tuple(thing(x) for x in truth.sightings if not x.visible and x.instance.id in legible),
@@ -153,7 +160,7 @@ def head_of(name: str) -> str:
     return head
 
 
-def _concepts(instance: SceneInstance | SceneActor) -> frozenset[str]:
+def concepts_of(instance: SceneInstance | SceneActor) -> frozenset[str]:
     """Every concept that the instance falls under: by category, by kind, by the noun at the end of its name."""
     table = lexicon()
     found: set[str] = set()

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from scope_ptz.perception.answers.naming import Reply, are, reply, several
-from scope_ptz.perception.answers.wording import holds_words, none_of, noun
+from scope_ptz.perception.answers.naming import Reply, are, reply, several, unknown
+from scope_ptz.perception.answers.wording import holds_words, none_of, not_told, noun
 from scope_ptz.perception.language import syntax as s
 from scope_ptz.perception.language import words as w
 from scope_ptz.perception.matching import find
@@ -25,6 +25,8 @@ def narrowed(description: s.Description, tests: tuple[s.Test, ...]) -> s.Descrip
 
 
 def exists(view: View, question: s.Exists) -> Reply:
+    if not_told(view, question.what):
+        return unknown(f"I cannot tell: the scene says nothing of any {noun(view, question.what)}")
     found = find(view, question.what)
     if question.least != 1 or question.most is not None:
         yes = question.least <= len(found) and (question.most is None or len(found) <= question.most)
@@ -43,6 +45,8 @@ def there_are(view: View, what: s.Description, found: list[Thing]) -> str:
 
 
 def count(view: View, question: s.Count) -> Reply:
+    if not_told(view, question.what):
+        return unknown(f"I cannot tell: the scene says nothing of any {noun(view, question.what)}")
     total = len(find(view, narrowed(question.what, question.tests)))
     if len(question.what.phrases) > 1:
         return reply(f"there {are(total)} {total} in view: {_each(view, question)}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from scope_ptz.perception.answers.naming import Reply, reply, unknown
@@ -9,7 +10,7 @@ from scope_ptz.perception.answers.wording import none_of, plural, the
 from scope_ptz.perception.language import syntax as s
 from scope_ptz.perception.language import words as w
 from scope_ptz.perception.matching import find
-from scope_ptz.perception.view import Thing, View
+from scope_ptz.perception.view import Thing, View, concepts_of
 from scope_ptz.world.truth import MAX_READING_ANGLE_DEG, MIN_CAP_HEIGHT_PX, TextSighting
 
 
@@ -30,8 +31,22 @@ def _texts(view: View, things: Sequence[Thing], plate: bool) -> list[TextSightin
 
 
 def is_plate(view: View, text: TextSighting) -> bool:
-    """Whether a text is a vehicle's number plate, by its own id or by what it is on."""
-    return "plate" in text.text.id.lower() or "plate" in view.names.get(text.text.parent, "").lower().split()
+    """Whether a text is a vehicle's number plate: by what it is on, or by its form on a vehicle."""
+    bearer = view.instances[text.text.parent]
+    concepts = concepts_of(bearer)
+    return "number plate" in concepts or ("vehicle" in concepts and _PLATE.fullmatch(text.text.text.replace(" ", "")) is not None)
+
+
+_PLATE = re.compile(r"(?=.*[0-9])[A-Z]{1,3}[0-9]{1,4}[A-Z]{0,3}")
+
+
+def _is_limit(view: View, text: TextSighting) -> bool:
+    """Whether a number is a speed limit: the scene calls it the signal, or it is a multiple of ten on a sign."""
+    bearer = view.instances[text.text.parent]
+    said = text.text.text.strip()
+    if "signal" in bearer.attributes:
+        return said == str(bearer.attributes["signal"])
+    return said.isdigit() and int(said) % 10 == 0 and "sign" in concepts_of(bearer)
 
 
 def _read(view: View, what: s.Description | None, texts: Sequence[TextSighting], plate: bool) -> Reply:
@@ -82,7 +97,7 @@ def text_exists(view: View, question: s.TextExists) -> Reply:
 def spoken_texts(view: View, signs: Sequence[Thing], fact: str) -> Reply | None:
     """A fact ("speed limit") that stands on some signs, None when they bear no text."""
     texts = _texts(view, signs, plate=False)
-    legible = list(dict.fromkeys(t.text.text for t in texts if t.legible))
+    legible = list(dict.fromkeys(t.text.text for t in texts if t.legible and ("limit" not in fact or _is_limit(view, t))))
     if legible:
         return Reply(w.sentence(f"the {fact} reads {w.listing([f'{chr(34)}{t}{chr(34)}' for t in legible])}"))
     return _read(view, None, texts, plate=False) if texts else None

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable
 
 from scope_ptz.perception.answers.counting import narrowed
-from scope_ptz.perception.answers.naming import Reply, metres, name, names, place, reply
+from scope_ptz.perception.answers.naming import Reply, are, metres, name, names, place, reply
 from scope_ptz.perception.answers.seeing import what
 from scope_ptz.perception.answers.values import pose_of
 from scope_ptz.perception.answers.wording import none_of, noun
@@ -68,6 +68,9 @@ def _groups(things: Iterable[Thing]) -> list[str]:
             said.append(f"{w.article(name(members[0]))} {place(members[0])}")
             continue
         colours = Counter(c for c in map(colour_of, members) if c)
+        if list(colours.values()) == [len(members)]:
+            said.append(f"{len(members)} {next(iter(colours))} {w.plural(kind)}")
+            continue
         shown = f" ({w.listing([f'{n} {c}' for c, n in colours.most_common()])})" if colours and len(colours) <= 4 else ""
         said.append(f"{w.counted(len(members), kind)}{shown}")
     return said
@@ -75,10 +78,11 @@ def _groups(things: Iterable[Thing]) -> list[str]:
 
 def happening(view: View) -> Reply:
     """Who and what moves or works; without that, what is to be seen."""
-    busy = [f"{w.article(name(t))} is {doing}" for t in view.top_level() if (doing := _doing(t)) is not None]
+    busy = Counter((t.category, doing) for t in view.top_level() if (doing := _doing(t)) is not None)
     if not busy:
         return Reply(f"Nothing is moving. {describe(view, s.Describe()).text}")
-    return reply(w.listing(busy[:MAX_GROUPS]))
+    said = [f"{w.article(k) if n == 1 else w.counted(n, k)} {are(n)} {doing}" for (k, doing), n in busy.items()]
+    return reply(w.listing(said[:MAX_GROUPS]))
 
 
 def _doing(thing: Thing) -> str | None:

@@ -55,6 +55,8 @@ def ask(view: View, question: s.Ask) -> Reply:
         attribute = " ".join(question.attribute)
         return unknown(f"I cannot tell: the scene does not say ({attribute} of {as_asked(view, question.what)})")
     verb = next((v for words, v in _VERBS.items() if set(words.split()) & set(question.attribute)), "")
+    if verb == "facing " and all("direction" in t.attributes for t, _ in told):
+        verb = "pointing "
     distinct = Counter(v for _, v in told)
     if len(distinct) == 1:
         who = the(view, question.what, many=len(told) > 1)
@@ -92,7 +94,7 @@ def value_of(thing: Thing, attribute: Sequence[str]) -> str | None:
 
 _VERBS = {
     "wearing clothes clothing outfit": "wearing ", "carrying load cargo holding": "carrying ", "made material": "made of ",
-    "direction pointing facing heading way": "pointing ", "lane": "in ", "carriageway": "on the ",
+    "direction pointing facing heading way": "facing ", "lane": "in ", "carriageway": "on the ",
 }  # fmt: skip
 """What goes between "is" and the value of some attributes."""
 _GERUNDS = {
@@ -181,6 +183,8 @@ def anywhere(view: View, attribute: Sequence[str]) -> Reply:
         values = list(dict.fromkeys(v for _, v in told))
         return reply(f"the {' '.join(attribute)} is {w.listing(values)}")
     signs = find(view, s.Description((s.Phrase(tuple(attribute)),)))
+    if "limit" in attribute:
+        signs = [t for t in (signs or view.for_reading().things) if any(x.strip().isdigit() for x in t.texts)] or signs
     return spoken_texts(view, signs, " ".join(attribute)) or unknown(
         f"I cannot tell: nothing in view says the {' '.join(attribute)}"
     )

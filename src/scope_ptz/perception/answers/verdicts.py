@@ -19,13 +19,15 @@ from scope_ptz.perception.view import Thing, View
 _ANYBODY = frozenset(["anyone", "anybody", "someone", "somebody", "anything", "something"])
 
 
-_EVERYBODY = frozenset(["everyone", "everybody", "everything"])
+_EVERYBODY = frozenset(["everyone", "everybody", "everything", "they"])
 
 
 def yes_no(view: View, question: s.YesNo) -> Reply:
     subject, tests = _parts(view, question)
     if not tests:
         return exists(view, s.Exists(subject))
+    if (text := _as_text(view, subject, tests)) is not None:
+        return text
     found = find(view, subject)
     if not found:
         return _of_a_part(view, subject, tests) or absent(view, subject)
@@ -40,6 +42,20 @@ def yes_no(view: View, question: s.YesNo) -> Reply:
     if choice is not None:
         return choice
     return _verdict(view, question.scope, subject, tests, found, [t for t, ok in zip(found, answers, strict=True) if ok])
+
+
+def _as_text(view: View, subject: s.Description, tests: tuple[s.Test, ...]) -> Reply | None:
+    """ "Is Brampton on the sign?" asks for a text when Brampton is no thing."""
+    phrase = subject.phrases[0]
+    if len(tests) != 1 or not isinstance(tests[0], s.Relation) or tests[0].kind != "on" or nouns_in(phrase.words, view.nouns):
+        return None
+    texts = [text for t in find(view.for_reading(), tests[0].other) for text in t.texts]
+    if not texts:
+        return None
+    wanted = w.letters(" ".join(phrase.words))
+    yes = any(wanted in w.letters(text) for text in texts)
+    quoted = w.listing([f'"{text}"' for text in dict.fromkeys(texts)])
+    return reply(f"{'yes' if yes else 'no'}, {as_asked(view, tests[0].other)} reads {quoted}")
 
 
 def _of_a_part(view: View, subject: s.Description, tests: tuple[s.Test, ...]) -> Reply | None:

@@ -6,11 +6,15 @@ from collections.abc import Sequence
 
 from scope_ptz.perception.language import syntax as s
 from scope_ptz.perception.language import words as w
+from scope_ptz.perception.language.lexicon import lexicon, nouns_in
 from scope_ptz.perception.matching import noun_of
+from scope_ptz.perception.relations import BACKDROP
 from scope_ptz.perception.view import View
 
 _PRONOUNS = {
     **dict.fromkeys(("anyone", "anybody", "someone", "somebody", "everyone", "everybody", "people"), "person"),
+    "traffic": "vehicle",
+    **dict.fromkeys(("they", "he", "she"), "person"),
     **dict.fromkeys(("anything", "something", "everything"), "thing"),
 }
 SUPERLATIVES = {
@@ -123,7 +127,7 @@ def _plain(view: View, test: s.Test) -> str:
 
 
 def _items(what: s.Description) -> str:
-    return w.listing([w.article(" ".join(p.words)) for p in what.phrases])
+    return w.listing([" ".join(p.words) if p.words[-1] in _PRONOUNS else w.article(" ".join(p.words)) for p in what.phrases])
 
 
 def holds_words(view: View, tests: Sequence[s.Test], count: int, negated: bool = False) -> str:
@@ -137,6 +141,8 @@ def _predicate(view: View, test: s.Test, count: int, negated: bool) -> str:
             return _predicate(view, inner, count, not negated)
         case s.Has(what=what, worn=False):
             return f"{_do('have', 'has', count, negated)} {_items(what)}"
+        case s.Says(words=()):
+            return f"{_do('bear', 'bears', count, negated)} text that I can read"
         case s.Says(words=words):
             return f'{_do("say", "says", count, negated)} "{" ".join(words).upper()}"'
         case s.Is(words=words) if words and w.is_plural(words[-1]) is False and words[-1] in _NOUNLIKE:
@@ -174,3 +180,13 @@ def none_of(view: View, description: s.Description) -> str:
     only_one = len(description.phrases) > 1 and not any(plural(s.Description((p,))) for p in description.phrases)
     said = w.listing([noun(view, s.Description((p,)), many and not only_one) for p in description.phrases], "or")
     return f"there {'are' if many and not only_one else 'is'} no {said} in view"
+
+
+def not_told(view: View, description: s.Description) -> bool:
+    """Whether the noun is of the background ("lanes", "sky") and the scene has no such thing: not seeing it means nothing."""
+    for phrase in description.phrases:
+        spans = nouns_in(phrase.words, view.nouns)
+        concept = lexicon().concept(" ".join(phrase.words[slice(*spans[0])])) if spans else None
+        if concept and lexicon().kinds(concept) & BACKDROP and concept not in view.concepts:
+            return True
+    return False

@@ -93,6 +93,12 @@ class Builder(NounPhrases):
         worn = any(isinstance(t, s.Has) and t.worn for t in tests)
         return s.Count(s.Description((s.Phrase(("people" if worn else "things",)),)), tests)
 
+    def count_read(self, c: Children) -> s.Count:
+        return s.Count(descriptions(c)[0], (s.Says(()),))
+
+    def what_read(self, c: Children) -> s.What:
+        return s.What(descriptions(c)[0], (s.Says(()),))
+
     def count_kinds(self, c: Children) -> s.CountKinds:
         return s.CountKinds(("colour",) if tokens_of(c, "COLOUR") else ("kind",), descriptions(c)[0])
 

@@ -14,8 +14,25 @@ _SPECIFIC: tuple[type[Any], ...] = (
 )  # fmt: skip
 
 
-_TEXTS = frozenset(["text", "texts", "writing", "words", "lettering", "written", "printed", "painted", "name", "number"])
-"""Words of texts, which are read and are no things."""
+_TEXTS = frozenset(
+    [
+        "text",
+        "texts",
+        "writing",
+        "words",
+        "lettering",
+        "written",
+        "printed",
+        "painted",
+        "name",
+        "number",
+        "colour",
+        "colours",
+        "color",
+        "colors",
+    ]
+)
+"""Words of texts and of properties, which are read or told and are no things."""
 
 
 def cost(reading: Any) -> tuple[float, str]:
@@ -36,6 +53,7 @@ def _cost(node: Any) -> float:
         case s.Phrase(words=words):
             total += 1.0 if nouns_in(words) else 2.0
             total += 4.0 if words[-1] in _TEXTS else 0.0
+            total += 0.3 if nouns_in(words) and nouns_in(words)[0][1] < len(words) else 0.0
             total += 0.2 * max(0, len(node.tests) - 1)
         case s.Is(words=words):
             total += 3.0 if nouns_in(words) else 0.5

@@ -17,6 +17,11 @@ from scope_ptz.perception.language.tokens import Passed, tokenise
 MAX_TOKENS = 40
 """Longer input is no description of a picture, and would take long to parse."""
 
+MAX_LINKS = 6
+"""Readings multiply with every "next to", "with" and "that": with more of them nobody could say what belongs to what."""
+
+_LINKS = frozenset({"REL", "WITH", "WITHOUT", "WEAR", "HAVE", "OF", "BETWEEN", "THAT", "FROM", "TO", "EXCEPT"})
+
 
 @cache
 def _grammar() -> Lark:
@@ -42,7 +47,7 @@ def parse_question(text: str) -> Question | None:
 
 def _best(text: str, start: str) -> Description | Question | None:
     tokens = tokenise(text)
-    if not 0 < len(tokens) <= MAX_TOKENS:
+    if not 0 < len(tokens) <= MAX_TOKENS or sum(t.type in _LINKS for t in tokens) > MAX_LINKS:
         return None
     try:
         forest = _grammar().parse(tokens, start=start)

@@ -54,6 +54,12 @@ class Rank(tuple[s.OrderKey | None, int | None, int | None]):
     """Superlative, ordinal, amount."""
 
 
+def _digits(token: Token) -> str:
+    """ "Lane two" is lane 2."""
+    number = w.number(str(token))
+    return str(token) if number is None else str(number)
+
+
 class NounPhrases(Transformer[Token, Any]):
     """Noun phrases and what may follow them."""
 
@@ -90,7 +96,7 @@ class NounPhrases(Transformer[Token, Any]):
         return s.Description(tuple(phrases))
 
     def core(self, c: Children) -> Core:
-        return Core(word for token in c for word in str(token).split())
+        return Core(word for token in c for word in (_digits(token) if token.type == "NUM" else str(token)).split())
 
     def order(self, c: Children) -> Rank:
         key = cast("s.OrderKey | None", value_of(c, "SUP") or value_of(c, "CMP"))

@@ -267,6 +267,6 @@ class Happening:
 
 
 Question = (
-    Exists | Count | CountKinds | YesNo | IsA | Ask | Read | TextExists | Where | What | Identify | Which | HowFar | Compare | CompareCount
-    | MostCommon | Describe | Happening
+    Exists | Count | CountKinds | YesNo | IsA | Ask | Read | TextExists | Where | What | Identify | Which | HowFar | Compare
+    | CompareCount | MostCommon | Describe | Happening
 )  # fmt: skip

@@ -65,11 +65,19 @@ def singular(word: str) -> str:
 
 
 def plural(phrase: str) -> str:
-    """The plural of a noun phrase: its head (the last word, or the one before "with", "of" or "on") is inflected."""
+    """The plural of a noun phrase: its head is inflected."""
     words = phrase.split()
-    head = next((i for i, w in enumerate(words) if w in {"with", "of", "on", "in"} and i > 0), len(words)) - 1
+    head = _head(words)
     words[head] = _plural(words[head])
     return " ".join(words)
+
+
+def _head(words: list[str]) -> int:
+    """Where the noun of a phrase is: the last word, or the one before "with", "of" or another preposition."""
+    return next((i for i, x in enumerate(words) if x in _PREPOSITIONS and i > 0), len(words)) - 1
+
+
+_PREPOSITIONS = frozenset(["with", "of", "on", "in", "at", "for", "by", "from", "near", "carrying"])
 
 
 def _plural(word: str) -> str:
@@ -111,7 +119,8 @@ def ordinal(word: str) -> int | None:
 
 def article(phrase: str) -> str:
     """The phrase with "a" or "an"; plural phrases without."""
-    if is_plural(phrase.split()[-1]):
+    words = phrase.split()
+    if is_plural(words[_head(words)]):
         return phrase
     vowel = phrase[0].lower() in "aeio" or (phrase[0].lower() == "u" and not phrase.lower().startswith(("uni", "use")))
     return f"{'an' if vowel else 'a'} {phrase}"
