@@ -54,7 +54,7 @@ def _verify(options: argparse.Namespace) -> None:
     scene = Scene(options.out)
     with BlenderWorker(worker_command(options.cache_dir, options.blender_python), options.cache_dir / "verify.log") as worker:
         worker.request("load_scene", {"source": options.scene})
-        poses = draw_poses(scene, options.seed, options.wide, options.zoomed)
+        poses = draw_poses(scene, options.seed, options.wide, options.zoomed, options.viewpoint)
         for r in verify(scene, worker, poses, _report):
             boxes = "no boxes" if r.box_iou is None else f"box IoU {r.box_iou:.3f}"
             _say(
