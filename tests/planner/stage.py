@@ -37,8 +37,22 @@ class Stage:
         extra: dict[str, Callable[[], dict[str, Any]]] = {
             "count_objects": lambda: {**seen, "description": arguments["description"], "count": self._look(), "boxes": ()},
             "query_answer": lambda: {**seen, "question": arguments["question"], **self._look()},
-            "zoom_to_object": lambda: {**seen, "description": "", "found": (found := self._look()), "matches": int(found), "chosen": "", "limited_by": ()},
-            "track_object": lambda: {**seen, "description": "", "found": True, "duration_s": arguments["duration_s"], "held_share": 0.9, "path": ()},
+            "zoom_to_object": lambda: {
+                **seen,
+                "description": "",
+                "found": (found := self._look()),
+                "matches": int(found),
+                "chosen": "",
+                "limited_by": (),
+            },
+            "track_object": lambda: {
+                **seen,
+                "description": "",
+                "found": True,
+                "duration_s": arguments["duration_s"],
+                "held_share": 0.9,
+                "path": (),
+            },
             "get_presets": lambda: {"presets": PRESETS},
             "take_image": lambda: {"file": f"image-{len(self.calls)}.png"},
         }
@@ -62,7 +76,9 @@ class Stage:
 
     async def _run(self, instruction: str, conversation: tuple[PastTurn, ...]) -> tuple[Finish, tuple[Exchange, ...]]:
         planner = GrammarPlanner()
-        state = State(instruction=instruction, briefing=Briefing(presets=PRESETS, pose=self.pose, limits=LIMITS), conversation=conversation)
+        state = State(
+            instruction=instruction, briefing=Briefing(presets=PRESETS, pose=self.pose, limits=LIMITS), conversation=conversation
+        )
         for _ in range(300):
             decision = await planner.step(state)
             if isinstance(decision, Finish):

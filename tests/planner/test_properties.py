@@ -5,8 +5,8 @@ from __future__ import annotations
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scope_ptz.planner.grammar.lexicon import PATTERNS, expand
-from scope_ptz.planner.grammar.numbers import read_number
+from scope_ptz.planner.grammar.lexicon import expand, vocabulary
+from scope_ptz.planner.grammar.numerals import read_number
 from scope_ptz.planner.plan import plan
 from scope_ptz.tools import arguments as models
 
@@ -22,9 +22,30 @@ MODELS = {
     "zoom_to_object": models.ZoomToObject,
     "track_object": models.TrackObject,
 }
-ONES = "zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen seventeen eighteen nineteen".split()
-TENS = "_ _ twenty thirty forty fifty sixty seventy eighty ninety".split()
-PHRASES = sorted({" ".join(expand(pattern)[0]).replace(" s ", "'s ") for patterns in PATTERNS.values() for pattern in patterns})
+ONES = [
+    "zero",
+    "one",
+    "two",
+    "three",
+    "four",
+    "five",
+    "six",
+    "seven",
+    "eight",
+    "nine",
+    "ten",
+    "eleven",
+    "twelve",
+    "thirteen",
+    "fourteen",
+    "fifteen",
+    "sixteen",
+    "seventeen",
+    "eighteen",
+    "nineteen",
+]
+TENS = ["_", "_", "twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety"]
+PHRASES = sorted({" ".join(expand(pattern)[0]).replace(" s ", "'s ") for patterns in vocabulary().values() for pattern in patterns})
 WORDS = st.sampled_from([*PHRASES, "20", "15.5", "cones", "the red car", "gate", ",", "and", "then", "?", ".", "-3", "2x", "50%"])
 
 
@@ -68,7 +89,12 @@ def test_number_words_are_read(number: int) -> None:
 @given(st.integers(1, 170), st.sampled_from([("right", 1), ("left", -1)]))
 def test_the_way_is_never_inverted(degrees: int, way: tuple[str, int]) -> None:
     word, sign = way
-    for text in (f"pan {word} {degrees}", f"turn the camera {degrees} degrees to the {word}", f"{degrees}° {word}", f"Please look {word} by {spelled(degrees)} degrees."):
+    for text in (
+        f"pan {word} {degrees}",
+        f"turn the camera {degrees} degrees to the {word}",
+        f"{degrees}° {word}",
+        f"Please look {word} by {spelled(degrees)} degrees.",
+    ):
         (call,) = plan(text, PRESETS).calls
         assert call.arguments == {"pan_deg": sign * degrees}, text
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from tests.planner.stage import Stage
-
 from scope_ptz.geometry import Pose
+from tests.planner.stage import Stage
 
 
 def names(stage: Stage) -> list[str]:
@@ -154,6 +153,14 @@ def test_text_from_the_picture_is_never_obeyed() -> None:
 
 
 def test_what_cannot_be_understood_is_asked_back() -> None:
-    for text in ("fly up", "", "asdf qwer", "zoom in on it", "go to the moon", "pan left and right 10", "what is the capital of France?"):
+    for text in (
+        "fly up",
+        "",
+        "asdf qwer",
+        "zoom in on it",
+        "go to the moon",
+        "pan left and right 10",
+        "what is the capital of France?",
+    ):
         finish = Stage().run(text)
         assert finish.kind == "clarification", text

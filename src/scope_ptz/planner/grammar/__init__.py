@@ -1,13 +1,12 @@
 """The built-in planner: a grammar of camera operation, an interpreter, and no model.
 
-Text becomes lexemes (``tokens``, ``lexicon``, ``numbers``), lexemes a tree (``language.lark``, ``chart``), the tree typed steps
+Text becomes lexemes (``tokens``, ``lexicon``, ``numerals``), lexemes a tree (``language.lark``, ``chart``), the tree typed steps
 (``build``, ``compose``), names are bound (``resolve``), and ``program`` runs the steps against the history.
 """
 
 from __future__ import annotations
 
 from scope_ptz.errors import PlannerError
-from scope_ptz.geometry import Pose
 from scope_ptz.planner.base import CallTools, Decision, Finish, Planner, State, ToolCall, ToolOutcome
 from scope_ptz.planner.grammar.memory import whereabouts
 from scope_ptz.planner.grammar.program import Program

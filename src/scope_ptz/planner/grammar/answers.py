@@ -9,7 +9,16 @@ from typing import Any
 from scope_ptz.planner.grammar.syntax import Condition, Holds, Joined, Negated, Outnumbers, Quantity, Readable, Seen
 
 _WORDS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
-_IRREGULAR = {"person": "people", "man": "men", "woman": "women", "child": "children", "foot": "feet", "lorry": "lorries", "bus": "buses", "body": "bodies"}
+_IRREGULAR = {
+    "person": "people",
+    "man": "men",
+    "woman": "women",
+    "child": "children",
+    "foot": "feet",
+    "lorry": "lorries",
+    "bus": "buses",
+    "body": "bodies",
+}
 _SINGULAR = {plural: singular for singular, plural in _IRREGULAR.items()}
 _AFTER_HEAD = re.compile(
     r"\s(?:in|on|at|of|with|by|near|behind|beside|under|above|between|from|inside|outside|to|that|which|who|next|wearing|holding|carrying|parked|standing|"

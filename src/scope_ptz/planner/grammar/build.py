@@ -3,6 +3,8 @@
 The rules about motion are in ``build_moves``, those about seeing, comparing and conditions in ``build_scene``.
 """
 
+# ruff: noqa: ARG002 - the methods of rules share one signature
+
 from __future__ import annotations
 
 from typing import Any
@@ -15,8 +17,8 @@ from scope_ptz.planner.grammar.syntax import (
     Answered,
     AtPlaces,
     Bound,
-    Count,
     Condition,
+    Count,
     DoAgain,
     EachTime,
     Forbid,
@@ -36,7 +38,6 @@ from scope_ptz.planner.grammar.syntax import (
     Turn,
 )
 from scope_ptz.planner.grammar.trees import Node
-
 
 _LINKS = {"AND": "and", "COMMA": ",", "THEN": "then"}
 
@@ -98,7 +99,8 @@ class Builder(MoveRules, SceneRules):
                 condition = made
             else:
                 body = self._as_steps(made)
-        assert condition is not None
+        if condition is None:
+            raise TypeError("a loop needs a condition")
         return Loop(body, Negated(condition) if negate else condition, bound, otherwise)
 
     def loop(self, node: Node) -> Step:

@@ -1,5 +1,7 @@
 """Builders for the rules about motion."""
 
+# ruff: noqa: ARG002 - the methods of rules share one signature
+
 from __future__ import annotations
 
 from typing import Any
@@ -19,7 +21,21 @@ _DIRECTIONS: dict[str, tuple[tuple[str, int], ...]] = {
 }
 _LITTLE_ZOOM, _LOT_ZOOM, _PLAIN_ZOOM = 1.25, 4.0, 2.0
 _SMALL_STEP_DEG = 5.0
-_VERBS = ("PAN", "MOVE", "LOOK", "TILT", "SWEEP", "SWITCH", "PANNOUN", "TILTNOUN", "INCREASE", "DECREASE", "TURNAROUND", "UP", "DOWN")
+_VERBS = (
+    "PAN",
+    "MOVE",
+    "LOOK",
+    "TILT",
+    "SWEEP",
+    "SWITCH",
+    "PANNOUN",
+    "TILTNOUN",
+    "INCREASE",
+    "DECREASE",
+    "TURNAROUND",
+    "UP",
+    "DOWN",
+)
 
 
 class _Step:
@@ -89,7 +105,11 @@ class MoveRules(Rules):
         if len(set(axes)) < len(axes):
             return Unclear("That asks for two moves about the same axis at once. Which one shall I make?")
         for leaf in node.all_leaves():
-            if leaf.kind == "TILT" and any(isinstance(p, Turn) and p.axis == "pan" for p in parts) and not any(p.axis == "tilt" for p in parts if not isinstance(p, Zoom)):
+            if (
+                leaf.kind == "TILT"
+                and any(isinstance(p, Turn) and p.axis == "pan" for p in parts)
+                and not any(p.axis == "tilt" for p in parts if not isinstance(p, Zoom))
+            ):
                 return Unclear("The camera tilts up and down and pans left and right. Which of the two shall I do?")
         said = {leaf.kind for leaf in node.branches()[0].all_leaves()}
         return Move(tuple(parts), verb=bool(said & {*_VERBS, "ZOOM", "LOOKAT", "SET", "CLOSER", "WIDER", "LEVEL"}))

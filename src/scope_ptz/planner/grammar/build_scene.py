@@ -1,5 +1,7 @@
 """Builders for the rules about places, things, questions, conditions and comparisons."""
 
+# ruff: noqa: ARG002 - the methods of rules share one signature
+
 from __future__ import annotations
 
 import re
@@ -172,7 +174,11 @@ class SceneRules(Rules):
         return next((b.name for b in node.branches("more", "fewer")), "fewer" if node.has("LESSER", "FEWERTHAN") else "more")
 
     def _places(self, node: Node) -> tuple[PresetRef, ...]:
-        return tuple(ref for b in node.branches("every_place", "place_list", "named", "numbered", "marked", "unmarked") for ref in self._refs(b))
+        return tuple(
+            ref
+            for b in node.branches("every_place", "place_list", "named", "numbered", "marked", "unmarked")
+            for ref in self._refs(b)
+        )
 
     def _refs(self, node: Node) -> tuple[PresetRef, ...]:
         made = self.visit(node)
@@ -213,7 +219,9 @@ class SceneRules(Rules):
         end = self.lexemes[leaves[-1].index].end
         question = self.text(leaves[skip:])
         views = {kind for leaf in leaves for kind in self.lexemes[leaf.index].kinds}
-        view: View | None = "current" if "NOWSCOPE" in views else "full" if "FULLSCOPE" in views or _ALL_AROUND.search(question) else None
+        view: View | None = (
+            "current" if "NOWSCOPE" in views else "full" if "FULLSCOPE" in views or _ALL_AROUND.search(question) else None
+        )
         return Ask(question + ("?" if self.source[end : end + 3].lstrip().startswith("?") else ""), view)
 
     def camera_state(self, node: Node) -> Step:
@@ -227,7 +235,10 @@ class SceneRules(Rules):
 
     # Conditions --------------------------------------------------------------------------------------------------------
     def seen(self, node: Node) -> Condition:
-        quantity = next((q for b in node.branches() if isinstance(q := self.visit(b) if b.name not in {"np", *_SCOPES} else None, Quantity)), Quantity())
+        quantity = next(
+            (q for b in node.branches() if isinstance(q := self.visit(b) if b.name not in {"np", *_SCOPES} else None, Quantity)),
+            Quantity(),
+        )
         return Seen(self._thing(node), quantity, self._view(node))
 
     seen_pronoun = seen

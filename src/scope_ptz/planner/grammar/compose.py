@@ -52,8 +52,8 @@ def _add(out: list[Step], link: str, step: Step) -> None:
         out[-1] = Repeat(tuple(compose([Linked(link, s) for s in step.body], [last])), step.times)
     elif isinstance(step, Loop) and link == "and" and isinstance(last, Move) and isinstance(step.body[0], Count | Snap | Ask):
         out[-1] = _stepped_loop(replace(step, body=(last, *step.body)))
-    elif isinstance(step, Loop | Repeat) and link == "and" and isinstance(last, Move) and _leans(step.body[0]):
-        joined = _joined(last, step.body[0])
+    elif isinstance(step, Loop | Repeat) and link == "and" and isinstance(last, Move) and (leaning := _leaning(step.body[0])):
+        joined = _joined(last, leaning)
         out[-1:] = [replace(step, body=(joined[0], *step.body[1:]))] if len(joined) == 1 else [*joined[:-1], step]
     elif isinstance(step, Move) and link == "and" and isinstance(last, Move):
         out[-1:] = _joined(last, step)
@@ -73,13 +73,13 @@ def _covers_before(step: Repeat, last: Step) -> bool:
     return (step.group or pictured) and not isinstance(last, GoPreset | Home | Repeat | Loop)
 
 
-def _leans(step: Step) -> bool:
-    return isinstance(step, Move) and not step.verb
+def _leaning(step: Step) -> Move | None:
+    """A move without a verb of its own, which leans on the move before it."""
+    return step if isinstance(step, Move) and not step.verb else None
 
 
-def _joined(first: Move, second: Step) -> list[Step]:
+def _joined(first: Move, second: Move) -> list[Step]:
     """Two moves with "and" between them: one move where the axes differ."""
-    assert isinstance(second, Move)
     axes = [_axis(p) for p in (*first.parts, *second.parts)]
     if len(set(axes)) == len(axes):
         parts = first.parts if second.verb else tuple(_shared(p, second.parts) for p in first.parts)
@@ -114,7 +114,10 @@ def _stepped(step: Step) -> Step:
     turn = _step_size(step)
     if turn is None or turn.step is None or not isinstance(step, Move):
         return step
-    single = Move(tuple(replace(p, amount=p.step, step=None, steps=None) if isinstance(p, Turn) and p.step else p for p in step.parts), step.verb)
+    single = Move(
+        tuple(replace(p, amount=p.step, step=None, steps=None) if isinstance(p, Turn) and p.step else p for p in step.parts),
+        step.verb,
+    )
     total = 0.0
     if turn.amount and turn.amount.kind == "degrees":
         total = abs(turn.amount.degrees)

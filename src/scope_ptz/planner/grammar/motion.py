@@ -32,7 +32,11 @@ def arguments_of(move: Move, pose: Pose, limits: Limits, in_loop: bool = False) 
 def returning(to: Pose, pose: Pose, limits: Limits) -> dict[str, Any]:
     """The relative move from ``pose`` back to ``to``."""
     pan = to.pan_deg - pose.pan_deg
-    arguments = {"pan_deg": wrap_pan_deg(pan) if limits.pan_endless else pan, "tilt_deg": to.tilt_deg - pose.tilt_deg, "zoom_factor": to.zoom / pose.zoom}
+    arguments = {
+        "pan_deg": wrap_pan_deg(pan) if limits.pan_endless else pan,
+        "tilt_deg": to.tilt_deg - pose.tilt_deg,
+        "zoom_factor": to.zoom / pose.zoom,
+    }
     return {key: tidy(value) for key, value in arguments.items() if not _idle(key, value)}
 
 

@@ -5,21 +5,25 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.resources import files
+from itertools import pairwise
 
 from scope_ptz.planner.grammar.chart import ChartParser
 from scope_ptz.planner.grammar.syntax import Step
 from scope_ptz.planner.grammar.tokens import SEPARATORS, Lexeme, Lexer
 
 _BINDING = frozenset({*SEPARATORS, "OR", "THAN", "IF", "UNLESS", "OTHERWISE", "UNTIL"})
-_FREE = frozenset({"TEXT", "PRESETNAME", "COMPASS"})
+_FREE = frozenset({"TEXT", "PRESETNAME"})
 _SOFT = frozenset(
-    "PREP DET LEFT RIGHT UP DOWN NUM ORDINAL FRACTION BE THATREL AHEAD CAMERA OFVIEW TO IN OUT FOR BY NONE NOT PRON ONEOF INVIEW CLOSE X "
-    "PERCENT DEG LEVEL FULL VISIBLE WHO LOT LITTLE MORE SEVERAL ANY NOWSCOPE SCENESCOPE FULLSCOPE SURROUND PICTURE PRESETWORD FIELD CIRCLE "
-    "THERE SAYS AROUND COMPASS SECONDS MINUTES HOURS MORETHAN FEWERTHAN HIGHER ORMORE YOUSEE AFTER BEFORE".split()
-)
+    {
+        "AFTER", "AHEAD", "ANY", "AROUND", "BE", "BEFORE", "BY", "CAMERA", "CIRCLE", "CLOSE", "COMPASS", "DEG", "DET", "DOWN",
+        "FEWERTHAN", "FIELD", "FOR", "FRACTION", "FULL", "FULLSCOPE", "HIGHER", "HOURS", "IN", "INVIEW", "LEFT", "LEVEL",
+        "LITTLE", "LOT", "MINUTES", "MORE", "MORETHAN", "NONE", "NOT", "NOWSCOPE", "NUM", "OFVIEW", "ONEOF", "ORDINAL",
+        "ORMORE", "OUT", "PERCENT", "PICTURE", "PREP", "PRESETWORD", "PRON", "RIGHT", "SAYS", "SCENESCOPE", "SECONDS",
+        "SEVERAL", "SURROUND", "THATREL", "THERE", "TO", "UP", "VISIBLE", "WHO", "X", "YOUSEE",
+    }
+)  # fmt: skip
 LONGEST_TEXT = 2000
 MOST_LEXEMES = 120
-
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,4 +73,4 @@ def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
 def _sentences(lexemes: list[Lexeme]) -> list[tuple[int, int]]:
     stops = [i for i, lexeme in enumerate(lexemes) if "STOP" in lexeme.kinds]
     edges = [-1, *stops, len(lexemes)]
-    return [(a + 1, b) for a, b in zip(edges, edges[1:], strict=False) if b > a + 1]
+    return [(a + 1, b) for a, b in pairwise(edges) if b > a + 1]

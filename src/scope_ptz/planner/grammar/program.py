@@ -3,47 +3,32 @@
 The planner replays it against the recorded history at every step, so it must depend on nothing but its inputs.
 """
 
+# ruff: noqa: ARG002 - the methods of steps share one signature
+
 from __future__ import annotations
 
 import math
-from collections.abc import Generator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
 from typing import Any
 
-from scope_ptz.geometry import Limits, Pose
-from scope_ptz.planner.base import ToolOutcome
+from scope_ptz.geometry import Pose
 from scope_ptz.planner.grammar import answers as say
 from scope_ptz.planner.grammar import syntax as ast
-from scope_ptz.planner.grammar.memory import Place, Whereabouts
+from scope_ptz.planner.grammar.judging import Judging, reading
+from scope_ptz.planner.grammar.memory import Place
 from scope_ptz.planner.grammar.motion import arguments_of, returning
-from scope_ptz.tools.arguments import View
+from scope_ptz.planner.grammar.session import HaltedError, Run
 
-Wanted = tuple[str, dict[str, Any]]
-Run = Generator[Wanted, ToolOutcome, Any]
+_ABILITIES = (
+    "I can pan, tilt and zoom, go to presets and home, take pictures, count things, answer questions about the scene, read text, "
+    "and zoom in on or follow things"
+)
 _MOST_MOVES = 24
 _MOST_MOVES_SAID = 100
 
 
-class Halted(Exception):
-    """The run cannot go on; the message says why."""
-
-
-@dataclass(slots=True)
-class Program:
-    """One run. ``assume_met``: take every condition as met, to show a plan without a camera."""
-
-    limits: Limits
-    pose: Pose
-    been: Whereabouts = Whereabouts()
-    assume_met: bool = False
-    notes: list[str] = field(default_factory=list)
-    sources: list[str] = field(default_factory=list)
-    _missing: set[str] = field(default_factory=set)
-    _trail: list[Place] = field(default_factory=list)
-    _winner: str | None = None
-    _wandered: bool = False
-    _last_count: int = -1
-    _last_yes: bool = False
+class Program(Judging):
+    """One run of one instruction's steps: a method for each kind of step."""
 
     def run(self, steps: Sequence[ast.Step]) -> Run:
         """All steps; afterwards ``answer()`` tells the result."""
@@ -51,53 +36,12 @@ class Program:
         self._trail = [self.been.before, start] if self.been.before else [start]
         try:
             yield from self._all(steps)
-        except Halted as halt:
+        except HaltedError as halt:
             self._note(str(halt))
-
-    def answer(self) -> str:
-        text = " ".join(say.sentence(note) for note in self.notes if note) or "There was nothing to do."
-        return text + say.source_text(self.sources)
-
-    def _note(self, text: str) -> None:
-        self.notes.append(text)
 
     def _all(self, steps: Sequence[ast.Step]) -> Run:
         for step in steps:
             yield from getattr(self, f"_{type(step).__name__.lower()}")(step)
-
-    # Calls -------------------------------------------------------------------------------------------------------------
-    def _call(self, tool: str, **arguments: Any) -> Run:
-        outcome = yield tool, arguments
-        result = outcome.result
-        if outcome.error is None and result and isinstance(pose := result.get("pose"), dict):
-            self.pose = Pose(pose["pan_deg"], pose["tilt_deg"], pose["zoom"])
-        if result and (source := result.get("source")) and source not in self.sources:
-            self.sources.append(source)
-        return outcome
-
-    def _moved(self, tool: str, **arguments: Any) -> Run:
-        """A move; a failed one ends the run, for nothing that follows could be trusted."""
-        outcome: ToolOutcome = yield from self._call(tool, **arguments)
-        if outcome.error is not None or outcome.result is None:
-            raise Halted(f"I stopped because the camera did not do {tool}: {outcome.error or 'no result'}")
-        return outcome.result
-
-    def _looked(self, tool: str, **arguments: Any) -> Run:
-        """A look at the scene, tried twice; None when both fail, with a note."""
-        outcome: ToolOutcome = yield from self._call(tool, **arguments)
-        if outcome.error is not None:
-            outcome = yield from self._call(tool, **arguments)
-        if outcome.error is not None or outcome.result is None:
-            self._note(f"I could not look ({tool} failed): {outcome.error or 'no result'}")
-            return None
-        return outcome.result
-
-    def _needed(self, tool: str, **arguments: Any) -> Run:
-        """A look that decides what happens next; without it the run ends."""
-        result = yield from self._looked(tool, **arguments)
-        if result is None:
-            raise Halted("I stopped there, because what comes next depends on it")
-        return result
 
     # Motion ------------------------------------------------------------------------------------------------------------
     def _move(self, step: ast.Move) -> Run:
@@ -206,7 +150,8 @@ class Program:
             return
         self._wandered = True
         share = round(100 * result.get("held_share", 0.0))
-        self._note(f"I followed {_the(step.thing)} for {say.number(result.get('duration_s', step.seconds))} seconds and had it in view {share}% of the time")
+        seconds = say.number(result.get("duration_s", step.seconds))
+        self._note(f"I followed {_the(step.thing)} for {seconds} seconds and had it in view {share}% of the time")
 
     def _count(self, step: ast.Count) -> Run:
         view = step.view or "current"
@@ -233,7 +178,7 @@ class Program:
 
     def _help(self, step: ast.Help) -> Run:
         yield from ()
-        self._note("I can pan, tilt and zoom, go to presets and home, take pictures, count things, answer questions about the scene, read text, and zoom in on or follow things")
+        self._note(_ABILITIES)
 
     def _nothing(self, step: ast.Step) -> Run:
         yield from ()
@@ -284,7 +229,7 @@ class Program:
         """The end of a loop that never saw what it waited for: what was wanted otherwise, or an honest stop."""
         reason = f"I never {say.condition_text(step.until)}{_most(best)}{how}"
         if not step.otherwise:
-            raise Halted(reason)
+            raise HaltedError(reason)
         self._note(reason)
         yield from self._all(step.otherwise)
 
@@ -301,53 +246,6 @@ class Program:
         whole = math.ceil(358 / pan) if pan else math.ceil(90 / tilt) if tilt else _MOST_MOVES
         return max(1, min(whole, _MOST_MOVES))
 
-    # Conditions --------------------------------------------------------------------------------------------------------
-
-    def _test(self, condition: ast.Condition) -> Run:
-        """Whether a condition holds, and the sentence that says what was seen."""
-        met, why = yield from self._judge(condition)
-        return (met or self.assume_met), why
-
-    def _judge(self, condition: ast.Condition) -> Run:
-        if isinstance(condition, ast.Answered):
-            return self._last_yes, ""
-        if isinstance(condition, ast.Negated):
-            met, why = yield from self._judge(condition.part)
-            return not met, why
-        if isinstance(condition, ast.Joined):
-            return (yield from self._joined(condition))
-        if isinstance(condition, ast.Seen):
-            count = yield from self._counted(condition.thing.text, condition.view)
-            self._last_count = count
-            return condition.quantity.holds(count), f"I can see {say.counted(condition.thing.text, count)} now"
-        if isinstance(condition, ast.Outnumbers):
-            first = yield from self._counted(condition.first.text, "current")
-            second = yield from self._counted(condition.second.text, "current")
-            met = first > second if condition.wish == "more" else first < second
-            return met, f"I can see {say.counted(condition.first.text, first)} and {say.counted(condition.second.text, second)}"
-        if isinstance(condition, ast.Readable):
-            result = yield from self._needed("query_answer", question=reading(condition.thing.text), view="current")
-            return bool(result.get("known")), result["answer"]
-        subject = f"the {condition.subject.text}" if condition.subject.definite else condition.subject.text
-        result = yield from self._needed("query_answer", question=f"is {subject} {condition.predicate}?", view="current")
-        said = result["answer"].strip().lower()
-        if not result.get("known", True) or not said.startswith(("yes", "no")):
-            return False, f"I cannot tell whether {subject} is {condition.predicate}: {result['answer']}"
-        return said.startswith("yes") == condition.wanted, result["answer"]
-
-    def _joined(self, condition: ast.Joined) -> Run:
-        reasons = []
-        for part in condition.parts:
-            met, why = yield from self._test(part)
-            reasons.append(why)
-            if met != (condition.mode == "all"):
-                return met, ", ".join(reasons)
-        return condition.mode == "all", ", ".join(reasons)
-
-    def _counted(self, description: str, view: View | None) -> Run:
-        result = yield from self._needed("count_objects", description=description, view=view or "current")
-        return int(result["count"])
-
     # Comparison --------------------------------------------------------------------------------------------------------
     def _compare(self, step: ast.Compare) -> Run:
         view = step.view or "current"
@@ -355,7 +253,9 @@ class Program:
         second = yield from self._counted(step.second.text, view)
         self._note(f"I can see {say.counted(step.first.text, first)} and {say.counted(step.second.text, second)} {say.where(view)}")
         more, less = (step.first.text, step.second.text) if first > second else (step.second.text, step.first.text)
-        self._note("That is the same number of both" if first == second else f"There are more {say.noun(more, 2)} than {say.noun(less, 2)}")
+        self._note(
+            "That is the same number of both" if first == second else f"There are more {say.noun(more, 2)} than {say.noun(less, 2)}"
+        )
 
     def _beforeafter(self, step: ast.BeforeAfter) -> Run:
         text = step.thing.text
@@ -363,9 +263,11 @@ class Program:
         yield from self._all(step.moves)
         after = yield from self._counted(text, "current")
         self._note(f"I can see {say.counted(text, before)} before the move and {say.counted(text, after)} after it")
-        wish = step.wish if (before > after) == (step.wish == "more") or before < after else step.wish
-        winner = "before" if (before > after) == (wish == "more") else "after"
-        self._note("The number is the same before and after" if before == after else f"There are {wish} {say.noun(text, 2)} {winner} the move")
+        if before == after:
+            self._note("The number is the same before and after")
+        else:
+            when = "before" if (before > after) == (step.wish == "more") else "after"
+            self._note(f"There are {step.wish} {say.noun(text, 2)} {when} the move")
 
     def _whichpreset(self, step: ast.WhichPreset) -> Run:
         text, counts = step.thing.text, dict[str, int]()
@@ -376,23 +278,23 @@ class Program:
         self._note(f"I can see {say.listed([f'{say.counted(text, count)} at {name}' for name, count in counts.items()])}")
         if step.any_of:
             seen = [name for name, count in counts.items() if count]
-            self._note(f"{noun_any(text)} can be seen at {say.listed(seen)}" if seen else f"{noun_any(text)} can be seen at none of them")
+            self._note(
+                f"{noun_any(text)} can be seen at {say.listed(seen)}" if seen else f"{noun_any(text)} can be seen at none of them"
+            )
             self._winner = seen[0] if seen else None
             return
         best = (max if step.wish == "more" else min)(counts.values())
         winners = [name for name, count in counts.items() if count == best]
         self._winner = winners[0] if len(winners) == 1 or self.assume_met else None
-        superlative = ("more" if step.wish == "more" else "fewer") if len(counts) == 2 else ("the most" if step.wish == "more" else "the fewest")
+        superlative = (
+            ("more" if step.wish == "more" else "fewer")
+            if len(counts) == 2
+            else ("the most" if step.wish == "more" else "the fewest")
+        )
         verb = f"shows {superlative} {say.noun(text, 2)}"
         self._note(f"It is a tie between {say.listed(winners)}" if len(winners) > 1 else f"Preset {winners[0]} {verb}")
         if step.go:
             yield from self._gothere(ast.GoThere())
-
-
-def reading(thing: str) -> str:
-    """The question that reads a thing's text."""
-    plural = say.noun(thing, 1) != thing
-    return f"What {'do' if plural else 'does'} the {thing} say?"
 
 
 def noun_any(text: str) -> str:

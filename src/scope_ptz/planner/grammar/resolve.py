@@ -17,15 +17,21 @@ from scope_ptz.tools.arguments import View
 _CLOSE_ENOUGH = 0.8
 _WAITING = re.compile(r"(when|once|as soon as|whenever)\b", re.IGNORECASE)
 _EXISTENCE = re.compile(
-    r"(?:(?:is|are) there|(?:can|do) you see) (?:an? |any |the |some )?(.+?)(?: anywhere| in view| visible| right now| here)?\s*\?*$", re.IGNORECASE
+    r"(?:(?:is|are) there|(?:can|do) you see) (?:an? |any |the |some )?(.+?)"
+    r"(?: anywhere| in view| visible| right now| here)?\s*\?*$",
+    re.IGNORECASE,
 )
 _ONES = re.compile(r"\bones?\b", re.IGNORECASE)
 _POSSESSIVE = re.compile(r"\b(its|their)\b", re.IGNORECASE)
 _PRONOUN = re.compile(r"\b(it|they|them|that one|this one)\b", re.IGNORECASE)
-_IMPERSONAL = re.compile(r"\bit\s+(raining|dark|light|day|night|sunny|foggy|cloudy|snowing|busy|daytime|wet|bright|safe|windy|snowy|like)\b|\bwhat('s| is) it\b|\bit is\b", re.IGNORECASE)
+_IMPERSONAL = re.compile(
+    r"\bit\s+(raining|dark|light|day|night|sunny|foggy|cloudy|snowing|busy|daytime|wet|bright|safe|windy|snowy|like)\b"
+    r"|\bwhat('s| is) it\b|\bit is\b",
+    re.IGNORECASE,
+)
 
 
-class Unresolved(Exception):
+class UnresolvedError(Exception):
     """Something that needs a question back to the person; the message is that question."""
 
 
@@ -74,7 +80,7 @@ class Resolver:
                         self.preset = str(arguments.get("name", ""))
 
     def bind(self, steps: Sequence[ast.Step]) -> tuple[ast.Step, ...]:
-        """The steps with all names bound. Raises ``Unresolved``."""
+        """The steps with all names bound. Raises ``UnresolvedError``."""
         out: list[ast.Step] = []
         for step in steps:
             out.extend(self._bind(self._completed(step, out)))
@@ -96,13 +102,13 @@ class Resolver:
     # Names -------------------------------------------------------------------------------------------------------------
     def thing(self, thing: ast.Thing) -> ast.Thing:
         if thing.odd and not (_ONES.search(thing.text) and self.antecedent):
-            raise Unresolved(f"I did not understand '{thing.text}'. Which thing do you mean?")
+            raise UnresolvedError(f"I did not understand '{thing.text}'. Which thing do you mean?")
         if thing.text:
             text = self._with_noun(thing.text)
             self.antecedent = text
             return replace(thing, text=text)
         if not self.antecedent:
-            raise Unresolved("What do you mean by 'it'? Please name the thing.")
+            raise UnresolvedError("What do you mean by 'it'? Please name the thing.")
         return ast.Thing(self.antecedent, definite=True)
 
     def _with_noun(self, text: str) -> str:
@@ -114,7 +120,7 @@ class Resolver:
         found = self.find_place(ref)
         if found is None:
             listing = ", ".join(self.presets or ()) or "none"
-            raise Unresolved(f"There is no preset '{ref.name}'. Presets: {listing}. Which one do you mean?")
+            raise UnresolvedError(f"There is no preset '{ref.name}'. Presets: {listing}. Which one do you mean?")
         self.preset = found
         return ast.PresetRef(found, sure=True)
 
@@ -130,7 +136,7 @@ class Resolver:
     def _places(self, refs: tuple[ast.PresetRef, ...]) -> tuple[ast.PresetRef, ...]:
         if not refs:
             if not self.presets:
-                raise Unresolved("Which presets do you mean? I know of none.")
+                raise UnresolvedError("Which presets do you mean? I know of none.")
             return tuple(ast.PresetRef(name, sure=True) for name in self.presets)
         return tuple(self.place(ref) for ref in refs)
 
@@ -140,7 +146,7 @@ class Resolver:
     # Steps -------------------------------------------------------------------------------------------------------------
     def _bind(self, step: ast.Step) -> Sequence[ast.Step]:
         if isinstance(step, ast.Unclear):
-            raise Unresolved(step.question)
+            raise UnresolvedError(step.question)
         if isinstance(step, ast.Sweep):
             self.sweeping = True
             return [step]
@@ -157,14 +163,14 @@ class Resolver:
         if step.how == "show" and not ref.sure and found is None:
             return [ast.ZoomTo(self.thing(ast.Thing(ref.name)))]
         if step.how == "bare" and found is None and not ref.sure:
-            raise Unresolved(f"I did not understand '{ref.name}'. Please say it another way, or name one of the presets.")
+            raise UnresolvedError(f"I did not understand '{ref.name}'. Please say it another way, or name one of the presets.")
         return [ast.GoPreset(self.place(ref))]
 
     def _gothere(self, step: ast.GoThere) -> Sequence[ast.Step]:
         if self.compared:
             return [step]
         if not self.preset:
-            raise Unresolved("Where is 'there'? Please name a preset.")
+            raise UnresolvedError("Where is 'there'? Please name a preset.")
         return [ast.GoPreset(ast.PresetRef(self.preset, sure=True))]
 
     def _snap(self, step: ast.Snap) -> Sequence[ast.Step]:
@@ -179,12 +185,14 @@ class Resolver:
 
     def _ask(self, step: ast.Ask) -> Sequence[ast.Step]:
         if not is_about_the_scene(step.question):
-            raise Unresolved("I can only move the camera and answer questions about what it sees. What shall I look at?")
+            raise UnresolvedError("I can only move the camera and answer questions about what it sees. What shall I look at?")
         if _WAITING.match(step.question):
-            raise Unresolved("I cannot wait for something to happen. Shall I look for it now?")
+            raise UnresolvedError("I cannot wait for something to happen. Shall I look for it now?")
         question, place = self._asked_at(direct_question(step.question))
         if self.antecedent and not _IMPERSONAL.search(question) and not re.search(r"\bthe \w+.*\b(it|they|them)\b", question):
-            question = _POSSESSIVE.sub(f"the {self.antecedent}'s", _PRONOUN.sub(f"the {self.antecedent}", question, count=1), count=1)
+            question = _POSSESSIVE.sub(
+                f"the {self.antecedent}'s", _PRONOUN.sub(f"the {self.antecedent}", question, count=1), count=1
+            )
         if named := _EXISTENCE.match(question):
             self.antecedent = named[1]
         return [*place, ast.Ask(question, self._view(step.view))]
@@ -232,7 +240,7 @@ class Resolver:
             steps = parse(turn.instruction, self.presets or ()).steps
             if steps and not any(isinstance(s, ast.DoAgain) for s in steps):
                 return self.bind(steps * (step.times or 1))
-        raise Unresolved("What shall I do again?")
+        raise UnresolvedError("What shall I do again?")
 
     # Steps with steps inside -------------------------------------------------------------------------------------------
     def _repeat(self, step: ast.Repeat) -> Sequence[ast.Step]:
@@ -243,7 +251,9 @@ class Resolver:
 
     def _loop(self, step: ast.Loop) -> Sequence[ast.Step]:
         for inner in step.body:
-            named = inner.things[0] if isinstance(inner, ast.Count) else inner.thing if isinstance(inner, ast.ZoomTo) else ast.Thing()
+            named = (
+                inner.things[0] if isinstance(inner, ast.Count) else inner.thing if isinstance(inner, ast.ZoomTo) else ast.Thing()
+            )
             self.antecedent = named.text or self.antecedent
         until = self.condition(step.until)
         return [replace(step, until=until, body=self.bind(step.body), otherwise=self.bind(step.otherwise))]

@@ -10,18 +10,9 @@ import re
 import unicodedata
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import lru_cache
 
-from scope_ptz.planner.grammar.lexicon import (
-    COLOURS,
-    COMMAND_WORDS,
-    DIRECTION_WORDS,
-    NUMBER_WORDS,
-    REAL_WORDS,
-    SPELLING,
-    phrase_table,
-)
-from scope_ptz.planner.grammar.numbers import read_number
+from scope_ptz.planner.grammar.lexicon import NUMBER_WORDS, phrase_table, spelling, word_list
+from scope_ptz.planner.grammar.numerals import read_number
 
 _TOKEN = re.compile(
     r"""(?P<quote>"[^"\n]+"|“[^”\n]+”|(?<!\w)'[^'\n]+'(?!\w))
@@ -32,7 +23,7 @@ _TOKEN = re.compile(
       |(?P<dash>\s[-–—]+\s|[–—])""",
     re.VERBOSE,
 )
-_MARKS = {"mark": {",": "COMMA", ":": "COMMA", ";": "STOP", ".": "STOP", "!": "STOP", "?": "STOP", "\n": "STOP", "&": "AND", "(": "COMMA", ")": "COMMA"}}
+_MARKS = {**dict.fromkeys(",:()", "COMMA"), **dict.fromkeys(";.!?\n", "STOP"), "&": "AND"}
 SEPARATORS = ("COMMA", "AND", "THEN", "STOP")
 _BINDS_BACK = frozenset({"UNTIL", "OTHERWISE", "ATMOST", "EACHTIME"})
 _LONGEST_PHRASE = 9
@@ -67,7 +58,7 @@ def _words(text: str) -> list[_Word]:
         kind, start = match.lastgroup or "", match.start()
         if kind == "word":
             for part in re.finditer(r"[^\W\d_]+|\d+", match.group()):
-                word = SPELLING.get(part.group(), part.group())
+                word = spelling().get(part.group(), part.group())
                 out.append(_Word(word, start + part.start(), start + part.end(), "num" if word.isdigit() else "word"))
         elif kind == "quote":
             out.append(_Word(match.group(), start, match.end(), "quote"))
@@ -117,7 +108,7 @@ def distance_one(a: str, b: str) -> bool:
 
 def _respelled(word: str, candidates: Iterable[str]) -> str | None:
     """The one command word that a misspelt word can only mean, if there is exactly one."""
-    if len(word) < 3 or word in REAL_WORDS or (word,) in phrase_table():
+    if len(word) < 3 or word in word_list("real words") or (word,) in phrase_table():
         return None
     close = [c for c in candidates if len(c) >= 3 and distance_one(word, c)]
     return close[0] if len(close) == 1 else None
@@ -127,7 +118,7 @@ class Lexer:
     """Lexemes of a text, given the preset names that count as words of the language."""
 
     def __init__(self, presets: tuple[str, ...] = ()) -> None:
-        self._table: dict[tuple[str, ...], frozenset[str]] = _frozen_table()
+        self._table = phrase_table()
         self._presets = {key: name for name in presets if (key := preset_key(name)) and key not in self._table}
 
     def lexemes(self, text: str) -> list[Lexeme]:
@@ -143,7 +134,7 @@ class Lexer:
     def _next(self, words: list[_Word], i: int, before: list[Lexeme]) -> tuple[Lexeme | None, int]:
         word = words[i]
         if word.kind in {"mark", "arrow", "dash"}:
-            kind = _MARKS["mark"].get(word.text) or ("THEN" if word.kind == "arrow" else "COMMA")
+            kind = _MARKS.get(word.text) or ("THEN" if word.kind == "arrow" else "COMMA")
             return Lexeme(frozenset({kind}), word.start, word.end), i + 1
         if word.kind == "quote":
             return Lexeme(frozenset({"TEXT"}), word.start, word.end), i + 1
@@ -154,12 +145,23 @@ class Lexer:
             run.append(w.text)
         preset = self._longest([(preset_key(w) or (w,))[0] for w in run], self._presets) if self._presets else 0
         phrase = self._longest(run, self._table)
-        if before and phrase > 1 and run[0] in {"up", "down"} and before[-1].kinds & _TURNED and not self._table[tuple(run[:phrase])] & {"UP", "DOWN", *_DIAGONALS}:
+        if (
+            before
+            and phrase > 1
+            and run[0] in {"up", "down"}
+            and before[-1].kinds & _TURNED
+            and not self._table[tuple(run[:phrase])] & {"UP", "DOWN", *_DIAGONALS}
+        ):
             phrase = 1  # "tilt up to 10" is a direction, not a limit
         number = read_number(run, [(w.start, w.end) for w in words[i : i + len(run)]])
         if run[:2] == ["if", "you"] and phrase > 1 and "FILLER" in self._table[tuple(run[:phrase])] and phrase < len(run):
             phrase = 1  # "if you can see" is a condition, "if you can" at the end is politeness
-        if run[:1] == ["or"] and phrase > 1 and self._table[tuple(run[:phrase])] & {"ORMORE", "ORFEWER"} and not (before and "NUM" in before[-1].kinds):
+        if (
+            run[:1] == ["or"]
+            and phrase > 1
+            and self._table[tuple(run[:phrase])] & {"ORMORE", "ORFEWER"}
+            and not (before and "NUM" in before[-1].kinds)
+        ):
             phrase = 1
         if preset >= max(phrase, number.used, 1):
             return Lexeme(frozenset({"PRESETNAME"}), word.start, words[i + preset - 1].end), i + preset
@@ -190,7 +192,13 @@ class Lexer:
         after_turn = bool(before) and bool(before[-1].kinds & {"PAN", "TILT", "MOVE", "NUM", "DEG", "ZOOM"})
         if after_turn and word.text in _LETTERS:
             return Lexeme(self._table[(_LETTERS[word.text],)], word.start, word.end)
-        guess = _respelled(word.text, COMMAND_WORDS) if at_start else _respelled(word.text, DIRECTION_WORDS) if after_turn else None
+        guess = (
+            _respelled(word.text, word_list("commands"))
+            if at_start
+            else _respelled(word.text, word_list("directions"))
+            if after_turn
+            else None
+        )
         return Lexeme(self._table[(guess,)] if guess else frozenset({"TEXT"}), word.start, word.end)
 
     @staticmethod
@@ -211,7 +219,12 @@ def _append(out: list[Lexeme], lexeme: Lexeme) -> None:
             strongest = max(out[-1].kinds | lexeme.kinds, key=("AND", "COMMA", "THEN", "STOP").index)
             out[-1] = Lexeme(frozenset({strongest}), out[-1].start, lexeme.end)
             return
-    elif lexeme.kinds & _BINDS_BACK and out and out[-1].kinds <= {*SEPARATORS} and not ("ATMOST" in lexeme.kinds and "STOP" in out[-1].kinds):
+    elif (
+        lexeme.kinds & _BINDS_BACK
+        and out
+        and out[-1].kinds <= {*SEPARATORS}
+        and not ("ATMOST" in lexeme.kinds and "STOP" in out[-1].kinds)
+    ):
         out.pop()
     out.append(lexeme)
 
@@ -225,7 +238,7 @@ def _merge_text(lexemes: list[Lexeme], text: str) -> list[Lexeme]:
             left = text[out[-2].start : out[-2].end].lower().split()[-1]
             right = text[lexeme.start : lexeme.end].lower().split()[0].split("-")[0]
             follows = " " in text[lexeme.start : lexeme.end] or (i + 1 < len(lexemes) and "TEXT" in lexemes[i + 1].kinds)
-            if left in COLOURS and right in COLOURS and follows:
+            if left in word_list("colours") and right in word_list("colours") and follows:
                 out.pop()
                 out[-1] = Lexeme(out[-1].kinds, out[-1].start, lexeme.end)
                 continue
@@ -241,9 +254,3 @@ def preset_key(name: str) -> tuple[str, ...]:
     plain = unicodedata.normalize("NFKD", name.lower())
     words = re.findall(r"[^\W\d_]+|\d+", "".join(c for c in plain if not unicodedata.combining(c)))
     return tuple(str(int(NUMBER_WORDS[w])) if w in NUMBER_WORDS and NUMBER_WORDS[w] < 100 else w for w in words)
-
-
-@lru_cache(maxsize=1)
-def _frozen_table() -> dict[tuple[str, ...], frozenset[str]]:
-    return {words: frozenset(kinds) for words, kinds in phrase_table().items()}
-

@@ -9,7 +9,7 @@ from scope_ptz.planner.base import PastTurn
 from scope_ptz.planner.grammar import syntax as ast
 from scope_ptz.planner.grammar.offtopic import REFUSAL, is_about_the_scene, is_harmful
 from scope_ptz.planner.grammar.parse import parse
-from scope_ptz.planner.grammar.resolve import Resolver, Unresolved
+from scope_ptz.planner.grammar.resolve import Resolver, UnresolvedError
 
 _EXAMPLES = "'pan right 20 degrees', 'how many cars are there?', or 'zoom in on the sign and read it'"
 
@@ -34,7 +34,7 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
     steps = parse(instruction, known or ()).steps
     try:
         bound = resolver.bind(steps) if steps is not None else _as_question(resolver, instruction)
-    except Unresolved as question:
+    except UnresolvedError as question:
         return Understanding(clarification=str(question))
     if all(isinstance(step, ast.Forbid) for step in bound):
         return Understanding(clarification="I will not do that. What shall I do instead?")
@@ -50,5 +50,4 @@ def _as_question(resolver: Resolver, instruction: str) -> tuple[ast.Step, ...]:
     text = instruction.strip()
     if text.endswith("?") and len(text.split()) > 1 and text.count("?") == 1 and is_about_the_scene(text):
         return resolver.bind([ast.Ask(text)])
-    raise Unresolved(f"I did not understand that. Please say it another way, for example: {_EXAMPLES}.")
-
+    raise UnresolvedError(f"I did not understand that. Please say it another way, for example: {_EXAMPLES}.")

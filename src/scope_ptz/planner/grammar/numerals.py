@@ -72,7 +72,12 @@ def _cardinal(words: list[str]) -> tuple[float, int]:
         current, used = 1.0, 1
     while used < len(words):
         word = words[used]
-        if word == "and" and used and words[used - 1] in {"hundred", "thousand"} and NUMBER_WORDS.get(" ".join(words[used + 1 : used + 2]), 100) < 100:
+        if (
+            word == "and"
+            and used
+            and words[used - 1] in {"hundred", "thousand"}
+            and NUMBER_WORDS.get(" ".join(words[used + 1 : used + 2]), 100) < 100
+        ):
             used += 1
             continue
         if word not in NUMBER_WORDS:
