@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 
 from scope_ptz.geometry import Perspective, Projection, pan_tilt_deg
 from scope_ptz.world.models import ActorSheet, Extent, SceneActor, Sprite
-from scope_ptz.world.pack import Scene, Viewpoint
+from scope_ptz.world.pack import Scene
 from scope_ptz.world.reproject import Grid, step_px
 from scope_ptz.world.runs import measure
 from scope_ptz.world.tiles import Tiles
+from scope_ptz.world.viewpoint import Viewpoint
 
 TOLERANCE_M = 0.15
 TOLERANCE_SHARE = 0.01

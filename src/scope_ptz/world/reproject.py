@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from scope_ptz.geometry import Equirectangular, Perspective, Projection, pan_tilt_deg, wrap_pan_deg
 from scope_ptz.world.atlas import Atlas, Slot
 from scope_ptz.world.models import Band
-from scope_ptz.world.pack import Viewpoint
 from scope_ptz.world.tiles import Place, Showing, Tiles
+from scope_ptz.world.viewpoint import Viewpoint
 
 MAX_MAP_ERROR_PX = 0.04
 """Largest error of an interpolated map, in pixels of the view."""

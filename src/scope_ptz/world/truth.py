@@ -13,8 +13,9 @@ from scope_ptz.errors import PackError
 from scope_ptz.geometry import Equirectangular, Projection, angle_between_deg, direction, pan_tilt_deg
 from scope_ptz.world.actors import appearances, extent
 from scope_ptz.world.models import Extent, SceneActor, SceneInstance, SceneText
-from scope_ptz.world.pack import Scene, Viewpoint
+from scope_ptz.world.pack import Scene
 from scope_ptz.world.runs import measure
+from scope_ptz.world.viewpoint import Viewpoint
 from scope_ptz.world.views import instance_numbers
 
 MIN_VISIBLE_PX = 100

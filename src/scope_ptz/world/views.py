@@ -7,8 +7,9 @@ from numpy.typing import NDArray
 
 from scope_ptz.geometry import Projection
 from scope_ptz.world.actors import Appearance, appearances, draw, shows
-from scope_ptz.world.pack import Scene, Viewpoint
+from scope_ptz.world.pack import Scene
 from scope_ptz.world.reproject import colour_view, id_view, outlined_depth_view
+from scope_ptz.world.viewpoint import Viewpoint
 
 
 def picture(scene: Scene, viewpoint: str, projection: Projection, time_s: float) -> NDArray[np.uint8]:

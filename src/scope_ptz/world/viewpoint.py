@@ -1,0 +1,176 @@
+"""One optical centre: its layers, read on demand and checked, and the sheets from which views are taken."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from functools import cached_property
+from pathlib import Path
+from threading import RLock
+from typing import TypeVar
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ValidationError
+
+from scope_ptz.errors import PackError
+from scope_ptz.geometry import Perspective
+from scope_ptz.world import layers
+from scope_ptz.world.atlas import Atlas, Scale
+from scope_ptz.world.models import FORMAT_VERSION, ActorSheet, Extent, Layer, Manifest, SceneFile, SceneViewpoint
+from scope_ptz.world.tiles import Tiles
+
+COLOUR_SCALES = (
+    Scale(1.0, sharpening=0.6),
+    Scale(1.0, sharpening=0.1),
+    Scale(2**-0.5, sharpening=0.3),
+    Scale(2**-1.0),
+    Scale(2**-1.5, sharpening=0.15),
+    Scale(2**-2.0),
+    Scale(2**-2.5, sharpening=0.15),
+    Scale(2**-3.0),
+)
+"""Scales at which colour is kept, half an octave apart, so that no view samples its source much too finely. The first is for views
+about as dense as the stored picture or denser. Sharpening makes up for what shrinking and bilinear look-up blur; the amounts bring
+the Laplacian variance of views nearest to that of directly rendered ones."""
+
+_File = TypeVar("_File", bound=BaseModel)
+
+
+class Viewpoint:
+    """A viewpoint folder. Layers are read on demand; each read is checked against the manifest."""
+
+    def __init__(self, folder: Path, scene: SceneFile, place: SceneViewpoint) -> None:
+        self.folder = folder
+        self.manifest = manifest = read_json(folder / "manifest.json", Manifest)
+        self.name = place.name
+        self._sheets: dict[int, tuple[NDArray[np.uint8], NDArray[np.uint16]]] = {}
+        self._lock = RLock()
+        if (manifest.scene, manifest.viewpoint, manifest.scene_version) != (scene.name, place.name, scene.version):
+            raise PackError(
+                f"{folder} was baked for viewpoint '{manifest.viewpoint}' of scene '{manifest.scene}' version "
+                f"{manifest.scene_version}, but lies in '{place.name}' of '{scene.name}' version {scene.version}. Bake it again."
+            )
+
+        tiles = manifest.tiles
+        self.tiles = Tiles([Perspective(t.pan_deg, t.tilt_deg, t.hfov_deg, t.colour.width, t.colour.height) for t in tiles])
+        colours, ids = [manifest.base, *(t.colour for t in tiles)], [manifest.ids, *(t.ids for t in tiles)]
+        self.colour_atlas = Atlas([_size(c) for c in colours], lambda i: self.colour(colours[i]), np.uint8, 3, COLOUR_SCALES)
+        self.id_atlas = Atlas([_size(n) for n in ids], lambda i: self.ids(ids[i]), np.uint16, 1)
+        self.depth_atlas = Atlas([_size(manifest.depth)], lambda _: self.depth(manifest.depth), np.uint16, 1)
+        self.owner_atlas = Atlas([_size(manifest.depth)], lambda _: self._owners(), np.uint16, 1)
+
+    @cached_property
+    def position_m(self) -> NDArray[np.float64]:
+        """World position of the optical centre."""
+        return np.array(self.manifest.position_m, dtype=np.float64)
+
+    @cached_property
+    def world_to_camera(self) -> NDArray[np.float64]:
+        """(3, 3) rotation from world axes (x east, y north) to the camera's own frame (y forward at pan 0)."""
+        bearing = np.radians(self.manifest.pan0_bearing_deg)
+        c, s = np.cos(bearing), np.sin(bearing)
+        return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+    @cached_property
+    def extents(self) -> dict[int, Extent]:
+        """Whole silhouettes of the instances that can be seen from here, by number."""
+        return {extent.number: extent for extent in self.manifest.extents}
+
+    def offset(self, points_m: NDArray[np.float64]) -> NDArray[np.float64]:
+        """World points (..., 3) as vectors from the optical centre in the camera's own frame, metres."""
+        return np.asarray((points_m - self.position_m) @ self.world_to_camera.T)
+
+    def colour(self, layer: Layer) -> NDArray[np.uint8]:
+        """(H, W, 3) RGB, or (H, W, 4) for the sheets of actors."""
+        return self._sized(layer, layers.read_colour(self._verified(layer)))
+
+    def ids(self, layer: Layer) -> NDArray[np.uint16]:
+        """(H, W) instance numbers, 0 = nothing annotated."""
+        return self._sized(layer, layers.read_ids(self._verified(layer)))
+
+    def depth(self, layer: Layer) -> NDArray[np.uint16]:
+        """(H, W) distance codes; see ``depth_metres``."""
+        return self._sized(layer, layers.read_ids(self._verified(layer)))
+
+    @cached_property
+    def depth_metres(self) -> NDArray[np.float32]:
+        """(65536,) table from a distance code to metres; the sky is infinitely far."""
+        depth = self.manifest.depth
+        return layers.decode_depth(np.arange(65536).astype(np.uint16), depth.near_m, depth.far_m)
+
+    def sprites(self, sheet: ActorSheet) -> tuple[NDArray[np.uint8], NDArray[np.uint16]]:
+        """An actor's sheet: (H, W, 4) colour premultiplied by alpha, and (H, W) distance codes. Read once and shared."""
+        with self._lock:
+            if sheet.number not in self._sheets:
+                colour = self.colour(sheet.colour)
+                if colour.shape[2] != 4:
+                    raise PackError(f"{self.folder / sheet.colour.file} has no transparency: no sheet of sprites. Bake it again.")
+                codes = self.depth(sheet.depth)
+                self._sheets[sheet.number] = _premultiplied(colour, codes > 0), codes
+            return self._sheets[sheet.number]
+
+    def _owners(self) -> NDArray[np.uint16]:
+        """As large as the depth layer: the instance on which each of its distances was measured."""
+        slot, depth = self.id_atlas.need(0), self.manifest.depth
+        rows = slot.y + ((np.arange(depth.height) + 0.5) / depth.height * slot.height).astype(int)
+        columns = slot.x + ((np.arange(depth.width) + 0.5) / depth.width * slot.width).astype(int)
+        return np.ascontiguousarray(self.id_atlas.sheet[rows[:, None], columns])
+
+    def _verified(self, layer: Layer) -> Path:
+        path = (self.folder / layer.file).resolve()
+        if not path.is_relative_to(self.folder.resolve()):
+            raise PackError(f"{self.folder / 'manifest.json'} names a file outside its folder: {layer.file}. Do not use this pack.")
+        try:
+            digest = hashlib.sha256(path.read_bytes()).hexdigest()
+        except OSError as error:
+            raise PackError(f"{path} is missing or cannot be read ({error.strerror}). Restore it or bake again.") from error
+        if digest != layer.sha256:
+            raise PackError(f"{path} is damaged: its checksum differs from the manifest. Restore the pack or bake it again.")
+        return path
+
+    def _sized(self, layer: Layer, image: NDArray[np.generic]) -> NDArray:  # type: ignore[type-arg]
+        if image.shape[:2] != (layer.height, layer.width):
+            raise PackError(
+                f"{self.folder / layer.file} is {image.shape[1]}x{image.shape[0]} pixels, its manifest says "
+                f"{layer.width}x{layer.height}. Bake it again."
+            )
+        image.flags.writeable = False
+        return image
+
+
+def _premultiplied(colour: NDArray[np.uint8], own: NDArray[np.bool_]) -> NDArray[np.uint8]:
+    """(H, W, 4) colour times alpha. Lossy coding mixes the black of empty pixels into an actor's half-covered edge: that takes
+    its colour from the covered pixels beside it."""
+    rgb, alpha = colour[..., :3].astype(np.float32), colour[..., 3]
+    covered = (own & (alpha > 250)).astype(np.float32)
+    share = cv2.blur(covered, (5, 5))
+    inward = cv2.blur(rgb * covered[..., None], (5, 5)) / np.maximum(share, 1e-6)[..., None]
+    edge = own & (alpha <= 250) & (share > 0.1)
+    rgb[edge] = inward[edge]
+    rgb *= alpha[..., None] / np.float32(255)
+    return np.dstack([np.rint(rgb).astype(np.uint8), alpha])
+
+
+def _size(layer: Layer) -> tuple[int, int]:
+    return layer.width, layer.height
+
+
+def read_json(path: Path, model: type[_File]) -> _File:
+    """A validated file of a pack; ``PackError`` says what is wrong with it."""
+    try:
+        content = json.loads(path.read_bytes())
+    except OSError as error:
+        raise PackError(f"{path} is missing or cannot be read ({error.strerror}). Restore it or bake again.") from error
+    except ValueError as error:
+        raise PackError(f"{path} is no valid JSON ({error}). Restore the pack or bake it again.") from error
+    version = content.get("format") if isinstance(content, dict) else None
+    if isinstance(version, int) and version > FORMAT_VERSION:
+        raise PackError(f"{path} has format {version}, this program reads up to {FORMAT_VERSION}. Install a newer scope-ptz.")
+    try:
+        return model.model_validate(content)
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(str(part) for part in first["loc"])
+        raise PackError(f"{path} is not as it should be: {where}: {first['msg']}. Restore the pack or bake it again.") from error
