@@ -7,7 +7,8 @@
 - *near, next to*: no more than 4 m of air between the two in the world.
 - *on, in, at, of*: a part of it, or standing on its ground plan without reaching below it.
 - *on the left*: the middle lies in the left 40% of the frame; *half*: in that half; *corner*: in both 40% bands; *middle*: the
-  middle 40%. *In the foreground*, *in the distance*: the nearest and furthest third of the depth in view, on a logarithmic scale.
+  middle 40% across, without the top and bottom tenth. *In the foreground*, *in the distance*: the nearest and furthest third of
+  the depth in view, on a logarithmic scale.
 """
 
 from __future__ import annotations

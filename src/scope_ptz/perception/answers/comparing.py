@@ -7,6 +7,7 @@ from collections import Counter
 from scope_ptz.perception.answers.naming import Reply, metres, name, place, reply, unknown
 from scope_ptz.perception.answers.values import value_of
 from scope_ptz.perception.answers.wording import COMPARATIVES, none_of, noun, the
+from scope_ptz.perception.facts import colour_of
 from scope_ptz.perception.language import syntax as s
 from scope_ptz.perception.language import words as w
 from scope_ptz.perception.matching import find, find_phrase
@@ -103,12 +104,14 @@ def count_kinds(view: View, question: s.CountKinds) -> Reply:
     colour = question.attribute == ("colour",)
     values = Counter(v for t in find(view, question.what) if (v := _kind(t, colour)) is not None)
     many = "" if len(values) == 1 else "s"
+    anything = question.what.phrases[0].words == ("thing",)
+    of = "" if anything else f" of {noun(view, question.what)}"
     listed = f": {w.listing(list(values))}" if values else ""
-    return reply(f"I can see {len(values)} {'colour' if colour else 'kind'}{many} of {noun(view, question.what)}{listed}")
+    return reply(f"I can see {len(values)} {'colour' if colour else 'kind'}{many}{of}{listed}")
 
 
 def _kind(thing: Thing, colour: bool) -> str | None:
-    return value_of(thing, ("colour",)) if colour else str(thing.attributes.get("kind", thing.category))
+    return colour_of(thing) if colour else str(thing.attributes.get("kind", thing.category))
 
 
 def most_common(view: View, question: s.MostCommon) -> Reply:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from scope_ptz.perception.answers.naming import Reply, are, reply, several, unknown
+from scope_ptz.perception.answers.naming import Reply, are, name, reply, several, unknown
 from scope_ptz.perception.answers.wording import holds_words, none_of, not_told, noun
+from scope_ptz.perception.facts import wears
 from scope_ptz.perception.language import syntax as s
 from scope_ptz.perception.language import words as w
 from scope_ptz.perception.matching import find
@@ -31,9 +32,19 @@ def exists(view: View, question: s.Exists) -> Reply:
     if question.least != 1 or question.most is not None:
         yes = question.least <= len(found) and (question.most is None or len(found) <= question.most)
         return reply(f"{'yes' if yes else 'no'}, there {are(len(found))} {len(found)} {noun(view, question.what, len(found) != 1)}")
+    if not found and not question.negated and (owner := _owner(view, question.what)) is not None:
+        return reply(f"yes, the {name(owner)} has {w.article(' '.join(question.what.phrases[0].words))}")
     if not found:
         return reply(f"{'yes' if question.negated else 'no'}, {none_of(view, question.what)}")
     return reply(f"{'no' if question.negated else 'yes'}, {there_are(view, question.what, found)}")
+
+
+def _owner(view: View, what: s.Description) -> Thing | None:
+    """ "A beacon on the van" may be a fact of the van rather than a thing of its own."""
+    phrase = what.phrases[0]
+    if len(what.phrases) != 1 or len(phrase.tests) != 1 or not isinstance(test := phrase.tests[0], s.Relation) or test.kind != "on":
+        return None
+    return next((t for t in find(view, test.other) if wears(view, t, phrase.words)), None)
 
 
 def there_are(view: View, what: s.Description, found: list[Thing]) -> str:

@@ -136,7 +136,11 @@ class Builder(NounPhrases):
             return found[0]
         part, owner = found
         phrase = part.phrases[0]
-        return s.Description((s.Phrase(phrase.words, (*phrase.tests, s.Relation("on", owner))),))
+        words = tuple(x for x in phrase.words if x not in {"colour", "color", "colours", "colors"})
+        return s.Description((s.Phrase(words, (*phrase.tests, s.Relation("on", owner))),))
+
+    def colours_seen(self, c: Children) -> s.CountKinds:
+        return s.CountKinds(("colour",), s.Description((s.Phrase(("thing",), tests_of(c)),)))
 
     def ask_worn(self, c: Children) -> s.Ask:
         held = value_of(c, "WITH")
@@ -155,6 +159,9 @@ class Builder(NounPhrases):
 
     def ask_of(self, c: Children) -> s.Ask:
         attribute, what = descriptions(c)
+        words = attribute.phrases[0].words
+        if len(words) > 1 and words[-1] in {"colour", "color"}:  # "the helmet colour of the worker"
+            return s.Ask(("colour",), self._owned([s.Description((s.Phrase(words[:-1]),)), what]))
         return s.Ask(attribute.phrases[0].words, what)
 
     def read(self, c: Children) -> s.Read:

@@ -10,9 +10,9 @@ from scope_ptz.perception.language import syntax as s
 from scope_ptz.perception.language.lexicon import lexicon, nouns_in
 
 _SPECIFIC: tuple[type[Any], ...] = (
-    s.CompareCount, s.Compare, s.Which, s.HowFar, s.MostCommon, s.TextExists, s.Read, s.IsA, s.Where, s.Count, s.Happening,
+    s.CompareCount, s.Compare, s.Which, s.HowFar, s.MostCommon, s.TextExists, s.Read, s.IsA, s.Where, s.Count, s.CountKinds,
+    s.Happening,
 )  # fmt: skip
-
 
 _TEXTS = frozenset(
     [
@@ -57,6 +57,8 @@ def _cost(node: Any) -> float:
             total += 0.2 * max(0, len(node.tests) - 1)
         case s.Is(words=words):
             total += 3.0 if nouns_in(words) else 0.5
+        case s.Which(options=s.Description(phrases=(_,))):
+            total += 24.0  # "who is nearest the van" does not ask about the van
         case s.Order(reference=reference):
             total += 3.0 if reference is not None else 0.0
         case s.Ask(attribute=words):

@@ -11,7 +11,8 @@ from lark.visitors import CollapseAmbiguities
 
 from scope_ptz.perception.language.build import Builder
 from scope_ptz.perception.language.choose import cost
-from scope_ptz.perception.language.syntax import Description, Phrase, Question
+from scope_ptz.perception.language.lexicon import nouns_in
+from scope_ptz.perception.language.syntax import Description, Exists, Phrase, Question
 from scope_ptz.perception.language.tokens import Passed, tokenise
 
 MAX_TOKENS = 40
@@ -41,8 +42,11 @@ def parse_description(text: str) -> Description:
 @lru_cache(maxsize=512)
 def parse_question(text: str) -> Question | None:
     """The best reading of a question, None when it fits no rule."""
-    found = _best(text, "question")
-    return None if isinstance(found, Description) else found
+    found = _best(text, "question") or _best(text, "description")
+    if not isinstance(found, Description):
+        return found
+    known = all(nouns_in(p.words) for p in found.phrases)  # "any vehicles?" without its verb
+    return Exists(found) if known else None
 
 
 def _best(text: str, start: str) -> Description | Question | None:
