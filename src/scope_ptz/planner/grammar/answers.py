@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from scope_ptz.planner.grammar.syntax import Condition, Holds, Joined, Negated, Outnumbers, Quantity, Readable, Seen
+from scope_ptz.planner.grammar.syntax import Condition, Holds, Joined, Negated, Outnumbers, PresetWins, Quantity, Readable, Seen
 
 _WORDS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
 _IRREGULAR = {
@@ -145,6 +145,8 @@ def condition_text(condition: Condition) -> str:
         return f"could read the {condition.thing.text}"
     if isinstance(condition, Holds):
         return f"saw that the {condition.subject.text} is {'' if condition.wanted else 'not '}{condition.predicate}"
+    if isinstance(condition, PresetWins):
+        return f"saw {condition.wish} {condition.thing.text} at {condition.first.name} than at {condition.second.name}"
     if isinstance(condition, Outnumbers):
         return f"saw {condition.wish} {condition.first.text} than {condition.second.text}"
     if isinstance(condition, Negated):

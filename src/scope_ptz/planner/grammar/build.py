@@ -187,7 +187,7 @@ class Builder(MoveRules, SceneRules):
     def report(self, node: Node) -> Step:
         return Report()
 
-    def forbid(self, node: Node) -> Step:
+    def forbidden(self, node: Node) -> Step:
         return Forbid()
 
     def do_times(self, node: Node) -> Step:

@@ -157,7 +157,9 @@ class MoveRules(Rules):
     pan_more = pan_only
     tilt_more = tilt_only
 
-    def turn_round(self, node: Node) -> tuple[Part, ...]:
+    def turn_round(self, node: Node) -> tuple[Part, ...] | Unclear:
+        if node.has("AROUND") and self.words_of(node.leaves()[0]).startswith("pan"):
+            return Unclear("How far shall I pan, and which way?")
         return (Turn("pan", 1, Amount("degrees", 180.0)),)
 
     def straight_down(self, node: Node) -> tuple[Part, ...]:
@@ -228,6 +230,9 @@ class MoveRules(Rules):
     def zoom_rel(self, node: Node) -> tuple[Part, ...]:
         sign = next(self.visit(b) for b in node.branches() if b.name in {"zin", "zout"})
         return self._zoomed(node, sign)
+
+    def zoom_limit(self, node: Node) -> tuple[Part, ...]:
+        return (Zoom("in" if self.visit(node.branches()[0]) > 0 else "out"),)
 
     def zoom_more(self, node: Node) -> tuple[Part, ...]:
         return self._zoomed(node, 1)

@@ -24,6 +24,7 @@ from scope_ptz.planner.grammar.syntax import (
     Negated,
     Outnumbers,
     PresetRef,
+    PresetWins,
     Quantity,
     Read,
     Readable,
@@ -77,6 +78,10 @@ class SceneRules(Rules):
         return "current" if "now" in names else "full" if "full" in names else None
 
     # Things ------------------------------------------------------------------------------------------------------------
+    def fill_with(self, node: Node) -> Step:
+        """ "Zoom in until the truck fills the frame" is what zooming in on it does."""
+        return ZoomTo(self._thing(node))
+
     def zoom_to(self, node: Node) -> Step:
         return ZoomTo(self._thing(node))
 
@@ -196,6 +201,8 @@ class SceneRules(Rules):
         thing = self._thing(node)
         leaves = node.branches("words")[0].all_leaves()
         rest = self.text(leaves)
+        if not thing.text:
+            return Count((Thing(f"{rest} ones"),), self._view(node))
         adjective = " " not in rest and leaves[0].kind == "WORD" and not rest.endswith("ing")
         return Count((Thing(f"{rest} {thing.text}" if adjective else f"{thing.text} {rest}"),), self._view(node))
 
@@ -209,6 +216,12 @@ class SceneRules(Rules):
 
     def read(self, node: Node) -> Step:
         return Read(self._thing(node), self._view(node))
+
+    def read_all(self, node: Node) -> tuple[Step, ...]:
+        return tuple(Read(thing) for thing in self._things(node))
+
+    def read_what(self, node: Node) -> Step:
+        return Ask(f"what is {self.text(node.branches('words')[0].all_leaves())}?")
 
     def read_pronoun(self, node: Node) -> Step:
         return Read(Thing())
@@ -260,6 +273,14 @@ class SceneRules(Rules):
 
     def holds_not(self, node: Node) -> Condition:
         return Holds(self._thing(node), self.text(node.branches("words")[0].all_leaves()), wanted=False)
+
+    def says(self, node: Node) -> Condition:
+        said = self.text(node.branches("words")[0].all_leaves())
+        return Holds(self._thing(node), said, question=f"does the {self._thing(node).text} say {said}?")
+
+    def preset_wins(self, node: Node) -> Condition:
+        first, second = (self.visit(b) for b in node.branches("named", "numbered", "marked"))
+        return PresetWins(self._thing(node), first, second, self._wish(node))
 
     def outnumbers(self, node: Node) -> Condition:
         first, second = self._things(node)[:2]

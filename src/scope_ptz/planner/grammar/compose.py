@@ -57,7 +57,7 @@ def _add(out: list[Step], link: str, step: Step) -> None:
         out[-1:] = [replace(step, body=(joined[0], *step.body[1:]))] if len(joined) == 1 else [*joined[:-1], step]
     elif isinstance(step, Move) and link == "and" and isinstance(last, Move):
         out[-1:] = _joined(last, step)
-    elif isinstance(last, AtPlaces) and not last.body and not last.places:
+    elif isinstance(last, AtPlaces) and not last.body and (link == "and" or not last.places):
         out[-1] = replace(last, body=(step,))
     elif isinstance(last, AtPlaces) and last.body and link == "and" and not isinstance(step, GoPreset | Home | AtPlaces):
         out[-1] = replace(last, body=tuple(compose([Linked("and", step)], last.body)))

@@ -38,8 +38,16 @@ class Judging(Session):
         if isinstance(condition, ast.Readable):
             result = yield from self._needed("query_answer", question=reading(condition.thing.text), view="current")
             return bool(result.get("known")), result["answer"]
+        if isinstance(condition, ast.PresetWins):
+            counts = []
+            for place in (condition.first, condition.second):
+                yield from self._moved("go_to_preset", name=place.name)
+                counts.append((yield from self._counted(condition.thing.text, "current")))
+            first, second = (f"{say.counted(condition.thing.text, n)}" for n in counts)
+            met = counts[0] > counts[1] if condition.wish == "more" else counts[0] < counts[1]
+            return met, f"I can see {first} at {condition.first.name} and {second} at {condition.second.name}"
         subject = f"the {condition.subject.text}" if condition.subject.definite else condition.subject.text
-        result = yield from self._needed("query_answer", question=f"is {subject} {condition.predicate}?", view="current")
+        result = yield from self._needed("query_answer", question=condition.question or f"is {subject} {condition.predicate}?", view="current")
         said = result["answer"].strip().lower()
         if not result.get("known", True) or not said.startswith(("yes", "no")):
             return False, f"I cannot tell whether {subject} is {condition.predicate}: {result['answer']}"

@@ -103,6 +103,8 @@ class Resolver:
     def thing(self, thing: ast.Thing) -> ast.Thing:
         if thing.odd and not (_ONES.search(thing.text) and self.antecedent):
             raise UnresolvedError(f"I did not understand '{thing.text}'. Which thing do you mean?")
+        if thing.text.endswith((" one", " ones")) and not self.antecedent:
+            raise UnresolvedError(f"Which things do you mean by '{thing.text}'?")
         if thing.text:
             text = self._with_noun(thing.text)
             self.antecedent = text
@@ -162,6 +164,8 @@ class Resolver:
             return [ast.ZoomTo(self.thing(ast.Thing(ref.name, definite=True)))]
         if step.how == "show" and not ref.sure and found is None:
             return [ast.ZoomTo(self.thing(ast.Thing(ref.name)))]
+        if step.how == "bare" and found is None and ref.determined and self.conversation:
+            return self._whatabout(ast.WhatAbout(ast.Thing(re.sub(r"^(the|an?) ", "", ref.name))))
         if step.how == "bare" and found is None and not ref.sure:
             raise UnresolvedError(f"I did not understand '{ref.name}'. Please say it another way, or name one of the presets.")
         return [ast.GoPreset(self.place(ref))]
@@ -302,6 +306,9 @@ class Resolver:
             return replace(condition, first=self.thing(condition.first), second=self.thing(condition.second))
         if isinstance(condition, ast.Answered):
             return condition
+        if isinstance(condition, ast.PresetWins):
+            places = self.place(condition.first), self.place(condition.second)
+            return replace(condition, thing=self.thing(condition.thing), first=places[0], second=places[1])
         if isinstance(condition, ast.Negated):
             return ast.Negated(self.condition(condition.part))
         return replace(condition, parts=tuple(self.condition(part) for part in condition.parts))

@@ -172,11 +172,13 @@ class Readable:
 
 @dataclass(frozen=True, slots=True)
 class Holds:
-    """A yes-or-no question about the scene; ``wanted``: the answer that meets the condition. ``subject``: a pronoun to fill in."""
+    """A yes-or-no question about the scene; ``wanted``: the answer that meets the condition. ``question``:
+    where it is not "is it so?"."""
 
     subject: Thing
     predicate: str
     wanted: bool = True
+    question: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,6 +187,16 @@ class Outnumbers:
 
     first: Thing
     second: Thing
+    wish: Wish = "more"
+
+
+@dataclass(frozen=True, slots=True)
+class PresetWins:
+    """One preset shows more (or fewer) of a thing than another."""
+
+    thing: Thing
+    first: PresetRef
+    second: PresetRef
     wish: Wish = "more"
 
 
@@ -206,7 +218,7 @@ class Negated:
     part: Condition
 
 
-Condition = Answered | Seen | Readable | Holds | Outnumbers | Joined | Negated
+Condition = Answered | PresetWins | Seen | Readable | Holds | Outnumbers | Joined | Negated
 
 
 @dataclass(frozen=True, slots=True)

@@ -56,6 +56,8 @@ def _words(text: str) -> list[_Word]:
     lowered = "".join(c.lower() if len(c.lower()) == 1 else c for c in text)
     for match in _TOKEN.finditer(lowered):
         kind, start = match.lastgroup or "", match.start()
+        if match.group() in word_list("dropped"):
+            continue
         if kind == "word":
             for part in re.finditer(r"[^\W\d_]+|\d+", match.group()):
                 word = spelling().get(part.group(), part.group())

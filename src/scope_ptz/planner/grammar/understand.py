@@ -36,8 +36,8 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
         bound = resolver.bind(steps) if steps is not None else _as_question(resolver, instruction)
     except UnresolvedError as question:
         return Understanding(clarification=str(question))
-    if all(isinstance(step, ast.Forbid) for step in bound):
-        return Understanding(clarification="I will not do that. What shall I do instead?")
+    if all(isinstance(step, ast.Forbid | ast.Report) for step in bound):
+        return Understanding(clarification="Then I do nothing. What shall I do instead?")
     if all(isinstance(step, ast.Sweep) and step.turn for step in bound):
         bound = (ast.Move((ast.Turn("pan", 1, ast.Amount("degrees", 360.0)),)),)
     if all(isinstance(step, ast.Sweep | ast.Forbid) for step in bound):
