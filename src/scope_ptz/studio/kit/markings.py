@@ -22,7 +22,7 @@ class Line:
 class Patch:
     """A rectangle of other pavement: ``u`` across the road, ``v`` along it, both in metres.
 
-    ``kind`` is "repair" (old dark patch with sealed joints), "fresh" (new black asphalt), or "milled" (planed off, awaiting asphalt).
+    ``kind`` is "repair" (old dark patch with sealed joints), "fresh" (new black asphalt), or "milled" (planed off).
     """
 
     kind: str

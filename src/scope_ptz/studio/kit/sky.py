@@ -51,9 +51,7 @@ def _sun(bearing_deg: float, elevation_deg: float, strength: float) -> None:
     lamp = bpy.data.objects.new("Sun", light)
     bpy.context.scene.collection.objects.link(lamp)
     bearing, elevation = math.radians(bearing_deg), math.radians(elevation_deg)
-    towards = Vector(
-        (math.sin(bearing) * math.cos(elevation), math.cos(bearing) * math.cos(elevation), math.sin(elevation))
-    )
+    towards = Vector((math.sin(bearing) * math.cos(elevation), math.cos(bearing) * math.cos(elevation), math.sin(elevation)))
     lamp.rotation_euler = towards.to_track_quat("Z", "Y").to_euler()
 
 
@@ -102,7 +100,8 @@ def _clouds(s: Shader, x: Value, y: Value, height: Value, clear: Value, cover: f
 def finish_materials(*, visibility_m: float = 3600.0, spare: tuple[str, ...] = ()) -> None:
     """Last step of a scene: aerial haze on every material, and no mesh sampled as a lamp (which would only add noise).
 
-    ``visibility_m`` is the distance at which 63% of a thing's light is replaced by haze. Materials named in ``spare`` stay as they are.
+    ``visibility_m`` is the distance at which 63% of a thing's light is replaced by haze. Materials named in ``spare``
+    stay as they are.
     """
     for material in bpy.data.materials:
         if material.name in spare or material.node_tree is None:

@@ -65,7 +65,7 @@ def _grow(sp: Species, rng: random.Random) -> tuple[list[Limb], list[tuple[Vecto
     trunk = [Vector((0, 0, -0.1))]
     lean = Vector((rng.uniform(-0.05, 0.05), rng.uniform(-0.05, 0.05), 1))
     top = sp.height_m * (0.97 if sp.crown in ("cone", "column", "weeping") else 0.80)
-    for k in range(8):
+    for _ in range(8):
         lean += Vector((rng.uniform(-0.06, 0.06), rng.uniform(-0.06, 0.06), 0))
         trunk.append(trunk[-1] + lean.normalized() * (top / 8))
     limbs.append((trunk, girth, girth * 0.18))
@@ -114,7 +114,9 @@ def _droop(sp: Species) -> float:
     return {"round": -0.03, "column": 0.12, "cone": -0.06, "weeping": -0.22}[sp.crown]
 
 
-def _limb(start: Vector, heading: Vector, length: float, rng: random.Random, steps: int, wander: float, lift: float) -> list[Vector]:
+def _limb(
+    start: Vector, heading: Vector, length: float, rng: random.Random, steps: int, wander: float, lift: float
+) -> list[Vector]:
     points, direction = [start.copy()], heading.copy()
     for _ in range(steps):
         direction += Vector((rng.uniform(-wander, wander), rng.uniform(-wander, wander), rng.uniform(-wander, wander) + lift))
@@ -187,8 +189,13 @@ def cards(
     length = size_m * gen.uniform(0.65, 1.25, size=(n, 1))
     lift = np.cross(side, axis) * length * 0.12
     quad = np.stack(
-        [centres, centres + axis * length * 0.5 + side * length * slim / 2 + lift, centres + axis * length,
-         centres + axis * length * 0.5 - side * length * slim / 2 + lift], axis=1
+        [
+            centres,
+            centres + axis * length * 0.5 + side * length * slim / 2 + lift,
+            centres + axis * length,
+            centres + axis * length * 0.5 - side * length * slim / 2 + lift,
+        ],
+        axis=1,
     )
     return quad.reshape(-1, 3), np.arange(4 * n).reshape(n, 4), np.repeat(gen.random(n), 4)
 
@@ -208,9 +215,7 @@ def _combine(name: str, parts: Sequence[Part], tints: np.ndarray) -> bpy.types.O
     mesh.loops.foreach_set("vertex_index", quads.ravel())
     mesh.polygons.add(len(quads))
     mesh.polygons.foreach_set("loop_start", np.arange(0, quads.size, 4, dtype=np.int32))
-    mesh.polygons.foreach_set(
-        "material_index", np.repeat(np.arange(len(parts)), [len(f) for _, f, _ in parts]).astype(np.int32)
-    )
+    mesh.polygons.foreach_set("material_index", np.repeat(np.arange(len(parts)), [len(f) for _, f, _ in parts]).astype(np.int32))
     smooth = np.repeat([i < len(parts) - 1 for i in range(len(parts))], [len(f) for _, f, _ in parts])
     mesh.update(calc_edges=True)
     mesh.polygons.foreach_set("use_smooth", smooth)
@@ -330,7 +335,7 @@ def grass_material() -> bpy.types.Material:
     s = Shader("grass blades")
     tint = s.node("ShaderNodeAttribute", attribute_name="tint").outputs["Fac"]
     place = s.noise(s.position(), 0.5, detail=3.0)
-    colour = s.mix(tint, (0.095, 0.135, 0.032), (0.215, 0.250, 0.080))
+    colour = s.mix(tint, (0.135, 0.178, 0.045), (0.270, 0.305, 0.100))
     dry = s.math("MULTIPLY", s.ramp(place, 0.45, 0.68), s.ramp(tint, 0.2, 0.9))
     colour = s.mix(dry, colour, (0.30, 0.26, 0.13))
     return s.surface(base_color=colour, roughness=0.6, specular_ior_level=0.2)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import random
+from collections.abc import Callable
 
 from scope_ptz.studio.kit import machines, people, works
 from scope_ptz.studio.kit.stage import Built, Stage
@@ -37,7 +38,7 @@ class Moulds:
     def __init__(self) -> None:
         self._made: dict[str, Built] = {}
 
-    def get(self, key: str, make) -> Built:  # type: ignore[no-untyped-def]
+    def get(self, key: str, make: Callable[[], Built]) -> Built:
         if key in self._made:
             return self._made[key].copy()
         self._made[key] = make()
@@ -51,9 +52,16 @@ def _cones(stage: Stage) -> None:
         built = moulds.get("cone", lambda: works.cone(1.0))
         lean = (rng.uniform(-2.5, 2.5), rng.uniform(-2.5, 2.5))
         stage.place(
-            built, "traffic cone", "traffic cone", (x + rng.uniform(-0.06, 0.06), y, 0), rng.uniform(0, 90), lean_deg=lean,
-            colour="orange", height_m=1.0, part_of=part,
-        )  # fmt: skip
+            built,
+            "traffic cone",
+            "traffic cone",
+            (x + rng.uniform(-0.06, 0.06), y, 0),
+            rng.uniform(0, 90),
+            lean_deg=lean,
+            colour="orange",
+            height_m=1.0,
+            part_of=part,
+        )
 
 
 def _barriers(stage: Stage) -> None:
@@ -61,19 +69,55 @@ def _barriers(stage: Stage) -> None:
     for k in range(14):
         colour = ("red", "white")[k % 2]
         built = moulds.get(colour, lambda colour=colour: works.water_barrier(colour))
-        stage.place(built, "barrier", f"{colour} water-filled barrier", (LINE_X, 33.5 + 1.56 * k, 0), 90, colour=colour, material="plastic", kind="water-filled")
+        stage.place(
+            built,
+            "barrier",
+            f"{colour} water-filled barrier",
+            (LINE_X, 33.5 + 1.56 * k, 0),
+            90,
+            colour=colour,
+            material="plastic",
+            kind="water-filled",
+        )
     for k in range(3):
         built = moulds.get("concrete", lambda: works.concrete_barrier(3.0))
-        stage.place(built, "barrier", "concrete barrier", (-14.6, -26.5 - 3.1 * k, 0), 0, colour="grey", material="concrete", kind="concrete")
+        stage.place(
+            built,
+            "barrier",
+            "concrete barrier",
+            (-14.6, -26.5 - 3.1 * k, 0),
+            0,
+            colour="grey",
+            material="concrete",
+            kind="concrete",
+        )
     for x, lit in ((-10.4, True), (-12.9, False)):
         built = moulds.get(f"board {lit}", lambda lit=lit: works.barrier_board(lit=lit))
-        stage.place(built, "barrier", "red and white barrier board", (x, 56.5, 0), 0, colour="red and white", state="lit" if lit else "unlit", kind="board")
+        stage.place(
+            built,
+            "barrier",
+            "red and white barrier board",
+            (x, 56.5, 0),
+            0,
+            colour="red and white",
+            state="lit" if lit else "unlit",
+            kind="board",
+        )
     for x in (-10.6, -12.8, -15.0):
         built = moulds.get("foot", works.chapter8_barrier)
-        stage.place(built, "barrier", "orange pedestrian barrier", (x, -5.8, 0), 0, colour="orange", material="plastic", kind="pedestrian")
+        stage.place(
+            built, "barrier", "orange pedestrian barrier", (x, -5.8, 0), 0, colour="orange", material="plastic", kind="pedestrian"
+        )
     for k in range(5):
         built = moulds.get("drum", works.drum)
-        stage.place(built, "drum", "orange traffic drum", (-15.2, -42 + 6.0 * k if k < 2 else 44.0 + 4.0 * (k - 2), 0), 30 * k, colour="orange")
+        stage.place(
+            built,
+            "drum",
+            "orange traffic drum",
+            (-15.2, -42 + 6.0 * k if k < 2 else 44.0 + 4.0 * (k - 2), 0),
+            30 * k,
+            colour="orange",
+        )
 
 
 def _machines(stage: Stage) -> None:
@@ -97,7 +141,7 @@ def _crew(stage: Stage) -> None:
         ("yellow", "white", None, "walk", -37.6, -9.4, 100, "walking worker", None),
         ("orange", "white", None, "point", -13.3, -16.0, 185, "pointing worker", None),
         ("yellow", "yellow", None, "carry", -12.6, 49.5, 170, "worker carrying a load", "load"),
-    ]  # fmt: skip
+    ]
     for k, (vest, helmet, trousers, pose, x, y, bearing, name, holding) in enumerate(rows):
         built = people.worker(vest=vest, helmet=helmet, trousers=trousers, pose=pose, phase=0.3, seed=k + 3)
         facts = {"carrying": holding} if holding else {}
@@ -138,9 +182,26 @@ def _compound(stage: Stage) -> None:
         ("light grey", "STORES", -34.6, -22.4, 0.0, 22),
     ):
         noun = colour.replace("light ", "")
-        stage.place(works.site_cabin(colour, text), "cabin", f"{noun} site cabin", (x, y, z), bearing, colour=noun, reads=text.lower(), upper=z > 0)
+        stage.place(
+            works.site_cabin(colour, text),
+            "cabin",
+            f"{noun} site cabin",
+            (x, y, z),
+            bearing,
+            colour=noun,
+            reads=text.lower(),
+            upper=z > 0,
+        )
     for colour, x, bearing in (("blue", -37.4, 140), ("green", -38.9, 150)):
-        stage.place(works.portable_toilet(colour), "portable toilet", f"{colour} portable toilet", (x, 2.2, 0), bearing, colour=colour, state="closed")
+        stage.place(
+            works.portable_toilet(colour),
+            "portable toilet",
+            f"{colour} portable toilet",
+            (x, 2.2, 0),
+            bearing,
+            colour=colour,
+            state="closed",
+        )
     rows: list[tuple[Built, str, str, float, float, float, dict[str, str]]] = [
         (works.skip("yellow"), "skip", "yellow skip", -28.0, -21.0, 70, {"colour": "yellow", "state": "full"}),
         (works.skip("blue", full=False), "skip", "blue skip", -24.6, -18.2, 10, {"colour": "blue", "state": "empty"}),
@@ -151,12 +212,20 @@ def _compound(stage: Stage) -> None:
         (works.arrow_board("right", lit=False), "arrow board", "dark arrow board", -14.2, -36.5, 0, {"state": "unlit"}),
         (works.plate_compactor(), "plate compactor", "yellow plate compactor", -14.7, 10.3, 130, {"colour": "yellow"}),
         (works.wheelbarrow("green"), "wheelbarrow", "green wheelbarrow", -27.8, -6.6, 200, {"colour": "green", "state": "full"}),
-        (works.wheelbarrow("red", load=False), "wheelbarrow", "red wheelbarrow", -14.7, 18.6, 300, {"colour": "red", "state": "empty"}),
+        (
+            works.wheelbarrow("red", load=False),
+            "wheelbarrow",
+            "red wheelbarrow",
+            -14.7,
+            18.6,
+            300,
+            {"colour": "red", "state": "empty"},
+        ),
         (works.toolbox("red"), "toolbox", "red toolbox", -14.4, 8.3, 60, {"colour": "red"}),
         (works.fuel_can("red"), "fuel can", "red fuel can", -37.0, -18.1, 20, {"colour": "red"}),
         (works.fuel_can("green"), "fuel can", "green fuel can", -14.9, 12.0, 70, {"colour": "green"}),
         (works.fire_extinguisher(), "fire extinguisher", "red fire extinguisher", -27.2, -1.9, 120, {"colour": "red"}),
-    ]  # fmt: skip
+    ]
     for built, category, name, x, y, bearing, facts in rows:
         stage.place(built, category, name, (x, y, 0), bearing, **facts)
 
@@ -164,15 +233,30 @@ def _compound(stage: Stage) -> None:
 def _materials(stage: Stage) -> None:
     moulds = Moulds()
     for x, y, bearing in ((-29.4, -9.0, 8), (-29.2, -11.0, 2), (-31.2, -9.6, 95), (-20.2, 33.0, 12), (-20.6, 35.2, 4)):
-        stage.place(moulds.get("kerbs", works.pallet_of_kerbs), "pallet", "pallet of kerb stones", (x, y, 0), bearing, material="concrete", load="kerb stones")
+        stage.place(
+            moulds.get("kerbs", works.pallet_of_kerbs),
+            "pallet",
+            "pallet of kerb stones",
+            (x, y, 0),
+            bearing,
+            material="concrete",
+            load="kerb stones",
+        )
     for x, y, bearing in ((-33.4, -17.6, 30), (-32.0, -18.6, 18)):
-        stage.place(moulds.get("cement", works.cement_bags), "pallet", "pallet of cement bags", (x, y, 0), bearing, load="cement bags")
-    for colour, x, y, bearing, length in (("orange", -27.6, -15.2, 78, 6.0), ("grey", -21.8, 45.5, 12, 6.0), ("blue", -19.4, 49.6, 5, 4.0)):
-        stage.place(works.pipe_stack(colour, length=length), "pipe stack", f"stack of {colour} pipes", (x, y, 0), bearing, colour=colour)
+        stage.place(
+            moulds.get("cement", works.cement_bags), "pallet", "pallet of cement bags", (x, y, 0), bearing, load="cement bags"
+        )
+    for colour, x, y, bearing, length in (
+        ("orange", -27.6, -15.2, 78, 6.0),
+        ("grey", -21.8, 45.5, 12, 6.0),
+        ("blue", -19.4, 49.6, 5, 4.0),
+    ):
+        stage.place(
+            works.pipe_stack(colour, length=length), "pipe stack", f"stack of {colour} pipes", (x, y, 0), bearing, colour=colour
+        )
     stage.place(works.cable_drum(1.6), "cable drum", "wooden cable drum", (-25.0, -5.6, 0), 35, material="timber")
     stage.place(works.cable_drum(1.2), "cable drum", "wooden cable drum", (-24.3, -7.4, 0), 70, material="timber")
     stage.place(works.sand_pile(1.9), "sand pile", "pile of sand", (-26.6, -3.8, -0.03), 0, material="sand")
     stage.place(works.gravel_pile(2.6), "gravel pile", "pile of gravel", (-21.4, 28.0, -0.03), 40, material="gravel")
     stage.place(works.gravel_pile(1.7), "gravel pile", "pile of gravel", (-21.9, 38.6, -0.03), 110, material="gravel")
     stage.place(works.shovel_standing(), "shovel", "shovel", (-26.0, -3.6, 0.55), 30)
-

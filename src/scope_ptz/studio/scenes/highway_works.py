@@ -6,7 +6,7 @@ import bpy
 
 from scope_ptz.studio.kit import sky
 from scope_ptz.studio.kit.stage import Stage
-from scope_ptz.studio.scenes import highway_land, highway_road, highway_site, highway_traffic
+from scope_ptz.studio.scenes import highway_land, highway_plants, highway_road, highway_site, highway_traffic
 
 NAME = "highway-works"
 TITLE = "Highway works"
@@ -23,7 +23,8 @@ def build(stage: Stage) -> None:
     highway_traffic.build(stage)
     highway_site.build(stage)
     highway_road.build(stage)
-    highway_land.build(stage)  # last: lettering slows down with every object that the file already holds
+    highway_land.build(stage)
+    highway_plants.build(stage)  # last: lettering slows down with every object that the file already holds
     _cameras(stage)
     stage.absent = list(ABSENT)
     sky.finish_materials()
