@@ -118,7 +118,12 @@ class SimulatedCamera(Camera):
         return Arrival(end, clamped)
 
     async def _run(self, motion: _Motion) -> None:
-        """Until settled, stopped, or told to go elsewhere. A move that is cancelled stops where it is."""
+        """Until settled, stopped, or told to go elsewhere. A move that is cancelled stops where it is.
+
+        While time is held no time goes by for the head either: a watched sweep takes as long as its pictures.
+        """
+        if self.clock.held:
+            motion = _Motion(motion.end, motion.end, motion.since_s)
         self._motion = motion
         ends_s = motion.since_s + AXIS_M5075_G_HEAD.duration_s(motion.start, motion.end)
         try:

@@ -25,6 +25,10 @@ class SceneClock:
         """Scene time, in which actors move; it stands still while held."""
         return (self._hold_since_s if self._holds else self.elapsed_s()) - self._held_s
 
+    @property
+    def held(self) -> bool:
+        return self._holds > 0
+
     def elapsed_s(self) -> float:
         """Time that has gone by for the camera's own motors since the clock was made, held or not."""
         return monotonic() - self._wall_start_s if self._realtime else self._slept_s
