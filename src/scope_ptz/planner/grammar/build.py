@@ -14,6 +14,7 @@ from scope_ptz.planner.grammar.build_scene import SceneRules
 from scope_ptz.planner.grammar.chart import Branch, Leaf
 from scope_ptz.planner.grammar.compose import compose
 from scope_ptz.planner.grammar.syntax import (
+    Amount,
     Answered,
     AtPlaces,
     Bound,
@@ -22,6 +23,7 @@ from scope_ptz.planner.grammar.syntax import (
     DoAgain,
     EachTime,
     Forbid,
+    Further,
     GoPreset,
     If,
     Linked,
@@ -187,10 +189,14 @@ class Builder(MoveRules, SceneRules):
     def report(self, node: Node) -> Step:
         return Report()
 
+    def further(self, node: Node) -> Step:
+        """ "Then another 15": the same way again."""
+        return Further(Amount("degrees", self.number(node)))
+
     def forbidden(self, node: Node) -> Step:
         return Forbid()
 
-    def do_times(self, node: Node) -> Step:
+    def done_again(self, node: Node) -> Step:
         return DoAgain(self.visit(node.branches()[0]), more=node.has("MORE"))
 
     def do_again(self, node: Node) -> Step:

@@ -20,6 +20,7 @@ _DIRECTIONS: dict[str, tuple[tuple[str, int], ...]] = {
     "down_right": (("tilt", -1), ("pan", 1)),
 }
 _LITTLE_ZOOM, _LOT_ZOOM, _PLAIN_ZOOM = 1.25, 4.0, 2.0
+_AIMING = ("point", "aim", "look", "turn", "direct", "train", "swing", "orient", "rotat")
 _SMALL_STEP_DEG = 5.0
 _VERBS = (
     "PAN",
@@ -178,7 +179,9 @@ class MoveRules(Rules):
         signs = [sign for b in node.branches() if b.name in _DIRECTIONS for a, sign in _DIRECTIONS[b.name] if a == axis]
         return (Aim(axis, -abs(value) if signs[-1:] == [-1] else value),)
 
-    def pan_to(self, node: Node) -> tuple[Part, ...]:
+    def pan_to(self, node: Node) -> tuple[Part, ...] | Unclear:
+        if any(not self.words_of(leaf).startswith(_AIMING) for leaf in node.leaves("LOOKAT")):
+            return Unclear("On what shall I zoom in?")
         vertical = any(b.name in {"up", "down"} for b in node.branches())
         return self._aimed(node, "tilt" if vertical else "pan")
 

@@ -121,6 +121,8 @@ class SceneRules(Rules):
         return Snap(max(1, min(round(self.number(node)), 50)) if node.has("NUM") else 1)
 
     def picture_of(self, node: Node) -> Step:
+        if node.has("SNAP") and any("PICTURE" in self.lexemes[leaf.index].kinds for leaf in node.all_leaves()[1:]):
+            return Unclear("Of what shall I take pictures, and how many?")
         return Snap(1, self._thing(node))
 
     # Places ------------------------------------------------------------------------------------------------------------
@@ -261,6 +263,9 @@ class SceneRules(Rules):
         return Seen(self._thing(node), Quantity("==", 0), self._view(node))
 
     unseen_pronoun = unseen
+
+    def unseen_both(self, node: Node) -> Condition:
+        return Joined(tuple(Seen(thing, Quantity("==", 0), self._view(node)) for thing in self._things(node)), "all")
 
     def not_so_many(self, node: Node) -> Condition:
         return Negated(Seen(self._thing(node), self.visit(node.branches("quantity_said")[0].branches()[0]), self._view(node)))

@@ -14,6 +14,7 @@ from scope_ptz.planner.grammar.syntax import (
     Count,
     DoAgain,
     EachTime,
+    Further,
     GoPreset,
     Home,
     If,
@@ -46,6 +47,9 @@ def _add(out: list[Step], link: str, step: Step) -> None:
         _add_each_time(out, step)
     elif isinstance(step, DoAgain) and out:
         _add_again(out, step)
+    elif isinstance(step, Further):
+        turn = next((p for p in reversed(last.parts) if isinstance(p, Turn)), None) if isinstance(last, Move) else None
+        out.append(Move((replace(turn, amount=step.amount),)) if turn else Unclear("Which way shall I turn, and how far?"))
     elif isinstance(step, SameAt):
         out.append(AtPlaces(step.places, _done_at_place(out)))
     elif isinstance(step, Repeat) and link in {"and", ","} and last is not None and _covers_before(step, last):

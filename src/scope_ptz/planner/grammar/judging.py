@@ -47,7 +47,9 @@ class Judging(Session):
             met = counts[0] > counts[1] if condition.wish == "more" else counts[0] < counts[1]
             return met, f"I can see {first} at {condition.first.name} and {second} at {condition.second.name}"
         subject = f"the {condition.subject.text}" if condition.subject.definite else condition.subject.text
-        result = yield from self._needed("query_answer", question=condition.question or f"is {subject} {condition.predicate}?", view="current")
+        result = yield from self._needed(
+            "query_answer", question=condition.question or f"is {subject} {condition.predicate}?", view="current"
+        )
         said = result["answer"].strip().lower()
         if not result.get("known", True) or not said.startswith(("yes", "no")):
             return False, f"I cannot tell whether {subject} is {condition.predicate}: {result['answer']}"

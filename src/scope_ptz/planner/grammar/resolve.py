@@ -271,6 +271,10 @@ class Resolver:
         return [ast.If(condition, self.bind(step.then), self.bind(step.otherwise))]
 
     def _atplaces(self, step: ast.AtPlaces) -> Sequence[ast.Step]:
+        if isinstance(step.body[0] if step.body else None, ast.WhichPreset):
+            return self.bind(
+                [replace(s, places=s.places or step.places) if isinstance(s, ast.WhichPreset) else s for s in step.body]
+            )
         places = self._places(step.places)
         out: list[ast.Step] = []
         for place in places:

@@ -59,6 +59,13 @@ class Move:
 
 
 @dataclass(frozen=True, slots=True)
+class Further:
+    """ "Another 15": the turn before, by another amount."""
+
+    amount: Amount
+
+
+@dataclass(frozen=True, slots=True)
 class Back:
     """Return to where the camera was; ``zoom_only`` for "zoom back out"."""
 
@@ -356,7 +363,7 @@ class Unclear:
 
 
 Step = (
-    Move | Back | Home | GoPreset | GoThere | ListPresets | Snap | Count | Ask | Read | ZoomTo | Track | Repeat | DoAgain
+    Move | Further | Back | Home | GoPreset | GoThere | ListPresets | Snap | Count | Ask | Read | ZoomTo | Track | Repeat | DoAgain
     | Loop | If | EachTime | AtPlaces | SameAt | WhichPreset | Compare | BeforeAfter | Sweep | Forbid | Report | CameraState | Help
     | WhatAbout | Unclear
 )  # fmt: skip

@@ -181,7 +181,7 @@ class Lexer:
         start, end = words[i].start, words[i + length - 1].end
         if "FILLER" in kinds:
             in_name = before and before[-1].kinds & {"DET", "PREP", "ORD"} and not before[-1].kinds & {"PRON"}
-            addressed = i + length < len(words) and words[i + length].text == "," and _starts_clause(before)
+            addressed = i + length < len(words) and words[i + length].text in {",", ":"} and _starts_clause(before)
             if in_name and kinds == {"FILLER"} and length == 1:
                 return Lexeme(frozenset({"TEXT"}), start, end)
             if kinds == {"FILLER"} or addressed:
