@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scope_ptz.geometry import Equirectangular, Perspective, direction, pan_tilt_deg
 from scope_ptz.world.models import SceneFile, SceneText, SceneViewpoint
 
-CELL_PAN_DEG, CELL_TILT_DEG = 7.5, 5.0
+CELL_PAN_DEG, CELL_TILT_DEG = 6.0, 4.0
 OVERLAP_DEG = 0.15
 """A tile reaches this far beyond its cell, so that neighbours leave no seam."""
 

@@ -45,7 +45,9 @@ def render_frames(
                 partial.replace(picture)
                 ground.hide_render = True
                 ids, depth = render.truth_arrays(viewpoint, frame["projection"])
-                np.savez(picture.with_suffix(".npz"), depth=np.where(ids == actor.number, depth, 0).astype(np.float32))
+                with partial.open("wb") as file:
+                    np.savez(file, depth=np.where(ids == actor.number, depth, 0).astype(np.float32))
+                partial.replace(picture.with_suffix(".npz"))
                 show(built, False)
             progress(k + 1, len(frames))
 
