@@ -11,7 +11,7 @@ from scope_ptz.planner.plan import plan
 from scope_ptz.tools import arguments as models
 
 PRESETS = ("gate", "highway")
-MODELS = {
+MODELS: dict[str, type[models.Arguments]] = {
     "adjust_ptz": models.AdjustPtz,
     "go_to_preset": models.GoToPreset,
     "go_home": models.GoHome,
