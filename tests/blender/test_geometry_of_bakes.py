@@ -146,5 +146,15 @@ def test_a_walker_has_all_phases_at_each_place() -> None:
     assert {f.phase for f in frames} == {k / 8 for k in range(8)}
 
 
+def test_every_leg_of_a_path_has_pictures_of_its_own_up_to_its_corners() -> None:
+    corners = [(0.0, -5.0, 20.0, 0.0), (9.0, -5.0, 40.0, 0.0), (10.0, -3.0, 40.0, 0.0), (20.0, -3.0, 20.0, 0.0)]
+    walker = actor(stride=True).model_copy(update={"waypoints": corners})
+    frames = keyframes(walker, 1.4, HERE, BAND, None, 24)
+    assert len(frames) == 24
+    taken = {time: k // 8 for k, f in enumerate(frames) for time in (f.time_s, *f.also_s)}
+    for time, leg in ((0.5, 0), (8.9, 0), (9.2, 1), (9.9, 1), (10.1, 2), (19.9, 2)):
+        assert taken[min(taken, key=lambda t: abs(t - time))] == leg
+
+
 def test_what_passes_out_of_the_band_is_left_out() -> None:
     assert keyframes(actor(), None, HERE, Band(top_tilt_deg=59, bottom_tilt_deg=30), None, 40) == []

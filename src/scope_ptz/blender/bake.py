@@ -114,7 +114,7 @@ class _Baker:
         tiles = self._tiles(name, views)
         actors = [a for actor in self._scene.actors if (a := self._actor(viewpoint, actor)) is not None]
         rendered = Rendered(panorama, base, ids, encode_depth(metres, NEAR_M, FAR_M, DEPTH_STEP), tiles, actors, silhouettes)
-        manifest = write_pack(folder, self._scene, viewpoint, rendered, q, PACK_BYTES, self._shop.steps(f"{name}/pack", 4))
+        manifest = write_pack(folder, self._scene, viewpoint, rendered, q, PACK_BYTES, self._shop.steps(f"{name}/pack", 3))
         uncovered = tuple(t.name for t in wanted if not covers(views, t))
         return BakedViewpoint(folder, weight_bytes(folder), len(manifest.tiles), uncovered)
 
@@ -161,7 +161,8 @@ class _Baker:
 
     def _actor(self, viewpoint: SceneViewpoint, actor: SceneActor) -> RenderedActor | None:
         q, stride_m = self._quality, self._strides[actor.id]
-        frames = keyframes(actor, stride_m, viewpoint, self._band, self._sun, q.max_sprites)
+        most = q.max_sprites * 3 // 2 if stride_m else q.max_sprites
+        frames = keyframes(actor, stride_m, viewpoint, self._band, self._sun, most)
         if not frames:
             return None
         folder = self._sprite_folder(viewpoint.name, actor, frames)

@@ -29,12 +29,17 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Keyframe:
-    """The actor at ``time_s`` of its path in a gait phase, seen through ``view``."""
+    """The actor at ``time_s`` of its path in a gait phase, seen through ``view``.
+
+    ``also_s``: other times for which this is the picture to take. Whoever draws an actor takes the picture nearest in time; near
+    a corner of the path that must not be one from beyond it, where the actor faces another way.
+    """
 
     time_s: float
     phase: float
     position_m: tuple[float, float, float]
     view: Perspective
+    also_s: tuple[float, ...] = ()
 
     def request(self) -> dict[str, Any]:
         """For the worker's "sprites"."""
@@ -49,21 +54,22 @@ class Keyframe:
 def keyframes(
     actor: SceneActor, stride_m: float | None, viewpoint: SceneViewpoint, band: Band, sun: Floats | None, most: int
 ) -> list[Keyframe]:
-    """At most about ``most`` pictures of an actor along its path as seen from a viewpoint; walkers in all phases at each place."""
+    """Pictures of an actor along its path as seen from a viewpoint, walkers in all phases at each place.
+
+    No more than ``most`` unless its path has more legs than that: each has one place at least.
+    """
     places = _Places.along(actor, viewpoint)
     per_place = GAIT_PHASES if stride_m else 1
     coarseness = 1.0
-    while len(chosen := places.distinct(coarseness)) * per_place > most:
+    while len(chosen := places.distinct(coarseness)) * per_place > most and len(chosen) > len(actor.waypoints) - 1:
         coarseness *= 1.15
     frames = []
-    for k in chosen:
+    for k, also in chosen.items():
         view = _view(_corners(actor, places, k, sun), viewpoint, band)
         if view is not None:
-            position = tuple(round(float(v), 4) for v in places.positions[k])
-            frames += [
-                Keyframe(round(float(places.times[k]), 4), p / per_place, position, view)  # type: ignore[arg-type]
-                for p in range(per_place)
-            ]
+            x, y, z = (round(float(v), 4) for v in places.positions[k])
+            times = tuple(round(float(places.times[other]), 4) for other in also)
+            frames += [Keyframe(round(float(places.times[k]), 4), p / per_place, (x, y, z), view, times) for p in range(per_place)]
     return frames
 
 
@@ -77,6 +83,7 @@ class _Places:
     aspects_deg: Floats
     elevations_deg: Floats
     distances_m: Floats
+    legs: NDArray[np.int64]
 
     @classmethod
     def along(cls, actor: SceneActor, viewpoint: SceneViewpoint) -> _Places:
@@ -88,12 +95,27 @@ class _Places:
         bearings = np.degrees(np.arctan2(step[:, 0], step[:, 1]))
         offset = positions - np.array(viewpoint.position_m)
         seen, elevations = pan_tilt_deg(offset)
-        return cls(times, positions, bearings, bearings - seen, elevations, np.linalg.norm(offset, axis=1))
+        return cls(times, positions, bearings, bearings - seen, elevations, np.linalg.norm(offset, axis=1), leg)
 
-    def distinct(self, coarseness: float) -> list[int]:
-        """Indices of samples that each look different from the one before."""
-        chosen = [0]
-        for k in range(1, len(self.times)):
+    def distinct(self, coarseness: float) -> dict[int, list[int]]:
+        """Indices of samples that each look different from the one before, at least one a leg of the path.
+
+        The values are the ends of the leg for the samples nearest to them.
+        """
+        chosen: dict[int, list[int]] = {}
+        for leg in np.unique(self.legs):
+            first, last = (int(k) for k in np.flatnonzero(self.legs == leg)[[0, -1]])
+            own = self._distinct_between(first, last, coarseness)
+            if len(own) == 1:
+                own = [(first + last) // 2]
+            chosen |= {k: [] for k in own}
+            chosen[own[0]].append(first)
+            chosen[own[-1]].append(last)
+        return chosen
+
+    def _distinct_between(self, first: int, end: int, coarseness: float) -> list[int]:
+        chosen = [first]
+        for k in range(first + 1, end + 1):
             last = chosen[-1]
             turn = abs((self.aspects_deg[k] - self.aspects_deg[last] + 180.0) % 360.0 - 180.0)
             turn = max(turn, abs(self.elevations_deg[k] - self.elevations_deg[last]))

@@ -22,8 +22,9 @@ from scope_ptz.world.models import ActorSheet, Depth, Extent, Layer, Manifest, S
 COLOUR = ".webp"
 NUMBERS = ".webp"
 SPRITE_CODING = 78
-LOWEST_TILE_CODING = 60
+LOWEST_BASE_CODING, LOWEST_TILE_CODING = 72, 66
 CODING_STEP = 4
+MANIFEST_BYTES = 200_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,20 +67,18 @@ def write_pack(
     limit_bytes: int,
     step: Callable[[], None],
 ) -> Manifest:
-    """Write the folder (replacing one that is there). Tiles are coded more coarsely until everything fits ``limit_bytes``."""
+    """Write the folder (replacing one that is there), colour coded as finely as ``limit_bytes`` allows."""
     fresh = folder.with_name(f".{folder.name}.new")
     shutil.rmtree(fresh, ignore_errors=True)
     (fresh / "tiles").mkdir(parents=True)
     (fresh / "actors").mkdir()
-    base = _colour(fresh, f"base{COLOUR}", rendered.base, quality.base_coding)
-    step()
     ids = _numbers(fresh, f"ids{NUMBERS}", rendered.ids)
     depth = _numbers(fresh, f"depth{NUMBERS}", rendered.depth)
     step()
     tile_ids = [_numbers(fresh, f"tiles/{k:02d}-ids{NUMBERS}", t.ids) for k, t in enumerate(rendered.tiles)]
     actors = [_actor(fresh, a) for a in rendered.actors]
     step()
-    tile_colours = _fitting_tiles(fresh, rendered.tiles, quality.tile_coding, limit_bytes)
+    base, tile_colours = _fitting_colour(fresh, rendered, quality, limit_bytes - MANIFEST_BYTES)
     step()
     manifest = Manifest(
         scene=scene.name,
@@ -104,7 +103,7 @@ def write_pack(
     weight = weight_bytes(fresh)
     if weight > limit_bytes:
         raise BlenderError(
-            f"The pack of '{viewpoint.name}' weighs {weight / 1e6:.2f} MB even with the coarsest tiles: bake fewer of them."
+            f"The pack of '{viewpoint.name}' weighs {weight / 1e6:.2f} MB even when coded coarsely: bake fewer tiles."
         )
     for name in ("tiles", "actors"):
         if not any((fresh / name).iterdir()):
@@ -119,13 +118,17 @@ def weight_bytes(folder: Path) -> int:
     return sum(p.stat().st_size for p in folder.rglob("*") if p.is_file())
 
 
-def _fitting_tiles(folder: Path, tiles: list[RenderedTile], coding: int, limit_bytes: int) -> list[Layer]:
-    room = limit_bytes - weight_bytes(folder) - 150_000
-    while True:
-        coded = [_colour(folder, f"tiles/{k:02d}{COLOUR}", t.colour, coding) for k, t in enumerate(tiles)]
-        if sum((folder / c.file).stat().st_size for c in coded) <= room or coding <= LOWEST_TILE_CODING:
-            return coded
-        coding -= CODING_STEP
+def _fitting_colour(folder: Path, rendered: Rendered, quality: Quality, limit_bytes: int) -> tuple[Layer, list[Layer]]:
+    """Base and tiles, the tiles coded more coarsely until everything fits; when that is not enough, the base too."""
+    others = weight_bytes(folder)
+    for base_coding in range(quality.base_coding, LOWEST_BASE_CODING - 1, -CODING_STEP):
+        base = _colour(folder, f"base{COLOUR}", rendered.base, base_coding)
+        room = limit_bytes - others - (folder / base.file).stat().st_size
+        for tile_coding in range(quality.tile_coding, LOWEST_TILE_CODING - 1, -CODING_STEP):
+            tiles = [_colour(folder, f"tiles/{k:02d}{COLOUR}", t.colour, tile_coding) for k, t in enumerate(rendered.tiles)]
+            if sum((folder / t.file).stat().st_size for t in tiles) <= room:
+                return base, tiles
+    return base, tiles
 
 
 def _actor(folder: Path, actor: RenderedActor) -> ActorSheet:

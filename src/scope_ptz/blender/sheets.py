@@ -49,9 +49,9 @@ def make_sheet(frames: list[Keyframe], folder: Path) -> Sheet:
     for frame, picture, codes, (left, top) in zip(frames, pictures, depths, places, strict=True):
         rows, columns = slice(top, top + frame.view.height), slice(left, left + frame.view.width)
         colour[rows, columns], depth[rows, columns] = picture, codes
-        sprites.append(
+        sprites += [
             Sprite(
-                path_s=frame.time_s,
+                path_s=time_s,
                 phase=frame.phase,
                 position_m=frame.position_m,
                 pan_deg=frame.view.pan_deg,
@@ -62,8 +62,9 @@ def make_sheet(frames: list[Keyframe], folder: Path) -> Sheet:
                 width=frame.view.width,
                 height=frame.view.height,
             )
-        )
-    return Sheet(colour, depth, sprites)
+            for time_s in sorted({frame.time_s, *frame.also_s})
+        ]
+    return Sheet(colour, depth, sorted(sprites, key=lambda s: (s.path_s, s.phase)))
 
 
 def _display_shadow(picture: NDArray[np.uint8], body: NDArray[np.bool_]) -> NDArray[np.uint8]:

@@ -44,9 +44,7 @@ class PoseReport:
     tile_share: float
 
 
-def draw_poses(
-    scene: Scene, seed: int, wide: int, zoomed: int, viewpoints: Sequence[str] | None = None
-) -> list[tuple[str, Pose]]:
+def draw_poses(scene: Scene, seed: int, wide: int, zoomed: int, viewpoints: Sequence[str] | None = None) -> list[tuple[str, Pose]]:
     """``wide`` poses at the wide end over all pans and tilts and ``zoomed`` ones at 2x to 5x on tiles, viewpoints in turn."""
     rng, limits = random.Random(seed), Limits()
     names = [v.name for v in scene.file.viewpoints] if viewpoints is None else viewpoints
