@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,7 +26,7 @@ from scope_ptz.blender.workshop import Progress, Workshop, scene_key
 from scope_ptz.errors import BlenderError, UnknownNameError
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective
 from scope_ptz.world.layers import encode_depth, read_colour
-from scope_ptz.world.models import Extent, Manifest, SceneActor, SceneFile, SceneViewpoint
+from scope_ptz.world.models import Extent, SceneActor, SceneFile, SceneViewpoint
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,13 +180,3 @@ class _Baker:
 
         stamp = self._shop.part(f"{viewpoint}/{actor.id}", ".done", {"frames": requests, "samples": samples}, produce)
         return stamp.with_name(f"unfinished-{stamp.stem}")
-
-
-def load_manifest(folder: Path) -> Manifest:
-    """The manifest of a baked viewpoint."""
-    return Manifest.model_validate_json((folder / "manifest.json").read_text())
-
-
-def forget(source: str, cache_dir: Path) -> None:
-    """Throw away what was rendered of a scene so far."""
-    shutil.rmtree(cache_dir / "bakes" / scene_key(source), ignore_errors=True)
