@@ -1,19 +1,18 @@
 """A weighted chart parser for a grammar that Lark has compiled.
 
-Lark reads and expands the grammar. Its own Earley parser takes 100 to 900 ms for an instruction, because it predicts every
-alternative of every optional word at every place; here all right-hand sides share one prefix tree and only what the lexemes
-at hand can begin is tried, bottom-up, which takes a few milliseconds. Of all readings the one with the highest sum of rule
-priorities wins, then the one with fewest rules.
+Why not a parser of Lark's: operator English is ambiguous ("left" is a direction, a side, a verb; any word may be part of a
+description), so a deterministic parser (LALR) cannot read it, and Lark's Earley parser takes 100 to 900 ms for an instruction,
+because it predicts every alternative of every optional word at every place. Lark reads, checks and expands the grammar; here all
+right-hand sides share one prefix tree and only what the lexemes at hand can begin is tried, bottom-up, which takes a few
+milliseconds. Of all readings the one with the highest sum of rule priorities wins, then the one with fewest rules.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from lark.grammar import Rule
+from scope_ptz.planner.grammar.rules import Rule
 
 _RULE_COST = 1e-3
 _ORDER_COST = 1e-8
@@ -44,7 +43,7 @@ class Branch:
 
 
 _Link = tuple["_Link | None", int, int, int]  # link before, symbol, start, end
-_Best = tuple[float, _Link | None, "Rule | None"]
+_Best = tuple[float, _Link | None, Rule | None]
 
 
 class ChartParser:
@@ -55,10 +54,10 @@ class ChartParser:
         self._root = _Node()
         for order, rule in enumerate(rules):
             node = self._root
-            for symbol in rule.expansion:
-                node = node.children.setdefault(self._id(symbol.name), _Node())
-            gain = (rule.options.priority or 0) - _RULE_COST - _ORDER_COST * order
-            node.complete.append((self._id(rule.origin.name), gain, rule))
+            for symbol in rule.symbols:
+                node = node.children.setdefault(self._id(symbol), _Node())
+            gain = rule.priority - _RULE_COST - _ORDER_COST * order
+            node.complete.append((self._id(rule.name), gain, rule))
         self._names = {number: name for name, number in self._ids.items()}
 
     def _id(self, name: str) -> int:
@@ -116,7 +115,6 @@ class ChartParser:
             link, child, child_start, child_end = link
             parts.append(self._tree(chart, child, child_start, child_end))
         children = [node for part in reversed(parts) for node in part]
-        name = str(rule.origin.name)
-        if name.startswith("_") or (rule.options.expand1 and len(children) == 1 and not rule.alias):
+        if rule.inline == "_" or (rule.inline == "?" and len(children) == 1):
             return children
-        return [Branch(str(rule.alias or name), tuple(children))]
+        return [Branch(rule.label, tuple(children))]

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from importlib.resources import files
 from itertools import pairwise
 
 from scope_ptz.planner.grammar.chart import ChartParser
+from scope_ptz.planner.grammar.rules import load_rules
 from scope_ptz.planner.grammar.syntax import Step
 from scope_ptz.planner.grammar.tokens import SEPARATORS, Lexeme, Lexer
 
@@ -36,11 +36,8 @@ class Parsed:
 
 @lru_cache(maxsize=1)
 def parser() -> ChartParser:
-    """The compiled grammar; made on first use, as this takes a moment."""
-    from lark import Lark
-
-    rules = files(__package__).joinpath("language.lark").read_text(encoding="utf-8")
-    return ChartParser(Lark(rules, parser="earley", lexer="basic", maybe_placeholders=False).rules)
+    """The grammar, loaded on first use."""
+    return ChartParser(load_rules())
 
 
 @lru_cache(maxsize=512)

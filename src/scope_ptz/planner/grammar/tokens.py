@@ -179,6 +179,11 @@ class Lexer:
     def _phrase(self, words: list[_Word], i: int, length: int, before: list[Lexeme]) -> Lexeme | None:
         kinds = self._table[tuple(w.text for w in words[i : i + length])]
         start, end = words[i].start, words[i + length - 1].end
+        alone = _starts_clause(before) and (i + length == len(words) or words[i + length].kind != "word")
+        if "ADDRESS" in kinds and alone and length < len(words):
+            return None
+        if "ADDRESS" in kinds and not (kinds := kinds - {"ADDRESS"}):
+            return Lexeme(frozenset({"TEXT"}), start, end)
         if "FILLER" in kinds:
             in_name = before and before[-1].kinds & {"DET", "PREP", "ORD"} and not before[-1].kinds & {"PRON"}
             addressed = i + length < len(words) and words[i + length].text in {",", ":"} and _starts_clause(before)
