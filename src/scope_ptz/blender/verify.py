@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from scope_ptz.blender.client import BlenderWorker
 from scope_ptz.blender.parity import box_ious, sharpness, ssim
+from scope_ptz.blender.references import keep_reference
 from scope_ptz.blender.requests import perspective_request
 from scope_ptz.blender.workshop import Progress, Workshop
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose
@@ -64,6 +65,25 @@ def draw_poses(scene: Scene, seed: int, wide: int, zoomed: int, viewpoints: Sequ
     return poses
 
 
+def compare(scene: Scene, viewpoint: str, pose: Pose, colour: NDArray[np.uint8], ids: NDArray[np.uint16]) -> PoseReport:
+    """The pack's view of a pose against a live render (H, W, 3) and its instance numbers (H, W)."""
+    height, width = ids.shape
+    view = Perspective(pose.pan_deg, pose.tilt_deg, AXIS_M5075_G.hfov_deg(pose.zoom), width, height)
+    here = scene.viewpoint(viewpoint)
+    tiled = _in_tiles(here.manifest.tiles, view)
+    mask = tiled if tiled.any() and pose.zoom > 1.0 else None
+    stored = colour_view(here, view)
+    ious = list(box_ious(id_view(here, view), ids, MIN_BOX_PIXELS).values())
+    return PoseReport(
+        viewpoint=viewpoint,
+        pose=pose,
+        ssim=ssim(stored, colour, mask),
+        sharpness_ratio=sharpness(stored, mask) / max(sharpness(colour, mask), 1e-9),
+        box_iou=float(np.mean(ious)) if ious else None,
+        tile_share=float(tiled.mean()),
+    )
+
+
 def verify(
     scene: Scene,
     worker: BlenderWorker,
@@ -73,29 +93,21 @@ def verify(
     samples: int = 16,
     width: int = 1280,
     height: int = 720,
+    keep: Path | None = None,
 ) -> list[PoseReport]:
-    """Compare each pose; the worker must have the scene loaded. Moving actors are left out on both sides."""
+    """Compare each pose; the worker must have the scene loaded. Moving actors are left out on both sides.
+
+    ``keep``: a folder for the live renders, so that later packs can be compared without Blender (``references.py``).
+    """
     reports = []
     with TemporaryDirectory() as folder:
         step = Workshop(Path(folder), "verify", progress).steps("verify", len(poses))
         for name, pose in poses:
             view = Perspective(pose.pan_deg, pose.tilt_deg, AXIS_M5075_G.hfov_deg(pose.zoom), width, height)
             colour, ids = _live(worker, name, view, samples, Path(folder))
-            here = scene.viewpoint(name)
-            tiled = _in_tiles(here.manifest.tiles, view)
-            mask = tiled if tiled.any() and pose.zoom > 1.0 else None
-            stored = colour_view(here, view)
-            ious = list(box_ious(id_view(here, view), ids, MIN_BOX_PIXELS).values())
-            reports.append(
-                PoseReport(
-                    viewpoint=name,
-                    pose=pose,
-                    ssim=ssim(stored, colour, mask),
-                    sharpness_ratio=sharpness(stored, mask) / max(sharpness(colour, mask), 1e-9),
-                    box_iou=float(np.mean(ious)) if ious else None,
-                    tile_share=float(tiled.mean()),
-                )
-            )
+            reports.append(compare(scene, name, pose, colour, ids))
+            if keep is not None:
+                keep_reference(keep, name, pose, colour, ids)
             step()
     return reports
 

@@ -21,7 +21,7 @@ app = typer.Typer(
     add_completion=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-scene_app = typer.Typer(help="The scenes: list, show, view, build and bake them.", no_args_is_help=True)
+scene_app = typer.Typer(help="The scenes: list, show, view, build, bake and verify them.", no_args_is_help=True)
 app.add_typer(scene_app, name="scene")
 
 SceneOption = Annotated[str, typer.Option("--scene", help="Scene to look at; see `scope scene list`.")]
@@ -235,3 +235,18 @@ def scene_bake(
         from scope_ptz.cli.baking import bake_scene
 
         bake_scene(name, out, quality, viewpoint or [])
+
+
+@scene_app.command("verify")
+def scene_verify(
+    name: SceneName,
+    seed: SeedOption = 1,
+    wide: Annotated[int, typer.Option("--wide", min=0, help="Poses at the widest zoom, over all tilts.")] = 8,
+    zoomed: Annotated[int, typer.Option("--zoomed", min=0, help="Poses at 2x to 5x, where the pack has tiles.")] = 8,
+    keep: Annotated[Path | None, typer.Option("--keep", help="Folder to keep the live renders in.")] = None,
+) -> None:
+    """Compare a scene's packs with live Blender renders of the same poses."""
+    with ending():
+        from scope_ptz.cli.baking import verify_scene
+
+        verify_scene(name, seed, wide, zoomed, keep)

@@ -1,4 +1,4 @@
-"""``scope scene build`` and ``scope scene bake``: from code to a Blender file, and to the frozen packs."""
+"""``scope scene build``, ``bake`` and ``verify``: from code to a Blender file, to frozen packs, and packs against live renders."""
 
 from __future__ import annotations
 
@@ -8,12 +8,15 @@ from typing import Any
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.table import Table
 from rich.text import Text
 
 from scope_ptz.blender.bake import bake
 from scope_ptz.blender.client import BlenderWorker
 from scope_ptz.blender.environment import is_ready, worker_command
 from scope_ptz.blender.quality import named_quality
+from scope_ptz.blender.verify import draw_poses, verify
+from scope_ptz.cli.session import open_scene
 from scope_ptz.errors import OutputError, UnknownNameError
 from scope_ptz.settings import ScopeSettings, load_settings
 
@@ -59,6 +62,28 @@ def bake_scene(source: str, out: Path | None, quality: str, viewpoints: list[str
     console.print(
         Text(f"To look at it: SCOPE_SCENES_DIR={folder.parent} scope scene show {folder.name}", style="dim"), soft_wrap=True
     )
+
+
+def verify_scene(name: str, seed: int, wide: int, zoomed: int, keep: Path | None) -> None:
+    """Compare the packs of a scene with live renders of poses drawn by seed."""
+    settings, console = load_settings(), Console(highlight=False)
+    _check(name)
+    scene = open_scene(name)
+    command = _command(settings, console)
+    with _Bars(console) as bars, BlenderWorker(command, settings.cache_dir / "verify.log") as worker:
+        worker.request("load_scene", {"source": name})
+        reports = verify(scene, worker, draw_poses(scene, seed, wide, zoomed), bars, keep=keep)
+    table = Table("viewpoint", "pan", "tilt", "zoom", "SSIM", "sharpness", "box IoU", "in tiles")
+    for r in reports:
+        figures = (
+            f"{r.pose.pan_deg:.1f}",
+            f"{r.pose.tilt_deg:.1f}",
+            f"{r.pose.zoom:.2f}",
+            f"{r.ssim:.3f}",
+            f"{r.sharpness_ratio:.2f}",
+        )
+        table.add_row(r.viewpoint, *figures, "-" if r.box_iou is None else f"{r.box_iou:.3f}", f"{r.tile_share:.0%}")
+    console.print(table)
 
 
 class _Bars:

@@ -1,0 +1,39 @@
+"""Live renders kept as files, so that packs can be held against them where there is no Blender."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scope_ptz.geometry import Pose
+from scope_ptz.world.layers import read_colour, read_ids, write_colour, write_ids
+
+INDEX = "references.json"
+QUALITY = 97
+"""The pictures are kept nearly as they were rendered: what coding loses here would be blamed on the pack."""
+
+Reference = tuple[str, Pose, NDArray[np.uint8], NDArray[np.uint16]]
+"""Viewpoint, pose, picture (H, W, 3) and instance numbers (H, W)."""
+
+
+def keep_reference(folder: Path, viewpoint: str, pose: Pose, colour: NDArray[np.uint8], ids: NDArray[np.uint16]) -> None:
+    """Add a live render to a folder of references."""
+    folder.mkdir(parents=True, exist_ok=True)
+    index = folder / INDEX
+    entries = json.loads(index.read_text()) if index.exists() else []
+    name = f"{len(entries):02d}-{viewpoint}"
+    write_colour(folder / f"{name}.webp", colour, QUALITY)
+    write_ids(folder / f"{name}-ids.webp", ids)
+    entries.append({"name": name, "viewpoint": viewpoint, "pose": [pose.pan_deg, pose.tilt_deg, pose.zoom]})
+    index.write_text(json.dumps(entries, indent=1) + "\n")
+
+
+def references(folder: Path) -> Iterator[Reference]:
+    """The live renders of a folder, in the order in which they were kept."""
+    for entry in json.loads((folder / INDEX).read_text()):
+        name = entry["name"]
+        yield entry["viewpoint"], Pose(*entry["pose"]), read_colour(folder / f"{name}.webp"), read_ids(folder / f"{name}-ids.webp")
