@@ -16,7 +16,7 @@ test: $(DEV)
 	$(BIN)/pytest -q -n 2 -m "not full" tests
 
 test-full: test
-	SCOPE_FULL_TESTS=1 $(BIN)/pytest -q -m full tests
+	$(BIN)/pytest -q -m full tests
 
 check: $(DEV)
 	$(BIN)/ruff format --check .
