@@ -19,6 +19,8 @@ def read(view: View, question: s.Read) -> Reply:
     if question.what is None:
         return _read(view, None, [t for t in view.texts if not question.plate or is_plate(view, t)], question.plate)
     things = find(view.for_reading(), question.what)
+    if not things and _PLATES.issuperset(phrase.words for phrase in question.what.phrases):
+        return read(view, s.Read(None, plate=True))  # whose plate is not said, and plates are texts of vehicles here
     if not things:
         return unknown(f"I cannot tell: {none_of(view, question.what)}")
     texts = _texts(view, things, question.plate)
@@ -38,6 +40,8 @@ def is_plate(view: View, text: TextSighting) -> bool:
 
 
 _PLATE = re.compile(r"(?=.*[0-9])[A-Z]{1,3}[0-9]{1,4}[A-Z]{0,3}")
+
+_PLATES = {words for noun in ("plate", "plates") for words in (("number", noun), ("license", noun), ("licence", noun))}
 
 
 def _is_limit(view: View, text: TextSighting) -> bool:

@@ -7,16 +7,19 @@ The rules about motion are in ``build_moves``, those about seeing, comparing and
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
-from scope_ptz.planner.grammar.build_moves import MoveRules
-from scope_ptz.planner.grammar.build_scene import SceneRules
+from scope_ptz.planner.grammar.build_judging import JudgingRules
+from scope_ptz.planner.grammar.build_moves import MoveRules, StepSize
 from scope_ptz.planner.grammar.chart import Branch, Leaf
 from scope_ptz.planner.grammar.compose import compose
 from scope_ptz.planner.grammar.syntax import (
     Amount,
     Answered,
+    AtIntervals,
     AtPlaces,
+    Between,
     Bound,
     Condition,
     Count,
@@ -38,13 +41,14 @@ from scope_ptz.planner.grammar.syntax import (
     Step,
     Sweep,
     Turn,
+    Unclear,
 )
 from scope_ptz.planner.grammar.trees import Node
 
 _LINKS = {"AND": "and", "COMMA": ",", "THEN": "then"}
 
 
-class Builder(MoveRules, SceneRules):
+class Builder(MoveRules, JudgingRules):
     """Builds the steps of one instruction."""
 
     def extend(self, tree: Branch, before: list[Step]) -> list[Step]:
@@ -60,6 +64,8 @@ class Builder(MoveRules, SceneRules):
                 kind = part.kind if isinstance(part, Leaf) else Node(part).leaf_kinds()[0]
                 link = _LINKS.get(kind, "")
                 continue
+            if child.name == "run_on":
+                child, link = child.branches()[0], "then"
             for step in self._as_steps(self.visit(child)):
                 out.append(Linked(link, step))
                 link = "then"
@@ -83,8 +89,19 @@ class Builder(MoveRules, SceneRules):
     def repeated(self, node: Node) -> Step:
         parts = [self.visit(b) for b in node.branches()]
         times = next(p for p in parts if isinstance(p, int) and not isinstance(p, bool))
-        body = next(p for p in parts if not isinstance(p, int))
-        return Repeat(self._as_steps(body), times, group=node.has("COMMA"))
+        body = self._as_steps(next(p for p in parts if not isinstance(p, int | Amount | StepSize)))
+        if sizes := [p for p in parts if isinstance(p, Amount | StepSize)]:
+            return self._repeated_by(body, times, sizes[0])
+        return Repeat(body, times, group=node.has("COMMA"))
+
+    @staticmethod
+    def _repeated_by(body: tuple[Step, ...], times: int, size: Amount | StepSize) -> Step:
+        """ "Turn left twice by 30"."""
+        amount = size if isinstance(size, Amount) else size.size
+        move = body[0]
+        if len(body) > 1 or not isinstance(move, Move) or not all(isinstance(p, Turn) and p.amount is None for p in move.parts):
+            return Unclear("How far shall I move each time?")
+        return Repeat((Move(tuple(replace(p, amount=amount) for p in move.parts if isinstance(p, Turn))),), times)
 
     def _loop(self, node: Node, negate: bool = False) -> Step:
         condition: Condition | None = None
@@ -142,6 +159,39 @@ class Builder(MoveRules, SceneRules):
     def if_so(self, node: Node) -> Step:
         blocks = [self.visit(b) for b in node.branches()]
         return If(Answered(), blocks[0], blocks[1] if len(blocks) > 1 else ())
+
+    def if_not(self, node: Node) -> Step:
+        return If(Negated(Answered()), self.visit(node.branches()[-1]))
+
+    def between(self, node: Node) -> tuple[Step, ...]:
+        return (*self._body(node, 0), Between(self._body(node, 1)))
+
+    def between_alone(self, node: Node) -> Step:
+        return Between(self._body(node, 0))
+
+    def at_intervals(self, node: Node) -> Step:
+        """ "Take a photo every 30 degrees while panning right 90"."""
+        if any(not self.words_of(leaf).startswith(("every", "each")) for b in node.branches("every") for leaf in b.leaves()):
+            return Unclear("How far apart shall that be?")
+        branches = [b for b in node.branches() if b.name != "every"]
+        size = next(i for i, b in enumerate(branches) if b.name.startswith("angle"))
+        body = self._as_steps(self.visit(branches[0]))
+        moves = self._as_steps(self.visit(branches[size + 1])) if len(branches) > size + 1 else ()
+        move = next((m for m in moves if isinstance(m, Move)), None)
+        if any(isinstance(s, Move) for s in body) or (moves and move is None):
+            return Unclear("What shall I do at each of these steps, and which way shall I turn?")
+        return AtIntervals(body, abs(self.visit(branches[size])), move)
+
+    def stepped_first(self, node: Node) -> Step:
+        """ "In 10 degree steps, pan right 40"."""
+        size, move = (self.visit(b) for b in node.branches())
+        if not isinstance(move, Move):
+            return move  # type: ignore[no-any-return]
+        return Move(tuple(replace(p, step=size.size, steps=size.count) if isinstance(p, Turn) else p for p in move.parts), move.verb)
+
+    def do_each(self, node: Node) -> Step:
+        *places, act = node.branches()
+        return AtPlaces(tuple(self.visit(place) for place in places), self._as_steps(self.visit(act)))
 
     def each_time_that(self, node: Node) -> tuple[Step, ...]:
         """ "Take a picture every time you pan right": after each move."""

@@ -39,7 +39,7 @@ _VERBS = (
 )
 
 
-class _Step:
+class StepSize:
     """A "in 15 degree steps", with how many if said."""
 
     def __init__(self, size: Amount, count: int | None = None) -> None:
@@ -82,14 +82,14 @@ class MoveRules(Rules):
     def angle_right(self, node: Node) -> float:
         return 90.0
 
-    def step_of(self, node: Node) -> _Step:
-        return _Step(Amount("degrees", abs(self.visit(node.branches()[0]))))
+    def step_of(self, node: Node) -> StepSize:
+        return StepSize(Amount("degrees", abs(self.visit(node.branches()[0]))))
 
-    def step_small(self, node: Node) -> _Step:
-        return _Step(Amount("degrees", _SMALL_STEP_DEG))
+    def step_small(self, node: Node) -> StepSize:
+        return StepSize(Amount("degrees", _SMALL_STEP_DEG))
 
-    def steps_of(self, node: Node) -> _Step:
-        return _Step(Amount("degrees", abs(self.visit(node.branches()[0]))), max(1, round(self.number(node))))
+    def steps_of(self, node: Node) -> StepSize:
+        return StepSize(Amount("degrees", abs(self.visit(node.branches()[0]))), max(1, round(self.number(node))))
 
     def how(self, node: Node) -> Any:
         return self.visit(node.branches()[0])
@@ -118,10 +118,10 @@ class MoveRules(Rules):
     def _turns(self, node: Node, directions: list[tuple[str, int]]) -> tuple[Part, ...]:
         """Turns in the directions, with the amount and the step that are said with them."""
         amount: Amount | None = None
-        step: _Step | None = None
+        step: StepSize | None = None
         for how in node.branches("how"):
             made = self.visit(how)
-            if isinstance(made, _Step):
+            if isinstance(made, StepSize):
                 step = made
             else:
                 amount = made
@@ -203,6 +203,15 @@ class MoveRules(Rules):
         if node.has("MOVE", "SWITCH") and self.text(node.leaves("AHEAD")).lower().startswith("forward"):
             return Unclear("The camera cannot travel; it turns and zooms. Shall I zoom in?")
         return (Aim("pan", 0.0),)
+
+    def above_level(self, node: Node) -> tuple[Part, ...]:
+        return (Aim("tilt", abs(next(self.visit(b) for b in node.branches() if b.name.startswith("angle")))),)
+
+    def below_level(self, node: Node) -> tuple[Part, ...]:
+        return (Aim("tilt", -abs(next(self.visit(b) for b in node.branches() if b.name.startswith("angle")))),)
+
+    def heading(self, node: Node) -> Unclear:
+        return Unclear("I have no compass: I know directions only as left and right of where the camera points. Which way shall I turn?")
 
     def level(self, node: Node) -> tuple[Part, ...]:
         return (Aim("tilt", 0.0),)

@@ -42,20 +42,28 @@ from scope_ptz.planner.grammar.syntax import (
 from scope_ptz.planner.grammar.trees import Node, Rules
 from scope_ptz.tools.arguments import View
 
-_SCOPES = {"now", "full", "scene"}
+SCOPES = {"now", "full", "scene"}
 _ALL_AROUND = re.compile(r"\b(whole|entire|full) (scene|area|site|panorama|place|surroundings)\b", re.IGNORECASE)
 _NOUNS = frozenset({"CAMERA", "PICTURE", "WHO", "PRESETWORD", "CIRCLE", "SURROUND", "LEVEL", "STEPS", "HOME", "WIDE"})
+_SCOPE_WORDS = frozenset({"FULLSCOPE", "NOWSCOPE"})
+_RELATIVE = (
+    (re.compile(r"\b(?:(?:who|that|which) )?(?:are|is|were|was)(?:n['’]?t| not)\b", re.IGNORECASE), "not"),
+    (re.compile(r"\b(?:who|that|which) (?:don['’]?t|do not|doesn['’]?t|does not|have not|haven['’]?t) (?:have|wear)\b", re.IGNORECASE), "without"),
+    (re.compile(r"\b(?:who|that|which)(?: (?:are|is)|['’](?:re|s)) (?=\w)", re.IGNORECASE), ""),
+    (re.compile(r"^(?:me|us) (?:all )?(?:the )?", re.IGNORECASE), ""),
+    (re.compile(r" (?:what|that)$", re.IGNORECASE), ""),
+)
 _DURATIONS = {"seconds", "minutes", "part_minute", "minute_and_part", "minutes_seconds", "hours"}
 
 
 class SceneRules(Rules):
     # Descriptions ------------------------------------------------------------------------------------------------------
     def np(self, node: Node) -> Thing:
-        words = node.branches("words")[0]
+        parts = node.branches("words", "relative")
         determiner = any(self.words_of(leaf).split()[0] in {"the", "that", "this", "these", "those"} for leaf in node.leaves("DET"))
-        leaves = words.all_leaves()
+        leaves = parts[0].all_leaves()
         odd = not any(leaf.kind == "WORD" or self.lexemes[leaf.index].kinds & _NOUNS for leaf in leaves)
-        return Thing(self.text(leaves), definite=determiner, odd=odd)
+        return Thing(described(self.text([leaf for part in parts for leaf in part.all_leaves()])), definite=determiner, odd=odd)
 
     def thing(self, node: Node) -> Thing:
         made: Thing = self.visit(node.branches()[0])
@@ -74,8 +82,8 @@ class SceneRules(Rules):
         return things[0] if things else Thing()
 
     def _view(self, node: Node) -> View | None:
-        names = [b.name for b in node.branches() if b.name in _SCOPES]
-        return "current" if "now" in names else "full" if "full" in names else None
+        names = [b.name for b in node.branches() if b.name in SCOPES]
+        return "full" if "full" in names else "current" if "now" in names else None
 
     # Things ------------------------------------------------------------------------------------------------------------
     def fill_with(self, node: Node) -> Step:
@@ -203,10 +211,12 @@ class SceneRules(Rules):
         thing = self._thing(node)
         leaves = node.branches("words")[0].all_leaves()
         rest = self.text(leaves)
+        denied = node.has("NOT") or re.search(r"n['’]?t$", " ".join(self.words_of(leaf) for leaf in node.leaves("BE") + node.leaves("DO")))
         if not thing.text:
-            return Count((Thing(f"{rest} ones"),), self._view(node))
-        adjective = " " not in rest and leaves[0].kind == "WORD" and not rest.endswith("ing")
-        return Count((Thing(f"{rest} {thing.text}" if adjective else f"{thing.text} {rest}"),), self._view(node))
+            return Count((Thing(f"{'not ' if denied else ''}{rest} ones"),), self._view(node))
+        adjective = " " not in rest and leaves[0].kind == "WORD" and not rest.endswith("ing") and not denied
+        said = f"{rest} {thing.text}" if adjective else f"{thing.text} {'not ' if denied else ''}{rest}"
+        return Count((Thing(described(said)),), self._view(node))
 
     def count_parts(self, node: Node) -> Step:
         """ "How many windows does the building have"."""
@@ -230,14 +240,20 @@ class SceneRules(Rules):
 
     def ask(self, node: Node) -> Step:
         leaves = node.all_leaves()
-        skip = 1 if leaves[0].kind == "TELL" and len(leaves) > 1 and leaves[1].kind != "TO" else 0
+        lead = [leaf for leaf in leaves[:4] if leaf.kind in _SCOPE_WORDS or (leaf.kind == "COMMA" and leaf is not leaves[0])]
+        asking = leaves[len(lead) :] if leaves[: len(lead)] == lead else leaves
+        skip = next((i for i, leaf in enumerate(asking) if leaf.kind not in {"TELL", "CANYOU", "GIVE"}), 0)
+        skip = skip if any(leaf.kind != "CANYOU" for leaf in asking[:skip]) else 0
+        embedded = skip > 0
         end = self.lexemes[leaves[-1].index].end
-        question = self.text(leaves[skip:])
+        question = self.text(asking[skip:] if embedded else leaves)
         views = {kind for leaf in leaves for kind in self.lexemes[leaf.index].kinds}
-        view: View | None = (
-            "current" if "NOWSCOPE" in views else "full" if "FULLSCOPE" in views or _ALL_AROUND.search(question) else None
-        )
-        return Ask(question + ("?" if self.source[end : end + 3].lstrip().startswith("?") else ""), view)
+        full = "FULLSCOPE" in views or _ALL_AROUND.search(question)
+        view: View | None = "full" if full else "current" if "NOWSCOPE" in views else None
+        return Ask(question + ("?" if self.source[end : end + 3].lstrip().startswith("?") else ""), view, embedded)
+
+    def mention(self, node: Node) -> Step:
+        return Mention(self._thing(node))
 
     def camera_state(self, node: Node) -> Step:
         return CameraState()
@@ -248,103 +264,9 @@ class SceneRules(Rules):
     def sweep_for(self, node: Node) -> tuple[Step, ...]:
         return (Sweep(), Count((self._thing(node),), "full"))
 
-    # Conditions --------------------------------------------------------------------------------------------------------
-    def seen(self, node: Node) -> Condition:
-        quantity = next(
-            (q for b in node.branches() if isinstance(q := self.visit(b) if b.name not in {"np", *_SCOPES} else None, Quantity)),
-            Quantity(),
-        )
-        return Seen(self._thing(node), quantity, self._view(node))
 
-    seen_pronoun = seen
-    seen_swapped = seen
-
-    def unseen(self, node: Node) -> Condition:
-        return Seen(self._thing(node), Quantity("==", 0), self._view(node))
-
-    unseen_pronoun = unseen
-
-    def unseen_both(self, node: Node) -> Condition:
-        return Joined(tuple(Seen(thing, Quantity("==", 0), self._view(node)) for thing in self._things(node)), "all")
-
-    def not_so_many(self, node: Node) -> Condition:
-        return Negated(Seen(self._thing(node), self.visit(node.branches("quantity_said")[0].branches()[0]), self._view(node)))
-
-    def readable(self, node: Node) -> Condition:
-        return Readable(self._thing(node))
-
-    def holds(self, node: Node) -> Condition:
-        return Holds(self._thing(node), self.text(node.branches("words")[0].all_leaves()))
-
-    def holds_not(self, node: Node) -> Condition:
-        return Holds(self._thing(node), self.text(node.branches("words")[0].all_leaves()), wanted=False)
-
-    def says(self, node: Node) -> Condition:
-        said = self.text(node.branches("words")[0].all_leaves())
-        return Holds(self._thing(node), said, question=f"does the {self._thing(node).text} say {said}?")
-
-    def preset_wins(self, node: Node) -> Condition:
-        first, second = (self.visit(b) for b in node.branches("named", "numbered", "marked"))
-        return PresetWins(self._thing(node), first, second, self._wish(node))
-
-    def outnumbers(self, node: Node) -> Condition:
-        first, second = self._things(node)[:2]
-        return Outnumbers(first, second, self._wish(node))
-
-    def all_of(self, node: Node) -> Condition:
-        return Joined(tuple(self.visit(b) for b in node.branches()), "all")
-
-    def any_of(self, node: Node) -> Condition:
-        return Joined(tuple(self.visit(b) for b in node.branches()), "any")
-
-    def _quantity(self, node: Node, operator: Any) -> Quantity:
-        return Quantity(operator, self.number(node) if node.has("NUM") else 1)
-
-    def at_least(self, node: Node) -> Quantity:
-        return self._quantity(node, ">=")
-
-    def no_more_than(self, node: Node) -> Quantity:
-        return self._quantity(node, "<=")
-
-    def more_than(self, node: Node) -> Quantity:
-        return self._quantity(node, ">")
-
-    def fewer_than(self, node: Node) -> Quantity:
-        return self._quantity(node, "<")
-
-    def exactly(self, node: Node) -> Quantity:
-        return self._quantity(node, "==")
-
-    def several(self, node: Node) -> Quantity:
-        return Quantity(">=", 2)
-
-    def any_number(self, node: Node) -> Quantity:
-        return Quantity()
-
-    # Comparison --------------------------------------------------------------------------------------------------------
-    def which_preset(self, node: Node) -> Step:
-        return WhichPreset(self._thing(node), self._wish(node), self._places(node))
-
-    def preset_with(self, node: Node) -> Step:
-        return WhichPreset(self._thing(node), "more", self._places(node), any_of=True)
-
-    preset_than = more_at = compare_at = compare_at_last = which_preset
-
-    def compare_things(self, node: Node) -> Step:
-        first, second = self._things(node)[:2]
-        return Compare(first, second, self._wish(node), self._view(node))
-
-    def compare_where(self, node: Node) -> Step:
-        thing = self.visit(node.branches("np")[0]).text
-        first = self.text(node.branches("near_words")[0].all_leaves())
-        side = node.branches("side")[0]
-        second = self.text(side.all_leaves())
-        if not side.branches("near_words"):
-            second = f"{first.split(' ')[0]} {second}"
-        return Compare(Thing(f"{thing} {first}"), Thing(f"{thing} {second}"), self._wish(node), self._view(node))
-
-    def before_after(self, node: Node) -> Step:
-        moves = self.visit(node.branches("move")[0])
-        return moves if isinstance(moves, Unclear) else BeforeAfter(self._thing(node), (moves,), self._wish(node))
-
-    reveals = before_after
+def described(text: str) -> str:
+    """A description without the verb of its relative clause: "people that aren't wearing helmets", "people not wearing helmets"."""
+    for pattern, plain in _RELATIVE:
+        text = pattern.sub(plain, text)
+    return " ".join(text.split())

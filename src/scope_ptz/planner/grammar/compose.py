@@ -8,8 +8,12 @@ from dataclasses import replace
 
 from scope_ptz.planner.grammar.syntax import (
     Aim,
+    Amount,
     Ask,
+    AtIntervals,
     AtPlaces,
+    BeforeAfter,
+    Between,
     Bound,
     Count,
     DoAgain,
@@ -26,6 +30,7 @@ from scope_ptz.planner.grammar.syntax import (
     SameAt,
     Snap,
     Step,
+    ThanBefore,
     Turn,
     Unclear,
 )
@@ -45,6 +50,12 @@ def _add(out: list[Step], link: str, step: Step) -> None:
     last = out[-1] if out else None
     if isinstance(step, EachTime):
         _add_each_time(out, step)
+    elif isinstance(step, Between):
+        out[-1:] = _interleaved(last, step.body)
+    elif isinstance(step, AtIntervals):
+        _add_at_intervals(out, step)
+    elif isinstance(step, ThanBefore):
+        _add_than_before(out, step)
     elif isinstance(step, DoAgain) and out:
         _add_again(out, step)
     elif isinstance(step, Further):
@@ -178,3 +189,43 @@ def _add_again(out: list[Step], step: DoAgain) -> None:
         body = body[-1:]
     times = (step.times or 1) + (1 if step.more or step.times is None else 0)
     out[first:] = [Repeat(body, times)]
+
+
+def _interleaved(step: Step | None, between: tuple[Step, ...]) -> list[Step]:
+    """What is done several times, with something else in between."""
+    times = step.times if isinstance(step, Snap | Repeat) else 1
+    if step is None or times < 2:
+        return [*([step] if step else []), Unclear("How many times shall I do that?")]
+    single = step.body if isinstance(step, Repeat) else (replace(step, times=1),) if isinstance(step, Snap) else (step,)
+    return [*single, Repeat((*between, *single), times - 1)]
+
+
+def _add_at_intervals(out: list[Step], step: AtIntervals) -> None:
+    move = step.move
+    if move is None and out and isinstance(last := out[-1], Move) and any(isinstance(p, Turn) for p in last.parts):
+        move = last
+        out.pop()
+    turn = next((p for p in move.parts if isinstance(p, Turn)), None) if move else None
+    body = step.body[0]
+    every = Turn(turn.axis if turn else "pan", turn.sign if turn else 1, Amount("degrees", step.degrees))
+    if turn is None or turn.amount is None:
+        fixed = isinstance(body, Snap) and body.times > 1
+        out.extend(_interleaved(body, (Move((every,)),)) if fixed else [Unclear("Over how many degrees shall I turn, and which way?")])
+        return
+    total = turn.amount.degrees if turn.amount.kind == "degrees" else 360.0
+    times = math.ceil(round(total / step.degrees, 6)) if step.degrees else 1
+    single = replace(body, times=1) if isinstance(body, Snap) else body
+    out.append(Repeat((Move((every,)), single, *step.body[1:]), max(1, min(times, 24))))
+
+
+def _add_than_before(out: list[Step], step: ThanBefore) -> None:
+    """Against the last count, which is taken anew; else the moves just made are what lies between two counts."""
+    counts = [s for s in out if isinstance(s, Count)]
+    first = next((i + 1 for i in range(len(out) - 1, -1, -1) if not isinstance(out[i], Move | Repeat)), 0)
+    moves = tuple(out[first:])
+    if counts:
+        out.append(replace(counts[-1], things=(step.thing,)) if step.thing.text else counts[-1])
+    elif moves and step.thing.text:
+        out[first:] = [BeforeAfter(step.thing, moves, step.wish)]
+    else:
+        out.append(Unclear("More of what, and than when?"))

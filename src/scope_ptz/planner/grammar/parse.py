@@ -22,6 +22,7 @@ _SOFT = frozenset(
         "SEVERAL", "SURROUND", "THATREL", "THERE", "TO", "UP", "VISIBLE", "WHO", "X", "YOUSEE",
     }
 )  # fmt: skip
+_GUESSES = frozenset({"far_ref"})
 LONGEST_TEXT = 2000
 MOST_LEXEMES = 120
 
@@ -34,10 +35,10 @@ class Parsed:
     steps: tuple[Step, ...] | None
 
 
-@lru_cache(maxsize=1)
-def parser() -> ChartParser:
-    """The grammar, loaded on first use."""
-    return ChartParser(load_rules())
+@lru_cache(maxsize=2)
+def parser(presets_known: bool) -> ChartParser:
+    """The grammar, loaded on first use. Without known presets no free words after "at" or "in" are taken for one."""
+    return ChartParser([rule for rule in load_rules() if presets_known or rule.name not in _GUESSES])
 
 
 @lru_cache(maxsize=512)
@@ -45,9 +46,9 @@ def roles(kinds: frozenset[str]) -> frozenset[str]:
     """The terminals that a lexeme may be, with what it is inside a description: WORD (free), SOFT or HARD (at a cost)."""
     if kinds & _FREE:
         return kinds | {"WORD"}
-    if kinds & _BINDING:
+    if kinds & _BINDING or "GERUND" in kinds:
         return kinds
-    return kinds | {"SOFT" if kinds & _SOFT else "HARD"}
+    return kinds | {"SOFT"} if kinds & _SOFT else kinds | {"HARD"}
 
 
 @lru_cache(maxsize=512)
@@ -60,7 +61,7 @@ def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
         return Parsed(text, None)
     steps: list[Step] = []
     for first, last in _sentences(lexemes):
-        tree = parser().parse([roles(lexeme.kinds) for lexeme in lexemes[first:last]], "sentence")
+        tree = parser(bool(presets)).parse([roles(lexeme.kinds) for lexeme in lexemes[first:last]], "sentence")
         if tree is None:
             return Parsed(text, None)
         steps = Builder(text, lexemes[first:last]).extend(tree, steps)

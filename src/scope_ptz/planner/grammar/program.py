@@ -57,8 +57,10 @@ class Program(Judging):
         place = self._trail[-1]
         if step.zoom_only:
             yield from self._zoom_back(place)
-        elif self._wandered and (place.preset or place.home):
+        elif self._wandered and (place.preset or (place.home and self._sent_home)):
             yield from self._go(place)
+        elif self._wandered and self.assume_met:
+            self._note("The camera goes back to where it was")
         elif returning(place.pose, self.pose, self.limits):
             yield from self._return(place.pose)
         elif len(self._trail) > 1:
@@ -93,6 +95,7 @@ class Program(Judging):
 
     def _home(self, step: ast.Home) -> Run:
         yield from self._moved("go_home")
+        self._sent_home = True
         self._arrived(None, home=True)
         self._note("The camera is at its home view")
 

@@ -10,11 +10,15 @@ from difflib import SequenceMatcher
 from scope_ptz.planner.base import PastTurn
 from scope_ptz.planner.grammar import syntax as ast
 from scope_ptz.planner.grammar.answers import noun
+from scope_ptz.planner.grammar.lexicon import phrase_table
 from scope_ptz.planner.grammar.offtopic import is_about_the_scene
+from scope_ptz.planner.grammar.questions import embedded
 from scope_ptz.planner.grammar.tokens import distance_one, preset_key
 from scope_ptz.tools.arguments import View
 
 _CLOSE_ENOUGH = 0.8
+_LONGEST_NAME = 4
+_SHORTEST_ABBREVIATION = 3
 _WAITING = re.compile(r"(when|once|as soon as|whenever)\b", re.IGNORECASE)
 _EXISTENCE = re.compile(
     r"(?:(?:is|are) there|(?:can|do) you see) (?:an? |any |the |some )?(.+?)"
@@ -54,9 +58,25 @@ def match_preset(name: str, presets: Sequence[str]) -> str | None:
     near = [preset for preset, key in keys.items() if len(key) >= 4 and distance_one(wanted, key)]
     if len(near) == 1:
         return near[0]
+    short = [preset for preset, key in keys.items() if abbreviates(wanted, key)]
+    if len(short) == 1:
+        return short[0]
     scored = sorted(((SequenceMatcher(None, wanted, key).ratio(), preset) for preset, key in keys.items()), reverse=True)
     clear = scored and scored[0][0] >= _CLOSE_ENOUGH and (len(scored) < 2 or scored[1][0] < scored[0][0] - 0.05)
     return scored[0][1] if clear else None
+
+
+def abbreviates(short: str, long: str) -> bool:
+    """Whether a word is another with vowels left out: "hwy" for "highway"."""
+    letters = iter(long)
+    return len(short) >= _SHORTEST_ABBREVIATION and short[0] == long[:1] and not set(short[1:]) & set("aeiou") and all(c in letters for c in short)
+
+
+def plausible_name(text: str) -> bool:
+    """Whether words may be a preset's name, where no presets are known: few, and none that tells how the camera moves."""
+    words = [(word,) for word in preset_key(text)]
+    telling = {"DEG", "PRON", "NUM", "LEFT", "RIGHT", "UP", "DOWN", "ZOOM", "PAN", "TILT", "TELL", "MOVE", "LIMIT", "CAMERA", "PREVIOUS", "HOWMANY", "BE"}
+    return 0 < len(words) <= _LONGEST_NAME and not any(phrase_table().get(word, frozenset()) & telling for word in words)
 
 
 @dataclass(slots=True)
@@ -121,13 +141,17 @@ class Resolver:
     def place(self, ref: ast.PresetRef) -> ast.PresetRef:
         found = self.find_place(ref)
         if found is None:
-            listing = ", ".join(self.presets or ()) or "none"
+            if self.presets is None:
+                raise UnresolvedError(f"I did not understand '{ref.name}' as the name of a preset. Which one do you mean?")
+            listing = ", ".join(self.presets) or "none"
             raise UnresolvedError(f"There is no preset '{ref.name}'. Presets: {listing}. Which one do you mean?")
         self.preset = found
         return ast.PresetRef(found, sure=True)
 
     def find_place(self, ref: ast.PresetRef) -> str | None:
         if self.presets is None:
+            if not ref.sure and not plausible_name(ref.name):
+                return None
             return ref.name if ref.number is None else ref.name.replace(" ", "-")
         named = match_preset(ref.name, self.presets)
         if named or ref.number is None:
@@ -159,7 +183,7 @@ class Resolver:
 
     def _gopreset(self, step: ast.GoPreset) -> Sequence[ast.Step]:
         ref = step.ref
-        found = self.find_place(ref) if self.presets is not None else (ref.name if step.how == "go" or ref.sure else None)
+        found = self.find_place(ref) if self.presets is not None or step.how == "go" or ref.sure else None
         if step.how == "look" and not ref.sure:
             return [ast.ZoomTo(self.thing(ast.Thing(ref.name, definite=True)))]
         if step.how == "show" and not ref.sure and found is None:
@@ -192,7 +216,7 @@ class Resolver:
             raise UnresolvedError("I can only move the camera and answer questions about what it sees. What shall I look at?")
         if _WAITING.match(step.question):
             raise UnresolvedError("I cannot wait for something to happen. Shall I look for it now?")
-        question, place = self._asked_at(direct_question(step.question))
+        question, place = self._asked_at(embedded(step.question) if step.embedded else step.question)
         if self.antecedent and not _IMPERSONAL.search(question) and not re.search(r"\bthe \w+.*\b(it|they|them)\b", question):
             question = _POSSESSIVE.sub(
                 f"the {self.antecedent}'s", _PRONOUN.sub(f"the {self.antecedent}", question, count=1), count=1
@@ -209,6 +233,10 @@ class Resolver:
             return question, []
         self.preset, self.sweeping = name, False
         return f"{match[1]}?", [ast.GoPreset(ast.PresetRef(name, sure=True))]
+
+    def _mention(self, step: ast.Mention) -> Sequence[ast.Step]:
+        self.thing(step.thing)
+        return []
 
     def _read(self, step: ast.Read) -> Sequence[ast.Step]:
         return [ast.Read(self.thing(step.thing), self._view(step.view))]
@@ -316,19 +344,3 @@ class Resolver:
         if isinstance(condition, ast.Negated):
             return ast.Negated(self.condition(condition.part))
         return replace(condition, parts=tuple(self.condition(part) for part in condition.parts))
-
-
-def direct_question(question: str) -> str:
-    """ "What colour the door is" as "what colour is the door?", "if there is a bus" as "is there a bus?"."""
-    text = question.strip()
-    if inner := re.fullmatch(r"(?:if|whether) there(?: |')(is|are|s) (.+)", text, re.IGNORECASE):
-        return f"{'is' if inner[1] == 's' else inner[1]} there {inner[2].rstrip('?')}?"
-    if inner := re.fullmatch(r"(?:if|whether) (the .+?|any .+?|any\w+) (is|are) (.+)", text, re.IGNORECASE):
-        return f"{inner[2]} {inner[1]} {inner[3]}?"
-    if inner := re.fullmatch(r"(?:if|whether) you (?:can )?see (.+)", text, re.IGNORECASE):
-        return f"can you see {inner[1]}?"
-    if inner := re.fullmatch(r"((?:what|which)(?: \w+)?|where|who) (the .+|it|they) (is|are)", text, re.IGNORECASE):
-        return f"{inner[1]} {inner[3]} {inner[2]}?"
-    if inner := re.fullmatch(r"what (the .+) (says|reads)", text, re.IGNORECASE):
-        return f"what does {inner[1]} say?"
-    return text

@@ -34,6 +34,7 @@ class Session:
     _trail: list[Place] = field(default_factory=list)
     _winner: str | None = None
     _wandered: bool = False
+    _sent_home: bool = False
     _last_count: int = -1
     _last_yes: bool = False
 

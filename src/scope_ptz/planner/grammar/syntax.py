@@ -130,8 +130,11 @@ class Count:
 
 @dataclass(frozen=True, slots=True)
 class Ask:
+    """``embedded``: said inside another sentence ("tell me if it is open")."""
+
     question: str
     view: View | None = None
+    embedded: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -276,6 +279,37 @@ class EachTime:
 
 
 @dataclass(frozen=True, slots=True)
+class Between:
+    """Something to do between the repetitions of the step before ("three photos, panning left 10 between each")."""
+
+    body: tuple[Step, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class AtIntervals:
+    """Something to do every so many degrees of a turn: of ``move``, else of the step before."""
+
+    body: tuple[Step, ...]
+    degrees: float
+    move: Move | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ThanBefore:
+    """ "Are there more than before?": against the count before the moves just made. No thing: of what was counted."""
+
+    thing: Thing
+    wish: Wish = "more"
+
+
+@dataclass(frozen=True, slots=True)
+class Mention:
+    """ "I am looking for a yellow van": names a thing that later words refer to."""
+
+    thing: Thing
+
+
+@dataclass(frozen=True, slots=True)
 class AtPlaces:
     """Do the body at each of the places; no places: at every preset."""
 
@@ -365,7 +399,7 @@ class Unclear:
 Step = (
     Move | Further | Back | Home | GoPreset | GoThere | ListPresets | Snap | Count | Ask | Read | ZoomTo | Track | Repeat | DoAgain
     | Loop | If | EachTime | AtPlaces | SameAt | WhichPreset | Compare | BeforeAfter | Sweep | Forbid | Report | CameraState | Help
-    | WhatAbout | Unclear
+    | WhatAbout | Between | AtIntervals | ThanBefore | Mention | Unclear
 )  # fmt: skip
 
 

@@ -29,6 +29,7 @@ _BINDS_BACK = frozenset({"UNTIL", "OTHERWISE", "ATMOST", "EACHTIME"})
 _LONGEST_PHRASE = 9
 _LETTERS = {"r": "right", "l": "left", "u": "up", "d": "down"}
 _TURNED = frozenset({"TILT", "PAN", "MOVE", "LOOK", "CAMERA"})
+_NEVER_DONE = frozenset({*SEPARATORS, "DET", "ONEOF", "PREP", "SAYS", "BY", "SHOWS", "VISIBLE", "FILLS"})
 _DIAGONALS = ("UPLEFT", "UPRIGHT", "DOWNLEFT", "DOWNRIGHT")
 
 
@@ -191,7 +192,8 @@ class Lexer:
                 return Lexeme(frozenset({"TEXT"}), start, end)
             if kinds == {"FILLER"} or addressed:
                 return None
-        return Lexeme(kinds, start, end)
+        doing = words[i].text.endswith("ing") and not kinds & _NEVER_DONE
+        return Lexeme(kinds | {"GERUND"} if doing else kinds, start, end)
 
     def _unknown(self, words: list[_Word], i: int, before: list[Lexeme]) -> Lexeme:
         word = words[i]
