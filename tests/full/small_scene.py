@@ -11,12 +11,13 @@ from scope_ptz.studio.kit.lettering import letters
 from scope_ptz.studio.kit.shading import Shader
 from scope_ptz.studio.kit.stage import ActorPath, Built, Stage, TextMark
 
+NAME, TITLE = "small-yard", "Small yard"
+
 COLOURS = {"red": (0.6, 0.03, 0.02), "blue": (0.03, 0.1, 0.5), "white": (0.8, 0.8, 0.78), "green": (0.05, 0.3, 0.07)}
 
 
 def build(stage: Stage) -> None:
     """Fill the stage."""
-    stage.name, stage.title = "small-yard", "Small yard"
     sky.setup(bpy.context.scene)
     rng = random.Random(5)
     _ground(stage)

@@ -7,6 +7,7 @@ import importlib.util
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import bpy
@@ -49,9 +50,10 @@ class Studio:
         bpy.ops.wm.read_factory_settings(use_empty=True)
         bpy.context.preferences.filepaths.use_scripts_auto_execute = False
         self._troupe = None
-        build = _builder(source)
-        stage = Stage(Path(source).stem.replace("_", "-"), source)
-        stage = build(stage) or stage
+        module = _module(source)
+        name = getattr(module, "NAME", Path(source).stem.replace("_", "-"))
+        stage = Stage(name, getattr(module, "TITLE", name.replace("-", " ").capitalize()))
+        module.build(stage)
         bpy.context.view_layer.update()
         self._stage = stage
         return {"name": stage.name, "title": stage.title, "instances": len(stage.instances)}
@@ -88,15 +90,16 @@ class Studio:
         return nullcontext() if time_s is None else self.troupe.on_stage(time_s)
 
 
-def _builder(source: str) -> Callable[[Stage], Stage | None]:
+def _module(source: str) -> ModuleType:
+    """A scene's module: ``build(stage)``, and if it likes ``NAME`` (kebab-case) and ``TITLE``."""
     if not source.endswith(".py"):
-        return importlib.import_module(f"scope_ptz.studio.scenes.{source.replace('-', '_')}").build
+        return importlib.import_module(f"scope_ptz.studio.scenes.{source.replace('-', '_')}")
     spec = importlib.util.spec_from_file_location("scope_user_scene", source)
     if spec is None or spec.loader is None:
         raise ValueError(f"cannot load {source}")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    return module.build
+    return module
 
 
 def operations(progress: Progress) -> dict[str, Callable[..., Any]]:
