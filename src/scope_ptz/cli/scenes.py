@@ -78,7 +78,8 @@ def show_scene(name: str, contact_sheet: Path | None) -> None:
     categories = Counter([i.category for i in file.instances] + [a.category for a in file.actors])
     inventory = ", ".join(f"{count} {category}" for category, count in categories.most_common())
     _paragraph(console, f"{len(file.instances)} things of {len(categories)} kinds", inventory)
-    _paragraph(console, f"{len(file.texts)} texts", "; ".join(f"“{' '.join(t.text.split())}”" for t in file.texts))
+    readable = Counter(f"“{' '.join(t.text.split())}”" for t in file.texts)
+    _paragraph(console, f"{len(file.texts)} texts", "; ".join(f"{t} ({n} times)" if n > 2 else t for t, n in readable.items()))
     movers = ", ".join(
         f"{a.name} ({a.waypoints[0][0]:g} to {a.waypoints[-1][0]:g} s of every {a.period_s:g} s)" for a in file.actors
     )
