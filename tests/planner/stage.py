@@ -16,9 +16,12 @@ PRESETS = ("gate", "highway")
 
 class Stage:
     """``looks``: what counting, asking, zooming to and tracking give back, in order; the last one is repeated. ``fail``: tools
-    that fail, with how often."""
+    that fail, with how often. ``lands``: the pose that zooming to a thing ends at; where the camera is, when not said."""
 
-    def __init__(self, looks: Iterable[Any] = (), fail: dict[str, int] | None = None, pose: Pose = Pose()) -> None:  # noqa: B008
+    def __init__(
+        self, looks: Iterable[Any] = (), fail: dict[str, int] | None = None, pose: Pose = Pose(), lands: Pose | None = None
+    ) -> None:  # noqa: B008
+        self.lands = lands
         self.looks = list(looks)
         self.fail = dict(fail or {})
         self.pose = pose
@@ -60,6 +63,8 @@ class Stage:
             factor = arguments.get("zoom_factor", 1 + arguments.get("zoom_percent", 0) / 100)
             wanted = self.pose.turned(arguments.get("pan_deg", 0), arguments.get("tilt_deg", 0)).zoomed(factor)
             self.pose, clamped = LIMITS.clamp(wanted)
+        elif name == "zoom_to_object" and self.lands:
+            self.pose = self.lands
         elif name in {"go_home", "go_to_preset"}:
             self.pose = Pose()
         result = {"message": "", "pose": self.pose.as_dict(), "clamped": clamped, **extra.get(name, dict)()}

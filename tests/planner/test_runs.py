@@ -126,6 +126,25 @@ def test_coming_back_undoes_the_moves() -> None:
     assert stage.calls[-1] == ("adjust_ptz", {"pan_deg": -40, "zoom_factor": 0.5})
 
 
+def test_the_way_back_from_a_thing_is_the_difference_of_the_poses() -> None:
+    stage = Stage([True], pose=Pose(10, 0, 1), lands=Pose(42, -6, 4))
+    stage.run("find the blue van and then go back to where you were")
+    assert stage.calls[-1] == ("adjust_ptz", {"pan_deg": -32, "tilt_deg": 6, "zoom_factor": 0.25})
+    assert stage.pose == Pose(10, 0, 1)
+
+
+def test_the_way_back_goes_home_only_when_home_was_said() -> None:
+    stage = Stage([True], lands=Pose(42, -6, 4))
+    stage.run("find the blue van and then go back")
+    assert names(stage) == ["zoom_to_object", "adjust_ptz"]
+    said = Stage([True], lands=Pose(42, -6, 4))
+    said.run("go home, find the blue van and then go back")
+    assert names(said) == ["go_home", "zoom_to_object", "go_home"]
+    preset = Stage([True], lands=Pose(42, -6, 4))
+    preset.run("go to gate, find the blue van, then go back to where you were")
+    assert preset.calls[-1] == ("go_to_preset", {"name": "gate"})
+
+
 def test_being_there_already_needs_no_call() -> None:
     stage = Stage()
     assert "already" in stage.run("level the camera").text

@@ -64,8 +64,6 @@ class Builder(MoveRules, JudgingRules):
                 kind = part.kind if isinstance(part, Leaf) else Node(part).leaf_kinds()[0]
                 link = _LINKS.get(kind, "")
                 continue
-            if child.name == "run_on":
-                child, link = child.branches()[0], "then"
             for step in self._as_steps(self.visit(child)):
                 out.append(Linked(link, step))
                 link = "then"
@@ -160,10 +158,13 @@ class Builder(MoveRules, JudgingRules):
         blocks = [self.visit(b) for b in node.branches()]
         return If(Answered(), blocks[0], blocks[1] if len(blocks) > 1 else ())
 
+    def correction(self, node: Node) -> Step:
+        return Unclear("You changed your mind half way. Which of the two do you want?")
+
     def if_not(self, node: Node) -> Step:
         return If(Negated(Answered()), self.visit(node.branches()[-1]))
 
-    def between(self, node: Node) -> tuple[Step, ...]:
+    def in_between(self, node: Node) -> tuple[Step, ...]:
         return (*self._body(node, 0), Between(self._body(node, 1)))
 
     def between_alone(self, node: Node) -> Step:
@@ -187,7 +188,9 @@ class Builder(MoveRules, JudgingRules):
         size, move = (self.visit(b) for b in node.branches())
         if not isinstance(move, Move):
             return move  # type: ignore[no-any-return]
-        return Move(tuple(replace(p, step=size.size, steps=size.count) if isinstance(p, Turn) else p for p in move.parts), move.verb)
+        return Move(
+            tuple(replace(p, step=size.size, steps=size.count) if isinstance(p, Turn) else p for p in move.parts), move.verb
+        )
 
     def do_each(self, node: Node) -> Step:
         *places, act = node.branches()
@@ -215,7 +218,8 @@ class Builder(MoveRules, JudgingRules):
 
     def do_at(self, node: Node) -> Step:
         """ "At gate, count the cars", or the other way round."""
-        places, act = sorted(node.branches(), key=lambda b: b.name not in {"every_place", "place_list"})
+        parts = [b for b in node.branches() if b.name != "visit"]
+        places, act = sorted(parts, key=lambda b: b.name not in {"every_place", "place_list"})
         return AtPlaces(self.visit(places), self._as_steps(self.visit(act)))
 
     def same_at(self, node: Node) -> Step:
@@ -242,6 +246,9 @@ class Builder(MoveRules, JudgingRules):
     def further(self, node: Node) -> Step:
         """ "Then another 15": the same way again."""
         return Further(Amount("degrees", self.number(node)))
+
+    def further_little(self, node: Node) -> Step:
+        return Further(Amount("little"))
 
     def forbidden(self, node: Node) -> Step:
         return Forbid()

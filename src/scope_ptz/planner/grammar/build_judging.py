@@ -6,9 +6,24 @@ from __future__ import annotations
 
 from typing import Any
 
-from scope_ptz.planner.grammar.build_scene import SCOPES, SceneRules
+from scope_ptz.planner.grammar.build_scene import SCOPES, SceneRules, described
 from scope_ptz.planner.grammar.syntax import (
-    BeforeAfter, Compare, Condition, Holds, Joined, Negated, Outnumbers, PresetWins, Quantity, Readable, Seen, Step, ThanBefore, Thing, Unclear, WhichPreset,
+    BeforeAfter,
+    Compare,
+    Condition,
+    Holds,
+    Joined,
+    Negated,
+    Outnumbers,
+    PresetWins,
+    Quantity,
+    Readable,
+    Seen,
+    Step,
+    ThanBefore,
+    Thing,
+    Unclear,
+    WhichPreset,
 )
 from scope_ptz.planner.grammar.trees import Node
 
@@ -30,6 +45,16 @@ class JudgingRules(SceneRules):
 
     unseen_pronoun = unseen
 
+    def seen_someone(self, node: Node) -> Condition:
+        return Seen(self._people(node), Quantity(), self._view(node))
+
+    def unseen_someone(self, node: Node) -> Condition:
+        return Seen(self._people(node), Quantity("==", 0), self._view(node))
+
+    def _people(self, node: Node) -> Thing:
+        """ "Anyone in the lane": people in the lane."""
+        return Thing(described(" ".join(["people", *(self.text(b.all_leaves()) for b in node.branches("words"))])))
+
     def unseen_both(self, node: Node) -> Condition:
         return Joined(tuple(Seen(thing, Quantity("==", 0), self._view(node)) for thing in self._things(node)), "all")
 
@@ -40,10 +65,17 @@ class JudgingRules(SceneRules):
         return Readable(self._thing(node))
 
     def holds(self, node: Node) -> Condition:
-        return Holds(self._thing(node), self.text(node.branches("words")[0].all_leaves()))
+        return self._holds(node, True)
 
     def holds_not(self, node: Node) -> Condition:
-        return Holds(self._thing(node), self.text(node.branches("words")[0].all_leaves()), wanted=False)
+        return self._holds(node, False)
+
+    def _holds(self, node: Node, wanted: bool) -> Condition:
+        """ "The gate is open" is asked; "any worker is not wearing a helmet" is counted."""
+        thing, predicate = self._thing(node), self.text(node.branches("words")[0].all_leaves())
+        if any(np.has("ANY") for b in node.branches("subject") for np in b.branches("np")):
+            return Seen(Thing(f"{thing.text} {'' if wanted else 'not '}{predicate}"))
+        return Holds(thing, predicate, wanted)
 
     def says(self, node: Node) -> Condition:
         said = self.text(node.branches("words")[0].all_leaves())

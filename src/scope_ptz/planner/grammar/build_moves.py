@@ -63,6 +63,9 @@ class MoveRules(Rules):
     def unsaid(self, node: Node) -> Amount:
         return Amount("unsaid")
 
+    def same(self, node: Node) -> Amount:
+        return Amount("same")
+
     def angle_number(self, node: Node) -> float:
         return self.number(node)
 
@@ -133,6 +136,14 @@ class MoveRules(Rules):
     def turn(self, node: Node) -> tuple[Part, ...]:
         direction = next(b.name for b in node.branches() if b.name in _DIRECTIONS)
         return self._turns(node, list(_DIRECTIONS[direction]))
+
+    turn_late = turn
+
+    def turn_at(self, node: Node) -> tuple[Part, ...] | Unclear:
+        """ "Point the camera to the left"; "zoom in on the left" names no thing."""
+        if not self.words_of(node.leaves("LOOKAT")[0]).startswith(_AIMING):
+            return Unclear("On what shall I zoom in?")
+        return self.turn(node)
 
     def turn_two(self, node: Node) -> tuple[Part, ...] | Unclear:
         directions = [d for b in node.branches() if b.name in _DIRECTIONS for d in _DIRECTIONS[b.name]]
@@ -211,7 +222,9 @@ class MoveRules(Rules):
         return (Aim("tilt", -abs(next(self.visit(b) for b in node.branches() if b.name.startswith("angle")))),)
 
     def heading(self, node: Node) -> Unclear:
-        return Unclear("I have no compass: I know directions only as left and right of where the camera points. Which way shall I turn?")
+        return Unclear(
+            "I have no compass: I know directions only as left and right of where the camera points. Which way shall I turn?"
+        )
 
     def level(self, node: Node) -> tuple[Part, ...]:
         return (Aim("tilt", 0.0),)

@@ -9,26 +9,17 @@ from typing import Any
 
 from scope_ptz.planner.grammar.syntax import (
     Ask,
-    BeforeAfter,
     CameraState,
-    Compare,
-    Condition,
     Count,
     GoPreset,
     GoThere,
     Help,
-    Holds,
     Home,
-    Joined,
     ListPresets,
-    Negated,
-    Outnumbers,
+    Mention,
     PresetRef,
-    PresetWins,
-    Quantity,
     Read,
-    Readable,
-    Seen,
+    Rescope,
     Snap,
     Step,
     Sweep,
@@ -48,9 +39,15 @@ _NOUNS = frozenset({"CAMERA", "PICTURE", "WHO", "PRESETWORD", "CIRCLE", "SURROUN
 _SCOPE_WORDS = frozenset({"FULLSCOPE", "NOWSCOPE"})
 _RELATIVE = (
     (re.compile(r"\b(?:(?:who|that|which) )?(?:are|is|were|was)(?:n['’]?t| not)\b", re.IGNORECASE), "not"),
-    (re.compile(r"\b(?:who|that|which) (?:don['’]?t|do not|doesn['’]?t|does not|have not|haven['’]?t) (?:have|wear)\b", re.IGNORECASE), "without"),
+    (
+        re.compile(
+            r"\b(?:who|that|which) (?:don['’]?t|do not|doesn['’]?t|does not|have not|haven['’]?t) (?:have|wear)\b", re.IGNORECASE
+        ),
+        "without",
+    ),
     (re.compile(r"\b(?:who|that|which)(?: (?:are|is)|['’](?:re|s)) (?=\w)", re.IGNORECASE), ""),
     (re.compile(r"^(?:me|us) (?:all )?(?:the )?", re.IGNORECASE), ""),
+    (re.compile(r"^(?:currently )?visible (?=\w)", re.IGNORECASE), ""),
     (re.compile(r" (?:what|that)$", re.IGNORECASE), ""),
 )
 _DURATIONS = {"seconds", "minutes", "part_minute", "minute_and_part", "minutes_seconds", "hours"}
@@ -211,12 +208,17 @@ class SceneRules(Rules):
         thing = self._thing(node)
         leaves = node.branches("words")[0].all_leaves()
         rest = self.text(leaves)
-        denied = node.has("NOT") or re.search(r"n['’]?t$", " ".join(self.words_of(leaf) for leaf in node.leaves("BE") + node.leaves("DO")))
+        denied = node.has("NOT") or re.search(
+            r"n['’]?t$", " ".join(self.words_of(leaf) for leaf in node.leaves("BE") + node.leaves("DO"))
+        )
         if not thing.text:
             return Count((Thing(f"{'not ' if denied else ''}{rest} ones"),), self._view(node))
         adjective = " " not in rest and leaves[0].kind == "WORD" and not rest.endswith("ing") and not denied
         said = f"{rest} {thing.text}" if adjective else f"{thing.text} {'not ' if denied else ''}{rest}"
         return Count((Thing(described(said)),), self._view(node))
+
+    def count_between(self, node: Node) -> Step:
+        return Count((Thing(f"{self._thing(node).text} {self.text(node.branches('between')[0].all_leaves())}"),), self._view(node))
 
     def count_parts(self, node: Node) -> Step:
         """ "How many windows does the building have"."""
@@ -242,15 +244,20 @@ class SceneRules(Rules):
         leaves = node.all_leaves()
         lead = [leaf for leaf in leaves[:4] if leaf.kind in _SCOPE_WORDS or (leaf.kind == "COMMA" and leaf is not leaves[0])]
         asking = leaves[len(lead) :] if leaves[: len(lead)] == lead else leaves
-        skip = next((i for i, leaf in enumerate(asking) if leaf.kind not in {"TELL", "CANYOU", "GIVE"}), 0)
+        skip = next((i for i, leaf in enumerate(asking) if leaf.kind not in {"TELL", "CANYOU", "GIVE", "SHOW"}), 0)
         skip = skip if any(leaf.kind != "CANYOU" for leaf in asking[:skip]) else 0
         embedded = skip > 0
         end = self.lexemes[leaves[-1].index].end
         question = self.text(asking[skip:] if embedded else leaves)
+        if embedded and re.search(r"\b(if|whether)$", self.words_of(asking[skip - 1])):
+            question = f"if {question}"  # "see if" is one lexeme
         views = {kind for leaf in leaves for kind in self.lexemes[leaf.index].kinds}
         full = "FULLSCOPE" in views or _ALL_AROUND.search(question)
         view: View | None = "full" if full else "current" if "NOWSCOPE" in views else None
         return Ask(question + ("?" if self.source[end : end + 3].lstrip().startswith("?") else ""), view, embedded)
+
+    def rescope(self, node: Node) -> Step:
+        return Rescope(self._view(node) or "current")
 
     def mention(self, node: Node) -> Step:
         return Mention(self._thing(node))

@@ -27,6 +27,7 @@ from scope_ptz.planner.grammar.syntax import (
     Move,
     Part,
     Repeat,
+    Rescope,
     SameAt,
     Snap,
     Step,
@@ -48,12 +49,16 @@ def compose(linked: Sequence[Linked], before: Sequence[Step]) -> list[Step]:
 
 def _add(out: list[Step], link: str, step: Step) -> None:
     last = out[-1] if out else None
+    if isinstance(step, Move):
+        step = _with_same_amounts(step, out)
     if isinstance(step, EachTime):
         _add_each_time(out, step)
     elif isinstance(step, Between):
         out[-1:] = _interleaved(last, step.body)
     elif isinstance(step, AtIntervals):
         _add_at_intervals(out, step)
+    elif isinstance(step, Rescope):
+        out.append(replace(last, view=step.view) if isinstance(last, Count | Ask) else Unclear("What shall I look for there?"))
     elif isinstance(step, ThanBefore):
         _add_than_before(out, step)
     elif isinstance(step, DoAgain) and out:
@@ -210,7 +215,9 @@ def _add_at_intervals(out: list[Step], step: AtIntervals) -> None:
     every = Turn(turn.axis if turn else "pan", turn.sign if turn else 1, Amount("degrees", step.degrees))
     if turn is None or turn.amount is None:
         fixed = isinstance(body, Snap) and body.times > 1
-        out.extend(_interleaved(body, (Move((every,)),)) if fixed else [Unclear("Over how many degrees shall I turn, and which way?")])
+        out.extend(
+            _interleaved(body, (Move((every,)),)) if fixed else [Unclear("Over how many degrees shall I turn, and which way?")]
+        )
         return
     total = turn.amount.degrees if turn.amount.kind == "degrees" else 360.0
     times = math.ceil(round(total / step.degrees, 6)) if step.degrees else 1
@@ -229,3 +236,14 @@ def _add_than_before(out: list[Step], step: ThanBefore) -> None:
         out[first:] = [BeforeAfter(step.thing, moves, step.wish)]
     else:
         out.append(Unclear("More of what, and than when?"))
+
+
+def _with_same_amounts(move: Move, before: Sequence[Step]) -> Step:
+    """ "By the same amount": as far as the last turn."""
+    turns = [p for s in before if isinstance(s, Move) for p in s.parts if isinstance(p, Turn)]
+    if not any(isinstance(p, Turn) and p.amount and p.amount.kind == "same" for p in move.parts):
+        return move
+    if not turns:
+        return Unclear("The same as what? How far shall I turn?")
+    same = turns[-1].amount
+    return replace(move, parts=tuple(replace(p, amount=same) if isinstance(p, Turn) and p.amount else p for p in move.parts))

@@ -70,6 +70,9 @@ def _cardinal(words: list[str]) -> tuple[float, int]:
         if words[1] == "couple" and words[2:3] == ["of"] and words[3:4] in (["times"], ["degrees"]):
             return 0.0, 0
         current, used = 1.0, 1
+    spoken = next((i for i, w in enumerate(words) if NUMBER_WORDS.get(w, 10) > 9), len(words))
+    if spoken > 1 and not used:  # "three zero" on the radio
+        return float("".join(str(int(NUMBER_WORDS[w])) for w in words[:spoken])), spoken
     while used < len(words):
         word = words[used]
         if (

@@ -1,4 +1,4 @@
-"""Embedded questions made direct: "tell me if it's open" asks "Is it open?", "tell me its number plate" "What is its number plate?"."""
+"""Embedded questions made direct: "tell me if it's open" asks "Is it open?", "tell me its colour" asks "What is its colour?"."""
 
 from __future__ import annotations
 
@@ -14,14 +14,18 @@ _SAID = {
     "contains": "contain", "weighs": "weigh", "costs": "cost", "lists": "list", "displays": "display",
 }  # fmt: skip
 _HEAVY = re.compile(rf"(.+?) ({_AUXILIARY}) (.+)", re.IGNORECASE)
-_YES_NO = re.compile(r"(?:if|whether)(?: or not)? (.+?)(?:,? or not)?", re.IGNORECASE)
+_YES_NO = re.compile(
+    r"(?:if|whether|that (?=(?:the|an?|all|every|no|any|there|it|they)\b))(?: or not)? ?(.+?)(?:,? or not)?", re.IGNORECASE
+)
 _WH = re.compile(
-    r"((?:what|which)(?: (?!the\b|an?\b|that\b|this\b|its\b|it\b|they\b|you\b|is\b|are\b|does\b|do\b)\w+){0,2}|where(?:abouts)?|who|why"
+    r"((?:what|which)(?: (?!(?:the|an?|that|this|its|it|they|you|is|are|does|do|of)\b)\w+){0,2}|where(?:abouts)?|who|why"
     r"|how(?: (?:far|big|tall|high|wide|long|fast|close|busy|full|wet|bright|dark|many \w+))?(?: away)?)"
     r" ((?:the|an?|that|this|these|those|its|their|his|her|it|they|he|she|each|every|all|both|any)\b.*?)",
     re.IGNORECASE,
 )
-_ASKED = re.compile(r"(what|which|who|whom|whose|where|when|why|how|is|are|was|were|do|does|did|can|could|has|have|any)\b", re.IGNORECASE)
+_ASKED = re.compile(
+    r"(what|which|who|whom|whose|where|when|why|how|is|are|was|were|do|does|did|can|could|has|have|any)\b", re.IGNORECASE
+)
 
 
 def embedded(text: str) -> str:
@@ -51,7 +55,9 @@ def _is_spelled(short: re.Match[str]) -> str:
 
 def _about_you(said: str) -> str | None:
     """ "What you see", "what you can see there"."""
-    found = re.fullmatch(r"(what(?: else)?|which \w+|how many \w+|who(?:m)?) you (can )?(see|find|notice|spot|observe)( .+)?", said, re.IGNORECASE)
+    found = re.fullmatch(
+        r"(what(?: else)?|which \w+|how many \w+|who(?:m)?) you (can )?(see|find|notice|spot|observe)( .+)?", said, re.IGNORECASE
+    )
     return f"{found[1]} {'can' if found[2] else 'do'} you {found[3]}{found[4] or ''}" if found else None
 
 
@@ -75,4 +81,8 @@ def _named(said: str) -> str | None:
         return None
     head = re.split(r" (?:of|on|in|at|for|to|with|near|behind|from|by|that|which|who) ", said)[0]
     many = noun(head, 1) != head and not re.search(r"ss$|'s$", head)
-    return f"what {'are' if many else 'is'} {said}" if re.match(r"(the|its|their|his|her|an?|this|that|these|those)\b", said, re.IGNORECASE) else None
+    return (
+        f"what {'are' if many else 'is'} {said}"
+        if re.match(r"(the|its|their|his|her|an?|this|that|these|those)\b", said, re.IGNORECASE)
+        else None
+    )

@@ -18,6 +18,8 @@ from scope_ptz.tools.arguments import View
 
 _CLOSE_ENOUGH = 0.8
 _LONGEST_NAME = 4
+_NOWHERE = frozenset({"around", "everywhere", "there", "here", "away", "about"})
+_NO_PLACE = frozenset({"mode", "sleep", "hell", "bed", "town", "pieces", "waste"})
 _SHORTEST_ABBREVIATION = 3
 _WAITING = re.compile(r"(when|once|as soon as|whenever)\b", re.IGNORECASE)
 _EXISTENCE = re.compile(
@@ -69,14 +71,39 @@ def match_preset(name: str, presets: Sequence[str]) -> str | None:
 def abbreviates(short: str, long: str) -> bool:
     """Whether a word is another with vowels left out: "hwy" for "highway"."""
     letters = iter(long)
-    return len(short) >= _SHORTEST_ABBREVIATION and short[0] == long[:1] and not set(short[1:]) & set("aeiou") and all(c in letters for c in short)
+    return (
+        len(short) >= _SHORTEST_ABBREVIATION
+        and short[0] == long[:1]
+        and not set(short[1:]) & set("aeiou")
+        and all(c in letters for c in short)
+    )
 
 
 def plausible_name(text: str) -> bool:
     """Whether words may be a preset's name, where no presets are known: few, and none that tells how the camera moves."""
     words = [(word,) for word in preset_key(text)]
-    telling = {"DEG", "PRON", "NUM", "LEFT", "RIGHT", "UP", "DOWN", "ZOOM", "PAN", "TILT", "TELL", "MOVE", "LIMIT", "CAMERA", "PREVIOUS", "HOWMANY", "BE"}
-    return 0 < len(words) <= _LONGEST_NAME and not any(phrase_table().get(word, frozenset()) & telling for word in words)
+    telling = {
+        "DEG",
+        "PRON",
+        "NUM",
+        "LEFT",
+        "RIGHT",
+        "UP",
+        "DOWN",
+        "ZOOM",
+        "PAN",
+        "TILT",
+        "TELL",
+        "MOVE",
+        "LIMIT",
+        "CAMERA",
+        "PREVIOUS",
+        "HOWMANY",
+        "BE",
+    }
+    if not 0 < len(words) <= _LONGEST_NAME or any(word in _NO_PLACE for (word,) in words):
+        return False
+    return not any(phrase_table().get(word, frozenset()) & telling for word in words)
 
 
 @dataclass(slots=True)
@@ -103,14 +130,16 @@ class Resolver:
         """The steps with all names bound. Raises ``UnresolvedError``."""
         out: list[ast.Step] = []
         for step in steps:
-            out.extend(self._bind(self._completed(step, out)))
+            bound = self._bind(self._completed(step, out))
+            again = bool(out) and isinstance(out[-1], ast.ZoomTo) and list(bound) == out[-1:]
+            out.extend([] if again else bound)  # "find it, zoom in on it" is one wish
         return tuple(out)
 
     def _completed(self, step: ast.Step, before: Sequence[ast.Step]) -> ast.Step:
         """ "Read the left sign and then the right one": a bare thing takes the verb of the step before it."""
         last = before[-1] if before else None
         bare = isinstance(step, ast.GoPreset) and step.how == "bare" and step.ref.determined
-        if not bare or not isinstance(step, ast.GoPreset) or self.find_place(step.ref) is not None:
+        if not bare or not isinstance(step, ast.GoPreset) or (self.presets and self.find_place(step.ref)):
             return step
         thing = ast.Thing(re.sub(r"^(the|an?) ", "", step.ref.name), definite=True)
         if isinstance(last, ast.Read):
@@ -121,6 +150,8 @@ class Resolver:
 
     # Names -------------------------------------------------------------------------------------------------------------
     def thing(self, thing: ast.Thing) -> ast.Thing:
+        if thing.text.lower() in _NOWHERE:
+            raise UnresolvedError(f"What shall I look for {thing.text}?")
         if thing.odd and not (_ONES.search(thing.text) and self.antecedent):
             raise UnresolvedError(f"I did not understand '{thing.text}'. Which thing do you mean?")
         if thing.text.endswith((" one", " ones")) and not self.antecedent:
@@ -282,6 +313,8 @@ class Resolver:
         return self.bind(step.body)
 
     def _loop(self, step: ast.Loop) -> Sequence[ast.Step]:
+        if any(isinstance(inner, ast.Track) for inner in step.body):
+            raise UnresolvedError("I follow things for a time that you give me. For how many seconds shall I follow it?")
         for inner in step.body:
             named = (
                 inner.things[0] if isinstance(inner, ast.Count) else inner.thing if isinstance(inner, ast.ZoomTo) else ast.Thing()

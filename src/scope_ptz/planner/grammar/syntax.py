@@ -5,18 +5,30 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from scope_ptz.planner.grammar.conditions import Answered as Answered
+from scope_ptz.planner.grammar.conditions import Condition as Condition
+from scope_ptz.planner.grammar.conditions import Holds as Holds
+from scope_ptz.planner.grammar.conditions import Joined as Joined
+from scope_ptz.planner.grammar.conditions import Negated as Negated
+from scope_ptz.planner.grammar.conditions import Operator as Operator
+from scope_ptz.planner.grammar.conditions import Outnumbers as Outnumbers
+from scope_ptz.planner.grammar.conditions import PresetRef as PresetRef
+from scope_ptz.planner.grammar.conditions import PresetWins as PresetWins
+from scope_ptz.planner.grammar.conditions import Quantity as Quantity
+from scope_ptz.planner.grammar.conditions import Readable as Readable
+from scope_ptz.planner.grammar.conditions import Seen as Seen
+from scope_ptz.planner.grammar.conditions import Thing as Thing
+from scope_ptz.planner.grammar.conditions import Wish as Wish
 from scope_ptz.tools.arguments import View
 
 Axis = Literal["pan", "tilt"]
-Operator = Literal[">=", "<=", ">", "<", "=="]
-Wish = Literal["more", "fewer"]
 
 
 @dataclass(frozen=True, slots=True)
 class Amount:
-    """How far: degrees, or "little", "lot", "limit" (all the way), "unsaid"."""
+    """How far: degrees, or "little", "lot", "limit" (all the way), "unsaid", or the "same" as the turn before."""
 
-    kind: Literal["degrees", "little", "lot", "limit", "unsaid"] = "unsaid"
+    kind: Literal["degrees", "little", "lot", "limit", "unsaid", "same"] = "unsaid"
     degrees: float = 0.0
 
 
@@ -79,17 +91,6 @@ class Home:
 
 
 @dataclass(frozen=True, slots=True)
-class PresetRef:
-    """A preset by name, or by its number in the list (-1: the last). ``sure``: the person said that it is a preset;
-    ``determined``: said with "the" or "a"."""
-
-    name: str = ""
-    number: int | None = None
-    sure: bool = False
-    determined: bool = False
-
-
-@dataclass(frozen=True, slots=True)
 class GoPreset:
     """``how``: "go" names a place for certain; "show" and "bare" may mean a thing instead."""
 
@@ -105,15 +106,6 @@ class GoThere:
 @dataclass(frozen=True, slots=True)
 class ListPresets:
     pass
-
-
-@dataclass(frozen=True, slots=True)
-class Thing:
-    """A described thing; an empty description is a pronoun. ``odd``: made of words that name no thing ("times", "closer")."""
-
-    text: str = ""
-    definite: bool = False
-    odd: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,6 +130,13 @@ class Ask:
 
 
 @dataclass(frozen=True, slots=True)
+class Rescope:
+    """ "And then in the whole scene": the count or question before, in another view."""
+
+    view: View
+
+
+@dataclass(frozen=True, slots=True)
 class Read:
     thing: Thing
     view: View | None = None
@@ -152,83 +151,6 @@ class ZoomTo:
 class Track:
     thing: Thing
     seconds: float = 10.0
-
-
-@dataclass(frozen=True, slots=True)
-class Quantity:
-    operator: Operator = ">="
-    number: float = 1
-
-    def holds(self, count: float) -> bool:
-        return {
-            ">=": count >= self.number, "<=": count <= self.number, ">": count > self.number,
-            "<": count < self.number, "==": count == self.number,
-        }[self.operator]  # fmt: skip
-
-
-@dataclass(frozen=True, slots=True)
-class Seen:
-    """So many of a thing are visible."""
-
-    thing: Thing
-    quantity: Quantity = Quantity()
-    view: View | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Readable:
-    thing: Thing
-
-
-@dataclass(frozen=True, slots=True)
-class Holds:
-    """A yes-or-no question about the scene; ``wanted``: the answer that meets the condition. ``question``:
-    where it is not "is it so?"."""
-
-    subject: Thing
-    predicate: str
-    wanted: bool = True
-    question: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Outnumbers:
-    """There are more (or fewer) of the first than of the second."""
-
-    first: Thing
-    second: Thing
-    wish: Wish = "more"
-
-
-@dataclass(frozen=True, slots=True)
-class PresetWins:
-    """One preset shows more (or fewer) of a thing than another."""
-
-    thing: Thing
-    first: PresetRef
-    second: PresetRef
-    wish: Wish = "more"
-
-
-@dataclass(frozen=True, slots=True)
-class Answered:
-    """ "If so": the last question was answered with yes, or the last count was not zero."""
-
-
-@dataclass(frozen=True, slots=True)
-class Joined:
-    """Conditions with "and" (all) or "or" (any) between them."""
-
-    parts: tuple[Condition, ...]
-    mode: Literal["all", "any"]
-
-
-@dataclass(frozen=True, slots=True)
-class Negated:
-    part: Condition
-
-
-Condition = Answered | PresetWins | Seen | Readable | Holds | Outnumbers | Joined | Negated
 
 
 @dataclass(frozen=True, slots=True)
@@ -399,7 +321,7 @@ class Unclear:
 Step = (
     Move | Further | Back | Home | GoPreset | GoThere | ListPresets | Snap | Count | Ask | Read | ZoomTo | Track | Repeat | DoAgain
     | Loop | If | EachTime | AtPlaces | SameAt | WhichPreset | Compare | BeforeAfter | Sweep | Forbid | Report | CameraState | Help
-    | WhatAbout | Between | AtIntervals | ThanBefore | Mention | Unclear
+    | WhatAbout | Between | AtIntervals | ThanBefore | Mention | Rescope | Unclear
 )  # fmt: skip
 
 

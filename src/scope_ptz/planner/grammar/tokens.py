@@ -199,7 +199,8 @@ class Lexer:
         word = words[i]
         at_start = _starts_clause(before)
         after_turn = bool(before) and bool(before[-1].kinds & {"PAN", "TILT", "MOVE", "NUM", "DEG", "ZOOM"})
-        if after_turn and word.text in _LETTERS:
+        before_number = i + 1 < len(words) and words[i + 1].kind == "num"
+        if (after_turn or (at_start and before_number)) and word.text in _LETTERS:
             return Lexeme(self._table[(_LETTERS[word.text],)], word.start, word.end)
         guess = (
             _respelled(word.text, word_list("commands"))

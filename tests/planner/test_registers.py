@@ -1,0 +1,20 @@
+"""Phrasings of many registers (terse, radio, polite, written reports, slips, speech without punctuation), call by call."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from scope_ptz.planner.plan import plan
+
+ROWS = [json.loads(line) for line in Path(__file__).with_name("registers.jsonl").read_text(encoding="utf-8").splitlines()]
+
+
+@pytest.mark.parametrize("row", ROWS, ids=[row["instruction"] for row in ROWS])
+def test_registers(row: dict[str, Any]) -> None:
+    made = plan(row["instruction"], row["presets"])
+    assert made.understood == row["understood"], made.clarification
+    assert [{"name": call.name, "arguments": call.arguments} for call in made.calls] == row["calls"]
