@@ -12,6 +12,7 @@ from scope_ptz.planner.grammar import GrammarPlanner
 
 LIMITS = Limits()
 PRESETS = ("gate", "highway")
+_START = Pose()
 
 
 class Stage:
@@ -20,7 +21,7 @@ class Stage:
 
     def __init__(
         self, looks: Iterable[Any] = (), fail: dict[str, int] | None = None, pose: Pose = Pose(), lands: Pose | None = None
-    ) -> None:  # noqa: B008
+    ) -> None:
         self.lands = lands
         self.looks = list(looks)
         self.fail = dict(fail or {})

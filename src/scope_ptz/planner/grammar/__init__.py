@@ -1,6 +1,6 @@
 """The built-in planner: a grammar of camera operation, an interpreter, and no model.
 
-Text becomes lexemes (``tokens``, ``lexicon``, ``numerals``), lexemes a tree (``language.lark``, ``chart``), the tree typed steps
+Text becomes lexemes (``tokens``, ``lexicon``, ``numerals``), lexemes a tree (``language.lark``, ``rules``, ``chart``), the tree typed steps
 (``build``, ``compose``), names are bound (``resolve``), and ``program`` runs the steps against the history.
 """
 

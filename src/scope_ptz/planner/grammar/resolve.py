@@ -27,6 +27,11 @@ _EXISTENCE = re.compile(
     r"(?: anywhere| in view| visible| right now| here)?\s*\?*$",
     re.IGNORECASE,
 )
+_WINNER = re.compile(
+    r"which (?:one |preset |view |of them |place )?(?:has|have|shows|had) (?:the )?(?:most|fewest|more|fewer|least)\W*",
+    re.IGNORECASE,
+)
+_DESCRIBE = re.compile(r"describe(?: each(?: one| view| of them)?)?\W*", re.IGNORECASE)
 _ONES = re.compile(r"\bones?\b", re.IGNORECASE)
 _POSSESSIVE = re.compile(r"\b(its|their)\b", re.IGNORECASE)
 _PRONOUN = re.compile(r"\b(it|they|them|that one|this one)\b", re.IGNORECASE)
@@ -115,6 +120,7 @@ class Resolver:
     antecedent: str = ""
     preset: str = ""
     compared: bool = False
+    counted: bool = False
     sweeping: bool = False
 
     def __post_init__(self) -> None:
@@ -240,9 +246,14 @@ class Resolver:
         return [replace(step, of=self.thing(step.of))]
 
     def _count(self, step: ast.Count) -> Sequence[ast.Step]:
+        self.counted = True
         return [replace(step, things=tuple(self.thing(t) for t in step.things), view=self._view(step.view))]
 
     def _ask(self, step: ast.Ask) -> Sequence[ast.Step]:
+        if self.counted and _WINNER.fullmatch(step.question.strip()):
+            return []  # the answer tells the counts
+        if _DESCRIBE.fullmatch(step.question.strip()):
+            return [ast.Ask("Describe the scene.", self._view(step.view))]
         if not is_about_the_scene(step.question):
             raise UnresolvedError("I can only move the camera and answer questions about what it sees. What shall I look at?")
         if _WAITING.match(step.question):
