@@ -20,7 +20,7 @@ class Stage:
     that fail, with how often. ``lands``: the pose that zooming to a thing ends at; where the camera is, when not said."""
 
     def __init__(
-        self, looks: Iterable[Any] = (), fail: dict[str, int] | None = None, pose: Pose = Pose(), lands: Pose | None = None
+        self, looks: Iterable[Any] = (), fail: dict[str, int] | None = None, pose: Pose = _START, lands: Pose | None = None
     ) -> None:
         self.lands = lands
         self.looks = list(looks)

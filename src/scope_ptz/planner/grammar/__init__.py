@@ -1,7 +1,7 @@
 """The built-in planner: a grammar of camera operation, an interpreter, and no model.
 
-Text becomes lexemes (``tokens``, ``lexicon``, ``numerals``), lexemes a tree (``language.lark``, ``rules``, ``chart``), the tree typed steps
-(``build``, ``compose``), names are bound (``resolve``), and ``program`` runs the steps against the history.
+Text becomes lexemes (``tokens``, ``lexicon``, ``numerals``), lexemes a tree (``language.lark``, ``rules``, ``chart``), the tree
+typed steps (``build``, ``compose``), names are bound (``resolve``), and ``program`` runs the steps against the history.
 """
 
 from __future__ import annotations
