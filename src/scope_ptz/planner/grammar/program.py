@@ -97,12 +97,12 @@ class Program(Judging):
         yield from self._moved("go_home")
         self._sent_home = True
         self._arrived(None, home=True)
-        self._note("The camera is at its home view")
+        self._note("I went to the home view")
 
     def _gopreset(self, step: ast.GoPreset) -> Run:
         yield from self._moved("go_to_preset", name=step.ref.name)
         self._arrived(step.ref.name)
-        self._note(f"The camera is at preset {step.ref.name}")
+        self._note(f"I went to preset {step.ref.name}")
 
     def _gothere(self, step: ast.GoThere) -> Run:
         if self._winner:
@@ -133,7 +133,7 @@ class Program(Judging):
         if result is None or not result.get("found"):
             self._missing.add(text)
             if result is not None:
-                self._note(f"I could not find {_the(step.thing)} in this view, so I left out what depended on it")
+                self._note(f"I could not find {_the(step.thing)} in this view, so the camera stayed where it was")
             return
         self._wandered = True
         many = f" ({result['matches']} matched; {result['chosen'] or 'one was chosen'})" if result.get("matches", 1) > 1 else ""
@@ -168,10 +168,12 @@ class Program(Judging):
         result = yield from self._looked("query_answer", question=step.question, view=step.view or "current")
         if result is not None:
             self._last_yes = bool(result.get("known", True)) and result["answer"].strip().lower().startswith("yes")
-            self._note(result["answer"] if result.get("known", True) else f"I cannot tell: {result['answer']}")
+            honest = result.get("known", True) or result["answer"].lower().startswith("i cannot tell")
+            self._note(result["answer"] if honest else f"I cannot tell: {result['answer']}")
 
     def _read(self, step: ast.Read) -> Run:
         if step.thing.text in self._missing:
+            self._note("There was nothing to read")
             return
         yield from self._ask(ast.Ask(reading(step.thing.text), step.view))
 
