@@ -27,6 +27,9 @@ app.add_typer(scene_app, name="scene")
 SceneOption = Annotated[str, typer.Option("--scene", help="Scene to look at; see `scope scene list`.")]
 ViewpointOption = Annotated[str | None, typer.Option("--viewpoint", help="Where the camera stands.")]
 PresetOption = Annotated[str | None, typer.Option("--preset", help="Preset to start at.")]
+TimeOption = Annotated[
+    float | None, typer.Option("--at", min=0.0, help="Scene time to begin at, in seconds (default: the scene's).")
+]
 PlannerOption = Annotated[str, typer.Option("--planner", help="Who plans: grammar.")]
 PerceptionOption = Annotated[str, typer.Option("--perception", help="Who looks: ground-truth or noisy.")]
 RunsDirOption = Annotated[Path | None, typer.Option("--runs-dir", help="Where run folders are made (default: runs).")]
@@ -59,7 +62,7 @@ def _root(
 
 
 def _asking(
-    scene: str, viewpoint: str | None, preset: str | None, planner: str, perception: str, runs_dir: Path | None,
+    scene: str, viewpoint: str | None, preset: str | None, at: float | None, planner: str, perception: str, runs_dir: Path | None,
     max_steps: int, time_budget: float | None, realtime: bool | None, seed: int, as_json: bool = False,
 ) -> Asking:  # fmt: skip
     from scope_ptz.agent.records import Budgets
@@ -68,7 +71,7 @@ def _asking(
     from scope_ptz.settings import load_settings
 
     return Asking(
-        start=Start(scene=scene, viewpoint=viewpoint, preset=preset),
+        start=Start(scene=scene, viewpoint=viewpoint, preset=preset, time_s=at),
         planner=planner,
         perception=perception,
         runs_dir=runs_dir or load_settings().runs_dir,
@@ -85,10 +88,11 @@ def ask(
     scene: SceneOption = "highway-works",
     viewpoint: ViewpointOption = None,
     preset: PresetOption = None,
+    at: TimeOption = None,
     planner: PlannerOption = "grammar",
     perception: PerceptionOption = "ground-truth",
     runs_dir: RunsDirOption = None,
-    max_steps: MaxStepsOption = 60,
+    max_steps: MaxStepsOption = 64,
     time_budget: TimeBudgetOption = None,
     realtime: RealtimeOption = None,
     seed: SeedOption = 0,
@@ -98,7 +102,9 @@ def ask(
     with ending(as_json=as_json):
         from scope_ptz.cli.asking import ask as run
 
-        options = _asking(scene, viewpoint, preset, planner, perception, runs_dir, max_steps, time_budget, realtime, seed, as_json)
+        options = _asking(
+            scene, viewpoint, preset, at, planner, perception, runs_dir, max_steps, time_budget, realtime, seed, as_json
+        )
         sys.exit(run(instruction, options))
 
 
@@ -107,10 +113,11 @@ def chat(
     scene: SceneOption = "highway-works",
     viewpoint: ViewpointOption = None,
     preset: PresetOption = None,
+    at: TimeOption = None,
     planner: PlannerOption = "grammar",
     perception: PerceptionOption = "ground-truth",
     runs_dir: RunsDirOption = None,
-    max_steps: MaxStepsOption = 60,
+    max_steps: MaxStepsOption = 64,
     time_budget: TimeBudgetOption = None,
     realtime: RealtimeOption = None,
     seed: SeedOption = 0,
@@ -119,7 +126,7 @@ def chat(
     with ending():
         from scope_ptz.cli.chatting import chat as run
 
-        options = _asking(scene, viewpoint, preset, planner, perception, runs_dir, max_steps, time_budget, realtime, seed)
+        options = _asking(scene, viewpoint, preset, at, planner, perception, runs_dir, max_steps, time_budget, realtime, seed)
         sys.exit(run(options))
 
 
@@ -199,6 +206,7 @@ def scene_view(
     out: Output,
     viewpoint: ViewpointOption = None,
     preset: PresetOption = None,
+    at: TimeOption = None,
     pan: Annotated[float | None, typer.Option("--pan", help="Pan in degrees, positive = right.")] = None,
     tilt: Annotated[float | None, typer.Option("--tilt", help="Tilt in degrees, positive = up.")] = None,
     zoom: Annotated[float | None, typer.Option("--zoom", help="Magnification, 1 = widest.")] = None,
@@ -208,7 +216,7 @@ def scene_view(
         from scope_ptz.cli.scenes import view_scene
         from scope_ptz.cli.session import Start
 
-        view_scene(Start(name, viewpoint, preset), (pan, tilt, zoom), out)
+        view_scene(Start(name, viewpoint, preset, at), (pan, tilt, zoom), out)
 
 
 @scene_app.command("build")

@@ -23,11 +23,13 @@ NOISY_NOTE = "Perception is the simulator's ground truth with seeded mistakes, n
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """Where a session begins: a scene, and in it a viewpoint or a preset (the scene's home when neither is given)."""
+    """Where and when a session begins: a scene, in it a viewpoint or a preset (the scene's home when neither is given), and the
+    scene time in seconds (the scene's own start when None)."""
 
     scene: str = DEFAULT_SCENE
     viewpoint: str | None = None
     preset: str | None = None
+    time_s: float | None = None
 
 
 def scene_search(settings: ScopeSettings) -> tuple[Path, ...]:
@@ -49,7 +51,8 @@ async def open_camera(start: Start, scene: Scene, *, realtime: bool) -> Simulate
 
     if start.viewpoint and start.preset:
         raise InputError("Give --viewpoint or --preset, not both: a preset names its viewpoint.")
-    camera = SimulatedCamera(scene, viewpoint=start.viewpoint, clock=SceneClock(realtime=realtime))
+    began_s = scene.file.start_s if start.time_s is None else start.time_s
+    camera = SimulatedCamera(scene, viewpoint=start.viewpoint, clock=SceneClock(began_s, realtime=realtime))
     if start.preset:
         await camera.go_to_preset(start.preset)
     return camera

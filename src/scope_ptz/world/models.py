@@ -99,7 +99,7 @@ class SceneActor(Model):
 
 
 class SceneFile(Model):
-    """``scene.json``."""
+    """``scene.json``. ``start_s``: the scene time at which a visit begins, when something worth watching goes on."""
 
     format: Literal[1] = 1
     name: Kebab
@@ -113,6 +113,7 @@ class SceneFile(Model):
     texts: list[SceneText]
     actors: list[SceneActor] = []
     absent: list[str] = []
+    start_s: Number = 0.0
 
 
 class Layer(Model):
