@@ -20,6 +20,7 @@ def scene(stage: Stage, troupe: Troupe) -> dict[str, Any]:
     return {
         "name": stage.name,
         "title": stage.title,
+        "start_s": stage.start_s,
         "blender_version": bpy.app.version_string,
         "viewpoints": [
             {

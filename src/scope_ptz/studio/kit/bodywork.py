@@ -119,9 +119,7 @@ def _glaze(
 ) -> None:
     bmesh.ops.inset_region(bm, faces=region, thickness=pane.frame_m, use_even_offset=True, use_boundary=True)
     _crease_border(region, 0.9, crease, corner)
-    rim = bmesh.ops.inset_region(
-        bm, faces=region, thickness=0.016, depth=-0.010, use_even_offset=True, use_boundary=True
-    )
+    rim = bmesh.ops.inset_region(bm, faces=region, thickness=0.016, depth=-0.010, use_even_offset=True, use_boundary=True)
     _crease_border(region, 0.9, crease, corner)
     for face in rim["faces"]:
         face.material_index = 1

@@ -53,10 +53,7 @@ def _box_parts() -> Parts:
     return parts
 
 
-_SEAMS = [
-    Patch((0.22, 0.22, 0.22), x=(1.2, 9), y=(y - 0.006, y + 0.006), roughness=0.6)
-    for y in (-3.2, -2.2, -1.2, -0.2, 0.8)
-]
+_SEAMS = [Patch((0.22, 0.22, 0.22), x=(1.2, 9), y=(y - 0.006, y + 0.006), roughness=0.6) for y in (-3.2, -2.2, -1.2, -0.2, 0.8)]
 
 
 def box_lorry(cab_colour: str, box_colour: str, *, plate: str, lettering: str) -> Built:
@@ -111,9 +108,7 @@ def _tipper_parts() -> Parts:
     parts.box((2.30, 0.07, top - floor), (0, y0, (top + floor) / 2), body)
     for x in (-0.8, 0.0, 0.8):
         parts.box((0.12, 0.08, top - floor - 0.08), (x, y0 - 0.05, (top + floor) / 2), body)
-    parts.lathe(
-        [(0.11, 0.95), (0.11, 2.1), (0.09, 2.1), (0.09, 2.6)], (0, y1 + 0.22, 0), fittings.aluminium(), steps=16
-    )
+    parts.lathe([(0.11, 0.95), (0.11, 2.1), (0.09, 2.1), (0.09, 2.6)], (0, y1 + 0.22, 0), fittings.aluminium(), steps=16)
     _load(parts, y0 + 0.06, y1 - 0.06, top - 0.32)
     return parts
 
@@ -162,8 +157,7 @@ def tipper(cab_colour: str, body_colour: str, *, plate: str) -> Built:
 
 def _tank_outline(grow: float = 0.0) -> list[Flat]:
     return [
-        ((1.20 + grow) * math.cos(a), 2.12 + (0.90 + grow) * math.sin(a))
-        for a in (2 * math.pi * (k + 0.5) / 40 for k in range(40))
+        ((1.20 + grow) * math.cos(a), 2.12 + (0.90 + grow) * math.sin(a)) for a in (2 * math.pi * (k + 0.5) / 40 for k in range(40))
     ]
 
 

@@ -35,10 +35,7 @@ def cab(parts: Parts, front_y: float, *, depth: float = 1.72, width: float = 2.4
         shading.plain("lorry dashboard", (0.05, 0.05, 0.052), 0.8),
         bevel_m=0.0,
     )
-    wheel = [
-        (0.62 + 0.22 * math.cos(a), 0.022, -0.24 + 0.10 * math.sin(a))
-        for a in (2 * math.pi * k / 20 for k in range(20))
-    ]
+    wheel = [(0.62 + 0.22 * math.cos(a), 0.022, -0.24 + 0.10 * math.sin(a)) for a in (2 * math.pi * k / 20 for k in range(20))]
     parts.tube(wheel, 0.014, shading.plain("lorry dashboard", (0.05, 0.05, 0.052)), sides=4, closed=True)
     parts.box((width - 0.22, 0.03, 0.83), (0, 0.026, 0), pw.clear_glass(), bevel_m=0.012)
     for x in (-0.55, 0.15):
@@ -187,6 +184,4 @@ def stores(parts: Parts, y: float) -> None:
         parts.box((0.60, 0.05, 0.57), (0.915, y - k, 0.69), chassis_paint(), bevel_m=0.02)
     parts.lathe([(0.05, 0), (0.05, 0.05), (0.03, 0.06)], (0.9, y - 0.55, 0.955), pw.black_trim())
     parts.box((0.55, 0.70, 0.45), (-0.90, y - 0.35, 0.70), chassis_paint(), bevel_m=0.03)
-    parts.lathe(
-        [(0.02, -0.32), (0.13, -0.29), (0.13, 0.29), (0.02, 0.32)], (-0.98, y - 1.06, 0.62), chassis_paint(), axis="Y"
-    )
+    parts.lathe([(0.02, -0.32), (0.13, -0.29), (0.13, 0.29), (0.02, 0.32)], (-0.98, y - 1.06, 0.62), chassis_paint(), axis="Y")

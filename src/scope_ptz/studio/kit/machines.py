@@ -32,9 +32,7 @@ def _roller_parts() -> Parts:
     if steel is None:
         sh = shading.Shader("roller drum")
         streaks = sh.noise(sh.scaled(sh.object_coords(), (40, 3, 3)), 1.0)
-        steel = sh.surface(
-            base_color=sh.mix(streaks, (0.16, 0.155, 0.15), (0.40, 0.39, 0.38)), roughness=0.38, metallic=0.7
-        )
+        steel = sh.surface(base_color=sh.mix(streaks, (0.16, 0.155, 0.15), (0.40, 0.39, 0.38)), roughness=0.38, metallic=0.7)
     for y in (1.62, -1.62):
         parts.lathe(
             [(0.55, -0.80), (0.66, -0.84), (0.68, -0.83), (0.68, 0.83), (0.66, 0.84), (0.55, 0.80), (0.50, 0.70)],
@@ -94,9 +92,7 @@ def _roller_parts() -> Parts:
     for sign in (-1, 1):
         for y in (-0.98, 0.30):
             parts.tube([(sign * 0.70, y, 1.45), (sign * 0.70, y, 2.86)], 0.045, paint, sides=4)
-        parts.tube(
-            [(sign * 0.74, -0.9, 1.95), (sign * 0.74, 0.05, 1.95), (sign * 0.74, 0.05, 1.50)], 0.02, iron, sides=6
-        )
+        parts.tube([(sign * 0.74, -0.9, 1.95), (sign * 0.74, 0.05, 1.95), (sign * 0.74, 0.05, 1.50)], 0.02, iron, sides=6)
         parts.box((0.16, 0.34, 0.04), (sign * 0.82, -0.1, 0.78), iron)
         parts.box((0.03, 0.30, 0.24), (sign * 0.86, 0.34, 2.36), trim, bevel_m=0.01)
     parts.box((1.70, 1.75, 0.07), (0, -0.34, 2.90), paint, bevel_m=0.03)
@@ -138,9 +134,7 @@ def _dumper_parts() -> Parts:
     for i in range(n + 1):
         for j in range(n + 1):
             u, v = i / n, j / n
-            heap = 0.34 * math.sin(math.pi * u) * math.sin(math.pi * min(1.0, v * 1.1)) + 0.03 * math.sin(
-                31.0 * i + 17.0 * j * j
-            )
+            heap = 0.34 * math.sin(math.pi * u) * math.sin(math.pi * min(1.0, v * 1.1)) + 0.03 * math.sin(31.0 * i + 17.0 * j * j)
             points.append((-0.9 + 1.8 * u, 0.0 + 2.2 * v, 1.80 - 0.20 * v + heap))
     for i in range(n):
         for j in range(n):

@@ -14,7 +14,12 @@ Point = tuple[float, float, float]
 
 
 def from_data(
-    name: str, points: Sequence[Point], faces: Sequence[Sequence[int]], material: bpy.types.Material | None = None, *, smooth: bool = False
+    name: str,
+    points: Sequence[Point],
+    faces: Sequence[Sequence[int]],
+    material: bpy.types.Material | None = None,
+    *,
+    smooth: bool = False,
 ) -> bpy.types.Object:
     """An object from vertices and polygons, linked to the scene."""
     mesh = bpy.data.meshes.new(name)
@@ -51,7 +56,12 @@ def box(
 
 
 def lathe(
-    name: str, profile: Sequence[tuple[float, float]], material: bpy.types.Material | None = None, *, steps: int = 32, axis: str = "Z"
+    name: str,
+    profile: Sequence[tuple[float, float]],
+    material: bpy.types.Material | None = None,
+    *,
+    steps: int = 32,
+    axis: str = "Z",
 ) -> bpy.types.Object:
     """A surface of revolution from ``(radius, height)`` pairs about ``axis`` through the origin ("Z", or "X" for wheels)."""
     points: list[Point] = []
@@ -70,7 +80,9 @@ def lathe(
     return from_data(name, points, faces, material, smooth=True)
 
 
-def tube(name: str, path: Sequence[Point], radius_m: float, material: bpy.types.Material | None = None, *, sides: int = 8) -> bpy.types.Object:
+def tube(
+    name: str, path: Sequence[Point], radius_m: float, material: bpy.types.Material | None = None, *, sides: int = 8
+) -> bpy.types.Object:
     """A round tube along a path, as a mesh."""
     curve = bpy.data.curves.new(name, "CURVE")
     curve.dimensions = "3D"

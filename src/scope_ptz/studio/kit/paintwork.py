@@ -138,9 +138,7 @@ def _within(sh: shading.Shader, value: shading.Value, limits: Range) -> shading.
     return made.outputs[0]
 
 
-def _patch_mask(
-    sh: shading.Shader, patch: Patch, x: shading.Value, y: shading.Value, z: shading.Value
-) -> shading.Value:
+def _patch_mask(sh: shading.Shader, patch: Patch, x: shading.Value, y: shading.Value, z: shading.Value) -> shading.Value:
     if patch.y_per_z:
         y = sh.math("SUBTRACT", y, sh.math("MULTIPLY", z, patch.y_per_z))
     if patch.y_per_x:

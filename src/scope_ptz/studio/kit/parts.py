@@ -127,9 +127,7 @@ class Parts:
         if bevel_m > 0:
             bmesh.ops.bevel(bm, geom=bm.edges[:], offset=bevel_m, segments=segments, profile=0.5, affect="EDGES")
         bm.verts.index_update()
-        self.add(
-            [tuple(v.co) for v in bm.verts], [[v.index for v in f.verts] for f in bm.faces], material, smooth=smooth
-        )
+        self.add([tuple(v.co) for v in bm.verts], [[v.index for v in f.verts] for f in bm.faces], material, smooth=smooth)
         bm.free()
 
     def lathe(

@@ -30,9 +30,7 @@ def headlamp(x: tuple[float, float], y: float, z: tuple[float, float], rise: flo
         Patch(TRIM, x=(x0 - 0.03, 9), y=(y - 0.03, 9), z=(z0 - 0.015, z1 + 0.015), z_per_x=rise, roughness=0.1),
         Patch((0.30, 0.32, 0.34), x=(x0, 9), y=(y, 9), z=z, z_per_x=rise, roughness=0.08),
         *lenses,
-        Patch(
-            (0.9, 0.92, 0.95), x=(x0, 9), y=(y + 0.02, 9), z=(z0, z0 + 0.018), z_per_x=rise, roughness=0.1, emission=0.8
-        ),
+        Patch((0.9, 0.92, 0.95), x=(x0, 9), y=(y + 0.02, 9), z=(z0, z0 + 0.018), z_per_x=rise, roughness=0.1, emission=0.8),
         Patch(AMBER, x=(x0, 9), y=(y, y + 0.06), z=z, z_per_x=rise, roughness=0.1),
     ]
 
@@ -85,9 +83,7 @@ def grille(x: float, y: float, z: tuple[float, float], bars: int) -> list[Patch]
         for k in range(1, bars + 1)
     ]
     middle = (z0 + z1) / 2
-    badge = Patch(
-        (0.70, 0.70, 0.72), x=(-0.05, 0.05), y=(y, 9), z=(middle - 0.045, middle + 0.045), round=True, roughness=0.12
-    )
+    badge = Patch((0.70, 0.70, 0.72), x=(-0.05, 0.05), y=(y, 9), z=(middle - 0.045, middle + 0.045), round=True, roughness=0.12)
     return [Patch(TRIM, x=(-1, x), y=(y, 9), z=z, roughness=0.6), *bright, badge]
 
 

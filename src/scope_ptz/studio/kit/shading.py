@@ -10,7 +10,7 @@ Value = Any  # a socket, a number, a 3- or 4-tuple
 
 
 class Shader:
-    """A material under construction. Methods add a node and return its output socket; any argument may be a socket or a constant."""
+    """A material under construction. Methods add a node and return its output socket; arguments are sockets or constants."""
 
     def __init__(self, name: str) -> None:
         self.material = bpy.data.materials.new(name)
@@ -35,7 +35,7 @@ class Shader:
             socket.default_value = value
 
     def surface(self, **inputs: Value) -> bpy.types.Material:
-        """Feed the principled BSDF by input name with underscores (``base_color``, ``roughness``, ``normal``) and return the material."""
+        """Feed the principled BSDF by input name with underscores (``base_color``, ``normal``) and return the material."""
         by_name = {s.name.lower().replace(" ", "_"): s for s in self.bsdf.inputs}
         for key, value in inputs.items():
             self.feed(by_name[key], value)
@@ -83,7 +83,9 @@ class Shader:
         self.feed(made.inputs[1], b)
         return made.outputs[0]
 
-    def ramp(self, value: Value, low: float, high: float, to_low: float = 0.0, to_high: float = 1.0, *, smooth: bool = True) -> Value:
+    def ramp(
+        self, value: Value, low: float, high: float, to_low: float = 0.0, to_high: float = 1.0, *, smooth: bool = True
+    ) -> Value:
         """Map ``low..high`` to ``to_low..to_high``, clamped: the building brick of masks."""
         made = self.node("ShaderNodeMapRange", interpolation_type="SMOOTHSTEP" if smooth else "LINEAR")
         for index, number in enumerate([value, low, high, to_low, to_high]):

@@ -108,8 +108,9 @@ class Preset:
 class ActorPath:
     """A moving thing: a builder, and where it is at any time.
 
-    ``waypoints`` are ``(t_s, x, y, z)``, followed at the speed that they imply, heading along the motion; ``period_s`` repeats it.
-    ``build`` makes the object for one gait phase in [0, 1) (0 for things without legs); ``stride_m`` is the length of one gait cycle.
+    ``waypoints`` are ``(t_s, x, y, z)``, followed at the speed that they imply, heading along the motion; ``period_s`` repeats
+    it. ``build`` makes the object for one gait phase in [0, 1) (0 for things without legs); ``stride_m`` is the length of one
+    gait cycle.
     """
 
     id: str
@@ -135,6 +136,7 @@ class Stage:
         self.home_preset: str | None = None
         self.actors: list[ActorPath] = []
         self.absent: list[str] = []
+        self.start_s = 0.0
         self._numbers: dict[str, int] = {}
 
     def place(
@@ -153,7 +155,8 @@ class Stage:
         """Put a built thing into the world and annotate it; returns the instance id.
 
         ``name`` is the plain-English noun phrase a person would use ("white van"). Attributes are facts worth asking about:
-        colour, material, state ("open", "lit", "parked"), facing, and so on; values are short lower-case strings, numbers or booleans.
+        colour, material, state ("open", "lit", "parked"), facing, and so on; values are short lower-case strings, numbers or
+        booleans.
         """
         self.put(built, location, bearing_deg, lean_deg=lean_deg, scale=scale)
         count = self._numbers.get(category, 0) + 1

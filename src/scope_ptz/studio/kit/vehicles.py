@@ -44,9 +44,7 @@ def _body(model: CarModel) -> Parts:
     for size, centre in model.extra_cutters:
         for k in range(7):
             rib = (-size[0] / 2 + size[0] * (k + 0.5) / 7, centre[1], centre[2] - size[2] / 2 + 0.01)
-            parts.box(
-                (0.10, size[1], 0.03), rib, shading.plain("pickup bed liner", (0.055, 0.056, 0.058), 0.75), bevel_m=0.01
-            )
+            parts.box((0.10, size[1], 0.03), rib, shading.plain("pickup bed liner", (0.055, 0.056, 0.058), 0.75), bevel_m=0.01)
     _interior(parts, model.cabin)
     return parts
 
@@ -69,9 +67,7 @@ def _interior(parts: Parts, cabin: Cabin) -> None:
     parts.box((2 * cabin.half_width, length, 0.03), (0, middle, cabin.floor_z), lining, bevel_m=0.0)
     height = cabin.belt_z - 0.02 - cabin.floor_z
     for sign in (-1, 1):
-        parts.box(
-            (0.03, length, height), (sign * cabin.half_width, middle, cabin.floor_z + height / 2), lining, bevel_m=0.0
-        )
+        parts.box((0.03, length, height), (sign * cabin.half_width, middle, cabin.floor_z + height / 2), lining, bevel_m=0.0)
     for y in (cabin.front_y, cabin.rear_y):
         parts.box((2 * cabin.half_width, 0.03, height), (0, y, cabin.floor_z + height / 2), lining, bevel_m=0.0)
     parts.box((2 * cabin.half_width, 0.42, 0.20), (0, cabin.front_y - 0.14, cabin.belt_z - 0.10), lining, bevel_m=0.06)
@@ -82,9 +78,7 @@ def _interior(parts: Parts, cabin: Cabin) -> None:
     parts.tube(ring, 0.016, pw.black_trim(), sides=6, closed=True)
     if cabin.shelf_m:
         shelf_y = cabin.rear_y - cabin.shelf_m / 2 + 0.15
-        parts.box(
-            (2 * cabin.half_width - 0.06, cabin.shelf_m + 0.3, 0.03), (0, shelf_y, cabin.belt_z), lining, bevel_m=0.0
-        )
+        parts.box((2 * cabin.half_width - 0.06, cabin.shelf_m + 0.3, 0.03), (0, shelf_y, cabin.belt_z), lining, bevel_m=0.0)
     top = cabin.belt_z - 0.04
     for number, y in enumerate(cabin.seat_rows):
         for x in (-0.36, 0.36) if number == 0 else (-0.40, 0.0, 0.40):
@@ -154,9 +148,7 @@ def _car(
     own, plate_letters = bw.plates(plate, (front, model.plate_z[0]), (rear, model.plate_z[1]))
     if fittings is not None:
         own.mesh(fittings.build("fittings"))
-    return bw.finish(
-        model.name, mesh, [pw.paint(model.name, colour, model.patches)], [*plate_letters, *(letters or [])], own
-    )
+    return bw.finish(model.name, mesh, [pw.paint(model.name, colour, model.patches)], [*plate_letters, *(letters or [])], own)
 
 
 def saloon(colour: str, *, plate: str) -> Built:

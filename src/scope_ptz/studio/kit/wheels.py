@@ -101,9 +101,7 @@ def steel_wheel(parts: Parts, centre: Point, radius: float, side: int, *, width:
     parts.matrix = outer
 
 
-def lorry_wheel(
-    parts: Parts, centre: Point, radius: float, side: int, *, width: float = 0.29, twin: bool = False
-) -> None:
+def lorry_wheel(parts: Parts, centre: Point, radius: float, side: int, *, width: float = 0.29, twin: bool = False) -> None:
     """A lorry wheel: dished out with a proud hub in front, deep dished for the twin tyres of a driven axle."""
     outer, rim = parts.matrix.copy(), radius * 0.60
     parts.matrix = outer @ _frame(centre, side)

@@ -19,6 +19,7 @@ ABSENT = (
 
 def build(stage: Stage) -> None:
     """Build the whole scene in an empty Blender file and fill in the stage."""
+    stage.start_s = 10.0  # the saloon, the van and the walking worker are all in the home view then
     sky.setup(bpy.context.scene)
     highway_traffic.build(stage)
     highway_site.build(stage)
