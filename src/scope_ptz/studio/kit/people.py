@@ -16,7 +16,7 @@ from mathutils import Matrix, Vector
 from scope_ptz.studio.kit import clothing, figure, heads
 from scope_ptz.studio.kit.finishes import paint, rubber
 from scope_ptz.studio.kit.hand_props import HOLDABLE, hold
-from scope_ptz.studio.kit.poses import STRIDE_M, Joints, named, solve
+from scope_ptz.studio.kit.poses import STRIDE_M, Joints, Pose, named, solve
 from scope_ptz.studio.kit.solid import Solid
 from scope_ptz.studio.kit.stage import Built
 from scope_ptz.studio.kit.volumes import Skin, normals
@@ -167,10 +167,19 @@ IN_HAND = {"shovel": "shovel", "phone": "phone", "clipboard": "clipboard", "carr
 """What a pose holds unless told otherwise."""
 
 
-def _person(name: str, pose: str, phase: float, random: Random, looks: _Looks, outfit: _Outfit, holding: str | None) -> Built:
+def _person(
+    name: str,
+    pose: str,
+    phase: float,
+    random: Random,
+    looks: _Looks,
+    outfit: _Outfit,
+    holding: str | None,
+    own_stance: Pose | None = None,
+) -> Built:
     if holding is not None and holding not in HOLDABLE:
         raise ValueError(f"cannot hold {holding!r}; known: {sorted(HOLDABLE)}")
-    stance = named(pose, phase, random)
+    stance = own_stance or named(pose, phase, random)
     joints = solve(stance)
     s = Solid(name)
     scale = looks.height_m / 1.77
@@ -218,9 +227,11 @@ def pedestrian(
     pose: str = "stand",
     phase: float = 0.0,
     holding: str | None = None,
+    stance: Pose | None = None,
     seed: int = 0,
 ) -> Built:
-    """A passer-by in everyday clothes; colours by plain name, drawn from the seed when not given."""
+    """A passer-by in everyday clothes; colours by plain name, drawn from the seed when not given. ``stance`` is a pose
+    of the caller's own in place of a named one."""
     random = Random(f"pedestrian {seed}")
     looks = _looks(random, hair, 0.5)
     upper = top or random.choice(["dark red", "navy", "grey", "green", "beige", "light blue", "black", "purple", "yellow"])
@@ -231,4 +242,4 @@ def pedestrian(
     )
     inner = random.choice([c for c in ("white", "light grey", "black", "light blue") if c != upper])
     outfit = _Outfit(upper, legs, style, inner, neck, None, None, None)
-    return _person(f"pedestrian in {upper}", pose, phase, random, looks, outfit, holding)
+    return _person(f"pedestrian in {upper}", pose, phase, random, looks, outfit, holding, stance)
