@@ -148,10 +148,13 @@ def _base_map(band: Band, slot: Slot, grid: Grid) -> Map:
     y = slot.y - 0.5 + (band.top_tilt_deg - tilt) / (band.top_tilt_deg - band.bottom_tilt_deg) * slot.height
     where = grid.to_pixels(np.stack([x, np.clip(y, slot.y - 0.5, slot.y + slot.height - 0.5)], axis=-1))
     left, right = slot.x - 0.5, slot.x + slot.width - 0.5
-    for beyond, turn_px in ((x.min() < left, slot.width), (x.max() > right, -slot.width)):
-        if beyond:
-            outside = where[..., 0] < left if turn_px > 0 else where[..., 0] > right
-            cv2.add(where, (turn_px, 0), dst=where, mask=outside.view(np.uint8))
+    for beyond, turn_px in ((x < left, slot.width), (x > right, -slot.width)):
+        columns = np.flatnonzero(beyond.any(axis=0))
+        if columns.size:
+            # Pixels lie between nodes: none beyond the seam is outside of the columns from the node before to the node after.
+            first, last = max(0, (columns[0] - 2) * grid.step), (columns[-1] + 1) * grid.step
+            part = where[:, first:last, 0]
+            part += np.float32(turn_px) * (part < left if turn_px > 0 else part > right)
     return where
 
 
