@@ -17,7 +17,7 @@ from scope_ptz.blender.parity import box_ious, sharpness, ssim
 from scope_ptz.blender.references import keep_reference
 from scope_ptz.blender.requests import perspective_request
 from scope_ptz.blender.workshop import Progress, Workshop
-from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose
+from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose, angle_between_deg, direction, pan_tilt_deg, wrap_pan_deg
 from scope_ptz.world.layers import read_colour
 from scope_ptz.world.models import Tile
 from scope_ptz.world.pack import Scene
@@ -27,6 +27,9 @@ SEED_OF_LIVE = 7
 """Not the seed that packs are baked with: equal noise would flatter."""
 
 MIN_BOX_PIXELS = 400
+
+FOLIAGE = ("tree", "bush", "hedge", "planter", "flower bed", "hanging basket")
+"""Categories of things made of leaves."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,23 +49,53 @@ class PoseReport:
 
 
 def draw_poses(scene: Scene, seed: int, wide: int, zoomed: int, viewpoints: Sequence[str] | None = None) -> list[tuple[str, Pose]]:
-    """``wide`` poses at the wide end over all pans and tilts and ``zoomed`` ones at 2x to 5x on tiles, viewpoints in turn."""
+    """``wide`` poses at the wide end and ``zoomed`` ones on tiles, at 2x to 5x in equal steps; viewpoints in turn.
+
+    Every second pair of poses goes where re-projection has it hardest: to a sign, to foliage, straight down at the ground. The others
+    are anywhere: at the wide end over all pans and tilts, zoomed in on any tile.
+    """
     rng, limits = random.Random(seed), Limits()
     names = [v.name for v in scene.file.viewpoints] if viewpoints is None else viewpoints
     poses = []
     for k in range(wide):
+        name = names[k % len(names)]
         share = (k + rng.random()) / wide
-        tilt = limits.min_tilt_deg + share * (limits.max_tilt_deg - limits.min_tilt_deg)
-        poses.append((names[k % len(names)], Pose(rng.uniform(-179, 179), tilt, 1.0)))
+        pan, tilt = rng.uniform(-179, 179), limits.min_tilt_deg + share * (limits.max_tilt_deg - limits.min_tilt_deg)
+        if hard := _hard(scene, name, k // len(names), rng, limits):
+            pan, tilt = hard
+        poses.append((name, limits.clamp(Pose(limits.aim_pan_deg(pan), tilt, 1.0))[0]))
     for k in range(zoomed):
         name = names[k % len(names)]
         tiles = scene.viewpoint(name).manifest.tiles
         if tiles:
             tile = rng.choice(tiles)
+            if hard := _hard(scene, name, k // len(names), rng, limits):
+                tile = min(tiles, key=lambda t: float(angle_between_deg(direction(t.pan_deg, t.tilt_deg), direction(*hard))))
             pan, tilt = tile.pan_deg + rng.uniform(-2, 2), tile.tilt_deg + rng.uniform(-2, 2)
-            pose, _ = limits.clamp(Pose(limits.aim_pan_deg(pan), tilt, rng.uniform(2.0, 5.0)))
-            poses.append((name, pose))
+            zoom = 2.0 + 3.0 * k / max(1, zoomed - 1)
+            poses.append((name, limits.clamp(Pose(limits.aim_pan_deg(pan), tilt, zoom))[0]))
     return poses
+
+
+def _hard(scene: Scene, viewpoint: str, turn: int, rng: random.Random, limits: Limits) -> tuple[float, float] | None:
+    """Pan and tilt of a sign, of foliage or of bare ground in turn; None at every second turn and where there is no such thing."""
+    place = next(v for v in scene.file.viewpoints if v.name == viewpoint)
+    kind = turn // 2 % 3
+    if turn % 2:
+        return None
+    if kind == 2:
+        return rng.uniform(-179, 179), rng.uniform(limits.min_tilt_deg, -35.0)
+    if kind == 1:
+        parents = {t.parent for t in scene.file.texts}
+        boxes = [i for i in scene.file.instances if i.id in parents]
+    else:
+        boxes = [i for i in scene.file.instances if i.category in FOLIAGE]
+    if not boxes:
+        return None
+    chosen = rng.choice(boxes)
+    middle = (np.array(chosen.box_min_m) + np.array(chosen.box_max_m)) / 2 - np.array(place.position_m)
+    pan, tilt = (float(v) for v in pan_tilt_deg(middle))
+    return float(wrap_pan_deg(pan - place.pan0_bearing_deg)), tilt
 
 
 def compare(scene: Scene, viewpoint: str, pose: Pose, colour: NDArray[np.uint8], ids: NDArray[np.uint16]) -> PoseReport:
