@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from scope_ptz.blender import sources
 from scope_ptz.blender.band import Panorama
 from scope_ptz.blender.keyframes import Keyframe
 from scope_ptz.blender.packing import Rendered, RenderedActor, RenderedTile, weight_bytes, write_pack
 from scope_ptz.blender.quality import FAR_M, NEAR_M, QUALITIES
 from scope_ptz.blender.sheets import make_sheet
-from scope_ptz.blender.workshop import Workshop, scene_key
+from scope_ptz.blender.sources import scene_key
+from scope_ptz.blender.workshop import Workshop
 from scope_ptz.errors import BlenderError, PackError
 from scope_ptz.geometry import Perspective
 from scope_ptz.world.layers import decode_depth, encode_depth, read_colour, read_ids, write_colour, write_ids
@@ -109,6 +111,22 @@ def test_the_key_follows_the_code_of_the_scene(tmp_path: Path) -> None:
     assert before.startswith("my-yard-") and before == scene_key(str(source))
     source.write_text("a = 2\n")
     assert scene_key(str(source)) != before
+
+
+def test_the_key_follows_what_the_scene_imports_and_nothing_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    studio = tmp_path / "studio"
+    (studio / "kit").mkdir(parents=True)
+    (studio / "scenes").mkdir()
+    (studio / "kit" / "cones.py").write_text("from scope_ptz.studio.kit import plastic\n")
+    (studio / "kit" / "plastic.py").write_text("colour = 'red'\n")
+    (studio / "kit" / "boats.py").write_text("length_m = 7\n")
+    (studio / "scenes" / "my_road.py").write_text("from scope_ptz.studio.kit.cones import cone\n")
+    monkeypatch.setattr(sources, "STUDIO", studio)
+    before = scene_key("my-road")
+    (studio / "kit" / "boats.py").write_text("length_m = 8\n")
+    assert scene_key("my-road") == before
+    (studio / "kit" / "plastic.py").write_text("colour = 'blue'\n")
+    assert scene_key("my-road") != before
 
 
 def sprite_frames(folder: Path) -> list[Keyframe]:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from statistics import mean
 
 import pytest
 
 from scope_ptz.blender.references import references
+from scope_ptz.blender.tolerances import shortcomings
 from scope_ptz.blender.verify import PoseReport, compare
 from scope_ptz.world.pack import list_scenes, load_scene
 
@@ -20,26 +20,10 @@ def reports(request: pytest.FixtureRequest) -> list[PoseReport]:
     return [compare(scene, *reference) for reference in references(FOLDER / scene.name)]
 
 
-def test_the_wide_end_looks_as_rendered(reports: list[PoseReport]) -> None:
-    wide = [r.ssim for r in reports if r.pose.zoom == 1.0]
-    assert len(wide) >= 4
-    assert mean(wide) >= 0.93
-    assert min(wide) >= 0.88
-
-
-def test_tiles_are_sharp(reports: list[PoseReport]) -> None:
-    zoomed = [r for r in reports if r.pose.zoom > 1.0]
-    assert len(zoomed) >= 4
-    for report in zoomed:
-        assert report.ssim >= 0.90, report
-        assert report.sharpness_ratio >= 0.6, report
-
-
-def test_boxes_agree_with_the_rendered_instance_pass(reports: list[PoseReport]) -> None:
-    wide = [r.box_iou for r in reports if r.pose.zoom == 1.0 and r.box_iou is not None]
-    zoomed = [r.box_iou for r in reports if r.pose.zoom > 1.0 and r.box_iou is not None]
-    assert mean(wide) >= 0.97
-    assert mean(zoomed) >= 0.93
+def test_the_packs_look_as_rendered(reports: list[PoseReport]) -> None:
+    assert sum(r.pose.zoom == 1.0 for r in reports) >= 4
+    assert sum(r.pose.zoom > 1.0 and r.tile_share > 0 for r in reports) >= 4
+    assert shortcomings(reports) == []
 
 
 @pytest.mark.parametrize("name", list_scenes())

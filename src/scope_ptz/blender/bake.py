@@ -21,12 +21,18 @@ from scope_ptz.blender.panorama import render_base
 from scope_ptz.blender.quality import DEPTH_STEP, FAR_M, NEAR_M, PACK_BYTES, Quality
 from scope_ptz.blender.requests import panorama_request, perspective_request
 from scope_ptz.blender.sheets import make_sheet
+from scope_ptz.blender.sources import scene_key
 from scope_ptz.blender.tiles import cover, covers, most_useful, targets
-from scope_ptz.blender.workshop import Progress, Workshop, scene_key
+from scope_ptz.blender.verify import PoseReport, draw_poses, verify
+from scope_ptz.blender.workshop import Progress, Workshop
 from scope_ptz.errors import BlenderError, UnknownNameError
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective
 from scope_ptz.world.layers import encode_depth, read_colour
 from scope_ptz.world.models import Extent, SceneActor, SceneFile, SceneViewpoint
+from scope_ptz.world.pack import Scene
+
+CHECKS, CHECK_SEED = 2, 1
+"""Live renders a viewpoint at the end of a bake, at the wide end and again zoomed in."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +45,14 @@ class BakedViewpoint:
     uncovered: tuple[str, ...]
 
 
+@dataclass(frozen=True, slots=True)
+class Baked:
+    """A scene's packs, read back whole, and how they compare with live renders."""
+
+    packs: tuple[BakedViewpoint, ...]
+    reports: tuple[PoseReport, ...]
+
+
 def bake(
     source: str,
     out_dir: Path,
@@ -48,11 +62,12 @@ def bake(
     cache_dir: Path,
     viewpoints: Sequence[str] | None = None,
     progress: Progress,
-) -> list[BakedViewpoint]:
+) -> Baked:
     """Bake a scene into the folder ``out_dir`` (which must bear the scene's name).
 
     ``source`` is the name of a scene in ``scope_ptz.studio.scenes`` or the path of a Python file with a ``build(stage)``;
-    ``command`` starts the worker. Unfinished parts are kept under ``cache_dir``.
+    ``command`` starts the worker. Unfinished parts are kept under ``cache_dir``. At the end every file is read back against its
+    checksum, and some views are compared with live renders.
     """
     key = scene_key(source)
     shop = Workshop(cache_dir / "bakes", key, progress)
@@ -74,7 +89,13 @@ def bake(
         baker = _Baker(worker, shop, scene, description, quality)
         baked = [baker.bake_viewpoint(known[name], out_dir / name) for name in wanted]
         (out_dir / "scene.json").write_text(scene.model_dump_json(indent=1) + "\n")
-    return baked
+        packs = Scene(out_dir)
+        for name in wanted:
+            packs.viewpoint(name).check_files()
+        poses = draw_poses(packs, CHECK_SEED, CHECKS * len(wanted), CHECKS * len(wanted), wanted)
+        width = quality.check_width
+        reports = verify(packs, worker, poses, progress, samples=quality.check_samples, width=width, height=width * 9 // 16)
+    return Baked(tuple(baked), tuple(reports))
 
 
 def scene_file(description: dict[str, Any], version: str) -> SceneFile:

@@ -18,7 +18,11 @@ DEPTH_STEP = 48
 
 @dataclass(frozen=True, slots=True)
 class Quality:
-    """Sizes in pixels, samples a pixel, and the colour coder's own scale."""
+    """Sizes in pixels, samples a pixel, and the colour coder's own scale.
+
+    ``check_samples`` and ``check_width`` are those of the live renders that a finished pack is compared with, and ``judged`` says
+    whether it must hold the tolerances.
+    """
 
     name: str
     base_width: int
@@ -32,6 +36,9 @@ class Quality:
     max_sprites: int
     base_coding: int
     tile_coding: int
+    check_samples: int = 16
+    check_width: int = 1280
+    judged: bool = True
 
 
 def named_quality(name: str) -> Quality:
@@ -44,7 +51,7 @@ def named_quality(name: str) -> Quality:
 QUALITIES = {
     q.name: q
     for q in (
-        Quality("draft", 2048, 4, 4096, 2048, 4, 48.0, 8, 4, 12, 75, 70),
+        Quality("draft", 2048, 4, 4096, 2048, 4, 48.0, 8, 4, 12, 75, 70, 4, 480, judged=False),
         Quality("standard", 6144, 8, 8192, 4096, 8, 96.0, 144, 10, 32, 88, 92),
         Quality("high", 6144, 32, 8192, 4096, 24, 96.0, 144, 32, 56, 88, 92),
     )

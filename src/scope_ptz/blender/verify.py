@@ -51,8 +51,8 @@ class PoseReport:
 def draw_poses(scene: Scene, seed: int, wide: int, zoomed: int, viewpoints: Sequence[str] | None = None) -> list[tuple[str, Pose]]:
     """``wide`` poses at the wide end and ``zoomed`` ones on tiles, at 2x to 5x in equal steps; viewpoints in turn.
 
-    Every second pair of poses goes where re-projection has it hardest: to a sign, to foliage, straight down at the ground. The others
-    are anywhere: at the wide end over all pans and tilts, zoomed in on any tile.
+    Every second pair of poses goes where re-projection has it hardest: to a sign, to foliage, steeply down at the ground. The
+    others are anywhere: at the wide end over all pans and tilts, zoomed in on any tile.
     """
     rng, limits = random.Random(seed), Limits()
     names = [v.name for v in scene.file.viewpoints] if viewpoints is None else viewpoints

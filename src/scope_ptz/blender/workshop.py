@@ -55,15 +55,3 @@ class Workshop:
 def digest(content: str | bytes) -> str:
     """SHA-256 in hex."""
     return hashlib.sha256(content.encode() if isinstance(content, str) else content).hexdigest()
-
-
-def scene_key(source: str) -> str:
-    """A name for the present state of a scene's code: its own modules and the object kit."""
-    studio = Path(__file__).resolve().parents[1] / "studio"
-    if source.endswith(".py"):
-        name, own = Path(source).stem, [Path(source)]
-    else:
-        name = source
-        own = sorted((studio / "scenes").glob(f"{source.split('-')[0]}*.py"))
-    code = b"".join(p.read_bytes() for p in [*own, *sorted((studio / "kit").glob("*.py"))])
-    return f"{name.replace('_', '-')}-{digest(code)[:12]}"

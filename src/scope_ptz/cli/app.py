@@ -242,7 +242,7 @@ def scene_bake(
     with ending():
         from scope_ptz.cli.baking import bake_scene
 
-        bake_scene(name, out, quality, viewpoint or [])
+        sys.exit(bake_scene(name, out, quality, viewpoint or []))
 
 
 @scene_app.command("verify")
@@ -257,4 +257,4 @@ def scene_verify(
     with ending():
         from scope_ptz.cli.baking import verify_scene
 
-        verify_scene(name, seed, wide, zoomed, keep)
+        sys.exit(verify_scene(name, seed, wide, zoomed, keep))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,9 @@ from scope_ptz.blender.bake import bake
 from scope_ptz.blender.client import BlenderWorker
 from scope_ptz.blender.environment import is_ready, worker_command
 from scope_ptz.blender.quality import named_quality
-from scope_ptz.blender.verify import draw_poses, verify
+from scope_ptz.blender.tolerances import shortcomings
+from scope_ptz.blender.verify import PoseReport, draw_poses, verify
+from scope_ptz.cli.endings import FAILED
 from scope_ptz.cli.session import open_scene
 from scope_ptz.errors import OutputError, UnknownNameError
 from scope_ptz.settings import ScopeSettings, load_settings
@@ -36,8 +39,11 @@ def build_scene(source: str, out: Path | None) -> None:
     console.print(Text(f"Wrote {target}: {counts}, {time.monotonic() - began:.0f} s"), soft_wrap=True)
 
 
-def bake_scene(source: str, out: Path | None, quality: str, viewpoints: list[str]) -> None:
-    """Bake a scene's packs. A bake that was interrupted goes on where it stopped."""
+def bake_scene(source: str, out: Path | None, quality: str, viewpoints: list[str]) -> int:
+    """Bake a scene's packs and hold them against live renders. A bake that was interrupted goes on where it stopped.
+
+    Exit code 1 when a pack is not like its scene; a draft is not judged.
+    """
     settings, console = load_settings(), Console(highlight=False)
     _check(source)
     wanted = named_quality(quality)
@@ -54,18 +60,20 @@ def bake_scene(source: str, out: Path | None, quality: str, viewpoints: list[str
             viewpoints=viewpoints or None,
             progress=bars,
         )
-    for pack in baked:
+    for pack in baked.packs:
         line = f"{pack.folder}: {pack.weight_bytes / 1e6:.2f} MB, {pack.tiles} tiles"
         console.print(Text(line), soft_wrap=True)
         if pack.uncovered:
             console.print(Text(f"  not in a tile: {', '.join(pack.uncovered)}", style="yellow"))
+    short = _show_comparison(console, baked.reports)
     console.print(
         Text(f"To look at it: SCOPE_SCENES_DIR={folder.parent} scope scene show {folder.name}", style="dim"), soft_wrap=True
     )
+    return FAILED if short and wanted.judged else 0
 
 
-def verify_scene(name: str, seed: int, wide: int, zoomed: int, keep: Path | None) -> None:
-    """Compare the packs of a scene with live renders of poses drawn by seed."""
+def verify_scene(name: str, seed: int, wide: int, zoomed: int, keep: Path | None) -> int:
+    """Compare the packs of a scene with live renders of poses drawn by seed; exit code 1 when they are not alike enough."""
     settings, console = load_settings(), Console(highlight=False)
     _check(name)
     scene = open_scene(name)
@@ -73,6 +81,11 @@ def verify_scene(name: str, seed: int, wide: int, zoomed: int, keep: Path | None
     with _Bars(console) as bars, BlenderWorker(command, settings.cache_dir / "verify.log") as worker:
         worker.request("load_scene", {"source": name})
         reports = verify(scene, worker, draw_poses(scene, seed, wide, zoomed), bars, keep=keep)
+    return FAILED if _show_comparison(console, reports) else 0
+
+
+def _show_comparison(console: Console, reports: Sequence[PoseReport]) -> list[str]:
+    """Print the figures of each pose and what falls short of the tolerances; the latter is returned."""
     table = Table("viewpoint", "pan", "tilt", "zoom", "SSIM", "sharpness", "box IoU", "in tiles")
     for r in reports:
         figures = (
@@ -84,6 +97,11 @@ def verify_scene(name: str, seed: int, wide: int, zoomed: int, keep: Path | None
         )
         table.add_row(r.viewpoint, *figures, "-" if r.box_iou is None else f"{r.box_iou:.3f}", f"{r.tile_share:.0%}")
     console.print(table)
+    short = shortcomings(reports)
+    for line in short:
+        console.print(Text(f"  {line}", style="red"), soft_wrap=True)
+    console.print(Text("Not alike enough." if short else "All tolerances hold.", style="red" if short else "green"))
+    return short
 
 
 class _Bars:

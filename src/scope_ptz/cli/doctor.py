@@ -8,7 +8,6 @@ import re
 import sys
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-from hashlib import sha256
 from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
 from typing import Literal
@@ -22,7 +21,6 @@ from scope_ptz.cli.scenes import folder_bytes
 from scope_ptz.cli.session import DEFAULT_SCENE, open_scene, scene_search
 from scope_ptz.errors import PackError
 from scope_ptz.settings import ScopeSettings, load_settings
-from scope_ptz.world.models import Layer, Manifest
 
 Verdict = Literal["ok", "optional", "missing"]
 _MARKS: dict[Verdict, tuple[str, str]] = {"ok": ("ok", "green"), "optional": ("--", "yellow"), "missing": ("!!", "bold red")}
@@ -102,22 +100,8 @@ def _scenes(settings: ScopeSettings) -> Iterator[Finding]:
 
 def _verify(name: str) -> int:
     """Check every file of a scene against its manifest; the number of files. Raises ``PackError``."""
-    scene, count = open_scene(name), 0
-    for place in scene.file.viewpoints:
-        viewpoint = scene.viewpoint(place.name)
-        for layer in _layers(viewpoint.manifest):
-            path, count = viewpoint.folder / layer.file, count + 1
-            if not path.is_file() or sha256(path.read_bytes()).hexdigest() != layer.sha256:
-                raise PackError(f"{path} is {'damaged' if path.exists() else 'missing'}.")
-    return count
-
-
-def _layers(manifest: Manifest) -> Iterator[Layer]:
-    yield from (manifest.base, manifest.ids, manifest.depth)
-    for tile in manifest.tiles:
-        yield from (tile.colour, tile.ids)
-    for sheet in manifest.actors:
-        yield from (sheet.colour, sheet.depth)
+    scene = open_scene(name)
+    return sum(scene.viewpoint(place.name).check_files() for place in scene.file.viewpoints)
 
 
 def _runs_dir(path: Path) -> Finding:

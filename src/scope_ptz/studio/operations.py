@@ -56,7 +56,7 @@ class Studio:
         module.build(stage)
         bpy.context.view_layer.update()
         self._stage = stage
-        return {"name": stage.name, "title": stage.title, "instances": len(stage.instances)}
+        return {"name": stage.name, "title": stage.title, "instances": len(stage.instances), "device": render.use_gpu() or "CPU"}
 
     def describe(self) -> dict[str, Any]:
         return describe.scene(self.stage, self.troupe)

@@ -14,6 +14,9 @@ from mathutils import Matrix
 from scope_ptz.geometry.sphere import camera_axes
 from scope_ptz.studio.kit.stage import Viewpoint
 
+GPU_INTERFACES = ("OPTIX", "CUDA", "HIP", "METAL", "ONEAPI")
+"""In order of preference."""
+
 SKY_M = 1e9
 """Cycles reports 1e10 where a ray meets nothing."""
 
@@ -80,6 +83,24 @@ def _slant(projection: dict[str, float]) -> np.ndarray:
     x = (np.arange(width) + 0.5 - width / 2) / focal
     y = (np.arange(height) + 0.5 - height / 2) / focal
     return np.sqrt(1 + x[None, :] ** 2 + y[:, None] ** 2)
+
+
+def use_gpu() -> str | None:
+    """Let Cycles render on graphics cards when Blender finds any; the kind of interface used, or None for the CPU."""
+    cycles = bpy.context.preferences.addons["cycles"].preferences
+    for interface in GPU_INTERFACES:
+        try:
+            cycles.compute_device_type = interface
+        except TypeError:  # this build of Blender has no such interface
+            continue
+        cycles.refresh_devices()
+        cards = [device for device in cycles.devices if device.type == interface]
+        if cards:
+            for device in cycles.devices:
+                device.use = device in cards
+            bpy.context.scene.cycles.device = "GPU"
+            return str(interface)
+    return None
 
 
 def _prepare(viewpoint: Viewpoint, projection: dict[str, float], samples: int, seed: int) -> bpy.types.Scene:

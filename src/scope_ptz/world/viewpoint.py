@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Iterator
 from functools import cached_property
 from pathlib import Path
 from threading import RLock
@@ -81,6 +82,19 @@ class Viewpoint:
     def offset(self, points_m: NDArray[np.float64]) -> NDArray[np.float64]:
         """World points (..., 3) as vectors from the optical centre in the camera's own frame, metres."""
         return np.asarray((points_m - self.position_m) @ self.world_to_camera.T)
+
+    def files(self) -> Iterator[Layer]:
+        """Every file of the pack besides the manifest."""
+        manifest = self.manifest
+        yield from (manifest.base, manifest.ids, manifest.depth)
+        for tile in manifest.tiles:
+            yield from (tile.colour, tile.ids)
+        for sheet in manifest.actors:
+            yield from (sheet.colour, sheet.depth)
+
+    def check_files(self) -> int:
+        """Hold every file against its checksum; the number of files. Raises ``PackError`` for the first that is not as baked."""
+        return sum(1 for layer in self.files() if self._verified(layer))
 
     def colour(self, layer: Layer) -> NDArray[np.uint8]:
         """(H, W, 3) RGB, or (H, W, 4) for the sheets of actors."""

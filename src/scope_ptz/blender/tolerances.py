@@ -1,0 +1,43 @@
+"""How alike a pack and live renders must be, and what falls short of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from statistics import mean
+
+from scope_ptz.blender.verify import PoseReport
+
+WIDE_SSIM_MEAN, WIDE_SSIM_MIN = 0.93, 0.88
+"""At the wide end, whole views."""
+
+TILE_SSIM_MIN, TILE_SHARPNESS_MIN = 0.90, 0.60
+"""Zoomed in, the part of a view that lies in tiles."""
+
+WIDE_IOU_MEAN, TELE_IOU_MEAN = 0.97, 0.93
+"""Boxes of instances over 400 pixels."""
+
+
+def shortcomings(reports: Sequence[PoseReport]) -> list[str]:
+    """In words, every tolerance that a comparison misses; empty when all hold."""
+    wide = [r for r in reports if r.pose.zoom == 1.0]
+    tiled = [r for r in reports if r.pose.zoom > 1.0 and r.tile_share > 0]
+    found = []
+    if wide and (average := mean(r.ssim for r in wide)) < WIDE_SSIM_MEAN:
+        found.append(f"mean SSIM at 1x is {average:.3f}, {WIDE_SSIM_MEAN:g} is wanted")
+    found += [f"{_where(r)}: SSIM {r.ssim:.3f}, {WIDE_SSIM_MIN:g} is wanted" for r in wide if r.ssim < WIDE_SSIM_MIN]
+    found += [f"{_where(r)}: SSIM {r.ssim:.3f}, {TILE_SSIM_MIN:g} is wanted in tiles" for r in tiled if r.ssim < TILE_SSIM_MIN]
+    found += [
+        f"{_where(r)}: {r.sharpness_ratio:.2f} of the live sharpness, {TILE_SHARPNESS_MIN:g} is wanted in tiles"
+        for r in tiled
+        if r.sharpness_ratio < TILE_SHARPNESS_MIN
+    ]
+    for name, group, least in (("1x", wide, WIDE_IOU_MEAN), ("2x to 5x", tiled, TELE_IOU_MEAN)):
+        ious = [r.box_iou for r in group if r.box_iou is not None]
+        if ious and mean(ious) < least:
+            found.append(f"mean box IoU at {name} is {mean(ious):.3f}, {least:g} is wanted")
+    return found
+
+
+def _where(report: PoseReport) -> str:
+    pose = report.pose
+    return f"{report.viewpoint} at pan {pose.pan_deg:.1f}, tilt {pose.tilt_deg:.1f}, {pose.zoom:.2f}x"
