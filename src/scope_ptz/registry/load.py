@@ -1,0 +1,144 @@
+"""Reading the registry: what is shipped, and on top of it what the user adds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from scope_ptz.errors import ConfigError, UnknownNameError
+from scope_ptz.registry.entries import Model, Pair, Role, Server
+
+SHIPPED = "models.yaml"
+
+
+class _File(BaseModel):
+    """The YAML as it is written: names are keys."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    servers: dict[str, dict[str, Any]] = {}
+    models: dict[str, dict[str, Any]] = {}
+    pairs: list[dict[str, Any]] = []
+
+
+class Registry:
+    """Models, servers and pairs by name."""
+
+    def __init__(self, servers: Mapping[str, Server], models: Mapping[str, Model], pairs: Mapping[str, Pair]) -> None:
+        self.servers, self.models, self.pairs = dict(servers), dict(models), dict(pairs)
+
+    def model(self, name: str, role: Role | None = None) -> Model:
+        """A model by its name or full title, in any case. Raises ``UnknownNameError``."""
+        wanted = name.strip().lower()
+        model = self.models.get(wanted) or next((m for m in self.models.values() if wanted in _names(m)), None)
+        if model is None:
+            raise UnknownNameError(role or "model", name, self.named(role))
+        if role is not None and role not in model.roles:
+            can = "plan" if role == "planner" else "see"
+            raise ConfigError(f"{model.name} cannot {can}. Those that can: {', '.join(self.named(role))}.")
+        return model
+
+    def named(self, role: Role | None = None) -> list[str]:
+        """Names of the models that can play a role."""
+        return [m.name for m in self.models.values() if role is None or role in m.roles]
+
+    def pair(self, text: str) -> Pair:
+        """A pair by name, ``PLANNER+EYES``, or one model that is both. Raises ``UnknownNameError`` or ``ConfigError``."""
+        if text in self.pairs:
+            return self.pairs[text]
+        planner, plus, eyes = text.partition("+")
+        if plus:
+            one, two = self.model(planner, "planner"), self.model(eyes, "eyes")
+            known = self.pairs.get(f"{one.name}+{two.name}")
+            return known or Pair(name=f"{one.name}+{two.name}", planner=one.name, eyes=two.name)
+        model = self.model(text)
+        if set(model.roles) != {"planner", "eyes"}:
+            raise ConfigError(f"{model.name} is a {model.roles[0]} only. Give a pair: PLANNER+EYES, see `scope models pairs`.")
+        return Pair(name=model.name, planner=model.name, eyes=model.name)
+
+    def server(self, name: str) -> Server:
+        """A server by name. Raises ``UnknownNameError``."""
+        if name not in self.servers:
+            raise UnknownNameError("server", name, self.servers)
+        return self.servers[name]
+
+    def commands(self, model: Model, server: str) -> tuple[str, ...]:
+        """The exact commands that serve a model, one a line. Raises ``ConfigError`` for a server that cannot run it."""
+        program = self.server(server)
+        if server not in model.serve:
+            able = ", ".join(model.serve) or "none"
+            raise ConfigError(f"{model.name} cannot be served with {server}. Servers that can: {able}.")
+        serving = model.serve[server]
+        values = {"source": serving.source or model.repo, "window": str(model.window), "flags": serving.flags}
+        return tuple(_filled(line, values) for line in serving.command or program.command)
+
+
+def load_registry(user_file: Path | None = None) -> Registry:
+    """The shipped registry, with the user's entries added; an entry of the same name replaces the shipped one.
+
+    Raises ``ConfigError`` that names the file and the field when something in it is wrong.
+    """
+    shipped = files("scope_ptz").joinpath("data", SHIPPED).read_text(encoding="utf-8")
+    servers, models, pairs = _read(shipped, SHIPPED)
+    if user_file is not None:
+        try:
+            added = user_file.read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise ConfigError(f"The models file {user_file} cannot be read: {error}.") from error
+        own_servers, own_models, own_pairs = _read(added, str(user_file))
+        servers, models, pairs = servers | own_servers, models | own_models, pairs | own_pairs
+        _check(Registry(servers, models, pairs), user_file)
+    return Registry(servers, models, pairs)
+
+
+def _read(text: str, where: str) -> tuple[dict[str, Server], dict[str, Model], dict[str, Pair]]:
+    import yaml
+
+    try:
+        content = yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))  # noqa: S506 - both are safe loaders
+    except yaml.YAMLError as error:
+        raise ConfigError(f"{where} is no YAML: {' '.join(str(error).split())}.") from error
+    spot: tuple[str | int, ...] = ()
+    try:
+        file = _File.model_validate(content or {})
+        servers, models, pairs = {}, {}, {}
+        for name, given in file.servers.items():
+            spot = ("servers", name)
+            servers[name] = Server.model_validate(given)
+        for name, given in file.models.items():
+            spot = ("models", name)
+            models[name] = Model.model_validate({**given, "name": name, "title": given.get("title", name)})
+        for index, given in enumerate(file.pairs):
+            spot = ("pairs", index)
+            pair = Pair.model_validate({"name": f"{given.get('planner')}+{given.get('eyes')}", **given})
+            pairs[pair.name] = pair
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        path = ".".join(str(part) for part in (*spot, *first["loc"]))
+        raise ConfigError(f"{where}: {path}: {first['msg']}.") from error
+    return servers, models, pairs
+
+
+def _check(registry: Registry, where: Path) -> None:
+    for model in registry.models.values():
+        for server in model.serve:
+            if server not in registry.servers:
+                raise ConfigError(f"{where}: models.{model.name}.serve.{server}: there is no such server.")
+    for pair in registry.pairs.values():
+        registry.model(pair.planner, "planner")
+        registry.model(pair.eyes, "eyes")
+
+
+def _filled(line: str, values: Mapping[str, str]) -> str:
+    """A command with its places filled; other braces (JSON in a flag) stay as they are."""
+    for name, value in values.items():
+        line = line.replace(f"{{{name}}}", value)
+    return " ".join(line.split())
+
+
+def _names(model: Model) -> set[str]:
+    return {n.lower() for n in (model.name, model.title, model.repo)}
