@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from platformdirs import user_cache_path
+from platformdirs import user_cache_path, user_config_path
 from pydantic import Field, ValidationError
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
@@ -23,6 +23,16 @@ class ScopeSettings(BaseSettings):
     )
     blender_python: Path | None = Field(default=None, description="A Python interpreter that can import bpy.")
     blender: Path | None = Field(default=None, description="A blender program to use instead of the bpy wheel.")
+    models: Path | None = Field(default=None, description="A YAML file of models beside the built-in ones.")
+    planner_url: str = Field(default="", description="Where the planner's model server listens.")
+    eyes_url: str = Field(default="", description="Where the model server of the eyes listens.")
+
+    def models_file(self) -> Path | None:
+        """The user's own models: the file that is named, or the one in the configuration folder when it is there."""
+        if self.models is not None:
+            return self.models
+        usual = user_config_path("scope-ptz") / "models.yaml"
+        return usual if usual.is_file() else None
 
 
 def load_settings() -> ScopeSettings:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from scope_ptz.cli.endings import ending
+from scope_ptz.cli.model_commands import models_app
 
 if TYPE_CHECKING:
     from scope_ptz.cli.asking import Asking
@@ -23,6 +24,7 @@ app = typer.Typer(
 )
 scene_app = typer.Typer(help="The scenes: list, show, view, build, bake and verify them.", no_args_is_help=True)
 app.add_typer(scene_app, name="scene")
+app.add_typer(models_app, name="models")
 
 SceneOption = Annotated[str, typer.Option("--scene", help="Scene to look at; see `scope scene list`.")]
 ViewpointOption = Annotated[str | None, typer.Option("--viewpoint", help="Where the camera stands.")]

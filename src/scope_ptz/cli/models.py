@@ -1,0 +1,157 @@
+"""``scope models``: which models there are, what they need, and how they are served."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from scope_ptz.cli.display import plain
+from scope_ptz.cli.endings import put, put_json
+from scope_ptz.errors import ConfigError, UnknownNameError
+from scope_ptz.registry import Model, Registry, Role, load_registry
+from scope_ptz.registry.entries import RUNTIME_GB, WINDOW
+from scope_ptz.settings import load_settings
+
+MEMORY_NOTE = (
+    f"Memory in GB, computed, not measured: parameters x bytes + cache for {WINDOW} tokens + {RUNTIME_GB:g} GB. "
+    "'from' is the least that any server needs (4-bit weights where there are any)."
+)
+_THINKING = {"none": "no", "optional": "when asked", "default": "unless told not to", "always": "always"}
+
+
+def registry() -> Registry:
+    """The shipped models and the user's own."""
+    return load_registry(load_settings().models_file())
+
+
+def list_models(role: str | None, memory_gb: float | None, *, as_json: bool) -> None:
+    """Print the models, those that fit into ``memory_gb`` only when it is given."""
+    known = registry()
+    chosen = [m for m in known.models.values() if _wanted(m, _role(role), memory_gb)]
+    if as_json:
+        put_json([describe(known, model) for model in chosen], indent=2)
+        return
+    table = Table("name", "role", "size", "active", "precision", "memory", "from", "context", "thinks", "licence", box=None)
+    for m in chosen:
+        _, least = m.smallest()
+        table.add_row(
+            m.name, "+".join(m.roles), f"{m.size_b:g}B", f"{m.active_b:g}B", m.precision, f"{m.memory_for():.1f}", f"{least:.1f}",
+            f"{m.context:,}" if m.context else "-", _THINKING[m.thinking], m.licence,
+            style="bold" if m.origin == "paper" else "",
+        )  # fmt: skip
+    console = Console(highlight=False)
+    console.print(table)
+    console.print(Text(MEMORY_NOTE, style="dim"))
+    if console.is_terminal:
+        console.print(
+            Text("Bold: the paper's. `scope models show NAME` tells the rest, `scope models pairs` the pairs.", style="dim")
+        )
+
+
+def show_model(name: str, *, as_json: bool) -> None:
+    """Print everything that is known of a model."""
+    known = registry()
+    model = known.model(name)
+    if as_json:
+        put_json(describe(known, model), indent=2)
+        return
+    put(f"{model.title} ({model.name})")
+    facts = [
+        ("repository", model.repo + (f" at {model.revision}" if model.revision else "")),
+        ("role", " and ".join(model.roles) + (", sees pictures in the chat" if model.sees else "")),
+        ("from", {"paper": "the paper", "current": "beside the paper", "yours": "your models file"}[model.origin]),
+        ("size", f"{model.size_b:g}B parameters, {model.active_b:g}B active"),
+        ("precision", model.precision),
+        ("context", f"{model.context:,} tokens" if model.context else "-"),
+        ("thinks", _THINKING[model.thinking]),
+        ("coordinates", model.coordinates),
+        ("licence", model.licence),
+        ("memory", f"{model.memory_for():.1f} GB at {model.precision}"),
+        ("address", model.url),
+        ("notes", model.notes),
+        ("source", model.source),
+    ]
+    for label, value in facts:
+        if value:
+            put(f"  {label:12}{plain(value)}")
+    for server in model.serve:
+        _show_serving(known, model, server)
+    put(MEMORY_NOTE)
+
+
+def _show_serving(known: Registry, model: Model, server: str) -> None:
+    serving = model.serve[server]
+    put(
+        f"  with {known.server(server).title} ({server}): {model.memory_for(server):.1f} GB, {serving.precision or model.precision}"
+    )
+    for line in known.commands(model, server):
+        put(f"      {line}")
+    for note in (serving.notes, known.server(server).notes):
+        if note:
+            put(f"      # {note}")
+
+
+def serve_command(name: str, server: str | None) -> None:
+    """Print the commands that serve a model and nothing else, so that they can be piped into a shell."""
+    known = registry()
+    model = known.model(name)
+    if server is None:
+        if not model.serve:
+            raise ConfigError(f"No server is known for {model.name}. Add one to your models file, under `serve`.")
+        server = next(iter(model.serve))
+    for line in known.commands(model, server):
+        put(line)
+
+
+def list_pairs(*, as_json: bool) -> None:
+    """Print the pairs."""
+    known = registry()
+    rows = [
+        {
+            "name": p.name, "planner": p.planner, "eyes": p.eyes, "origin": p.origin, "paper_average": p.paper_average,
+            "memory_gb": round(known.model(p.planner).memory_for() + known.model(p.eyes).memory_for(), 1),
+        }
+        for p in known.pairs.values()
+    ]  # fmt: skip
+    if as_json:
+        put_json(rows, indent=2)
+        return
+    table = Table("pair", "memory", "paper's average", box=None)
+    for row in rows:
+        average = row["paper_average"]
+        table.add_row(str(row["name"]), f"{row['memory_gb']:.1f}", f"{average:.1f} %" if average is not None else "-")
+    console = Console(highlight=False)
+    console.print(table)
+    console.print(Text("Averages are the paper's figures (macro, over its eight categories), not measured here.", style="dim"))
+    console.print(Text("Any PLANNER+EYES of `scope models` works, and so does one model that is both.", style="dim"))
+
+
+def describe(known: Registry, model: Model) -> dict[str, Any]:
+    """A model as JSON data, with memory and commands for each server."""
+    data = model.model_dump(mode="json", exclude={"serve", "key_file", "memory_gb", "kv_kib"})
+    servings = {
+        server: {
+            "commands": list(known.commands(model, server)),
+            "url": known.server(server).url,
+            "precision": serving.precision or model.precision,
+            "memory_gb": model.memory_for(server),
+            "notes": serving.notes,
+        }
+        for server, serving in model.serve.items()
+    }
+    return {**data, "memory_gb": model.memory_for(), "least_memory_gb": model.smallest()[1], "serve": servings}
+
+
+def _role(role: str | None) -> Role | None:
+    match role:
+        case None | "planner" | "eyes":
+            return role
+        case _:
+            raise UnknownNameError("role", role, ("planner", "eyes"))
+
+
+def _wanted(model: Model, role: Role | None, memory_gb: float | None) -> bool:
+    return (role is None or role in model.roles) and (memory_gb is None or model.smallest()[1] <= memory_gb)
