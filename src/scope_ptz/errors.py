@@ -9,6 +9,7 @@ ScopeError
 ├── CameraError             the camera did not do, or does not answer
 ├── PerceptionError         a frame could not be read (never to be confused with "nothing there")
 ├── PlannerError            the planner failed or answered with something that is no decision
+├── ServerFailure           a model server gave no usable reply (endpoints.failures); planners and eyes turn it into the two above
 ├── ToolCallError           a tool call with a wrong name or wrong arguments
 ├── TraceError              a trace that cannot be read or replayed
 └── BlenderError            the Blender worker is missing or failed
@@ -16,8 +17,9 @@ ScopeError
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
+from typing import Protocol
 
 __all__ = [
     "BlenderError",
@@ -31,8 +33,16 @@ __all__ = [
     "ScopeError",
     "ToolCallError",
     "TraceError",
+    "Tried",
     "UnknownNameError",
 ]
+
+
+class Tried(Protocol):
+    """One request to a model server: ``kind`` is how it failed, None when it worked."""
+
+    @property
+    def kind(self) -> str | None: ...
 
 
 class ScopeError(Exception):
@@ -70,11 +80,23 @@ class CameraError(ScopeError):
     """The camera did not do what it was told, or does not answer."""
 
 
-class PerceptionError(ScopeError):
+class _ModelError(ScopeError):
+    """An error of something that may be a model on a server.
+
+    ``kind``: the way in which the server failed (``endpoints.FailureKind``), None when no server did. ``attempts``: what was
+    tried (``endpoints.Attempt``).
+    """
+
+    def __init__(self, *message: object, kind: str | None = None, attempts: Sequence[Tried] = ()) -> None:
+        super().__init__(*message)
+        self.kind, self.attempts = kind, tuple(attempts)
+
+
+class PerceptionError(_ModelError):
     """A frame could not be read. This is never the same as "nothing there"."""
 
 
-class PlannerError(ScopeError):
+class PlannerError(_ModelError):
     """The planner failed, or answered with something that is no decision."""
 
 

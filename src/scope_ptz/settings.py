@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from platformdirs import user_cache_path, user_config_path
-from pydantic import Field, ValidationError
+from pydantic import Field, SecretStr, ValidationError
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 from scope_ptz.errors import ConfigError
@@ -23,6 +23,9 @@ class ScopeSettings(BaseSettings):
     )
     blender_python: Path | None = Field(default=None, description="A Python interpreter that can import bpy.")
     blender: Path | None = Field(default=None, description="A blender program to use instead of the bpy wheel.")
+    planner_key: SecretStr | None = Field(default=None, description="The key of the planner's server.")
+    eyes_key: SecretStr | None = Field(default=None, description="The key of the perception server.")
+    judge_key: SecretStr | None = Field(default=None, description="The key of the judge's server.")
     models: Path | None = Field(default=None, description="A YAML file of models beside the built-in ones.")
     planner_url: str = Field(default="", description="Where the planner's model server listens.")
     eyes_url: str = Field(default="", description="Where the model server of the eyes listens.")

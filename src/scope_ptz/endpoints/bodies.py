@@ -1,0 +1,110 @@
+"""Reading what a server sent: capped, decoded, and made safe to store and to show."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import AsyncGenerator
+from typing import TYPE_CHECKING, Any
+
+from scope_ptz.endpoints.endpoint import MAX_BODY_BYTES, Endpoint
+from scope_ptz.endpoints.failures import FailureKind, ServerFailure, scrub
+from scope_ptz.endpoints.translate import error_body
+
+if TYPE_CHECKING:
+    from httpx2 import Response
+
+K = FailureKind
+
+_JSON_TYPE = re.compile(r"^(application|text)/([\w.+-]+\+)?json$")
+_UNSAFE = re.compile("[\\x00-\\x08\\x0b\\x0c\\x0e-\\x1f\\x7f-\\x9f\\ud800-\\udfff]")
+_UNSAFE_ESCAPE = re.compile(rb"\\u(00[0189]|[dD][89a-fA-F])|\\[bf]|[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]|\xc2[\x80-\x9f]")
+
+
+def content_type(response: Response) -> str:
+    """The media type alone, lower case; empty when the server states none."""
+    return str(response.headers.get("content-type", "")).partition(";")[0].strip().lower()
+
+
+def is_json(media_type: str) -> bool:
+    return not media_type or _JSON_TYPE.match(media_type) is not None
+
+
+def wrong_type(media_type: str, endpoint: Endpoint, status: int) -> ServerFailure:
+    return ServerFailure(
+        K.WRONG_CONTENT_TYPE, where=endpoint.url, status=status, detail=f"content type {media_type or 'missing'}"[:100]
+    )
+
+
+def too_large(endpoint: Endpoint, status: int) -> ServerFailure:
+    return ServerFailure(K.TOO_LARGE, where=endpoint.url, status=status, detail=f"over {MAX_BODY_BYTES // 2**20} MB")
+
+
+async def chunks(response: Response, endpoint: Endpoint) -> AsyncGenerator[bytes, None]:
+    """The body as it comes, decompressed, up to ``MAX_BODY_BYTES``. A silence in its midst is a broken answer."""
+    import httpx2
+
+    received = 0
+    try:
+        async for chunk in response.aiter_bytes():
+            received += len(chunk)
+            if received > MAX_BODY_BYTES:
+                raise too_large(endpoint, response.status_code)
+            yield chunk
+    except httpx2.ReadTimeout:
+        if not received:
+            raise
+        silence = f"silent for {endpoint.timeouts.first_byte_s:g} s in the midst of it"
+        raise ServerFailure(K.CUT_OFF, where=endpoint.url, status=response.status_code, detail=silence) from None
+
+
+async def read_object(response: Response, endpoint: Endpoint) -> dict[str, Any]:
+    """A whole JSON object.
+
+    Raises:
+        ServerFailure: wrong content type, nothing, too much, no JSON, no object, or an error in the guise of success.
+    """
+    media_type = content_type(response)
+    if not is_json(media_type):
+        raise wrong_type(media_type, endpoint, response.status_code)
+    body = b"".join([chunk async for chunk in chunks(response, endpoint)])
+    return load_object(body, endpoint, response.status_code)
+
+
+def load_object(body: bytes, endpoint: Endpoint, status: int) -> dict[str, Any]:
+    """A JSON object from bytes, without the key and without characters that break files or terminals."""
+    if not body.strip():
+        raise ServerFailure(K.EMPTY, where=endpoint.url, status=status, detail="an empty body")
+    try:
+        # Some servers put raw line ends into strings.
+        data: Any = json.loads(scrub(body.decode("utf-8"), endpoint.secret), strict=False)
+    except (ValueError, RecursionError) as error:
+        raise ServerFailure(K.MALFORMED, where=endpoint.url, status=status, detail=_no_json(error)) from None
+    if not isinstance(data, dict):
+        raise ServerFailure(K.MALFORMED, where=endpoint.url, status=status, detail=f"a JSON {type(data).__name__}, not an object")
+    whole: dict[str, Any] = _safe(data) if _UNSAFE_ESCAPE.search(body) else data
+    failure = error_body(whole, endpoint, status)
+    if failure is not None:
+        raise failure
+    return whole
+
+
+def _no_json(error: Exception) -> str:
+    if isinstance(error, json.JSONDecodeError):
+        return f"no JSON: {error.msg} at character {error.pos}"
+    return "no JSON: nested too deeply" if isinstance(error, RecursionError) else "no JSON: not UTF-8 or an endless number"
+
+
+def _safe(value: Any) -> Any:
+    if isinstance(value, str):
+        return safe_text(value)
+    if isinstance(value, list):
+        return [_safe(item) for item in value]
+    if isinstance(value, dict):
+        return {safe_text(name): _safe(item) for name, item in value.items()}
+    return value
+
+
+def safe_text(text: str) -> str:
+    """Text without control characters and lone surrogates: files cannot hold the latter, and terminals obey the former."""
+    return _UNSAFE.sub("\ufffd", text)

@@ -1,0 +1,124 @@
+"""A call to a model server: bounded retries with full jitter, one deadline over all of them, a circuit breaker."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Awaitable, Callable
+from time import perf_counter
+from typing import TypeVar
+
+import anyio
+
+from scope_ptz.endpoints.breaker import Breaker
+from scope_ptz.endpoints.endpoint import Endpoint
+from scope_ptz.endpoints.failures import Attempt, FailureKind, ServerFailure
+from scope_ptz.endpoints.translate import as_failure
+
+K = FailureKind
+T = TypeVar("T")
+
+RETRIED = frozenset(
+    {
+        K.REFUSED,
+        K.DNS,
+        K.CONNECT_TIMEOUT,
+        K.FIRST_BYTE_TIMEOUT,
+        K.RATE_LIMITED,
+        K.SERVER_ERROR,
+        K.ERROR_BODY,
+        K.CUT_OFF,
+        K.EMPTY,
+        K.MALFORMED,
+    }
+)
+"""What may go better the next time. A wrong key, path, request or content type will not."""
+
+FIRST_PAUSE_S = 0.5
+LONGEST_PAUSE_S = 8.0
+LONGEST_RETRY_AFTER_S = 30.0
+"""A server that asks for more patience than this is a failure now."""
+
+
+class Caller:
+    """One per endpoint, shared by all calls to it, also concurrent ones."""
+
+    def __init__(
+        self,
+        endpoint: Endpoint,
+        *,
+        sleep: Callable[[float], Awaitable[None]] = anyio.sleep,
+        rng: random.Random | None = None,
+        breaker: Breaker | None = None,
+    ) -> None:
+        self.endpoint, self.sleep = endpoint, sleep
+        self.rng, self.breaker = rng or random.Random(), breaker or Breaker()
+
+    async def call(self, attempt: Callable[[], Awaitable[T]]) -> tuple[T, tuple[Attempt, ...]]:
+        """What ``attempt`` returned in the end, and everything that was tried for it.
+
+        Raises:
+            ServerFailure: all was in vain; ``history`` says what was tried.
+        """
+        tried: list[Attempt] = []
+        deadline = perf_counter() + self.endpoint.timeouts.total_s
+        waited_s = 0.0
+        while True:
+            result = await self._try(attempt, deadline, waited_s, tried)
+            if not isinstance(result, ServerFailure):
+                return result, tuple(tried)
+            pause_s = self._pause_s(result, len(tried))
+            if pause_s is None or perf_counter() + pause_s >= deadline:
+                raise result.after(tried)
+            await self.sleep(pause_s)
+            waited_s = pause_s
+
+    async def _try(
+        self, attempt: Callable[[], Awaitable[T]], deadline: float, waited_s: float, tried: list[Attempt]
+    ) -> T | ServerFailure:
+        """One attempt, recorded. A failure is returned, so that no library exception, which may quote a key, hangs on to it."""
+        closed_for_s = self.breaker.wait_s()
+        if closed_for_s is not None:
+            tried.append(Attempt(kind=K.CIRCUIT_OPEN, waited_s=waited_s))
+            return self._left_alone(closed_for_s)
+        began = perf_counter()
+        failure: ServerFailure | None = None
+        reported = False
+        try:
+            with anyio.move_on_after(deadline - began) as limit:
+                try:
+                    result = await attempt()
+                except Exception as error:
+                    failure = as_failure(error, self.endpoint)
+                    if failure is None:
+                        raise
+                else:
+                    self.breaker.succeeded()
+                    reported = True
+                    tried.append(Attempt(seconds=perf_counter() - began, waited_s=waited_s))
+                    return result
+            if limit.cancelled_caught:
+                detail = f"{self.endpoint.timeouts.total_s:g} s were allowed"
+                failure = ServerFailure(K.TOTAL_TIMEOUT, where=self.endpoint.url, detail=detail)
+            assert failure is not None  # noqa: S101 - the scope ends by a result, a failure or its deadline
+            self.breaker.failed(failure)
+            reported = True
+        finally:
+            if not reported:
+                self.breaker.abandoned()
+        tried.append(Attempt(kind=failure.kind, status=failure.status, seconds=perf_counter() - began, waited_s=waited_s))
+        return failure
+
+    def _pause_s(self, failure: ServerFailure, attempts: int) -> float | None:
+        """How long to wait before the next attempt; None when there shall be none."""
+        if failure.kind not in RETRIED or attempts > self.endpoint.retries:
+            return None
+        jitter_s = self.rng.uniform(0.0, min(LONGEST_PAUSE_S, FIRST_PAUSE_S * 2.0 ** (attempts - 1)))
+        asked_s = failure.retry_after_s
+        if asked_s is None:
+            return jitter_s
+        return asked_s + 0.1 * jitter_s if asked_s <= LONGEST_RETRY_AFTER_S else None
+
+    def _left_alone(self, for_s: float) -> ServerFailure:
+        last = self.breaker.last
+        why = f"last failure: {last.kind.value}; " if last is not None else ""
+        return ServerFailure(K.CIRCUIT_OPEN, where=self.endpoint.url, detail=f"{why}it will be asked again in {for_s:.0f} s")

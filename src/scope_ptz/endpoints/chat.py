@@ -1,0 +1,161 @@
+"""The chat client: the ``openai`` client, with this project's retries, deadlines and reading of replies."""
+
+from __future__ import annotations
+
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, cast
+
+import anyio
+
+from scope_ptz.endpoints.bodies import chunks, content_type, is_json, load_object, read_object, wrong_type
+from scope_ptz.endpoints.calls import Caller
+from scope_ptz.endpoints.endpoint import Endpoint
+from scope_ptz.endpoints.failures import FailureKind, ServerFailure
+from scope_ptz.endpoints.replies import ChatReply, Gathering, RawToolCall
+from scope_ptz.endpoints.translate import as_failure
+
+if TYPE_CHECKING:
+    from httpx2 import Response
+    from openai import AsyncOpenAI
+
+__all__ = ["ChatClient", "ChatReply", "RawToolCall"]
+
+K = FailureKind
+EVENT_STREAM = "text/event-stream"
+DRAIN_S = 0.1
+"""A stream that has said all is read to its end, so that its connection can be used again, but not for longer than this."""
+
+
+class ChatClient:
+    """Asks one OpenAI-compatible server. May be shared by concurrent callers in one event loop."""
+
+    def __init__(self, endpoint: Endpoint, *, caller: Caller | None = None) -> None:
+        self.endpoint = endpoint
+        self.caller = caller or Caller(endpoint)
+        self._openai: AsyncOpenAI | None = None
+        self._counts_tokens = True
+
+    async def complete(
+        self,
+        messages: list[dict[str, Any]],
+        *,
+        tools: list[dict[str, Any]] | None = None,
+        stream: bool = False,
+        extra: dict[str, Any] | None = None,
+        **options: Any,
+    ) -> ChatReply:
+        """The model's reply.
+
+        Args:
+            messages: the conversation in the wire format.
+            tools: function schemas on offer.
+            stream: let the reply come as it is made, which tells the time to its first token. The reply is the same.
+            extra: fields of the request that only some servers know.
+            options: further fields of the request, such as ``temperature``; those that are None are left out.
+
+        Raises:
+            ServerFailure: there was no usable reply.
+        """
+        body: dict[str, Any] = {"model": self.endpoint.model, "messages": messages}
+        if tools:
+            body["tools"] = tools
+        body.update((name, value) for name, value in options.items() if value is not None)
+        body.update(extra or {})
+        began = perf_counter()
+        reply, attempts = await self.caller.call(lambda: self._ask(body, stream))
+        return reply.model_copy(update={"attempts": attempts, "seconds": perf_counter() - began})
+
+    async def _ask(self, body: dict[str, Any], stream: bool) -> ChatReply:
+        if not stream:
+            return await self._exchange(body)
+        body = {**body, "stream": True}
+        if not self._counts_tokens:
+            return await self._exchange(body)
+        try:
+            return await self._exchange({**body, "stream_options": {"include_usage": True}})
+        except Exception as error:
+            failure = as_failure(error, self.endpoint)
+            if failure is None or failure.kind is not K.BAD_REQUEST or not (failure.status == 422 or "stream" in failure.detail):
+                raise
+        reply = await self._exchange(body)
+        self._counts_tokens = False  # It refuses the field, and is not to be asked for it again
+        return reply
+
+    async def _exchange(self, body: dict[str, Any]) -> ChatReply:
+        import httpx2
+        from openai import AsyncStream
+
+        began = perf_counter()
+        # Every response is taken unread, also a whole one: the size of its body is checked while it comes.
+        answer = await self._client().post(
+            "/chat/completions", cast_to=httpx2.Response, body=body, stream=True, stream_cls=AsyncStream[Any]
+        )
+        response = cast(httpx2.Response, answer)
+        try:
+            media_type = content_type(response)
+            if media_type == EVENT_STREAM or (not media_type and body.get("stream")):
+                return await self._read_stream(response, began)
+            if not is_json(media_type):
+                raise wrong_type(media_type, self.endpoint, response.status_code)
+            whole = Gathering(self.endpoint)
+            whole.add(await read_object(response, self.endpoint))
+            return whole.reply()
+        finally:
+            await response.aclose()
+
+    async def _read_stream(self, response: Response, began: float) -> ChatReply:
+        gathering, first_token_s, done = Gathering(self.endpoint), None, False
+        events = _Events()
+        pieces = chunks(response, self.endpoint)
+        try:
+            async for piece in pieces:
+                for data in events.feed(piece):
+                    if data == b"[DONE]":
+                        done = True
+                        break
+                    brought = gathering.add(load_object(data, self.endpoint, response.status_code))
+                    if brought and first_token_s is None:
+                        first_token_s = perf_counter() - began
+                if done:
+                    break
+            if done:
+                with anyio.move_on_after(DRAIN_S):
+                    async for _ in pieces:
+                        pass
+        finally:
+            await pieces.aclose()
+        if not done and gathering.finish_reason is None:
+            detail = "the stream ended before the answer did"
+            raise ServerFailure(K.CUT_OFF, where=self.endpoint.url, status=response.status_code, detail=detail)
+        return gathering.reply().model_copy(update={"first_token_s": first_token_s})
+
+    def _client(self) -> AsyncOpenAI:
+        if self._openai is None:
+            from openai import AsyncOpenAI
+
+            from scope_ptz.endpoints.transport import make_client
+
+            # The key is put in by our transport, which lets nothing of OPENAI_... variables through.
+            client = make_client(self.endpoint)
+            self._openai = AsyncOpenAI(
+                api_key="unused", base_url=self.endpoint.url, max_retries=0, http_client=client, timeout=client.timeout
+            )
+        return self._openai
+
+    async def close(self) -> None:
+        """Close the connections. The next request opens new ones."""
+        if self._openai is not None:
+            client, self._openai = self._openai, None
+            await client.close()
+
+
+class _Events:
+    """The data of server-sent events, from bytes that come in any cut. One data line is one event."""
+
+    def __init__(self) -> None:
+        self._rest = b""
+
+    def feed(self, piece: bytes) -> list[bytes]:
+        lines = (self._rest + piece).split(b"\n")
+        self._rest = lines.pop()
+        return [line[5:].strip() for line in lines if line.startswith(b"data:") and line[5:].strip()]

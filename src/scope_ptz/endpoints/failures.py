@@ -1,0 +1,137 @@
+"""How a model server can fail: one kind for each way, and what a user can do about it."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable
+from enum import StrEnum
+
+from pydantic import BaseModel, ConfigDict
+
+from scope_ptz.errors import ScopeError
+
+MAX_DETAIL_CHARS = 300
+MIN_SCRUBBED_CHARS = 6
+"""Shorter keys ("none", "EMPTY") are placeholders for servers that want none, and ordinary words."""
+
+
+class FailureKind(StrEnum):
+    """A way to fail. The values are counted in traces, so they never change."""
+
+    REFUSED = "refused"
+    DNS = "dns"
+    TLS = "tls"
+    CONNECT_TIMEOUT = "connect-timeout"
+    FIRST_BYTE_TIMEOUT = "first-byte-timeout"
+    TOTAL_TIMEOUT = "total-timeout"
+    UNAUTHORISED = "unauthorised"
+    NOT_FOUND = "not-found"
+    RATE_LIMITED = "rate-limited"
+    BAD_REQUEST = "bad-request"
+    CONTEXT_OVERFLOW = "context-overflow"
+    SERVER_ERROR = "server-error"
+    ERROR_BODY = "error-body"
+    CUT_OFF = "cut-off"
+    EMPTY = "empty"
+    WRONG_CONTENT_TYPE = "wrong-content-type"
+    MALFORMED = "malformed"
+    TOO_LARGE = "too-large"
+    CIRCUIT_OPEN = "circuit-open"
+
+
+K = FailureKind
+
+_WORDS: dict[FailureKind, tuple[str, str]] = {
+    K.REFUSED: ("cannot be reached", "Start it, or check the address."),
+    K.DNS: ("has a host name that nobody knows", "Check the address."),
+    K.TLS: ("has no certificate that this machine trusts", "Check the address and the certificate."),
+    K.CONNECT_TIMEOUT: ("did not take the connection in time", "Check the address and the network."),
+    K.FIRST_BYTE_TIMEOUT: ("was silent for too long", "It may be loading or overloaded; allow more time, or use a smaller model."),
+    K.TOTAL_TIMEOUT: ("did not finish in time", "Allow more time, or use a smaller model."),
+    K.UNAUTHORISED: ("refused the key", "Set the key of this server, and check what it may do."),
+    K.NOT_FOUND: ("does not know this path or model", "Check the address (most want /v1 at its end) and the model's name."),
+    K.RATE_LIMITED: ("wants fewer requests", "Wait, or ask for a higher limit."),
+    K.BAD_REQUEST: ("refused the request", "Check the model's name and what the server supports."),
+    K.CONTEXT_OVERFLOW: ("says that the conversation outgrew the model's context", "Serve the model with a longer context."),
+    K.SERVER_ERROR: ("failed inside", "Look at its log."),
+    K.ERROR_BODY: ("answered with an error", "Look at its log."),
+    K.CUT_OFF: ("broke off its answer", "Look at its log; it may have crashed."),
+    K.EMPTY: ("answered with nothing", "Check that the model is the right one for this use."),
+    K.WRONG_CONTENT_TYPE: ("answered with something that is no model's reply", "Check that the address is a model server's."),
+    K.MALFORMED: ("answered with something unreadable", "Check that the address is a model server's."),
+    K.TOO_LARGE: ("answered with more than a reply can hold", "Check that the address is a model server's."),
+    K.CIRCUIT_OPEN: ("failed again and again, and is left alone for a while", "Start it, or check the address."),
+}
+
+
+class Attempt(BaseModel):
+    """One request of a call. ``kind`` is None when it worked; ``waited_s``: the pause before it."""
+
+    model_config = ConfigDict(frozen=True)
+
+    kind: FailureKind | None = None
+    status: int | None = None
+    seconds: float = 0.0
+    waited_s: float = 0.0
+
+
+class ServerFailure(ScopeError):  # noqa: N818 - what it is, as the room calls it
+    """A model server did not give a usable reply. ``detail`` is what it said, cut and without keys; ``where`` its address."""
+
+    def __init__(
+        self,
+        kind: FailureKind,
+        *,
+        where: str,
+        status: int | None = None,
+        retry_after_s: float | None = None,
+        detail: str = "",
+        history: tuple[Attempt, ...] = (),
+    ) -> None:
+        self.kind, self.where, self.status, self.retry_after_s, self.detail = kind, where, status, retry_after_s, detail
+        self.history = history
+        what, remedy = _WORDS[kind]
+        facts = [f"HTTP {status}"] if status is not None and status != 200 else []
+        facts += [f"{len(history)} attempts"] if len(history) > 1 else []
+        aside = f" ({', '.join(facts)})" if facts else ""
+        said = f": {detail.rstrip('. ')}" if detail else ""
+        super().__init__(f"The model server at {where} {what}{aside}{said}. {remedy}")
+
+    @property
+    def attempts(self) -> int:
+        """How often the server was asked."""
+        return len(self.history)
+
+    def after(self, history: Iterable[Attempt]) -> ServerFailure:
+        """The same failure, with everything that was tried."""
+        return ServerFailure(
+            self.kind,
+            where=self.where,
+            status=self.status,
+            retry_after_s=self.retry_after_s,
+            detail=self.detail,
+            history=tuple(history),
+        )
+
+
+def count_failures(attempts: Iterable[Attempt]) -> dict[str, int]:
+    """How often each kind occurred, also where a retry made it good."""
+    return dict(Counter(attempt.kind.value for attempt in attempts if attempt.kind is not None))
+
+
+def scrub(text: str, secret: str) -> str:
+    """A server's words without the key, which some servers repeat."""
+    if len(secret) >= MIN_SCRUBBED_CHARS and secret in text:
+        return text.replace(secret, "***")
+    return text
+
+
+_BEARER = re.compile(r"\b(Bearer\s+|sk-)[\w.~+/=-]{6,}", re.IGNORECASE)
+
+
+def in_brief(text: str, secret: str) -> str:
+    """What a server said, on one line, cut to a readable length, without anything that looks like a key."""
+    line = " ".join("".join(c if c.isprintable() else " " for c in text[:4000]).split())
+    line = _BEARER.sub(r"\1***", scrub(line, secret))
+    return line if len(line) <= MAX_DETAIL_CHARS else line[: MAX_DETAIL_CHARS - 1] + "…"

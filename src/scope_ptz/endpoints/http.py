@@ -1,0 +1,50 @@
+"""A client for servers that speak plain JSON."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+from scope_ptz.endpoints.bodies import read_object
+from scope_ptz.endpoints.calls import Caller
+from scope_ptz.endpoints.endpoint import Endpoint
+from scope_ptz.endpoints.failures import Attempt
+from scope_ptz.endpoints.translate import status_failure
+
+if TYPE_CHECKING:
+    from httpx2 import AsyncClient
+
+
+class JsonClient:
+    """POST JSON, get a JSON object. ``key_header``: where this kind of server wants its key."""
+
+    def __init__(self, endpoint: Endpoint, *, key_header: str = "Authorization", caller: Caller | None = None) -> None:
+        self.endpoint, self.key_header = endpoint, key_header
+        self.caller = caller or Caller(endpoint)
+        self._client: AsyncClient | None = None
+
+    async def post(self, path: str, body: bytes | dict[str, Any]) -> tuple[dict[str, Any], tuple[Attempt, ...]]:
+        """The reply to a JSON body, which may be given as bytes when it is encoded already.
+
+        Raises:
+            ServerFailure: there was no usable reply.
+        """
+        content = body if isinstance(body, bytes) else json.dumps(body, separators=(",", ":"), allow_nan=False).encode()
+        return await self.caller.call(lambda: self._exchange(f"{self.endpoint.url}/{path.lstrip('/')}", content))
+
+    async def _exchange(self, url: str, content: bytes) -> dict[str, Any]:
+        if self._client is None:
+            from scope_ptz.endpoints.transport import make_client
+
+            self._client = make_client(self.endpoint, key_header=self.key_header)
+        async with self._client.stream("POST", url, content=content, headers={"content-type": "application/json"}) as response:
+            if response.is_success:
+                return await read_object(response, self.endpoint)
+            await response.aread()
+            raise status_failure(response.status_code, response.headers, response.text, self.endpoint)
+
+    async def close(self) -> None:
+        """Close the connections. The next request opens new ones."""
+        if self._client is not None:
+            client, self._client = self._client, None
+            await client.aclose()

@@ -1,0 +1,155 @@
+"""From an OpenAI-style completion, whole or in pieces, to a ``ChatReply``. Lenient in form, strict where there is nothing."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict
+
+from scope_ptz.endpoints.bodies import safe_text
+from scope_ptz.endpoints.endpoint import Endpoint
+from scope_ptz.endpoints.failures import Attempt, FailureKind, ServerFailure, scrub
+
+K = FailureKind
+
+
+class RawToolCall(BaseModel):
+    """A tool call as the server gave it: ``arguments_text`` should be JSON, and may be anything."""
+
+    model_config = ConfigDict(frozen=True)
+
+    id: str
+    name: str
+    arguments_text: str
+
+
+class ChatReply(BaseModel):
+    """``reasoning`` is only what the server keeps apart from ``text``. ``first_token_s``: streamed replies only."""
+
+    model_config = ConfigDict(frozen=True)
+
+    text: str = ""
+    reasoning: str = ""
+    tool_calls: tuple[RawToolCall, ...] = ()
+    finish_reason: str | None = None
+    input_tokens: int = 0
+    output_tokens: int = 0
+    cached_tokens: int = 0
+    first_token_s: float | None = None
+    seconds: float = 0.0
+    model: str = ""
+    attempts: tuple[Attempt, ...] = ()
+
+
+class Gathering:
+    """What has come of a reply so far. A whole completion is a stream of one piece."""
+
+    def __init__(self, endpoint: Endpoint) -> None:
+        self.endpoint = endpoint
+        self.finish_reason: str | None = None
+        self.model = ""
+        self.has_choice = False
+        self._text: list[str] = []
+        self._reasoning: list[str] = []
+        self._calls: list[dict[str, str]] = []
+        self._slots: dict[Any, int] = {}
+        self._usage: dict[str, Any] = {}
+
+    def add(self, data: dict[str, Any]) -> bool:
+        """Take in a completion or a chunk. Whether it brought anything of the reply itself."""
+        self.model = self.model or _text_of(data.get("model"))
+        self._usage = _object_of(data.get("usage")) or self._usage
+        choices = data.get("choices")
+        if choices is not None and not isinstance(choices, list):
+            raise self._malformed("'choices' is no list")
+        choice = choices[0] if choices else None
+        if choice is None:
+            return False
+        if not isinstance(choice, dict):
+            raise self._malformed("a choice is no object")
+        self.has_choice = True
+        self.finish_reason = _text_of(choice.get("finish_reason")) or self.finish_reason
+        message = choice.get("delta") or choice.get("message")
+        return self._add_message(message) if isinstance(message, dict) else False
+
+    def _add_message(self, message: dict[str, Any]) -> bool:
+        text = self._content(message.get("content")) or _text_of(message.get("refusal"))
+        reasoning = _text_of(message.get("reasoning_content")) or _text_of(message.get("reasoning"))
+        calls = message.get("tool_calls") or []
+        if not isinstance(calls, list):
+            raise self._malformed("'tool_calls' is no list")
+        self._text.append(text)
+        self._reasoning.append(reasoning)
+        for call in calls:
+            self._add_call(call)
+        return bool(text or reasoning or calls)
+
+    def _content(self, content: Any) -> str:
+        if content is None or isinstance(content, str):
+            return content or ""
+        if isinstance(content, list):  # parts, as in requests
+            return "".join(_text_of(part.get("text")) for part in content if isinstance(part, dict))
+        raise self._malformed("'content' is no text")
+
+    def _add_call(self, call: Any) -> None:
+        """Pieces of a call share an index; some servers give none, or give every call the same one and an id of its own."""
+        function = _object_of(call.get("function")) if isinstance(call, dict) else None
+        if function is None:
+            raise self._malformed("a tool call is no object")
+        index, call_id, name = call.get("index"), _text_of(call.get("id")), _text_of(function.get("name"))
+        slot = self._slots.get(index) if isinstance(index, int) else (len(self._calls) - 1 if not name and self._calls else None)
+        if slot is None or (name and call_id and self._calls[slot]["id"] not in ("", call_id)):
+            slot = len(self._calls)
+            self._calls.append({"id": "", "name": "", "arguments": ""})
+            if isinstance(index, int):
+                self._slots[index] = slot
+        held = self._calls[slot]
+        held["id"] = held["id"] or call_id
+        held["name"] = held["name"] or name
+        arguments = function.get("arguments")
+        held["arguments"] += arguments if isinstance(arguments, str) else "" if arguments is None else json.dumps(arguments)
+
+    def reply(self) -> ChatReply:
+        """The whole.
+
+        Raises:
+            ServerFailure: there is nothing in it.
+        """
+        text, reasoning = self._clean("".join(self._text)), self._clean("".join(self._reasoning))
+        if not (text.strip() or reasoning.strip() or self._calls):
+            detail = "a message without content" if self.has_choice else "no choices"
+            raise ServerFailure(K.EMPTY, where=self.endpoint.url, status=200, detail=detail)
+        calls = tuple(
+            RawToolCall(id=call["id"], name=self._clean(call["name"]), arguments_text=self._clean(call["arguments"]))
+            for call in self._calls
+        )
+        return ChatReply(
+            text=text,
+            reasoning=reasoning,
+            tool_calls=calls,
+            finish_reason=self.finish_reason,
+            input_tokens=_count_of(self._usage.get("prompt_tokens")),
+            output_tokens=_count_of(self._usage.get("completion_tokens")),
+            cached_tokens=_count_of((_object_of(self._usage.get("prompt_tokens_details")) or {}).get("cached_tokens")),
+            model=self._clean(self.model),
+        )
+
+    def _clean(self, text: str) -> str:
+        return safe_text(scrub(text, self.endpoint.secret))
+
+    def _malformed(self, detail: str) -> ServerFailure:
+        return ServerFailure(K.MALFORMED, where=self.endpoint.url, status=200, detail=detail)
+
+
+def _text_of(value: Any) -> str:
+    return value if isinstance(value, str) else ""
+
+
+def _object_of(value: Any) -> dict[str, Any] | None:
+    return value if isinstance(value, dict) else None
+
+
+def _count_of(value: Any) -> int:
+    """A token count; anything else that a server may put there is none."""
+    return value if isinstance(value, int) and not isinstance(value, bool) and 0 <= value < 2**53 else 0

@@ -1,0 +1,179 @@
+"""From what HTTP libraries raise, and from what servers say, to a ``ServerFailure``."""
+
+from __future__ import annotations
+
+import json
+import re
+import socket
+import ssl
+from collections.abc import Iterator, Mapping
+from datetime import UTC, datetime
+from email.utils import parsedate_to_datetime
+from typing import Any
+
+from scope_ptz.endpoints.endpoint import Endpoint
+from scope_ptz.endpoints.failures import FailureKind, ServerFailure, in_brief
+
+K = FailureKind
+
+_OVERFLOW = re.compile(
+    r"context[ _-]?(length|size|window|overflow)|maximum (context|sequence|model|input)[ _-]?len|max_model_len"
+    r"|(prompt|input|conversation) is too long|too many (input )?tokens|longer than the model"
+    r"|exceed\w*[^.]{0,40}(context|number of tokens|token limit)|reduce the length|tokens to keep from the initial prompt",
+    re.IGNORECASE,
+)
+"""Words of vLLM, SGLang, llama.cpp, LM Studio, TGI, OpenAI and its imitators. There is no common error code."""
+
+_NO_MORE = re.compile(r"insufficient_quota|billing|payment|credit", re.IGNORECASE)
+"""A 429 that waiting does not cure."""
+
+
+def as_failure(error: BaseException, endpoint: Endpoint) -> ServerFailure | None:
+    """The failure that an exception of a client library stands for; None when it is something else, such as a bug."""
+    import httpx2
+    import openai
+
+    chain = list(_chain(error))
+    for link in chain:
+        if isinstance(link, ServerFailure):
+            return link
+    for link in chain:
+        if isinstance(link, openai.APIStatusError):
+            return status_failure(link.response.status_code, link.response.headers, _body_text(link.response), endpoint)
+    for link in chain:
+        if isinstance(link, httpx2.TransportError | httpx2.DecodingError | httpx2.InvalidURL):
+            kind, detail = _transport_kind(link, chain, endpoint)
+            return ServerFailure(kind, where=endpoint.url, detail=in_brief(detail, endpoint.secret))
+    if isinstance(error, openai.APITimeoutError):
+        return ServerFailure(K.FIRST_BYTE_TIMEOUT, where=endpoint.url)
+    if isinstance(error, openai.APIConnectionError | OSError):
+        return ServerFailure(K.REFUSED, where=endpoint.url)
+    return None
+
+
+def _chain(error: BaseException) -> Iterator[BaseException]:
+    """An exception and all that led to it, members of groups included."""
+    waiting, seen = [error], set[int]()
+    while waiting:
+        link = waiting.pop(0)
+        if id(link) in seen:
+            continue
+        seen.add(id(link))
+        yield link
+        if isinstance(link, BaseExceptionGroup):
+            waiting.extend(link.exceptions)
+        waiting.extend(cause for cause in (link.__cause__, link.__context__) if cause is not None)
+
+
+def _transport_kind(error: Exception, chain: list[BaseException], endpoint: Endpoint) -> tuple[FailureKind, str]:
+    import httpx2
+
+    timeouts = endpoint.timeouts
+    if isinstance(error, httpx2.ConnectTimeout | httpx2.PoolTimeout):
+        return K.CONNECT_TIMEOUT, f"{timeouts.connect_s:g} s were allowed"
+    if isinstance(error, httpx2.TimeoutException):
+        return K.FIRST_BYTE_TIMEOUT, f"{timeouts.first_byte_s:g} s were allowed"
+    if isinstance(error, httpx2.ConnectError | httpx2.ProxyError):
+        if any(isinstance(link, socket.gaierror) for link in chain):
+            return K.DNS, endpoint.host
+        if any(isinstance(link, ssl.SSLError) for link in chain):
+            return K.TLS, str(next(link for link in chain if isinstance(link, ssl.SSLError)))
+        return K.REFUSED, "" if any(isinstance(link, ConnectionRefusedError) for link in chain) else str(error)
+    if isinstance(error, httpx2.RemoteProtocolError):
+        broken_off = re.search(r"disconnect|closed|incomplete|without sending", str(error), re.IGNORECASE)
+        return (K.CUT_OFF if broken_off else K.MALFORMED), str(error)
+    if isinstance(error, httpx2.NetworkError):
+        return K.CUT_OFF, "the connection was lost"
+    if isinstance(error, httpx2.DecodingError):
+        return K.MALFORMED, str(error)
+    return K.BAD_REQUEST, type(error).__name__
+
+
+def _body_text(response: Any) -> str:
+    try:
+        return str(response.text)
+    except Exception:  # The body was never read, or its compression or encoding is broken: the status says enough
+        return ""
+
+
+def status_failure(status: int, headers: Mapping[str, str], body: str, endpoint: Endpoint) -> ServerFailure:
+    """What a reply with another status than success means."""
+    said = words_of(body)
+    if status in (400, 413, 422, 500) and _OVERFLOW.search(said):
+        kind = K.CONTEXT_OVERFLOW
+    elif status in (401, 402, 403, 407):
+        kind = K.UNAUTHORISED
+    elif status == 429:
+        kind = K.UNAUTHORISED if _NO_MORE.search(said) else K.RATE_LIMITED
+    elif status == 404 or 300 <= status < 400:
+        kind = K.NOT_FOUND
+    elif status >= 500 or status in (408, 409, 425):
+        kind = K.SERVER_ERROR
+    else:
+        kind = K.BAD_REQUEST
+    if 300 <= status < 400:
+        said = f"it sends on to {headers.get('location', 'nowhere')}"
+    return ServerFailure(
+        kind, where=endpoint.url, status=status, retry_after_s=retry_after_s(headers), detail=in_brief(said, endpoint.secret)
+    )
+
+
+def error_body(body: Any, endpoint: Endpoint, status: int | None = 200) -> ServerFailure | None:
+    """The failure in a reply that claims success; None when there is no error in it."""
+    if not isinstance(body, dict):
+        return None
+    error = body.get("error")
+    told = error or (body if body.get("object") == "error" else None)
+    if not told:
+        return None
+    said = words_of(json.dumps(body))
+    code = told.get("code", told.get("status")) if isinstance(told, dict) else None
+    if _OVERFLOW.search(said) or code == "context_length_exceeded":
+        kind = K.CONTEXT_OVERFLOW
+    elif code in (429, "429", "rate_limit_exceeded"):
+        kind = K.RATE_LIMITED
+    elif code in (401, 403, "401", "403", "invalid_api_key"):
+        kind = K.UNAUTHORISED
+    else:
+        kind = K.ERROR_BODY
+    return ServerFailure(kind, where=endpoint.url, status=status, detail=in_brief(said, endpoint.secret))
+
+
+def words_of(body: str) -> str:
+    """The human part of an error body: the message in the usual places, else the body itself, without markup."""
+    try:
+        data = json.loads(body)
+    except (ValueError, RecursionError):
+        return re.sub(r"<[^>]*>", " ", body[:4000])
+    parts: list[str] = []
+    for level in (data, data.get("error") if isinstance(data, dict) else None):
+        if isinstance(level, str):
+            parts.append(level)
+        elif isinstance(level, dict):
+            parts += [str(level[key]) for key in ("message", "detail", "code", "type") if level.get(key) and key not in parts]
+    return "; ".join(dict.fromkeys(parts)) or body[:4000]
+
+
+def retry_after_s(headers: Mapping[str, str]) -> float | None:
+    """What Retry-After asks for, as seconds from now; None when it is absent or makes no sense."""
+    milliseconds = _number(headers.get("retry-after-ms"))
+    if milliseconds is not None:
+        return milliseconds / 1000
+    value = headers.get("retry-after")
+    seconds = _number(value)
+    if seconds is not None or not value:
+        return seconds
+    try:
+        when = parsedate_to_datetime(value)
+    except (ValueError, TypeError, IndexError, OverflowError):
+        return None
+    when = when if when.tzinfo is not None else when.replace(tzinfo=UTC)
+    return max(0.0, (when - datetime.now(UTC)).total_seconds())
+
+
+def _number(value: str | None) -> float | None:
+    try:
+        number = float(value) if value else None
+    except ValueError:
+        return None
+    return number if number is not None and 0 <= number < 1e7 else None

@@ -1,0 +1,66 @@
+"""The HTTP client under every model client. Imported at the first request, because it imports an HTTP library."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+
+import httpx2
+
+from scope_ptz import __version__
+from scope_ptz.endpoints.bodies import too_large
+from scope_ptz.endpoints.endpoint import MAX_BODY_BYTES, Endpoint
+
+_KEPT_HEADERS = frozenset(
+    {"host", "accept", "accept-encoding", "connection", "content-type", "content-length", "transfer-encoding", "user-agent"}
+)
+_COMPRESSION = 128
+"""A compressed body may be larger than what is sent by this factor, or nearly so."""
+
+
+def make_client(endpoint: Endpoint, *, key_header: str = "Authorization") -> httpx2.AsyncClient:
+    """A client that keeps its connections, obeys the endpoint's timeouts, and sends the endpoint's key and no other credential.
+
+    It follows no redirect, because a key must not travel to where the user did not send it.
+    """
+    secret = endpoint.secret
+    credentials = {key_header: f"Bearer {secret}" if key_header == "Authorization" else secret} if secret else {}
+
+    async def only_ours(request: httpx2.Request) -> None:
+        # The openai client adds headers from OPENAI_... variables: credentials for another server.
+        for name in [name for name in request.headers if name.lower() not in _KEPT_HEADERS]:
+            del request.headers[name]
+        request.headers.update(credentials)
+
+    async def capped(response: httpx2.Response) -> None:
+        if isinstance(response.stream, httpx2.AsyncByteStream):
+            response.stream = _Capped(response.stream, response, endpoint)
+
+    patience = endpoint.timeouts
+    return httpx2.AsyncClient(
+        timeout=httpx2.Timeout(patience.first_byte_s, connect=patience.connect_s, pool=patience.total_s),
+        limits=httpx2.Limits(max_connections=64, max_keepalive_connections=16, keepalive_expiry=30.0),
+        headers={"accept-encoding": "identity", "user-agent": f"scope-ptz/{__version__}"},
+        trust_env=not endpoint.loopback,  # No proxy leads to this very machine, whatever the environment says
+        verify=endpoint.url.startswith("https:"),  # Loading certificates for plain http would take a tenth of a second
+        follow_redirects=False,
+        event_hooks={"request": [only_ours], "response": [capped]},
+    )
+
+
+class _Capped(httpx2.AsyncByteStream):
+    """A body that fails beyond its cap, whoever reads it, error bodies included."""
+
+    def __init__(self, stream: httpx2.AsyncByteStream, response: httpx2.Response, endpoint: Endpoint) -> None:
+        compressed = response.headers.get("content-encoding", "identity") != "identity"
+        self._stream, self._endpoint, self._status = stream, endpoint, response.status_code
+        self._left = MAX_BODY_BYTES // _COMPRESSION if compressed else MAX_BODY_BYTES
+
+    async def __aiter__(self) -> AsyncIterator[bytes]:
+        async for chunk in self._stream:
+            self._left -= len(chunk)
+            if self._left < 0:
+                raise too_large(self._endpoint, self._status)
+            yield chunk
+
+    async def aclose(self) -> None:
+        await self._stream.aclose()
