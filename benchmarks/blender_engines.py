@@ -16,7 +16,8 @@ from pathlib import Path
 
 import bpy
 
-ENGINES = {"Cycles": "CYCLES", "EEVEE": "BLENDER_EEVEE", "Workbench": "BLENDER_WORKBENCH"}
+ENGINES = {"Workbench": "BLENDER_WORKBENCH", "Cycles": "CYCLES", "EEVEE": "BLENDER_EEVEE"}
+WARM_UP_PERCENT = 5
 
 
 def main() -> None:
@@ -32,18 +33,20 @@ def main() -> None:
     scene.camera = camera
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = view["width"], view["height"], 100
     scene.cycles.samples, scene.cycles.use_denoising = 16, True
-    seconds = {name: _seconds(scene, engine) for name, engine in ENGINES.items()}
-    print("seconds " + json.dumps(seconds), flush=True)
+    for name, engine in ENGINES.items():
+        print("seconds " + json.dumps({name: _seconds(scene, engine)}), flush=True)
 
 
 def _seconds(scene: bpy.types.Scene, engine: str) -> float | None:
-    """Of the second render, when shaders are compiled and data are loaded; None where the engine does not run."""
+    """Of a render after a tiny one, which compiles shaders and loads data; None where the engine does not run."""
     scene.render.engine = engine
     scene.render.use_persistent_data = True
+    start = 0.0
     with tempfile.TemporaryDirectory() as folder:
-        for turn in range(2):
-            out = Path(folder) / f"{turn}.png"
+        for percent in (WARM_UP_PERCENT, 100):
+            out = Path(folder) / f"{percent}.png"
             scene.render.filepath = str(out)
+            scene.render.resolution_percentage = percent
             start = time.perf_counter()
             try:
                 bpy.ops.render.render(write_still=True)

@@ -106,11 +106,12 @@ def _report_engines(scene: Scene, source: str, python: Path) -> None:
                 "height": HEIGHT,
             }
             command = [str(python), str(Path(__file__).with_name("blender_engines.py")), str(blend), json.dumps(request)]
-            output = subprocess.run(command, check=True, capture_output=True, text=True).stdout
-            line = next(line for line in output.splitlines() if line.startswith("seconds "))
-            for engine, seconds in json.loads(line.removeprefix("seconds ")).items():
-                took = "does not run here" if seconds is None else f"{seconds:7.2f} s = {seconds / ours:,.0f} views"
-                print(f"{place.name:>14} {engine:<14} {took}")
+            with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as engines:
+                for line in engines.stdout or ():
+                    if line.startswith("seconds "):
+                        for engine, seconds in json.loads(line.removeprefix("seconds ")).items():
+                            took = "does not run here" if seconds is None else f"{seconds:7.2f} s = {seconds / ours:,.0f} views"
+                            print(f"{place.name:>14} {engine:<14} {took}", flush=True)
 
 
 def _interleaved(calls: dict[str, Callable[[], object]]) -> dict[str, list[float]]:
