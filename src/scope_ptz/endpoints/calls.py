@@ -67,7 +67,7 @@ class Caller:
             if not isinstance(result, ServerFailure):
                 return result, tuple(tried)
             pause_s = self._pause_s(result, len(tried))
-            if pause_s is None or perf_counter() + pause_s >= deadline:
+            if pause_s is None or perf_counter() + pause_s + self._least_s(result) >= deadline:
                 raise result.after(tried)
             await self.sleep(pause_s)
             waited_s = pause_s
@@ -117,6 +117,10 @@ class Caller:
         if asked_s is None:
             return jitter_s
         return asked_s + 0.1 * jitter_s if asked_s <= LONGEST_RETRY_AFTER_S else None
+
+    def _least_s(self, failure: ServerFailure) -> float:
+        """The time that another attempt must have to be worth it: a silent server may be as silent again."""
+        return self.endpoint.timeouts.first_byte_s if failure.kind is K.FIRST_BYTE_TIMEOUT else 0.0
 
     def _left_alone(self, for_s: float) -> ServerFailure:
         last = self.breaker.last
