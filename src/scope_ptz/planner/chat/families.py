@@ -1,0 +1,122 @@
+"""How each model family wants its thinking switched on or off, and at which temperature it works. Data: a new family is one
+entry."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+from urllib.parse import urlsplit
+
+Thinking = Literal["default", "on", "off"]
+Server = Literal["vllm", "sglang", "llama.cpp", "ollama", "transformers", "lm-studio", "openai"]
+
+
+@dataclass(frozen=True, slots=True)
+class Switch:
+    """What to send. ``fields``: of the request; ``words``: at the end of what the user says, for servers that ignore the fields."""
+
+    fields: Mapping[str, Any] = field(default_factory=dict)
+    words: str = ""
+
+
+_NOTHING = Switch()
+
+
+def _template(key: str, value: bool) -> Switch:
+    return Switch({"chat_template_kwargs": {key: value}})
+
+
+@dataclass(frozen=True, slots=True)
+class Family:
+    """A model family by a pattern over model names, tried in order.
+
+    ``on`` and ``off``: how its thinking is switched; None when it cannot be (it always or never thinks). ``thinks``: what it
+    does when nothing is said. ``temperatures``: when it thinks (its makers' recommendation: greedy reasoning goes round in
+    circles), None to leave it to the server; and when it does not (0: the same calls every time).
+    """
+
+    name: str
+    pattern: str
+    thinks: bool
+    on: Switch | None = None
+    off: Switch | None = None
+    temperatures: tuple[float | None, float | None] = (None, 0.0)
+
+
+_QWEN = (0.6, 0.0)
+FAMILIES: tuple[Family, ...] = (
+    Family("qwen3-thinking", r"qwen3.*thinking", thinks=True, temperatures=_QWEN),
+    Family("qwen3-instruct", r"qwen3(?!.*32b).*(instruct|2507|next|coder)", thinks=False, temperatures=_QWEN),
+    Family(
+        "qwen3.5",
+        r"qwen3\.[5-9]|qwen-?3\.[5-9]",
+        thinks=True,
+        on=_template("enable_thinking", True),
+        off=_template("enable_thinking", False),
+        temperatures=_QWEN,
+    ),
+    Family(
+        "qwen3",
+        r"qwen-?3",
+        thinks=True,
+        on=Switch({"chat_template_kwargs": {"enable_thinking": True}}, "/think"),
+        off=Switch({"chat_template_kwargs": {"enable_thinking": False}}, "/no_think"),
+        temperatures=_QWEN,
+    ),
+    Family("smollm3", r"smollm-?3", thinks=True, on=Switch({}, "/think"), off=Switch({}, "/no_think"), temperatures=(0.6, 0.0)),
+    Family(
+        "gpt-oss",
+        r"gpt-oss",
+        thinks=True,
+        on=Switch({"reasoning_effort": "medium"}),
+        off=Switch({"reasoning_effort": "low"}),  # It cannot be kept from thinking, only from thinking long.
+        temperatures=(1.0, 1.0),
+    ),
+    Family("glm", r"glm-?4\.[5-9]|glm-?[5-9]", True, _template("enable_thinking", True), _template("enable_thinking", False)),
+    Family("gemma-4", r"gemma-?4", False, _template("enable_thinking", True), _template("enable_thinking", False)),
+    Family("granite", r"granite-?3\.[2-9]", False, _template("thinking", True), _template("thinking", False)),
+    Family("deepseek-v3", r"deepseek-v3\.[1-9]", False, _template("thinking", True), _template("thinking", False)),
+    Family("deepseek-r1", r"deepseek-r1", thinks=True, temperatures=(0.6, 0.6)),
+)
+UNKNOWN = Family("unknown", "", thinks=False)
+
+_EFFORT = {"on": Switch({"reasoning_effort": "medium"}), "off": Switch({"reasoning_effort": "none"})}
+"""Ollama takes no template arguments and drops them silently; its own interface to thinking is this field."""
+
+_KNOWN_PLACES: tuple[tuple[str, Server], ...] = ((":11434", "ollama"), (":1234", "lm-studio"), ("api.openai.com", "openai"))
+
+
+def family_of(model: str) -> Family:
+    """The family of a model by its name, ``UNKNOWN`` when it is none of ours."""
+    name = model.lower()
+    return next((f for f in FAMILIES if re.search(f.pattern, name)), UNKNOWN)
+
+
+def likely_server(url: str) -> Server | None:
+    """The server by its customary address, None when that says nothing."""
+    place = urlsplit(url).netloc
+    return next((server for mark, server in _KNOWN_PLACES if mark in place), None)
+
+
+def switch_for(model: str, thinking: Thinking, server: Server | None) -> Switch:
+    """What to send so that a model thinks or does not. Nothing when nobody asks, and nothing to a model that has no switch."""
+    if thinking == "default":
+        return _NOTHING
+    family = family_of(model)
+    chosen = family.on if thinking == "on" else family.off
+    if server == "openai":
+        return Switch({"reasoning_effort": "medium" if thinking == "on" else "low"}) if family is UNKNOWN else chosen or _NOTHING
+    if chosen is None:
+        return _NOTHING
+    if server == "ollama" and "chat_template_kwargs" in chosen.fields:
+        return Switch(_EFFORT[thinking].fields, chosen.words)
+    return chosen
+
+
+def temperature_for(model: str, thinking: Thinking) -> float | None:
+    """The temperature for this mode; None to leave it to the server."""
+    family = family_of(model)
+    thinks = family.thinks if thinking == "default" else thinking == "on"
+    return family.temperatures[0 if thinks else 1]

@@ -1,0 +1,111 @@
+"""From a server's reply to a decision. Documented rules, no guesses:
+
+- Calls are taken from the server's own field; when that is empty, from the text, in any of the notations of ``tool_text``.
+- A reply without calls ends the run. It is a clarification when it begins with ``CLARIFY:``, or when it ends in a question and
+nothing was called yet; a refusal when it begins with ``REFUSE:``; else the answer.
+- A reply that was cut at the token limit is an answer to nothing: a planner error, except for calls that had been finished.
+"""
+
+from __future__ import annotations
+
+import re
+
+from scope_ptz.endpoints.failures import FailureKind
+from scope_ptz.endpoints.replies import ChatReply
+from scope_ptz.errors import PlannerError
+from scope_ptz.planner.base import CallTools, Decision, Finish, Served, State, ToolCall, Usage
+from scope_ptz.planner.chat.reasoning import part
+from scope_ptz.planner.chat.tool_text import Found, find_calls
+from scope_ptz.planner.chat.written import Signatures, WrittenCall, plain_name, read_arguments
+
+MOST_CALLS = 32
+"""In one step. A model that writes more has run away."""
+
+_CONTROL = re.compile(r"<\|[\w ]{2,30}\|>|</s>|<(?:end|start)_of_turn>|<turn\|>")
+_KIND = re.compile(r"\A[\s*_#>\"']*(?P<kind>CLARIFY|REFUSE)[\s*_]*:[\s*_]*", re.IGNORECASE)
+_QUESTION = re.compile(r"\?[\s\"'*_)]*\Z")
+
+
+def decide(reply: ChatReply, state: State, *, limited: bool) -> Decision:
+    """The decision in a reply. ``limited``: the length of replies was limited by us, and not by the model's window.
+
+    Raises:
+        PlannerError: there is none. ``kind`` says in which way.
+    """
+    parted = part(reply.text, reply.reasoning)
+    found = _native(reply, parted.text) or _in_text(parted.text, parted.reasoning, state)
+    usage = Usage(input_tokens=reply.input_tokens, output_tokens=reply.output_tokens, cached_tokens=reply.cached_tokens)
+    served = Served(
+        model=reply.model,
+        finish_reason=reply.finish_reason,
+        first_token_s=reply.first_token_s,
+        seconds=reply.seconds,
+        calls_from=found.notation,
+        attempts=reply.attempts,
+    )
+    text = _CONTROL.sub("", found.rest).strip()
+    if found.calls:
+        calls = _tool_calls(reply, found, len(state.history))
+        return CallTools(calls=calls, thought=text, usage=usage, reasoning=parted.reasoning, served=served)
+    if reply.finish_reason == "length":
+        raise _cut(reply, limited)
+    if not text:
+        what = "only reasoning and no answer" if parted.reasoning else "nothing"
+        raise PlannerError(f"The planner's reply holds {what}.", kind=FailureKind.EMPTY.value, attempts=reply.attempts)
+    kind, text = _ending(text, called=any(exchange.outcomes for exchange in state.history))
+    return Finish.model_validate({"kind": kind, "text": text, "usage": usage, "reasoning": parted.reasoning, "served": served})
+
+
+def _native(reply: ChatReply, text: str) -> Found | None:
+    if not reply.tool_calls:
+        return None
+    calls = []
+    for raw in reply.tool_calls:
+        arguments, malformed = read_arguments(raw.arguments_text)
+        calls.append(WrittenCall(plain_name(raw.name), arguments, malformed))
+    return Found(tuple(calls), text, "native")
+
+
+def _in_text(text: str, reasoning: str, state: State) -> Found:
+    tools = Signatures.of(state.tools)
+    found = find_calls(text, tools)
+    if not found.calls and not text:
+        # A model that calls before it closes its reasoning: the server took all of it for reasoning.
+        inside = find_calls(reasoning, tools, marked_only=True)
+        if inside.calls:
+            return Found(inside.calls, "", inside.notation)
+    return found
+
+
+def _tool_calls(reply: ChatReply, found: Found, step: int) -> tuple[ToolCall, ...]:
+    ids = [raw.id for raw in reply.tool_calls] if found.notation == "native" else []
+    calls = []
+    for index, written in enumerate(found.calls[:MOST_CALLS]):
+        problem = None
+        if written.malformed is not None:
+            call = f"The call of {written.name or 'a tool'}"
+            problem = f"{call} cannot be read: its arguments must be a JSON object, got {written.malformed}"
+        call_id = ids[index] if index < len(ids) and ids[index] else f"s{step + 1:04d}c{index + 1:03d}"
+        calls.append(ToolCall(id=call_id, name=written.name, arguments=written.arguments, problem=problem))
+    if (more := len(found.calls) - MOST_CALLS) > 0:
+        last = found.calls[MOST_CALLS]
+        problem = f"At most {MOST_CALLS} calls can be made in one step; this one and {more - 1} more were left out."
+        calls.append(ToolCall(id=f"s{step + 1:04d}more", name=last.name, arguments=last.arguments, problem=problem))
+    return tuple(calls)
+
+
+def _ending(text: str, *, called: bool) -> tuple[str, str]:
+    said = _KIND.match(text)
+    if said and (rest := text[said.end() :].strip()):
+        return ("clarification" if said["kind"].upper() == "CLARIFY" else "refused"), rest
+    return ("clarification" if not called and _QUESTION.search(text) else "answered"), text
+
+
+def _cut(reply: ChatReply, limited: bool) -> PlannerError:
+    if limited:
+        words = (
+            f"The planner's reply was cut off at its limit of tokens ({reply.output_tokens} were written). Allow longer replies."
+        )
+        return PlannerError(words, kind=FailureKind.CUT_OFF.value, attempts=reply.attempts)
+    words = "The planner's reply was cut off because the model's context is full. Serve the model with a longer context."
+    return PlannerError(words, kind=FailureKind.CONTEXT_OVERFLOW.value, attempts=reply.attempts)

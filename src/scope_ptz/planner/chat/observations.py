@@ -1,0 +1,67 @@
+"""What a planner gets to read of a call's outcome: concise, numbers rounded, and text that the camera saw marked as data."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from scope_ptz.planner.base import ToolOutcome
+
+MOST_BOXES = 12
+MOST_CHARS = 4000
+"""Of one text from perception. A longer one is a model that ran on."""
+
+_KEPT = (
+    "count", "known", "found", "matches", "fill", "held_share", "duration_s", "presets", "preset", "file", "view", "source",
+    "clamped", "limited_by",
+)  # fmt: skip
+_SEEN_TEXTS = ("answer", "chosen")
+_HARMLESS = str.maketrans({"<": "‹", ">": "›", "＜": "‹", "＞": "›"})
+
+
+def observation(outcome: ToolOutcome, *, brief: bool = False) -> str:
+    """The outcome as one JSON line. ``brief``: only what later steps may still need, for a context that is nearly full."""
+    if outcome.error is not None or outcome.result is None:
+        error = seen_text(outcome.error or "The tool gave no result.", mark=False)
+        return _line({"error": error[:120] if brief else error})
+    result = outcome.result
+    told: dict[str, Any] = {}
+    for key in _SEEN_TEXTS:
+        if isinstance(result.get(key), str) and result[key]:
+            told[key] = seen_text(result[key][:120] if brief else result[key])
+    told |= {key: _rounded(result[key]) for key in _KEPT if result.get(key) not in (None, (), [], "")}
+    if boxes := result.get("boxes"):
+        told |= {} if brief else _boxes(boxes)
+    if "source" not in result and isinstance(result.get("message"), str) and not brief:
+        told["message"] = seen_text(result["message"], mark=False)
+    told["pose"] = _rounded(result.get("pose"))
+    return _line(told)
+
+
+def seen_text(text: str, *, mark: bool = True) -> str:
+    """Text from outside, as data: it can neither end its mark nor hold a token that steers a chat template."""
+    cut = text if len(text) <= MOST_CHARS else text[:MOST_CHARS] + " (cut)"
+    harmless = cut.translate(_HARMLESS)
+    return f"<camera_text>{harmless}</camera_text>" if mark else harmless
+
+
+def _boxes(boxes: Any) -> dict[str, Any]:
+    """Corners in hundredths of the frame, left to right as perception names them; of many only the first."""
+    corners = [[round(box[k], 2) for k in ("x_min", "y_min", "x_max", "y_max")] for box in boxes[:MOST_BOXES]]
+    told: dict[str, Any] = {"boxes_xyxy": corners}
+    if len(boxes) > MOST_BOXES:
+        told["boxes_not_listed"] = len(boxes) - MOST_BOXES
+    return told
+
+
+def _rounded(value: Any) -> Any:
+    if isinstance(value, float):
+        return round(value, 2)
+    if isinstance(value, Mapping):
+        return {key: _rounded(item) for key, item in value.items()}
+    return value
+
+
+def _line(data: Mapping[str, Any]) -> str:
+    return json.dumps(data, ensure_ascii=False, allow_nan=False)

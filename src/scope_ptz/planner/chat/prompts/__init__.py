@@ -1,0 +1,74 @@
+"""Prompts as versioned files. A file that was released is not changed: a better one gets the next number, so that runs can be
+compared."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from hashlib import sha256
+from importlib.resources import files
+from string import Template
+
+from scope_ptz.errors import ConfigError, UnknownNameError
+from scope_ptz.geometry import Limits, Pose
+
+DEFAULT_PROMPT = "standard-1"
+_BLIND = (
+    "You see nothing yourself: what the camera sees you learn from the results of count_objects, query_answer, zoom_to_object and "
+    "track_object."
+)
+_SEEING = (
+    "The last image is always the newest view of the camera; use it. count_objects, query_answer, zoom_to_object and track_object "
+    "look more closely, and further than this view."
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Prompt:
+    """A system prompt with places for what is known of the camera (``$presets``, ``$pan``, ...)."""
+
+    name: str
+    text: str
+    about: str = ""
+
+    @property
+    def digest(self) -> str:
+        """Names the exact text in a trace."""
+        return sha256(self.text.encode()).hexdigest()[:12]
+
+    def fill(self, presets: tuple[str, ...], limits: Limits, start: Pose, *, sees: bool = False) -> str:
+        """The prompt for a camera. ``sees``: the planner gets frames. Raises ``ConfigError`` for a place that nothing is known
+        for."""
+        pose = start.as_dict()
+        numbers = {
+            "min_tilt": limits.min_tilt_deg,
+            "max_tilt": limits.max_tilt_deg,
+            "min_zoom": limits.min_zoom,
+            "max_zoom": limits.max_zoom,
+            "pan": pose["pan_deg"],
+            "tilt": pose["tilt_deg"],
+            "zoom": pose["zoom"],
+        }
+        known = {name: f"{value:g}" for name, value in numbers.items()}
+        known["min_pan"], known["max_pan"] = f"{limits.min_pan_deg:g}", f"{limits.max_pan_deg:g}"
+        if limits.pan_endless:
+            known["max_pan"] += " (endless)"
+        known["presets"] = ", ".join(" ".join(name.split()) for name in presets) if presets else "none"
+        known["sight"] = _SEEING if sees else _BLIND
+        try:
+            return Template(self.text).substitute(known)
+        except (KeyError, ValueError) as error:
+            raise ConfigError(f"The prompt {self.name} has a place that cannot be filled: {error}.") from error
+
+
+def prompt_names() -> tuple[str, ...]:
+    """The prompts that come with the program."""
+    return tuple(sorted(f.name.removesuffix(".md") for f in files(__package__).iterdir() if f.name.endswith(".md")))
+
+
+def load_prompt(name: str = DEFAULT_PROMPT) -> Prompt:
+    """A prompt by name. Raises ``UnknownNameError``."""
+    names = prompt_names()
+    if name not in names:
+        raise UnknownNameError("prompt", name, names)
+    _, head, text = (files(__package__) / f"{name}.md").read_text(encoding="utf-8").split("---\n", 2)
+    return Prompt(name, text.strip(), head.partition("about:")[2].strip())

@@ -1,0 +1,74 @@
+"""Reasoning apart from the answer: what a model thinks is kept in traces and never shown or answered with.
+
+Servers that know the model return its reasoning in a field of its own. Others leave it in the text, between marks that differ
+by family.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from scope_ptz.planner.chat.harmony import read_harmony
+
+_PAIRS = (
+    ("<think>", "</think>"),  # Qwen, DeepSeek, GLM, SmolLM, Nemotron
+    ("<thinking>", "</thinking>"),
+    ("<thought>", "</thought>"),
+    ("<reasoning>", "</reasoning>"),
+    ("<seed:think>", "</seed:think>"),
+    ("[THINK]", "[/THINK]"),  # Magistral
+    ("◁think▷", "◁/think▷"),  # Kimi-VL
+    ("<|channel>thought", "<channel|>"),  # Gemma 4
+    ("<|START_THINKING|>", "<|END_THINKING|>"),  # Command A
+)
+_GRANITE = re.compile(
+    r"\A\s*here(?:'s| is) my thought process:(?P<thought>.*?)here(?:'s| is) my response:", re.IGNORECASE | re.DOTALL
+)
+_CALL_BEGINS = re.compile(r"<tool_call>|<function=|<\|tool_call|\[TOOL_CALLS\]|<｜tool▁calls▁begin｜>")
+"""A model that begins a call has stopped thinking, whether it said so or not."""
+
+
+@dataclass(frozen=True, slots=True)
+class Parted:
+    """A reply in its parts; both stripped, either may be empty."""
+
+    text: str
+    reasoning: str
+
+
+def part(text: str, field: str = "") -> Parted:
+    """Part a reply. ``text``: the content as it came; ``field``: reasoning that the server already separated."""
+    rest, thoughts = read_harmony(text)
+    if granite := _GRANITE.match(rest):
+        thoughts.append(granite["thought"])
+        rest = rest[granite.end() :]
+    for opening, closing in _PAIRS:
+        rest = _take(rest, opening, closing, thoughts)
+    reasoning = "\n\n".join(t.strip() for t in (field, *thoughts) if t.strip())
+    return Parted(rest.strip(), reasoning)
+
+
+def _take(text: str, opening: str, closing: str, thoughts: list[str]) -> str:
+    """Move what stands between the marks from ``text`` to ``thoughts``."""
+    kept: list[str] = []
+    while True:
+        start, end = text.find(opening), text.find(closing)
+        if end >= 0 and not 0 <= start < end:
+            # Closed without having been opened: the chat template had put the opening mark into the prompt.
+            thoughts.append(text[:end])
+            text = text[end + len(closing) :]
+        elif start < 0:
+            return "".join((*kept, text))
+        else:
+            kept.append(text[:start])
+            inside = text[start + len(opening) :]
+            if end >= 0:
+                length = end - start - len(opening)
+                thoughts.append(inside[:length])
+                text = inside[length + len(closing) :]
+            else:
+                call = _CALL_BEGINS.search(inside)
+                cut = call.start() if call else len(inside)
+                thoughts.append(inside[:cut])
+                text = inside[cut:]

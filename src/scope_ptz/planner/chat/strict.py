@@ -1,0 +1,44 @@
+"""JSON as tool calls need it: strict, finite, and without characters that no file can hold."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any
+
+__all__ = ["readable", "strict_json"]
+
+
+def strict_json(text: str) -> Any:
+    """Parse JSON; NaN, infinities, numbers that overflow and extreme nesting are errors. Raises ``ValueError``."""
+    try:
+        value = json.loads(readable(text), parse_constant=_no_number, parse_float=_finite)
+        return _clean(value) if "\\ud" in text.lower() else value
+    except RecursionError as error:
+        raise ValueError("it is nested too deeply") from error
+
+
+def readable(text: str) -> str:
+    """The text with characters that UTF-8 cannot carry (lone surrogates) replaced by question marks."""
+    return text.encode("utf-8", "replace").decode("utf-8")
+
+
+def _clean(value: Any) -> Any:
+    if isinstance(value, str):
+        return readable(value)
+    if isinstance(value, list):
+        return [_clean(item) for item in value]
+    if isinstance(value, dict):
+        return {_clean(key): _clean(item) for key, item in value.items()}
+    return value
+
+
+def _no_number(name: str) -> Any:
+    raise ValueError(f"{name} is no number")
+
+
+def _finite(digits: str) -> float:
+    value = float(digits)
+    if not math.isfinite(value):
+        raise ValueError(f"{digits[:20]} is too large")
+    return value

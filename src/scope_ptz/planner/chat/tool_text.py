@@ -1,0 +1,201 @@
+"""Tool calls that a server returned as text: found, read, and taken out of the text.
+
+Notations that mark a call (tags) are believed whatever stands in them; what is wrong inside is an error for the planner. Those
+that do not (JSON in a fence or bare, Python calls) count only when they name a tool on offer, so that an answer in JSON stays
+an answer.
+"""
+
+from __future__ import annotations
+
+import ast
+import math
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import islice
+from json import JSONDecoder
+
+from scope_ptz.planner.chat.strict import readable, strict_json
+from scope_ptz.planner.chat.written import Signatures, WrittenCall, from_object, plain_name, read_arguments, wreck
+
+_Reader = Callable[[str, Signatures], list[WrittenCall]]
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """``rest``: the text without its calls; ``notation``: how they were written, empty when there are none."""
+
+    calls: tuple[WrittenCall, ...]
+    rest: str
+    notation: str
+
+
+def find_calls(text: str, tools: Signatures, *, marked_only: bool = False) -> Found:
+    """The calls in a text, in order; of several notations the first that is there."""
+    text = readable(text)
+    for notation, pattern, reader in _MARKED:
+        inside = [(match, reader(match["body"], tools)) for match in pattern.finditer(text)]
+        if any(calls for _, calls in inside):
+            return Found(tuple(call for _, calls in inside for call in calls), pattern.sub("", text).strip(), notation)
+    return Found((), text.strip(), "") if marked_only else _unmarked(text, tools)
+
+
+def _json_or_markup(body: str, tools: Signatures) -> list[WrittenCall]:
+    """The inside of ``<tool_call>``: JSON (Hermes), functions in XML (Qwen3-Coder), or keys and values in XML (GLM)."""
+    if "<function" in body:
+        return _xml_functions(body, tools)
+    if "<arg_key>" in body:
+        return [_keys_and_values(body, tools)]
+    name = body.strip()
+    return [WrittenCall(name, {})] if name in tools else _json_calls(body, tools)
+
+
+def _json_calls(body: str, tools: Signatures) -> list[WrittenCall]:  # noqa: ARG001 - readers share one signature
+    """JSON objects or lists of them, one after the other; one that cannot be read is a call that fails."""
+    calls: list[WrittenCall] = []
+    for chunk in _json_chunks(body):
+        try:
+            value = strict_json(chunk)
+        except ValueError:
+            calls.append(wreck(chunk))
+            continue
+        for item in value if isinstance(value, list) else [value]:
+            calls.append(from_object(item) or wreck(chunk))
+    return calls
+
+
+def _json_chunks(body: str) -> list[str]:
+    """The JSON values of a text; what follows the last complete one counts as one more when it looks like the start of one."""
+    decoder, chunks, at = JSONDecoder(), [], 0
+    while at < len(body):
+        if body[at].isspace() or body[at] in ",;":
+            at += 1
+            continue
+        try:
+            _, end = decoder.raw_decode(body, at)
+        except (ValueError, RecursionError):
+            chunks.append(body[at:])
+            break
+        chunks.append(body[at:end])
+        at = end
+    return chunks
+
+
+_FUNCTION = re.compile(
+    r"<function(?:=|\s+name=[\"']?)(?P<name>[^>\"'\s]+)[\"']?\s*>(?P<body>.*?)(?:</function>|(?=<function)|\Z)", re.DOTALL
+)
+_PARAMETER = re.compile(
+    r"<parameter(?:=|\s+name=[\"']?)(?P<key>[^>\"'\s]+)[\"']?\s*>(?P<value>.*?)(?:</parameter>|(?=<parameter)|\Z)", re.DOTALL
+)
+_KEY_AND_VALUE = re.compile(
+    r"<arg_key>(?P<key>.*?)</arg_key>\s*<arg_value>(?P<value>.*?)(?:</arg_value>|(?=<arg_key>)|\Z)", re.DOTALL
+)
+
+
+def _xml_functions(body: str, tools: Signatures) -> list[WrittenCall]:
+    calls = []
+    for match in _FUNCTION.finditer(body):
+        name, inside = plain_name(match["name"]), match["body"].strip()
+        if inside.startswith("{"):
+            arguments, malformed = read_arguments(inside)
+            calls.append(WrittenCall(name, arguments, malformed))
+            continue
+        given = {m["key"]: tools.value(name, m["key"], _unwrapped(m["value"])) for m in _PARAMETER.finditer(inside)}
+        leftover = _PARAMETER.sub("", inside).strip()
+        calls.append(WrittenCall(name, {}, inside[:300]) if leftover else WrittenCall(name, given))
+    return calls or [wreck(body)]
+
+
+def _unwrapped(value: str) -> str:
+    """A value without the line breaks that the notation puts around it."""
+    return value.removeprefix("\n").removesuffix("\n")
+
+
+def _keys_and_values(body: str, tools: Signatures) -> WrittenCall:
+    name = plain_name(body.partition("<arg_key>")[0])
+    return WrittenCall(
+        name, {m["key"].strip(): tools.value(name, m["key"].strip(), m["value"]) for m in _KEY_AND_VALUE.finditer(body)}
+    )
+
+
+def _python_calls(body: str, tools: Signatures) -> list[WrittenCall]:
+    """Python calls with literal keyword arguments: ``[adjust_ptz(pan_deg=20), go_home()]``."""
+    if body.strip().startswith(("{", "[{")):
+        return _json_calls(body, tools)
+    try:
+        tree = ast.parse(body.strip(), mode="eval").body
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return [wreck(body)]
+    nodes = tree.elts if isinstance(tree, ast.List | ast.Tuple) else [tree]
+    return [_python_call(node) or wreck(body) for node in nodes]
+
+
+def _python_call(node: ast.expr) -> WrittenCall | None:
+    if not isinstance(node, ast.Call):
+        return None
+    name = plain_name(ast.unparse(node.func))
+    try:
+        given = {keyword.arg: ast.literal_eval(keyword.value) for keyword in node.keywords if keyword.arg}
+    except (ValueError, RecursionError):
+        return WrittenCall(name, {}, ast.unparse(node)[:300])
+    plain = all(isinstance(v, str | int | bool | None) or (isinstance(v, float) and math.isfinite(v)) for v in given.values())
+    if node.args or len(given) != len(node.keywords) or not plain:
+        return WrittenCall(name, {}, ast.unparse(node)[:300])
+    return WrittenCall(name, given)
+
+
+def _mistral(body: str, tools: Signatures) -> list[WrittenCall]:
+    """``[{"name": ..., "arguments": ...}]``, or a name, optionally ``[ARGS]``, and its arguments."""
+    if body.strip().startswith("["):
+        return _json_calls(body, tools)
+    name, brace, tail = body.replace("[ARGS]", "").partition("{")
+    arguments, malformed = read_arguments(brace + tail)
+    return [WrittenCall(plain_name(name.partition("[CALL_ID]")[0]), arguments, malformed)]
+
+
+def _between(opening: str, closing: str) -> re.Pattern[str]:
+    """What stands between two marks; the closing one may be missing at the end of the text."""
+    return re.compile(f"{opening}(?P<body>.*?)(?:{closing}|\\Z)", re.DOTALL)
+
+
+_MARKED: tuple[tuple[str, re.Pattern[str], _Reader], ...] = (
+    ("tool_call", _between("<tool_call>", "</tool_call>"), _json_or_markup),
+    ("function", re.compile(r"(?P<body><function(?:=|\s+name=).*?(?:</function>|\Z))", re.DOTALL), _xml_functions),
+    ("tools", _between("<tools>", "</tools>"), _json_calls),
+    ("function_call", _between("<function_call>", "</function_call>"), _json_calls),
+    ("lfm", _between(r"<\|tool_call_start\|>", r"<\|tool_call_end\|>"), _python_calls),
+    ("phi", _between(r"<\|tool_call\|>", r"<\|/tool_call\|>"), _json_calls),
+    ("mistral", _between(r"\[TOOL_CALLS\]", r"(?=\[TOOL_CALLS\])"), _mistral),
+    ("llama", _between(r"<\|python_tag\|>", r"<\|eom_id\|>|<\|eot_id\|>"), _json_calls),
+)
+_MOST_STARTS = 20
+"""So many lines of a text are tried as the first of its calls; more are a table or a program, and no calls."""
+_FENCE = re.compile(r"```[\w-]*[ \t]*\n(?P<body>.*?)(?:\n[ \t]*```|\Z)", re.DOTALL)
+
+
+def _unmarked(text: str, tools: Signatures) -> Found:
+    """JSON or Python calls in a fence, or a text that is nothing else."""
+    fences = [(m, _known(m["body"], tools)) for m in _FENCE.finditer(text)]
+    if any(calls for _, calls in fences):
+        rest = text
+        for match, calls in fences:
+            rest = rest.replace(match[0], "") if calls else rest
+        return Found(tuple(call for _, calls in fences for call in calls), rest.strip(), "fence")
+    if calls := _known(text, tools):
+        return Found(tuple(calls), "", "bare")
+    # Prose, and then nothing but calls up to the end.
+    for match in islice(re.finditer(r"^[ \t]*[\[{]", text, re.MULTILINE), _MOST_STARTS):
+        if calls := _known(text[match.start() :], tools):
+            return Found(tuple(calls), text[: match.start()].strip(), "bare")
+    return Found((), text.strip(), "")
+
+
+def _known(body: str, tools: Signatures) -> list[WrittenCall]:
+    """The calls of a text that is nothing but calls of tools on offer; else none."""
+    body = body.strip()
+    calls: list[WrittenCall] = []
+    if body.startswith(("{", "[{")):
+        calls = _json_calls(body, tools)
+    elif re.match(r"\[?\s*[a-z_]+\(", body) and body.endswith((")", "]")):
+        calls = _python_calls(body, tools)
+    return calls if calls and all(call.name in tools for call in calls) else []
