@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from mathutils import Matrix, Vector
 
-from scope_ptz.studio.kit.finishes import paint, sheet, steel, timber
+from scope_ptz.studio.kit.finishes import glow, paint, sheet, steel, timber
 from scope_ptz.studio.kit.poses import Joints
 from scope_ptz.studio.kit.solid import Solid
 
@@ -111,6 +111,14 @@ def _trowel(s: Solid, joints: Joints) -> None:
     s.prism([(-0.05, 0.09), (0.05, 0.09), (0.012, 0.25), (-0.012, 0.25)], (-0.002, 0.002), steel(), "XY")
 
 
+def _torch(s: Solid, joints: Joints) -> None:
+    grip = _grip(joints, 1)
+    _aim(s, grip, joints.chest.to_3x3() @ Vector((0.0, 0.9, -0.35)), Vector((0, 0, 1)))
+    s.rod((0, -0.10, 0), (0, 0.11, 0), 0.017, paint("black", dirt=0.1))
+    s.lathe([(0.018, 0.10), (0.030, 0.15), (0.030, 0.18)], paint("black", dirt=0.1), axis="Y", steps=16)
+    s.lathe([(0.026, 0.178), (0.024, 0.184)], glow("white", 12.0), axis="Y", steps=16)
+
+
 HOLDABLE: dict[str, Callable[[Solid, Joints], None]] = {
     "shovel": _shovel,
     "broom": _broom,
@@ -120,6 +128,7 @@ HOLDABLE: dict[str, Callable[[Solid, Joints], None]] = {
     "cone": _cone,
     "bag": _bag,
     "toolbox": _toolbox,
+    "torch": _torch,
     "trowel": _trowel,
 }
 """Names that ``holding`` takes."""

@@ -202,12 +202,13 @@ def worker(
     pose: str = "stand",
     phase: float = 0.0,
     holding: str | None = None,
+    stance: Pose | None = None,
     seed: int = 0,
 ) -> Built:
     """A road worker in a high-visibility vest ("orange" or "yellow"); ``helmet`` a colour or None.
 
     ``pose``: stand, walk, point, carry, kneel, shovel, phone, clipboard. ``holding`` overrides what the pose puts in
-    the hands."""
+    the hands; ``stance`` is a pose of the caller's own in place of a named one."""
     random = Random(f"worker {seed}")
     looks = _looks(random, None, 0.15)
     legs = trousers or random.choice(["navy", "dark grey", f"hi-vis {vest}", "khaki", "navy"])
@@ -216,7 +217,7 @@ def worker(
     if pose in ("phone", "clipboard"):
         glove = None
     outfit = _Outfit(top, legs, "shirt", "white", "collar", glove, vest, helmet)
-    return _person(f"worker in {vest}", pose, phase, random, looks, outfit, holding)
+    return _person(f"worker in {vest}", pose, phase, random, looks, outfit, holding, stance)
 
 
 def pedestrian(
