@@ -90,7 +90,7 @@ def roofing(kind: str) -> bpy.types.Material:
         return found
     s = Shader(name)
     where = s.object_coords()
-    x, y, z = s.xyz(where)
+    x, _, z = s.xyz(where)
     base = (0.062, 0.068, 0.078) if kind == "slate" else (0.185, 0.072, 0.042)
     plane = s.node("ShaderNodeCombineXYZ")
     s.feed(plane.inputs[0], x)
@@ -119,7 +119,6 @@ def trim(colour: Rgb = (0.62, 0.61, 0.57)) -> bpy.types.Material:
         return found
     s = Shader(name)
     where = s.object_coords()
-    _, _, z = s.xyz(where)
     tint = s.mix(s.ramp(s.noise(where, 2.4, 6.0, 0.62), 0.42, 0.78, 0.0, 0.5), colour, tuple(c * 0.55 for c in colour))
     streak = s.ramp(s.noise(s.scaled(where, (14.0, 14.0, 0.6)), 1.0, 3.0), 0.52, 0.8, 0.0, 0.4)
     return s.surface(base_color=s.mix(streak, tint, tuple(c * 0.45 for c in colour)), roughness=0.5)

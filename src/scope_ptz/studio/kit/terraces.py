@@ -63,9 +63,9 @@ def terrace(spec: Terrace) -> Built:
         if floor >= 0:
             _sash(s, x, z, w, h, spec, rng, lit=(floor, column) in spec.lit)
         else:
-            _front_door(s, x, w, h, rng)
+            _front_door(s, x, w, h)
     _roof(s, spec)
-    _chimney(s, spec, face, rng)
+    _chimney(s, spec, rng)
     _rainwater(s, spec)
     if spec.wall[0] != "brick" or spec.bars == 2:
         for z in (GROUND_M + STOREY_M * k - 0.05 for k in range(1, spec.storeys)):
@@ -84,9 +84,7 @@ def _holes(spec: Terrace) -> list[Hole]:
     for floor in range(1, spec.storeys):
         height = 1.75 if floor == 1 else 1.35
         base = GROUND_M + STOREY_M * (floor - 1) + 0.72
-        made += [
-            (pitch * (k + 0.5) - spec.width_m / 2, base, min(1.08, pitch * 0.5), height, floor, k) for k in range(spec.columns)
-        ]
+        made += [(pitch * (k + 0.5) - spec.width_m / 2, base, min(1.2, pitch * 0.5), height, floor, k) for k in range(spec.columns)]
     return made
 
 
@@ -206,7 +204,7 @@ def _dressing(s: Solid, x: float, z: float, w: float, h: float, back: float, rng
         s.box((w - 0.1, 0.008, drop), (x, back - 0.002, z + h - drop / 2), plain("roller blind", (0.52, 0.50, 0.44), 0.9), 0.002)
 
 
-def _front_door(s: Solid, x: float, w: float, h: float, rng: Random) -> None:
+def _front_door(s: Solid, x: float, w: float, h: float) -> None:
     """The surround and fanlight of a house door; the door itself is the scene's."""
     frame = trim()
     s.add([(x - w / 2, -0.12, 0), (x + w / 2, -0.12, 0), (x + w / 2, -0.12, h), (x - w / 2, -0.12, h)], [(1, 0, 3, 2)], dark_pane())
@@ -246,10 +244,10 @@ def _roof(s: Solid, spec: Terrace) -> None:
         lifted = [(a, b, c + 0.10) for a, b, c in quad]
         order = faces if y0 > y1 else [f[::-1] for f in faces]
         s.add([*lifted, *[(a, b, c + 0.10) for a, b, c in under]], [f[::-1] for f in order], cover)
-    ridge = [(0.0, 0.0)] + arc((0.0, 0.0), 0.13, 0, 180, 6)
+    ridge = arc((0.0, 0.0), 0.13, 0, 180, 6)
     with s.at(0, -d / 2, h + rise + 0.06, turn=90):
         s.prism(
-            ridge[1:],
+            ridge,
             (-w, w),
             plain("ridge tile", (0.16, 0.06, 0.038), 0.6)
             if spec.roof == "clay"
@@ -257,7 +255,7 @@ def _roof(s: Solid, spec: Terrace) -> None:
         )
 
 
-def _chimney(s: Solid, spec: Terrace, face: bpy.types.Material, rng: Random) -> None:
+def _chimney(s: Solid, spec: Terrace, rng: Random) -> None:
     side = rng.choice((-1, 1))
     x, y = side * (spec.width_m / 2 - 0.35), -DEPTH_M / 2 + rng.choice((-0.6, 0.5))
     top = spec.eaves_m + _rise(spec) + 1.25
