@@ -7,23 +7,50 @@ Boxes and points are normalised to [0, 1], origin top-left, whatever the model b
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from scope_ptz.camera.base import Frame
+from scope_ptz.endpoints.failures import Attempt
 
 Unit = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
+Skill = Literal["caption", "query", "detect", "point"]
+
+ALL_SKILLS: frozenset[Skill] = frozenset(("caption", "query", "detect", "point"))
+
+
+class Agreement(BaseModel):
+    """How far a second opinion on the same question went along: ``share`` from 0 to 1, ``agrees`` from a half on."""
+
+    model_config = ConfigDict(frozen=True)
+
+    other: str
+    """Who was asked as well."""
+    said: str
+    """What it said, in short; for places how many."""
+    share: Unit
+
+    @property
+    def agrees(self) -> bool:
+        return self.share >= 0.5
 
 
 class _Result(BaseModel):
-    """``source`` names who looked ("ground-truth", "moondream3"), ``raw`` is its reply as it came, ``latency_s`` wall time."""
+    """``source`` names who looked ("ground-truth", "moondream3"), ``raw`` is its reply as it came, ``latency_s`` wall time.
+
+    ``notes`` say what was corrected or left out of the reply, or who failed before ``source`` was asked; ``agreement`` is there
+    when a second backend was asked too; ``attempts`` are the calls to a model server that it took.
+    """
 
     model_config = ConfigDict(frozen=True)
 
     source: str
     raw: str = ""
     latency_s: float = 0.0
+    notes: tuple[str, ...] = ()
+    agreement: Agreement | None = None
+    attempts: tuple[Attempt, ...] = ()
 
 
 class Box(BaseModel):
@@ -77,21 +104,27 @@ class Answer(_Result):
 
 
 class Detections(_Result):
-    """Every match, best first. Empty means looked and found nothing."""
+    """Every match, best first. Empty means looked and found nothing; not ``complete`` that there are more than these."""
 
     boxes: tuple[Box, ...]
+    complete: bool = True
 
 
 class Points(_Result):
-    """Every match, best first. Empty means looked and found nothing."""
+    """Every match, best first. Empty means looked and found nothing; not ``complete`` that there are more than these."""
 
     points: tuple[Point, ...]
+    complete: bool = True
 
 
 class Perception(ABC):
-    """Eyes: a vision-language model, a detector, OCR, or the simulator's ground truth."""
+    """Eyes: a vision-language model, a detector, OCR, or the simulator's ground truth.
+
+    What a backend cannot do at all (a detector asked a question) is missing from its ``skills`` and raises ``PerceptionError``.
+    """
 
     name: str
+    skills: frozenset[Skill] = ALL_SKILLS
 
     @abstractmethod
     async def caption(self, frame: Frame) -> Caption:

@@ -1,0 +1,103 @@
+"""Moondream over HTTP: moondream-station, the cloud, or any endpoint that speaks the same four paths."""
+
+from __future__ import annotations
+
+import json
+from time import perf_counter
+from typing import Any
+
+from scope_ptz.camera.base import Frame
+from scope_ptz.endpoints.failures import Attempt, FailureKind
+from scope_ptz.endpoints.http import JsonClient
+from scope_ptz.errors import PerceptionError
+from scope_ptz.perception.backends.spec import EyesSpec, Options
+from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
+from scope_ptz.perception.coordinates import MAX_THINGS, convention, fit
+from scope_ptz.perception.encoding import picture_of
+from scope_ptz.perception.grounding import Reply, one_line, served
+
+KEY_HEADER = "X-Moondream-Auth"
+UNIT = convention("unit")
+
+
+class MoondreamOptions(Options):
+    """``max_pixels``: larger frames are shrunk to it, since the model looks at a few crops of 378 pixels; ``max_objects``: left
+    alone when None, and the server stops at its own limit; ``reasoning``: of Moondream 3, for questions; ``caption_length``:
+    short, normal or long."""
+
+    max_pixels: int = 2048 * 2048
+    max_objects: int | None = MAX_THINGS
+    reasoning: bool | None = None
+    caption_length: str = "short"
+
+
+class MoondreamPerception(Perception):
+    """Eyes behind Moondream's own protocol. Coordinates come in [0, 1], without scores or labels."""
+
+    def __init__(self, client: JsonClient, options: MoondreamOptions | None = None, name: str = "moondream") -> None:
+        self.name, self._client, self._options = name, client, options or MoondreamOptions()
+        self._limit = self._options.max_objects
+
+    async def caption(self, frame: Frame) -> Caption:
+        return (await self._ask(frame, "caption", {"length": self._options.caption_length}, "caption")).caption()
+
+    async def query(self, frame: Frame, question: str) -> Answer:
+        if not question.strip():
+            raise PerceptionError("The question is empty.")
+        reasoning = {} if self._options.reasoning is None else {"reasoning": self._options.reasoning}
+        return (await self._ask(frame, "query", {"question": question.strip(), **reasoning}, "answer")).answer()
+
+    async def detect(self, frame: Frame, description: str) -> Detections:
+        found = (await self._locate(frame, "detect", description, "objects")).detections(UNIT, (1, 1))
+        return found if self._limit is None or len(found.boxes) < self._limit else found.model_copy(update={"complete": False})
+
+    async def point(self, frame: Frame, description: str) -> Points:
+        return (await self._locate(frame, "point", description, "points")).points(UNIT, (1, 1))
+
+    async def close(self) -> None:
+        await self._client.close()
+
+    async def _locate(self, frame: Frame, path: str, description: str, wanted: str) -> Reply:
+        """A list of places. A server that refuses the wish for more of them is asked without, now and from then on."""
+        fields: dict[str, Any] = {"object": one_line(description)}
+        if self._limit is None:
+            return await self._ask(frame, path, fields, wanted)
+        try:
+            return await self._ask(frame, path, {**fields, "settings": {"max_objects": self._limit}}, wanted)
+        except PerceptionError as error:
+            if error.kind != FailureKind.BAD_REQUEST:
+                raise
+            reply = await self._ask(frame, path, fields, wanted)
+            self._limit = None
+            return reply.preceded(error)
+
+    async def _ask(self, frame: Frame, path: str, fields: dict[str, Any], wanted: str) -> Reply:
+        """One request; the reply holds the text or the JSON of the field that was wanted."""
+        began = perf_counter()
+        picture = await picture_of(frame, fit(frame.width, frame.height, self._options.max_pixels))
+        body = _body(picture.data_url, {**fields, "stream": False})
+        with served(self.name):
+            data, attempts = await self._client.post(path, body)
+        return self._reply(data, wanted, began, attempts)
+
+    def _reply(self, data: dict[str, Any], wanted: str, began: float, attempts: tuple[Attempt, ...]) -> Reply:
+        value = data.get(wanted)
+        if wanted in ("answer", "caption"):
+            if not isinstance(value, str):
+                raise Reply(self.name, json.dumps(data, default=str), began, attempts).unreadable(f"no {wanted}")
+            return Reply(self.name, value, began, attempts)
+        reply = Reply(self.name, json.dumps({"objects": value}), began, attempts)
+        if not isinstance(value, list) or not all(isinstance(v, dict) for v in value):
+            raise Reply(self.name, json.dumps(data, default=str), began, attempts).unreadable(f"no list of {wanted}")
+        return reply
+
+
+def _body(data_url: str, fields: dict[str, Any]) -> bytes:
+    """The request as JSON. The picture is pasted in: it is base64, which needs no escaping, and long."""
+    rest = json.dumps(fields, separators=(",", ":"), ensure_ascii=False)[1:]
+    return f'{{"image_url":"{data_url}",{rest}'.encode()
+
+
+def make(spec: EyesSpec) -> Perception:
+    client = JsonClient(spec.needed_endpoint(), key_header=KEY_HEADER)
+    return MoondreamPerception(client, MoondreamOptions.of(spec), spec.name)

@@ -1,0 +1,166 @@
+"""Reading text in process with rapidocr: no server, and the same for simulated and real cameras."""
+
+from __future__ import annotations
+
+import json
+import math
+import threading
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from time import perf_counter
+from typing import Any
+
+import cv2
+import numpy as np
+
+from scope_ptz.camera.base import Frame
+from scope_ptz.errors import PerceptionError
+from scope_ptz.perception.backends.spec import EyesSpec, Options, need
+from scope_ptz.perception.base import Answer, Box, Caption, Detections, Perception, Point, Points
+from scope_ptz.perception.memo import FrameMemo, Image
+from scope_ptz.perception.reading import is_reading, text_fits, wanted_texts
+from scope_ptz.perception.tiles import Tile, merged, tiles
+
+Reader = Callable[[Image], "list[Line]"]
+
+
+class OcrOptions(Options):
+    """``min_score``: below it a reading is not believed."""
+
+    min_score: float = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A line of text as it stands in the picture; ``box`` is labelled with the text."""
+
+    text: str
+    box: Box
+
+
+class OcrPerception(Perception):
+    """Eyes that see text only. ``detect`` and ``point`` find a text by its wording; asked for other things, or questions that are
+    not answered by reading, they raise ``PerceptionError``: that no text says "car" does not mean that there is no car.
+
+    A frame is read once, and remembered for further questions about it.
+    """
+
+    def __init__(self, reader: Reader, name: str = "ocr") -> None:
+        self.name = name
+        self._lines: FrameMemo[None, list[Line]] = FrameMemo(lambda image, _: in_reading_order(read_tiles(reader, image)))
+
+    async def lines(self, frame: Frame) -> list[Line]:
+        """All text in a frame, top to bottom and left to right."""
+        return await self._lines.get_async(frame.image, None)
+
+    async def caption(self, frame: Frame) -> Caption:
+        began = perf_counter()
+        lines = await self.lines(frame)
+        text = f"Text in view: {quoted(lines)}." if lines else "There is no readable text in view."
+        return Caption(text=text, source=self.name, raw=_raw(lines), latency_s=perf_counter() - began)
+
+    async def query(self, frame: Frame, question: str) -> Answer:
+        if not is_reading(question):
+            raise PerceptionError(f"OCR only reads text, and cannot answer '{question}'. Ask a vision-language model.")
+        began = perf_counter()
+        lines = await self.lines(frame)
+        text = f"It reads: {quoted(lines)}." if lines else "There is no readable text in view."
+        return Answer(text=text, known=bool(lines), source=self.name, raw=_raw(lines), latency_s=perf_counter() - began)
+
+    async def detect(self, frame: Frame, description: str) -> Detections:
+        began = perf_counter()
+        boxes = tuple(line.box for line in await self._find(frame, description))
+        raw = json.dumps([b.label for b in boxes], ensure_ascii=False)
+        return Detections(boxes=boxes, source=self.name, raw=raw, latency_s=perf_counter() - began)
+
+    async def point(self, frame: Frame, description: str) -> Points:
+        found = await self.detect(frame, description)
+        points = tuple(Point(x=b.centre[0], y=b.centre[1], label=b.label) for b in found.boxes)
+        return Points(points=points, source=self.name, raw=found.raw, latency_s=found.latency_s)
+
+    async def _find(self, frame: Frame, description: str) -> list[Line]:
+        wanted = wanted_texts(description)
+        if wanted is None:
+            raise PerceptionError(f"OCR only finds text, and '{description}' names none. Quote the text, or ask a detector.")
+        lines = await self.lines(frame)
+        return lines if not wanted else [line for line in lines if any(text_fits(text, line.text) for text in wanted)]
+
+
+def quoted(lines: Iterable[Line]) -> str:
+    """Lines as text for people and planners, each in quotes so that nobody takes it for an instruction."""
+    return ", ".join('"' + line.text.replace('"', "'") + '"' for line in lines)
+
+
+def _raw(lines: Iterable[Line]) -> str:
+    return json.dumps([{"text": line.text, "score": line.box.score} for line in lines], ensure_ascii=False)
+
+
+def in_reading_order(lines: list[Line]) -> list[Line]:
+    """Rows from the top, each from the left. A line belongs to a row when its middle lies within the row's first line."""
+    rows: list[list[Line]] = []
+    for line in sorted(lines, key=lambda x: x.box.centre[1]):
+        if rows and abs(line.box.centre[1] - rows[-1][0].box.centre[1]) < rows[-1][0].box.height / 2:
+            rows[-1].append(line)
+        else:
+            rows.append([line])
+    return [line for row in rows for line in sorted(row, key=lambda x: x.box.x_min)]
+
+
+def read_tiles(reader: Reader, image: Image) -> list[Line]:
+    """All lines of a picture; a panorama is read in overlapping parts at its full resolution."""
+    width, height = image.shape[1], image.shape[0]
+    parts: list[tuple[Tile, list[Box]]] = []
+    for tile in tiles(width, height):
+        try:
+            parts.append((tile, [line.box for line in reader(np.ascontiguousarray(tile.crop(image)))]))
+        except (cv2.error, ValueError, RuntimeError, MemoryError) as error:
+            raise PerceptionError(f"OCR failed on a frame of {width}x{height}: {error}") from error
+    return [Line(box.label or "", box) for box in merged(parts, width)]
+
+
+class RapidOcr:
+    """The rapidocr engine, loaded at first use. It keeps state while it reads, so one thread reads at a time."""
+
+    def __init__(self, min_score: float = 0.5) -> None:
+        self._min_score, self._engine, self._lock = min_score, None, threading.Lock()
+
+    _engine: Any
+
+    def __call__(self, image: Image) -> list[Line]:
+        """Lines of an RGB image (H, W, 3)."""
+        with self._lock:
+            if self._engine is None:
+                self._engine = self._load()
+            found = self._engine(cv2.cvtColor(image, cv2.COLOR_RGB2BGR))
+        if found.boxes is None or found.txts is None:
+            return []
+        return [
+            line
+            for corners, text, score in zip(found.boxes, found.txts, found.scores, strict=True)
+            if text.strip() and (line := _line(np.asarray(corners, dtype=float), text.strip(), float(score), image)) is not None
+        ]
+
+    def _load(self) -> Any:
+        try:
+            from rapidocr import RapidOCR
+
+            return RapidOCR(params={"Global.log_level": "error", "Global.text_score": self._min_score})
+        except (ImportError, OSError, RuntimeError) as error:
+            raise PerceptionError(f"The text reader cannot be loaded: {error}") from error
+
+
+def _line(corners: np.ndarray[Any, np.dtype[np.float64]], text: str, score: float, image: Image) -> Line | None:
+    """A line from its four corners in pixels (4, 2); None when nothing of it is in the picture."""
+    if not np.isfinite(corners).all():
+        return None
+    low = np.clip(corners.min(axis=0) / (image.shape[1], image.shape[0]), 0, 1)
+    high = np.clip(corners.max(axis=0) / (image.shape[1], image.shape[0]), 0, 1)
+    if (high <= low).any():
+        return None
+    sure = score if math.isfinite(score) and 0 <= score <= 1 else None
+    return Line(text, Box(x_min=low[0], y_min=low[1], x_max=high[0], y_max=high[1], label=text, score=sure))
+
+
+def make(spec: EyesSpec) -> Perception:
+    need("ocr", "rapidocr", "onnxruntime")
+    return OcrPerception(RapidOcr(OcrOptions.of(spec).min_score), spec.name)

@@ -1,0 +1,130 @@
+"""Vision-language models behind an OpenAI-compatible server, each asked in the convention that it was trained in."""
+
+from __future__ import annotations
+
+from time import perf_counter
+from typing import Any
+
+from pydantic import Field
+
+from scope_ptz.camera.base import Frame
+from scope_ptz.endpoints.chat import ChatClient, ChatReply
+from scope_ptz.endpoints.failures import Attempt, FailureKind
+from scope_ptz.errors import PerceptionError
+from scope_ptz.perception.backends.spec import EyesSpec, Options
+from scope_ptz.perception.base import ALL_SKILLS, Answer, Caption, Detections, Perception, Points, Skill
+from scope_ptz.perception.coordinates import Convention, convention
+from scope_ptz.perception.encoding import Picture, picture_of
+from scope_ptz.perception.grounding import (
+    CAPTION_PROMPT,
+    Reply,
+    detect_prompt,
+    place_error,
+    places_schema,
+    point_prompt,
+    query_prompt,
+    sent_size,
+    served,
+)
+
+NO_PLACES = "none"
+"""Coordinates of a model that gives none: Moondream 3 behind vLLM answers questions and captions only."""
+
+
+class VisionOptions(Options):
+    """``max_pixels``: larger frames are shrunk to it; ``max_tokens``: of a reply, places and answers; ``structured``: whether lists
+    are held to a JSON schema (given up when the server refuses it); ``extra``: further request fields that the server or the
+    model family wants, such as ``{"chat_template_kwargs": {"enable_thinking": false}}``."""
+
+    max_pixels: int = Field(default=2048 * 1024, ge=64 * 64)
+    max_tokens: int = Field(default=2048, ge=16)
+    temperature: float | None = 0.0
+    structured: bool = True
+    extra: dict[str, Any] = Field(default_factory=dict)
+
+
+class OpenAIVisionPerception(Perception):
+    """Eyes that chat. ``style`` is how the model writes places; None when it writes none."""
+
+    def __init__(
+        self, client: ChatClient, style: Convention | None, options: VisionOptions | None = None, name: str = "vision"
+    ) -> None:
+        self.name, self._client, self._style = name, client, style
+        self._options = options or VisionOptions()
+        self._structured = self._options.structured
+        self.skills = ALL_SKILLS if style is not None else frozenset[Skill](("caption", "query"))
+
+    async def caption(self, frame: Frame) -> Caption:
+        began = perf_counter()
+        return self._read(await self._ask(await self._picture(frame), CAPTION_PROMPT), began).caption()
+
+    async def query(self, frame: Frame, question: str) -> Answer:
+        if not question.strip():
+            raise PerceptionError("The question is empty.")
+        began = perf_counter()
+        return self._read(await self._ask(await self._picture(frame), query_prompt(question)), began).answer()
+
+    async def detect(self, frame: Frame, description: str) -> Detections:
+        style, began = self._places(), perf_counter()
+        picture = await self._picture(frame)
+        prompt = detect_prompt(style, description, picture.size)
+        reply = await self._ask(picture, prompt, places_schema(style.box_key, 4))
+        return self._read(reply, began).detections(style, picture.size)
+
+    async def point(self, frame: Frame, description: str) -> Points:
+        style, began = self._places(), perf_counter()
+        picture = await self._picture(frame)
+        prompt = point_prompt(style, description, picture.size)
+        reply = await self._ask(picture, prompt, places_schema(style.point_key, 2))
+        return self._read(reply, began).points(style, picture.size)
+
+    async def close(self) -> None:
+        await self._client.close()
+
+    def _places(self) -> Convention:
+        if self._style is None:
+            raise place_error(self.name)
+        return self._style
+
+    async def _picture(self, frame: Frame) -> Picture:
+        size = sent_size(frame, self._style or convention("generic"), self._options.max_pixels)
+        return await picture_of(frame, size)
+
+    def _read(self, reply: tuple[ChatReply, tuple[Attempt, ...]], began: float) -> Reply:
+        said, earlier = reply
+        return Reply(self.name, said.text, began, (*earlier, *said.attempts), cut=said.finish_reason == "length")
+
+    async def _ask(
+        self, picture: Picture, prompt: str, schema: dict[str, Any] | None = None
+    ) -> tuple[ChatReply, tuple[Attempt, ...]]:
+        """The reply, and what was tried before it. A server that refuses the schema is asked without, now and from then on."""
+        if schema is None or not self._structured:
+            return await self._complete(picture, prompt, None), ()
+        try:
+            return await self._complete(picture, prompt, schema), ()
+        except PerceptionError as error:
+            if error.kind != FailureKind.BAD_REQUEST:
+                raise
+            reply = await self._complete(picture, prompt, None)
+            self._structured = False
+            return reply, tuple(a for a in error.attempts if isinstance(a, Attempt))
+
+    async def _complete(self, picture: Picture, prompt: str, schema: dict[str, Any] | None) -> ChatReply:
+        content = [{"type": "image_url", "image_url": {"url": picture.data_url}}, {"type": "text", "text": prompt}]
+        format_ = {"type": "json_schema", "json_schema": {"name": "places", "schema": schema, "strict": True}}
+        with served(self.name):
+            return await self._client.complete(
+                [{"role": "user", "content": content}],
+                max_tokens=self._options.max_tokens,
+                temperature=self._options.temperature,
+                response_format=format_ if schema is not None else None,
+                extra=self._options.extra,
+            )
+
+
+def make(spec: EyesSpec) -> Perception:
+    endpoint = spec.needed_endpoint()
+    if spec.model:
+        endpoint = endpoint.model_copy(update={"model": spec.model})
+    style = None if spec.coordinates == NO_PLACES else convention(spec.coordinates)
+    return OpenAIVisionPerception(ChatClient(endpoint), style, VisionOptions.of(spec), spec.name)

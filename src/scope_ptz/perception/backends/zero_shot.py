@@ -1,0 +1,122 @@
+"""Zero-shot detectors in process: OWLv2 and Grounding DINO through the transformers pipeline."""
+
+from __future__ import annotations
+
+import json
+import math
+import threading
+from collections.abc import Callable
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from anyio import to_thread
+
+from scope_ptz.camera.base import Frame
+from scope_ptz.errors import PerceptionError
+from scope_ptz.perception.backends.spec import EyesSpec, Options, need
+from scope_ptz.perception.base import Answer, Box, Caption, Detections, Perception, Point, Points
+from scope_ptz.perception.coordinates import RawThing, convention, located
+from scope_ptz.perception.memo import Image
+from scope_ptz.perception.tiles import merged, suppressed, tiles
+
+Found = list[dict[str, Any]]
+Detector = Callable[[Image, str], Found]
+"""From an RGB image and a phrase to ``[{"score", "label", "box": {"xmin", "ymin", "xmax", "ymax"}}]`` in pixels."""
+
+
+class ZeroShotOptions(Options):
+    """``threshold``: lowest score that counts as seen; ``overlap``: of boxes that share more than this (intersection over union)
+    the best stays; ``device``: as torch names it ("cpu", "cuda:0"), "auto" for the best there is."""
+
+    threshold: float = 0.2
+    overlap: float = 0.6
+    device: str = "auto"
+
+
+class ZeroShotPerception(Perception):
+    """A detector: it finds what a phrase describes, and can say nothing else. Best score first."""
+
+    skills = frozenset(("detect", "point"))
+
+    def __init__(self, detector: Detector, options: ZeroShotOptions | None = None, name: str = "zero-shot") -> None:
+        self.name, self._detector, self._options = name, detector, options or ZeroShotOptions()
+
+    async def caption(self, frame: Frame) -> Caption:  # noqa: ARG002
+        raise PerceptionError(f"{self.name} is a detector and describes no pictures. Ask a vision-language model.")
+
+    async def query(self, frame: Frame, question: str) -> Answer:  # noqa: ARG002
+        raise PerceptionError(f"{self.name} is a detector and answers no questions. Ask a vision-language model.")
+
+    async def detect(self, frame: Frame, description: str) -> Detections:
+        phrase = " ".join(description.split())
+        if not phrase:
+            raise PerceptionError("The description is empty.")
+        began = perf_counter()
+        boxes, raw, notes = await to_thread.run_sync(self._detect, frame.image, phrase)
+        return Detections(boxes=boxes, source=self.name, raw=raw, notes=notes, latency_s=perf_counter() - began)
+
+    async def point(self, frame: Frame, description: str) -> Points:
+        found = await self.detect(frame, description)
+        points = tuple(Point(x=b.centre[0], y=b.centre[1], label=b.label) for b in found.boxes)
+        return Points(points=points, source=self.name, raw=found.raw, notes=found.notes, latency_s=found.latency_s)
+
+    def _detect(self, image: Image, phrase: str) -> tuple[tuple[Box, ...], str, tuple[str, ...]]:
+        width, parts, said, notes = image.shape[1], [], Found(), list[str]()
+        for tile in tiles(width, image.shape[0]):
+            crop = np.ascontiguousarray(tile.crop(image))
+            try:
+                found = self._detector(crop, phrase)
+            except (RuntimeError, ValueError, MemoryError, IndexError) as error:
+                raise PerceptionError(f"{self.name} failed on a frame of {width}x{image.shape[0]}: {error}") from error
+            said += found
+            things = [t for t in map(_thing, found) if t.score is not None and t.score >= self._options.threshold]
+            places = located(things, convention("pixels"), (crop.shape[1], crop.shape[0]))
+            notes += places.notes
+            parts.append((tile, suppressed(places.boxes, self._options.overlap)))
+        best = sorted(merged(parts, width), key=lambda b: -(b.score or 0.0))
+        return tuple(best), json.dumps(said, default=str), tuple(notes)
+
+
+def _thing(found: dict[str, Any]) -> RawThing:
+    box, score = found["box"], float(found["score"])
+    numbers = tuple(float(box[k]) for k in ("xmin", "ymin", "xmax", "ymax"))
+    return RawThing(numbers, str(found.get("label") or "") or None, score if math.isfinite(score) else None)
+
+
+class PipelineDetector:
+    """The transformers pipeline, loaded at first use, one picture at a time."""
+
+    def __init__(self, model: str, options: ZeroShotOptions) -> None:
+        self._model, self._options, self._pipeline, self._lock = model, options, None, threading.Lock()
+
+    _pipeline: Any
+
+    def __call__(self, image: Image, phrase: str) -> Found:
+        from PIL import Image as PillowImage
+
+        with self._lock:
+            if self._pipeline is None:
+                self._pipeline = self._load()
+            found: Found = self._pipeline(
+                PillowImage.fromarray(image), candidate_labels=[phrase], threshold=self._options.threshold
+            )
+        return found
+
+    def _load(self) -> Any:
+        try:
+            import torch
+            from transformers import pipeline
+
+            device = self._options.device
+            if device == "auto":
+                device = "cuda:0" if torch.cuda.is_available() else "cpu"
+            return pipeline("zero-shot-object-detection", model=self._model, device=device)
+        except (OSError, ValueError, ImportError) as error:
+            raise PerceptionError(f"The detector '{self._model}' cannot be loaded: {error}") from error
+
+
+def make(spec: EyesSpec) -> Perception:
+    need("local", "transformers", "torch")
+    options = ZeroShotOptions.of(spec)
+    return ZeroShotPerception(PipelineDetector(spec.needed_model(), options), options, spec.name)

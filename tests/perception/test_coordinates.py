@@ -1,0 +1,178 @@
+"""Coordinates of every convention come out in [0, 1], and the resize arithmetic is the models' own."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from scope_ptz.errors import PerceptionError, UnknownNameError
+from scope_ptz.perception.coordinates import (
+    CONVENTIONS,
+    MAX_THINGS,
+    RawThing,
+    convention,
+    fit,
+    located,
+    smart_resize,
+)
+
+sides = st.integers(1, 9000)
+factors = st.sampled_from([28, 32])
+budgets = st.sampled_from([(56 * 56, 1280 * 28 * 28), (4 * 28 * 28, 16384 * 28 * 28), (65536, 2048 * 32 * 32)])
+SENT = (1288, 728)
+
+
+@given(sides, sides, factors, budgets)
+def test_resized_sides_are_multiples_within_the_budget(width: int, height: int, factor: int, budget: tuple[int, int]) -> None:
+    assume(max(width, height) / min(width, height) <= 200)
+    low, high = budget
+    wide, tall = smart_resize(width, height, factor=factor, min_pixels=low, max_pixels=high)
+    assert wide % factor == 0 and tall % factor == 0 and min(wide, tall) >= factor
+    # A side cannot fall below one factor, which a very long picture needs more pixels for.
+    if min(wide, tall) > factor:
+        assert wide * tall <= high
+    assert wide * tall >= low
+
+
+@given(sides, sides, factors, budgets)
+def test_a_resized_picture_is_left_alone_by_the_server(width: int, height: int, factor: int, budget: tuple[int, int]) -> None:
+    assume(max(width, height) / min(width, height) <= 150)
+    low, high = budget
+    once = smart_resize(width, height, factor=factor, min_pixels=low, max_pixels=high)
+    assume(min(once) > factor and max(once) / min(once) <= 200)
+    assert smart_resize(*once, factor=factor, min_pixels=low, max_pixels=high) == once
+
+
+@given(st.integers(200, 4000), st.integers(200, 4000), factors)
+def test_the_aspect_is_kept_to_a_step_of_the_factor(width: int, height: int, factor: int) -> None:
+    wide, tall = smart_resize(width, height, factor=factor, min_pixels=56 * 56, max_pixels=1280 * 28 * 28)
+    scale = wide / width
+    assert abs(height * scale - tall) <= factor * (1 + height / width)
+
+
+@pytest.mark.parametrize(
+    ("size", "factor", "expected"),
+    [((1280, 720), 28, (1288, 728)), ((1280, 720), 32, (1280, 704)), ((640, 480), 28, (644, 476)), ((50, 20), 28, (112, 56))],
+)
+def test_known_sizes(size: tuple[int, int], factor: int, expected: tuple[int, int]) -> None:
+    """Worked out by hand from the published arithmetic (Python's rounding to even included)."""
+    assert smart_resize(*size, factor=factor, min_pixels=3136, max_pixels=12845056) == expected
+
+
+@pytest.mark.parametrize("size", [(0, 10), (4020, 20), (1, 500)])
+def test_pictures_that_models_refuse(size: tuple[int, int]) -> None:
+    with pytest.raises(PerceptionError, match="too narrow"):
+        smart_resize(*size, factor=28, min_pixels=3136, max_pixels=12845056)
+
+
+@given(sides, sides, st.integers(64 * 64, 4_000_000))
+def test_fit_keeps_to_the_budget_and_never_enlarges(width: int, height: int, budget: int) -> None:
+    wide, tall = fit(width, height, budget)
+    assert wide <= width and tall <= height and min(wide, tall) >= 1
+    if min(wide, tall) > 1:
+        assert wide * tall <= budget
+
+
+unit = st.floats(0, 1)
+boxes = st.tuples(unit, unit, unit, unit).map(lambda v: (min(v[0], v[2]), min(v[1], v[3]), max(v[0], v[2]), max(v[1], v[3])))
+
+
+def written(box: tuple[float, ...], name: str) -> tuple[float, ...]:
+    """A box as a model of that convention writes it."""
+    style = convention(name)
+    scale = {"unit": (1.0, 1.0), "percent": (100.0, 100.0), "thousand": (1000.0, 1000.0), "guess": (1000.0, 1000.0), "pixels": SENT}
+    wide, tall = scale[style.space]
+    numbers = [v * (wide if i % 2 == 0 else tall) for i, v in enumerate(box)]
+    return (numbers[1], numbers[0], numbers[3], numbers[2]) if style.y_first else tuple(numbers)
+
+
+@pytest.mark.parametrize("name", sorted(CONVENTIONS))
+@given(box=boxes)
+def test_every_convention_gives_back_the_box(name: str, box: tuple[float, float, float, float]) -> None:
+    assume(box[2] - box[0] > 0.01 and box[3] - box[1] > 0.01)
+    (found,) = located([RawThing(written(box, name))], convention(name), SENT).boxes
+    assert (found.x_min, found.y_min, found.x_max, found.y_max) == pytest.approx(box, abs=1e-9)
+
+
+numbers = st.floats(allow_nan=True, allow_infinity=True, width=64)
+raw_things = st.lists(
+    st.one_of(st.tuples(*[numbers] * 4), st.tuples(*[numbers] * 2), st.lists(numbers, max_size=6).map(tuple)), max_size=20
+)
+
+
+@pytest.mark.parametrize("name", sorted(CONVENTIONS))
+@given(raw=raw_things)
+def test_whatever_a_model_says_comes_out_checked(name: str, raw: list[tuple[float, ...]]) -> None:
+    try:
+        found = located([RawThing(n) for n in raw], convention(name), SENT)
+    except PerceptionError as error:
+        assert error.kind == "malformed" and raw
+        return
+    for box in found.boxes:
+        assert 0 <= box.x_min < box.x_max <= 1 and 0 <= box.y_min < box.y_max <= 1
+    assert all(0 <= p.x <= 1 and 0 <= p.y <= 1 for p in found.points)
+    assert len(found.boxes) + len(found.points) <= len(raw)
+    assert bool(found.boxes or found.points) or not raw
+
+
+def test_what_reaches_over_the_border_is_cut_and_said() -> None:
+    found = located([RawThing((-50, 100, 1500, 600))], convention("qwen2.5-vl"), SENT)
+    assert found.boxes[0].x_min == 0 and found.boxes[0].x_max == 1
+    assert "1 cut at the border" in found.notes[0]
+
+
+def test_what_is_no_place_is_dropped_and_counted() -> None:
+    things = [(10, 10, 500, 500), (math.nan, 0, 5, 5), (5, 5, 5, 90), (1200, 10, 1500, 90), (10, 10, 500, 500), (1, 2, 3)]
+    found = located([RawThing(t) for t in things], convention("thousand"), SENT)
+    assert len(found.boxes) == 1 and found.complete
+    for what in ("1 not finite", "1 without an area", "1 outside the picture", "1 repeated", "1 no place"):
+        assert what in found.notes[0]
+
+
+@pytest.mark.parametrize("numbers", [(1500, 10, 1900, 90), (math.nan,) * 4, (math.inf, 1), (5, 5, 5, 5), ()])
+def test_a_reply_of_which_nothing_is_left_is_an_error_and_no_zero(numbers: tuple[float, ...]) -> None:
+    with pytest.raises(PerceptionError) as caught:
+        located([RawThing(numbers)], convention("thousand"), SENT)
+    assert caught.value.kind == "malformed"
+
+
+def test_five_hundred_things_are_capped_and_said_to_be_more() -> None:
+    found = located([RawThing((x, y)) for x in range(0, 1000, 40) for y in range(0, 1000, 50)], convention("thousand"), SENT)
+    assert len(found.points) == MAX_THINGS and not found.complete
+    assert "500 things" in found.notes[-1]
+
+
+def test_swapped_corners_are_put_right() -> None:
+    (box,) = located([RawThing((900, 800, 100, 200))], convention("thousand"), SENT).boxes
+    assert (box.x_min, box.y_min, box.x_max, box.y_max) == (0.1, 0.2, 0.9, 0.8)
+
+
+def test_named_numbers_need_no_order() -> None:
+    (box,) = located([RawThing((100, 200, 300, 400), named=True)], convention("gemini"), SENT).boxes
+    assert box.x_min == 0.1
+
+
+@pytest.mark.parametrize(
+    ("box", "expected"),
+    [((0.1, 0.2, 0.5, 0.6), 0.1), ((100, 200, 500, 600), 0.1), ((128.8, 72.8, 1280, 700), 0.1), ((0, 0, 1, 1), 0.0)],
+)
+def test_one_convention_for_a_whole_reply_is_guessed(box: tuple[float, ...], expected: float) -> None:
+    assert located([RawThing(box)], convention("generic"), SENT).boxes[0].x_min == pytest.approx(expected)
+
+
+def test_no_guess_beyond_the_picture() -> None:
+    with pytest.raises(PerceptionError, match="convention is not known"):
+        located([RawThing((10, 10, 5000, 600))], convention("generic"), SENT)
+
+
+def test_scores_that_are_none_are_left_out() -> None:
+    found = located([RawThing((1, 1, 9, 9), score=s) for s in (7.0,)], convention("thousand"), SENT)
+    assert found.boxes[0].score is None
+
+
+def test_unknown_conventions_are_named() -> None:
+    with pytest.raises(UnknownNameError, match="qwen3-vl"):
+        convention("qwen3")

@@ -1,0 +1,201 @@
+"""What models write when they are asked for places or answers, and what becomes of it."""
+
+from __future__ import annotations
+
+import json
+from time import perf_counter
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from scope_ptz.errors import PerceptionError
+from scope_ptz.perception.replies import MAX_ANSWER_CHARS, MAX_REPLY_CHARS, cannot_tell, read_answer, read_places, without_reasoning
+
+ONE = [(1.0, 2.0, 3.0, 4.0)]
+TWO = [*ONE, (5.0, 6.0, 7.0, 8.0)]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ('[{"bbox_2d": [1, 2, 3, 4], "label": "cone"}]', ONE),
+        ('```json\n[{"bbox_2d": [1, 2, 3, 4], "label": "cone"}]\n```', ONE),
+        ('```json\n[{"bbox_2d": [1, 2, 3, 4]}', ONE),
+        ('Here are the cones [1]:\n\n{"objects": [{"bbox_2d": [1, 2, 3, 4]}, {"bbox_2d": [5, 6, 7, 8]}]}\nAnything else?', TWO),
+        ('{"bbox_2d": [1, 2, 3, 4]}\n{"bbox_2d": [5, 6, 7, 8]}', TWO),
+        ("<think>where [9,9,9,9]?</think>[[1,2,3,4],[5,6,7,8]]", TWO),
+        ("[{'bbox_2d': [1, 2, 3, 4], 'label': \"worker's hat\"},]", ONE),
+        ('{"cones": [[1,2,3,4],[5,6,7,8]]}', TWO),
+        ('[{"bbox_2d": ["1", "2.0", "3", "4"]}]', ONE),
+        ('[{"bbox": [[1,2],[3,4]]}]', ONE),
+        ('[{"x_min":1,"y_min":2,"x_max":3,"y_max":4}]', ONE),
+        ('[{"box":{"xmin":1,"ymin":2,"xmax":3,"ymax":4},"score":0.5}]', ONE),
+        ('[{"x":1,"y":2,"width":2,"height":2}]', ONE),
+        ("这里有一个锥桶：[{\"bbox_2d\": [1, 2, 3, 4], \"label\": \"锥桶\"}]", ONE),
+        ("<|object_ref_start|>cone<|object_ref_end|><|box_start|>(1,2),(3,4)<|box_end|>", ONE),
+        ('[{"point_2d": [1, 2], "label": "a"}]', [(1.0, 2.0)]),
+        ('<points x1="1.5" y1="2" x2="3" y2="4" alt="cones">cones</points>', [(1.5, 2.0), (3.0, 4.0)]),
+        ('{"points":[{"x":1,"y":2}]}', [(1.0, 2.0)]),
+    ],
+)  # fmt: skip
+def test_places_in_any_wrapping(text: str, expected: list[tuple[float, ...]]) -> None:
+    read = read_places(text)
+    assert [t.numbers for t in read.things] == expected
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '[{"bbox_2d": [1, 2, 3, 4], "label": "cone"}, {"bbox_2d": [5, 6, 7, 800',
+        '```json\n[{"bbox_2d": [1, 2, 3, 4], "label": "cone"}, {"bbox_2d": [5, 6, 7, 8',
+        '{"objects": [{"bbox_2d": [1, 2, 3, 4], "label": "a \\" b ] }"}, {"bb',
+        '[{"x_min":1,"y_min":2,"x_max":3,"y_max":4},{"x_min":5,"y_min":6,"x_max":7,"y_max":80',
+        "[[1,2,3,4],[5,6,7,8",
+    ],
+)
+def test_of_a_list_cut_off_only_whole_places_count(text: str) -> None:
+    read = read_places(text)
+    assert [t.numbers for t in read.things] == ONE and not read.complete
+
+
+@given(st.integers(0, 400))
+def test_cut_anywhere_never_a_place_that_was_not_written(at: int) -> None:
+    things = [{"bbox_2d": [100 + i, 200 + i, 300 + i, 400 + i], "label": f"cone {i}"} for i in range(7)]
+    text = json.dumps(things)
+    allowed = [tuple(float(v) for v in t["bbox_2d"]) for t in things]  # type: ignore[attr-defined]
+    try:
+        read = read_places(text[:at])
+    except PerceptionError as error:
+        assert error.kind == "malformed"
+        return
+    assert [t.numbers for t in read.things] == allowed[: len(read.things)]
+    assert read.complete == (at >= len(text))
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["[]", "```json\n[]\n```", '{"objects": []}', "None.", "There are no cones in the image.", "No cones are visible in the picture.",
+     "I see no dogs here.", "Nothing fits the description", "<think>hm</think>[]"],
+)  # fmt: skip
+def test_nothing_found_is_believed_where_it_is_said(text: str) -> None:
+    assert read_places(text).things == ()
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "   ", "I'm sorry, I can't help with that.", "画面中没有锥桶。", "{}",
+     '{"error": "boom", "objects": []}', "[", '{"objects": [',
+     '{"objects": [{"label": "cone"}]}', "The cones are left of the lorry.", "<think>[[1,2,3,4]]", "\x00\x01", "42",
+     "None of your business.", "[" * 3000,
+     '{"count": 3}', "[some] text", "There are 3 cones", "No, I will not look for people [sic] in the image"],
+)  # fmt: skip
+def test_what_cannot_be_read_is_an_error_and_no_zero(text: str) -> None:
+    with pytest.raises(PerceptionError) as caught:
+        read_places(text)
+    assert caught.value.kind == "malformed"
+    assert len(str(caught.value)) < 400
+
+
+def test_not_a_number_and_infinity_are_kept_for_the_check_that_counts_them() -> None:
+    read = read_places(
+        '[{"bbox_2d": [NaN, 2, Infinity, 4]}, {"bbox_2d": [1, 2, 3, 4]}, {"bbox_2d": [1' + "0" * 500 + ", 2, 3, 4]}]"
+    )
+    assert len(read.things) == 3
+
+
+def test_among_places_an_object_without_one_is_counted() -> None:
+    assert [t.numbers for t in read_places('[{"bbox_2d": [1,2,3,4]}, {"label": "cone"}]').things] == [*ONE, ()]
+
+
+def test_labels_and_scores_are_kept() -> None:
+    (thing,) = read_places('[{"bbox_2d": [1,2,3,4], "label": "cone", "confidence": 0.75}]').things
+    assert (thing.label, thing.score) == ("cone", 0.75)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "[" + ",".join(f"[{i},{i},{i + 9},{i + 9}]" for i in range(100_000)) + "]",
+        "[" * 500_000,
+        '{"a":' * 100_000,
+        "cones, " * 300_000,
+        "[1" * 100_000,
+        "'" * 400_000,
+    ],
+    ids=["list", "brackets", "objects", "prose", "numbers", "quotes"],
+)
+def test_huge_replies_take_no_time(text: str) -> None:
+    began = perf_counter()
+    try:
+        read = read_places(text)
+    except PerceptionError as error:
+        assert error.kind == "malformed"
+    else:
+        assert not read.complete
+    assert perf_counter() - began < 5.0
+
+
+@given(st.text(max_size=300))
+def test_any_text_is_places_or_a_perception_error(text: str) -> None:
+    try:
+        read_places(text)
+    except PerceptionError as error:
+        assert error.kind == "malformed"
+
+
+keys = st.sampled_from(["bbox_2d", "point", "x", "y", "objects", "label", "score", "box"])
+leaves = st.one_of(st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=5))
+values = st.recursive(leaves, lambda v: st.one_of(st.lists(v, max_size=5), st.dictionaries(keys, v, max_size=4)), max_leaves=20)
+
+
+@given(values)
+def test_any_json_is_places_or_a_perception_error(value: object) -> None:
+    try:
+        read_places(json.dumps(value))
+    except PerceptionError as error:
+        assert error.kind == "malformed"
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        (" Orange. ", "Orange."),
+        ('"EXIT 14"', "EXIT 14"),
+        ('"A" and "B"', '"A" and "B"'),
+        ("<think>It is red?</think>\nRed.", "Red."),
+        ("let me see</think>Red.", "Red."),
+        ("La porte est rouge.", "La porte est rouge."),
+        ("门是红色的。", "门是红色的。"),
+        ("a\x00b\x1b[2J", "ab[2J"),
+    ],
+)
+def test_answers(text: str, expected: str) -> None:
+    assert read_answer(text) == expected
+
+
+@pytest.mark.parametrize("text", ["", " \n ", "<think>on and on", "<think></think>", '""', "\x00"])
+def test_no_answer_is_an_error(text: str) -> None:
+    with pytest.raises(PerceptionError) as caught:
+        read_answer(text)
+    assert caught.value.kind == "empty"
+
+
+def test_long_answers_are_cut() -> None:
+    assert len(read_answer("blah " * MAX_REPLY_CHARS)) <= MAX_ANSWER_CHARS + 2
+
+
+@pytest.mark.parametrize(
+    "text", ["I cannot tell.", "I can't tell from this picture.", "Unknown", "It is not possible to say.", "Not visible."]
+)
+def test_honest_ignorance(text: str) -> None:
+    assert cannot_tell(text)
+
+
+@pytest.mark.parametrize("text", ["Red.", "No.", "There is no car.", "Three.", "The text reads UNKNOWN ROAD", "A cannot tell sign"])
+def test_answers_that_tell(text: str) -> None:
+    assert not cannot_tell(text)
+
+
+def test_reasoning_is_cut_in_all_its_forms() -> None:
+    assert without_reasoning("<think>a</think>b<thinking>c</thinking>d") == "bd"
