@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from pathlib import Path
 
 from platformdirs import user_cache_path, user_config_path
@@ -46,3 +48,8 @@ def load_settings() -> ScopeSettings:
         first = error.errors()[0]
         name = "SCOPE_" + "_".join(str(part) for part in first["loc"]).upper()
         raise ConfigError(f"The environment variable {name} is wrong: {first['msg']}.") from error
+
+
+def has_desktop() -> bool:
+    """Whether this machine has a desktop on which a picture that is opened would be seen."""
+    return sys.platform in ("darwin", "win32") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

@@ -155,10 +155,27 @@ def test_scene_show(scope: Scope, tmp_path: Path) -> None:
     sheet = tmp_path / "sheet.png"
     done = scope("scene", "show", SCENE, "--contact-sheet", str(sheet))
     assert done.code == 0
-    for words in ("from-the-roof", "NO ENTRY", "white roller", "zebra", "5 ball"):
+    for words in ("from-the-roof", "NO ENTRY", "white roller", "zebra", "5 ball", "samples a pixel", "SHA-256"):
         assert words in done.out
     with Image.open(sheet) as image:
         assert image.width == 1600
+
+
+def test_scene_show_opens_its_sheet_on_wish(scope: Scope, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    shown: list[str] = []
+    monkeypatch.setattr("typer.launch", shown.append)
+    monkeypatch.setenv("SCOPE_CACHE_DIR", str(tmp_path / "cache"))
+    assert scope("scene", "show", SCENE).code == 0
+    assert shown == [], "nobody sits at a terminal"
+    assert scope("scene", "show", SCENE, "--open").code == 0
+    assert len(shown) == 1 and Path(shown[0]).is_file() and Path(shown[0]).is_relative_to(tmp_path / "cache")
+
+
+def test_scene_card_as_markdown(scope: Scope) -> None:
+    done = scope("scene", "show", SCENE, "--markdown", "--contact-sheet", "yard.jpg")
+    assert done.code == 0
+    assert done.out.startswith("# ") and "](yard.jpg)" in done.out and "## Deliberately absent" in done.out
+    assert not Path("yard.jpg").exists(), "the page only names the picture"
 
 
 def test_scene_view(scope: Scope, tmp_path: Path) -> None:

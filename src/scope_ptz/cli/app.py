@@ -192,14 +192,18 @@ def scene_list(as_json: JsonOption = False) -> None:
 def scene_show(
     name: SceneName,
     contact_sheet: Annotated[
-        Path | None, typer.Option("--contact-sheet", help="Write a picture of all presets to this PNG file.")
+        Path | None, typer.Option("--contact-sheet", help="PNG file for the picture of all presets (default: in the cache).")
     ] = None,
+    opened: Annotated[
+        bool | None, typer.Option("--open/--no-open", help="Open the picture (default: when there is a desktop to see it on).")
+    ] = None,
+    as_markdown: Annotated[bool, typer.Option("--markdown", help="Print the card as a Markdown page and nothing else.")] = False,
 ) -> None:
-    """Print a scene's card: viewpoints, presets, what is in it and what is not."""
+    """Print a scene's card (viewpoints, presets, what is in it and what is not) and open a picture of all presets."""
     with ending():
         from scope_ptz.cli.scenes import show_scene
 
-        show_scene(name, contact_sheet)
+        show_scene(name, contact_sheet, opened=opened, as_markdown=as_markdown)
 
 
 @scene_app.command("view")

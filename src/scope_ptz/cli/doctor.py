@@ -16,8 +16,8 @@ from rich.console import Console
 from rich.text import Text
 
 from scope_ptz import __version__
+from scope_ptz.cli.cards import folder_bytes
 from scope_ptz.cli.endings import FAILED, put_json
-from scope_ptz.cli.scenes import folder_bytes
 from scope_ptz.cli.session import DEFAULT_SCENE, open_scene, scene_search
 from scope_ptz.errors import PackError
 from scope_ptz.settings import ScopeSettings, load_settings

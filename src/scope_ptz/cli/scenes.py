@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections import Counter
+import sys
 from pathlib import Path
 from typing import Any
 
 import anyio
+import typer
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from scope_ptz.cli.cards import card, folder_bytes, markdown, megabytes
 from scope_ptz.cli.endings import put, put_json
 from scope_ptz.cli.session import Start, open_camera, open_scene, scene_search
 from scope_ptz.errors import InputError, OutputError
 from scope_ptz.geometry import Pose
-from scope_ptz.settings import load_settings
+from scope_ptz.settings import has_desktop, load_settings
 from scope_ptz.world.pack import Scene
 from scope_ptz.world.pack import list_scenes as scene_names
 
@@ -32,7 +34,7 @@ def list_scenes(*, as_json: bool) -> None:
     table = Table("scene", "viewpoint", "presets", "instances", "texts", "size", box=None, pad_edge=False, header_style="dim")
     for scene in scenes:
         for number, viewpoint in enumerate(scene["viewpoints"]):
-            shared = (str(scene["instances"]), str(scene["texts"]), _megabytes(scene["bytes"])) if number == 0 else ("", "", "")
+            shared = (str(scene["instances"]), str(scene["texts"]), megabytes(scene["bytes"])) if number == 0 else ("", "", "")
             table.add_row(scene["name"] if number == 0 else "", viewpoint["name"], ", ".join(viewpoint["presets"]), *shared)
     Console(highlight=False).print(table)
 
@@ -50,50 +52,40 @@ def _facts(scene: Scene) -> dict[str, Any]:
     }
 
 
-def folder_bytes(folder: Path) -> int:
-    """Size of all files in a folder."""
-    return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
+def show_scene(name: str, sheet: Path | None, *, opened: bool | None, as_markdown: bool) -> None:
+    """Print a scene's card, and draw a sheet of all its presets.
 
-
-def _megabytes(size: int) -> str:
-    return f"{size / 1e6:.1f} MB"
-
-
-def show_scene(name: str, contact_sheet: Path | None) -> None:
-    """Print a scene's card; on wish write a picture of all presets."""
+    Args:
+        name: the scene.
+        sheet: PNG file for the sheet; one in the cache folder when None.
+        opened: whether the sheet is shown in the desktop's picture viewer; None: when a person sits at a desktop.
+        as_markdown: print the card as a Markdown page and nothing else.
+    """
     scene = open_scene(name)
+    if as_markdown:
+        put(markdown(scene, None if sheet is None else str(sheet)).rstrip("\n"))
+        return
     file, console = scene.file, Console(highlight=False)
     console.print(Text.assemble((file.title, "bold"), (f"  ({file.name} {file.version}, Blender {file.blender_version})", "dim")))
-    for viewpoint in file.viewpoints:
-        size = _megabytes(folder_bytes(scene.folder / viewpoint.name))
-        x, y, z = viewpoint.position_m
+    for paragraph in card(scene):
         console.print()
-        console.print(Text.assemble((f"Viewpoint {viewpoint.name}", "bold cyan"), f"  {viewpoint.description}"))
-        console.print(Text(f"  at ({x:.1f}, {y:.1f}, {z:.1f}) m, {size}", style="dim"))
-        for preset in file.presets:
-            if preset.viewpoint == viewpoint.name:
-                pose = f"pan {preset.pan_deg:g}°, tilt {preset.tilt_deg:g}°, zoom {preset.zoom:g}x"
-                home = "  (home)" if preset.name == file.home_preset else ""
-                console.print(Text.assemble(("  " + preset.name, "bold"), f"  {pose}{home}  ", (preset.description, "dim")))
-    categories = Counter([i.category for i in file.instances] + [a.category for a in file.actors])
-    inventory = ", ".join(f"{count} {category}" for category, count in categories.most_common())
-    _paragraph(console, f"{len(file.instances)} things of {len(categories)} kinds", inventory)
-    readable = Counter(f"“{' '.join(t.text.split())}”" for t in file.texts)
-    _paragraph(console, f"{len(file.texts)} texts", "; ".join(f"{t} ({n} times)" if n > 2 else t for t, n in readable.items()))
-    movers = ", ".join(
-        f"{a.name} ({a.waypoints[0][0]:g} to {a.waypoints[-1][0]:g} s of every {a.period_s:g} s)" for a in file.actors
-    )
-    _paragraph(console, f"{len(file.actors)} moving", movers)
-    _paragraph(console, "Deliberately absent", ", ".join(file.absent))
-    if contact_sheet is not None:
-        anyio.run(_write_contact_sheet, scene, contact_sheet)
-        console.print(Text(f"\nWrote {contact_sheet}"), soft_wrap=True)
+        console.print(Text(paragraph.title, style="bold cyan"))
+        for line, body in paragraph.lines:
+            console.print(Text.assemble("  ", (f"{line}  " if line else "", "bold"), body.replace("`", "")))
+    path = sheet or _cached_sheet(scene)
+    anyio.run(_write_contact_sheet, scene, path)
+    console.print(Text(f"\nContact sheet: {path}"), soft_wrap=True)
+    if sys.stdout.isatty() and has_desktop() if opened is None else opened:
+        typer.launch(str(path))
 
 
-def _paragraph(console: Console, title: str, body: str) -> None:
-    console.print()
-    console.print(Text(title, style="bold cyan"))
-    console.print(Text(f"  {body or 'none'}"))
+def _cached_sheet(scene: Scene) -> Path:
+    folder = load_settings().cache_dir / "sheets"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"{folder} cannot be made: {error.strerror}. Set SCOPE_CACHE_DIR, or give --contact-sheet.") from error
+    return folder / f"{scene.name}-{scene.file.version}.png"
 
 
 async def _write_contact_sheet(scene: Scene, path: Path) -> None:
