@@ -62,7 +62,10 @@ class Labels(_Record):
 
 
 class Started(_Record):
-    """The header. ``scene`` and ``viewpoint``: simulated cameras only. ``frame``: the picture before the first step."""
+    """The header. ``scene`` and ``viewpoint``: simulated cameras only. ``frame``: the picture before the first step.
+
+    ``planner_details``: what made the planner plan as it did, such as the exact prompt.
+    """
 
     event: Literal["start"] = "start"
     format: Literal[1] = 1
@@ -71,6 +74,7 @@ class Started(_Record):
     started: datetime
     instruction: str
     planner: str
+    planner_details: dict[str, str] = {}
     perception: str
     camera: str
     simulated: bool
@@ -88,12 +92,13 @@ class Started(_Record):
 
 
 class Decided(_Record):
-    """What the planner wants at a step."""
+    """What the planner wants at a step. ``view``: the picture that it was shown, for planners that see."""
 
     event: Literal["decision"] = "decision"
     step: int
     decision: Annotated[CallTools | Finish, Field(discriminator="kind")]
     planner_s: float
+    view: str | None = None
 
 
 class Called(_Record):
@@ -112,15 +117,21 @@ class Called(_Record):
 
 
 class Ended(_Record):
-    """How it ended. ``text``: the answer, question or reason; ``detail``: for whoever has to find a fault."""
+    """How it ended. ``text``: the answer, question or reason; ``detail``: for whoever has to find a fault.
+
+    ``kind``: in which way a planner's model server failed (``endpoints.FailureKind``: "context-overflow", "refused", ...),
+    where one did; ``server_events``: how often servers failed in the run, by kind, also where a further attempt made it good.
+    """
 
     event: Literal["end"] = "end"
     outcome: Outcome
     text: str
     detail: str = ""
+    kind: str | None = None
     steps: int
     bad_calls: int
     perception_failures: int
+    server_events: dict[str, int] = {}
     usage: Usage
     pose: Place
     scene_time_s: float
@@ -134,12 +145,13 @@ Listener = Callable[[Started | Decided | Called | Ended], None]
 
 
 class Run(_Record):
-    """A finished run."""
+    """A finished run. ``start``: where the camera looked when it began."""
 
     instruction: str
+    start: Place
     exchanges: tuple[Exchange, ...]
     ended: Ended
 
     def past_turn(self) -> PastTurn:
         """The run as an earlier turn of a conversation."""
-        return PastTurn(instruction=self.instruction, exchanges=self.exchanges, reply=self.ended.text)
+        return PastTurn(instruction=self.instruction, exchanges=self.exchanges, reply=self.ended.text, start=self.start.pose())

@@ -85,7 +85,7 @@ class _Script:
     def __init__(self, trace: Trace, camera: Camera) -> None:
         self.decisions = _complete_decisions(trace)
         self.times_s = {call.step: call.scene_time_s for call in reversed(trace.calls)}
-        self.replies: deque[Reply] = deque(reply for call in trace.calls for reply in call.replies)
+        self.replies: deque[tuple[int, Reply]] = deque((call.step, reply) for call in trace.calls for reply in call.replies)
         self.end = trace.ended.text if trace.ended else "The recording was cut off."
         self._camera = camera
 
@@ -98,15 +98,15 @@ class _Script:
 
 def _complete_decisions(trace: Trace) -> list[Decision]:
     """The recorded decisions; of a step that was broken off only the calls that were made."""
-    made = [call.step for call in trace.calls]
+    made = {(call.step, call.index) for call in trace.calls}
     decisions: list[Decision] = []
     for record in trace.decisions:
         decision = record.decision
         if isinstance(decision, CallTools):
-            count = made.count(record.step)
-            if count == 0:
+            calls = tuple(call for index, call in enumerate(decision.calls) if (record.step, index) in made)
+            if not calls:
                 break
-            decision = decision.model_copy(update={"calls": decision.calls[:count]})
+            decision = decision.model_copy(update={"calls": calls})
         decisions.append(decision)
     return decisions
 
@@ -144,9 +144,14 @@ class _RecordedPerception(Perception):
         return self._next(frame, "point", description, Points)
 
     def _next(self, frame: Frame, kind: Question, asked: str, as_type: type[_Looked]) -> _Looked:
-        reply = self._replies.popleft() if self._replies else None
-        if reply is None or (reply.kind, reply.asked) != (kind, asked):
+        # Looks that were made at the same time may ask in another order now; they are all of one step.
+        step = self._replies[0][0] if self._replies else 0
+        fitting = (i for i, (at, reply) in enumerate(self._replies) if at == step and (reply.kind, reply.asked) == (kind, asked))
+        index = next(fitting, None)
+        if index is None:
             raise PerceptionError(f"The recording holds no reply to {kind} '{asked}' at {frame.time_s:.2f} s.")
+        _, reply = self._replies[index]
+        del self._replies[index]
         return reply.restore(as_type)
 
 
@@ -159,7 +164,7 @@ class _PacedCamera(TimedCamera):
 
     async def frame(self) -> Frame:
         if self._script.replies:
-            await self._script.wait_until(self._script.replies[0].frame_time_s)
+            await self._script.wait_until(self._script.replies[0][1].frame_time_s)
         return await super().frame()
 
 

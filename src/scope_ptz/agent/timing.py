@@ -10,7 +10,8 @@ from typing import Any, Literal, TypeVar
 from pydantic import BaseModel, ConfigDict
 
 from scope_ptz.camera.base import Arrival, Camera, CameraInfo, Frame, PresetInfo
-from scope_ptz.errors import PerceptionError, TraceError
+from scope_ptz.endpoints.failures import Attempt, count_failures
+from scope_ptz.errors import PerceptionError, PlannerError, TraceError
 from scope_ptz.geometry import Pose
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
 
@@ -21,7 +22,11 @@ _Looked = TypeVar("_Looked", Caption, Answer, Detections, Points)
 
 
 class Timings(BaseModel):
-    """Wall seconds. ``render_s`` is the making of simulated frames; what is left of ``total_s`` is the loop's own work."""
+    """Wall seconds. ``render_s`` is the making of simulated frames; what is left of ``total_s`` is the loop's own work.
+
+    What goes on at the same time counts once. ``first_token_s``: the part of ``planner_s`` that was spent before first tokens,
+    as far as the planner's server streams.
+    """
 
     model_config = ConfigDict(frozen=True)
 
@@ -30,29 +35,45 @@ class Timings(BaseModel):
     camera_s: float = 0.0
     render_s: float = 0.0
     total_s: float = 0.0
+    first_token_s: float = 0.0
 
     def __sub__(self, earlier: Timings) -> Timings:
         return Timings(**{name: round(getattr(self, name) - getattr(earlier, name), 6) for name in Timings.model_fields})
 
 
 class Stopwatch:
-    """Adds up wall time by part of the system."""
+    """Adds up wall time by part of the system. Calls of one part that overlap count once."""
 
     def __init__(self) -> None:
         self._began = perf_counter()
         self._spent: dict[Part, float] = {"planner": 0.0, "perception": 0.0, "camera": 0.0, "render": 0.0}
+        self._under_way: dict[Part, int] = dict.fromkeys(self._spent, 0)
+        self._since: dict[Part, float] = dict.fromkeys(self._spent, 0.0)
+        self._first_tokens_s = 0.0
 
     @contextmanager
     def measure(self, part: Part) -> Iterator[None]:
-        began = perf_counter()
+        if not self._under_way[part]:
+            self._since[part] = perf_counter()
+        self._under_way[part] += 1
         try:
             yield
         finally:
-            self._spent[part] += perf_counter() - began
+            self._under_way[part] -= 1
+            if not self._under_way[part]:
+                self._spent[part] += perf_counter() - self._since[part]
+
+    def waited_for_first_token(self, seconds: float) -> None:
+        self._first_tokens_s += seconds
 
     def read(self) -> Timings:
-        spent = {f"{part}_s": round(seconds, 6) for part, seconds in self._spent.items()}
-        return Timings(**spent, total_s=round(perf_counter() - self._began, 6))
+        """What was spent so far, measurements that are under way included."""
+        now = perf_counter()
+        spent = {
+            f"{part}_s": round(seconds + (now - self._since[part] if self._under_way[part] else 0.0), 6)
+            for part, seconds in self._spent.items()
+        }
+        return Timings(**spent, total_s=round(now - self._began, 6), first_token_s=round(self._first_tokens_s, 6))
 
 
 class TimedCamera(Camera):
@@ -102,7 +123,10 @@ class TimedCamera(Camera):
 
 
 class Reply(BaseModel):
-    """What perception was asked and what it said: ``result`` or ``error`` is set. ``frame_time_s``: scene time of the frame."""
+    """What perception was asked and what it said: ``result`` or ``error`` is set. ``frame_time_s``: scene time of the frame.
+
+    ``server_events``: how often a model server failed at it, by kind, those included that a further attempt made good.
+    """
 
     model_config = ConfigDict(frozen=True)
 
@@ -112,6 +136,7 @@ class Reply(BaseModel):
     error: str | None = None
     frame_time_s: float
     wall_s: float
+    server_events: dict[str, int] = {}
 
     def restore(self, as_type: type[_Looked]) -> _Looked:
         """The typed result; an error is raised again as ``PerceptionError``."""
@@ -149,18 +174,33 @@ class TimedPerception(Perception):
         return await self._ask("point", description, frame, lambda: self._perception.point(frame, description))
 
     async def _ask(self, kind: Question, asked: str, frame: Frame, look: Callable[[], Awaitable[_Looked]]) -> _Looked:
-        began, result, error = perf_counter(), None, None
+        began, result, error, events = perf_counter(), None, None, dict[str, int]()
         try:
             with self._watch.measure("perception"):
                 seen = await look()
             result = seen.model_dump(mode="json")
+            events = count_failures(seen.attempts)
         except PerceptionError as failure:
-            error = str(failure)
+            error, events = str(failure), server_events(failure)
             raise
         finally:
             if result is not None or error is not None:
                 wall_s = round(perf_counter() - began, 6)
                 self._replies.append(
-                    Reply(kind=kind, asked=asked, result=result, error=error, frame_time_s=frame.time_s, wall_s=wall_s)
+                    Reply(
+                        kind=kind,
+                        asked=asked,
+                        result=result,
+                        error=error,
+                        frame_time_s=frame.time_s,
+                        wall_s=wall_s,
+                        server_events=events,
+                    )
                 )
         return seen
+
+
+def server_events(error: PerceptionError | PlannerError) -> dict[str, int]:
+    """How often a model server failed, by kind, before an error came of it. A reply that came and was of no use counts as well."""
+    events = count_failures(a for a in error.attempts if isinstance(a, Attempt))
+    return events if error.kind is None or error.kind in events else {**events, str(error.kind): 1}

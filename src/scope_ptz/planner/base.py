@@ -30,9 +30,9 @@ class ToolCall(_Model):
 
 
 class Picture(_Model):
-    """A frame as planners that see get it. It is kept out of traces, which name the file instead."""
+    """A frame as planners that see get it, a JPEG as a data URL. It is kept out of traces, which name the file instead."""
 
-    jpeg: bytes = Field(repr=False)
+    data_url: str = Field(repr=False)
     caption: str
 
 

@@ -6,7 +6,6 @@ cache hits. The one exception stands last: the newest view, for planners that se
 
 from __future__ import annotations
 
-import base64
 import json
 import re
 from collections.abc import Sequence
@@ -150,8 +149,4 @@ def _parts(content: str | list[Message]) -> list[Message]:
 
 
 def _picture_parts(picture: Picture) -> list[Message]:
-    coded = base64.b64encode(picture.jpeg).decode("ascii")
-    return [
-        {"type": "text", "text": picture.caption},
-        {"type": "image_url", "image_url": {"url": f"data:image/jpeg;base64,{coded}"}},
-    ]
+    return [{"type": "text", "text": picture.caption}, {"type": "image_url", "image_url": {"url": picture.data_url}}]
