@@ -168,46 +168,57 @@ PETALS = {
 def blooms(
     s: Solid, colours: Sequence[str], spread_m: float, low: float, high: float, count: int, seed: int, *, ball: bool = False
 ) -> None:
-    """Flower heads on stalks with leaves above ``low``; ``ball`` lets them trail all round instead of standing up."""
+    """Flower heads among leaves between two heights; ``ball`` lets them trail over an edge instead of standing up."""
     rng = Random(f"blooms {seed} {colours}")
-    green = [plain("flower leaf 0", (0.055, 0.115, 0.025), 0.6), plain("flower leaf 1", (0.10, 0.17, 0.045), 0.6)]
-    for k in range(count * 3):
-        a, r = rng.uniform(0, 2 * math.pi), spread_m * rng.random() ** 0.5
-        z = low + (high - low) * rng.uniform(-0.2 if ball else 0.0, 0.9)
+    green = [plain("flower leaf 0", (0.085, 0.190, 0.040), 0.6), plain("flower leaf 1", (0.15, 0.27, 0.07), 0.6)]
+    for k in range(count * 4):
+        a, share = rng.uniform(0, 2 * math.pi), rng.random() ** 0.5
+        r, flower = spread_m * share, k % 4 == 0
         if ball:
-            z -= 0.30 * (r / spread_m) ** 2 * rng.random() * (high - low) * 4
+            z = low + (high - low) * (0.75 - 1.7 * share**3 * rng.random()) + (0.03 if flower else 0.0)
+        else:
+            z = low + (high - low) * (rng.uniform(0.55, 1.0) if flower else rng.uniform(0.0, 0.75)) * (1.1 - 0.35 * share**2)
         tip = (r * math.cos(a), r * math.sin(a), z)
-        size, turn = rng.uniform(0.035, 0.065), rng.uniform(0, 2 * math.pi)
-        if k % 3:
-            dx, dy, up = size * math.cos(turn), size * math.sin(turn), rng.uniform(-0.5, 0.6) * size
-            side = (-dy * 0.45, dx * 0.45)
-            s.add(
-                [tip, (tip[0] + dx + side[0], tip[1] + dy + side[1], tip[2] + up), (tip[0] + 2 * dx, tip[1] + 2 * dy, tip[2] + up * 0.6),
-                 (tip[0] + dx - side[0], tip[1] + dy - side[1], tip[2] + up)],
-                [(0, 1, 2, 3)],
-                green[k % 2],
-            )  # fmt: skip
-            continue
-        petal = plain(f"petal {colours[k % len(colours)]}", PETALS[colours[k % len(colours)]], 0.6)
-        if not ball:
-            s.rod((tip[0] * 0.5, tip[1] * 0.5, low - 0.05), tip, 0.004, green[0], sides=4)
-        for j in range(5):
-            b = turn + 2 * math.pi * j / 5
-            out = (size * 0.75 * math.cos(b), size * 0.75 * math.sin(b))
-            s.add(
-                [tip, (tip[0] + out[0] - out[1] * 0.5, tip[1] + out[1] + out[0] * 0.5, tip[2] + 0.012),
-                 (tip[0] + out[0] * 1.35, tip[1] + out[1] * 1.35, tip[2] + 0.004),
-                 (tip[0] + out[0] + out[1] * 0.5, tip[1] + out[1] - out[0] * 0.5, tip[2] + 0.012)],
-                [(0, 1, 2, 3)],
-                petal,
-            )  # fmt: skip
+        turn = rng.uniform(0, 2 * math.pi)
+        if flower:
+            tint = colours[(k // 4) % len(colours)]
+            _flower(s, tip, rng.uniform(0.045, 0.065), turn, plain(f"petal {tint}", PETALS[tint], 0.6))
+        else:
+            _leaf(s, tip, rng.uniform(0.04, 0.075), turn, rng.uniform(-0.6, 0.5), green[k % 2])
+
+
+def _leaf(s: Solid, at: Point, size: float, turn: float, lift: float, material: bpy.types.Material) -> None:
+    (x, y, z), c, w = at, size * math.cos(turn), size * math.sin(turn)
+    up = lift * size
+    points = [
+        at,
+        (x + c - w * 0.45, y + w + c * 0.45, z + up),
+        (x + 2 * c, y + 2 * w, z + up),
+        (x + c + w * 0.45, y + w - c * 0.45, z + up),
+    ]
+    s.add(points, [(0, 1, 2, 3)], material)
+
+
+def _flower(s: Solid, at: Point, size: float, turn: float, material: bpy.types.Material) -> None:
+    """Five petals around a raised middle."""
+    x, y, z = at
+    for j in range(5):
+        b = turn + 2 * math.pi * j / 5
+        c, w = size * math.cos(b), size * math.sin(b)
+        points = [
+            at,
+            (x + c - w * 0.6, y + w + c * 0.6, z + 0.016),
+            (x + c * 1.35, y + w * 1.35, z - 0.004),
+            (x + c + w * 0.6, y + w - c * 0.6, z + 0.016),
+        ]
+        s.add(points, [(0, 1, 2, 3)], material)
 
 
 def flower_bucket(colours: Sequence[str], *, seed: int = 0) -> Built:
     """A zinc bucket of cut flowers, 0.7 m high."""
     s = Solid(f"bucket of {colours[0]} flowers")
     s.lathe([(0.11, 0.0), (0.115, 0.01), (0.15, 0.30), (0.158, 0.305), (0.15, 0.31), (0.13, 0.28)], steel(), steps=20)
-    blooms(s, colours, 0.19, 0.34, 0.68, 26, seed)
+    blooms(s, colours, 0.19, 0.30, 0.70, 40, seed)
     return s.built()
 
 

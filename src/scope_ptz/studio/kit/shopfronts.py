@@ -41,7 +41,7 @@ class Front:
 def shop_front(spec: Front) -> Built:
     """Woodwork, glass and the room behind, as one thing; the door and the fascia are built apart."""
     s = Solid("shop front")
-    wood = paint(spec.colour, dirt=0.22, roughness=0.34)
+    wood = paint(spec.colour, dirt=0.10, roughness=0.34)
     w = spec.width_m / 2
     for x in (-w + PILASTER_M / 2, w - PILASTER_M / 2):
         s.box((PILASTER_M, 0.20, 3.38), (x, 0.02, 1.69), wood, 0.012)
