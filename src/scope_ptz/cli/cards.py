@@ -85,8 +85,8 @@ def _making(scene: Scene) -> Iterator[tuple[str, str]]:
         yield (
             place.name,
             f"panorama {manifest.base.width}x{manifest.base.height} at {manifest.samples} samples a pixel, denoised; "
-            f"numbers of things {manifest.ids.width}x{manifest.ids.height}; distances {manifest.depth.width}x{manifest.depth.height}; "
-            f"{len(manifest.tiles)} sharper tiles; {sprites} pictures of moving things",
+            f"numbers of things {manifest.ids.width}x{manifest.ids.height}; "
+            f"distances {manifest.depth.width}x{manifest.depth.height}; {len(manifest.tiles)} sharper tiles; {sprites} pictures of moving things",
         )
 
 
