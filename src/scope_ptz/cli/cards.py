@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 
-from scope_ptz.world.models import ScenePreset, SceneViewpoint
+from scope_ptz.world.models import Layer, Manifest, ScenePreset, SceneViewpoint
 from scope_ptz.world.pack import Scene
 
 
@@ -82,12 +82,13 @@ def _making(scene: Scene) -> Iterator[tuple[str, str]]:
     for place in scene.file.viewpoints:
         manifest = scene.viewpoint(place.name).manifest
         sprites = sum(len(sheet.sprites) for sheet in manifest.actors)
-        yield (
-            place.name,
-            f"panorama {manifest.base.width}x{manifest.base.height} at {manifest.samples} samples a pixel, denoised; "
-            f"numbers of things {manifest.ids.width}x{manifest.ids.height}; "
-            f"distances {manifest.depth.width}x{manifest.depth.height}; {len(manifest.tiles)} sharper tiles; {sprites} pictures of moving things",
-        )
+        layers = ", ".join(f"{part} {layer.width}x{layer.height}" for part, layer in _panoramas(manifest))
+        rest = f"{len(manifest.tiles)} sharper tiles, {sprites} pictures of moving things"
+        yield place.name, f"{layers}, at {manifest.samples} samples a pixel and denoised; {rest}"
+
+
+def _panoramas(manifest: Manifest) -> tuple[tuple[str, Layer], ...]:
+    return ("panorama", manifest.base), ("numbers of things", manifest.ids), ("distances", manifest.depth)
 
 
 def _checksums(scene: Scene) -> Iterator[tuple[str, str]]:

@@ -1,0 +1,126 @@
+"""How many of the texts that are legible by definition an OCR engine (rapidocr) reads, in views drawn by seed.
+
+    python benchmarks/reading.py [--scene NAME ...] [--views 24] [--seed 1] [--misses]
+
+Every view aims near a text, from a viewpoint that can read it, at a zoom that makes it legible. All legible texts of the view
+count. A text is read when the engine's words where it stands are the same but for one character in six, case and spaces left aside.
+Needs the extra ``ocr``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import re
+import sys
+from collections.abc import Iterator, Sequence
+from difflib import SequenceMatcher
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from rapidocr import RapidOCR
+
+from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose, pan_tilt_deg
+from scope_ptz.world.pack import Scene, find_scenes
+from scope_ptz.world.truth import MIN_CAP_HEIGHT_PX, TextSighting, view_truth
+from scope_ptz.world.views import picture
+
+WIDTH, HEIGHT = 1280, 720
+ALIKE = 5 / 6
+MARGIN = 0.012
+"""Of the frame: how far the engine's boxes may lie beside a text's."""
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--scene", action="append", help="scene (default: all)")
+    parser.add_argument("--search", type=Path, action="append", default=[], help="extra folder of scenes")
+    parser.add_argument("--views", type=int, default=24, help="views a scene")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--misses", action="store_true", help="list what was not read")
+    arguments = parser.parse_args()
+    folders = find_scenes(arguments.search)
+    engine = RapidOCR()
+    for name in arguments.scene or list(folders):
+        if name not in folders:
+            print(f"no scene '{name}'; known: {', '.join(folders) or 'none'}", file=sys.stderr)
+            return 2
+        read, missed = _measure(Scene(folders[name]), engine, arguments.views, arguments.seed)
+        total = read + len(missed)
+        print(f"{name}: {read} of {total} legible texts read ({read / max(1, total):.1%}) in {arguments.views} views", flush=True)
+        if arguments.misses:
+            for line in missed:
+                print(f"  {line}")
+    return 0
+
+
+def _measure(scene: Scene, engine: RapidOCR, views: int, seed: int) -> tuple[int, list[str]]:
+    read, missed = 0, []
+    for viewpoint, pose, legible in _views(scene, views, random.Random(seed)):
+        view = _perspective(pose)
+        words = _words(engine, picture(scene, viewpoint, view, 0.0))
+        for text in legible:
+            found = _at(text, words)
+            if _alike(text.text.text, found) >= ALIKE:
+                read += 1
+            else:
+                place = f"{viewpoint} {pose.pan_deg:.1f} {pose.tilt_deg:.1f} {pose.zoom:.2f}x"
+                size = f"capitals {text.cap_height_px:.0f} px, {text.angle_deg:.0f} deg"
+                missed.append(f"{text.text.text!r} as {found!r}, {size}, {place}")
+    return read, missed
+
+
+def _views(scene: Scene, count: int, rng: random.Random) -> Iterator[tuple[str, Pose, list[TextSighting]]]:
+    """Poses with at least one legible text, and their legible texts."""
+    limits, done = Limits(), 0
+    for _ in range(40 * count):
+        place, text = rng.choice(scene.file.viewpoints), rng.choice(scene.file.texts)
+        offset = np.array(text.centre_m) - np.array(place.position_m)
+        pan, tilt = (float(v) for v in pan_tilt_deg(offset))
+        caps_rad = text.cap_height_m / float(np.linalg.norm(offset))
+        for _ in range(4):  # a zoom at which this text is legible, when there is one
+            zoom = rng.uniform(limits.min_zoom, limits.max_zoom)
+            if caps_rad * _perspective(Pose(zoom=zoom)).focal_px >= MIN_CAP_HEIGHT_PX:
+                break
+        else:
+            continue
+        pan += rng.uniform(-5, 5) / zoom - place.pan0_bearing_deg
+        pose, _ = limits.clamp(Pose(limits.aim_pan_deg(pan), tilt + rng.uniform(-3, 3) / zoom, zoom))
+        legible = view_truth(scene, place.name, _perspective(pose), 0.0).legible
+        if legible:
+            yield place.name, pose, list(legible)
+            done += 1
+            if done == count:
+                return
+
+
+def _perspective(pose: Pose) -> Perspective:
+    return Perspective(pose.pan_deg, pose.tilt_deg, AXIS_M5075_G.hfov_deg(pose.zoom), WIDTH, HEIGHT)
+
+
+def _words(engine: RapidOCR, image: NDArray[np.uint8]) -> list[tuple[float, float, str]]:
+    """Middle (normalised) and characters of each line that the engine finds."""
+    result = engine(image[..., ::-1])
+    if result.boxes is None or result.txts is None:
+        return []
+    middles = np.asarray(result.boxes).mean(axis=1) / (WIDTH, HEIGHT)
+    return [(float(x), float(y), str(text)) for (x, y), text in zip(middles, result.txts, strict=True)]
+
+
+def _at(text: TextSighting, words: Sequence[tuple[float, float, str]]) -> str:
+    """What the engine read within a text's box, in reading order."""
+    x0, y0, x1, y1 = text.box
+    inside = [w for w in words if x0 - MARGIN <= w[0] <= x1 + MARGIN and y0 - MARGIN <= w[1] <= y1 + MARGIN]
+    return " ".join(w[2] for w in sorted(inside, key=lambda w: (round(w[1] * 40), w[0])))
+
+
+def _alike(wanted: str, found: str) -> float:
+    a, b = (re.sub(r"[^a-z0-9]", "", s.lower()) for s in (wanted, found))
+    if a and a in b:
+        return 1.0
+    return SequenceMatcher(None, a, b, autojunk=False).ratio()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
