@@ -11,12 +11,10 @@ from __future__ import annotations
 import asyncio
 import json
 import socket
-import ssl
 import threading
 from collections.abc import Awaitable, Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
-from pathlib import Path
 from types import TracebackType
 from typing import Any
 
@@ -402,7 +400,6 @@ class Misbehaving:
 
     script: Iterable[Behaviour] = ()
     then: Behaviour = field(default_factory=good)
-    tls: tuple[Path, Path] | None = None
     requests: list[Request] = field(default_factory=list)
     connections: int = 0
     most_at_once: int = 0
@@ -417,7 +414,7 @@ class Misbehaving:
 
     @property
     def root(self) -> str:
-        return f"{'https' if self.tls else 'http'}://127.0.0.1:{self.port}"
+        return f"http://127.0.0.1:{self.port}"
 
     @property
     def url(self) -> str:
@@ -437,11 +434,7 @@ class Misbehaving:
 
     async def _main(self) -> None:
         self._loop, self._stop = asyncio.get_running_loop(), asyncio.Event()
-        context = None
-        if self.tls:
-            context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
-            context.load_cert_chain(*self.tls)
-        server = await asyncio.start_server(self._accept, "127.0.0.1", self.port, ssl=context, limit=64 * 2**20)
+        server = await asyncio.start_server(self._accept, "127.0.0.1", self.port, limit=64 * 2**20)
         self.port = server.sockets[0].getsockname()[1]
         self._ready.set()
         await self._stop.wait()
@@ -462,6 +455,8 @@ class Misbehaving:
         finally:
             self._open.discard(task)
             writer.close()
+            with suppress(OSError, asyncio.CancelledError):
+                await writer.wait_closed()
 
     async def _answer(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> bool:
         request = await _read(reader)
@@ -503,6 +498,28 @@ def nobody_listens() -> Iterator[str]:
     with socket.socket() as held:
         held.bind(("127.0.0.1", 0))
         yield f"http://127.0.0.1:{held.getsockname()[1]}/v1"
+
+
+@contextmanager
+def speaks_no_tls() -> Iterator[str]:
+    """An https address behind which something greets first, and not in TLS."""
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        listener.listen()
+
+        def greet() -> None:
+            with suppress(OSError):
+                while True:
+                    caller, _ = listener.accept()
+                    with caller:
+                        caller.sendall(b"220 ready\r\n")
+                        caller.recv(4096)
+
+        thread = threading.Thread(target=greet, daemon=True)
+        thread.start()
+        yield f"https://127.0.0.1:{listener.getsockname()[1]}/v1"
+        listener.shutdown(socket.SHUT_RDWR)
+        thread.join(5)
 
 
 @contextmanager

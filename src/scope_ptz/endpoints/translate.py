@@ -24,8 +24,7 @@ _OVERFLOW = re.compile(
 )
 """Words of vLLM, SGLang, llama.cpp, LM Studio, TGI, OpenAI and its imitators. There is no common error code."""
 
-_NO_MORE = re.compile(r"insufficient_quota|billing|payment|credit", re.IGNORECASE)
-"""A 429 that waiting does not cure."""
+_SPENT = re.compile(r"insufficient_quota|billing|payment|credits?\b", re.IGNORECASE)
 
 
 def as_failure(error: BaseException, endpoint: Endpoint) -> ServerFailure | None:
@@ -46,7 +45,7 @@ def as_failure(error: BaseException, endpoint: Endpoint) -> ServerFailure | None
             return ServerFailure(kind, where=endpoint.url, detail=in_brief(detail, endpoint.secret))
     if isinstance(error, openai.APITimeoutError):
         return ServerFailure(K.FIRST_BYTE_TIMEOUT, where=endpoint.url)
-    if isinstance(error, openai.APIConnectionError | OSError):
+    if isinstance(error, openai.APIConnectionError):
         return ServerFailure(K.REFUSED, where=endpoint.url)
     return None
 
@@ -98,60 +97,69 @@ def _body_text(response: Any) -> str:
 
 def status_failure(status: int, headers: Mapping[str, str], body: str, endpoint: Endpoint) -> ServerFailure:
     """What a reply with another status than success means."""
-    said = words_of(body)
-    if status in (400, 413, 422, 500) and _OVERFLOW.search(said):
+    said = _Said(body)
+    if 300 <= status < 400:
+        kind, said.message = K.NOT_FOUND, f"it sends on to {headers.get('location', 'nowhere')}"
+    elif status in (400, 413, 422, 500) and said.overflow:
         kind = K.CONTEXT_OVERFLOW
-    elif status in (401, 402, 403, 407):
+    elif status in (401, 402, 403, 407) or (status == 429 and said.spent):
         kind = K.UNAUTHORISED
     elif status == 429:
-        kind = K.UNAUTHORISED if _NO_MORE.search(said) else K.RATE_LIMITED
-    elif status == 404 or 300 <= status < 400:
+        kind = K.RATE_LIMITED
+    elif status == 404:
         kind = K.NOT_FOUND
     elif status >= 500 or status in (408, 409, 425):
         kind = K.SERVER_ERROR
     else:
         kind = K.BAD_REQUEST
-    if 300 <= status < 400:
-        said = f"it sends on to {headers.get('location', 'nowhere')}"
-    return ServerFailure(
-        kind, where=endpoint.url, status=status, retry_after_s=retry_after_s(headers), detail=in_brief(said, endpoint.secret)
-    )
+    detail = in_brief(said.message, endpoint.secret)
+    return ServerFailure(kind, where=endpoint.url, status=status, retry_after_s=retry_after_s(headers), detail=detail)
 
 
-def error_body(body: Any, endpoint: Endpoint, status: int | None = 200) -> ServerFailure | None:
+def error_body(body: dict[str, Any], endpoint: Endpoint, status: int = 200) -> ServerFailure | None:
     """The failure in a reply that claims success; None when there is no error in it."""
-    if not isinstance(body, dict):
+    if not body.get("error") and body.get("object") != "error":
         return None
-    error = body.get("error")
-    told = error or (body if body.get("object") == "error" else None)
-    if not told:
-        return None
-    said = words_of(json.dumps(body))
-    code = told.get("code", told.get("status")) if isinstance(told, dict) else None
-    if _OVERFLOW.search(said) or code == "context_length_exceeded":
+    said = _Said(json.dumps(body))
+    if said.overflow:
         kind = K.CONTEXT_OVERFLOW
-    elif code in (429, "429", "rate_limit_exceeded"):
+    elif said.tags & {"429", "rate_limit_exceeded"}:
         kind = K.RATE_LIMITED
-    elif code in (401, 403, "401", "403", "invalid_api_key"):
+    elif said.tags & {"401", "403", "invalid_api_key"}:
         kind = K.UNAUTHORISED
     else:
         kind = K.ERROR_BODY
-    return ServerFailure(kind, where=endpoint.url, status=status, detail=in_brief(said, endpoint.secret))
+    return ServerFailure(kind, where=endpoint.url, status=status, detail=in_brief(said.message, endpoint.secret))
 
 
-def words_of(body: str) -> str:
-    """The human part of an error body: the message in the usual places, else the body itself, without markup."""
-    try:
-        data = json.loads(body)
-    except (ValueError, RecursionError):
-        return re.sub(r"<[^>]*>", " ", body[:4000])
-    parts: list[str] = []
-    for level in (data, data.get("error") if isinstance(data, dict) else None):
-        if isinstance(level, str):
-            parts.append(level)
-        elif isinstance(level, dict):
-            parts += [str(level[key]) for key in ("message", "detail", "code", "type") if level.get(key) and key not in parts]
-    return "; ".join(dict.fromkeys(parts)) or body[:4000]
+class _Said:
+    """An error body. ``message``: its human part, from the usual places, else the body without markup; ``tags``: its codes."""
+
+    def __init__(self, body: str) -> None:
+        try:
+            data = json.loads(body)
+        except (ValueError, RecursionError):
+            data = None
+        levels = [data, data.get("error")] if isinstance(data, dict) else [data]
+        messages, self.tags = [level for level in levels if isinstance(level, str)], set[str]()
+        for level in levels:
+            if isinstance(level, dict):
+                messages += [_as_text(level[name]) for name in ("message", "detail") if level.get(name)]
+                self.tags |= {str(level[name]) for name in ("code", "type", "status") if level.get(name)}
+        self.message = "; ".join(dict.fromkeys(messages)) or re.sub(r"<[^>]*>", " ", body[:4000])
+
+    @property
+    def overflow(self) -> bool:
+        return any(_OVERFLOW.search(text) for text in (self.message, *self.tags))
+
+    @property
+    def spent(self) -> bool:
+        """Whether waiting will not help, because there is nothing left to spend."""
+        return any(_SPENT.search(text) for text in (self.message, *self.tags))
+
+
+def _as_text(value: Any) -> str:
+    return value if isinstance(value, str) else json.dumps(value)[:4000]
 
 
 def retry_after_s(headers: Mapping[str, str]) -> float | None:

@@ -23,13 +23,15 @@ def make_client(endpoint: Endpoint, *, key_header: str = "Authorization") -> htt
     It follows no redirect, because a key must not travel to where the user did not send it.
     """
     secret = endpoint.secret
-    credentials = {key_header: f"Bearer {secret}" if key_header == "Authorization" else secret} if secret else {}
+    ours = {"user-agent": f"scope-ptz/{__version__}"}
+    if secret:
+        ours[key_header] = f"Bearer {secret}" if key_header == "Authorization" else secret
 
     async def only_ours(request: httpx2.Request) -> None:
         # The openai client adds headers from OPENAI_... variables: credentials for another server.
         for name in [name for name in request.headers if name.lower() not in _KEPT_HEADERS]:
             del request.headers[name]
-        request.headers.update(credentials)
+        request.headers.update(ours)
 
     async def capped(response: httpx2.Response) -> None:
         if isinstance(response.stream, httpx2.AsyncByteStream):
@@ -39,7 +41,7 @@ def make_client(endpoint: Endpoint, *, key_header: str = "Authorization") -> htt
     return httpx2.AsyncClient(
         timeout=httpx2.Timeout(patience.first_byte_s, connect=patience.connect_s, pool=patience.total_s),
         limits=httpx2.Limits(max_connections=64, max_keepalive_connections=16, keepalive_expiry=30.0),
-        headers={"accept-encoding": "identity", "user-agent": f"scope-ptz/{__version__}"},
+        headers={"accept-encoding": "identity"},
         trust_env=not endpoint.loopback,  # No proxy leads to this very machine, whatever the environment says
         verify=endpoint.url.startswith("https:"),  # Loading certificates for plain http would take a tenth of a second
         follow_redirects=False,
