@@ -1,15 +1,17 @@
-"""Furniture of a town street: pillar box, telephone kiosk, lamp standards with baskets, planters, signals, café chairs."""
+"""Furniture of a town street: pillar box, telephone kiosk, lamp standards with baskets, planters, signals."""
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 
+from scope_ptz.studio.kit.clocks import dial
 from scope_ptz.studio.kit.finishes import clear_glass, glow, lens, paint, sheet, steel, timber
 from scope_ptz.studio.kit.shading import plain
 from scope_ptz.studio.kit.shop_trade import blooms
 from scope_ptz.studio.kit.sign_faces import write
-from scope_ptz.studio.kit.solid import Solid, arc
+from scope_ptz.studio.kit.solid import Solid
 from scope_ptz.studio.kit.stage import Built
 
 
@@ -151,7 +153,7 @@ def traffic_signal(state: str) -> Built:
         lamp = glow(colour, 7.0) if colour == state else lens(colour if colour == "red" else "black")
         s.lathe([(0.10, 0.0), (0.085, 0.022), (0.04, 0.034), (0.002, 0.036)], lamp, (0, 0.228, z), "Y", 24)
         hood = [(0.118 * math.cos(a), 0.118 * math.sin(a)) for a in (math.radians(20 + 14 * j) for j in range(11))]
-        for (u0, v0), (u1, v1) in zip(hood, hood[1:], strict=False):
+        for (u0, v0), (u1, v1) in itertools.pairwise(hood):
             s.add([(u0, 0.22, z + v0), (u1, 0.22, z + v1), (u1, 0.40, z + v1), (u0, 0.40, z + v0)], [(0, 1, 2, 3)], black)
     s.box((0.13, 0.10, 0.22), (0.0, 0.09, 1.15), paint("yellow", dirt=0.2), 0.02)
     s.lathe([(0.022, 0.0), (0.018, 0.012)], glow("red", 3.0), (0, 0.14, 1.17), "Y", 14)
@@ -171,41 +173,7 @@ def belisha_beacon(*, lit: bool = True) -> Built:
     return s.built()
 
 
-def cafe_chair(colour: str = "silver") -> Built:
-    """A bistro chair facing +y: tube frame and a slatted seat and back, 0.82 m."""
-    s = Solid(f"{colour} chair")
-    frame, slats = steel(), (timber() if colour == "wooden" else paint(colour, dirt=0.12, roughness=0.4))
-    for x in (-0.20, 0.20):
-        s.tube([(x, 0.20, 0.0), (x, 0.18, 0.45), (x, -0.17, 0.45)], 0.011, frame)
-        s.tube([(x, -0.24, 0.0), (x, -0.17, 0.45), (x * 0.95, -0.25, 0.80), (0, -0.27, 0.84)], 0.011, frame)
-    for k in range(6):
-        s.box((0.42, 0.05, 0.014), (0, -0.15 + 0.064 * k, 0.462), slats, 0.004)
-    for z in (0.58, 0.66, 0.74):
-        s.box((0.40, 0.014, 0.052), (0, -0.18 - 0.21 * (z - 0.45), z), slats, 0.004)
-    return s.built()
-
-
-def cafe_table(*, cups: int = 0) -> Built:
-    """A round pedestal table, 0.70 m across and 0.73 m high, with a number of cups on saucers."""
-    s = Solid("table")
-    s.lathe(
-        [(0.22, 0.0), (0.22, 0.012), (0.04, 0.03), (0.025, 0.06), (0.025, 0.70), (0.10, 0.715)], paint("black", dirt=0.15), steps=20
-    )
-    s.lathe(
-        [(0.345, 0.712), (0.35, 0.718), (0.35, 0.732), (0.345, 0.738)],
-        plain("wet table top", (0.30, 0.305, 0.31), 0.12, 0.7),
-        steps=32,
-    )
-    china = plain("china", (0.70, 0.69, 0.66), 0.15)
-    for k in range(cups):
-        a = 2.4 * k + 0.5
-        at = (0.19 * math.cos(a), 0.19 * math.sin(a), 0.738)
-        s.lathe([(0.03, 0.0), (0.072, 0.010), (0.074, 0.013)], china, at, steps=18)
-        s.lathe([(0.022, 0.012), (0.036, 0.05), (0.041, 0.072), (0.036, 0.072), (0.030, 0.055)], china, at, steps=18)
-    return s.built()
-
-
-def wall_clock(hour: int, minute: int, *, radius_m: float = 0.42) -> Built:
+def bracket_clock(hour: int, minute: int, *, radius_m: float = 0.42) -> Built:
     """A drum clock on a bracket over +y with a face on either side (towards +x and -x)."""
     s = Solid("clock")
     iron = paint("black", dirt=0.15)
@@ -216,23 +184,5 @@ def wall_clock(hour: int, minute: int, *, radius_m: float = 0.42) -> Built:
         s.lathe([(radius_m - 0.02, -0.11), (radius_m, -0.09), (radius_m, 0.09), (radius_m - 0.02, 0.11)], iron, (0, 0, 0), "X", 40)
         for side in (-1, 1):
             with s.at(side * 0.112, 0, 0, turn=-90 * side):
-                clock_face(s, hour, minute, radius_m * 0.90)
+                dial(s, radius_m * 0.92, hour, minute)
     return s.built()
-
-
-def clock_face(s: Solid, hour: int, minute: int, radius_m: float) -> None:
-    """A white dial with marks, numerals and hands on the plane y = 0, facing +y."""
-    white, black = plain("clock dial", (0.74, 0.73, 0.69), 0.4), paint("black", dirt=0.02)
-    s.prism([(radius_m * u, radius_m * v) for u, v in arc((0, 0), 1.0, 0, 360, 40)[:-1]], (0.0, 0.004), white)
-    for k in range(12):
-        a = math.radians(30 * k)
-        u, v = -math.sin(a), math.cos(a)
-        with s.at(u * radius_m * 0.90, 0.005, v * radius_m * 0.90, roll=-30 * k):
-            s.box((radius_m * (0.055 if k % 3 == 0 else 0.03), 0.003, radius_m * 0.14), (0, 0, 0), black, 0.0)
-        if k % 3 == 0:
-            s.text(str(k or 12), radius_m * 0.22, (u * radius_m * 0.66, 0.006, v * radius_m * 0.66), black, mark=False)
-    for turns, length, thick in ((hour / 12 + minute / 720, 0.52, 0.075), (minute / 60, 0.80, 0.05)):
-        a = 2 * math.pi * turns
-        with s.at(0, 0.010, 0, roll=-math.degrees(a)):
-            s.box((radius_m * thick, 0.004, radius_m * length * 1.15), (0, 0, radius_m * length * 0.42), black, 0.0)
-    s.lathe([(radius_m * 0.06, 0.0), (radius_m * 0.05, 0.02)], black, axis="Y", steps=14)
