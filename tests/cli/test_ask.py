@@ -39,7 +39,7 @@ def test_json_is_one_object_with_the_promised_fields(scope: Scope, tmp_path: Pat
     assert call["result"]["count"] == 3
     assert call["error"] is None
     assert set(said["pose"]) == {"pan_deg", "tilt_deg", "zoom"}
-    assert set(said["timings"]) == {"planner_s", "perception_s", "camera_s", "render_s", "total_s"}
+    assert set(said["timings"]) == {"planner_s", "perception_s", "camera_s", "render_s", "total_s", "first_token_s"}
     assert [Path(said["run_dir"])] == runs(tmp_path)
 
 

@@ -101,7 +101,7 @@ class _Writer:
         else:
             self._written(exchange, brief)
         pictures = [o.picture for o in exchange.outcomes if o.picture is not None]
-        if pictures and not brief:
+        if pictures and self._in_parts and not brief:
             self.pictures(pictures)
 
     def _native(self, exchange: Exchange, brief: bool) -> None:

@@ -47,7 +47,7 @@ def _json_or_markup(body: str, tools: Signatures) -> list[WrittenCall]:
     if "<arg_key>" in body:
         return [_keys_and_values(body, tools)]
     name = body.strip()
-    return [WrittenCall(name, {})] if name in tools else _json_calls(body, tools)
+    return [WrittenCall(name, {})] if name in tools else _json_calls(body, tools) or [wreck(body)]
 
 
 def _json_calls(body: str, tools: Signatures) -> list[WrittenCall]:  # noqa: ARG001 - readers share one signature

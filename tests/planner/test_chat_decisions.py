@@ -1,0 +1,175 @@
+"""From replies to decisions: several calls, broken calls, endings, cut replies; families and what servers refuse."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from scope_ptz.endpoints.failures import FailureKind, ServerFailure
+from scope_ptz.endpoints.replies import ChatReply, RawToolCall
+from scope_ptz.errors import PlannerError
+from scope_ptz.planner.base import CallTools, Finish
+from scope_ptz.planner.chat.dialect import Dialect
+from scope_ptz.planner.chat.families import family_of, likely_server, switch_for, temperature_for
+from scope_ptz.planner.chat.interpret import MOST_CALLS, decide
+from tests.planner.test_chat_messages import exchanges, state
+
+
+def reply(text: str = "", *calls: tuple[str, str, str], **fields: Any) -> ChatReply:
+    raw = tuple(RawToolCall(id=i, name=name, arguments_text=arguments) for i, name, arguments in calls)
+    return ChatReply(text=text, tool_calls=raw, **fields)
+
+
+def finish(text: str, steps: int = 0, **fields: Any) -> tuple[str, str]:
+    decision = decide(reply(text, **fields), state(*exchanges(steps)), limited=False)
+    assert isinstance(decision, Finish)
+    return decision.kind, decision.text
+
+
+def test_several_native_calls_with_words_beside_them() -> None:
+    given = reply(
+        "I turn.", ("a", "adjust_ptz", '{"pan_deg": 20}'), ("b", "go_home", ""), input_tokens=9, cached_tokens=4, reasoning="hm"
+    )
+    decision = decide(given, state(), limited=False)
+    assert isinstance(decision, CallTools)
+    assert [(c.id, c.name, c.arguments, c.problem) for c in decision.calls] == [
+        ("a", "adjust_ptz", {"pan_deg": 20}, None),
+        ("b", "go_home", {}, None),
+    ]
+    assert (decision.thought, decision.reasoning, decision.usage.cached_tokens) == ("I turn.", "hm", 4)
+    assert decision.served is not None
+    assert decision.served.calls_from == "native"
+
+
+@pytest.mark.parametrize("arguments", ['{"pan_deg": 20', "[1]", "right", '{"pan_deg": NaN}', '{"pan_deg": 1e999}', "{" * 5000])
+def test_arguments_that_are_no_object_become_a_call_with_a_problem(arguments: str) -> None:
+    decision = decide(reply("", ("a", "adjust_ptz", arguments)), state(), limited=False)
+    assert isinstance(decision, CallTools)
+    (call,) = decision.calls
+    assert call.arguments == {}
+    assert call.problem is not None
+    assert "adjust_ptz" in call.problem
+    assert len(call.problem) < 500
+
+
+def test_ids_are_made_where_the_server_gives_none() -> None:
+    decision = decide(reply("", ("", "go_home", "{}"), ("", "go_home", "{}")), state(*exchanges(2)), limited=False)
+    assert isinstance(decision, CallTools)
+    assert [c.id for c in decision.calls] == ["s0003c001", "s0003c002"]
+
+
+def test_a_model_that_runs_away_is_held() -> None:
+    many = [(f"c{n}", "go_home", "{}") for n in range(500)]
+    decision = decide(reply("", *many), state(), limited=False)
+    assert isinstance(decision, CallTools)
+    assert len(decision.calls) == MOST_CALLS + 1
+    assert [c.problem is None for c in decision.calls[-2:]] == [True, False]
+
+
+def test_calls_in_reasoning_count_only_when_nothing_was_said() -> None:
+    thought = 'I go. <tool_call>{"name": "go_home", "arguments": {}}</tool_call>'
+    decision = decide(reply("", reasoning=thought), state(), limited=False)
+    assert isinstance(decision, CallTools)
+    assert finish("I stay.", reasoning=thought) == ("answered", "I stay.")
+
+
+@pytest.mark.parametrize(
+    ("text", "steps", "ending"),
+    [
+        ("Four cones.", 1, ("answered", "Four cones.")),
+        ("Four cones.<|im_end|>", 1, ("answered", "Four cones.")),
+        ("<think>hm</think>Four cones.", 1, ("answered", "Four cones.")),
+        ("Which car do you mean?", 0, ("clarification", "Which car do you mean?")),
+        ("I see four. Do you want more?", 2, ("answered", "I see four. Do you want more?")),
+        ("CLARIFY: Which car?", 3, ("clarification", "Which car?")),
+        ("**Clarify:** Which car?", 0, ("clarification", "Which car?")),
+        ("REFUSE: I cannot move the house.", 0, ("refused", "I cannot move the house.")),
+        ("REFUSE:", 0, ("answered", "REFUSE:")),
+        ("The sign says: REFUSE: no entry", 1, ("answered", "The sign says: REFUSE: no entry")),
+    ],
+)
+def test_endings(text: str, steps: int, ending: tuple[str, str]) -> None:
+    assert finish(text, steps) == ending
+
+
+@pytest.mark.parametrize(
+    ("given", "limited", "kind"),
+    [
+        (reply("The answer is", finish_reason="length"), False, "context-overflow"),
+        (reply("The answer is", finish_reason="length"), True, "cut-off"),
+        (reply("", reasoning="I think and think", finish_reason="length"), True, "cut-off"),
+        (reply("<think>I only think</think>"), False, "empty"),
+        (reply("<|im_end|>"), False, "empty"),
+    ],
+)
+def test_replies_that_are_no_decision(given: ChatReply, limited: bool, kind: str) -> None:
+    with pytest.raises(PlannerError) as caught:
+        decide(given, state(), limited=limited)
+    assert caught.value.kind == kind
+
+
+def test_finished_calls_of_a_cut_reply_are_made() -> None:
+    cut = reply("", ("a", "go_home", "{}"), ("b", "adjust_ptz", '{"pan_'), finish_reason="length")
+    decision = decide(cut, state(), limited=True)
+    assert isinstance(decision, CallTools)
+    assert [c.problem is None for c in decision.calls] == [True, False]
+
+
+@pytest.mark.parametrize(
+    ("model", "family"),
+    [
+        ("Qwen/Qwen3-4B-Instruct-2507-FP8", "qwen3-instruct"),
+        ("Qwen/Qwen3-Next-80B-A3B-Instruct", "qwen3-instruct"),
+        ("qwen3:4b-instruct", "qwen3-instruct"),
+        ("Qwen/Qwen3-32B", "qwen3"),
+        ("Qwen3-32B-Instruct", "qwen3"),
+        ("Qwen/Qwen3-4B-Thinking-2507", "qwen3-thinking"),
+        ("Qwen/Qwen3.5-9B", "qwen3.5"),
+        ("openai/gpt-oss-120b", "gpt-oss"),
+        ("google/gemma-4-E4B-it", "gemma-4"),
+        ("HuggingFaceTB/SmolLM3-3B", "smollm3"),
+        ("my-own-model", "unknown"),
+    ],
+)
+def test_families(model: str, family: str) -> None:
+    assert family_of(model).name == family
+
+
+def test_thinking_is_switched_as_each_family_wants_it() -> None:
+    off = switch_for("Qwen/Qwen3-32B", "off", "vllm")
+    assert (off.fields, off.words) == ({"chat_template_kwargs": {"enable_thinking": False}}, "/no_think")
+    assert switch_for("Qwen/Qwen3.5-9B", "on", None).fields == {"chat_template_kwargs": {"enable_thinking": True}}
+    assert switch_for("qwen3.5:9b", "off", likely_server("http://localhost:11434/v1")).fields == {"reasoning_effort": "none"}
+    assert switch_for("openai/gpt-oss-20b", "off", "vllm").fields == {"reasoning_effort": "low"}
+    assert switch_for("ibm-granite/granite-3.3-8b-instruct", "on", "vllm").fields == {"chat_template_kwargs": {"thinking": True}}
+    for model in ("Qwen/Qwen3-4B-Instruct-2507", "my-own-model"):
+        assert switch_for(model, "off", None) == switch_for(model, "default", None)
+    assert not switch_for("Qwen/Qwen3-32B", "default", None).fields
+    assert temperature_for("Qwen/Qwen3-32B", "off") == 0.0
+    assert temperature_for("Qwen/Qwen3-32B", "default") == 0.6
+
+
+def refusal(words: str, kind: FailureKind = FailureKind.BAD_REQUEST) -> ServerFailure:
+    return ServerFailure(kind, where="http://x/v1", status=400, detail=words)
+
+
+def test_a_server_is_not_sent_again_what_it_refused() -> None:
+    dialect = Dialect("native", fixed=False)
+    wanted = {"temperature": 0.0, "seed": None, "max_tokens": 9, "chat_template_kwargs": {"enable_thinking": False}}
+    sent = dialect.fields(wanted)
+    assert "seed" not in sent
+    assert dialect.learn(refusal("Unexpected keys in the request: {'chat_template_kwargs'}"), sent, with_tools=True)
+    assert dialect.learn(refusal("'max_tokens' is not supported; use 'max_completion_tokens'"), sent, with_tools=True)
+    assert dialect.fields(wanted) == {"temperature": 0.0, "max_completion_tokens": 9}
+    assert dialect.learn(refusal("Unsupported value: 'temperature'"), sent, with_tools=True)
+    assert dialect.learn(refusal('"auto" tool choice requires --enable-auto-tool-choice'), sent, with_tools=True)
+    assert dialect.notation == "text"
+    assert dialect.learn(refusal("System role not supported"), sent, with_tools=False)
+    assert [m["role"] for m in dialect.messages([{"role": "system", "content": "a"}, {"role": "user", "content": "b"}])] == ["user"]
+    assert not dialect.learn(refusal("something else"), {}, with_tools=False)
+    assert not dialect.learn(refusal("tools", FailureKind.REFUSED), {}, with_tools=True)
+
+
+def test_a_chosen_notation_is_kept() -> None:
+    assert not Dialect("native", fixed=True).learn(refusal("tools are not supported"), {}, with_tools=True)
