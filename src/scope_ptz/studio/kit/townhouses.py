@@ -165,7 +165,7 @@ def shutter_pair(s: Solid, x: float, w: float, za: float, zb: float, colour: str
 
 
 def town_house(h: House) -> Built:
-    """The house without what stands in front of its ground floor (see the module "shopfronts")."""
+    """The house without what stands in front of its ground floor (see the module "square_shops")."""
     rng = random.Random(f"town house {h.seed}")
     s = Solid("town house")
     trim, tile = paint(h.trim, dirt=0.35, roughness=0.8), tile_material(f"roof {h.roof[0]:.2f}", h.roof)

@@ -7,9 +7,9 @@ import random
 
 import bpy
 
-from scope_ptz.studio.kit import buildings, clocks, shopfronts, station, townhouses, vegetation
-from scope_ptz.studio.kit.lettering import extent
+from scope_ptz.studio.kit import buildings, clocks, square_shops, station, townhouses, vegetation
 from scope_ptz.studio.kit.finishes import paint
+from scope_ptz.studio.kit.lettering import extent
 from scope_ptz.studio.kit.solid import Solid
 from scope_ptz.studio.kit.stage import Built, Stage
 from scope_ptz.studio.kit.townhouses import CLAY, SLATE, House
@@ -106,22 +106,22 @@ def shop(
     bearing = place[2]
     x, y = _local(place, 0.0, 0.0)
     front = stage.place(
-        shopfronts.front(width, colour, seed=seed), "shop", name, (x, y, 0.0), bearing, parent=parent, kind=kind, colour=colour,
+        square_shops.front(width, colour, seed=seed), "shop", name, (x, y, 0.0), bearing, parent=parent, kind=kind, colour=colour,
         state="closed" if notice == "CLOSED" else "open",
     )  # fmt: skip
     sx, sy = _local(place, 0.0, 0.25)
     stage.place(
-        shopfronts.fascia(text, width - 0.6, board=colour, ink=ink), "shop sign", f"{name} sign", (sx, sy, 3.05), bearing,
+        square_shops.fascia(text, width - 0.6, board=colour, ink=ink), "shop sign", f"{name} sign", (sx, sy, 3.05), bearing,
         parent=front, colour=colour,
     )  # fmt: skip
     dx, dy = _local(place, 0.0, 0.17)
     stage.place(
-        shopfronts.shop_door(door_colour or colour, open=door == "open", notice=notice), "door", f"{name} door", (dx, dy, 0.02), bearing,
+        square_shops.shop_door(door_colour or colour, open=door == "open", notice=notice), "door", f"{name} door", (dx, dy, 0.02), bearing,
         parent=front, state=door, colour=door_colour or colour,
     )  # fmt: skip
     if awning:
         ax, ay = _local(place, 0.0, 0.30)
-        made = shopfronts.awning(width - 0.3, *awning, text=awning_text, open=awning_open)
+        made = square_shops.awning(width - 0.3, *awning, text=awning_text, open=awning_open)
         both = awning[0] if awning[0] == awning[1] else f"{awning[0]} and {awning[1]}"
         pattern = "plain" if awning[0] == awning[1] else "striped"
         stage.place(
@@ -156,7 +156,7 @@ def _rows(stage: Stage) -> None:
     shop(stage, front, pharmacy, name="pharmacy", kind="pharmacy", text="PHARMACY", width=8.4, colour="white", ink="green", notice="OPEN",
          door_colour="green", seed=4)  # fmt: skip
     x, y = _local(pharmacy, 4.0, 0.0)
-    stage.place(shopfronts.pharmacy_cross(), "cross", "green pharmacy cross", (x, y, 4.9), 270, parent=front, colour="green", state="lit")
+    stage.place(square_shops.pharmacy_cross(), "cross", "green pharmacy cross", (x, y, 4.9), 270, parent=front, colour="green", state="lit")
     _bank(stage, w["grey stone"])
     grocer = (EAST_X, 19.7, 270.0)
     front = _house(stage, House(8.0, w["cream"], 3, 3, shutters="brown", seed=8), grocer, "cream", "cream house with brown shutters",
@@ -190,7 +190,7 @@ def _bank(stage: Stage, stone: bpy.types.Material) -> None:
     front = _house(stage, h, place, "grey stone", "stone bank building", "bank", 3)
     x, y = _local(place, 0.0, 0.20)
     stage.place(
-        shopfronts.fascia("COUNTY & BOROUGH BANK", 8.6, board="dark grey", ink="yellow", cap=0.36, height=0.66), "sign", "bank sign",
+        square_shops.fascia("COUNTY & BOROUGH BANK", 8.6, board="dark grey", ink="yellow", cap=0.36, height=0.66), "sign", "bank sign",
         (x, y, 4.15), 270, parent=front, colour="dark grey",
     )  # fmt: skip
 
