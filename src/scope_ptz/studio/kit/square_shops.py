@@ -1,237 +1,142 @@
-"""Shop fronts: pilasters, display windows that are looked through, fascias, doors of shops and houses.
-
-Everything shares the frame of the building that it belongs to: the wall line is y = 0, the street lies towards +y.
-"""
+"""Shop fronts of a market square with dark plate glass, sign boards, awnings with lettered valances, a pharmacy's cross."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+import random
 
 import bpy
 
-from scope_ptz.studio.kit.finishes import PALETTE, paint
+from scope_ptz.studio.kit.finishes import PALETTE, glass, glow, lens, paint, sheet
 from scope_ptz.studio.kit.lettering import extent
 from scope_ptz.studio.kit.shading import Shader, plain
-from scope_ptz.studio.kit.sign_faces import write
-from scope_ptz.studio.kit.solid import Solid, rounded
+from scope_ptz.studio.kit.solid import Solid
 from scope_ptz.studio.kit.stage import Built
-
-SILL_M = 0.60
-"""Height of the display shelf behind the glass."""
-PILASTER_M = 0.34
-INSIDE_M = 2.6
+from scope_ptz.studio.kit.townhouses import block
 
 
-@dataclass(frozen=True)
-class Front:
-    """A shop front ``width_m`` wide with its door's middle at ``door_x`` (x grows to the left of a person who looks at it).
+def front(width: float, colour: str, *, height: float = 3.4, seed: int = 0) -> Built:
+    """A timber shop front 0.3 m deep before y = 0: pilasters, stall risers, plate glass with goods behind, transoms.
 
-    ``room`` is the colour of the walls inside; ``lit`` says whether the lamps inside are on.
-    """
-
-    width_m: float
-    colour: str
-    door_x: float
-    room: str = "cream"
-    lit: bool = True
-    tiles: str | None = None
-
-
-def shop_front(spec: Front) -> Built:
-    """Woodwork, glass and the room behind, as one thing; the door and the fascia are built apart."""
+    The middle is left dark, 1.1 m wide, for a ``shop_door``."""
     s = Solid("shop front")
-    wood = paint(spec.colour, dirt=0.22, roughness=0.34)
-    w = spec.width_m / 2
-    for x in (-w + PILASTER_M / 2, w - PILASTER_M / 2):
-        s.box((PILASTER_M, 0.20, 3.38), (x, 0.02, 1.69), wood, 0.012)
-        s.box((PILASTER_M + 0.06, 0.26, 0.34), (x, 0.02, 0.17), wood, 0.015)
-        for dx in (-0.07, 0.07):
-            s.box((0.045, 0.02, 2.0), (x + dx, 0.125, 1.55), wood, 0.008)
-        s.box((PILASTER_M + 0.02, 0.36, 0.62), (x, 0.08, 3.10), wood, 0.03)
-    s.box((spec.width_m, 0.46, 0.10), (0, 0.13, 3.45), wood, 0.025)
-    s.box((spec.width_m, 0.36, 0.07), (0, 0.10, 3.375), wood, 0.02)
-    s.box((spec.width_m - 2 * PILASTER_M, 0.14, 0.14), (0, 0.0, 2.77), wood, 0.012)
-    inner = w - PILASTER_M
-    for low, high in ((-inner, spec.door_x - 0.56), (spec.door_x + 0.56, inner)):
-        if high - low > 0.35:
-            _window(s, low, high, wood, spec.tiles)
-    _doorway(s, spec, wood)
-    _room(s, spec)
+    rng = random.Random(f"shop front {seed}")
+    wood = paint(colour, dirt=0.18, roughness=0.4)
+    y, top, half = 0.14, height - 0.62, width / 2
+    block(s, (width, 0.12, height), (0, 0.06, height / 2), wood)
+    for low, high in ((-half, -0.62), (0.62, half)):
+        w, x = high - low - 0.3, (low + high) / 2
+        block(s, (w, 0.03, top - 0.62), (x, y, (top + 0.62) / 2), glass())
+        s.box((w + 0.1, 0.14, 0.10), (x, y + 0.04, 0.60), wood, 0.015)
+        s.box((w, 0.04, 0.36), (x, y + 0.005, 0.32), wood, 0.02)
+        bars = max(1, round(w / 1.5))
+        for k in range(bars + 1):
+            s.box((0.06, 0.08, top - 0.62), (x - w / 2 + w * k / bars, y + 0.02, (top + 0.62) / 2), wood, 0.008)
+        s.box((w, 0.07, 0.05), (x, y + 0.02, top - 0.52), wood, 0.008)
+        _display(s, x, w, y + 0.017, rng)
+    block(s, (1.14, 0.03, top), (0, y - 0.02, top / 2), plain("shop dark", (0.012, 0.012, 0.013), 0.6))
+    for x in (-half + 0.13, -0.70, 0.70, half - 0.13):
+        s.box((0.26 if abs(x) > 1 else 0.14, 0.20, height - 0.1), (x, y + 0.03, height / 2 - 0.05), wood, 0.02)
+        s.box((0.32 if abs(x) > 1 else 0.18, 0.26, 0.3), (x, y + 0.03, 0.15), wood, 0.02)
+    s.box((width, 0.26, 0.72), (0, y - 0.02, height - 0.36), wood, 0.02)
+    s.box((width + 0.16, 0.44, 0.14), (0, y + 0.06, height + 0.05), wood, 0.03)
     return s.built()
 
 
-def _window(s: Solid, low: float, high: float, wood: bpy.types.Material, tiles: str | None) -> None:
-    width, middle = high - low, (low + high) / 2
-    riser = wood if tiles is None else _tiles(tiles)
-    s.box((width, 0.10, SILL_M - 0.08), (middle, 0.0, (SILL_M - 0.08) / 2), riser, 0.006)
-    if tiles is None:
-        for k in range(max(1, round(width / 1.0))):
-            step = width / max(1, round(width / 1.0))
-            s.box((step - 0.16, 0.02, 0.30), (low + step * (k + 0.5), 0.052, 0.29), wood, 0.01)
-    s.box((width, 0.24, 0.07), (middle, 0.02, SILL_M - 0.045), wood, 0.012)
-    count = max(1, round(width / 1.25))
-    for k in range(count + 1):
-        s.box((0.065, 0.10, 2.70 - SILL_M), (low + 0.032 + (width - 0.065) * k / count, 0.0, (2.70 + SILL_M) / 2), wood, 0.008)
-    s.box((width, 0.09, 0.055), (middle, 0.0, 2.28), wood, 0.008)
-    _pane(s, low + 0.03, high - 0.03, SILL_M - 0.01, 2.72, -0.01)
-    shelf = plain("display shelf", (0.42, 0.38, 0.31), 0.6)
-    s.box((width, 0.72, 0.03), (middle, -0.42, SILL_M - 0.03), shelf, 0.004)
+def _display(s: Solid, x: float, w: float, y: float, rng: random.Random) -> None:
+    """Posters and the pale shapes of goods, flat behind the glass line."""
+    tints = ("cream", "light blue", "dark red", "beige", "pink", "green", "yellow", "light grey")
+    u = -w / 2 + 0.3
+    while u < w / 2 - 0.3:
+        tall, wide, tint = rng.uniform(0.18, 0.55), rng.uniform(0.16, 0.34), rng.choice(tints)
+        block(s, (wide, 0.004, tall), (x + u, y, 0.70 + tall / 2), plain(f"display {tint}", tuple(c * 0.4 for c in PALETTE[tint]), 0.7))
+        u += wide + rng.uniform(0.05, 0.3)
 
 
-def _pane(s: Solid, x0: float, x1: float, z0: float, z1: float, y: float) -> None:
-    s.add([(x0, y, z0), (x1, y, z0), (x1, y, z1), (x0, y, z1)], [(1, 0, 3, 2)], shop_glass())
+def shop_door(colour: str, *, open: bool = False, notice: str | None = None) -> Built:  # noqa: A002
+    """A half-glazed door 1.0 x 2.2 m, hinged at x = 0.5; ``open`` turns it outwards. ``notice`` is a card on the glass."""
+    s = Solid("shop door")
+    wood = paint(colour, dirt=0.12, roughness=0.3)
+    with s.at(0.5, 0.0, 0.0, turn=-100.0 if open else 0.0):
+        for z, tall in ((0.42, 0.80), (2.14, 0.12)):
+            s.box((1.0, 0.05, tall), (-0.5, 0, z), wood, 0.01)
+        for x in (-0.94, -0.06):
+            s.box((0.12, 0.05, 2.2), (x, 0, 1.1), wood, 0.01)
+        block(s, (0.80, 0.014, 1.3), (-0.5, 0, 1.45), glass())
+        s.box((0.62, 0.02, 0.5), (-0.5, 0.025, 0.42), wood, 0.02)
+        s.rod((-0.90, 0.06, 0.95), (-0.90, 0.06, 1.35), 0.014, paint("yellow", roughness=0.25))
+        if notice:
+            shut = notice == "CLOSED"
+            s.box((0.46, 0.006, 0.18), (-0.5, 0.012, 1.65), sheet("red" if shut else "white"), 0.0)
+            s.text(notice, 0.08, (-0.5, 0.0165, 1.65), sheet("white" if shut else "green"))
+    return s.built()
 
 
-def _doorway(s: Solid, spec: Front, wood: bpy.types.Material) -> None:
-    x = spec.door_x
-    for side in (-1, 1):
-        s.box((0.08, 0.16, 2.70), (x + side * 0.53, -0.02, 1.35), wood, 0.01)
-    s.box((1.1, 0.14, 0.08), (x, -0.02, 2.20), wood, 0.01)
-    _pane(s, x - 0.5, x + 0.5, 2.24, 2.72, -0.03)
-    s.box((1.15, 0.50, 0.13), (x, -0.12, 0.065), plain("doorstep", (0.22, 0.21, 0.19), 0.5), 0.015)
+def sign_board(text: str, width: float, *, colour: str = "dark green", ink: str = "cream", cap: float = 0.30, height: float = 0.56) -> Built:
+    """A shop's name board, its back at y = 0, centred on the origin."""
+    s = Solid("shop sign")
+    s.box((width, 0.05, height), (0, 0.025, 0), paint(colour, dirt=0.15, roughness=0.35), 0.012)
+    for z in (-height / 2 + 0.04, height / 2 - 0.04):
+        s.box((width - 0.08, 0.012, 0.02), (0, 0.055, z), paint(ink, dirt=0.1), 0.003)
+    s.text(text, min(cap, (width - 0.4) / extent(text, 1.0)), (0, 0.054, 0), paint(ink, dirt=0.06))
+    return s.built()
 
 
-def _room(s: Solid, spec: Front) -> None:
-    """The room behind the glass: five inside faces and a row of ceiling lamps."""
-    w, d, z1 = spec.width_m / 2 - 0.06, -INSIDE_M, 2.74
-    walls = _inside(f"{spec.room} {spec.lit}", PALETTE[spec.room], 0.42 if spec.lit else 0.03)
-    floor = _inside(f"floor {spec.lit}", (0.16, 0.105, 0.065), 0.25 if spec.lit else 0.02)
-    top = _inside(f"ceiling {spec.lit}", (0.6, 0.6, 0.58), 0.5 if spec.lit else 0.03)
-    z0 = 0.13
-    s.add([(-w, d, z0), (w, d, z0), (w, d, z1), (-w, d, z1)], [(1, 0, 3, 2)], walls)
-    for x in (-w, w):
-        s.add([(x, 0, z0), (x, d, z0), (x, d, z1), (x, 0, z1)], [(0, 1, 2, 3)], walls)
-    s.add([(-w, 0, z0), (w, 0, z0), (w, d, z0), (-w, d, z0)], [(0, 1, 2, 3)], floor)
-    s.add([(-w, 0, z1), (w, 0, z1), (w, d, z1), (-w, d, z1)], [(3, 2, 1, 0)], top)
-    lamp = _inside(f"shop lamp {spec.lit}", (1.0, 0.93, 0.80), 3.2 if spec.lit else 0.0)
-    for k in range(max(2, round(spec.width_m / 1.6))):
-        x = -w + 2 * w * (k + 0.5) / max(2, round(spec.width_m / 1.6))
-        s.box((0.16, 0.9, 0.04), (x, -1.2, z1 - 0.03), lamp, 0.01)
-    shelf = _inside(f"shop shelf {spec.lit}", (0.30, 0.19, 0.10), 0.3 if spec.lit else 0.02)
-    for z in (0.75, 1.25, 1.75, 2.2):
-        s.box((2 * w - 0.4, 0.30, 0.035), (0, d + 0.17, z), shelf, 0.004)
-    for k in range(4):
-        s.box((0.04, 0.30, 2.2), (-w + 0.22 + (2 * w - 0.44) * k / 3, d + 0.17, 1.2), shelf, 0.004)
-
-
-def _inside(name: str, colour: tuple[float, float, float], glow: float) -> bpy.types.Material:
-    """Indoor surfaces shine a little of their own accord: cheaper and cleaner than lamps behind glass."""
-    full = f"inside {name}"
-    found = bpy.data.materials.get(full)
+def stripes(name: str, first: str, second: str, pitch_m: float) -> bpy.types.Material:
+    """Canvas striped across the local x axis; plain when both colours are the same. A third of the light comes through."""
+    found = bpy.data.materials.get(name)
     if found is not None:
         return found
-    s = Shader(full)
-    patch = s.ramp(s.noise(s.object_coords(), 1.2, 3.0), 0.3, 0.7, 0.75, 1.1)
-    warm = tuple(c * t for c, t in zip(colour, (1.0, 0.90, 0.74), strict=True))
-    return s.surface(base_color=colour, roughness=0.8, emission_color=warm, emission_strength=s.math("MULTIPLY", patch, glow))
-
-
-def shop_glass() -> bpy.types.Material:
-    """A clean pane: mostly see-through, with the street's reflection growing at grazing angles."""
-    found = bpy.data.materials.get("shop glass")
-    if found is not None:
-        return found
-    s = Shader("shop glass")
-    clear, shine = s.node("ShaderNodeBsdfTransparent"), s.node("ShaderNodeBsdfGlossy")
-    clear.inputs["Color"].default_value = (0.90, 0.93, 0.92, 1.0)
-    shine.inputs["Roughness"].default_value = 0.015
-    share = s.ramp(s.node("ShaderNodeLayerWeight").outputs["Facing"], 0.25, 0.95, 0.10, 0.36)
+    s = Shader(name)
+    p = s.object_coords()
+    x, _, _ = s.xyz(p)
+    mask = s.math("GREATER_THAN", s.math("PINGPONG", s.math("ADD", x, 50.0 * pitch_m), pitch_m), pitch_m / 2)
+    stain = s.ramp(s.noise(p, 1.7, 5.0), 0.5, 0.75, 0.0, 0.22)
+    base = s.mix(stain, s.mix(mask, PALETTE[first], PALETTE[second]), (0.16, 0.14, 0.11))
+    s.surface(base_color=base, roughness=0.9, normal=s.bump(s.noise(p, 5.0, 4.0), 0.3, 0.02))
+    through = s.node("ShaderNodeBsdfTranslucent")
+    s.feed(through.inputs["Color"], base)
     mixed = s.node("ShaderNodeMixShader")
-    s.feed(mixed.inputs[0], share)
-    s.tree.links.new(clear.outputs[0], mixed.inputs[1])
-    s.tree.links.new(shine.outputs[0], mixed.inputs[2])
+    mixed.inputs[0].default_value = 0.32
+    s.tree.links.new(s.bsdf.outputs[0], mixed.inputs[1])
+    s.tree.links.new(through.outputs[0], mixed.inputs[2])
     output = next(n for n in s.tree.nodes if n.type == "OUTPUT_MATERIAL")
     s.tree.links.new(mixed.outputs[0], output.inputs["Surface"])
     return s.material
 
 
-def _tiles(colour: str) -> bpy.types.Material:
-    """Glazed tiles below a shop window."""
-    name = f"glazed tiles {colour}"
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
-    s = Shader(name)
-    x, _, z = s.xyz(s.object_coords())
-    grid = s.math("MINIMUM", s.math("PINGPONG", x, 0.075), s.math("PINGPONG", z, 0.075))
-    joint = s.ramp(grid, 0.002, 0.005, 1.0, 0.0)
-    return s.surface(base_color=s.mix(joint, PALETTE[colour], (0.3, 0.29, 0.27)), roughness=0.12, coat_weight=0.5)
-
-
-def fascia(width_m: float, name: str, colour: str, ink: str, *, small: str | None = None, cap_m: float = 0.27) -> Built:
-    """The board over a shop with its name, and if wanted a smaller line at the right end; z as on the building."""
-    s = Solid(f"{name} sign")
-    board = width_m - 2 * PILASTER_M - 0.04
-    s.box((board, 0.10, 0.52), (0, 0.08, 3.085), paint(colour, dirt=0.15, roughness=0.30), 0.012)
-    for z in (2.84, 3.33):
-        s.box((board, 0.12, 0.03), (0, 0.085, z), paint(ink if ink in PALETTE else "white", dirt=0.1), 0.006)
-    room = board - 0.30
-    shift = 0.0
-    if small:
-        side = extent(small, 0.085)
-        room -= side + 0.25
-        shift = -(side + 0.25) / 2
-    cap = min(cap_m, cap_m * room / extent(name, cap_m))
-    with s.at(0, 0.131, 3.085):
-        write(s, name, cap, shift, 0.0, ink, lift=0.002)
-        if small:
-            write(s, small, 0.085, board / 2 - 0.15 - extent(small, 0.085) / 2, 0.0, ink, lift=0.002)
+def awning(width: float, first: str, second: str, *, reach: float = 1.6, text: str | None = None, open: bool = True) -> Built:  # noqa: A002
+    """A canvas awning hung at the origin, sloping down by 0.7 m over ``reach``, with a lettered valance; or rolled up."""
+    s = Solid("awning")
+    cloth = stripes(f"canvas {first} {second}", first, second, 0.42)
+    iron = paint("dark grey", dirt=0.15)
+    if not open:
+        s.lathe([(0.11, -width / 2), (0.11, width / 2)], cloth, (0, 0.16, 0), "X", 16)
+        s.box((width + 0.1, 0.14, 0.10), (0, 0.08, 0.12), iron, 0.02)
+        return s.built()
+    drop, columns = 0.72, 24
+    rows = [(0.06, 0.0), (reach * 0.5, -drop * 0.46), (reach, -drop), (reach + 0.02, -drop - 0.26)]
+    n = columns + 1
+    points = [(-width / 2 + width * i / columns, y, z - 0.012 * (i % 2) * (k > 0)) for k, (y, z) in enumerate(rows) for i in range(n)]
+    faces = [(k * n + i, (k + 1) * n + i, (k + 1) * n + i + 1, k * n + i + 1) for k in range(len(rows) - 1) for i in range(columns)]
+    s.add(points, faces, cloth)
+    for x in (-width / 2 + 0.05, width / 2 - 0.05):
+        s.rod((x, 0.05, -0.75), (x, reach - 0.02, -drop - 0.02), 0.016, iron)
+    s.rod((-width / 2, reach, -drop), (width / 2, reach, -drop), 0.018, iron)
+    s.box((width + 0.06, 0.16, 0.14), (0, 0.06, 0.04), iron, 0.03)
+    if text:
+        cap = min(0.17, (width - 0.5) / extent(text, 1.0))
+        s.box((extent(text, cap) + 0.3, 0.012, 0.25), (0, reach + 0.03, -drop - 0.13), paint("cream", dirt=0.08), 0.0)
+        s.text(text, cap, (0, reach + 0.0395, -drop - 0.13), paint("black", dirt=0.0))
     return s.built()
 
 
-def shop_door(colour: str, *, number: str | None = None) -> Built:
-    """A half-glazed shop door, its foot's middle at the origin, shut; the number stands on the glass."""
-    s = Solid(f"{colour} door")
-    wood = paint(colour, dirt=0.16, roughness=0.28)
-    for x in (-0.42, 0.42):
-        s.box((0.14, 0.05, 2.02), (x, 0, 1.01), wood, 0.008)
-    for z, tall in ((0.16, 0.32), (0.88, 0.14), (1.95, 0.14)):
-        s.box((0.72, 0.05, tall), (0, 0, z), wood, 0.008)
-    s.box((0.70, 0.03, 0.54), (0, -0.005, 0.57), wood, 0.004)
-    s.box((0.50, 0.02, 0.36), (0, 0.012, 0.57), wood, 0.012)
-    _pane(s, -0.36, 0.36, 0.94, 1.89, 0.0)
-    brass = plain("brass", (0.55, 0.36, 0.11), 0.25, 1.0)
-    s.tube([(0.40, 0.03, 0.95), (0.40, 0.075, 0.97), (0.40, 0.075, 1.25), (0.40, 0.03, 1.27)], 0.012, brass)
-    s.box((0.26, 0.012, 0.05), (0, 0.03, 0.88), brass, 0.003)
-    if number:
-        with s.at(0, 0.026, 1.955):
-            write(s, number, 0.085, 0, 0, "white" if colour not in ("white", "cream", "yellow") else "black", lift=0.002)
-    return s.built()
-
-
-def house_door(colour: str, *, number: str | None = None) -> Built:
-    """A six-panel front door with knocker, letter plate and number, its foot's middle at the origin."""
-    s = Solid(f"{colour} door")
-    wood = paint(colour, dirt=0.12, roughness=0.22)
-    s.box((0.96, 0.045, 2.02), (0, 0, 1.01), wood, 0.006)
-    for x in (-0.22, 0.22):
-        for z, tall in ((0.42, 0.50), (1.02, 0.42), (1.64, 0.50)):
-            s.box((0.34, 0.02, tall), (x, 0.024, z), wood, 0.008)
-            s.box((0.26, 0.02, tall - 0.08), (x, 0.030, z), wood, 0.010)
-    brass = plain("brass", (0.55, 0.36, 0.11), 0.25, 1.0)
-    s.box((0.28, 0.014, 0.07), (0, 0.032, 0.76), brass, 0.004)
-    s.tube([(-0.035, 0.05, 1.42), (-0.03, 0.055, 1.34), (0.03, 0.055, 1.34), (0.035, 0.05, 1.42)], 0.009, brass)
-    s.lathe([(0.03, 0.0), (0.032, 0.03), (0.01, 0.04)], brass, (-0.40, 0.025, 1.02), "Y", 14)
-    if number:
-        with s.at(0, 0.026, 1.92):
-            write(s, number, 0.10, 0, 0, "white" if colour not in ("white", "cream", "yellow") else "black", lift=0.003)
-    return s.built()
-
-
-def plate(lines: Sequence[str], cap_m: float, colour: str, ink: str, *, border: bool = True, pad: float = 0.6) -> Built:
-    """A flat sign on a wall or pane with centred lines, its middle at the origin, facing +y: name plates, cards, boards."""
-    s = Solid(f"{lines[0]} sign")
-    wide = max(extent(line, cap_m) for line in lines) + cap_m * 2 * pad
-    tall = cap_m * (1.55 * len(lines) - 0.55 + 2 * pad)
-    corner = min(0.02, tall * 0.1)
-    s.prism(rounded(wide, tall, corner), (-0.012, 0.0), paint(colour, dirt=0.10, roughness=0.35), "XZ")
-    if border:
-        edge = cap_m * 0.10
-        for z in (-tall / 2 + edge * 2, tall / 2 - edge * 2):
-            s.box((wide - edge * 4, 0.003, edge), (0, 0.0, z), paint(ink, dirt=0.1), 0.0)
-        for x in (-wide / 2 + edge * 2, wide / 2 - edge * 2):
-            s.box((edge, 0.003, tall - edge * 4), (x, 0.0, 0), paint(ink, dirt=0.1), 0.0)
-    for k, line in enumerate(lines):
-        write(s, line, cap_m, 0, cap_m * 1.55 * ((len(lines) - 1) / 2 - k), ink, lift=0.003)
+def pharmacy_cross(size: float = 0.9, *, lit: bool = True) -> Built:
+    """A green cross on a bracket, read from both sides (+x and -x); its wall is the plane y = 0."""
+    s = Solid("pharmacy cross")
+    s.rod((0, 0, 0), (0, 0.5, 0), 0.03, paint("dark grey"))
+    arm, cy = size / 3, 0.5 + size / 2
+    for material, grow, thick in ((paint("dark grey", dirt=0.1), 0.04, 0.08), (glow("green", 2.5) if lit else lens("green"), 0.0, 0.10)):
+        a, b = arm / 2 + grow / 2, size / 2 + grow / 2
+        shape = [(-a, -b), (a, -b), (a, -a), (b, -a), (b, a), (a, a), (a, b), (-a, b), (-a, a), (-b, a), (-b, -a), (-a, -a)]
+        s.prism([(cy + u, v) for u, v in shape], (-thick, thick), material, "YZ")
     return s.built()

@@ -111,7 +111,7 @@ def shop(
     )  # fmt: skip
     sx, sy = _local(place, 0.0, 0.25)
     stage.place(
-        square_shops.fascia(text, width - 0.6, board=colour, ink=ink), "shop sign", f"{name} sign", (sx, sy, 3.05), bearing,
+        square_shops.sign_board(text, width - 0.6, colour=colour, ink=ink), "shop sign", f"{name} sign", (sx, sy, 3.05), bearing,
         parent=front, colour=colour,
     )  # fmt: skip
     dx, dy = _local(place, 0.0, 0.17)
@@ -190,7 +190,7 @@ def _bank(stage: Stage, stone: bpy.types.Material) -> None:
     front = _house(stage, h, place, "grey stone", "stone bank building", "bank", 3)
     x, y = _local(place, 0.0, 0.20)
     stage.place(
-        square_shops.fascia("COUNTY & BOROUGH BANK", 8.6, board="dark grey", ink="yellow", cap=0.36, height=0.66), "sign", "bank sign",
+        square_shops.sign_board("COUNTY & BOROUGH BANK", 8.6, colour="dark grey", ink="yellow", cap=0.36, height=0.66), "sign", "bank sign",
         (x, y, 4.15), 270, parent=front, colour="dark grey",
     )  # fmt: skip
 
