@@ -144,7 +144,7 @@ def test_arguments(text: str, arguments: dict[str, Any], readable: bool) -> None
 
 _PIECES = st.sampled_from(
     ["<tool_call>", "</tool_call>", "<function=", "</function>", "<parameter=a>", "{", "}", "[", "]", '"name":', '"go_home"',
-     "go_home", "(", ")", "```", "\n", "<|python_tag|>", "[TOOL_CALLS]", "<arg_key>", "1e999", "x", "\ud800", ",", "<think>", "</think>"]
+     "go_home", "(", ")", "```", "\n", "<|python_tag|>", "[TOOL_CALLS]", "<arg_key>", "1e999", "x", "\ud800", ",", "<think>"]
 )  # fmt: skip
 
 
