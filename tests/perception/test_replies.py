@@ -61,9 +61,8 @@ def test_of_a_list_cut_off_only_whole_places_count(text: str) -> None:
 
 @given(st.integers(0, 400))
 def test_cut_anywhere_never_a_place_that_was_not_written(at: int) -> None:
-    things = [{"bbox_2d": [100 + i, 200 + i, 300 + i, 400 + i], "label": f"cone {i}"} for i in range(7)]
-    text = json.dumps(things)
-    allowed = [tuple(float(v) for v in t["bbox_2d"]) for t in things]  # type: ignore[attr-defined]
+    allowed = [tuple(float(v + i) for v in (100, 200, 300, 400)) for i in range(7)]
+    text = json.dumps([{"bbox_2d": box, "label": f"cone {i}"} for i, box in enumerate(allowed)])
     try:
         read = read_places(text[:at])
     except PerceptionError as error:
@@ -75,7 +74,8 @@ def test_cut_anywhere_never_a_place_that_was_not_written(at: int) -> None:
 
 @pytest.mark.parametrize(
     "text",
-    ["[]", "```json\n[]\n```", '{"objects": []}', "None.", "There are no cones in the image.", "No cones are visible in the picture.",
+    ["[]", "```json\n[]\n```", '{"objects": []}', "None.", "There are no cones in the image.",
+     "No cones are visible in the picture.",
      "I see no dogs here.", "Nothing fits the description", "<think>hm</think>[]"],
 )  # fmt: skip
 def test_nothing_found_is_believed_where_it_is_said(text: str) -> None:

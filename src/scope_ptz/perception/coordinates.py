@@ -127,10 +127,11 @@ def located(things: Iterable[RawThing], convention: Convention, sent: tuple[int,
     boxes: dict[tuple[float, ...], Box] = {}
     points: dict[tuple[float, ...], Point] = {}
     for thing in raw:
-        numbers = _x_first(thing.numbers) if convention.y_first and not thing.named else thing.numbers
-        if len(numbers) not in (2, 4):
+        if len(thing.numbers) not in (2, 4):
             counts["no place"] += 1
-        elif not all(map(math.isfinite, numbers)):
+            continue
+        numbers = _x_first(thing.numbers) if convention.y_first and not thing.named else thing.numbers
+        if not all(map(math.isfinite, numbers)):
             counts["not finite"] += 1
         else:
             unit = [v / (scale_x if i % 2 == 0 else scale_y) for i, v in enumerate(numbers)]
@@ -183,7 +184,7 @@ def _guess(things: Sequence[RawThing], sent: tuple[int, int]) -> Space:
 
 
 def _x_first(numbers: tuple[float, ...]) -> tuple[float, ...]:
-    return tuple(v for i in range(0, len(numbers) - 1, 2) for v in (numbers[i + 1], numbers[i]))
+    return tuple(v for i in range(0, len(numbers), 2) for v in (numbers[i + 1], numbers[i]))
 
 
 def _box(unit: list[float], thing: RawThing, counts: Counter[str]) -> Box | None:

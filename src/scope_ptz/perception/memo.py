@@ -29,6 +29,9 @@ class FrameMemo(Generic[K, T]):
         self._lock = threading.Lock()
         self._entries: OrderedDict[tuple[int, K], _Entry[T]] = OrderedDict()
 
+    def __len__(self) -> int:
+        return len(self._entries)
+
     def get(self, image: Image, key: K) -> T:
         """Known or made now, in this thread."""
         entry = self._entry(image, key)

@@ -30,7 +30,8 @@ _ARTICLES = r"(?:(?:the|a|an|this|that|those|these|its|all|any|out|aloud|me|what
 _TARGETS = (
     re.compile(rf"\bwhat (?:does|do|did)\s+{_ARTICLES}(?P<x>.+?)\s+(?:say|read|state)\b", re.IGNORECASE),
     re.compile(
-        rf"\b(?:written|printed|painted|shown|displayed|{_WRITING})\s+(?:on|of|across)\s+{_ARTICLES}(?P<x>[^?.!,;]+)", re.IGNORECASE
+        rf"\b(?:written|printed|painted|shown|displayed|{_WRITING})\s+(?:is |are )?(?:on|of|across)\s+{_ARTICLES}(?P<x>[^?.!,;]+)",
+        re.IGNORECASE,
     ),
     re.compile(rf"\bread\s+{_ARTICLES}(?P<x>[^?.!,;]+)", re.IGNORECASE),
 )
@@ -58,20 +59,16 @@ _ANY_TEXT = re.compile(
     rf"^\W*(?:(?:the|a|any|all|every|some|visible|readable|printed|written|piece of|line of|pieces of|lines of)\s+)*{_WRITING}\W*$",
     re.IGNORECASE,
 )
-_TOKEN = re.compile(r"\b(?=\w*\d)[A-Z0-9][A-Z0-9-]*\b|\b[A-Z]{2,}(?:[ -][A-Z0-9]+)*\b")
 
 
 def wanted_texts(description: str) -> tuple[str, ...] | None:
-    """The texts that a description names: quoted, after "that says", or in capitals. Empty when it means any text at all; None
-    when it describes something other than text, which reading cannot find."""
+    """The texts that a description names: quoted, or after "that says". Empty when it means any text at all; None when it
+    describes something other than text, which reading cannot find."""
     if quoted := [a or b for a, b in _QUOTED.findall(description)]:
         return tuple(quoted)
     if saying := _SAYING.search(description):
         return (saying[1].strip(" .'\""),)
-    if _ANY_TEXT.match(description):
-        return ()
-    tokens = tuple(t for t in _TOKEN.findall(description) if t)
-    return tokens or None
+    return () if _ANY_TEXT.match(description) else None
 
 
 SAME_TEXT = 0.8

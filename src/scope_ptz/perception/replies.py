@@ -86,7 +86,7 @@ def cannot_tell(answer: str) -> bool:
 
 
 _NONE = re.compile(
-    r"^\W*((none|nothing)( (is|are|of (the|these|them)|in|on|here|there|that|fits?|matches|found|visible|detected)\b[^.{}\[\]]{0,80})?"
+    r"^\W*((none|nothing)( (is|are|of (the|these|them)|in|on|here|there|that|fits?|found|visible|detected)\b[^.{}\[\]]{0,80})?"
     r"|(there (are|is)|i (can )?(see|find|detect)|i found) (no|none|nothing|not any)\b[^{}\[\]]{0,120}"
     r"|no [^{}\[\]]{1,80}? (found|visible|present|detected|seen|in (the|this) (image|picture|frame|view|photo))"
     r"[^{}\[\]]{0,60})[\s.`]*$",
