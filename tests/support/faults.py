@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
+from scope_ptz.endpoints.endpoint import Timeouts
 from scope_ptz.endpoints.failures import FailureKind
 from tests.support import misbehaving as m
 
 K = FailureKind
 
-HURRIED = {"connect_s": 0.5, "first_byte_s": 0.15, "total_s": 0.6}
-"""Timeouts for tests: seconds of patience that servers in ``FAULTS`` outlast."""
+PATIENT = Timeouts(connect_s=5.0, first_byte_s=20.0, total_s=40.0)
+HURRIED = Timeouts(connect_s=5.0, first_byte_s=0.3, total_s=0.8)
+"""For faults that are only seen by running out of patience."""
 
 
 class Fault(NamedTuple):
@@ -22,6 +24,11 @@ class Fault(NamedTuple):
     kind: FailureKind
     streamed: FailureKind
     chat_only: bool = False
+    slow: bool = False
+
+    @property
+    def timeouts(self) -> Timeouts:
+        return HURRIED if self.slow else PATIENT
 
     def expected(self, stream: bool) -> FailureKind:
         return self.streamed if stream else self.kind
@@ -58,10 +65,10 @@ FAULTS = (
     _fault("connection reset", m.reset, K.CUT_OFF),
     _fault("cut off", m.cut_off, K.CUT_OFF),
     _fault("ends too early", m.ends_early, K.MALFORMED, K.CUT_OFF),
-    _fault("silent", m.slow_first_byte, K.FIRST_BYTE_TIMEOUT),
-    _fault("silent after its headers", m.slow_after_head, K.FIRST_BYTE_TIMEOUT),
-    _fault("stalls", m.stalls, K.CUT_OFF),
-    _fault("trickles without end", m.trickle, K.TOTAL_TIMEOUT),
+    _fault("silent", m.slow_first_byte, K.FIRST_BYTE_TIMEOUT, slow=True),
+    _fault("silent after its headers", m.slow_after_head, K.FIRST_BYTE_TIMEOUT, slow=True),
+    _fault("stalls", m.stalls, K.CUT_OFF, slow=True),
+    _fault("trickles without end", m.trickle, K.TOTAL_TIMEOUT, slow=True),
     _fault("no choices", m.empty_choices, K.EMPTY, chat_only=True),
     _fault("choices: null", lambda: m.body('{"choices":null}'), K.EMPTY, chat_only=True),
     _fault("an empty message", lambda: m.say(""), K.EMPTY, chat_only=True),

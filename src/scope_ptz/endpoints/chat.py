@@ -10,9 +10,8 @@ import anyio
 from scope_ptz.endpoints.bodies import chunks, content_type, is_json, load_object, read_object, wrong_type
 from scope_ptz.endpoints.calls import Caller
 from scope_ptz.endpoints.endpoint import Endpoint
-from scope_ptz.endpoints.failures import FailureKind, ServerFailure
+from scope_ptz.endpoints.failures import Attempt, FailureKind, ServerFailure
 from scope_ptz.endpoints.replies import ChatReply, Gathering, RawToolCall
-from scope_ptz.endpoints.translate import as_failure
 
 if TYPE_CHECKING:
     from httpx2 import Response
@@ -22,6 +21,7 @@ __all__ = ["ChatClient", "ChatReply", "RawToolCall"]
 
 K = FailureKind
 EVENT_STREAM = "text/event-stream"
+UNKNOWN_FIELD = 422
 DRAIN_S = 0.1
 """A stream that has said all is read to its end, so that its connection can be used again, but not for longer than this."""
 
@@ -61,25 +61,32 @@ class ChatClient:
             body["tools"] = tools
         body.update((name, value) for name, value in options.items() if value is not None)
         body.update(extra or {})
+        self._client()  # made before the clock runs: importing the library takes most of a second
         began = perf_counter()
-        reply, attempts = await self.caller.call(lambda: self._ask(body, stream))
+        reply, attempts = await (self._streamed(body | {"stream": True}) if stream else self._called(body))
         return reply.model_copy(update={"attempts": attempts, "seconds": perf_counter() - began})
 
-    async def _ask(self, body: dict[str, Any], stream: bool) -> ChatReply:
-        if not stream:
-            return await self._exchange(body)
-        body = {**body, "stream": True}
+    async def _called(self, body: dict[str, Any]) -> tuple[ChatReply, tuple[Attempt, ...]]:
+        return await self.caller.call(lambda: self._exchange(body))
+
+    async def _streamed(self, body: dict[str, Any]) -> tuple[ChatReply, tuple[Attempt, ...]]:
+        """With a count of tokens at the end, which a stream has only on request. A server that refuses the request for it is
+        asked without, now and from then on.
+        """
         if not self._counts_tokens:
-            return await self._exchange(body)
+            return await self._called(body)
         try:
-            return await self._exchange({**body, "stream_options": {"include_usage": True}})
-        except Exception as error:
-            failure = as_failure(error, self.endpoint)
-            if failure is None or failure.kind is not K.BAD_REQUEST or not (failure.status == 422 or "stream" in failure.detail):
+            return await self._called(body | {"stream_options": {"include_usage": True}})
+        except ServerFailure as failure:
+            if failure.kind is not K.BAD_REQUEST or not (failure.status == UNKNOWN_FIELD or "stream_options" in failure.detail):
                 raise
-        reply = await self._exchange(body)
-        self._counts_tokens = False  # It refuses the field, and is not to be asked for it again
-        return reply
+            refused = failure.history
+        try:
+            reply, attempts = await self._called(body)
+        except ServerFailure as failure:
+            raise failure.after((*refused, *failure.history)) from None
+        self._counts_tokens = False
+        return reply, (*refused, *attempts)
 
     async def _exchange(self, body: dict[str, Any]) -> ChatReply:
         import httpx2

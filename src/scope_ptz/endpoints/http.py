@@ -30,14 +30,15 @@ class JsonClient:
             ServerFailure: there was no usable reply.
         """
         content = body if isinstance(body, bytes) else json.dumps(body, separators=(",", ":"), allow_nan=False).encode()
-        return await self.caller.call(lambda: self._exchange(f"{self.endpoint.url}/{path.lstrip('/')}", content))
-
-    async def _exchange(self, url: str, content: bytes) -> dict[str, Any]:
         if self._client is None:
             from scope_ptz.endpoints.transport import make_client
 
             self._client = make_client(self.endpoint, key_header=self.key_header)
-        async with self._client.stream("POST", url, content=content, headers={"content-type": "application/json"}) as response:
+        client, url = self._client, f"{self.endpoint.url}/{path.lstrip('/')}"
+        return await self.caller.call(lambda: self._exchange(client, url, content))
+
+    async def _exchange(self, client: AsyncClient, url: str, content: bytes) -> dict[str, Any]:
+        async with client.stream("POST", url, content=content, headers={"content-type": "application/json"}) as response:
             if response.is_success:
                 return await read_object(response, self.endpoint)
             await response.aread()

@@ -6,6 +6,7 @@ import json
 import re
 import socket
 import ssl
+import sys
 from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
 from email.utils import parsedate_to_datetime
@@ -30,22 +31,20 @@ _SPENT = re.compile(r"insufficient_quota|billing|payment|credits?\b", re.IGNOREC
 def as_failure(error: BaseException, endpoint: Endpoint) -> ServerFailure | None:
     """The failure that an exception of a client library stands for; None when it is something else, such as a bug."""
     import httpx2
-    import openai
 
     chain = list(_chain(error))
     for link in chain:
         if isinstance(link, ServerFailure):
             return link
+    openai = sys.modules.get("openai")  # What never was imported raised nothing, and importing it takes most of a second
     for link in chain:
-        if isinstance(link, openai.APIStatusError):
+        if openai is not None and isinstance(link, openai.APIStatusError):
             return status_failure(link.response.status_code, link.response.headers, _body_text(link.response), endpoint)
     for link in chain:
         if isinstance(link, httpx2.TransportError | httpx2.DecodingError | httpx2.InvalidURL):
             kind, detail = _transport_kind(link, chain, endpoint)
             return ServerFailure(kind, where=endpoint.url, detail=in_brief(detail, endpoint.secret))
-    if isinstance(error, openai.APITimeoutError):
-        return ServerFailure(K.FIRST_BYTE_TIMEOUT, where=endpoint.url)
-    if isinstance(error, openai.APIConnectionError):
+    if openai is not None and isinstance(error, openai.APIConnectionError):
         return ServerFailure(K.REFUSED, where=endpoint.url)
     return None
 
