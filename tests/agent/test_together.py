@@ -1,0 +1,188 @@
+"""Looks that do not depend on each other run at the same time; failures of servers are counted; planners that see get frames."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import anyio
+import pytest
+
+from scope_ptz.agent.calls import MOST_AT_ONCE, batches
+from scope_ptz.agent.records import Budgets, Called, Decided, Run
+from scope_ptz.agent.replay import replay
+from scope_ptz.agent.store import NoImages, RunFolder
+from scope_ptz.agent.trace import TraceWriter, read_trace
+from scope_ptz.camera.base import Frame
+from scope_ptz.endpoints.failures import Attempt, FailureKind
+from scope_ptz.errors import CameraError, PerceptionError, PlannerError
+from scope_ptz.perception.base import Answer, Detections
+from scope_ptz.planner.base import ToolCall
+from tests.agent.scripted import ScriptedCamera, ScriptedPerception, ScriptedPlanner, answer, calls, make_agent
+
+MOVE = ("adjust_ptz", {"pan_deg": 15.0})
+CONES = ("count_objects", {"description": "cones"})
+CARS = ("count_objects", {"description": "cars", "view": "current"})
+COLOUR = ("query_answer", {"question": "which colour?"})
+SWEEP = ("count_objects", {"description": "cars", "view": "full"})
+WRONG = ("count_objects", {"thing": "cars"})
+PAUSE_S = 0.15
+
+
+class SlowEyes(ScriptedPerception):
+    """Takes its time, and tells how many looked at once and at which frames. Counts the letters of what it is asked for."""
+
+    def __init__(self) -> None:
+        super().__init__(1)
+        self.at_once = self.most_at_once = 0
+        self.frames: list[Frame] = []
+
+    async def _look(self, frame: Frame, asked: str) -> int:
+        self.frames.append(frame)
+        self.at_once += 1
+        self.most_at_once = max(self.most_at_once, self.at_once)
+        try:
+            # The first asked is the last to be answered.
+            await anyio.sleep(PAUSE_S * (1.5 if asked == "cones" else 1.0))
+        finally:
+            self.at_once -= 1
+        if asked == "nothing":
+            raise PerceptionError("the server is gone", kind="refused", attempts=(Attempt(kind=FailureKind.REFUSED),) * 2)
+        return len(asked)
+
+    async def detect(self, frame: Frame, description: str) -> Detections:
+        seen = await ScriptedPerception(await self._look(frame, description)).detect(frame, description)
+        return seen.model_copy(update={"attempts": (Attempt(kind=FailureKind.RATE_LIMITED), Attempt())})
+
+    async def query(self, frame: Frame, question: str) -> Answer:
+        return Answer(source=self.name, text=str(await self._look(frame, question)))
+
+
+def run(*script: Any, eyes: Any = None, **options: Any) -> tuple[Run, list[Any]]:
+    records: list[Any] = []
+    agent = make_agent(*script, **options)
+    agent.perception = eyes or SlowEyes()
+    return anyio.run(lambda: agent.run("do it", listener=records.append)), records
+
+
+def named(*wanted: tuple[str, dict[str, Any]]) -> list[list[int]]:
+    return list(batches(calls(*wanted).calls))
+
+
+def test_only_neighbours_that_look_at_the_view_of_now_go_together() -> None:
+    assert named(CONES, CARS, COLOUR) == [[0, 1, 2]]
+    assert named(CONES, MOVE, CARS, COLOUR) == [[0], [1], [2, 3]]
+    assert named(CONES, SWEEP, CARS) == [[0], [1], [2]]
+    assert named(CONES, WRONG, ("nonsense", {}), CARS) == [[0], [1], [2], [3]]
+    assert named(*[CONES] * (MOST_AT_ONCE + 2)) == [list(range(MOST_AT_ONCE)), [MOST_AT_ONCE, MOST_AT_ONCE + 1]]
+    broken = ToolCall(id="a", name="count_objects", arguments={"description": "cones"}, problem="cut off")
+    assert list(batches([broken, *calls(CARS).calls])) == [[0], [1]]
+
+
+def test_looks_run_together_at_one_frame_and_come_back_in_order() -> None:
+    eyes, camera = SlowEyes(), ScriptedCamera()
+    began = perf_counter()
+    done, records = run(calls(CONES, CARS, COLOUR), answer(), eyes=eyes, camera=camera)
+    took = perf_counter() - began
+    assert eyes.most_at_once == 3
+    assert took < 2.2 * PAUSE_S
+    assert len({id(frame) for frame in eyes.frames}) == 1
+    made = [r for r in records if isinstance(r, Called)]
+    assert [r.outcome.call.name for r in made] == ["count_objects", "count_objects", "query_answer"]
+    assert [r.index for r in made] == [0, 1, 2]
+    assert [[reply.asked for reply in r.replies] for r in made] == [["cones"], ["cars"], ["which colour?"]]
+    results = [o.result for o in done.exchanges[0].outcomes]
+    assert [r and r.get("count") for r in results] == [5, 4, None]
+    # What overlapped is counted once in the run's time.
+    timings = done.ended.timings
+    assert timings.perception_s < 2 * PAUSE_S
+    assert timings.planner_s + timings.perception_s + timings.camera_s + timings.render_s <= timings.total_s
+    assert all(r.timings.perception_s >= PAUSE_S * 0.9 for r in made)
+
+
+def test_one_that_fails_does_not_spoil_the_others_but_what_follows() -> None:
+    nothing = ("count_objects", {"description": "nothing"})
+    done, records = run(calls(nothing, CARS, MOVE), answer())
+    first, second, third = done.exchanges[0].outcomes
+    assert (first.error, first.result) == ("the server is gone", None)
+    assert second.result is not None
+    assert second.result["count"] == 4
+    assert third.error == "Not done, because the call before it failed."
+    assert [r.fault for r in records if isinstance(r, Called)] == ["perception", None, "skipped"]
+    assert (done.ended.perception_failures, done.ended.pose.pan_deg) == (1, 0.0)
+    assert done.ended.server_events == {"rate-limited": 1, "refused": 2}
+
+
+def test_a_camera_that_fails_ends_the_run_once() -> None:
+    camera = ScriptedCamera()
+    agent = make_agent(lambda _: camera.failures.update(frame=CameraError("no picture")) or calls(CONES, CARS), camera=camera)
+    done = anyio.run(agent.run, "look")
+    assert (done.ended.outcome, done.ended.text) == ("camera_error", "no picture")
+
+
+def test_looks_that_are_broken_off_are_recorded() -> None:
+    done, records = run(calls(CONES, CARS), budgets=Budgets(time_s=PAUSE_S * 1.2))
+    assert done.ended.outcome == "budget"
+    made = [r for r in records if isinstance(r, Called)]
+    assert [(r.index, r.fault) for r in made] == [(0, "cancelled"), (1, None)]
+    assert [o.call.arguments["description"] for o in done.exchanges[0].outcomes] == ["cars"]
+
+
+def test_runs_with_looks_at_the_same_time_can_be_replayed(tmp_path: Path) -> None:
+    agent = make_agent(calls(COLOUR, CONES, CARS), calls(MOVE), calls(CONES, COLOUR), answer())
+    agent.perception = SlowEyes()
+    folder = RunFolder.create(tmp_path, "look")
+    agent.images = folder
+
+    async def record() -> None:
+        with TraceWriter(folder.trace) as trace:
+            await agent.run("look", listener=trace)
+
+    anyio.run(record)
+    again = anyio.run(replay, read_trace(folder.path), ScriptedCamera())
+    assert again.equal, [c.difference for c in again.comparisons] + [again.outcome_difference]
+    assert len(again.comparisons) == 6
+
+
+def test_a_planners_failed_requests_are_counted_and_its_end_has_a_kind() -> None:
+    attempts = (Attempt(kind=FailureKind.SERVER_ERROR), Attempt(kind=FailureKind.CONTEXT_OVERFLOW))
+    done, _ = run(PlannerError("too long", kind="context-overflow", attempts=attempts))
+    assert (done.ended.outcome, done.ended.kind) == ("planner_error", "context-overflow")
+    assert done.ended.server_events == {"context-overflow": 1, "server-error": 1}
+    done, _ = run(PlannerError("empty", kind="empty", attempts=(Attempt(),)))
+    assert done.ended.server_events == {"empty": 1}
+
+
+@pytest.mark.parametrize("sees", [True, False])
+def test_planners_that_see_get_the_newest_view_and_the_pictures(sees: bool) -> None:
+    agent = make_agent(calls(("take_image", {}), MOVE), calls(CONES), answer(), counts=[1], images=NoImages())
+    planner = agent.planner
+    assert isinstance(planner, ScriptedPlanner)
+    planner.sees = sees
+    records: list[Any] = []
+    done = anyio.run(lambda: agent.run("look", listener=records.append))
+    views = [state.view for state in planner.states]
+    pictures = [outcome.picture for outcome in done.exchanges[0].outcomes]
+    if not sees:
+        assert (views, pictures) == ([None] * 3, [None, None])
+        return
+    first, second, _ = views
+    assert first is not None
+    assert second is not None
+    assert first.data_url.startswith("data:image/jpeg;base64,")
+    assert (first.data_url != second.data_url, "pan 15" in second.caption) == (True, True)
+    assert pictures[0] is not None
+    assert pictures[1] is None
+    assert all(r.view for r in records if isinstance(r, Decided))
+    assert "base64" not in "".join(r.model_dump_json() for r in records)
+
+
+def test_a_camera_that_fails_while_a_planner_wants_to_see_ends_the_run() -> None:
+    camera = ScriptedCamera()
+    agent = make_agent(
+        lambda _: camera.failures.update(frame=CameraError("no picture")) or calls(("get_presets", {})), camera=camera
+    )
+    agent.planner.sees = True
+    done = anyio.run(agent.run, "look")
+    assert (done.ended.outcome, done.ended.text) == ("camera_error", "no picture")
