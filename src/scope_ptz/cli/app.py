@@ -10,9 +10,27 @@ import typer
 
 from scope_ptz.cli.endings import ending
 from scope_ptz.cli.model_commands import models_app
+from scope_ptz.cli.model_options import (
+    DetectorOption,
+    EyesKeyOption,
+    EyesModelOption,
+    EyesOptions,
+    EyesUrlOption,
+    PairOption,
+    PerceptionOption,
+    PlannerKeyOption,
+    PlannerModelOption,
+    PlannerOption,
+    PlannerOptions,
+    PlannerUrlOption,
+    ReaderOption,
+    TimeoutOption,
+    wishes_of,
+)
 
 if TYPE_CHECKING:
     from scope_ptz.cli.asking import Asking
+    from scope_ptz.cli.choosing import Wishes
 
 app = typer.Typer(
     help="Talk to a pan-tilt-zoom camera in plain language.",
@@ -32,8 +50,6 @@ PresetOption = Annotated[str | None, typer.Option("--preset", help="Preset to st
 TimeOption = Annotated[
     float | None, typer.Option("--at", min=0.0, help="Scene time to begin at, in seconds (default: the scene's).")
 ]
-PlannerOption = Annotated[str, typer.Option("--planner", help="Who plans: grammar.")]
-PerceptionOption = Annotated[str, typer.Option("--perception", help="Who looks: ground-truth or noisy.")]
 RunsDirOption = Annotated[Path | None, typer.Option("--runs-dir", help="Where run folders are made (default: runs).")]
 MaxStepsOption = Annotated[int, typer.Option("--max-steps", min=1, help="Steps after which a run is given up.")]
 TimeBudgetOption = Annotated[float | None, typer.Option("--time-budget", min=0.001, help="Wall seconds a run may take.")]
@@ -64,7 +80,7 @@ def _root(
 
 
 def _asking(
-    scene: str, viewpoint: str | None, preset: str | None, at: float | None, planner: str, perception: str, runs_dir: Path | None,
+    scene: str, viewpoint: str | None, preset: str | None, at: float | None, wishes: Wishes, runs_dir: Path | None,
     max_steps: int, time_budget: float | None, realtime: bool | None, seed: int, as_json: bool = False,
 ) -> Asking:  # fmt: skip
     from scope_ptz.agent.records import Budgets
@@ -74,8 +90,7 @@ def _asking(
 
     return Asking(
         start=Start(scene=scene, viewpoint=viewpoint, preset=preset, time_s=at),
-        planner=planner,
-        perception=perception,
+        wishes=wishes,
         runs_dir=runs_dir or load_settings().runs_dir,
         budgets=Budgets(max_steps=max_steps, time_s=time_budget),
         seed=seed,
@@ -91,8 +106,20 @@ def ask(
     viewpoint: ViewpointOption = None,
     preset: PresetOption = None,
     at: TimeOption = None,
-    planner: PlannerOption = "grammar",
-    perception: PerceptionOption = "ground-truth",
+    planner: PlannerOption = None,
+    perception: PerceptionOption = None,
+    pair: PairOption = None,
+    planner_url: PlannerUrlOption = None,
+    eyes_url: EyesUrlOption = None,
+    planner_model: PlannerModelOption = None,
+    eyes_model: EyesModelOption = None,
+    planner_key_file: PlannerKeyOption = None,
+    eyes_key_file: EyesKeyOption = None,
+    planner_option: PlannerOptions = None,
+    eyes_option: EyesOptions = None,
+    reader: ReaderOption = None,
+    detector: DetectorOption = None,
+    timeout: TimeoutOption = None,
     runs_dir: RunsDirOption = None,
     max_steps: MaxStepsOption = 64,
     time_budget: TimeBudgetOption = None,
@@ -104,9 +131,11 @@ def ask(
     with ending(as_json=as_json):
         from scope_ptz.cli.asking import ask as run
 
-        options = _asking(
-            scene, viewpoint, preset, at, planner, perception, runs_dir, max_steps, time_budget, realtime, seed, as_json
-        )
+        wishes = wishes_of(
+            planner, perception, pair, planner_url, eyes_url, planner_model, eyes_model, planner_key_file, eyes_key_file,
+            planner_option, eyes_option, reader, detector, timeout,
+        )  # fmt: skip
+        options = _asking(scene, viewpoint, preset, at, wishes, runs_dir, max_steps, time_budget, realtime, seed, as_json)
         sys.exit(run(instruction, options))
 
 
@@ -116,8 +145,20 @@ def chat(
     viewpoint: ViewpointOption = None,
     preset: PresetOption = None,
     at: TimeOption = None,
-    planner: PlannerOption = "grammar",
-    perception: PerceptionOption = "ground-truth",
+    planner: PlannerOption = None,
+    perception: PerceptionOption = None,
+    pair: PairOption = None,
+    planner_url: PlannerUrlOption = None,
+    eyes_url: EyesUrlOption = None,
+    planner_model: PlannerModelOption = None,
+    eyes_model: EyesModelOption = None,
+    planner_key_file: PlannerKeyOption = None,
+    eyes_key_file: EyesKeyOption = None,
+    planner_option: PlannerOptions = None,
+    eyes_option: EyesOptions = None,
+    reader: ReaderOption = None,
+    detector: DetectorOption = None,
+    timeout: TimeoutOption = None,
     runs_dir: RunsDirOption = None,
     max_steps: MaxStepsOption = 64,
     time_budget: TimeBudgetOption = None,
@@ -128,7 +169,11 @@ def chat(
     with ending():
         from scope_ptz.cli.chatting import chat as run
 
-        options = _asking(scene, viewpoint, preset, at, planner, perception, runs_dir, max_steps, time_budget, realtime, seed)
+        wishes = wishes_of(
+            planner, perception, pair, planner_url, eyes_url, planner_model, eyes_model, planner_key_file, eyes_key_file,
+            planner_option, eyes_option, reader, detector, timeout,
+        )  # fmt: skip
+        options = _asking(scene, viewpoint, preset, at, wishes, runs_dir, max_steps, time_budget, realtime, seed)
         sys.exit(run(options))
 
 

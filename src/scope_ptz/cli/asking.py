@@ -16,6 +16,7 @@ from scope_ptz.agent.records import Budgets, Called, Decided, Ended, Labels, Lis
 from scope_ptz.agent.store import RunFolder
 from scope_ptz.agent.trace import TraceWriter, read_trace
 from scope_ptz.camera.base import Camera
+from scope_ptz.cli.choosing import Wishes, choose
 from scope_ptz.cli.display import LiveView, show_end
 from scope_ptz.cli.endings import CANCELLED, exit_code, put_json
 from scope_ptz.cli.session import Start, make_perception, make_planner, open_camera, open_scene
@@ -29,8 +30,7 @@ class Asking:
     """The options of a session."""
 
     start: Start
-    planner: str
-    perception: str
+    wishes: Wishes
     runs_dir: Path
     budgets: Budgets
     seed: int
@@ -51,9 +51,10 @@ class Session:
 
     @classmethod
     async def open(cls, options: Asking) -> Session:
-        planner = make_planner(options.planner)
+        choice = await choose(options.wishes)
         scene = open_scene(options.start.scene)
-        perception, note = make_perception(options.perception, scene, options.seed)
+        planner = make_planner(choice.planner)
+        perception, note = make_perception(choice.eyes, scene, options.seed)
         camera = await open_camera(options.start, scene, realtime=options.in_real_time)
         return cls(options, camera, perception, planner, note)
 

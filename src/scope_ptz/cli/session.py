@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from scope_ptz.errors import InputError, UnknownNameError
+from scope_ptz.errors import InputError
 from scope_ptz.settings import ScopeSettings, load_settings
 
 if TYPE_CHECKING:
     from scope_ptz.camera.simulated import SimulatedCamera
+    from scope_ptz.cli.choosing import EyesChoice, PlannerChoice
     from scope_ptz.perception.base import Perception
     from scope_ptz.planner.base import Planner
     from scope_ptz.world.pack import Scene
@@ -58,28 +58,27 @@ async def open_camera(start: Start, scene: Scene, *, realtime: bool) -> Simulate
     return camera
 
 
-def make_planner(name: str) -> Planner:
-    """A planner by name."""
-    makers: dict[str, Callable[[], Planner]] = {"grammar": _grammar}
-    if name not in makers:
-        raise UnknownNameError("planner", name, makers)
-    return makers[name]()
+def make_planner(choice: PlannerChoice) -> Planner:
+    """The planner that was chosen."""
+    if choice.endpoint is None:
+        from scope_ptz.planner.grammar import GrammarPlanner
+
+        return GrammarPlanner()
+    from scope_ptz.planner.chat import ChatPlanner
+
+    return ChatPlanner(choice.endpoint, choice.options)
 
 
-def _grammar() -> Planner:
-    from scope_ptz.planner.grammar import GrammarPlanner
+def make_perception(choice: EyesChoice, scene: Scene, seed: int) -> tuple[Perception, str]:
+    """The eyes that were chosen, and the note that says what they are. ``scene`` is shared with the camera, not read twice."""
+    if choice.spec is not None:
+        from scope_ptz.perception.backends import make_eyes
 
-    return GrammarPlanner()
-
-
-def make_perception(name: str, scene: Scene, seed: int) -> tuple[Perception, str]:
-    """A perception backend by name, and the note that says what it is. ``scene`` is shared with the camera, not read twice."""
-    if name not in ("ground-truth", "noisy"):
-        raise UnknownNameError("perception", name, ("ground-truth", "noisy"))
+        return make_eyes(choice.spec), ""
     from scope_ptz.perception.ground_truth import GroundTruthPerception
 
     truth = GroundTruthPerception({scene.name: scene}.__getitem__)
-    if name == "ground-truth":
+    if choice.name == "ground-truth":
         return truth, GROUND_TRUTH_NOTE
     from scope_ptz.perception.noisy import NoisyPerception
 

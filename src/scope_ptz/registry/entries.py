@@ -12,9 +12,6 @@ Role = Literal["planner", "eyes"]
 Precision = Literal["fp16", "bf16", "fp8", "mxfp4", "int4", "q4", "fp32"]
 Thinking = Literal["none", "optional", "default", "always"]
 """``none``: never; ``optional``: only when asked to; ``default``: unless told not to; ``always``: only how much can be set."""
-Coordinates = Literal["none", "unit", "pixels", "resized-pixels", "thousand"]
-"""What boxes and points are given in: 0..1; pixels of the image sent; pixels after the model's own resize; 0..1000."""
-
 BYTES_PER_PARAMETER: dict[Precision, float] = {
     "fp32": 4.0, "fp16": 2.0, "bf16": 2.0, "fp8": 1.05, "int4": 0.6, "q4": 0.61, "mxfp4": 0.61,
 }  # fmt: skip
@@ -71,7 +68,7 @@ class Model(_Entry):
     context: int = Field(ge=0, description="Tokens; 0 where the notion does not apply.")
     thinking: Thinking = "none"
     sees: bool = Field(default=False, description="Takes images in the chat, so that it can be planner and eyes at once.")
-    coordinates: Coordinates = "none"
+    coordinates: str = Field(default="none", description="How it writes boxes and points: a convention of perception.coordinates.")
     licence: str
     kv_kib: float = Field(default=128.0, ge=0)
     memory_gb: float | None = Field(default=None, gt=0, description="A known figure instead of the computed one.")
