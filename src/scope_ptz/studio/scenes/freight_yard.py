@@ -6,7 +6,15 @@ import bpy
 
 from scope_ptz.studio.kit import dusk
 from scope_ptz.studio.kit.stage import Stage
-from scope_ptz.studio.scenes import freight_yard_buildings, freight_yard_ground, freight_yard_land
+from scope_ptz.studio.scenes import (
+    freight_yard_buildings,
+    freight_yard_fixtures,
+    freight_yard_ground,
+    freight_yard_land,
+    freight_yard_people,
+    freight_yard_stock,
+    freight_yard_vehicles,
+)
 
 NAME = "freight-yard"
 TITLE = "Freight yard"
@@ -20,10 +28,14 @@ ABSENT = (
 
 def build(stage: Stage) -> None:
     """Build the whole scene in an empty Blender file and fill in the stage."""
-    stage.start_s = 8.0
+    stage.start_s = 11.0
     dusk.setup(bpy.context.scene)
     freight_yard_ground.build(stage)
     freight_yard_buildings.build(stage)
+    freight_yard_vehicles.build(stage)
+    freight_yard_stock.build(stage)
+    freight_yard_fixtures.build(stage)
+    freight_yard_people.build(stage)
     freight_yard_land.build(stage)
     _cameras(stage)
     stage.absent = list(ABSENT)
