@@ -1,0 +1,108 @@
+"""Small edits that leave the meaning as it is: what people do without thinking, to instructions and to prompts. All
+deterministic."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+
+@dataclass(frozen=True, slots=True)
+class Edit:
+    """``apply`` returns the text unchanged where it has nothing to edit; such a case is not asked again."""
+
+    name: str
+    where: Literal["prompt", "instruction"]
+    apply: Callable[[str], str]
+
+
+_NUMBERS = {"5": "five", "8": "eight", "10": "ten", "15": "fifteen", "20": "twenty", "25": "twenty-five", "30": "thirty",
+            "45": "forty-five", "90": "ninety"}  # fmt: skip
+_OTHER_WORDS = (
+    (r"\bpan\b", "turn"),
+    (r"\btake a (picture|snapshot)\b", "take a photo"),
+    (r"\bhow many ([\w ]+?) are\b", r"what number of \1 are"),
+    (r"\bshow me\b", "bring up"),
+    (r"\bgo to\b", "move to"),
+    (r"\btrack\b", "follow"),
+    (r"\bwhich presets are there\b", "what presets do you have"),
+)
+_KEPT_WHOLE = frozenset({"degrees", "percent", "highway", "presets", "preset"})
+_ASKS = re.compile(r"^(how|what|which|is|are|if)\b", re.IGNORECASE)
+
+
+def _lower_first(text: str) -> str:
+    return text[:1].lower() + text[1:]
+
+
+def _request(opening: str, ending: str) -> Callable[[str], str]:
+    """Courtesy around a command. Questions and conditions have a form of their own and stay."""
+    return lambda text: text if _ASKS.match(text) else f"{opening}{_lower_first(text.rstrip('.!'))}{ending}"
+
+
+def _typo(text: str) -> str:
+    """Two letters of the longest word swapped, which must be neither a number, a preset nor a direction."""
+    words = [w for w in re.findall(r"[a-z]{6,}", text) if w not in _KEPT_WHOLE]
+    if not words:
+        return text
+    word = max(words, key=len)
+    middle = len(word) // 2
+    return text.replace(word, word[: middle - 1] + word[middle] + word[middle - 1] + word[middle + 1 :], 1)
+
+
+def _number_words(text: str) -> str:
+    return re.sub(r"\b\d+\b(?!\s*%|x)", lambda m: _NUMBERS.get(m[0], m[0]), text)
+
+
+def _other_words(text: str) -> str:
+    for pattern, words in _OTHER_WORDS:
+        text = re.sub(pattern, words, text, count=1)
+    return text
+
+
+INSTRUCTION_EDITS: tuple[Edit, ...] = (
+    Edit("lower case", "instruction", str.lower),
+    Edit("capital and full stop", "instruction", lambda t: t[:1].upper() + t[1:] + ("" if t[-1] in ".?!" else ".")),
+    Edit("upper case", "instruction", str.upper),
+    Edit("please before", "instruction", _request("please ", "")),
+    Edit("please behind", "instruction", _request("", ", please")),
+    Edit("can you", "instruction", _request("can you ", "?")),
+    Edit("I want you to", "instruction", _request("I want you to ", "")),
+    Edit("degree signs", "instruction", lambda t: re.sub(r"(\d) degrees?\b", r"\1°", t)),
+    Edit("numbers in words", "instruction", _number_words),
+    Edit("other words", "instruction", _other_words),
+    Edit("a typing error", "instruction", _typo),
+    Edit("double spaces", "instruction", lambda t: t.replace(" ", "  ")),
+)
+
+
+def _reversed_rules(text: str) -> str:
+    """The rules of each list in reverse order."""
+    lines, out, rules = text.split("\n"), list[str](), list[str]()
+    for line in [*lines, ""]:
+        if line.startswith("- "):
+            rules.insert(0, line)
+            continue
+        out += [*rules, line]
+        rules = []
+    return "\n".join(out[:-1])
+
+
+def _without_last_sentence(text: str) -> str:
+    return re.sub(r"(?<=[.:]) [^.\n]*\.\s*\Z", "", text)
+
+
+PROMPT_EDITS: tuple[Edit, ...] = (
+    Edit("blank lines at the end", "prompt", lambda t: t + "\n\n"),
+    Edit("an assistant first", "prompt", lambda t: "You are a helpful assistant. " + t),
+    Edit("other bullets", "prompt", lambda t: re.sub(r"^- ", "* ", t, flags=re.MULTILINE)),
+    Edit("no bullets", "prompt", lambda t: re.sub(r"^- ", "", t, flags=re.MULTILINE)),
+    Edit("headings marked", "prompt", lambda t: re.sub(r"^([A-Z][A-Za-z ]{3,30})$", r"## \1", t, flags=re.MULTILINE)),
+    Edit("no emphasis", "prompt", lambda t: re.sub(r"\b(RIGHT|LEFT|UP|DOWN)\b", lambda m: m[0].lower(), t)),
+    Edit("contractions", "prompt", lambda t: t.replace("do not", "don't").replace("it is", "it's").replace("cannot", "can't")),
+    Edit("rules reversed", "prompt", _reversed_rules),
+    Edit("last sentence left out", "prompt", _without_last_sentence),
+    Edit("no blank lines", "prompt", lambda t: re.sub(r"\n{2,}", "\n", t)),
+)

@@ -1,0 +1,163 @@
+"""One instruction put to a planner, without a camera: what it calls first, whether that is valid, right, or a move the wrong
+way round."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Sequence
+from importlib.resources import files
+from time import perf_counter
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict
+
+from scope_ptz.errors import PlannerError, ToolCallError
+from scope_ptz.geometry import Limits, Pose
+from scope_ptz.planner.base import Briefing, CallTools, Planner, State, Usage
+from scope_ptz.tools.arguments import AdjustPtz
+from scope_ptz.tools.registry import parse_call, schemas
+
+PRESETS = ("gate", "highway")
+_TOLERANCE = 0.01
+
+
+class _Model(BaseModel):
+    model_config = ConfigDict(frozen=True)
+
+
+class Call(_Model):
+    name: str
+    arguments: dict[str, Any] = {}
+
+
+class Row(_Model):
+    """An instruction and the calls that carry it out. ``alternatives``: other tools that are as good to begin with."""
+
+    instruction: str
+    kind: str
+    calls: tuple[Call, ...]
+    alternatives: tuple[str, ...] = ()
+
+
+class Trial(_Model):
+    """What a planner made of an instruction in its first step.
+
+    ``calls``: those that are valid; ``invalid``: how many are not; ``failure``: the way in which the planner failed, if it did;
+    ``right``: the first call is the expected one; ``inverted``: it turns or zooms the opposite way.
+    """
+
+    row: Row
+    edit: str
+    asked: str
+    calls: tuple[Call, ...] = ()
+    invalid: int = 0
+    text: str = ""
+    failure: str | None = None
+    right: bool = False
+    inverted: bool = False
+    seconds: float = 0.0
+    first_token_s: float | None = None
+    usage: Usage = Usage()
+
+
+def load_rows() -> tuple[Row, ...]:
+    """The packaged instructions, every kind of them."""
+    lines = (files("scope_ptz") / "data" / "profile_instructions.jsonl").read_text(encoding="utf-8").splitlines()
+    return tuple(Row.model_validate(json.loads(line)) for line in lines)
+
+
+async def ask_once(planner: Planner, row: Row, *, asked: str | None = None, edit: str = "") -> Trial:
+    """Put an instruction to a planner; ``asked``: the words, when they were edited."""
+    words = row.instruction if asked is None else asked
+    state = State(
+        instruction=words, briefing=Briefing(presets=PRESETS, pose=Pose(), limits=Limits()), tools=tuple(schemas())
+    )  # fmt: skip
+    began = perf_counter()
+    try:
+        decision = await planner.step(state)
+    except PlannerError as error:
+        failure = error.kind or "planner-error"
+        return Trial(row=row, edit=edit, asked=words, failure=failure, text=str(error), seconds=perf_counter() - began)
+    seconds = perf_counter() - began
+    wanted = decision.calls if isinstance(decision, CallTools) else ()
+    calls = tuple(Call(name=c.name, arguments=c.arguments) for c in wanted if c.problem is None and _valid(c.name, c.arguments))
+    return Trial(
+        row=row,
+        edit=edit,
+        asked=words,
+        calls=calls,
+        invalid=len(wanted) - len(calls),
+        text=decision.thought if isinstance(decision, CallTools) else decision.text,
+        right=bool(calls) and is_right(row, calls[0]),
+        inverted=is_inverted(row, calls),
+        seconds=seconds,
+        first_token_s=decision.served.first_token_s if decision.served else None,
+        usage=decision.usage,
+    )
+
+
+def _valid(name: str, arguments: dict[str, Any]) -> bool:
+    try:
+        parse_call(name, arguments)
+    except ToolCallError:
+        return False
+    return True
+
+
+def is_right(row: Row, call: Call) -> bool:
+    """Whether a call is the first that is expected. Descriptions by their words; questions only by being asked."""
+    expected = row.calls[0]
+    if call.name in row.alternatives:
+        return True
+    return call.name == expected.name and same_arguments(expected, call)
+
+
+def same_arguments(one: Call, other: Call) -> bool:
+    """Whether two calls of a tool come to the same: numbers alike, descriptions of the same words, questions at the same view."""
+    a, b = (parse_call(call.name, call.arguments)[1].model_dump(exclude={"question"}) for call in (one, other))
+    return all(_same(a[key], b[key]) for key in a)
+
+
+def _same(one: Any, other: Any) -> bool:
+    if isinstance(one, str) and isinstance(other, str):
+        return _words(one) == _words(other)
+    if isinstance(one, int | float) and isinstance(other, int | float):
+        return abs(one - other) <= _TOLERANCE
+    return bool(one == other)
+
+
+def _words(text: str) -> list[str]:
+    return [w.removesuffix("s") for w in re.findall(r"\w+", text.lower()) if w not in ("the", "a", "an", "all", "any")]
+
+
+def same_choice(one: Sequence[Call], other: Sequence[Call]) -> bool:
+    """Whether two planners began with the same tools, as far as both went."""
+    if not one or not other:
+        return not one and not other
+    return all(a.name == b.name for a, b in zip(one, other, strict=False))
+
+
+def same_calls(one: Sequence[Call], other: Sequence[Call]) -> bool:
+    """The same with the same arguments."""
+    return same_choice(one, other) and all(same_arguments(a, b) for a, b in zip(one, other, strict=False))
+
+
+def is_inverted(row: Row, calls: Sequence[Call]) -> bool:
+    """Whether the first move goes right for left, up for down, or in for out."""
+    wanted = next((_directions(c) for c in row.calls if c.name == "adjust_ptz"), None)
+    made = next((_directions(c) for c in calls if c.name == "adjust_ptz"), None)
+    return wanted is not None and made is not None and any(w * m < 0 for w, m in zip(wanted, made, strict=True))
+
+
+def _directions(call: Call) -> tuple[float, float, float]:
+    """Signs of pan, tilt and zoom."""
+    move = AdjustPtz.model_validate(call.arguments)
+    zoom = 0.0
+    if move.zoom_factor is not None:
+        zoom = move.zoom_factor - 1.0
+    elif move.zoom_percent is not None:
+        zoom = move.zoom_percent
+    elif move.zoom_limit is not None:
+        zoom = 1.0 if move.zoom_limit == "in" else -1.0
+    return move.pan_deg, move.tilt_deg, zoom
