@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 from scope_ptz.studio.kit.clocks import dial
 from scope_ptz.studio.kit.finishes import clear_glass, glow, lens, paint, sheet, steel, timber
+from scope_ptz.studio.kit.lettering import extent
 from scope_ptz.studio.kit.shading import plain
 from scope_ptz.studio.kit.shop_trade import blooms
 from scope_ptz.studio.kit.sign_faces import write
@@ -185,4 +186,20 @@ def bracket_clock(hour: int, minute: int, *, radius_m: float = 0.42) -> Built:
         for side in (-1, 1):
             with s.at(side * 0.112, 0, 0, turn=-90 * side):
                 dial(s, radius_m * 0.92, hour, minute)
+    return s.built()
+
+
+def fingerpost(arms: Sequence[tuple[str, float]], *, colour: str = "dark green") -> Built:
+    """A signpost, 3.1 m, with one arm for each (place, bearing it points to in degrees), lettered on both sides."""
+    s = Solid("signpost")
+    iron = paint(colour, dirt=0.15)
+    s.lathe([(0.10, 0.0), (0.10, 0.05), (0.05, 0.12), (0.045, 2.95), (0.07, 3.0), (0.07, 3.05), (0.01, 3.14)], iron, steps=16)
+    for k, (place, bearing) in enumerate(arms):
+        wide = extent(place, 0.085) + 0.30
+        with s.at(0, 0, 2.84 - 0.20 * k, turn=90 - bearing):
+            outline = [(0.05, -0.085), (wide, -0.085), (wide + 0.09, 0.0), (wide, 0.085), (0.05, 0.085)]
+            s.prism(outline, (-0.014, 0.014), iron, "XZ")
+            for turn in (0, 180):
+                with s.at(turn=turn), s.at(0, 0.015, 0):
+                    write(s, place, 0.085, (0.05 + wide / 2) * (-1 if turn == 0 else 1), 0, "white", lift=0.001)
     return s.built()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import bpy
 
@@ -16,25 +15,20 @@ from scope_ptz.studio.kit.stage import Built
 KERB_M = 0.12
 """Height of the footways above the road."""
 
+LIFT_M = 0.004
+"""Thickness of paint on the road."""
+
 Outline = Sequence[tuple[float, float]]
 
 
-@dataclass(frozen=True)
-class Paint:
-    """Road paint in world coordinates: plain rectangles (u = x, v = y) of one colour."""
-
-    white: tuple[Stencil, ...] = ()
-    yellow: tuple[Stencil, ...] = ()
-
-
-def carriageway(half_m: float, paint: Paint, gutters: Sequence[Stencil]) -> Built:
+def carriageway(half_m: float, gutters: Sequence[Stencil]) -> Built:
     """One sheet of asphalt on z = 0, ``half_m`` to all sides; water stands along the ``gutters``."""
     h = half_m
-    sheet = from_data("asphalt", [(-h, -h, 0), (h, -h, 0), (h, h, 0), (-h, h, 0)], [(0, 1, 2, 3)], _asphalt(paint, gutters))
+    sheet = from_data("asphalt", [(-h, -h, 0), (h, -h, 0), (h, h, 0), (-h, h, 0)], [(0, 1, 2, 3)], _asphalt(gutters))
     return Built.of("asphalt", [sheet])
 
 
-def _asphalt(paint: Paint, gutters: Sequence[Stencil]) -> bpy.types.Material:
+def _asphalt(gutters: Sequence[Stencil]) -> bpy.types.Material:
     s = Shader("wet asphalt")
     p = s.position()
     x, y, _ = s.xyz(p)
@@ -47,13 +41,6 @@ def _asphalt(paint: Paint, gutters: Sequence[Stencil]) -> bpy.types.Material:
     for socket, warmth in zip(grey.inputs, (1.0, 1.0, 1.03), strict=True):
         s.feed(socket, s.math("MULTIPLY", tone, warmth))
     colour: Value = s.mix(_patchwork(s, p, fine), grey.outputs[0], (0.012, 0.012, 0.0125))
-    ragged = s.math("MULTIPLY", s.math("SUBTRACT", s.noise(p, 11.0, 3.0), 0.5), 0.028)
-    wear = s.ramp(s.noise(p, 2.6, 6.0, 0.72), 0.30, 0.46, 0.25, 1.0)
-    for bars, tint in ((paint.white, (0.60, 0.60, 0.57)), (paint.yellow, (0.62, 0.40, 0.030))):
-        mask = s.math("MULTIPLY", _bars(s, bars, s.math("ADD", x, ragged), s.math("ADD", y, ragged)), wear)
-        colour = s.mix(
-            s.math("MULTIPLY", mask, 0.9), colour, s.mix(s.ramp(fine, 0.35, 0.7, 0.0, 0.35), tint, tuple(c * 0.5 for c in tint))
-        )
     low = s.math("ADD", s.noise(p, 0.34, 4.0, 0.5, 0.4), s.math("MULTIPLY", _edges(s, gutters, x, y), 0.085))
     puddle = s.ramp(low, 0.585, 0.615)
     damp = s.ramp(low, 0.40, 0.60)
@@ -74,12 +61,29 @@ def _patchwork(s: Shader, p: Value, fine: Value) -> Value:
     return s.math("MULTIPLY", s.ramp(s.xyz(cell.outputs["Color"])[0], 0.80, 0.81), s.ramp(fine, 0.2, 0.7, 0.6, 0.9))
 
 
-def _bars(s: Shader, bars: Sequence[Stencil], x: Value, y: Value) -> Value:
-    total: Value = 0.0
+def markings(bars: Sequence[Stencil], colour: str) -> Built:
+    """Worn road paint, "white" or "yellow", over rectangles in world coordinates (u = x, v = y)."""
+    points, faces = [], []
     for bar in bars:
-        mask = s.math("MULTIPLY", s.band(x, bar.u0, bar.u1, 0.008), s.band(y, bar.v0, bar.v1, 0.008))
-        total = s.math("MAXIMUM", total, mask)
-    return total
+        n = len(points)
+        points += [(bar.u0, bar.v0, LIFT_M), (bar.u1, bar.v0, LIFT_M), (bar.u1, bar.v1, LIFT_M), (bar.u0, bar.v1, LIFT_M)]
+        faces.append((n, n + 1, n + 2, n + 3))
+    return Built.of("road paint", [from_data("road paint", points, faces, road_paint(colour))])
+
+
+def road_paint(colour: str) -> bpy.types.Material:
+    """Thermoplastic paint under a film of water; worn spots let the asphalt through."""
+    found = bpy.data.materials.get(f"road paint {colour}")
+    if found is not None:
+        return found
+    s = Shader(f"road paint {colour}")
+    p = s.position()
+    tint = {"white": (0.56, 0.56, 0.53), "yellow": (0.60, 0.37, 0.022)}[colour]
+    fine, wear = s.noise(p, 8.0, 4.0, 0.65), s.noise(p, 2.6, 6.0, 0.72)
+    base = s.mix(s.ramp(fine, 0.35, 0.7, 0.0, 0.45), tint, tuple(c * 0.45 for c in tint))
+    worn = s.ramp(s.math("ADD", wear, s.math("MULTIPLY", s.noise(p, 40.0, 2.0), 0.2)), 0.42, 0.54, 0.8, 0.0)
+    colour_out = s.mix(worn, base, (0.030, 0.030, 0.031))
+    return s.surface(base_color=colour_out, roughness=s.ramp(s.noise(p, 1.3), 0.35, 0.65, 0.12, 0.34))
 
 
 def _edges(s: Shader, gutters: Sequence[Stencil], x: Value, y: Value) -> Value:

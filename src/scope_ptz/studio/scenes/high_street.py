@@ -1,0 +1,45 @@
+"""High street: shops, traffic and people on a wet afternoon in a small town."""
+
+from __future__ import annotations
+
+import bpy
+
+from scope_ptz.studio.kit import overcast, sky
+from scope_ptz.studio.kit.stage import Stage
+from scope_ptz.studio.scenes import high_street_kerb, high_street_land, high_street_people, high_street_shops, high_street_wares
+
+NAME = "high-street"
+TITLE = "High street"
+ABSENT = (
+    "ambulance", "aeroplane", "boat", "cat", "crane", "cow", "excavator", "fire engine", "fountain", "helicopter",
+    "horse", "lorry", "motorcycle", "parasol", "petrol pump", "police car", "skip", "statue", "suitcase", "swimming pool",
+    "tractor", "train", "tram", "wheelchair", "wind turbine",
+)  # fmt: skip
+"""Things that a person might ask for and that are not there."""
+
+
+def build(stage: Stage) -> None:
+    """Build the whole scene in an empty Blender file and fill in the stage."""
+    stage.start_s = 17.0
+    overcast.setup(bpy.context.scene)
+    shops = high_street_shops.build(stage)
+    high_street_wares.build(stage, shops)
+    high_street_kerb.build(stage)
+    high_street_people.build(stage)
+    high_street_land.build(stage)
+    _cameras(stage)
+    stage.absent = list(ABSENT)
+    sky.finish_materials(visibility_m=700.0)
+
+
+def _cameras(stage: Stage) -> None:
+    stage.viewpoint("corner", (-4.9, -45.2, 6.0), 0.0, "bracket on the corner of the bank, looking up the street")
+    stage.viewpoint("crossing", (3.3, 21.4, 5.2), 180.0, "outreach arm of a lamp column above the zebra crossing")
+    stage.viewpoint("rooftop", (2.6, 60.3, 9.0), 180.0, "bracket on the front of the town hall")
+    stage.preset("high-street", "corner", 9, -7, 1.0, "the whole street from the corner of the bank", home=True)
+    stage.preset("bus-stop", "corner", 1, -6, 2.0, "the bus at its stop")
+    stage.preset("junction", "corner", 160, -16, 1.0, "the traffic lights at Mill Lane")
+    stage.preset("zebra", "crossing", 0, -25, 1.0, "the zebra crossing and the street to the south")
+    stage.preset("shops-west", "crossing", 60, -8, 1.0, "the western shop fronts")
+    stage.preset("shops-east", "crossing", -38, -10, 1.3, "the eastern shop fronts")
+    stage.preset("church-road", "rooftop", 0, -12, 1.0, "the junction with Church Road and the street behind")
