@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from scope_ptz.camera.base import Camera, Frame
 from scope_ptz.errors import CameraError, PerceptionError
 from scope_ptz.geometry import Limits, Perspective, Pose, direction
+from scope_ptz.perception.base import Agreement, Box, Detections
 from scope_ptz.tools.context import ToolContext
 from scope_ptz.tools.registry import run_tool
 from scope_ptz.tools.results import AnswerResult, CountResult, Result
@@ -54,6 +55,24 @@ def test_a_failed_look_is_an_error_and_never_a_zero() -> None:
     eyes.fail = True
     with pytest.raises(PerceptionError, match="shut"):
         call(HoldingCamera(), eyes, "count_objects", description="cones")
+
+
+def test_what_is_known_beside_a_result_is_said_with_it() -> None:
+    eyes = cones()
+
+    async def detect(frame: Frame, description: str) -> Detections:
+        doubt = Agreement(other="vlm", said="7 found", share=0.2)
+        boxes = (Box(x_min=0.1, y_min=0.1, x_max=0.2, y_max=0.2),)
+        return Detections(
+            source="owl", boxes=boxes, complete=False, notes=("The reply was cut off: there may be more.",), agreement=doubt
+        )
+
+    eyes.detect = detect  # type: ignore[method-assign]
+    result = call(HoldingCamera(), eyes, "count_objects", description="cones")
+    assert isinstance(result, CountResult)
+    assert (result.count, result.complete) == (1, False)
+    assert result.message.startswith("At least 1 of 'cones'")
+    assert "cut off: there may be more." in result.message and "vlm sees it differently: 7 found." in result.message
 
 
 def test_query_answers_from_the_view_asked_for() -> None:

@@ -56,8 +56,11 @@ class Seen(Result):
 
 
 class CountResult(Seen):
+    """Not ``complete``: there are at least so many."""
+
     description: str
     count: int
+    complete: bool = True
     boxes: tuple[Box, ...] = ()
 
 
