@@ -31,8 +31,10 @@ _UNITS = {
 
 
 def sent_size(frame: Frame, convention: Convention, max_pixels: int) -> Size:
-    """Width and height at which a frame goes to a model: what the model would make of it, so that its pixels are known."""
-    if convention.factor is None:
+    """Width and height at which a frame goes to a model. One that answers in pixels gets what it would make of the frame, so that
+    these are known; to the others only the aspect matters.
+    """
+    if convention.factor is None or convention.space != "pixels":
         return fit(frame.width, frame.height, max_pixels)
     return smart_resize(frame.width, frame.height, factor=convention.factor, min_pixels=MIN_PIXELS, max_pixels=max_pixels)
 
