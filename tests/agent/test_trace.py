@@ -47,6 +47,11 @@ def test_a_run_comes_back_as_it_was(tmp_path: Path) -> None:
     assert (trace.ended.outcome, trace.ended.text) == ("answered", "Two.")
 
 
+def test_an_instruction_that_is_no_text_can_be_kept(tmp_path: Path) -> None:
+    folder = recorded(tmp_path, answer(), instruction="count the cones \udcff")
+    assert read_trace(folder.path).started.instruction == "count the cones ?"
+
+
 def test_every_picture_that_the_trace_names_is_there(tmp_path: Path) -> None:
     folder = recorded(tmp_path, calls(MOVE), calls(COUNT, ("take_image", {})), answer())
     trace = read_trace(folder.path)

@@ -56,7 +56,8 @@ class Agent:
             PackError: the scene's files are damaged.
             CameraError: the camera does not answer before the first step. Later failures are outcomes of the run.
         """
-        instruction = instruction.strip()
+        # Bytes of a command line that are no text become "?": no file and no server takes them.
+        instruction = instruction.encode("utf-8", "replace").decode().strip()
         if not instruction:
             raise InputError("The instruction is empty. Say what the camera should do.")
         if len(instruction) > MAX_INSTRUCTION_CHARS:
