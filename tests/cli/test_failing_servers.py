@@ -1,0 +1,91 @@
+"""``scope ask`` and model servers that fail: what a user sees, what is kept, and that a key is in neither."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import SCENE, Done, Scope
+from tests.support.misbehaving import Misbehaving, echo_key, nobody_listens, say, status
+
+KEY = "sk-very-secret-0123456789"
+ASK = ("ask", "how many cones are there?", "--scene", SCENE, "--fast", "--timeout", "10")
+COUNT = ("count_objects", {"description": "cones"})
+
+
+@pytest.fixture(autouse=True)
+def keys(monkeypatch: pytest.MonkeyPatch) -> None:
+    for role in ("PLANNER", "EYES"):
+        monkeypatch.setenv(f"SCOPE_{role}_KEY", KEY)
+
+
+def shown(done: Done, folder: Path) -> str:
+    """Everything that a user can see, in which the key must not be."""
+    kept = "".join(
+        path.read_text(errors="replace") for path in folder.rglob("*") if path.suffix in (".jsonl", ".json", ".txt", ".md")
+    )
+    everything = done.out + done.err + kept
+    assert KEY not in everything
+    assert "Traceback" not in done.err
+    return everything
+
+
+@pytest.mark.parametrize("output", ["text", "json"])
+def test_a_refused_key_is_told_and_not_shown(scope: Scope, tmp_path: Path, output: str) -> None:
+    with Misbehaving(then=echo_key()) as server:
+        done = scope(*ASK, "--planner-url", server.url, "--planner-model", "m", *(["--json"] if output == "json" else []))
+        assert all(request.headers["authorization"] == f"Bearer {KEY}" for request in server.requests)
+    assert done.code not in (0, 2)
+    told = shown(done, tmp_path)
+    assert "refused the key" in told
+    assert "***" in told
+
+
+def test_a_server_that_is_gone(scope: Scope, tmp_path: Path) -> None:
+    with nobody_listens() as url:
+        done = scope(*ASK, "--planner-url", url, "--planner-model", "m", "--json")
+    assert done.code not in (0, 2)
+    assert "cannot be reached" in shown(done, tmp_path)
+
+
+def test_eyes_that_fail_are_an_error_to_the_planner_and_counted(scope: Scope, tmp_path: Path) -> None:
+    with (
+        Misbehaving([say("", COUNT)], then=say("I could not see.")) as planner,
+        Misbehaving(then=status(500, f"bad {KEY}")) as eyes,
+    ):
+        done = scope(
+            *ASK,
+            "--planner-url",
+            planner.url,
+            "--planner-model",
+            "m",
+            "--perception",
+            "moondream",
+            "--eyes-url",
+            eyes.url,
+            "--json",
+        )
+        last = next(r for r in reversed(planner.requests) if r.chat).data["messages"][-1]
+    told = shown(done, tmp_path)
+    assert "I could not see." in told
+    assert last["role"] == "tool"
+    assert "failed inside" in last["content"]
+    assert KEY not in json.dumps(last)
+    ended = json.loads(next(tmp_path.rglob("trace.jsonl")).read_text().splitlines()[-1])
+    assert ended["perception_failures"] == 1
+    assert ended["server_events"] == {"server-error": 3}
+
+
+def test_an_address_with_a_key_in_it_is_refused(scope: Scope, tmp_path: Path) -> None:
+    done = scope(*ASK, "--planner-url", f"http://me:{KEY}@127.0.0.1:1/v1", "--planner-model", "m")
+    assert done.code == 2
+    shown(done, tmp_path)
+
+
+def test_doctor_tells_what_is_wrong(scope: Scope, tmp_path: Path) -> None:
+    with Misbehaving(then=echo_key()) as server:
+        done = scope("doctor", "--planner-url", server.url, "--planner-model", "m", "--json")
+    assert done.code != 0
+    assert "refused the key" in shown(done, tmp_path)
