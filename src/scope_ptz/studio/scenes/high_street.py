@@ -12,7 +12,7 @@ NAME = "high-street"
 TITLE = "High street"
 ABSENT = (
     "ambulance", "aeroplane", "boat", "cat", "crane", "cow", "excavator", "fire engine", "fountain", "helicopter",
-    "horse", "lorry", "motorcycle", "parasol", "petrol pump", "police car", "skip", "statue", "suitcase", "swimming pool",
+    "horse", "lorry", "motorcycle", "parking barrier", "petrol pump", "police car", "skip", "statue", "suitcase", "swimming pool",
     "tractor", "train", "tram", "wheelchair", "wind turbine",
 )  # fmt: skip
 """Things that a person might ask for and that are not there."""
@@ -22,10 +22,10 @@ def build(stage: Stage) -> None:
     """Build the whole scene in an empty Blender file and fill in the stage."""
     stage.start_s = 17.0
     overcast.setup(bpy.context.scene)
+    high_street_people.build(stage)  # first: melting bodies slows down with every object that the file already holds
     shops = high_street_shops.build(stage)
     high_street_wares.build(stage, shops)
     high_street_kerb.build(stage)
-    high_street_people.build(stage)
     high_street_land.build(stage)
     _cameras(stage)
     stage.absent = list(ABSENT)

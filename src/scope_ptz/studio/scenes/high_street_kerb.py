@@ -157,7 +157,7 @@ def _signs(stage: Stage) -> None:
         made = shopfronts.plate(lines, 0.14, colour, "white")
         stage.place(
             made,
-            "estate agent's board",
+            "estate agent board",
             f"{lines[0].lower()} board",
             plot.at(x, 0.55, 4.6),
             plot.bearing_deg + 90,

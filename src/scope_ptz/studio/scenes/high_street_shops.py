@@ -200,5 +200,5 @@ def _notices(stage: Stage, shop: Shop, plot: Plot, ident: str) -> None:
         made = shopfronts.plate(shop.card, 0.055, "white", "black")
         step = 1.05 if door_x(shop) <= 0 else -1.05
         stage.place(
-            made, "notice", "notice in the window", plot.at(door_x(shop) + step, 0.015, 1.62), bearing, parent=ident, colour="white"
+            made, "window notice", "notice in the window", plot.at(door_x(shop) + step, 0.015, 1.62), bearing, parent=ident, colour="white"
         )
