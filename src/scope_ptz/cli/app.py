@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from scope_ptz.cli.endings import ending
-from scope_ptz.cli.model_commands import models_app
+from scope_ptz.cli.model_commands import doctor, models_app, profile
 from scope_ptz.cli.model_options import (
     DetectorOption,
     EyesKeyOption,
@@ -215,13 +215,8 @@ def tools(
         put_json(schemas(), indent=None if as_json else 2)
 
 
-@app.command()
-def doctor(as_json: JsonOption = False) -> None:
-    """Say what is installed, reachable and missing, and how to get it."""
-    with ending(as_json=as_json):
-        from scope_ptz.cli.doctor import doctor as run
-
-        sys.exit(run(as_json=as_json))
+app.command()(profile)
+app.command()(doctor)
 
 
 @scene_app.command("list")

@@ -2,11 +2,30 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from scope_ptz.cli.endings import ending
+from scope_ptz.cli.model_options import (
+    DetectorOption,
+    EyesKeyOption,
+    EyesModelOption,
+    EyesOptions,
+    EyesUrlOption,
+    PairOption,
+    PerceptionOption,
+    PlannerKeyOption,
+    PlannerModelOption,
+    PlannerOption,
+    PlannerOptions,
+    PlannerUrlOption,
+    ReaderOption,
+    TimeoutOption,
+    wishes_of,
+)
 
 models_app = typer.Typer(help="The models: list them, show one, say how it is served, list the pairs.", invoke_without_command=True)
 
@@ -60,3 +79,74 @@ def pairs(as_json: JsonOption = False) -> None:
         from scope_ptz.cli.models import list_pairs
 
         list_pairs(as_json=as_json)
+
+
+def profile(
+    pair: Annotated[
+        str | None, typer.Argument(metavar="PAIR", help="PLANNER+EYES, or one model that is both; see `scope models pairs`.")
+    ] = None,
+    planner: PlannerOption = None,
+    perception: PerceptionOption = None,
+    planner_url: PlannerUrlOption = None,
+    eyes_url: EyesUrlOption = None,
+    planner_model: PlannerModelOption = None,
+    eyes_model: EyesModelOption = None,
+    planner_key_file: PlannerKeyOption = None,
+    eyes_key_file: EyesKeyOption = None,
+    planner_option: PlannerOptions = None,
+    eyes_option: EyesOptions = None,
+    reader: ReaderOption = None,
+    detector: DetectorOption = None,
+    timeout: TimeoutOption = None,
+    instructions: Annotated[
+        Path | None, typer.Option("--instructions", help='File of {"instruction", "calls"} lines in place of the packaged 60.')
+    ] = None,
+    limit: Annotated[int | None, typer.Option("--limit", min=1, help="Only so many instructions, evenly chosen.")] = None,
+    frames: Annotated[int, typer.Option("--frames", min=1, help="Frames that the eyes look at.")] = 6,
+    scene: Annotated[str, typer.Option("--scene", help="Scene that the frames are of.")] = "highway-works",
+    prompts: Annotated[
+        bool, typer.Option("--prompts", help="Also: how tool choice changes with small edits of prompt and instruction.")
+    ] = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Measure a pair on your own servers: speed, well-formed calls, perception latency, the paper's real-time bar."""
+    with ending(as_json=as_json):
+        from scope_ptz.cli.profiling import Extent
+        from scope_ptz.cli.profiling import profile as run
+
+        wishes = wishes_of(
+            planner, perception, pair, planner_url, eyes_url, planner_model, eyes_model, planner_key_file, eyes_key_file,
+            planner_option, eyes_option, reader, detector, timeout,
+        )  # fmt: skip
+        extent = Extent(instructions=instructions, limit=limit, frames=frames, scene=scene, prompts=prompts)
+        sys.exit(run(wishes, extent, as_json=as_json))
+
+
+def doctor(
+    pair: PairOption = None,
+    planner: PlannerOption = None,
+    perception: PerceptionOption = None,
+    planner_url: PlannerUrlOption = None,
+    eyes_url: EyesUrlOption = None,
+    planner_model: PlannerModelOption = None,
+    eyes_model: EyesModelOption = None,
+    planner_key_file: PlannerKeyOption = None,
+    eyes_key_file: EyesKeyOption = None,
+    planner_option: PlannerOptions = None,
+    eyes_option: EyesOptions = None,
+    timeout: TimeoutOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Say what is installed, reachable and missing; with a server's address: whether it does what SCOPE needs of it."""
+    with ending(as_json=as_json):
+        wishes = wishes_of(
+            planner, perception, pair, planner_url, eyes_url, planner_model, eyes_model, planner_key_file, eyes_key_file,
+            planner_option, eyes_option, None, None, timeout,
+        )  # fmt: skip
+        if any((pair, planner, perception, planner_url, eyes_url)):
+            from scope_ptz.cli.server_checks import check_servers
+
+            sys.exit(check_servers(wishes, as_json=as_json))
+        from scope_ptz.cli.doctor import doctor as run
+
+        sys.exit(run(as_json=as_json))

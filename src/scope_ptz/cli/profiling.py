@@ -1,0 +1,227 @@
+"""``scope profile``: what a pair does on the user's own servers: speed, well-formed calls, perception latency, and the verdict on
+the paper's real-time bar."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import anyio
+from pydantic import BaseModel, ValidationError
+from rich.console import Console
+from rich.progress import Progress, TextColumn
+
+from scope_ptz.cli.choosing import EyesChoice, PlannerChoice, Wishes, choose
+from scope_ptz.cli.endings import put_json
+from scope_ptz.cli.profile_report import EyesSpeed, Side, show
+from scope_ptz.cli.session import Start, make_perception, make_planner, open_camera, open_scene
+from scope_ptz.endpoints.serving_facts import memory_gb, serving_facts
+from scope_ptz.errors import InputError, PerceptionError
+from scope_ptz.planner.profile import Row, Sensitivity, ask_once, load_rows, measure_sensitivity
+from scope_ptz.planner.profile.speed import Spread, speed_of
+
+if TYPE_CHECKING:
+    from scope_ptz.camera.base import Frame
+    from scope_ptz.perception.base import Perception
+
+REAL_TIME_S = 0.5
+"""The paper's bar: a control loop of about 2 Hz, 500 ms an inference or less."""
+THING, QUESTION = "car", "What is the main thing in this picture? Answer in a few words."
+
+
+@dataclass(frozen=True, slots=True)
+class Extent:
+    """How much to measure. ``instructions``: a file in place of the packaged set; ``limit``: so many of them, evenly chosen."""
+
+    instructions: Path | None = None
+    limit: int | None = None
+    frames: int = 6
+    scene: str = "highway-works"
+    prompts: bool = False
+
+
+def profile(wishes: Wishes, extent: Extent, *, as_json: bool) -> int:
+    """Measure and print; exit code 0 whatever the verdict is."""
+    report: dict[str, Any] = {}
+    rows = _rows(extent)
+
+    async def work() -> None:
+        choice = await choose(wishes)
+        if choice.planner.endpoint is None and choice.eyes.spec is None:
+            raise InputError("Say what to profile: a pair, or a planner or eyes with the address of its server.")
+        sides = {}
+        if choice.planner.endpoint is not None:
+            sides["planner"] = await _planner_side(choice.planner, rows)
+        if choice.eyes.spec is not None:
+            sides["eyes"] = await _eyes_side(choice.eyes, extent)
+        report.update({role: side.model_dump() for role, side in sides.items()})
+        report["real_time"] = _verdict([side.meets_real_time for side in sides.values()])
+        if extent.prompts and choice.planner.endpoint is not None:
+            report["prompts"] = (await _sensitivity(choice.planner, rows)).model_dump()
+
+    anyio.run(work)
+    if as_json:
+        put_json(report)
+    else:
+        show(Console(highlight=False), report)
+    return 0
+
+
+def _rows(extent: Extent) -> tuple[Row, ...]:
+    rows = load_rows() if extent.instructions is None else _read(extent.instructions)
+    if extent.limit is not None and extent.limit < len(rows):
+        rows = tuple(rows[i * len(rows) // extent.limit] for i in range(extent.limit))
+    return rows
+
+
+def _read(source: Path) -> tuple[Row, ...]:
+    """The lines of a file of instructions that have calls; other lines expect a question back, and are no test of calls."""
+    try:
+        lines = source.read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{source} cannot be read: {error}.") from error
+    rows = []
+    for number, line in enumerate(lines, 1):
+        if not line.strip():
+            continue
+        try:
+            rows.append(_Line.model_validate_json(line))
+        except ValidationError as error:
+            first = error.errors(include_url=False)[0]
+            where = ".".join(str(part) for part in first["loc"])
+            raise InputError(f"{source}, line {number}: {f'{where}: ' if where else ''}{first['msg']}.") from error
+    kept = tuple(Row(instruction=r.instruction, kind=r.kind, calls=tuple(r.calls)) for r in rows if r.calls)  # type: ignore[arg-type]
+    if not kept:
+        raise InputError(f"{source} holds no instruction with expected calls.")
+    return kept
+
+
+class _Line(BaseModel):
+    instruction: str
+    kind: str = ""
+    calls: list[dict[str, Any]] = []
+
+
+async def _planner_side(choice: PlannerChoice, rows: tuple[Row, ...]) -> Side:
+    assert choice.endpoint is not None  # noqa: S101 - asked for only then
+    planner, trials = make_planner(choice), []
+    try:
+        await ask_once(planner, rows[0])  # Loads the model, opens the connection, fills the prefix cache
+        with _bar("planner", len(rows)) as advance:
+            for row in rows:
+                trials.append(await ask_once(planner, row))
+                advance()
+    finally:
+        await planner.close()
+    speed, facts = speed_of(trials), await serving_facts(choice.endpoint)
+    middle = speed.turn_s.median if speed.turn_s else None
+    return Side(
+        name=choice.name,
+        served_as=choice.endpoint.model,
+        url=choice.endpoint.url,
+        planner=speed,
+        slowest_median_s=middle,
+        meets_real_time=None if middle is None else middle <= REAL_TIME_S,
+        memory_gb=memory_gb(facts),
+        computed_memory_gb=choice.model.memory_for() if choice.model else None,
+        serving=facts,
+    )
+
+
+async def _eyes_side(choice: EyesChoice, extent: Extent) -> Side:
+    assert choice.spec is not None  # noqa: S101 - asked for only then
+    frames = await _frames(extent.scene, extent.frames)
+    eyes, _ = make_perception(choice, open_scene(extent.scene), 0)
+    try:
+        speed = await _look(eyes, frames)
+    finally:
+        await eyes.close()
+    facts = await serving_facts(choice.spec.endpoint) if choice.spec.endpoint else {}
+    slowest = max((spread.median for spread in speed.by_skill.values()), default=None)
+    return Side(
+        name=choice.name,
+        served_as=choice.spec.model,
+        url=choice.spec.endpoint.url if choice.spec.endpoint else "",
+        eyes=speed,
+        slowest_median_s=slowest,
+        meets_real_time=None if slowest is None else slowest <= REAL_TIME_S,
+        memory_gb=memory_gb(facts),
+        computed_memory_gb=choice.model.memory_for() if choice.model else None,
+        serving=facts,
+    )
+
+
+async def _frames(scene_name: str, count: int) -> list[Frame]:
+    """Frames of a scene's presets, and turned on from them when more are wanted: no two alike, so that nothing is cached."""
+    from scope_ptz.geometry import Pose
+
+    camera = await open_camera(Start(scene=scene_name), open_scene(scene_name), realtime=False)
+    try:
+        names = [preset.name for preset in await camera.presets()]
+        frames = []
+        for index in range(count):
+            await camera.go_to_preset(names[index % len(names)])
+            if index >= len(names):
+                pose = await camera.pose()
+                await camera.move(Pose(pose.pan_deg + 7.0 * (index // len(names)), pose.tilt_deg, pose.zoom))
+            frames.append(await camera.frame())
+        return frames
+    finally:
+        await camera.close()
+
+
+async def _look(eyes: Perception, frames: list[Frame]) -> EyesSpeed:
+    skills: dict[str, Callable[[Frame], Awaitable[object]]] = {
+        "query": lambda frame: eyes.query(frame, QUESTION),
+        "caption": eyes.caption,
+        "detect": lambda frame: eyes.detect(frame, THING),
+        "point": lambda frame: eyes.point(frame, THING),
+    }
+    times: dict[str, list[float]] = {name: [] for name in skills if name in eyes.skills}
+    failures: dict[str, int] = {}
+    with _bar("eyes", len(frames) * len(times)) as advance:
+        for number, frame in enumerate([frames[0], *frames]):
+            for name in times:
+                began = perf_counter()
+                try:
+                    await skills[name](frame)
+                    if number:  # The first round loads the model and opens the connection
+                        times[name].append(perf_counter() - began)
+                except PerceptionError as error:
+                    kind = error.kind or "perception"
+                    failures[kind] = failures.get(kind, 0) + bool(number)
+                advance(bool(number))
+    by_skill = {name: spread for name, values in times.items() if (spread := Spread.of(values)) is not None}
+    return EyesSpeed(frames=len(frames), by_skill=by_skill, failures={k: n for k, n in failures.items() if n})
+
+
+async def _sensitivity(choice: PlannerChoice, rows: tuple[Row, ...]) -> Sensitivity:
+    from scope_ptz.planner.chat import ChatOptions, ChatPlanner, Prompt, load_prompt
+
+    assert choice.endpoint is not None  # noqa: S101 - asked for only then
+    endpoint, options = choice.endpoint, choice.options or ChatOptions()
+
+    def make(prompt: Prompt) -> ChatPlanner:
+        return ChatPlanner(endpoint, options, prompt=prompt)
+
+    return await measure_sensitivity(make, load_prompt(options.prompt), rows=rows)
+
+
+def _verdict(sides: list[bool | None]) -> str:
+    if None in sides:
+        return "unknown"
+    return "met" if all(sides) else "missed"
+
+
+@contextmanager
+def _bar(about: str, total: int) -> Iterator[Callable[..., None]]:
+    """A progress bar on stderr, for terminals only."""
+    console = Console(stderr=True)
+    columns = (*Progress.get_default_columns(), TextColumn(about))
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
+        task = progress.add_task(about, total=total)
+        yield lambda steps=1: progress.advance(task, int(steps))

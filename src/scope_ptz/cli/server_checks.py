@@ -1,0 +1,70 @@
+"""``scope doctor --planner-url ...``: whether a server does what a planner or eyes need of it."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+
+import anyio
+from rich.console import Console
+from rich.text import Text
+
+from scope_ptz.cli.choosing import EyesChoice, PlannerChoice, Wishes, choose
+from scope_ptz.cli.display import plain
+from scope_ptz.cli.endings import FAILED, put_json
+from scope_ptz.cli.session import DEFAULT_SCENE, Start, make_perception, open_camera, open_scene
+from scope_ptz.endpoints.conformance import LAST, Check, Verdict, check_chat
+
+THING = "traffic cone"
+"""What the demo scene's home view certainly shows."""
+_PRESET = "highway"
+_MARKS: dict[Verdict, tuple[str, str]] = {"ok": ("ok", "green"), "partly": ("--", "yellow"), "failed": ("!!", "bold red")}
+
+
+def check_servers(wishes: Wishes, *, as_json: bool) -> int:
+    """Print every check as it ends; exit code 1 when one of them failed."""
+    found: list[tuple[str, Check]] = []
+    console = Console(highlight=False)
+
+    async def work() -> None:
+        choice = await choose(wishes)
+        async for about, check in _checks(choice.planner, choice.eyes):
+            found.append((about, check))
+            if not as_json:
+                _show(console, about, check)
+
+    anyio.run(work)
+    if as_json:
+        put_json([{"server": about, **check.model_dump()} for about, check in found])
+    return FAILED if any(check.verdict == "failed" for _, check in found) else 0
+
+
+async def _checks(planner: PlannerChoice, eyes: EyesChoice) -> AsyncIterator[tuple[str, Check]]:
+    if planner.endpoint is not None:
+        from scope_ptz.planner.chat.conformance import check_planning
+        from scope_ptz.tools.registry import schemas
+
+        about, alive = f"planner {planner.name}".strip(), False
+        async for check in check_chat(planner.endpoint):
+            alive = check.what == LAST
+            yield about, check
+        if alive:
+            async for check in check_planning(planner.endpoint, schemas(), planner.options):
+                yield about, check
+    if eyes.spec is not None:
+        from scope_ptz.perception.examination import check_eyes
+
+        scene = open_scene(DEFAULT_SCENE)
+        camera = await open_camera(Start(preset=_PRESET), scene, realtime=False)
+        perception, _ = make_perception(eyes, scene, 0)
+        try:
+            async for check in check_eyes(perception, await camera.frame(), thing=THING):
+                yield f"eyes {eyes.name}", check
+        finally:
+            await perception.close()
+            await camera.close()
+
+
+def _show(console: Console, about: str, check: Check) -> None:
+    mark, style = _MARKS[check.verdict]
+    head = Text.assemble((f"{mark}  ", style), (f"{plain(about)}: {check.what}", "bold"), (f"  {check.seconds:.2f} s  ", "dim"))
+    console.print(head + Text(plain(check.detail)), soft_wrap=True)

@@ -1,0 +1,131 @@
+"""What a chat server must do, as checks that run against any address: the part that has nothing to do with cameras."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator, Awaitable, Callable
+from time import perf_counter
+from typing import Literal
+
+import anyio
+from pydantic import BaseModel, ConfigDict
+
+from scope_ptz.endpoints.catalogue import served_models
+from scope_ptz.endpoints.chat import ChatClient
+from scope_ptz.endpoints.endpoint import Endpoint
+from scope_ptz.endpoints.failures import FailureKind, ServerFailure
+from scope_ptz.errors import ScopeError
+
+Verdict = Literal["ok", "partly", "failed"]
+UNREACHABLE = frozenset(
+    {FailureKind.REFUSED, FailureKind.DNS, FailureKind.TLS, FailureKind.CONNECT_TIMEOUT, FailureKind.UNAUTHORISED}
+)
+"""After one of these no further check can tell anything."""
+_GREETING = [
+    {"role": "system", "content": "You answer in one short sentence."},
+    {"role": "user", "content": "Say hello."},
+]
+LAST = "a model that is not there"
+"""The check that is reached when the server is there at all."""
+_NO_MODEL = "no-model-has-this-name"
+
+
+class Check(BaseModel):
+    """``partly``: SCOPE works with it, but not as well as it could; ``failed``: it does not."""
+
+    model_config = ConfigDict(frozen=True)
+
+    what: str
+    verdict: Verdict
+    detail: str = ""
+    seconds: float = 0.0
+
+
+Finding = tuple[Verdict, str]
+
+
+async def checked(what: str, look: Callable[[], Awaitable[Finding]]) -> Check:
+    """Run one check; an error that SCOPE raises on purpose is a failed check."""
+    began = perf_counter()
+    try:
+        verdict, detail = await look()
+    except ScopeError as error:
+        verdict, detail = "failed", str(error)
+    return Check(what=what, verdict=verdict, detail=detail, seconds=round(perf_counter() - began, 3))
+
+
+async def check_chat(endpoint: Endpoint) -> AsyncIterator[Check]:
+    """Check a chat server; ends early when nobody is there or the key is wrong."""
+    patient = endpoint.model_copy(update={"retries": 0})
+    client = ChatClient(patient)
+    try:
+        yield await checked("list of models", lambda: _listing(patient))
+        reached = await checked("an answer", lambda: _answers(client, stream=False))
+        yield reached
+        if reached.verdict == "failed" and await _gone(client):
+            return
+        yield await checked("an answer, streamed", lambda: _answers(client, stream=True))
+        yield await checked("two requests at once", lambda: _two_at_once(client))
+        yield await checked(LAST, lambda: _refuses(patient))
+    finally:
+        await client.close()
+
+
+async def _gone(client: ChatClient) -> bool:
+    try:
+        await client.complete(_GREETING, max_tokens=1)
+    except ServerFailure as failure:
+        return failure.kind in UNREACHABLE
+    return False
+
+
+async def _listing(endpoint: Endpoint) -> Finding:
+    try:
+        served = await served_models(endpoint)
+    except ServerFailure as failure:
+        if failure.kind in UNREACHABLE:
+            raise
+        return "partly", f"{failure} The model's name must be given by hand."
+    if endpoint.model in served:
+        return "ok", f"{len(served)}, '{endpoint.model}' among them"
+    return "partly", f"'{endpoint.model}' is not among them: {', '.join(served[:10]) or 'none'}"
+
+
+async def _answers(client: ChatClient, *, stream: bool) -> Finding:
+    reply = await client.complete(_GREETING, stream=stream)
+    said = f"{reply.output_tokens} tokens in {reply.seconds:.2f} s"
+    if not (reply.text or reply.reasoning):
+        return "failed", "the reply is empty"
+    if not reply.output_tokens:
+        return "partly", "it does not count tokens, so neither budgets nor speeds can be told"
+    if stream and reply.first_token_s is None:
+        return "partly", f"{said}; not streamed: it came as a whole"
+    first = f", the first after {reply.first_token_s:.2f} s" if reply.first_token_s is not None else ""
+    return "ok", said + first
+
+
+async def _two_at_once(client: ChatClient) -> Finding:
+    failures: list[ServerFailure] = []
+
+    async def ask() -> None:
+        try:
+            await client.complete(_GREETING)
+        except ServerFailure as failure:
+            failures.append(failure)
+
+    async with anyio.create_task_group() as group:
+        group.start_soon(ask)
+        group.start_soon(ask)
+    return ("failed", str(failures[0])) if failures else ("ok", "both were answered")
+
+
+async def _refuses(endpoint: Endpoint) -> Finding:
+    client = ChatClient(endpoint.model_copy(update={"model": _NO_MODEL}))
+    try:
+        reply = await client.complete(_GREETING)
+    except ServerFailure as failure:
+        if failure.kind in (FailureKind.NOT_FOUND, FailureKind.BAD_REQUEST):
+            return "ok", f"refused: {failure.kind.value}"
+        return "partly", f"it is no clear refusal: {failure}"
+    finally:
+        await client.close()
+    return "partly", f"'{reply.model or 'some model'}' answers under any name: check that it is the right one"

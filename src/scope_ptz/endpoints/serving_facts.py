@@ -1,0 +1,99 @@
+"""How a server says that it was set up: its version, window, precision, memory. Each kind of server tells in its own place."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from scope_ptz.endpoints.bodies import safe_text
+from scope_ptz.endpoints.catalogue import PATIENCE
+from scope_ptz.endpoints.endpoint import Endpoint
+from scope_ptz.endpoints.failures import scrub
+from scope_ptz.endpoints.translate import as_failure
+
+if TYPE_CHECKING:
+    from httpx2 import AsyncClient
+
+PLACES = ("/v1/models", "/version", "/props", "/api/ps", "/get_server_info", "/metrics", "/v1/stats")
+"""vLLM and most: models, version; llama.cpp: props; Ollama: ps; SGLang: server info; vLLM: metrics; Moondream Station: stats."""
+_WANTED = re.compile(
+    r"^(id|owned_by|root|max_model_len|version|build_info|model_path|n_ctx|size|size_vram|context_length|parameter_size"
+    r"|quantization(_level)?|dtype|tp_size|tensor_parallel_size|memory_usage|weight|kvcache|kv_cache_dtype|attention_backend"
+    r"|gpu_memory_utilization|num_gpu_blocks|block_size|enable_prefix_caching|cache_dtype|status|model|device|workers)$"
+)
+_METRIC = re.compile(r"^(vllm:cache_config_info\{(?P<labels>.*)\}|process_resident_memory_bytes)\s+(?P<value>\S+)$", re.MULTILINE)
+_LABEL = re.compile(r'(\w+)="([^"]*)"')
+_LONGEST = 200
+_MOST = 40
+
+
+async def serving_facts(endpoint: Endpoint) -> dict[str, str]:
+    """What the server tells of itself, by place and field; empty when it tells nothing. Never raises for a server's sake."""
+    from scope_ptz.endpoints.transport import make_client
+
+    quick = endpoint.model_copy(update={"timeouts": PATIENCE})
+    root = quick.url.removesuffix("/v1")
+    facts: dict[str, str] = {}
+    async with make_client(quick) as client:
+        for place in PLACES:
+            text = await _get(client, root + place, quick)
+            for name, value in _facts(place, text):
+                if len(facts) < _MOST:
+                    facts[f"{place} {name}"] = safe_text(scrub(value, quick.secret))[:_LONGEST]
+    return facts
+
+
+async def _get(client: AsyncClient, url: str, endpoint: Endpoint) -> str:
+    try:
+        response = await client.get(url)
+    except Exception as error:
+        if as_failure(error, endpoint) is None:
+            raise
+        return ""
+    return response.text if response.is_success else ""
+
+
+def _facts(place: str, text: str) -> Iterator[tuple[str, str]]:
+    if place == "/metrics":
+        for match in _METRIC.finditer(text):
+            yield from _labels(match["labels"]) if match["labels"] else [("process_resident_memory_bytes", match["value"])]
+        return
+    try:
+        content = json.loads(text)
+    except (ValueError, RecursionError):
+        return
+    yield from _walk(content, depth=0)
+
+
+def _labels(labels: str) -> Iterator[tuple[str, str]]:
+    yield from ((name, value) for name, value in _LABEL.findall(labels) if _WANTED.match(name))
+
+
+def _walk(content: Any, depth: int) -> Iterator[tuple[str, str]]:
+    """Wanted fields of nested JSON, not very deep."""
+    if depth > 4:
+        return
+    if isinstance(content, Mapping):
+        for name, value in content.items():
+            if isinstance(value, Mapping | list):
+                yield from _walk(value, depth + 1)
+            elif value is not None and _WANTED.match(str(name)):
+                yield str(name), str(value)
+    elif isinstance(content, list):
+        for value in content[:5]:
+            yield from _walk(value, depth + 1)
+
+
+def memory_gb(facts: Mapping[str, str]) -> float | None:
+    """GB that the model takes, where the server tells it: Ollama's video memory, SGLang's weights and cache."""
+    by_name = {key.split(" ", 1)[1]: value for key, value in facts.items()}
+    try:
+        if "size_vram" in by_name:
+            return round(float(by_name["size_vram"]) / 1e9, 2)
+        if "weight" in by_name:
+            return round(float(by_name["weight"]) + float(by_name.get("kvcache", 0)), 2)
+    except ValueError:
+        pass
+    return None

@@ -1,0 +1,69 @@
+"""How fast a planner's turns are, and how many of its calls are ones that the tools take, from trials of single instructions."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from statistics import median
+
+from pydantic import BaseModel, ConfigDict
+
+from scope_ptz.planner.profile.report import Rate
+from scope_ptz.planner.profile.trials import Trial
+
+
+class Spread(BaseModel):
+    """Median and 95th percentile."""
+
+    model_config = ConfigDict(frozen=True)
+
+    median: float
+    p95: float
+
+    @classmethod
+    def of(cls, values: Sequence[float]) -> Spread | None:
+        """None for no values."""
+        if not values:
+            return None
+        ordered = sorted(values)
+        return cls(median=round(median(ordered), 4), p95=round(ordered[min(len(ordered) - 1, int(0.95 * len(ordered)))], 4))
+
+
+class Speed(BaseModel):
+    """Seconds and tokens per second. ``valid``: turns that called tools, and only in ways that the tools take, of those that called
+    at all; ``right``: turns whose first call was the expected one; ``failures``: counted by kind."""
+
+    model_config = ConfigDict(frozen=True)
+
+    turns: int
+    turn_s: Spread | None
+    first_token_s: Spread | None
+    tokens_per_s: Spread | None
+    valid: Rate
+    right: Rate
+    inverted: Rate
+    failures: dict[str, int]
+
+
+def speed_of(trials: Sequence[Trial]) -> Speed:
+    """The figures of a planner from its trials."""
+    good = [t for t in trials if t.failure is None]
+    called = [t for t in good if t.calls or t.invalid]
+    return Speed(
+        turns=len(trials),
+        turn_s=Spread.of([t.seconds for t in good]),
+        first_token_s=Spread.of([t.first_token_s for t in good if t.first_token_s is not None]),
+        tokens_per_s=Spread.of([rate for t in good if (rate := _tokens_per_s(t)) is not None]),
+        valid=Rate.over(not t.invalid for t in called),
+        right=Rate.over(t.right for t in trials),
+        inverted=Rate.over(t.inverted for t in trials if any(c.name == "adjust_ptz" for c in t.row.calls)),
+        failures=dict(Counter(t.failure for t in trials if t.failure is not None)),
+    )
+
+
+def _tokens_per_s(trial: Trial) -> float | None:
+    """Tokens a second after the first one; None for replies that were not streamed or are too short to tell."""
+    if trial.first_token_s is None or trial.usage.output_tokens < 2:
+        return None
+    writing_s = trial.seconds - trial.first_token_s
+    return (trial.usage.output_tokens - 1) / writing_s if writing_s > 0 else None

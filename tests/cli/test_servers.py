@@ -1,0 +1,155 @@
+"""scope doctor and scope profile against servers, good ones and others."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from scope_ptz.planner.chat.conformance import PICTURE, TURN
+from tests.cli.conftest import SCENE, Scope
+from tests.support.misbehaving import MODEL, Behaviour, Exchange, Misbehaving, Request, Say, body, good, nobody_listens, status
+
+MOONDREAM = {
+    "query": {"answer": "A yard."},
+    "caption": {"caption": "A yard."},
+    "detect": {"objects": []},
+    "point": {"points": []},
+}
+
+
+def able(request: Request) -> Say:
+    """A model that does what the checks ask."""
+    messages = request.data["messages"]
+    if not request.data.get("tools"):
+        return Say(text="Hello.")
+    if messages[-1]["role"] == "tool":
+        return Say(text="The picture is saved.")
+    asked = str(messages[-1]["content"])
+    if PICTURE in asked:
+        return Say(text="", tool_calls=(("take_image", {}),))
+    if TURN in asked or "pan right 20" in asked:
+        return Say(text="", tool_calls=(("adjust_ptz", {"pan_deg": 20}),))
+    return Say(text="", tool_calls=(("adjust_ptz", {"pan_deg": "far"}),))
+
+
+def in_text(request: Request) -> Say:
+    """The same, on a server that does not parse the model's calls."""
+    said = able(request)
+    if not said.tool_calls:
+        return said
+    ((name, arguments),) = said.tool_calls
+    return Say(text=f"<tool_call>\n{json.dumps({'name': name, 'arguments': arguments})}\n</tool_call>")
+
+
+def checks(scope: Scope, *options: str) -> tuple[int, dict[str, str]]:
+    done = scope("doctor", "--json", *options)
+    return done.code, {check["what"]: check["verdict"] for check in done.json}
+
+
+def strict(mind: Behaviour) -> Behaviour:
+    """A server that knows its model's name and no other."""
+
+    async def behave(x: Exchange) -> None:
+        wrong = x.request.chat and x.request.data["model"] != MODEL
+        await (status(404, "no such model") if wrong else mind)(x)
+
+    return behave
+
+
+def test_a_good_server_passes_every_check(scope: Scope) -> None:
+    with Misbehaving(then=strict(good(able))) as server:
+        code, verdicts = checks(scope, "--planner-url", server.url)
+    assert code == 0
+    assert set(verdicts.values()) == {"ok"}
+    assert len(verdicts) == 11
+
+
+def test_calls_in_the_text_are_a_weakness_and_no_failure(scope: Scope) -> None:
+    with Misbehaving(then=good(in_text)) as server:
+        code, verdicts = checks(scope, "--planner-url", server.url)
+    assert code == 0
+    assert verdicts["a tool call"] == verdicts["a tool call, streamed"] == "partly"
+
+
+def test_a_model_without_tools_fails(scope: Scope) -> None:
+    with Misbehaving(then=good(Say("I am only a chat bot."))) as server:
+        code, verdicts = checks(scope, "--planner-url", server.url)
+        assert scope("doctor", "--planner-url", server.url).out.count("!!") == 2
+    assert code == 1
+    assert verdicts["an answer"] == "ok"
+    assert verdicts["a tool call"] == "failed"
+
+
+def test_nobody_there_is_told_once_and_at_once(scope: Scope) -> None:
+    with nobody_listens() as url:
+        code, verdicts = checks(scope, "--planner-url", url, "--planner-model", "x")
+    assert code == 1
+    assert verdicts == {"list of models": "failed", "an answer": "failed"}
+
+
+@pytest.mark.parametrize("behaviour", [status(500), body("<html>", "text/html"), body('{"choices": []}'), body("{")])
+def test_bad_servers_fail_checks_and_break_nothing(scope: Scope, behaviour: Behaviour) -> None:
+    with Misbehaving(then=behaviour) as server:
+        code, verdicts = checks(scope, "--planner-url", server.url, "--planner-model", "x")
+    assert code == 1
+    assert verdicts["a tool call"] == "failed"
+
+
+def test_eyes_are_checked_on_a_frame(scope: Scope) -> None:
+    with Misbehaving(then=good(moondream=MOONDREAM)) as server:
+        code, verdicts = checks(scope, "--perception", "moondream2", "--eyes-url", server.url)
+    assert code == 0
+    assert verdicts["a question"] == "ok"
+    assert verdicts["boxes of 'purple elephant'"] == "ok"
+    assert verdicts["boxes of 'traffic cone'"] == "partly"
+
+
+def profiled(scope: Scope, *options: str) -> Any:
+    done = scope("profile", "--scene", SCENE, "--frames", "2", "--json", *options)
+    assert done.code == 0, done.err
+    return done.json
+
+
+def test_a_profile_tells_speed_validity_and_the_verdict(scope: Scope, tmp_path: Path) -> None:
+    file = tmp_path / "instructions.jsonl"
+    lines = [
+        {"instruction": "pan right 20 degrees", "calls": [{"name": "adjust_ptz", "arguments": {"pan_deg": 20}}]},
+        {"instruction": "pan left 20 degrees", "calls": [{"name": "adjust_ptz", "arguments": {"pan_deg": -20}}]},
+        {"instruction": "florp", "calls": []},
+    ]
+    file.write_text("\n".join(map(json.dumps, lines)))
+    with Misbehaving(then=good(able)) as server:
+        url = server.url
+        report = profiled(
+            scope, "qwen3-30b-a3b+moondream3", "--planner-url", url, "--eyes-url", url, "--instructions", str(file)
+        )  # fmt: skip
+        text = scope("profile", "--planner-url", url, "--instructions", str(file), "--prompts").out
+    planner, eyes = report["planner"], report["eyes"]
+    assert planner["planner"]["turns"] == 2
+    assert (planner["planner"]["valid"]["count"], planner["planner"]["valid"]["of"]) == (1, 2)
+    assert planner["planner"]["first_token_s"]["median"] > 0
+    assert planner["planner"]["tokens_per_s"]["median"] > 0
+    assert planner["computed_memory_gb"] > 60
+    assert planner["serving"]["/v1/models id"] == MODEL
+    assert set(eyes["eyes"]["by_skill"]) == {"query", "caption", "detect", "point"}
+    assert report["real_time"] == "met"
+    assert "Real-time bar" in text
+    assert "tools changed by prompt edits" in text
+
+
+def test_failures_are_counted_and_no_verdict_is_invented(scope: Scope) -> None:
+    with Misbehaving(then=status(401)) as server:
+        report = profiled(scope, "--perception", "moondream2", "--eyes-url", server.url)
+        assert report["eyes"]["eyes"]["failures"] == {"unauthorised": 8}
+    assert report["real_time"] == "unknown"
+
+
+@pytest.mark.parametrize(
+    "options", [(), ("grammar+moondream2",), ("--planner-url", "http://127.0.0.1:9/v1", "--instructions", "/none")]
+)
+def test_what_cannot_be_profiled(scope: Scope, options: tuple[str, ...]) -> None:
+    done = scope("profile", *options)
+    assert (done.code, done.err.count("\n")) == (2, 1)
