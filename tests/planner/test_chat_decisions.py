@@ -109,6 +109,12 @@ def test_replies_that_are_no_decision(given: ChatReply, limited: bool, kind: str
     assert caught.value.kind == kind
 
 
+def test_an_endless_answer_is_cut_and_says_so() -> None:
+    _, text = finish("ha " * 100_000, 1)
+    assert len(text) < 21_000
+    assert text.endswith("more characters)")
+
+
 def test_finished_calls_of_a_cut_reply_are_made() -> None:
     cut = reply("", ("a", "go_home", "{}"), ("b", "adjust_ptz", '{"pan_'), finish_reason="length")
     decision = decide(cut, state(), limited=True)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+from time import perf_counter
 from typing import Any
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from scope_ptz.planner.chat.reasoning import part
 from scope_ptz.planner.chat.tool_text import find_calls
 from scope_ptz.planner.chat.written import Signatures, WrittenCall, read_arguments
 from scope_ptz.tools.registry import schemas
@@ -162,3 +164,28 @@ def test_arguments_of_any_text_are_an_object(text: str) -> None:
     read, malformed = read_arguments(text)
     assert isinstance(read, dict)
     assert malformed is None or read == {}
+
+
+@pytest.mark.parametrize(
+    "mark",
+    [
+        "<think> ",
+        "</think> ",
+        "<|channel|>",
+        "<tool_call>",
+        "<function=a>",
+        "<parameter=a>",
+        "<arg_key>",
+        "[TOOL_CALLS]",
+        "```\n",
+        "{ \n",
+        "? ",
+    ],
+)
+def test_megabytes_of_marks_take_no_time(mark: str) -> None:
+    began = perf_counter()
+    parted = part("<tool_call>" + mark * 50_000)
+    find_calls(parted.text, TOOLS)
+    find_calls(mark * 50_000, TOOLS)
+    part(mark * 50_000)
+    assert perf_counter() - began < 5

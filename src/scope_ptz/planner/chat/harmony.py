@@ -8,29 +8,39 @@ from __future__ import annotations
 
 import re
 
-_MESSAGE = re.compile(
-    r"(?:<\|start\|>\s*(?P<role>[^<]*))?<\|channel\|>(?P<header>.*?)<\|message\|>(?P<body>.*?)"
-    r"(?=<\|end\|>|<\|return\|>|<\|call\|>|<\|start\|>|<\|channel\|>|\Z)(?:<\|(?:end|return|call)\|>)?",
-    re.DOTALL,
-)
+_TOKEN = re.compile(r"<\|(start|channel|constrain|message|end|return|call)\|>")
 _RECIPIENT = re.compile(r"to=(?:functions\.)?([\w.-]+)")
 
 
 def read_harmony(text: str) -> tuple[str, list[str]]:
-    """The text without its channels, and the reasoning. Calls are left in it as ``<tool_call>`` elements of name and raw
-    arguments."""
+    """The text without its channels, and the reasoning. Calls are left in it as ``<tool_call>`` elements, arguments as written."""
     if "<|channel|>" not in text:
         return text, []
+    said: list[str] = []
     thoughts: list[str] = []
+    header = ""
+    in_body = False
+    pieces = _TOKEN.split(text)
+    if pieces[0].strip():
+        header = pieces[0]  # The prompt ended in the role, or in the channel's name.
+    for token, piece in zip(pieces[1::2], pieces[2::2], strict=True):
+        if token == "message":  # noqa: S105 - a token of a language, not of a login
+            in_body = True
+            _sort(header, piece.strip(), said, thoughts)
+        elif token in ("start", "channel", "constrain"):
+            header = piece if in_body else f"{header} {piece}"
+            in_body = False
+        else:
+            header, in_body = "", False
+            said.append(piece)
+    return "".join(said), thoughts
 
-    def replace(match: re.Match[str]) -> str:
-        header, body = match["header"], match["body"].strip()
-        recipient = _RECIPIENT.search(header) or _RECIPIENT.search(match["role"] or "")
-        if recipient:
-            return f"<tool_call><function={recipient[1]}>{body}</function></tool_call>"
-        if header.strip().startswith("analysis"):
-            thoughts.append(body)
-            return ""
-        return body + "\n"
 
-    return _MESSAGE.sub(replace, text), thoughts
+def _sort(header: str, body: str, said: list[str], thoughts: list[str]) -> None:
+    recipient = _RECIPIENT.search(header)
+    if recipient:
+        said.append(f"<tool_call><function={recipient[1]}>{body}</function></tool_call>")
+    elif "analysis" in header:
+        thoughts.append(body)
+    else:
+        said.append(body + "\n")

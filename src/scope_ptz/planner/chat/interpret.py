@@ -21,6 +21,9 @@ from scope_ptz.planner.chat.written import Signatures, WrittenCall, plain_name, 
 MOST_CALLS = 32
 """In one step. A model that writes more has run away."""
 
+MOST_CHARS = 20_000
+"""Of an answer, and of what is said beside calls. What goes on for longer is cut, and says so."""
+
 _CONTROL = re.compile(r"<\|[\w ]{2,30}\|>|</s>|<(?:end|start)_of_turn>|<turn\|>")
 _KIND = re.compile(r"\A[\s*_#>\"']*(?P<kind>CLARIFY|REFUSE)[\s*_]*:[\s*_]*", re.IGNORECASE)
 _QUESTION = re.compile(r"\?[\s\"'*_)]*\Z")
@@ -43,12 +46,12 @@ def decide(reply: ChatReply, state: State, *, limited: bool) -> Decision:
         calls_from=found.notation,
         attempts=reply.attempts,
     )
-    text = _CONTROL.sub("", found.rest).strip()
+    text = _cut_short(_CONTROL.sub("", found.rest).strip())
     if found.calls:
         calls = _tool_calls(reply, found, len(state.history))
         return CallTools(calls=calls, thought=text, usage=usage, reasoning=parted.reasoning, served=served)
     if reply.finish_reason == "length":
-        raise _cut(reply, limited)
+        raise _cut_off(reply, limited)
     if not text:
         what = "only reasoning and no answer" if parted.reasoning else "nothing"
         raise PlannerError(f"The planner's reply holds {what}.", kind=FailureKind.EMPTY.value, attempts=reply.attempts)
@@ -94,6 +97,11 @@ def _tool_calls(reply: ChatReply, found: Found, step: int) -> tuple[ToolCall, ..
     return tuple(calls)
 
 
+def _cut_short(text: str) -> str:
+    more = len(text) - MOST_CHARS
+    return text if more <= 0 else f"{text[:MOST_CHARS]} (cut: it went on for {more} more characters)"
+
+
 def _ending(text: str, *, called: bool) -> tuple[str, str]:
     said = _KIND.match(text)
     if said and (rest := text[said.end() :].strip()):
@@ -101,7 +109,7 @@ def _ending(text: str, *, called: bool) -> tuple[str, str]:
     return ("clarification" if not called and _QUESTION.search(text) else "answered"), text
 
 
-def _cut(reply: ChatReply, limited: bool) -> PlannerError:
+def _cut_off(reply: ChatReply, limited: bool) -> PlannerError:
     if limited:
         words = (
             f"The planner's reply was cut off at its limit of tokens ({reply.output_tokens} were written). Allow longer replies."

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from scope_ptz.planner.base import ToolOutcome
@@ -12,8 +12,10 @@ MOST_BOXES = 12
 MOST_CHARS = 4000
 """Of one text from perception. A longer one is a model that ran on."""
 
+BRIEF_CHARS = 120
+
 _KEPT = (
-    "count", "known", "found", "matches", "fill", "held_share", "duration_s", "presets", "preset", "file", "view", "source",
+    "count", "known", "found", "matches", "fill", "held_share", "duration_s", "presets", "preset", "file", "view",
     "clamped", "limited_by",
 )  # fmt: skip
 _SEEN_TEXTS = ("answer", "chosen")
@@ -24,17 +26,17 @@ def observation(outcome: ToolOutcome, *, brief: bool = False) -> str:
     """The outcome as one JSON line. ``brief``: only what later steps may still need, for a context that is nearly full."""
     if outcome.error is not None or outcome.result is None:
         error = seen_text(outcome.error or "The tool gave no result.", mark=False)
-        return _line({"error": error[:120] if brief else error})
+        return _line({"error": error[:BRIEF_CHARS] if brief else error})
     result = outcome.result
-    told: dict[str, Any] = {}
-    for key in _SEEN_TEXTS:
-        if isinstance(result.get(key), str) and result[key]:
-            told[key] = seen_text(result[key][:120] if brief else result[key])
-    told |= {key: _rounded(result[key]) for key in _KEPT if result.get(key) not in (None, (), [], "")}
-    if boxes := result.get("boxes"):
-        told |= {} if brief else _boxes(boxes)
-    if "source" not in result and isinstance(result.get("message"), str) and not brief:
-        told["message"] = seen_text(result["message"], mark=False)
+    told: dict[str, Any] = {key: _rounded(result[key]) for key in _KEPT if result.get(key) not in (None, (), [], "")}
+    if result.get("complete") is False:
+        told["complete"] = False
+    if brief:
+        told |= {key: seen_text(result[key][:BRIEF_CHARS]) for key in _SEEN_TEXTS if result.get(key)}
+    else:
+        told |= _boxes(result.get("boxes") or ())
+        # Its sentence says everything else: the answer, who saw it, what was corrected, who sees it differently.
+        told["message"] = seen_text(str(result.get("message", "")), mark="source" in result)
     told["pose"] = _rounded(result.get("pose"))
     return _line(told)
 
@@ -46,13 +48,13 @@ def seen_text(text: str, *, mark: bool = True) -> str:
     return f"<camera_text>{harmless}</camera_text>" if mark else harmless
 
 
-def _boxes(boxes: Any) -> dict[str, Any]:
-    """Corners in hundredths of the frame, left to right as perception names them; of many only the first."""
+def _boxes(boxes: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """Corners in hundredths of the frame, in perception's order; of many only the first."""
+    if not boxes:
+        return {}
     corners = [[round(box[k], 2) for k in ("x_min", "y_min", "x_max", "y_max")] for box in boxes[:MOST_BOXES]]
-    told: dict[str, Any] = {"boxes_xyxy": corners}
-    if len(boxes) > MOST_BOXES:
-        told["boxes_not_listed"] = len(boxes) - MOST_BOXES
-    return told
+    more = len(boxes) - MOST_BOXES
+    return {"boxes_xyxy": corners, **({"boxes_not_listed": more} if more > 0 else {})}
 
 
 def _rounded(value: Any) -> Any:

@@ -50,25 +50,20 @@ def part(text: str, field: str = "") -> Parted:
 
 
 def _take(text: str, opening: str, closing: str, thoughts: list[str]) -> str:
-    """Move what stands between the marks from ``text`` to ``thoughts``."""
+    """Move what stands between the marks from ``text`` to ``thoughts``. One pass, however many marks there are."""
     kept: list[str] = []
-    while True:
-        start, end = text.find(opening), text.find(closing)
-        if end >= 0 and not 0 <= start < end:
-            # Closed without having been opened: the chat template had put the opening mark into the prompt.
-            thoughts.append(text[:end])
-            text = text[end + len(closing) :]
-        elif start < 0:
-            return "".join((*kept, text))
-        else:
-            kept.append(text[:start])
-            inside = text[start + len(opening) :]
-            if end >= 0:
-                length = end - start - len(opening)
-                thoughts.append(inside[:length])
-                text = inside[length + len(closing) :]
-            else:
-                call = _CALL_BEGINS.search(inside)
-                cut = call.start() if call else len(inside)
-                thoughts.append(inside[:cut])
-                text = inside[cut:]
+    at, inside, seen = 0, False, False
+    for mark in re.finditer(f"{re.escape(opening)}|{re.escape(closing)}", text):
+        opens = mark[0] == opening
+        if inside and opens:
+            continue
+        # Closed without having been opened: the chat template had put the opening mark into the prompt.
+        (thoughts if inside or not (opens or seen) else kept).append(text[at : mark.start()])
+        at, inside, seen = mark.end(), opens, True
+    rest = text[at:]
+    if not inside:
+        return "".join((*kept, rest))
+    call = _CALL_BEGINS.search(rest)
+    cut = call.start() if call else len(rest)
+    thoughts.append(rest[:cut])
+    return "".join((*kept, rest[cut:]))

@@ -88,7 +88,7 @@ _PARAMETER = re.compile(
     r"<parameter(?:=|\s+name=[\"']?)(?P<key>[^>\"'\s]+)[\"']?\s*>(?P<value>.*?)(?:</parameter>|(?=<parameter)|\Z)", re.DOTALL
 )
 _KEY_AND_VALUE = re.compile(
-    r"<arg_key>(?P<key>.*?)</arg_key>\s*<arg_value>(?P<value>.*?)(?:</arg_value>|(?=<arg_key>)|\Z)", re.DOTALL
+    r"<arg_key>(?P<key>[^<]{1,100})</arg_key>\s*<arg_value>(?P<value>.*?)(?:</arg_value>|(?=<arg_key>)|\Z)", re.DOTALL
 )
 
 
@@ -118,10 +118,15 @@ def _keys_and_values(body: str, tools: Signatures) -> WrittenCall:
     )
 
 
+_MOST_PYTHON_CHARS = 20_000
+
+
 def _python_calls(body: str, tools: Signatures) -> list[WrittenCall]:
     """Python calls with literal keyword arguments: ``[adjust_ptz(pan_deg=20), go_home()]``."""
     if body.strip().startswith(("{", "[{")):
         return _json_calls(body, tools)
+    if len(body) > _MOST_PYTHON_CHARS:
+        return [wreck(body)]
     try:
         tree = ast.parse(body.strip(), mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
@@ -154,8 +159,8 @@ def _mistral(body: str, tools: Signatures) -> list[WrittenCall]:
 
 
 def _between(opening: str, closing: str) -> re.Pattern[str]:
-    """What stands between two marks; the closing one may be missing at the end of the text."""
-    return re.compile(f"{opening}(?P<body>.*?)(?:{closing}|\\Z)", re.DOTALL)
+    """What stands between two marks; the closing one may be missing before the next call and at the end of the text."""
+    return re.compile(f"{opening}(?P<body>.*?)(?:{closing}|(?={opening})|\\Z)", re.DOTALL)
 
 
 _MARKED: tuple[tuple[str, re.Pattern[str], _Reader], ...] = (
