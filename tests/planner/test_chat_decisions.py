@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -10,6 +11,7 @@ from scope_ptz.endpoints.failures import FailureKind, ServerFailure
 from scope_ptz.endpoints.replies import ChatReply, RawToolCall
 from scope_ptz.errors import PlannerError
 from scope_ptz.planner.base import CallTools, Finish
+from scope_ptz.planner.chat import ChatOptions, prompt_names
 from scope_ptz.planner.chat.dialect import Dialect
 from scope_ptz.planner.chat.families import family_of, likely_server, switch_for, temperature_for
 from scope_ptz.planner.chat.interpret import MOST_CALLS, decide
@@ -179,3 +181,9 @@ def test_a_server_is_not_sent_again_what_it_refused() -> None:
 
 def test_a_chosen_notation_is_kept() -> None:
     assert not Dialect("native", fixed=True).learn(refusal("tools are not supported"), {}, with_tools=True)
+
+
+def test_every_option_is_documented() -> None:
+    docs = (Path(__file__).parents[2] / "docs" / "planner.md").read_text(encoding="utf-8")
+    assert [name for name in ChatOptions.model_fields if f"`{name}`" not in docs] == []
+    assert [name for name in prompt_names() if f"`{name}`" not in docs] == []
