@@ -1,0 +1,141 @@
+"""What a task expects to be told: typed values, with the words that they may come in.
+
+A wording is one word or a few; plurals, capitals, British and American spelling are the reader's business, not the data's.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+Wording = Annotated[str, Field(min_length=1, pattern=r"\w")]
+Wordings = tuple[Wording, ...]
+Options = Annotated[dict[Wording, Wordings], Field(min_length=1)]
+"""Name of an option -> further wordings of it; the name itself is one."""
+
+
+class _Expected(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+_T = TypeVar("_T", bound=_Expected)
+
+
+class Number(_Expected):
+    """How many or how much. ``tolerance`` is what "about" allows; ``unit``: the task's own words for what is counted."""
+
+    kind: Literal["number"] = "number"
+    value: Annotated[float, Field(allow_inf_nan=False)]
+    tolerance: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
+    unit: Wordings = ()
+
+
+class YesNo(_Expected):
+    """Whether something is so. ``affirms``: what is so, or is there, when the answer is yes; ``denies``: what is so when it is no."""
+
+    kind: Literal["yes_no"] = "yes_no"
+    value: bool
+    affirms: Wordings = ()
+    denies: Wordings = ()
+
+
+class Choice(_Expected):
+    """One of several. Give every option that an answer could sensibly name, so that a wrong one is read as wrong."""
+
+    kind: Literal["choice"] = "choice"
+    value: Wording
+    options: Options
+
+    @model_validator(mode="after")
+    def _known(self) -> Choice:
+        return _all_known(self, (self.value,), self.options)
+
+
+class Text(_Expected):
+    """What is written somewhere. ``ocr``: look-alikes (0/O, 1/I/l, 5/S, 8/B) count as the same letter."""
+
+    kind: Literal["text"] = "text"
+    accepted: Annotated[Wordings, Field(min_length=1)]
+    ocr: bool = False
+
+
+class NameSet(_Expected):
+    """All of those that fit, in any order; none at all when ``value`` is empty."""
+
+    kind: Literal["name_set"] = "name_set"
+    value: Wordings
+    options: Options
+
+    @model_validator(mode="after")
+    def _known(self) -> NameSet:
+        return _all_known(self, self.value, self.options)
+
+
+class Ordering(_Expected):
+    """All of them in order. ``first``/``last``: words for the two ends ("most", "fewest"), which an answer may begin with either way."""
+
+    kind: Literal["ordering"] = "ordering"
+    value: Annotated[Wordings, Field(min_length=2)]
+    options: Options
+    first: Wordings = ()
+    last: Wordings = ()
+
+    @model_validator(mode="after")
+    def _known(self) -> Ordering:
+        if sorted(self.value) != sorted(self.options):
+            raise ValueError("an ordering orders all of its options, each once")
+        return self
+
+
+class Relation(_Expected):
+    """How ``subject`` stands to ``object``: ``forward`` ("more", "left of"), ``backward`` ("fewer", "right of"), or the same."""
+
+    kind: Literal["relation"] = "relation"
+    value: Literal["forward", "backward", "same"]
+    subject: Annotated[Wordings, Field(min_length=1)]
+    object: Annotated[Wordings, Field(min_length=1)]
+    forward: Annotated[Wordings, Field(min_length=1)]
+    backward: Wordings = ()
+    same: Wordings = ()
+
+
+class Fact(_Expected):
+    """One thing that a description may state, in any of these wordings."""
+
+    any_of: Annotated[Wordings, Field(min_length=1)]
+
+
+class Description(_Expected):
+    """An open answer: all ``facts`` must be stated, none of the ``contradictions``."""
+
+    kind: Literal["description"] = "description"
+    facts: Annotated[tuple[Fact, ...], Field(min_length=1)]
+    contradictions: tuple[Fact, ...] = ()
+
+
+class NoneThere(_Expected):
+    """That there is none. ``subject``: the words for what is not there."""
+
+    kind: Literal["none_there"] = "none_there"
+    subject: Annotated[Wordings, Field(min_length=1)]
+
+
+class ActionOnly(_Expected):
+    """No answer is wanted: what the camera did decides alone."""
+
+    kind: Literal["action_only"] = "action_only"
+
+
+Expected = Annotated[
+    Number | YesNo | Choice | Text | NameSet | Ordering | Relation | Description | NoneThere | ActionOnly,
+    Field(discriminator="kind"),
+]
+AnyExpected = Number | YesNo | Choice | Text | NameSet | Ordering | Relation | Description | NoneThere | ActionOnly
+
+
+def _all_known(expected: _T, values: Wordings, options: dict[Wording, Wordings]) -> _T:
+    unknown = [value for value in values if value not in options]
+    if unknown:
+        raise ValueError(f"{', '.join(unknown)}: not among the options {', '.join(options)}")
+    return expected

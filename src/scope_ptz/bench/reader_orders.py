@@ -1,0 +1,113 @@
+"""Reading answers that compare: orders of several things, and how one stands to another."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from scope_ptz.bench.expected import Ordering, Relation
+from scope_ptz.bench.reader_choices import SAME
+from scope_ptz.bench.reader_text import Mention, Script, wordings_of
+from scope_ptz.bench.reading import Reading, Unreadable, Value
+
+_REFERENCES = frozenset({"than", "versus", "vs", "against"})
+_AT_REFERENCE = frozenset({"of", "from", "to"})
+_FILLERS = frozenset({"it", "is", "its", "on", "to", "the", "at", "in", "side", "of", "hand", "a", "bit", "slightly", "much", "them", "lies"})
+_TURNED = {"forward": "backward", "backward": "forward"}
+
+
+def read_ordering(expected: Ordering, script: Script) -> Reading:
+    """The options in the order that the answer gives them, turned round where it begins at the other end."""
+    names = {name: wordings_of(name, further) for name, further in expected.options.items()}
+    mentions = [m for m in script.mentions(names) if not m.denied]
+    order = list(dict.fromkeys(m.name for m in mentions))
+    if set(order) != set(expected.options):
+        return Unreadable("not all of them are named" if order else "none of them is named")
+    ends = script.mentions({"first": expected.first, "last": expected.last})
+    placed = _placed(script, mentions, ends)
+    if placed.get("first") is not None and placed.get("last") is not None and placed["first"] != placed["last"]:
+        between = [name for name in order if name not in placed.values()]
+        if len(between) > 1 and (order[0], order[-1]) not in ((placed["first"], placed["last"]), (placed["last"], placed["first"])):
+            return Unreadable("the order between the two ends is not told")
+        if order[0] == placed["last"] and order[-1] == placed["first"]:
+            between.reverse()
+        return Value((str(placed["first"]), *between, str(placed["last"])))
+    starts_at_last = placed.get("last") == order[0] or _heading_is_turned(script, mentions, ends)
+    if starts_at_last or any("<" in w.gap for w in script.words):
+        order.reverse()
+    elif placed.get("first") not in (None, order[0]) or placed.get("last") not in (None, order[-1]):
+        return Unreadable("the order is told in two ways")
+    return Value(tuple(order))
+
+
+def _placed(script: Script, mentions: Sequence[Mention], ends: Sequence[Mention]) -> dict[str, str | None]:
+    """Which option is said to be at which end: a segment that names one option and one end."""
+    placed: dict[str, str | None] = {}
+    for group in script.segments():
+        here = {m.name for m in mentions if group[0] <= m.start <= group[-1]}
+        end = {m.name for m in ends if group[0] <= m.start <= group[-1] and not m.denied}
+        first = [m for m in mentions if group[0] <= m.start <= group[-1]]
+        if len(end) == 1 and here and (len(here) == 1 or first[0].start < min(m.start for m in ends if m.name in end)):
+            placed.setdefault(end.pop(), first[0].name)
+    return placed
+
+
+def _heading_is_turned(script: Script, mentions: Sequence[Mention], ends: Sequence[Mention]) -> bool:
+    """ "From fewest to most: ..."."""
+    before = [m.name for m in ends if m.start < mentions[0].start]
+    return before[:2] == ["last", "first"] or before == ["last"]
+
+
+def read_relation(expected: Relation, script: Script) -> Reading:
+    """How the subject stands to the object, as every clause of the answer that says so agrees."""
+    said = set[str]()
+    names = {"subject": expected.subject, "object": expected.object}
+    ways = {"forward": expected.forward, "backward": expected.backward}
+    things = script.mentions(names)
+    comparators = [m for m in script.mentions(ways) if not m.denied]
+    for comparator in comparators:
+        way = _way(script, comparator, things)
+        if way is None:
+            return Unreadable("it does not say which of them")
+        said.add(way)
+    alike = [m for m in script.mentions({"same": (*expected.same, *SAME)}) if not m.denied]
+    if alike and not comparators:
+        return Value("same")
+    denied = any(m.denied for m in script.mentions({**ways, "same": SAME}))
+    if not comparators and not denied and not any(w.text == "or" for w in script.words):
+        named = {m.name for m in things if not m.denied}
+        if len(named) == 1 and not re.search(r"\b(behind|beside|near|next)\b", script.text()):
+            said.add("forward" if named == {"subject"} else "backward")
+    if len(said) == 1:
+        return Value(said.pop())
+    return Unreadable("it says both" if said else "no comparison")
+
+
+def _way(script: Script, comparator: Mention, things: Sequence[Mention]) -> str | None:
+    """The relation of subject to object that one comparator states; None when it does not say of which of them."""
+    clause = script.words[comparator.start].clause
+    here = [m for m in things if script.words[m.start].clause == clause]
+    reference = _reference(script, comparator, here)
+    if reference is not None:
+        return comparator.name if reference.name == "object" else _TURNED[comparator.name]
+    before = [m for m in here if m.start < comparator.start]
+    after = [m for m in here if m.start > comparator.start]
+    bearer = before[-1] if before else after[0] if after else None
+    if bearer is not None:
+        return comparator.name if bearer.name == "subject" else _TURNED[comparator.name]
+    words = {w.text for i, w in enumerate(script.words) if w.clause == clause and not comparator.start <= i < comparator.end}
+    return comparator.name if words <= _FILLERS else None
+
+
+def _reference(script: Script, comparator: Mention, here: Sequence[Mention]) -> Mention | None:
+    """What the comparator compares with: "more than B", "left of B", "compared with B"."""
+    for mention in here:
+        between = [w.text for w in script.words[comparator.end : mention.start]] if mention.start > comparator.end - 1 else []
+        if set(between) & _REFERENCES:
+            return mention
+        lead = [w.text for w in script.words[max(0, mention.start - 3) : mention.start]]
+        if "compared" in lead:
+            return mention
+        if between and set(between[:2]) & _AT_REFERENCE and len(between) <= 3:
+            return mention
+    return None

@@ -1,0 +1,65 @@
+"""Reading what an answer says is written somewhere, and comparing texts as a person would who knows what cameras confuse."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from scope_ptz.bench.expected import Text
+from scope_ptz.bench.reader_text import Script, clean
+from scope_ptz.bench.reading import Reading, Unreadable, Value
+
+_LOOK_ALIKES = str.maketrans({"o": "0", "i": "1", "l": "1", "|": "1", "s": "5", "b": "8"})
+_DIGITS = {
+    w: str(n) for n, w in enumerate("zero one two three four five six seven eight nine ten eleven twelve".split())
+}  # fmt: skip
+_QUOTED = re.compile(r'"([^"]+)"|(?<!\w)\'([^\']+(?:\'\w[^\']*)*)\'(?!\w)')
+_CUE = re.compile(r"\b(?:reads|read|says|say|displays|spells|shows|called|named|is|are)\b\s*:?\s*|:\s+", re.IGNORECASE)
+_TRAILERS = re.compile(
+    r"\s+(?:in|on|above|below|with|at|written|painted|printed|near|beside)\s+(?:(?:the|a|an|its|big|large|small|bold|capital|white|black|red|"
+    r"blue|green|yellow|dark|light|orange)\s+)*(?:letters?|lettering|capitals|sign|board|text|background|front|back|plate|door|van|car|"
+    r"lorry|truck|bus|shop|wall|view|top|bottom|left|right|gantry|white|black|red|blue|green|yellow|orange)\b.*$",
+    re.IGNORECASE,
+)
+_MOST_WORDS = {"is": 6, "are": 6}
+_MOST_AFTER_A_CUE = 14
+
+
+def same_text(one: str, other: str, *, ocr: bool) -> bool:
+    """Whether two texts are the same but for case, punctuation and spaces, and with ``ocr`` but for look-alikes."""
+    return _folded(one, ocr) == _folded(other, ocr)
+
+
+def _folded(text: str, ocr: bool) -> str:
+    words = re.findall(r"[^\W_]+", re.sub(r"(?<=\w)'(?=\w)", "", clean(text).lower()))
+    joined = "".join(_DIGITS.get(word, word) for word in words)
+    return joined.translate(_LOOK_ALIKES) if ocr else joined
+
+
+def read_text(expected: Text, script: Script, answer: str) -> Reading:
+    """What the answer quotes; else what follows "reads", "says" or "is"; else a short answer as a whole."""
+    text = clean(answer)
+    if script.declined and not _QUOTED.search(text):
+        return Unreadable("declined")
+    quoted = [a or b for a, b in _QUOTED.findall(text)]
+    if quoted:
+        return _from_quotes(quoted, text)
+    candidate, most = text, 8
+    for cue in _CUE.finditer(text):
+        if cue.end() < len(text):
+            candidate, most = text[cue.end() :], _MOST_WORDS.get(cue.group().strip().lower(), _MOST_AFTER_A_CUE)
+            if most == _MOST_AFTER_A_CUE:
+                break
+    candidate = _TRAILERS.sub("", candidate.strip().strip(".!")).strip()
+    words = candidate.split()
+    if len(words) > most:
+        return Unreadable("no text is quoted")
+    if "or" in [w.lower() for w in words] and not any("or" in a.lower().split() for a in expected.accepted):
+        return Unreadable("an alternative")
+    return Value(candidate)
+
+
+def _from_quotes(quoted: Sequence[str], text: str) -> Reading:
+    if len({_folded(q, ocr=False) for q in quoted}) > 1 and re.search(r"[\"']\s*,?\s+(?:or|and then|not)\s+[\"']", text):
+        return Unreadable("an alternative")
+    return Value(" ".join(dict.fromkeys(quoted)))

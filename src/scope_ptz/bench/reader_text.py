@@ -1,0 +1,237 @@
+"""Free text as clauses of words: markup and spelling set aside, what is denied, guessed, asked or declined told apart.
+
+This is the benchmark's own reading of English. It shares nothing with the language of the ground-truth perception.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+_SPELLINGS = {
+    "color": "colour", "colors": "colours", "gray": "grey", "center": "centre", "meter": "metre", "tire": "tyre", "curb": "kerb",
+    "sidewalk": "pavement", "license": "licence", "story": "storey", "aluminum": "aluminium", "colored": "coloured",
+}  # fmt: skip
+_IRREGULAR = {"people": "person", "men": "man", "women": "woman", "children": "child", "persons": "person"}
+_IDIOMS = (
+    "without a doubt", "without doubt", "no doubt", "no problem", "of course", "for sure", "not only", "no wonder",
+    "needless to say", "as you can see", "not surprisingly",
+)  # fmt: skip
+_CONTRACTIONS = (
+    (re.compile(r"\bcan'?t\b|\bcannot\b"), "can not"),
+    (re.compile(r"\bwon't\b"), "will not"),
+    (re.compile(r"n't\b"), " not"),
+    (re.compile(r"\b(it|there|that|he|she|what|here|one|everything|who|let)'s\b"), r"\1 is"),
+    (re.compile(r"\b(i|we|you|they)'(m|re|ve|d|ll)\b"), r"\1"),
+)
+_WORD = re.compile(r"\d+(?:,\d{3})+(?:\.\d+)?|\d+(?:\.\d+)?|[^\W\d_]+(?:'[^\W\d_]+)*|[°%]")
+
+NEGATORS = frozenset({"no", "not", "never", "without", "neither", "nor", "none", "nobody", "nothing", "zero", "0", "lacks", "lack"})
+_ASIDE = (
+    ("rather", "than"), ("instead", "of"), ("other", "than"), ("apart", "from"), ("as", "opposed", "to"), ("unlike",),
+    ("except",), ("except", "for"), ("besides",), ("excluding",),
+)  # fmt: skip
+_ARTICLES = frozenset({"a", "an", "the", "one", "two", "three", "some", "its", "his", "their"})
+_STOPS = frozenset({"but", "just", "only", "however", "although", "though", "yet", "while", "whereas", "instead"})
+_HARD = re.compile(r"[!?;\n]|\.(?!\d)|\s[—–-]\s|—")
+_HEDGES = re.compile(
+    r"\b(maybe|perhaps|possibly|might|may|conceivably|i guess|just a guess|at a guess|or so|could (be|have)"
+    r"(?! (found|seen|detected|made|spotted|identified|located)))\b"
+)
+_DECLINES = re.compile(
+    r"\bnot (?:\w+ )?(tell|say|determine|determined|make|know|known|read|readable|compare|compared|rank|count|counted|judge|judged|"
+    r"identify|identified|answer|answered|confirm|confirmed|decide|sure|certain|able|possible|legible|clear|see (anything|clearly|enough))\b"
+    r"|\b(unable|impossible|hard|difficult) to\b|\bno (way to|idea)\b|\b(unclear|illegible|unreadable|unknown|indeterminable)\b"
+    r"|\btoo (\w+ )?(dark|blurry|blurred|small|far|distant|dim|unclear|bright|faint)\b.* to (\w+ )?"
+    r"(see|tell|say|read|count|make|determine|identify|judge|be)\b"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Word:
+    """``text`` in lower case and British spelling; ``gap``: what stands between it and the word before; ``segment`` ends at commas
+    and colons too, ``clause`` only where a sentence could."""
+
+    text: str
+    gap: str
+    clause: int
+    segment: int
+
+
+@dataclass(frozen=True, slots=True)
+class Mention:
+    """Words ``start`` to ``end`` (exclusive) name ``name``. ``denied``: said not to be so; ``aside``: named to be told apart."""
+
+    name: str
+    start: int
+    end: int
+    denied: bool
+    aside: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Script:
+    """A text made ready for reading. ``declined``/``hedged``: something in it was, and those clauses are left out of ``words``."""
+
+    words: tuple[Word, ...]
+    declined: bool
+    hedged: bool
+
+    def mentions(self, names: dict[str, Sequence[str]]) -> list[Mention]:
+        """Every place where one of the wordings of a name stands; of overlapping ones the longest."""
+        phrases = [(tuple(plain_words(w)), name) for name, wordings in names.items() for w in wordings]
+        phrases.sort(key=lambda p: -len(p[0]))
+        found, taken = list[Mention](), set[int]()
+        for start in range(len(self.words)):
+            for phrase, name in phrases:
+                end = start + len(phrase)
+                if phrase and self._is_at(phrase, start) and not taken & set(range(start, end)):
+                    taken |= set(range(start, end))
+                    found.append(Mention(name, start, end, self.denied(start, end), self._aside(start)))
+                    break
+        return found
+
+    def _is_at(self, phrase: tuple[str, ...], start: int) -> bool:
+        words = self.words[start : start + len(phrase)]
+        return (
+            len(words) == len(phrase)
+            and words[0].clause == words[-1].clause
+            and all(same_word(w.text, p) for w, p in zip(words, phrase, strict=True))
+        )
+
+    def _aside(self, start: int) -> bool:
+        before = [w.text for w in self.words[max(0, start - 4) : start] if w.clause == self.words[start].clause]
+        while before and before[-1] in _ARTICLES:
+            before.pop()
+        return any(tuple(before[-len(words) :]) == words for words in _ASIDE)
+
+    def denied(self, start: int, end: int) -> bool:
+        """Whether what stands at these words is said not to be so or not to be there."""
+        return self._denied_before(start) or self._denied_after(end)
+
+    def _denied_before(self, start: int) -> bool:
+        segment = self.words[start].segment
+        at = start - 1
+        while at >= 0 and self.words[at].segment == segment:
+            word = self.words[at]
+            if word.text in NEGATORS:
+                return not (word.text == "no" and self.words[at + 1].text == "other")
+            ends_list = word.text == "and" and self.words[at + 1].text in _ARTICLES
+            if word.text in _STOPS or ends_list:
+                return False
+            at -= 1
+        return at >= 0 and self._continues_list(segment) and self._opens_denied_list(at)
+
+    def _continues_list(self, segment: int) -> bool:
+        """ "no cars, vans or buses": the pieces after the comma are denied too when the list ends in "or"."""
+        clause = next(w.clause for w in self.words if w.segment == segment)
+        rest = [w.text for w in self.words if w.clause == clause and w.segment >= segment]
+        own = [w.text for w in self.words if w.segment == segment]
+        return ("or" in rest or "nor" in rest) and not (set(own) & (_STOPS | {"is", "are", "there", "it", "i", "yes"}))
+
+    def _opens_denied_list(self, at: int) -> bool:
+        """Whether the piece that ends at a word is denied and is more than a bare "no"."""
+        return at > 0 and self.words[at - 1].segment == self.words[at].segment and self._denied_before(at)
+
+    def _denied_after(self, end: int) -> bool:
+        clause = self.words[end - 1].clause
+        after = " ".join(w.text for w in self.words[end : end + 6] if w.clause == clause)
+        return bool(
+            re.match(
+                r"(\w+ ){0,2}?(is|are|was|were|can|could) not (\w+ )?(visible|present|there|seen|found|shown|here|anywhere|in|be (seen|found))\b"
+                r"|(is |are )?(absent|missing|nowhere)\b|(none|no|0|zero)$",
+                after,
+            )
+        )
+
+    def text(self) -> str:
+        return " ".join(w.text for w in self.words)
+
+    def segments(self) -> list[list[int]]:
+        """Word positions by segment."""
+        return _grouped([w.segment for w in self.words])
+
+    def clauses(self) -> list[list[int]]:
+        """Word positions by clause."""
+        return _grouped([w.clause for w in self.words])
+
+
+def _grouped(labels: Sequence[int]) -> list[list[int]]:
+    groups: dict[int, list[int]] = {}
+    for position, label in enumerate(labels):
+        groups.setdefault(label, []).append(position)
+    return list(groups.values())
+
+
+def clean(text: str) -> str:
+    """Without markup; quotation marks, dashes and spaces of one sort; capitals kept."""
+    text = unicodedata.normalize("NFKC", text)
+    text = re.sub(r"[‘’´`]", "'", re.sub(r"[“”„«»]", '"', text)).replace("−", "-")
+    text = re.sub(r"(?<!\w)'(?=\d+'(?!\w))|(?<=\d)'(?!\w)", " ", text)
+    text = re.sub(r"\*\*|__|^#+\s*|^>\s*|(?<!\w)\*(?=\w)|(?<=\w)\*(?!\w)", "", text, flags=re.MULTILINE)
+    return re.sub(r"^\s*(?:[-*•]|\d+[.)])\s+", "", text, flags=re.MULTILINE).strip()
+
+
+def plain_words(text: str) -> list[str]:
+    """The words of a text, as they are compared."""
+    return [w.text for w in _words(clean(text))]
+
+
+def _words(text: str) -> list[Word]:
+    low = text.lower()
+    for pattern, plain in _CONTRACTIONS:
+        low = pattern.sub(plain, low)
+    for idiom in _IDIOMS:
+        low = re.sub(rf"\b{idiom}\b", " ", low)
+    words, end, clause, segment = list[Word](), 0, 0, 0
+    for match in _WORD.finditer(low):
+        gap = low[end : match.start()]
+        word = match.group()
+        end = match.end()
+        if words and _HARD.search(gap):
+            clause += 1
+        if words and (_HARD.search(gap) or re.search(r"[,:]", gap) or word in ("but", "whereas", "while", "although", "so")):
+            segment += 1
+        words.append(Word(_SPELLINGS.get(word, word), gap, clause, segment))
+    return words
+
+
+def script(text: str) -> Script:
+    """Make a text ready for reading. Questions are left out: they claim nothing."""
+    cleaned = clean(text)
+    words = _words(re.sub(r"[^.!?\n]*\?", "", cleaned))
+    kept, declined, hedged = list[Word](), False, False
+    for positions in _grouped([w.clause for w in words]):
+        said = " ".join(words[i].text for i in positions)
+        refuses = _DECLINES.search(said)
+        if refuses and not re.search(r"\bbut\b", said[refuses.end() :]):
+            declined = True
+        elif _HEDGES.search(said):
+            hedged = True
+        else:
+            kept += [words[i] for i in positions]
+    return Script(tuple(kept), declined, hedged)
+
+
+@lru_cache(maxsize=4096)
+def _forms(word: str) -> frozenset[str]:
+    forms = {word, _IRREGULAR.get(word, word)}
+    if len(word) > 3 and word.endswith("s") and not word.endswith("ss"):
+        forms.add(word[:-1])
+        if word.endswith("es"):
+            forms.add(word[:-2])
+        if word.endswith("ies"):
+            forms.add(word[:-3] + "y")
+    return frozenset(forms)
+
+
+def same_word(one: str, other: str) -> bool:
+    """Whether two words are the same but for their number."""
+    return one == other or one in _forms(other) or other in _forms(one)
+
+
+def wordings_of(name: str, further: Iterable[str]) -> tuple[str, ...]:
+    return name, *further
