@@ -15,6 +15,8 @@ from scope_ptz.planner.chat import ChatOptions, prompt_names
 from scope_ptz.planner.chat.dialect import Dialect
 from scope_ptz.planner.chat.families import family_of, likely_server, switch_for, temperature_for
 from scope_ptz.planner.chat.interpret import MOST_CALLS, decide
+from scope_ptz.planner.chat.schemas import plain_schemas
+from scope_ptz.tools.registry import schemas
 from tests.planner.test_chat_messages import exchanges, state
 
 
@@ -24,7 +26,7 @@ def reply(text: str = "", *calls: tuple[str, str, str], **fields: Any) -> ChatRe
 
 
 def finish(text: str, steps: int = 0, **fields: Any) -> tuple[str, str]:
-    decision = decide(reply(text, **fields), state(*exchanges(steps)), limited=False)
+    decision = decide(reply(text, **fields), state(*exchanges(steps)))
     assert isinstance(decision, Finish)
     return decision.kind, decision.text
 
@@ -33,7 +35,7 @@ def test_several_native_calls_with_words_beside_them() -> None:
     given = reply(
         "I turn.", ("a", "adjust_ptz", '{"pan_deg": 20}'), ("b", "go_home", ""), input_tokens=9, cached_tokens=4, reasoning="hm"
     )
-    decision = decide(given, state(), limited=False)
+    decision = decide(given, state())
     assert isinstance(decision, CallTools)
     assert [(c.id, c.name, c.arguments, c.problem) for c in decision.calls] == [
         ("a", "adjust_ptz", {"pan_deg": 20}, None),
@@ -46,7 +48,7 @@ def test_several_native_calls_with_words_beside_them() -> None:
 
 @pytest.mark.parametrize("arguments", ['{"pan_deg": 20', "[1]", "right", '{"pan_deg": NaN}', '{"pan_deg": 1e999}', "{" * 5000])
 def test_arguments_that_are_no_object_become_a_call_with_a_problem(arguments: str) -> None:
-    decision = decide(reply("", ("a", "adjust_ptz", arguments)), state(), limited=False)
+    decision = decide(reply("", ("a", "adjust_ptz", arguments)), state())
     assert isinstance(decision, CallTools)
     (call,) = decision.calls
     assert call.arguments == {}
@@ -55,15 +57,34 @@ def test_arguments_that_are_no_object_become_a_call_with_a_problem(arguments: st
     assert len(call.problem) < 500
 
 
+def test_calls_that_the_server_also_left_in_the_text_are_not_said_twice() -> None:
+    twice = 'I go. <tool_call>{"name": "go_home", "arguments": {}}</tool_call>'
+    decision = decide(reply(twice, ("a", "go_home", "{}")), state())
+    assert isinstance(decision, CallTools)
+    assert (len(decision.calls), decision.thought) == (1, "I go.")
+
+
+def test_schemas_are_plain_and_say_the_same() -> None:
+    for plain, full in zip(plain_schemas(schemas()), schemas(), strict=True):
+        assert plain["function"]["name"] == full["function"]["name"]
+        theirs, ours = plain["function"]["parameters"], full["function"]["parameters"]
+        assert (theirs.get("required"), theirs["additionalProperties"]) == (ours.get("required"), False)
+        assert theirs["properties"].keys() == ours["properties"].keys()
+        for name, prop in theirs["properties"].items():
+            assert set(prop) <= {"type", "description", "enum"}
+            assert isinstance(prop["type"], str)
+            assert prop["description"] == ours["properties"][name]["description"]
+
+
 def test_ids_are_made_where_the_server_gives_none() -> None:
-    decision = decide(reply("", ("", "go_home", "{}"), ("", "go_home", "{}")), state(*exchanges(2)), limited=False)
+    decision = decide(reply("", ("", "go_home", "{}"), ("", "go_home", "{}")), state(*exchanges(2)))
     assert isinstance(decision, CallTools)
     assert [c.id for c in decision.calls] == ["s0003c001", "s0003c002"]
 
 
 def test_a_model_that_runs_away_is_held() -> None:
     many = [(f"c{n}", "go_home", "{}") for n in range(500)]
-    decision = decide(reply("", *many), state(), limited=False)
+    decision = decide(reply("", *many), state())
     assert isinstance(decision, CallTools)
     assert len(decision.calls) == MOST_CALLS + 1
     assert [c.problem is None for c in decision.calls[-2:]] == [True, False]
@@ -71,7 +92,7 @@ def test_a_model_that_runs_away_is_held() -> None:
 
 def test_calls_in_reasoning_count_only_when_nothing_was_said() -> None:
     thought = 'I go. <tool_call>{"name": "go_home", "arguments": {}}</tool_call>'
-    decision = decide(reply("", reasoning=thought), state(), limited=False)
+    decision = decide(reply("", reasoning=thought), state())
     assert isinstance(decision, CallTools)
     assert finish("I stay.", reasoning=thought) == ("answered", "I stay.")
 
@@ -96,18 +117,19 @@ def test_endings(text: str, steps: int, ending: tuple[str, str]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "limited", "kind"),
+    ("given", "window", "kind"),
     [
-        (reply("The answer is", finish_reason="length"), False, "context-overflow"),
-        (reply("The answer is", finish_reason="length"), True, "cut-off"),
-        (reply("", reasoning="I think and think", finish_reason="length"), True, "cut-off"),
-        (reply("<think>I only think</think>"), False, "empty"),
-        (reply("<|im_end|>"), False, "empty"),
+        (reply("The answer is", finish_reason="length", input_tokens=4000, output_tokens=96), 4096, "context-overflow"),
+        (reply("The answer is", finish_reason="length", input_tokens=4000, output_tokens=96), 8192, "cut-off"),
+        (reply("The answer is", finish_reason="length"), None, "cut-off"),
+        (reply("", reasoning="I think and think", finish_reason="length"), None, "cut-off"),
+        (reply("<think>I only think</think>"), None, "empty"),
+        (reply("<|im_end|>"), None, "empty"),
     ],
 )
-def test_replies_that_are_no_decision(given: ChatReply, limited: bool, kind: str) -> None:
+def test_replies_that_are_no_decision(given: ChatReply, window: int | None, kind: str) -> None:
     with pytest.raises(PlannerError) as caught:
-        decide(given, state(), limited=limited)
+        decide(given, state(), context_tokens=window)
     assert caught.value.kind == kind
 
 
@@ -119,7 +141,7 @@ def test_an_endless_answer_is_cut_and_says_so() -> None:
 
 def test_finished_calls_of_a_cut_reply_are_made() -> None:
     cut = reply("", ("a", "go_home", "{}"), ("b", "adjust_ptz", '{"pan_'), finish_reason="length")
-    decision = decide(cut, state(), limited=True)
+    decision = decide(cut, state())
     assert isinstance(decision, CallTools)
     assert [c.problem is None for c in decision.calls] == [True, False]
 
@@ -173,6 +195,7 @@ def test_a_server_is_not_sent_again_what_it_refused() -> None:
     assert dialect.learn(refusal("Unsupported value: 'temperature'"), sent, with_tools=True)
     assert dialect.learn(refusal('"auto" tool choice requires --enable-auto-tool-choice'), sent, with_tools=True)
     assert dialect.notation == "text"
+    assert Dialect("native", fixed=False).learn(refusal("Conversation roles must alternate user/assistant"), {}, with_tools=True)
     assert dialect.learn(refusal("System role not supported"), sent, with_tools=False)
     assert [m["role"] for m in dialect.messages([{"role": "system", "content": "a"}, {"role": "user", "content": "b"}])] == ["user"]
     assert not dialect.learn(refusal("something else"), {}, with_tools=False)

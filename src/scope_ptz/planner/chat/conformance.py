@@ -24,7 +24,7 @@ async def check_planning(
     for stream in (False, True):
         how = ", streamed" if stream else ""
         planner = ChatPlanner(
-            endpoint.model_copy(update={"retries": 0}), options.model_copy(update={"stream": stream, "sees": False})
+            endpoint.model_copy(update={"retries": 1}), options.model_copy(update={"stream": stream, "sees": False})
         )
         try:
             yield await checked(f"a tool call{how}", lambda p=planner: _calls(p, tools))  # type: ignore[misc]

@@ -11,7 +11,11 @@ from scope_ptz.endpoints.failures import FailureKind, ServerFailure
 from scope_ptz.planner.chat.messages import Message, Notation
 
 _REFUSALS = (FailureKind.BAD_REQUEST, FailureKind.SERVER_ERROR, FailureKind.NOT_FOUND, FailureKind.ERROR_BODY)
-_TOOLS = re.compile(r"\btools?\b|tool_|tool[- ]|function[- ]call|--jinja", re.IGNORECASE)
+_TOOLS = re.compile(
+    r"\btools?\b|tool_|tool[- ]|function[- ]call|--jinja|roles? must alternate|(unknown|unexpected|unsupported|invalid) role",
+    re.IGNORECASE,
+)
+"""Also of templates that know no role but user and assistant."""
 _SYSTEM = re.compile(r"system (role|message|prompt)s? (is |are )?not supported|does not support system", re.IGNORECASE)
 _OPTIONAL = ("chat_template_kwargs", "reasoning_effort", "temperature", "seed")
 

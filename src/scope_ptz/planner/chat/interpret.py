@@ -24,13 +24,14 @@ MOST_CALLS = 32
 MOST_CHARS = 20_000
 """Of an answer, and of what is said beside calls. What goes on for longer is cut, and says so."""
 
+_FULL = 0.98
 _CONTROL = re.compile(r"<\|[\w ]{2,30}\|>|</s>|<(?:end|start)_of_turn>|<turn\|>")
 _KIND = re.compile(r"\A[\s*_#>\"']*(?P<kind>CLARIFY|REFUSE)[\s*_]*:[\s*_]*", re.IGNORECASE)
 _QUESTION = re.compile(r"\?[\s\"'*_)]*\Z")
 
 
-def decide(reply: ChatReply, state: State, *, limited: bool) -> Decision:
-    """The decision in a reply. ``limited``: the length of replies was limited by us, and not by the model's window.
+def decide(reply: ChatReply, state: State, *, context_tokens: int | None = None) -> Decision:
+    """The decision in a reply. ``context_tokens``: the model's window, where it is known.
 
     Raises:
         PlannerError: there is none. ``kind`` says in which way.
@@ -51,7 +52,7 @@ def decide(reply: ChatReply, state: State, *, limited: bool) -> Decision:
         calls = _tool_calls(reply, found, len(state.history))
         return CallTools(calls=calls, thought=text, usage=usage, reasoning=parted.reasoning, served=served)
     if reply.finish_reason == "length":
-        raise _cut_off(reply, limited)
+        raise _cut_off(reply, context_tokens)
     if not text:
         what = "only reasoning and no answer" if parted.reasoning else "nothing"
         raise PlannerError(f"The planner's reply holds {what}.", kind=FailureKind.EMPTY.value, attempts=reply.attempts)
@@ -66,7 +67,8 @@ def _native(reply: ChatReply, text: str) -> Found | None:
     for raw in reply.tool_calls:
         arguments, malformed = read_arguments(raw.arguments_text)
         calls.append(WrittenCall(plain_name(raw.name), arguments, malformed))
-    return Found(tuple(calls), text, "native")
+    # Some servers leave in the text what they also took from it.
+    return Found(tuple(calls), find_calls(text, Signatures({}), marked_only=True).rest, "native")
 
 
 def _in_text(text: str, reasoning: str, state: State) -> Found:
@@ -109,11 +111,13 @@ def _ending(text: str, *, called: bool) -> tuple[str, str]:
     return ("clarification" if not called and _QUESTION.search(text) else "answered"), text
 
 
-def _cut_off(reply: ChatReply, limited: bool) -> PlannerError:
-    if limited:
-        words = (
-            f"The planner's reply was cut off at its limit of tokens ({reply.output_tokens} were written). Allow longer replies."
-        )
-        return PlannerError(words, kind=FailureKind.CUT_OFF.value, attempts=reply.attempts)
-    words = "The planner's reply was cut off because the model's context is full. Serve the model with a longer context."
-    return PlannerError(words, kind=FailureKind.CONTEXT_OVERFLOW.value, attempts=reply.attempts)
+def _cut_off(reply: ChatReply, context_tokens: int | None) -> PlannerError:
+    """A full window when that is certain; else one of two reasons that a server does not tell apart."""
+    if context_tokens is not None and reply.input_tokens + reply.output_tokens >= context_tokens * _FULL:
+        words = "The planner's reply was cut off because the model's context is full. Serve the model with a longer context."
+        return PlannerError(words, kind=FailureKind.CONTEXT_OVERFLOW.value, attempts=reply.attempts)
+    words = (
+        f"The planner's reply was cut off at a limit of tokens ({reply.output_tokens} were written). "
+        "Allow longer replies, or serve the model with a longer context."
+    )
+    return PlannerError(words, kind=FailureKind.CUT_OFF.value, attempts=reply.attempts)

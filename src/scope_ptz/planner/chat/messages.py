@@ -15,6 +15,7 @@ from scope_ptz.geometry import Pose
 from scope_ptz.planner.base import Exchange, Picture, State, ToolCall, ToolOutcome
 from scope_ptz.planner.chat.observations import observation
 from scope_ptz.planner.chat.prompts import Prompt
+from scope_ptz.planner.chat.schemas import plain_schemas
 
 Message = dict[str, Any]
 Notation = Literal["native", "text"]
@@ -45,7 +46,7 @@ def build_messages(
     first = starts[0] or briefing.pose
     system = prompt.fill(briefing.presets, briefing.limits, first, sees=sees)
     if notation == "text":
-        system += _TEXT_TOOLS + "\n".join(json.dumps(tool["function"], ensure_ascii=False) for tool in state.tools)
+        system += _TEXT_TOOLS + "\n".join(json.dumps(tool["function"], ensure_ascii=False) for tool in plain_schemas(state.tools))
     writer.add({"role": "system", "content": system})
     for turn, start in zip(state.conversation, starts[:-1], strict=True):
         writer.user(_instruction(turn.instruction, None if start == first else start, switch))

@@ -18,9 +18,10 @@ from scope_ptz.planner.chat.families import Server, Thinking, family_of, likely_
 from scope_ptz.planner.chat.interpret import decide
 from scope_ptz.planner.chat.messages import Message, build_messages
 from scope_ptz.planner.chat.prompts import DEFAULT_PROMPT, Prompt, load_prompt
+from scope_ptz.planner.chat.schemas import plain_schemas
 from scope_ptz.planner.chat.window import fits, shortenings
 
-_OVERFLOW = FailureKind.CONTEXT_OVERFLOW
+_OVERFLOW, _CUT_OFF = FailureKind.CONTEXT_OVERFLOW, FailureKind.CUT_OFF
 _MOST_LESSONS = 6
 """A server that still refuses after so many concessions refuses something else."""
 
@@ -102,7 +103,8 @@ class ChatPlanner(Planner):
                 return self._decide(reply, state, tried)
             except PlannerError as error:
                 failure = error
-                if error.kind != _OVERFLOW.value or not self.options.summarise:
+                full = error.kind == _OVERFLOW.value or (error.kind == _CUT_OFF.value and self.options.max_tokens is None)
+                if not (full and self.options.summarise):
                     raise
         raise failure
 
@@ -133,7 +135,7 @@ class ChatPlanner(Planner):
         for lesson in range(_MOST_LESSONS + 1):
             native = self._dialect.notation == "native"
             fields = self._dialect.fields(self._fields)
-            tools = list(state.tools) if native and state.tools else None
+            tools = plain_schemas(state.tools) if native and state.tools else None
             messages = self._messages(state, brief_before)
             try:
                 reply = await self.client.complete(messages, tools=tools, stream=self.options.stream, extra=fields)
@@ -147,4 +149,4 @@ class ChatPlanner(Planner):
         raise AssertionError("the last attempt returns or raises")
 
     def _decide(self, reply: ChatReply, state: State, tried: list[Attempt]) -> Decision:
-        return decide(reply.model_copy(update={"attempts": tuple(tried)}), state, limited=self.options.max_tokens is not None)
+        return decide(reply.model_copy(update={"attempts": tuple(tried)}), state, context_tokens=self.options.context_tokens)
