@@ -5,6 +5,8 @@ BIN := $(VENV)/bin
 UV := $(shell command -v uv 2>/dev/null || echo $(BIN)/uv)
 BASE := $(VENV)/.base-installed
 DEV := $(VENV)/.dev-installed
+FULL := $(VENV)/.full-installed
+TORCH := torch==2.13.0
 DEMO := Go to the highway preset, then pan right in 15 degree steps until you see at least six cones
 
 .PHONY: demo test test-full check format bench requirements clean
@@ -15,7 +17,7 @@ demo: $(BASE)
 test: $(DEV)
 	$(BIN)/pytest -q -n 2 -m "not full" tests
 
-test-full: test
+test-full: test $(FULL)
 	$(BIN)/pytest -q -m full tests
 
 check: $(DEV)
@@ -45,10 +47,19 @@ $(DEV): requirements/dev.txt $(BASE)
 	@$(UV) pip install -q --python $(BIN)/python -r requirements/dev.txt
 	@touch $@
 
+# Serving code and torch, for tiny models. pip and not uv, because pip takes a build for processors where one is offered.
+$(FULL): requirements/full.txt $(DEV)
+	@$(UV) pip install -q --python $(BIN)/python -r requirements/full.txt pip
+	@$(BIN)/python -m pip install -q --disable-pip-version-check "$(TORCH)"
+	@touch $@
+
 # Pins without index lines: `make requirements` after a change of dependencies in pyproject.toml.
 requirements: | $(VENV)/pyvenv.cfg
 	$(UV) pip compile -q --universal --python-version 3.11 --no-header --no-emit-index-url pyproject.toml -o requirements/base.txt
 	$(UV) pip compile -q --universal --python-version 3.11 --no-header --no-emit-index-url --group dev pyproject.toml -o requirements/dev.txt
+	@echo "torch; sys_platform == 'never'" > $(VENV)/no-torch.txt
+	$(UV) pip compile -q --universal --python-version 3.11 --no-header --no-annotate --no-emit-index-url --group full \
+		--override $(VENV)/no-torch.txt -c requirements/dev.txt pyproject.toml | grep -v "'never'" > requirements/full.txt
 
 clean:
 	rm -rf $(VENV) .pytest_cache .ruff_cache .mypy_cache .hypothesis
