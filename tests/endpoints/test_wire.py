@@ -82,6 +82,7 @@ async def test_the_request_is_what_was_asked_for() -> None:
         )
         await client.complete(MESSAGES, stream=True)
         await client.close()
+    assert all(request.headers["content-type"] == "application/json" for request in server.requests)
     whole, streamed = (request.data for request in server.requests)
     assert whole == {
         "model": "m",

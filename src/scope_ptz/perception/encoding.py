@@ -41,7 +41,7 @@ def resized(image: Image, size: Size | None) -> Image:
         return image
     # Averaging areas pays only where many pixels become one; for a slight change it is no better, and six times as slow.
     smaller = size[0] * size[1] < 0.6 * image.shape[0] * image.shape[1]
-    return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA if smaller else cv2.INTER_CUBIC), dtype=np.uint8)
+    return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA if smaller else cv2.INTER_LINEAR), dtype=np.uint8)
 
 
 def encode(image: Image, size: Size | None = None) -> Picture:
