@@ -12,7 +12,7 @@ from scope_ptz.planner.chat.conformance import PICTURE, TURN
 from tests.cli.conftest import SCENE, Scope
 from tests.support.misbehaving import MODEL, Behaviour, Exchange, Misbehaving, Request, Say, body, good, nobody_listens, status
 
-MOONDREAM = {
+MOONDREAM: dict[str, dict[str, Any]] = {
     "query": {"answer": "A yard."},
     "caption": {"caption": "A yard."},
     "detect": {"objects": []},

@@ -55,7 +55,7 @@ async def checked(what: str, look: Callable[[], Awaitable[Finding]]) -> Check:
 
 async def check_chat(endpoint: Endpoint) -> AsyncIterator[Check]:
     """Check a chat server; ends early when nobody is there or the key is wrong."""
-    patient = endpoint.model_copy(update={"retries": 0})
+    patient = endpoint.model_copy(update={"retries": 1})
     client = ChatClient(patient)
     try:
         yield await checked("list of models", lambda: _listing(patient))

@@ -1,0 +1,123 @@
+"""The whole agent against real serving code: tiny checkpoints behind `transformers serve`, over HTTP, streamed and not."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from scope_ptz.planner.chat.conformance import PICTURE, TURN
+from tests.cli.conftest import SCENE, Scope
+from tests.full.serving import transformers_serve
+from tests.support.misbehaving import Misbehaving, Request, Say, good
+
+pytestmark = pytest.mark.full
+
+GREETING = "Say hello."
+COUNT = "how many balls are visible?"
+TOOL_CALLS: dict[str, tuple[str, dict[str, Any]]] = {
+    PICTURE: ("take_image", {}),
+    TURN: ("adjust_ptz", {"pan_deg": 20}),
+    COUNT: ("count_objects", {"description": "balls", "view": "current"}),
+}
+ANSWERS = {PICTURE: "The picture is saved.", TURN: "The camera has turned.", COUNT: "I counted the balls."}
+
+
+def teacher(request: Request) -> Say:
+    """What the tiny planner shall learn to say."""
+    messages = request.data["messages"]
+    asked = next(q for q in (*TOOL_CALLS, GREETING) if any(q in str(m["content"]) for m in messages if m["role"] == "user"))
+    if asked == GREETING:
+        return Say(text="Hello.")
+    if messages[-1]["role"] == "tool":
+        return Say(text=ANSWERS[asked])
+    return Say(text="", tool_calls=(TOOL_CALLS[asked],))
+
+
+@dataclass(frozen=True)
+class Served:
+    """A checkpoint behind `transformers serve`: the server is pinned to it and knows it by its folder."""
+
+    url: str
+    model: str
+
+
+@pytest.fixture(scope="session")
+def planner_server(tmp_path_factory: pytest.TempPathFactory, scenes: Path) -> Iterator[Served]:
+    """A Qwen3 that has learned the very prompts that the program sends."""
+    from tests.full.tiny_models import tiny_planner
+
+    folder = tmp_path_factory.mktemp("tiny")
+    checkpoint = tiny_planner(folder / "planner", _lessons(folder, scenes))
+    with transformers_serve(checkpoint, folder / "serve.log") as url:
+        yield Served(url, str(checkpoint))
+
+
+def _lessons(folder: Path, scenes: Path) -> Sequence[Any]:
+    """A rehearsal against a stand-in: what the program sends, and what was answered."""
+    import os
+    import subprocess
+    import sys
+
+    from tests.full.tiny_models import Lesson
+
+    environment = {**os.environ, "SCOPE_SCENES_DIR": str(scenes), "SCOPE_RUNS_DIR": str(folder / "runs")}
+    with Misbehaving(then=good(teacher)) as server:
+        for arguments in (["doctor", "--planner-url", server.url], ["ask", COUNT, "--scene", SCENE, "--planner-url", server.url]):
+            subprocess.run([sys.executable, "-m", "scope_ptz.cli", *arguments], env=environment, check=True, capture_output=True)
+        asked = [r for r in server.requests if r.chat]
+    lessons = {}
+    for request in asked:
+        said = teacher(request)
+        calls = (f"<tool_call>\n{json.dumps({'name': n, 'arguments': a})}\n</tool_call>" for n, a in said.tool_calls)
+        lesson = Lesson(request.data["messages"], request.data.get("tools", ()), said.text or "\n".join(calls))
+        lessons[json.dumps([lesson.messages, lesson.reply])] = lesson
+    return list(lessons.values())
+
+
+@pytest.mark.parametrize("stream", ["true", "false"])
+def test_the_agent_runs_on_a_served_checkpoint(scope: Scope, planner_server: Served, stream: str) -> None:
+    done = scope(
+        "ask", COUNT, "--scene", SCENE, "--json", "--planner-url", planner_server.url, "--planner-model", planner_server.model,
+        "--planner-option", f"stream={stream}",
+    )  # fmt: skip
+    assert done.code == 0, done.err
+    said = done.json
+    assert said["answer"] == ANSWERS[COUNT]
+    (call,) = said["tool_calls"]
+    assert (call["name"], call["result"]["count"]) == ("count_objects", 3)
+    records = [json.loads(line) for line in (Path(said["run_dir"]) / "trace.jsonl").read_text().splitlines()]
+    decisions = [r["decision"] for r in records if r["event"] == "decision"]
+    assert [d["served"]["calls_from"] for d in decisions if d["kind"] == "call"] == ["native"]
+    assert all((d["served"]["first_token_s"] is not None) == (stream == "true") for d in decisions)
+    assert all(d["usage"]["output_tokens"] > 0 for d in decisions)
+
+
+def test_the_server_passes_the_checks_of_doctor(scope: Scope, planner_server: Served) -> None:
+    done = scope("doctor", "--json", "--planner-url", planner_server.url, "--planner-model", planner_server.model)
+    verdicts = {check["what"]: check["verdict"] for check in done.json}
+    assert done.code == 0, done.out
+    assert verdicts.pop("list of models") == "partly"  # It lists what is in its cache, and not what it is pinned to
+    assert set(verdicts.values()) == {"ok"}
+
+
+def test_a_wrong_name_is_told_by_the_real_server(scope: Scope, planner_server: Served) -> None:
+    done = scope("ask", COUNT, "--scene", SCENE, "--json", "--planner-url", planner_server.url, "--planner-model", "another")
+    assert (done.code, done.json["outcome"]) == (1, "planner_error")
+    assert "pinned" in done.json["answer"]
+
+
+def test_the_profile_of_a_served_checkpoint(scope: Scope, planner_server: Served, tmp_path: Path) -> None:
+    file = tmp_path / "one.jsonl"
+    file.write_text(json.dumps({"instruction": TURN, "calls": [{"name": "adjust_ptz", "arguments": {"pan_deg": 20}}]}))
+    done = scope(
+        "profile", "--json", "--planner-url", planner_server.url, "--planner-model", planner_server.model,
+        "--instructions", str(file),
+    )  # fmt: skip
+    speed = done.json["planner"]["planner"]
+    assert (speed["valid"]["share"], speed["right"]["share"]) == (1.0, 1.0)
+    assert speed["first_token_s"]["median"] > 0

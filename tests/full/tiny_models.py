@@ -1,0 +1,129 @@
+"""Tiny checkpoints, made on the spot: a planner over-fitted to a few lessons, and a detector with random weights.
+
+They are loaded and served by the code that loads and serves real ones; only their size is a toy's.
+"""
+
+from __future__ import annotations
+
+import random
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import torch
+from tokenizers import Tokenizer, decoders, models, pre_tokenizers, trainers
+from transformers import PreTrainedTokenizerFast, Qwen3Config, Qwen3ForCausalLM
+
+# A real model's template shows whole prompts and schemas. This one cuts them short, because reading them is what takes time.
+MARKS = ["<|endoftext|>", "<|im_start|>", "<|im_end|>"]
+CHAT_TEMPLATE = """
+{%- for message in messages -%}
+{%- if message.role == 'system' -%}
+<|im_start|>system
+{{ message.content[:200] }}
+Tools:{% for tool in tools or [] %} {{ tool.function.name }}{% endfor %}<|im_end|>
+{% elif message.role == 'tool' -%}
+<|im_start|>user
+<tool_response>{{ message.content[:300] }}</tool_response><|im_end|>
+{% else -%}
+<|im_start|>{{ message.role }}
+{{ message.content or '' }}
+{%- for call in message.tool_calls or [] -%}
+<tool_call>{"name": "{{ call.function.name }}", "arguments": {{ call.function.arguments | tojson }}}</tool_call>
+{%- endfor -%}
+<|im_end|>
+{% endif -%}
+{%- endfor -%}
+{%- if add_generation_prompt -%}
+<|im_start|>assistant
+{% endif -%}
+""".strip()
+
+
+_MOST_STEPS, _IN_A_ROW, _SURE = 600, 6, 0.005
+"""Steps; how many of them one after the other, and below which loss, show that all lessons are known by heart."""
+
+
+@dataclass(frozen=True)
+class Lesson:
+    """What the model is asked, in the wire format, and what it shall say."""
+
+    messages: Sequence[dict[str, Any]]
+    tools: Sequence[dict[str, Any]]
+    reply: str
+
+
+def tiny_planner(folder: Path, lessons: Sequence[Lesson], seed: int = 0) -> Path:
+    """A Qwen3 of a few hundred thousand parameters that answers each lesson's prompt with its reply, saved in ``folder``."""
+    torch.manual_seed(seed)
+    rng = random.Random(seed)
+    tokenizer = _tokenizer(lessons)
+    prompts = [_rendered(tokenizer, lesson) for lesson in lessons]
+    model = Qwen3ForCausalLM(
+        Qwen3Config(
+            vocab_size=len(tokenizer), hidden_size=128, intermediate_size=256, num_hidden_layers=2, num_attention_heads=4,
+            num_key_value_heads=2, head_dim=32, max_position_embeddings=16_384, tie_word_embeddings=True,
+            bos_token_id=None, eos_token_id=tokenizer.eos_token_id, pad_token_id=tokenizer.pad_token_id,
+        )
+    )  # fmt: skip
+    model.generation_config.do_sample = False
+    model.generation_config.max_new_tokens = 200
+    optimiser = torch.optim.AdamW(model.parameters(), lr=3e-3, weight_decay=0.0)
+    sure = 0
+    for step in range(_MOST_STEPS):
+        asked = prompts if step % 2 else [_shaken(prompt, rng) for prompt in prompts]
+        losses = [_loss(model, tokenizer, p, lesson.reply) for p, lesson in zip(asked, lessons, strict=True)]
+        torch.stack(losses).mean().backward()
+        torch.nn.utils.clip_grad_norm_(model.parameters(), 1.0)
+        optimiser.step()
+        optimiser.zero_grad()
+        sure = sure + 1 if max(float(loss.detach()) for loss in losses) < _SURE else 0
+        if sure == _IN_A_ROW:
+            break
+    else:
+        raise AssertionError("the tiny planner did not learn its lessons")
+    model.eval()
+    model.save_pretrained(folder)
+    tokenizer.save_pretrained(folder)
+    return folder
+
+
+def _tokenizer(lessons: Sequence[Lesson]) -> PreTrainedTokenizerFast:
+    core = Tokenizer(models.BPE())
+    core.pre_tokenizer = pre_tokenizers.ByteLevel(add_prefix_space=False)
+    core.decoder = decoders.ByteLevel()
+    trainer = trainers.BpeTrainer(
+        vocab_size=1500, special_tokens=MARKS, initial_alphabet=pre_tokenizers.ByteLevel.alphabet(), show_progress=False
+    )
+    plain = _wrapped(core)
+    core.train_from_iterator([text for lesson in lessons for text in (_rendered(plain, lesson), lesson.reply)], trainer)
+    return _wrapped(core)
+
+
+def _wrapped(core: Tokenizer) -> PreTrainedTokenizerFast:
+    made = PreTrainedTokenizerFast(tokenizer_object=core, eos_token=MARKS[2], pad_token=MARKS[0])
+    made.chat_template = CHAT_TEMPLATE
+    return made
+
+
+def _rendered(tokenizer: PreTrainedTokenizerFast, lesson: Lesson) -> str:
+    text = tokenizer.apply_chat_template(
+        list(lesson.messages), tools=list(lesson.tools) or None, add_generation_prompt=True, tokenize=False
+    )
+    assert isinstance(text, str)
+    return text
+
+
+def _shaken(prompt: str, rng: random.Random) -> str:
+    """The same prompt with other digits: poses, times and counts must not be what the model goes by."""
+    return re.sub(r"\d", lambda _: rng.choice("0123456789"), prompt)
+
+
+def _loss(model: Qwen3ForCausalLM, tokenizer: PreTrainedTokenizerFast, prompt: str, reply: str) -> torch.Tensor:
+    asked = tokenizer(prompt, add_special_tokens=False)["input_ids"]
+    said = [*tokenizer(reply, add_special_tokens=False)["input_ids"], tokenizer.eos_token_id]
+    ids = torch.tensor([asked + said])
+    logits = model(input_ids=ids, logits_to_keep=len(said) + 1).logits[0, :-1]
+    return torch.nn.functional.cross_entropy(logits, torch.tensor(said))
