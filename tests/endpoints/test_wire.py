@@ -12,10 +12,13 @@ from pydantic import SecretStr
 
 from scope_ptz.endpoints.chat import ChatClient
 from scope_ptz.endpoints.endpoint import Endpoint
+from scope_ptz.endpoints.failures import ServerFailure
 from scope_ptz.endpoints.http import JsonClient
 from tests.support.misbehaving import Misbehaving, Say, body, completion, good, say, status
 
 pytestmark = pytest.mark.anyio
+KEY = "sk-very-secret-0123456789"
+ELSEWHERE = Endpoint(url="https://model-server.invalid/v1")
 MESSAGES = [{"role": "user", "content": "hello"}]
 
 
@@ -71,6 +74,15 @@ async def test_no_credentials_of_others_travel(monkeypatch: pytest.MonkeyPatch) 
     assert third["x-moondream-auth"] == "sk-my-own-key"
     assert "authorization" not in third
     assert second["user-agent"].startswith("scope-ptz/")
+
+
+@pytest.mark.parametrize(("name", "value"), [("HTTPS_PROXY", f"nonsense://me:{KEY}@host"), ("SSL_CERT_FILE", "/no/such/file")])
+async def test_unusable_settings_of_the_environment(name: str, value: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(name, value)
+    for work in (JsonClient(ELSEWHERE).post("query", {}), ChatClient(ELSEWHERE).complete(MESSAGES)):
+        with pytest.raises(ServerFailure, match="environment") as caught:
+            await work
+        assert KEY not in str(caught.value)
 
 
 async def test_the_request_is_what_was_asked_for() -> None:
@@ -130,9 +142,8 @@ async def test_a_server_that_ignores_the_wish_to_stream_or_compresses() -> None:
 
 
 async def test_a_key_that_a_server_repeats_in_its_answer_is_hidden() -> None:
-    key = "sk-very-secret-0123456789"
-    with Misbehaving(then=good(Say(f"Your key is {key}.", tool_calls=(("query_answer", {"question": key}),)))) as server:
-        client = ChatClient(Endpoint(url=server.url, key=SecretStr(key)))
+    with Misbehaving(then=good(Say(f"Your key is {KEY}.", tool_calls=(("query_answer", {"question": KEY}),)))) as server:
+        client = ChatClient(Endpoint(url=server.url, key=SecretStr(KEY)))
         for stream in (False, True):
-            assert key not in str(await client.complete(MESSAGES, stream=stream))
+            assert KEY not in str(await client.complete(MESSAGES, stream=stream))
         await client.close()

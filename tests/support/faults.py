@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -39,6 +40,8 @@ def _fault(
 ) -> Fault:
     return Fault(name, make, kind, streamed or kind, **more)
 
+
+_BOMB = gzip.compress(b" " * 48 * 2**20, 9)
 
 FAULTS = (
     _fault("401", lambda: m.status(401), K.UNAUTHORISED),
@@ -84,6 +87,10 @@ FAULTS = (
     _fault("an endless number", lambda: m.body('{"choices": %s}' % ("9" * 10_000)), K.MALFORMED),
     _fault("not UTF-8", lambda: m.body(b'{"choices": "\xff\xfe"}'), K.MALFORMED),
     _fault("false compression", lambda: m.body(b"{}", headers={"Content-Encoding": "gzip"}), K.MALFORMED),
+    _fault("a bomb", lambda: m.body(_BOMB, headers={"Content-Encoding": "gzip"}), K.TOO_LARGE),
+    _fault("a refusal with a bomb", lambda: m.body(_BOMB, code=500, headers={"Content-Encoding": "gzip"}), K.SERVER_ERROR),
+    _fault("a refusal without end", lambda: m.body(b" " * 9 * 2**20, "text/plain", 500), K.TOO_LARGE),
+    _fault("two lengths", lambda: m.body(b"{", headers={"Content-Length": "500"}), K.MALFORMED),
     _fault("choices of a wrong type", lambda: m.body('{"choices": "none"}'), K.MALFORMED, chat_only=True),
     _fault("a choice of a wrong type", lambda: m.body('{"choices": [7]}'), K.MALFORMED, chat_only=True),
     _fault("content of a wrong type", lambda: m.body('{"choices": [{"message": {"content": 7}}]}'), K.MALFORMED, chat_only=True),

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
+from typing import Any
 
 import httpx2
 
 from scope_ptz import __version__
 from scope_ptz.endpoints.bodies import too_large
 from scope_ptz.endpoints.endpoint import MAX_BODY_BYTES, Endpoint
+from scope_ptz.endpoints.failures import FailureKind, ServerFailure
 
 _KEPT_HEADERS = frozenset(
     {"host", "accept", "accept-encoding", "connection", "content-type", "content-length", "transfer-encoding", "user-agent"}
@@ -21,6 +23,9 @@ def make_client(endpoint: Endpoint, *, key_header: str = "Authorization") -> htt
     """A client that keeps its connections, obeys the endpoint's timeouts, and sends the endpoint's key and no other credential.
 
     It follows no redirect, because a key must not travel to where the user did not send it.
+
+    Raises:
+        ServerFailure: the environment names a proxy or certificates that cannot be used.
     """
     secret = endpoint.secret
     ours = {"user-agent": f"scope-ptz/{__version__}"}
@@ -37,6 +42,15 @@ def make_client(endpoint: Endpoint, *, key_header: str = "Authorization") -> htt
         if isinstance(response.stream, httpx2.AsyncByteStream):
             response.stream = _Capped(response.stream, response, endpoint)
 
+    try:
+        return _open(endpoint, {"request": [only_ours], "response": [capped]})
+    except (ValueError, OSError, ImportError, httpx2.InvalidURL) as error:
+        # Not in its own words: a proxy's address may hold a password.
+        detail = f"the environment's proxy or certificate settings cannot be used ({type(error).__name__})"
+        raise ServerFailure(FailureKind.REFUSED, where=endpoint.url, detail=detail) from None
+
+
+def _open(endpoint: Endpoint, hooks: dict[str, list[Callable[..., Any]]]) -> httpx2.AsyncClient:
     patience = endpoint.timeouts
     return httpx2.AsyncClient(
         timeout=httpx2.Timeout(patience.first_byte_s, connect=patience.connect_s, pool=patience.total_s),
@@ -45,7 +59,7 @@ def make_client(endpoint: Endpoint, *, key_header: str = "Authorization") -> htt
         trust_env=not endpoint.loopback,  # No proxy leads to this very machine, whatever the environment says
         verify=endpoint.url.startswith("https:"),  # Loading certificates for plain http would take a tenth of a second
         follow_redirects=False,
-        event_hooks={"request": [only_ours], "response": [capped]},
+        event_hooks=hooks,
     )
 
 
