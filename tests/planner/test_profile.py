@@ -126,3 +126,18 @@ def test_inversion_and_rates() -> None:
     assert rate.low is not None
     assert rate.high is not None
     assert 0 < rate.low < 0.25 < rate.high < 1
+
+
+def test_rows_of_other_files_may_ask_for_words_only() -> None:
+    words = {"question": {"contains": ["gantry sign"]}, "view": "current"}
+    row = Row(instruction="read it", kind="object", calls=(Call(name="query_answer", arguments=words),))
+    assert is_right(row, Call(name="query_answer", arguments={"question": "What does it say?"}))
+    assert not is_right(row, Call(name="query_answer", arguments={"question": "What does it say?", "view": "full"}))
+    row = Row(
+        instruction="go", kind="object", calls=(Call(name="zoom_to_object", arguments={"description": {"contains": ["van"]}}),)
+    )
+    assert is_right(row, Call(name="zoom_to_object", arguments={"description": "the white van"}))
+    assert not is_right(row, Call(name="zoom_to_object", arguments={"description": "the lorry"}))
+    wrong = Row(instruction="go", kind="move", calls=(Call(name="adjust_ptz", arguments={"speed": 1}),))
+    assert not is_right(wrong, Call(name="adjust_ptz", arguments={"pan_deg": 1}))
+    assert not is_inverted(wrong, [Call(name="adjust_ptz", arguments={"pan_deg": 1})])

@@ -10,7 +10,7 @@ from importlib.resources import files
 from time import perf_counter
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, ValidationError
 
 from scope_ptz.errors import PlannerError, ToolCallError
 from scope_ptz.geometry import Limits, Pose
@@ -114,9 +114,17 @@ def is_right(row: Row, call: Call) -> bool:
 
 
 def same_arguments(one: Call, other: Call) -> bool:
-    """Whether two calls of a tool come to the same: numbers alike, descriptions of the same words, questions at the same view."""
-    a, b = (parse_call(call.name, call.arguments)[1].model_dump(exclude={"question"}) for call in (one, other))
-    return all(_same(a[key], b[key]) for key in a)
+    """Whether two calls of a tool come to the same: numbers alike, descriptions of the same words, questions at the same view.
+
+    In a file of expected calls ``{"contains": [words, ...]}`` may stand for a text; these words in any order are enough.
+    """
+    wanted = {key: value["contains"] for key, value in one.arguments.items() if isinstance(value, dict) and "contains" in value}
+    plain = Call(name=one.name, arguments=one.arguments | {key: " ".join(words) for key, words in wanted.items()})
+    try:
+        a, b = (parse_call(call.name, call.arguments)[1].model_dump(exclude={"question"}) for call in (plain, other))
+    except ToolCallError:
+        return False
+    return all(set(_words(a[key])) <= set(_words(b[key])) if key in wanted else _same(a[key], b[key]) for key in a)
 
 
 def _same(one: Any, other: Any) -> bool:
@@ -151,8 +159,11 @@ def is_inverted(row: Row, calls: Sequence[Call]) -> bool:
 
 
 def _directions(call: Call) -> tuple[float, float, float]:
-    """Signs of pan, tilt and zoom."""
-    move = AdjustPtz.model_validate(call.arguments)
+    """Signs of pan, tilt and zoom; none of a call that cannot be made."""
+    try:
+        move = AdjustPtz.model_validate(call.arguments)
+    except ValidationError:
+        return 0.0, 0.0, 0.0
     zoom = 0.0
     if move.zoom_factor is not None:
         zoom = move.zoom_factor - 1.0
