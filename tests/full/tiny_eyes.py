@@ -5,14 +5,11 @@ They are loaded, in process and by servers, by the code that loads real ones; on
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import torch
-from numpy.typing import NDArray
 from PIL import Image as PillowImage
 from tokenizers import Tokenizer, decoders, models, pre_tokenizers, trainers
 from transformers import (
@@ -37,7 +34,7 @@ from transformers.models.clip.image_processing_pil_clip import CLIPImageProcesso
 from transformers.models.grounding_dino.image_processing_pil_grounding_dino import GroundingDinoImageProcessorPil
 from transformers.models.owlv2.image_processing_pil_owlv2 import Owlv2ImageProcessorPil
 
-Pixels = NDArray[np.uint8]
+from tests.full.vision import square
 
 SIDE, PATCH = 56, 14
 MARKS = ["<|endoftext|>", "<|im_start|>", "<|im_end|>", "<image>"]
@@ -53,26 +50,6 @@ CHAT_TEMPLATE = """
 <|im_start|>assistant
 {% endif -%}
 """.strip()
-
-CORNERS: dict[str, tuple[int, int, int, int] | None] = {
-    "top left": (100, 100, 400, 400), "bottom right": (600, 600, 900, 900), "nowhere": None,
-}  # fmt: skip
-"""Where the vision model sees an orange square, in thousandths (x1, y1, x2, y2)."""
-
-
-def square(corner: str, width: int = 320, height: int = 192) -> Pixels:
-    """A grey picture (H, W, 3) with an orange square in a corner, or without one."""
-    image = np.full((height, width, 3), 90, np.uint8)
-    if (box := CORNERS[corner]) is not None:
-        x1, y1, x2, y2 = (round(v * s / 1000) for v, s in zip(box, (width, height, width, height), strict=True))
-        image[y1:y2, x1:x2] = (255, 120, 0)
-    return image
-
-
-def found(corner: str) -> str:
-    """What the vision model says when it is asked where the square is."""
-    box = CORNERS[corner]
-    return json.dumps({"objects": [] if box is None else [{"bbox_2d": list(box), "label": "square"}]})
 
 
 def tiny_vision_chat(folder: Path, lessons: Sequence[tuple[str, dict[str, str]]], seed: int = 0) -> Path:
