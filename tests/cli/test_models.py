@@ -126,6 +126,14 @@ def test_keys_come_from_the_environment_and_stay_there(scope: Scope, tmp_path: P
     assert KEY not in written + done.out + done.err
 
 
+def test_addresses_come_from_the_environment_for_models_only(scope: Scope, monkeypatch: pytest.MonkeyPatch) -> None:
+    with Misbehaving(then=good(follow_script)) as server:
+        monkeypatch.setenv("SCOPE_PLANNER_URL", server.url)
+        assert ask(scope).json["answer"] != "I looked."  # The built-in planner stays the default
+        assert server.requests == []
+        assert ask(scope, "--planner", "qwen3-4b").json["answer"] == "I looked."
+
+
 def test_a_server_with_several_models_wants_a_name(scope: Scope) -> None:
     from tests.support.misbehaving import body
 

@@ -36,9 +36,9 @@ def list_models(role: str | None, memory_gb: float | None, *, as_json: bool) -> 
         return
     table = Table("name", "role", "size", "active", "precision", "memory", "from", "context", "thinks", "licence", box=None)
     for m in chosen:
-        _, least = m.smallest()
+        roles, (_, least) = "+".join(sorted(m.roles, reverse=True)), m.smallest()
         table.add_row(
-            m.name, "+".join(m.roles), f"{m.size_b:g}B", f"{m.active_b:g}B", m.precision, f"{m.memory_for():.1f}", f"{least:.1f}",
+            m.name, roles, f"{m.size_b:g}B", f"{m.active_b:g}B", m.precision, f"{m.memory_for():.1f}", f"{least:.1f}",
             f"{m.context:,}" if m.context else "-", _THINKING[m.thinking], m.licence,
             style="bold" if m.origin == "paper" else "",
         )  # fmt: skip

@@ -84,20 +84,21 @@ def _read(source: Path) -> tuple[Row, ...]:
         lines = source.read_text(encoding="utf-8").splitlines()
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"{source} cannot be read: {error}.") from error
-    rows = []
+    rows: list[Row] = []
     for number, line in enumerate(lines, 1):
         if not line.strip():
             continue
         try:
-            rows.append(_Line.model_validate_json(line))
+            given = _Line.model_validate_json(line)
+            if given.calls:
+                rows.append(Row.model_validate(given.model_dump()))
         except ValidationError as error:
             first = error.errors(include_url=False)[0]
             where = ".".join(str(part) for part in first["loc"])
             raise InputError(f"{source}, line {number}: {f'{where}: ' if where else ''}{first['msg']}.") from error
-    kept = tuple(Row(instruction=r.instruction, kind=r.kind, calls=tuple(r.calls)) for r in rows if r.calls)  # type: ignore[arg-type]
-    if not kept:
+    if not rows:
         raise InputError(f"{source} holds no instruction with expected calls.")
-    return kept
+    return tuple(rows)
 
 
 class _Line(BaseModel):
