@@ -17,7 +17,8 @@ from scope_ptz.bench.reading import Declined
 DATA = Path(__file__).parent / "data"
 ADAPTER: TypeAdapter[AnyExpected] = TypeAdapter(Expected)
 EXPECTATIONS = {
-    name: ADAPTER.validate_python(content) for name, content in yaml.safe_load((DATA / "expectations.yaml").read_text("utf-8")).items()
+    name: ADAPTER.validate_python(content)
+    for name, content in yaml.safe_load((DATA / "expectations.yaml").read_text("utf-8")).items()
 }
 ANSWERS = [json.loads(line) for line in (DATA / "answers.jsonl").read_text("utf-8").splitlines()]
 

@@ -5,9 +5,9 @@ A wording is one word or a few; plurals, capitals, British and American spelling
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, TypeVar
+from typing import Annotated, Any, Literal, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 Wording = Annotated[str, Field(min_length=1, pattern=r"\w")]
 Wordings = tuple[Wording, ...]
@@ -17,6 +17,12 @@ Options = Annotated[dict[Wording, Wordings], Field(min_length=1)]
 
 class _Expected(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
+
+    @model_serializer(mode="wrap")
+    def _with_kind(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Data files leave out what is default, but never the kind, without which they could not be read again."""
+        kind = type(self).model_fields.get("kind")
+        return {**({} if kind is None else {"kind": kind.default}), **handler(self)}
 
 
 _T = TypeVar("_T", bound=_Expected)
@@ -32,7 +38,7 @@ class Number(_Expected):
 
 
 class YesNo(_Expected):
-    """Whether something is so. ``affirms``: what is so, or is there, when the answer is yes; ``denies``: what is so when it is no."""
+    """Whether something is so. ``affirms``: what is so, or is there, if the answer is yes; ``denies``: what is so if it is no."""
 
     kind: Literal["yes_no"] = "yes_no"
     value: bool
@@ -73,7 +79,7 @@ class NameSet(_Expected):
 
 
 class Ordering(_Expected):
-    """All of them in order. ``first``/``last``: words for the two ends ("most", "fewest"), which an answer may begin with either way."""
+    """All of them in order. ``first``/``last``: words for the two ends ("most", "fewest"); an answer may begin at either."""
 
     kind: Literal["ordering"] = "ordering"
     value: Annotated[Wordings, Field(min_length=2)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from itertools import pairwise
 
 from scope_ptz.bench.expected import Choice, Description, Fact, NameSet, NoneThere, YesNo
 from scope_ptz.bench.reader_numbers import find_quantities, says_none
@@ -32,6 +33,7 @@ def verdict_words(script: Script) -> set[bool]:
             said.add(True)
         if len(words) == 1 and words[0] in _NO:
             said.add(False)
+    said |= {word == "yes" for word in re.findall(r"\b(?:answer|verdict) is (?:a clear )?(yes|no)\b", script.text())}
     if re.match(r"yes and no\b", script.text()):
         return {True, False}
     return said
@@ -68,8 +70,9 @@ def read_choice(expected: Choice, script: Script) -> Reading:
 
 def after_than(script: Script, mention: Mention) -> bool:
     """Whether something is named only to be compared with."""
-    before = [w.text for w in script.words[max(0, mention.start - 4) : mention.start] if w.clause == script.words[mention.start].clause]
-    return "than" in before or "compared" in before or "versus" in before
+    clause = script.words[mention.start].clause
+    before = [w.text for w in script.words[max(0, mention.start - 6) : mention.start] if w.clause == clause]
+    return "than" in before[-4:] or bool({"compared", "versus", "against"} & set(before))
 
 
 def read_name_set(expected: NameSet, script: Script) -> Reading:
@@ -77,7 +80,7 @@ def read_name_set(expected: NameSet, script: Script) -> Reading:
     names = {name: wordings_of(name, further) for name, further in expected.options.items()}
     mentions = [m for m in script.mentions(names) if not m.denied and not m.aside]
     named = frozenset(m.name for m in mentions)
-    for one, two in zip(mentions, mentions[1:], strict=False):
+    for one, two in pairwise(mentions):
         if any(w.text == "or" for w in script.words[one.end : two.start]):
             return Unreadable("an alternative")
     if named:
@@ -90,7 +93,9 @@ def read_name_set(expected: NameSet, script: Script) -> Reading:
 
 
 def _denies_all(script: Script) -> bool:
-    return re.search(r"^no \w+|\bthere (is|are) (no|not any)\b|\b(found|see|saw|find|sees) (no|nothing)\b", script.text()) is not None
+    return (
+        re.search(r"^no \w+|\bthere (is|are) (no|not any)\b|\b(found|see|saw|find|sees) (no|nothing)\b", script.text()) is not None
+    )
 
 
 def read_none_there(expected: NoneThere, script: Script) -> Reading:
@@ -104,7 +109,9 @@ def read_none_there(expected: NoneThere, script: Script) -> Reading:
             said.add(True)
     if len(said) == 1:
         return Value(said.pop())
-    return Unreadable("both that there is one and that there is none" if said else "neither that there is one nor that there is none")
+    return Unreadable(
+        "both that there is one and that there is none" if said else "neither that there is one nor that there is none"
+    )
 
 
 def read_description(expected: Description, script: Script) -> Reading:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from scope_ptz.bench.reader_text import Script, Word, plain_words, same_word
 
@@ -15,30 +16,38 @@ _UNITS = {
 }  # fmt: skip
 _TENS = {"twenty": 20, "thirty": 30, "forty": 40, "fifty": 50, "sixty": 60, "seventy": 70, "eighty": 80, "ninety": 90}
 _BIG = {"hundred": 100, "thousand": 1000}
-_MEASURES = frozenset({"°", "%", "x", "degree", "percent", "second", "sec", "s", "minute", "metre", "m", "km", "px", "pixel", "time"})
-_LABELS = frozenset({"zoom", "pan", "tilt", "preset", "lane", "bay", "platform", "exit", "step", "junction", "number", "no", "at"})
-_BARE_AFTER = frozenset(
-    "are is were was in on at of and or here there visible altogether overall by near to from out all now currently seen found "
-    "present so then as but around within along across each per that which when after before total with right behind under "
-    "i we".split()
+_MEASURES = frozenset(
+    {"°", "%", "x", "degree", "percent", "second", "sec", "s", "minute", "metre", "m", "km", "px", "pixel", "time"}
 )
-_BEFORE_ONE = frozenset(
-    "is are was were be see sees seeing count counted counts find found shows show only just exactly about of total make makes has "
-    "have there contains equals answer with precisely and least most than".split()
-)
+_LABELS = frozenset({
+    "zoom", "pan", "tilt", "preset", "lane", "bay", "platform", "exit", "step", "junction", "number", "no", "reading",
+    "marked", "labelled", "saying",
+})  # fmt: skip
+_BARE_AFTER = frozenset({
+    "are", "is", "were", "was", "in", "on", "at", "of", "and", "or", "here", "there", "visible", "altogether", "overall",
+    "by", "near", "to", "from", "out", "all", "now", "currently", "seen", "found", "present", "so", "then", "as", "but",
+    "around", "within", "along", "across", "each", "per", "that", "which", "when", "after", "before", "total", "with",
+    "right", "behind", "under", "i", "we",
+})  # fmt: skip
+_BEFORE_ONE = frozenset({
+    "is", "are", "was", "were", "be", "see", "sees", "seeing", "count", "counted", "counts", "find", "found", "shows",
+    "show", "only", "just", "exactly", "about", "of", "total", "make", "makes", "has", "have", "there", "contains",
+    "equals", "answer", "with", "precisely", "and", "least", "most", "than",
+})  # fmt: skip
 _BOUNDS = re.compile(
     r"(at least|at most|more than|fewer than|less than|over|under|up to|no more than|no fewer than|a minimum of|a maximum of)$"
 )
 _TOTALS = re.compile(r"\b(total|altogether|overall|in all|combined|sum|makes|making|therefore|thus|hence|so|final|finally)\b")
 _NONE = re.compile(
-    r"^(no|nope|none|nothing|nobody|no one|zero)$|^(none|nothing|nobody|no one)\b(?! (of|but))|\bthere (is|are|were) (none|nothing)\b"
+    r"^(no|nope|none|nothing|nobody|no one|zero)$|^(none|nothing|nobody|no one)\b(?! (of|but))"
+    r"|\bthere (is|are|were) (none|nothing)\b"
     r"|\bnot (any|one|a single one)( (here|there|visible|in view))?$"
 )
 
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """A number in a text, words ``start`` to ``end`` (exclusive). ``own``: it counts what was asked for; ``other``: something else."""
+    """A number in a text, words ``start`` to ``end`` (exclusive). ``own``: it counts what was asked for; ``other``: not."""
 
     value: float
     start: int
@@ -125,8 +134,7 @@ def _number_at(words: Sequence[Word], at: int) -> tuple[float | None, int]:
     if text == "half" and after == ["a", "dozen"]:
         return 6.0, at + 3
     if text in ("a", "one") and after[:1] in (["dozen"], ["hundred"], ["thousand"]):
-        value, end = _number_words(words, at + 1)
-        return value, end
+        return _number_words(words, at + 1)
     if text == "pair" and after[:1] == ["of"]:
         return 2.0, at + 2
     if text == "one" and at > 0 and words[at - 1].segment == words[at].segment and words[at - 1].text not in _BEFORE_ONE | {"not"}:
@@ -165,7 +173,7 @@ def _is_no_count(words: Sequence[Word], start: int, end: int) -> bool:
         if after.gap == "" and after.text in ("st", "nd", "rd", "th"):
             return True
     before = words[start - 1].text if start > 0 and words[start - 1].segment == words[start].segment else ""
-    labelled = before in _LABELS and before != "at" and words[start].text[0].isdigit()
+    labelled = before in _LABELS and words[start].text[0].isdigit()
     return labelled or (words[start].gap.endswith("#"))
 
 
@@ -198,7 +206,7 @@ def _announced(words: Sequence[Word], start: int, unit: Sequence[str]) -> bool:
 
 def _part_of(script: Script, quantities: Sequence[Quantity]) -> bool:
     """ "5 of the 7 cones", "5 out of 7"."""
-    for one, two in zip(quantities, quantities[1:], strict=False):
+    for one, two in pairwise(quantities):
         between = [w.text for w in script.words[one.end : two.start]]
         if between in (["of", "the"], ["of"], ["out", "of"], ["out", "of", "the"], ["of", "these"], ["of", "those"]):
             return True
@@ -206,7 +214,7 @@ def _part_of(script: Script, quantities: Sequence[Quantity]) -> bool:
 
 
 def _is_range(script: Script, quantities: Sequence[Quantity]) -> bool:
-    for one, two in zip(quantities, quantities[1:], strict=False):
+    for one, two in pairwise(quantities):
         if one.other or two.other or one.value == two.value:
             continue
         between = [w.text for w in script.words[one.end : two.start]]

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 
 from scope_ptz.bench.expected import Ordering, Relation
 from scope_ptz.bench.reader_choices import SAME
+from scope_ptz.bench.reader_numbers import find_quantities
 from scope_ptz.bench.reader_text import Mention, Script, wordings_of
 from scope_ptz.bench.reading import Reading, Unreadable, Value
 
 _REFERENCES = frozenset({"than", "versus", "vs", "against"})
 _AT_REFERENCE = frozenset({"of", "from", "to"})
-_FILLERS = frozenset({"it", "is", "its", "on", "to", "the", "at", "in", "side", "of", "hand", "a", "bit", "slightly", "much", "them", "lies"})
+_FILLERS = frozenset({
+    "it", "is", "its", "on", "to", "the", "at", "in", "side", "of", "hand", "a", "bit", "slightly", "much", "them", "lies",
+})  # fmt: skip
+_NAMING = frozenset({
+    "the", "a", "at", "preset", "view", "by", "it", "is", "answer", "i", "would", "say", "that", "definitely", "clearly",
+    "one", "to", "versus", "against",
+})  # fmt: skip
 _TURNED = {"forward": "backward", "backward": "forward"}
 
 
@@ -24,6 +30,9 @@ def read_ordering(expected: Ordering, script: Script) -> Reading:
     if set(order) != set(expected.options):
         return Unreadable("not all of them are named" if order else "none of them is named")
     ends = script.mentions({"first": expected.first, "last": expected.last})
+    thans = sum(w.text == "than" for w in script.words)
+    if 0 < thans < len(expected.options) - 1:
+        return Unreadable("only some of them are compared")
     placed = _placed(script, mentions, ends)
     if placed.get("first") is not None and placed.get("last") is not None and placed["first"] != placed["last"]:
         between = [name for name in order if name not in placed.values()]
@@ -32,7 +41,7 @@ def read_ordering(expected: Ordering, script: Script) -> Reading:
         if order[0] == placed["last"] and order[-1] == placed["first"]:
             between.reverse()
         return Value((str(placed["first"]), *between, str(placed["last"])))
-    starts_at_last = placed.get("last") == order[0] or _heading_is_turned(script, mentions, ends)
+    starts_at_last = placed.get("last") == order[0] or _heading_is_turned(mentions, ends)
     if starts_at_last or any("<" in w.gap for w in script.words):
         order.reverse()
     elif placed.get("first") not in (None, order[0]) or placed.get("last") not in (None, order[-1]):
@@ -41,18 +50,18 @@ def read_ordering(expected: Ordering, script: Script) -> Reading:
 
 
 def _placed(script: Script, mentions: Sequence[Mention], ends: Sequence[Mention]) -> dict[str, str | None]:
-    """Which option is said to be at which end: a segment that names one option and one end."""
+    """Which option is said to be at which end: in a segment with one end, what is named before it, else after it."""
     placed: dict[str, str | None] = {}
     for group in script.segments():
-        here = {m.name for m in mentions if group[0] <= m.start <= group[-1]}
-        end = {m.name for m in ends if group[0] <= m.start <= group[-1] and not m.denied}
-        first = [m for m in mentions if group[0] <= m.start <= group[-1]]
-        if len(end) == 1 and here and (len(here) == 1 or first[0].start < min(m.start for m in ends if m.name in end)):
-            placed.setdefault(end.pop(), first[0].name)
+        here = [m for m in mentions if group[0] <= m.start <= group[-1]]
+        end = [m for m in ends if group[0] <= m.start <= group[-1] and not m.denied]
+        if len(end) == 1 and here:
+            before = [m for m in here if m.start < end[0].start]
+            placed.setdefault(end[0].name, (before[-1] if before else here[0]).name)
     return placed
 
 
-def _heading_is_turned(script: Script, mentions: Sequence[Mention], ends: Sequence[Mention]) -> bool:
+def _heading_is_turned(mentions: Sequence[Mention], ends: Sequence[Mention]) -> bool:
     """ "From fewest to most: ..."."""
     before = [m.name for m in ends if m.start < mentions[0].start]
     return before[:2] == ["last", "first"] or before == ["last"]
@@ -76,11 +85,18 @@ def read_relation(expected: Relation, script: Script) -> Reading:
     denied = any(m.denied for m in script.mentions({**ways, "same": SAME}))
     if not comparators and not denied and not any(w.text == "or" for w in script.words):
         named = {m.name for m in things if not m.denied}
-        if len(named) == 1 and not re.search(r"\b(behind|beside|near|next)\b", script.text()):
+        if len(named) == 1 and _is_bare(script, things):
             said.add("forward" if named == {"subject"} else "backward")
     if len(said) == 1:
         return Value(said.pop())
     return Unreadable("it says both" if said else "no comparison")
+
+
+def _is_bare(script: Script, things: Sequence[Mention]) -> bool:
+    """Whether a text does no more than name a thing ("The gate.", "At the gate, by two")."""
+    named = {i for m in things for i in range(m.start, m.end)}
+    counted = {i for q in find_quantities(script, ()) for i in range(q.start, q.end)}
+    return all(w.text in _NAMING for i, w in enumerate(script.words) if i not in named | counted)
 
 
 def _way(script: Script, comparator: Mention, things: Sequence[Mention]) -> str | None:

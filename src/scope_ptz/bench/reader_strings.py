@@ -10,11 +10,12 @@ from scope_ptz.bench.reader_text import Script, clean
 from scope_ptz.bench.reading import Reading, Unreadable, Value
 
 _LOOK_ALIKES = str.maketrans({"o": "0", "i": "1", "l": "1", "|": "1", "s": "5", "b": "8"})
-_DIGITS = {
-    w: str(n) for n, w in enumerate("zero one two three four five six seven eight nine ten eleven twelve".split())
-}  # fmt: skip
+_NUMERALS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
+_DIGITS = {word: str(number) for number, word in enumerate(_NUMERALS)}
 _QUOTED = re.compile(r'"([^"]+)"|(?<!\w)\'([^\']+(?:\'\w[^\']*)*)\'(?!\w)')
-_CUE = re.compile(r"\b(?:reads|read|says|say|displays|spells|shows|called|named|is|are)\b\s*:?\s*|:\s+", re.IGNORECASE)
+_CUE = re.compile(
+    r"\b(?:reads|read|says|say|displays|spells|shows|called|named|(?<!there )is|(?<!there )are)\b\s*:?\s*|:\s+", re.IGNORECASE
+)
 _TRAILERS = re.compile(
     r"\s+(?:in|on|above|below|with|at|written|painted|printed|near|beside)\s+(?:(?:the|a|an|its|big|large|small|bold|capital|white|black|red|"
     r"blue|green|yellow|dark|light|orange)\s+)*(?:letters?|lettering|capitals|sign|board|text|background|front|back|plate|door|van|car|"
@@ -27,10 +28,10 @@ _MOST_AFTER_A_CUE = 14
 
 def same_text(one: str, other: str, *, ocr: bool) -> bool:
     """Whether two texts are the same but for case, punctuation and spaces, and with ``ocr`` but for look-alikes."""
-    return _folded(one, ocr) == _folded(other, ocr)
+    return folded(one, ocr) == folded(other, ocr)
 
 
-def _folded(text: str, ocr: bool) -> str:
+def folded(text: str, ocr: bool) -> str:
     words = re.findall(r"[^\W_]+", re.sub(r"(?<=\w)'(?=\w)", "", clean(text).lower()))
     joined = "".join(_DIGITS.get(word, word) for word in words)
     return joined.translate(_LOOK_ALIKES) if ocr else joined
@@ -44,6 +45,8 @@ def read_text(expected: Text, script: Script, answer: str) -> Reading:
     quoted = [a or b for a, b in _QUOTED.findall(text)]
     if quoted:
         return _from_quotes(quoted, text)
+    if re.search(r"\b(?:no (?:text|letters|writing)|blank|nothing (?:is )?written)\b", text, re.IGNORECASE):
+        return Value("")
     candidate, most = text, 8
     for cue in _CUE.finditer(text):
         if cue.end() < len(text):
@@ -52,6 +55,8 @@ def read_text(expected: Text, script: Script, answer: str) -> Reading:
                 break
     candidate = _TRAILERS.sub("", candidate.strip().strip(".!")).strip()
     words = candidate.split()
+    if re.match(r"there (?:is|are)\b|done\b", candidate, re.IGNORECASE):
+        return Unreadable("no text is quoted")
     if len(words) > most:
         return Unreadable("no text is quoted")
     if "or" in [w.lower() for w in words] and not any("or" in a.lower().split() for a in expected.accepted):
@@ -60,6 +65,6 @@ def read_text(expected: Text, script: Script, answer: str) -> Reading:
 
 
 def _from_quotes(quoted: Sequence[str], text: str) -> Reading:
-    if len({_folded(q, ocr=False) for q in quoted}) > 1 and re.search(r"[\"']\s*,?\s+(?:or|and then|not)\s+[\"']", text):
+    if len({folded(q, ocr=False) for q in quoted}) > 1 and re.search(r"[\"']\s*,?\s+(?:or|and then|not)\s+[\"']", text):
         return Unreadable("an alternative")
     return Value(" ".join(dict.fromkeys(quoted)))

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -43,7 +43,8 @@ _HEDGES = re.compile(
 )
 _DECLINES = re.compile(
     r"\bnot (?:\w+ )?(tell|say|determine|determined|make|know|known|read|readable|compare|compared|rank|count|counted|judge|judged|"
-    r"identify|identified|answer|answered|confirm|confirmed|decide|sure|certain|able|possible|legible|clear|see (anything|clearly|enough))\b"
+    r"identify|identified|answer|answered|confirm|confirmed|decide|sure|certain|able|possible|legible|clear|"
+    r"see (anything|clearly|enough))\b"
     r"|\b(unable|impossible|hard|difficult) to\b|\bno (way to|idea)\b|\b(unclear|illegible|unreadable|unknown|indeterminable)\b"
     r"|\btoo (\w+ )?(dark|blurry|blurred|small|far|distant|dim|unclear|bright|faint)\b.* to (\w+ )?"
     r"(see|tell|say|read|count|make|determine|identify|judge|be)\b"
@@ -80,7 +81,7 @@ class Script:
     declined: bool
     hedged: bool
 
-    def mentions(self, names: dict[str, Sequence[str]]) -> list[Mention]:
+    def mentions(self, names: Mapping[str, Sequence[str]]) -> list[Mention]:
         """Every place where one of the wordings of a name stands; of overlapping ones the longest."""
         phrases = [(tuple(plain_words(w)), name) for name, wordings in names.items() for w in wordings]
         phrases.sort(key=lambda p: -len(p[0]))
@@ -141,7 +142,8 @@ class Script:
         after = " ".join(w.text for w in self.words[end : end + 6] if w.clause == clause)
         return bool(
             re.match(
-                r"(\w+ ){0,2}?(is|are|was|were|can|could) not (\w+ )?(visible|present|there|seen|found|shown|here|anywhere|in|be (seen|found))\b"
+                r"(\w+ ){0,2}?(is|are|was|were|can|could) not (\w+ )?"
+                r"(visible|present|there|seen|found|shown|here|anywhere|in|be (seen|found))\b"
                 r"|(is |are )?(absent|missing|nowhere)\b|(none|no|0|zero)$",
                 after,
             )
@@ -214,6 +216,16 @@ def script(text: str) -> Script:
         else:
             kept += [words[i] for i in positions]
     return Script(tuple(kept), declined, hedged)
+
+
+def names_any(text: str, wordings: Iterable[str]) -> bool:
+    """Whether one of the wordings stands anywhere in a text, be it asked or stated."""
+    words = plain_words(text)
+    for phrase in (plain_words(w) for w in wordings):
+        for at in range(len(words) - len(phrase) + 1):
+            if all(same_word(words[at + i], p) for i, p in enumerate(phrase)):
+                return True
+    return False
 
 
 @lru_cache(maxsize=4096)
