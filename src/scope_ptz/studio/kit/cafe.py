@@ -10,8 +10,8 @@ import bpy
 from scope_ptz.studio.kit.finishes import concrete, paint, steel, timber
 from scope_ptz.studio.kit.lettering import extent
 from scope_ptz.studio.kit.shading import Shader, plain
-from scope_ptz.studio.kit.square_shops import stripes
 from scope_ptz.studio.kit.solid import Solid
+from scope_ptz.studio.kit.square_shops import stripes
 from scope_ptz.studio.kit.stage import Built
 
 TABLE_M = 0.74
@@ -25,12 +25,24 @@ def table(colour: str = "light grey", *, radius: float = 0.36) -> Built:
     iron = paint("black", dirt=0.2)
     s.lathe([(radius - 0.004, TABLE_M - 0.028), (radius, TABLE_M - 0.022), (radius, TABLE_M - 0.004), (radius - 0.006, TABLE_M)],
             paint(colour, dirt=0.08, roughness=0.3), steps=40)  # fmt: skip
-    s.tube([((radius + 0.003) * math.cos(a), (radius + 0.003) * math.sin(a), TABLE_M - 0.013) for a in (2 * math.pi * k / 40 for k in range(40))],
-           0.012, steel(), sides=6, closed=True)  # fmt: skip
+    s.tube(
+        [
+            ((radius + 0.003) * math.cos(a), (radius + 0.003) * math.sin(a), TABLE_M - 0.013)
+            for a in (2 * math.pi * k / 40 for k in range(40))
+        ],
+        0.012,
+        steel(),
+        sides=6,
+        closed=True,
+    )
     s.lathe([(0.05, 0.05), (0.032, 0.12), (0.028, 0.60), (0.06, 0.70), (0.16, TABLE_M - 0.028)], iron, steps=20)
     for k in range(3):
         a = 2 * math.pi * k / 3 + 0.4
-        s.tube([(0, 0, 0.14), (0.14 * math.cos(a), 0.14 * math.sin(a), 0.09), (0.30 * math.cos(a), 0.30 * math.sin(a), 0.014)], 0.018, iron)
+        s.tube(
+            [(0, 0, 0.14), (0.14 * math.cos(a), 0.14 * math.sin(a), 0.09), (0.30 * math.cos(a), 0.30 * math.sin(a), 0.014)],
+            0.018,
+            iron,
+        )
     return s.built()
 
 
@@ -40,7 +52,9 @@ def chair(colour: str = "dark green") -> Built:
     metal, wood = paint(colour, dirt=0.15, roughness=0.35), paint(colour, dirt=0.1, roughness=0.5)
     for sign in (-1, 1):
         x = sign * 0.19
-        s.tube([(x, 0.20, 0.0), (x, 0.17, SEAT_M - 0.02), (x, -0.16, SEAT_M - 0.02), (x * 0.98, -0.24, 0.88)], 0.012, metal, sides=8)
+        s.tube(
+            [(x, 0.20, 0.0), (x, 0.17, SEAT_M - 0.02), (x, -0.16, SEAT_M - 0.02), (x * 0.98, -0.24, 0.88)], 0.012, metal, sides=8
+        )
         s.rod((x, -0.26, 0.0), (x, -0.12, SEAT_M - 0.02), 0.012, metal, sides=8)
         s.rod((x, 0.19, 0.18), (x, -0.22, 0.18), 0.007, metal, sides=6)
     for k in range(7):
@@ -90,7 +104,12 @@ def parasol(first: str, second: str | None = None, *, open: bool = True, text: s
         flat = math.cos(math.pi / n)
         for turn in (0, 90, 180, 270):
             with s.at(turn=turn):
-                s.text(text, 0.10, (0, (rim + 0.01) * flat + 0.012, top - 0.59), paint("white" if first != "white" else "navy", dirt=0.0))
+                s.text(
+                    text,
+                    0.10,
+                    (0, (rim + 0.01) * flat + 0.012, top - 0.59),
+                    paint("white" if first != "white" else "navy", dirt=0.0),
+                )
     return s.built()
 
 

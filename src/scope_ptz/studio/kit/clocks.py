@@ -52,7 +52,9 @@ def post_clock(hour: int, minute: int, *, colour: str = "dark green", height: fl
             body, steps=32)  # fmt: skip
     for k in range(12):
         a = 2 * math.pi * k / 12
-        s.rod((0.085 * math.cos(a), 0.085 * math.sin(a), 0.95), (0.076 * math.cos(a), 0.076 * math.sin(a), height - 1.0), 0.014, body)
+        s.rod(
+            (0.085 * math.cos(a), 0.085 * math.sin(a), 0.95), (0.076 * math.cos(a), 0.076 * math.sin(a), height - 1.0), 0.014, body
+        )
     for z in (0.63, height - 0.91):
         s.lathe([(0.27 if z < 1 else 0.125, z - 0.015), (0.27 if z < 1 else 0.125, z + 0.015)], gold, steps=32)
     s.lathe([(0.46, -0.15), (0.49, -0.12), (0.49, 0.12), (0.46, 0.15)], body, (0, 0, height), "Y", 48)

@@ -11,8 +11,8 @@ import bpy
 from scope_ptz.studio.kit.finishes import PALETTE, paint, sheet, steel, timber
 from scope_ptz.studio.kit.lettering import extent
 from scope_ptz.studio.kit.shading import plain
-from scope_ptz.studio.kit.square_shops import stripes
 from scope_ptz.studio.kit.solid import Solid
+from scope_ptz.studio.kit.square_shops import stripes
 from scope_ptz.studio.kit.stage import Built
 
 CRATE_M = (0.56, 0.38, 0.16)
@@ -52,8 +52,14 @@ def stall(first: str, second: str | None = None, *, sign: str | None = None, tab
         line = [(-w + 0.02 + (2 * w - 0.04) * k / n, 0.955 + 0.014 * math.sin(k * 2.1), 0.0) for k in range(n + 1)]
         points = [(x, y, 0.04) for x, y, _ in line] + [(x, 0.955, COUNTER_M - 0.02) for x, _, _ in line]
         s.add(points, [(k + 1, k, n + 1 + k, n + 2 + k) for k in range(n)], skirt)
-        s.add([(-w + 0.02, 0.955, 0.04), (-w + 0.02, -0.2, 0.04), (-w + 0.02, -0.2, 1.0), (-w + 0.02, 0.955, 0.76)], [(0, 1, 2, 3)], skirt)
-        s.add([(w - 0.02, 0.955, 0.04), (w - 0.02, -0.2, 0.04), (w - 0.02, -0.2, 1.0), (w - 0.02, 0.955, 0.76)], [(3, 2, 1, 0)], skirt)
+        s.add(
+            [(-w + 0.02, 0.955, 0.04), (-w + 0.02, -0.2, 0.04), (-w + 0.02, -0.2, 1.0), (-w + 0.02, 0.955, 0.76)],
+            [(0, 1, 2, 3)],
+            skirt,
+        )
+        s.add(
+            [(w - 0.02, 0.955, 0.04), (w - 0.02, -0.2, 0.04), (w - 0.02, -0.2, 1.0), (w - 0.02, 0.955, 0.76)], [(3, 2, 1, 0)], skirt
+        )
     if sign:
         cap = min(0.19, 2.5 / extent(sign, 1.0))
         s.box((2.75, 0.03, 0.34), (0, d + 0.27, 2.13), paint("white", dirt=0.12), 0.01)
@@ -140,11 +146,24 @@ def _leafy(radius: float, low: tuple[float, float, float], high: tuple[float, fl
             a = 2 * math.pi * k / 7 + rng.uniform(-0.3, 0.3)
             u, v = math.cos(a), math.sin(a)
             r = radius * rng.uniform(0.9, 1.15)
-            p = [(x, y, z), (x + u * r * 0.5 - v * r * 0.35, y + v * r * 0.5 + u * r * 0.35, z + r * 0.55),
-                 (x + u * r, y + v * r, z + r * 0.5), (x + u * r * 0.5 + v * r * 0.35, y + v * r * 0.5 - u * r * 0.35, z + r * 0.55)]  # fmt: skip
+            p = [
+                (x, y, z),
+                (x + u * r * 0.5 - v * r * 0.35, y + v * r * 0.5 + u * r * 0.35, z + r * 0.55),
+                (x + u * r, y + v * r, z + r * 0.5),
+                (x + u * r * 0.5 + v * r * 0.35, y + v * r * 0.5 - u * r * 0.35, z + r * 0.55),
+            ]
             s.add(p, [(0, 1, 2, 3)], plain(f"{name} {k % 2}", low if k % 2 else high, 0.6))
-        s.lathe([(0.1 * radius, -0.2 * radius), (0.62 * radius, 0.1 * radius), (0.5 * radius, 0.6 * radius), (0.1 * radius, 0.8 * radius)],
-                plain(f"{name} 1", low, 0.6), (x, y, z), steps=8)  # fmt: skip
+        s.lathe(
+            [
+                (0.1 * radius, -0.2 * radius),
+                (0.62 * radius, 0.1 * radius),
+                (0.5 * radius, 0.6 * radius),
+                (0.1 * radius, 0.8 * radius),
+            ],
+            plain(f"{name} 1", low, 0.6),
+            (x, y, z),
+            steps=8,
+        )
 
     return make
 
@@ -190,7 +209,11 @@ def produce_crate(kind: str, *, seed: int = 0, colour: str = "timber") -> Built:
         for i in range(nx - layer):
             for j in range(ny - (layer if ny > 1 else 0)):
                 x = (i + 0.5 * layer + 0.5) * (w - 0.04) / nx - (w - 0.04) / 2 + rng.uniform(-0.08, 0.08) * pitch
-                y = 0.0 if ny == 1 else (j + 0.5 * layer + 0.5) * (d - 0.04) / ny - (d - 0.04) / 2 + rng.uniform(-0.08, 0.08) * pitch
+                y = (
+                    0.0
+                    if ny == 1
+                    else (j + 0.5 * layer + 0.5) * (d - 0.04) / ny - (d - 0.04) / 2 + rng.uniform(-0.08, 0.08) * pitch
+                )
                 make(s, rng, x, y, h - 0.04 + pitch * (0.35 + 0.62 * layer) + rng.uniform(-0.004, 0.008))
     return s.built()
 
@@ -230,16 +253,33 @@ def flowers(s: Solid, rng: random.Random, bloom: str, *, count: int, reach: floa
         s.tube([(x * 0.35, y * 0.35, low), (x, y, z)], 0.004, stem, sides=3)
         leaf = rng.uniform(0, 6.28)
         mid = (x * 0.75, y * 0.75, low + (z - low) * 0.7)
-        s.add([mid, (mid[0] + 0.07 * math.cos(leaf) - 0.02, mid[1] + 0.07 * math.sin(leaf), mid[2] + 0.03),
-               (mid[0] + 0.12 * math.cos(leaf), mid[1] + 0.12 * math.sin(leaf), mid[2] + 0.02),
-               (mid[0] + 0.07 * math.cos(leaf) + 0.02, mid[1] + 0.07 * math.sin(leaf), mid[2] + 0.05)], [(0, 1, 2, 3)], stem)  # fmt: skip
+        s.add(
+            [
+                mid,
+                (mid[0] + 0.07 * math.cos(leaf) - 0.02, mid[1] + 0.07 * math.sin(leaf), mid[2] + 0.03),
+                (mid[0] + 0.12 * math.cos(leaf), mid[1] + 0.12 * math.sin(leaf), mid[2] + 0.02),
+                (mid[0] + 0.07 * math.cos(leaf) + 0.02, mid[1] + 0.07 * math.sin(leaf), mid[2] + 0.05),
+            ],
+            [(0, 1, 2, 3)],
+            stem,
+        )
         size, tint = rng.uniform(0.030, 0.045), petals[k % 3]
         for n in range(6):
             b = 2 * math.pi * n / 6
             u, v = math.cos(b), math.sin(b)
-            s.add([(x, y, z), (x + (u * 0.6 - v * 0.35) * size, y + (v * 0.6 + u * 0.35) * size, z + 0.012), (x + u * size, y + v * size, z + 0.006),
-                   (x + (u * 0.6 + v * 0.35) * size, y + (v * 0.6 - u * 0.35) * size, z + 0.012)], [(0, 1, 2, 3)], tint)  # fmt: skip
-        s.lathe([(0.008, -0.002), (0.010, 0.010), (0.003, 0.015)], plain("flower heart", (0.55, 0.36, 0.03), 0.8), (x, y, z), steps=6)
+            s.add(
+                [
+                    (x, y, z),
+                    (x + (u * 0.6 - v * 0.35) * size, y + (v * 0.6 + u * 0.35) * size, z + 0.012),
+                    (x + u * size, y + v * size, z + 0.006),
+                    (x + (u * 0.6 + v * 0.35) * size, y + (v * 0.6 - u * 0.35) * size, z + 0.012),
+                ],
+                [(0, 1, 2, 3)],
+                tint,
+            )
+        s.lathe(
+            [(0.008, -0.002), (0.010, 0.010), (0.003, 0.015)], plain("flower heart", (0.55, 0.36, 0.03), 0.8), (x, y, z), steps=6
+        )
 
 
 def hand_cart(colour: str = "green") -> Built:

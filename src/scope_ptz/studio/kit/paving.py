@@ -45,7 +45,7 @@ def _wobbly(s: Shader, p: Value, amount_m: float, scale: float) -> Value:
 
 def _worn(s: Shader, p: Value, colour: Value, joints: Value, grain: float = 0.35) -> bpy.types.Material:
     """Stone under years of feet: blotches, spills, gum, grit in the joints, and a bump of joints and pitting."""
-    x, y, _ = s.xyz(p)
+    _x, _y, _ = s.xyz(p)
     broad = s.noise(p, 0.16, 7.0, 0.62)
     colour = s.mix(s.ramp(broad, 0.40, 0.72, 0.0, 0.42), colour, (0.085, 0.078, 0.068))
     spills = s.ramp(s.noise(p, 0.9, 6.0, 0.6, 0.8), 0.60, 0.66, 0.0, 0.42)

@@ -6,34 +6,57 @@ import math
 import random
 from collections.abc import Sequence
 
-import bpy
-
 from scope_ptz.studio.kit.finishes import PALETTE, glass, glow, lens, paint, sheet, steel, timber
 from scope_ptz.studio.kit.lettering import extent
 from scope_ptz.studio.kit.market import flowers
-from scope_ptz.studio.kit.shading import Shader, plain
-from scope_ptz.studio.kit.square_shops import stripes
+from scope_ptz.studio.kit.shading import plain
 from scope_ptz.studio.kit.sign_faces import arrow, board, disc, flat, write
 from scope_ptz.studio.kit.solid import Solid
+from scope_ptz.studio.kit.square_shops import stripes
 from scope_ptz.studio.kit.stage import Built
-from scope_ptz.studio.kit.townhouses import ashlar, block
+from scope_ptz.studio.kit.townhouses import block
 
 
 def lantern_post(*, arms: int = 2, colour: str = "dark green", height: float = 4.4, lit: bool = False) -> Built:
     """A cast lamp post with ``arms`` lanterns (1 on top, 2 on a cross arm)."""
     s = Solid("lantern post")
     iron = paint(colour, dirt=0.2, roughness=0.35)
-    s.lathe([(0.24, 0.0), (0.24, 0.08), (0.18, 0.14), (0.15, 0.55), (0.19, 0.60), (0.19, 0.66), (0.09, 0.80), (0.075, 1.4), (0.10, 1.44),
-             (0.10, 1.50), (0.06, 1.58), (0.05, height - 0.8), (0.08, height - 0.74), (0.05, height - 0.66), (0.045, height - 0.1)],
-            iron, steps=24)  # fmt: skip
+    s.lathe(
+        [
+            (0.24, 0.0),
+            (0.24, 0.08),
+            (0.18, 0.14),
+            (0.15, 0.55),
+            (0.19, 0.60),
+            (0.19, 0.66),
+            (0.09, 0.80),
+            (0.075, 1.4),
+            (0.10, 1.44),
+            (0.10, 1.50),
+            (0.06, 1.58),
+            (0.05, height - 0.8),
+            (0.08, height - 0.74),
+            (0.05, height - 0.66),
+            (0.045, height - 0.1),
+        ],
+        iron,
+        steps=24,
+    )
     heads = [(0.0, height)] if arms == 1 else [(-0.55, height - 0.12), (0.55, height - 0.12)]
     for x, z in heads:
         if x:
             bend = [(0, 0, height - 0.6), (x * 0.5, 0, height - 0.68), (x, 0, height - 0.42), (x, 0, z)]
             s.tube(bend, 0.022, iron)
         s.lathe([(0.06, z - 0.04), (0.09, z), (0.10, z + 0.03)], iron, (x, 0, 0), steps=6)
-        s.lathe([(0.10, z + 0.03), (0.17, z + 0.42)], glow("cream", 3.0) if lit else plain("lantern glass", (0.50, 0.50, 0.44), 0.2), (x, 0, 0), steps=6)
-        s.lathe([(0.20, z + 0.42), (0.19, z + 0.46), (0.07, z + 0.60), (0.06, z + 0.66), (0.01, z + 0.74)], iron, (x, 0, 0), steps=6)
+        s.lathe(
+            [(0.10, z + 0.03), (0.17, z + 0.42)],
+            glow("cream", 3.0) if lit else plain("lantern glass", (0.50, 0.50, 0.44), 0.2),
+            (x, 0, 0),
+            steps=6,
+        )
+        s.lathe(
+            [(0.20, z + 0.42), (0.19, z + 0.46), (0.07, z + 0.60), (0.06, z + 0.66), (0.01, z + 0.74)], iron, (x, 0, 0), steps=6
+        )
     if arms > 1:
         s.lathe([(0.045, height - 0.1), (0.07, height - 0.04), (0.01, height + 0.2)], iron, steps=12)
     return s.built()
@@ -62,7 +85,11 @@ def post_box(*, hours: str = "9.30 AM") -> Built:
     s = Solid("post box")
     red = paint("red", dirt=0.15, roughness=0.3)
     s.lathe([(0.28, 0.0), (0.28, 0.16)], paint("black", dirt=0.3), steps=40)
-    s.lathe([(0.25, 0.16), (0.245, 1.28), (0.27, 1.30), (0.27, 1.36), (0.29, 1.38), (0.29, 1.43), (0.20, 1.52), (0.05, 1.57)], red, steps=40)
+    s.lathe(
+        [(0.25, 0.16), (0.245, 1.28), (0.27, 1.30), (0.27, 1.36), (0.29, 1.38), (0.29, 1.43), (0.20, 1.52), (0.05, 1.57)],
+        red,
+        steps=40,
+    )
     s.box((0.30, 0.05, 0.05), (0, 0.235, 1.16), lens("black"), 0.01)
     s.box((0.36, 0.07, 0.03), (0, 0.25, 1.205), red, 0.01)
     s.text("POST", 0.075, (0, 0.272, 1.335), paint("yellow", dirt=0.0))
@@ -109,8 +136,20 @@ def finger_post(fingers: Sequence[tuple[str, float]], *, colour: str = "dark gre
     """A sign post with lettered fingers: (text, bearing in degrees that the finger points to), topmost first."""
     s = Solid("finger post")
     iron = paint(colour, dirt=0.2, roughness=0.35)
-    s.lathe([(0.13, 0.0), (0.13, 0.10), (0.07, 0.16), (0.05, 0.9), (0.05, height), (0.08, height + 0.03), (0.05, height + 0.10), (0.01, height + 0.22)],
-            iron, steps=20)  # fmt: skip
+    s.lathe(
+        [
+            (0.13, 0.0),
+            (0.13, 0.10),
+            (0.07, 0.16),
+            (0.05, 0.9),
+            (0.05, height),
+            (0.08, height + 0.03),
+            (0.05, height + 0.10),
+            (0.01, height + 0.22),
+        ],
+        iron,
+        steps=20,
+    )
     for k, (text, bearing) in enumerate(fingers):
         cap = 0.085
         wide = extent(text, cap) + 0.30
@@ -132,15 +171,34 @@ def map_board(title: str = "TOWN MAP") -> Built:
         s.box((1.30, 0.05, 1.44), (0, 0, 0), paint("dark green", dirt=0.2), 0.012)
         s.box((1.20, 0.012, 1.34), (0, 0.022, 0), sheet("cream", dirt=0.05), 0.0)
         s.text(title, 0.10, (0, 0.031, 0.57), paint("dark green", dirt=0.0))
-        tints = [plain(f"map {k}", c, 0.6) for k, c in enumerate(((0.50, 0.40, 0.29), (0.44, 0.36, 0.27), (0.18, 0.36, 0.10), (0.16, 0.34, 0.52)))]
+        tints = [
+            plain(f"map {k}", c, 0.6)
+            for k, c in enumerate(((0.50, 0.40, 0.29), (0.44, 0.36, 0.27), (0.18, 0.36, 0.10), (0.16, 0.34, 0.52)))
+        ]
         with s.at(0, 0.027, -0.08):
             for i in range(6):
                 for j in range(6):
                     if rng.random() < 0.88:
-                        flat(s, [(u * 0.18 + (i - 2.5) * 0.19, v * 0.17 + (j - 2.5) * 0.185) for u, v in
-                                 ((-0.42, -0.42), (0.42, -0.42 + rng.uniform(0, 0.2)), (0.42, 0.42), (-0.42 + rng.uniform(0, 0.3), 0.42))],
-                             tints[2 if (i, j) in ((1, 4), (2, 4), (4, 1)) else rng.randrange(2)], 0.003)  # fmt: skip
-            flat(s, [(-0.58, 0.30), (-0.2, 0.16), (0.2, 0.22), (0.58, 0.05), (0.58, -0.03), (0.2, 0.14), (-0.2, 0.08), (-0.58, 0.22)], tints[3], 0.004)
+                        flat(
+                            s,
+                            [
+                                (u * 0.18 + (i - 2.5) * 0.19, v * 0.17 + (j - 2.5) * 0.185)
+                                for u, v in (
+                                    (-0.42, -0.42),
+                                    (0.42, -0.42 + rng.uniform(0, 0.2)),
+                                    (0.42, 0.42),
+                                    (-0.42 + rng.uniform(0, 0.3), 0.42),
+                                )
+                            ],
+                            tints[2 if (i, j) in ((1, 4), (2, 4), (4, 1)) else rng.randrange(2)],
+                            0.003,
+                        )
+            flat(
+                s,
+                [(-0.58, 0.30), (-0.2, 0.16), (0.2, 0.22), (0.58, 0.05), (0.58, -0.03), (0.2, 0.14), (-0.2, 0.08), (-0.58, 0.22)],
+                tints[3],
+                0.004,
+            )
             disc(s, 0.08, -0.12, 0.035, paint("red", dirt=0.0), 0.006)
     return s.built()
 
@@ -149,8 +207,19 @@ def flagpole(*, height: float = 7.5, colours: tuple[str, ...] = ("blue", "white"
     """A white pole with a flag of upright stripes that streams towards +x, rippling."""
     s = Solid("flagpole")
     rng = random.Random(f"flag {seed}")
-    s.lathe([(0.16, 0.0), (0.16, 0.25), (0.06, 0.30), (0.032, height), (0.05, height + 0.03), (0.05, height + 0.09), (0.01, height + 0.13)],
-            paint("white", dirt=0.2), steps=16)  # fmt: skip
+    s.lathe(
+        [
+            (0.16, 0.0),
+            (0.16, 0.25),
+            (0.06, 0.30),
+            (0.032, height),
+            (0.05, height + 0.03),
+            (0.05, height + 0.09),
+            (0.01, height + 0.13),
+        ],
+        paint("white", dirt=0.2),
+        steps=16,
+    )
     w, h, n = 1.5, 0.95, 24
     start = rng.uniform(0, 6)
     share = n // len(colours)
@@ -196,10 +265,17 @@ def news_kiosk(name: str = "NEWS", *, colour: str = "dark green") -> Built:
     s.box((2.9, 2.6, 0.10), (0, 0.05, 2.88), wood, 0.03)
     for facing, (x, y) in {"+Y": (0.0, 1.2035), "-Y": (0.0, -1.1035), "+X": (1.3035, 0.05), "-X": (-1.3035, 0.05)}.items():
         s.text(name, 0.24, (x, y, 2.62), paint("yellow", dirt=0.05), facing=facing)
-    s.lathe([(1.75, 2.92), (0.9, 3.25), (0.35, 3.40), (0.30, 3.62), (0.02, 3.80)], paint("grey", dirt=0.4, roughness=0.6), (0, 0.05, 0), steps=8)
+    s.lathe(
+        [(1.75, 2.92), (0.9, 3.25), (0.35, 3.40), (0.30, 3.62), (0.02, 3.80)],
+        paint("grey", dirt=0.4, roughness=0.6),
+        (0, 0.05, 0),
+        steps=8,
+    )
     cloth = stripes("canvas dark green cream", "dark green", "cream", 0.42)
     points = [(-1.25 + 2.5 * i / 12, y, z) for y, z in ((1.18, 2.38), (1.95, 2.06), (1.96, 1.88)) for i in range(13)]
-    s.add(points, [(r * 13 + i + 1, r * 13 + i, (r + 1) * 13 + i, (r + 1) * 13 + i + 1) for r in range(2) for i in range(12)], cloth)
+    s.add(
+        points, [(r * 13 + i + 1, r * 13 + i, (r + 1) * 13 + i, (r + 1) * 13 + i + 1) for r in range(2) for i in range(12)], cloth
+    )
     return s.built()
 
 
@@ -211,7 +287,12 @@ def headline_board(paper: str, lines: Sequence[str], *, cap: float = 0.085) -> B
         s.box((0.58, 0.008, 0.78), (0, 0.016, 0.45), sheet("white", dirt=0.08), 0.0)
         s.text(paper, min(0.06, 0.56 / extent(paper, 1.0)), (0, 0.0165, 0.92), paint("white", dirt=0.0))
         for k, line in enumerate(lines):
-            s.text(line, min(cap, 0.53 / extent(line, 1.0)), (0, 0.0215, 0.45 + 0.21 * ((len(lines) - 1) / 2 - k)), paint("black", dirt=0.0))
+            s.text(
+                line,
+                min(cap, 0.53 / extent(line, 1.0)),
+                (0, 0.0215, 0.45 + 0.21 * ((len(lines) - 1) / 2 - k)),
+                paint("black", dirt=0.0),
+            )
     with s.at(0, -0.18, 0.0, pitch=-12.0):
         s.box((0.62, 0.02, 0.92), (0, 0, 0.48), paint("red", dirt=0.25), 0.01)
     return s.built()
@@ -228,7 +309,9 @@ def no_entry() -> Built:
     return s.built()
 
 
-def post_sign(lines: Sequence[str], *, background: str = "blue", cap: float = 0.10, height: float = 2.2, pointer: str | None = None) -> Built:
+def post_sign(
+    lines: Sequence[str], *, background: str = "blue", cap: float = 0.10, height: float = 2.2, pointer: str | None = None
+) -> Built:
     """A small sign on a post, as wide as its lines need, facing +y; the first line is larger."""
     s = Solid(f"{background} sign")
     caps = [cap * (1.5 if k == 0 else 0.8) for k in range(len(lines))]
@@ -245,73 +328,3 @@ def post_sign(lines: Sequence[str], *, background: str = "blue", cap: float = 0.
         if pointer:
             arrow(s, 0.0, -tall / 2 + 0.20, 0.22, pointer, sheet("white" if background not in ("white", "yellow") else "black"))
     return s.built()
-
-
-def fountain_basin(radius: float = 3.0) -> Built:
-    """A stone basin with moulded rim, water, and four low jets round a pedestal place in the middle (1.2 m square, 0.5 m high)."""
-    s = Solid("fountain")
-    stone = _basin_stone()
-    s.lathe([(radius + 0.25, 0.0), (radius + 0.25, 0.10), (radius + 0.10, 0.14), (radius + 0.06, 0.42), (radius + 0.16, 0.48), (radius + 0.16, 0.56),
-             (radius - 0.16, 0.57), (radius - 0.18, 0.30)], stone, steps=64)  # fmt: skip
-    s.lathe([(radius - 0.15, 0.30), (radius - 0.15, 0.40)], _water(), steps=64)
-    s.box((1.5, 1.5, 0.6), (0, 0, 0.30), stone, 0.03)
-    jet = plain("water jet", (0.62, 0.70, 0.74), 0.25)
-    for k in range(8):
-        a = 2 * math.pi * (k + 0.5) / 8
-        u, v = math.cos(a), math.sin(a)
-        for j in range(3):
-            reach, lift = 0.85 + 0.10 * j, 0.75 + 0.08 * j
-            path = [(u * (radius - 0.3 - reach * t), v * (radius - 0.3 - reach * t), 0.42 + lift * 4 * t * (1 - t)) for t in (i / 9 for i in range(10))]
-            s.tube(path, 0.008, jet, sides=5, radius_b=0.022)
-        s.lathe([(0.10, 0.405), (0.02, 0.45)], jet, (u * (radius - 1.25), v * (radius - 1.25), 0), steps=10)
-    return s.built()
-
-
-def _basin_stone() -> bpy.types.Material:
-    return ashlar("fountain stone", (0.42, 0.39, 0.33), (1.6, 0.6))
-
-
-def _water() -> bpy.types.Material:
-    s = Shader("fountain water")
-    p = s.object_coords()
-    ripple = s.noise(p, 6.0, 4.0, 0.6, 0.8)
-    return s.surface(base_color=(0.030, 0.075, 0.078), roughness=0.06, normal=s.bump(ripple, 0.5, 0.03), specular_ior_level=0.6)
-
-
-def plinth(lines: Sequence[str], *, height: float = 2.2, side: float = 1.1) -> Built:
-    """A stone pedestal with a moulded foot and cap, and an inscription cut in its +y face."""
-    s = Solid("plinth")
-    stone = _basin_stone()
-    s.box((side + 0.5, side + 0.5, 0.35), (0, 0, 0.17), stone, 0.04)
-    s.box((side + 0.25, side + 0.25, 0.18), (0, 0, 0.43), stone, 0.05)
-    s.box((side, side, height - 0.5), (0, 0, height / 2 + 0.15), stone, 0.02)
-    s.box((side + 0.28, side + 0.28, 0.16), (0, 0, height - 0.08), stone, 0.04)
-    s.box((side - 0.14, 0.02, 0.95), (0, side / 2 + 0.004, height / 2 + 0.18), plain("slate tablet", (0.07, 0.075, 0.08), 0.5), 0.01)
-    gold = paint("yellow", dirt=0.08, roughness=0.3)
-    for k, line in enumerate(lines):
-        cap = min(0.13 if k == 0 else 0.10, (side - 0.24) / extent(line, 1.0))
-        s.text(line, cap, (0, side / 2 + 0.016, height / 2 + 0.46 - 0.22 * k), gold)
-    return s.built()
-
-
-def bronze(built: Built) -> Built:
-    """The same figure cast in weathered bronze."""
-    metal = _bronze()
-    for obj in built.objects:
-        for slot in obj.material_slots:
-            slot.link = "OBJECT"
-            slot.material = metal
-    return built
-
-
-def _bronze() -> bpy.types.Material:
-    made = bpy.data.materials.get("statue bronze")
-    if made is None:
-        s = Shader("statue bronze")
-        p = s.object_coords()
-        _, _, z = s.xyz(s.node("ShaderNodeNewGeometry").outputs["Normal"])
-        patina = s.math("MULTIPLY", s.ramp(z, -0.1, 0.7), s.ramp(s.noise(p, 5.0, 6.0, 0.65), 0.38, 0.62, 0.25, 0.95))
-        colour = s.mix(patina, (0.055, 0.035, 0.020), (0.16, 0.30, 0.23))
-        made = s.surface(base_color=colour, metallic=0.55, roughness=0.48)
-    return made
-

@@ -48,7 +48,12 @@ def _display(s: Solid, x: float, w: float, y: float, rng: random.Random) -> None
     u = -w / 2 + 0.3
     while u < w / 2 - 0.3:
         tall, wide, tint = rng.uniform(0.18, 0.55), rng.uniform(0.16, 0.34), rng.choice(tints)
-        block(s, (wide, 0.004, tall), (x + u, y, 0.70 + tall / 2), plain(f"display {tint}", tuple(c * 0.4 for c in PALETTE[tint]), 0.7))
+        block(
+            s,
+            (wide, 0.004, tall),
+            (x + u, y, 0.70 + tall / 2),
+            plain(f"display {tint}", tuple(c * 0.4 for c in PALETTE[tint]), 0.7),
+        )
         u += wide + rng.uniform(0.05, 0.3)
 
 
@@ -71,7 +76,9 @@ def shop_door(colour: str, *, open: bool = False, notice: str | None = None) -> 
     return s.built()
 
 
-def sign_board(text: str, width: float, *, colour: str = "dark green", ink: str = "cream", cap: float = 0.30, height: float = 0.56) -> Built:
+def sign_board(
+    text: str, width: float, *, colour: str = "dark green", ink: str = "cream", cap: float = 0.30, height: float = 0.56
+) -> Built:
     """A shop's name board, its back at y = 0, centred on the origin."""
     s = Solid("shop sign")
     s.box((width, 0.05, height), (0, 0.025, 0), paint(colour, dirt=0.15, roughness=0.35), 0.012)
@@ -116,7 +123,9 @@ def awning(width: float, first: str, second: str, *, reach: float = 1.6, text: s
     drop, columns = 0.72, 24
     rows = [(0.06, 0.0), (reach * 0.5, -drop * 0.46), (reach, -drop), (reach + 0.02, -drop - 0.26)]
     n = columns + 1
-    points = [(-width / 2 + width * i / columns, y, z - 0.012 * (i % 2) * (k > 0)) for k, (y, z) in enumerate(rows) for i in range(n)]
+    points = [
+        (-width / 2 + width * i / columns, y, z - 0.012 * (i % 2) * (k > 0)) for k, (y, z) in enumerate(rows) for i in range(n)
+    ]
     faces = [(k * n + i, (k + 1) * n + i, (k + 1) * n + i + 1, k * n + i + 1) for k in range(len(rows) - 1) for i in range(columns)]
     s.add(points, faces, cloth)
     for x in (-width / 2 + 0.05, width / 2 - 0.05):
@@ -135,7 +144,10 @@ def pharmacy_cross(size: float = 0.9, *, lit: bool = True) -> Built:
     s = Solid("pharmacy cross")
     s.rod((0, 0, 0), (0, 0.5, 0), 0.03, paint("dark grey"))
     arm, cy = size / 3, 0.5 + size / 2
-    for material, grow, thick in ((paint("dark grey", dirt=0.1), 0.04, 0.08), (glow("green", 2.5) if lit else lens("green"), 0.0, 0.10)):
+    for material, grow, thick in (
+        (paint("dark grey", dirt=0.1), 0.04, 0.08),
+        (glow("green", 2.5) if lit else lens("green"), 0.0, 0.10),
+    ):
         a, b = arm / 2 + grow / 2, size / 2 + grow / 2
         shape = [(-a, -b), (a, -b), (a, -a), (b, -a), (b, a), (a, a), (a, b), (-a, b), (-a, a), (-b, a), (-b, -a), (-a, -a)]
         s.prism([(cy + u, v) for u, v in shape], (-thick, thick), material, "YZ")

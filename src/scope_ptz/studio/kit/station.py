@@ -47,7 +47,9 @@ def arch_panel(
     s.prism([(half, z0), *curve, (-half, z0), (-w, z0), (-w, z1), (w, z1), (w, z0)], (-depth, 0.0), material, "XZ")
 
 
-def arch_trim(s: Solid, half: float, spring: float, material: bpy.types.Material, *, proud: float = 0.07, band: float = 0.28) -> None:
+def arch_trim(
+    s: Solid, half: float, spring: float, material: bpy.types.Material, *, proud: float = 0.07, band: float = 0.28
+) -> None:
     """Voussoirs round an arch, with a keystone."""
     outer, inner = arc((0, spring), half + band, 0, 180, 14), arc((0, spring), half - 0.01, 0, 180, 14)
     for k in range(14):
@@ -89,10 +91,7 @@ def _centre(s: Solid, stone: bpy.types.Material, pale: bpy.types.Material, slate
     s.box((CENTRE_M + 0.5, 1.0, 0.22), (0, -0.28, 5.62), pale, 0.04)
     s.box((CENTRE_M + 0.7, 1.2, 0.26), (0, -0.24, 7.16), pale, 0.05)
     s.text(name, 0.78, (0, 0.036, 6.38), paint("navy", dirt=0.10, roughness=0.4))
-    for x in (-3.6, 0.0, 3.6):
-        with s.at(x):
-            s.box((3.8, 0.5, 0.35), (0, -0.25, 7.45), stone, 0.01)
-    peak = [(-half, 7.3), (half, 7.3), (half, CENTRE_EAVES_M), (0.0, PEAK_M), (-half, CENTRE_EAVES_M)]
+    peak = [(-half, 7.0), (half, 7.0), (half, CENTRE_EAVES_M), (0.0, PEAK_M), (-half, CENTRE_EAVES_M)]
     s.prism(peak, (-13.0, 0.0), stone, "XZ")
     for side in (-1, 1):
         with s.at(side * 4.4, 0.0, 7.9):
@@ -101,7 +100,12 @@ def _centre(s: Solid, stone: bpy.types.Material, pale: bpy.types.Material, slate
         run, rise = half + 0.5, (PEAK_M - CENTRE_EAVES_M) / half * (half + 0.5)
         slope = [(0.0, PEAK_M + 0.30), (side * run, PEAK_M - rise + 0.30), (side * run, PEAK_M - rise + 0.08), (0.0, PEAK_M + 0.08)]
         s.prism(slope, (-13.4, 0.25), slate, "XZ")
-        cope = [(0.0, PEAK_M + 0.62), (side * (run + 0.1), PEAK_M - rise + 0.52), (side * (run + 0.1), PEAK_M - rise + 0.05), (0.0, PEAK_M + 0.1)]
+        cope = [
+            (0.0, PEAK_M + 0.62),
+            (side * (run + 0.1), PEAK_M - rise + 0.52),
+            (side * (run + 0.1), PEAK_M - rise + 0.05),
+            (0.0, PEAK_M + 0.1),
+        ]
         s.prism(cope, (-0.30, 0.32), pale, "XZ")
         s.box((0.9, 0.75, 1.5), (side * (half + 0.15), 0.0, CENTRE_EAVES_M + 0.1), pale, 0.04)
     s.lathe([(0.30, 0.0), (0.34, 0.2), (0.12, 0.35), (0.22, 0.75), (0.05, 1.1)], pale, (0, 0.0, PEAK_M + 0.5), steps=20)
@@ -189,7 +193,11 @@ def _canopy(s: Solid) -> None:
         s.lathe([(0.17, 0.0), (0.17, 0.30), (0.10, 0.38), (0.085, 2.9), (0.14, 3.0), (0.14, 3.1), (0.09, 3.15), (0.09, low - 0.1)],
                 iron, (x, reach - 0.25, 0), steps=16)  # fmt: skip
         for sign in (-1, 1):
-            bend = [(x + sign * 0.08, reach - 0.25, 3.2), (x + sign * 0.35, reach - 0.25, 3.75), (x + sign * 1.0, reach - 0.25, low - 0.1)]
+            bend = [
+                (x + sign * 0.08, reach - 0.25, 3.2),
+                (x + sign * 0.35, reach - 0.25, 3.75),
+                (x + sign * 1.0, reach - 0.25, low - 0.1),
+            ]
             s.tube(bend, 0.035, iron, sides=6)
         s.rod((x, 0.1, high - 0.1), (x, reach - 0.1, low - 0.05), 0.05, iron, sides=6)
 
@@ -221,7 +229,9 @@ def double_door(colour: str = "dark green", *, open: bool = True) -> Built:  # n
     return s.built()
 
 
-def departures_board(rows: list[tuple[str, str, str]], *, width: float = 3.3, cap: float = 0.125, title: str = "DEPARTURES") -> Built:
+def departures_board(
+    rows: list[tuple[str, str, str]], *, width: float = 3.3, cap: float = 0.125, title: str = "DEPARTURES"
+) -> Built:
     """A wall board of (time, destination, platform) in amber on black; its back at y = 0, its middle at the origin."""
     s = Solid("departures board")
     pitch = cap * 1.9
@@ -245,7 +255,9 @@ def departures_board(rows: list[tuple[str, str, str]], *, width: float = 3.3, ca
 
 def _amber() -> bpy.types.Material:
     found = bpy.data.materials.get("board amber")
-    return found or Shader("board amber").surface(base_color=(1.0, 0.48, 0.03), emission_color=(1.0, 0.45, 0.02), emission_strength=1.1)
+    return found or Shader("board amber").surface(
+        base_color=(1.0, 0.48, 0.03), emission_color=(1.0, 0.45, 0.02), emission_strength=1.1
+    )
 
 
 def luggage_trolley() -> Built:

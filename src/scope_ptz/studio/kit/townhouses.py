@@ -251,7 +251,12 @@ def _roof(s: Solid, h: House, tile: bpy.types.Material, ridge: float, rng: rando
     run = h.depth / 2
     slope = (ridge - eaves) / run
     front = [(0.34, eaves - 0.34 * slope + 0.12), (-run, ridge + 0.12), (-run, ridge), (0.34, eaves - 0.34 * slope)]
-    back = [(-run, ridge + 0.12), (-h.depth - 0.3, eaves - 0.3 * slope + 0.12), (-h.depth - 0.3, eaves - 0.3 * slope), (-run, ridge)]
+    back = [
+        (-run, ridge + 0.12),
+        (-h.depth - 0.3, eaves - 0.3 * slope + 0.12),
+        (-h.depth - 0.3, eaves - 0.3 * slope),
+        (-run, ridge),
+    ]
     for section in (front, back):
         s.prism(section, (-half - 0.02, half + 0.02), tile, "YZ")
     s.box((h.width, 0.22, 0.12), (0, -run, ridge + 0.12), tile, 0.03)

@@ -6,6 +6,7 @@ import math
 
 import bpy
 
+from scope_ptz.studio.kit import paintwork
 from scope_ptz.studio.kit.finishes import clear_glass, glow, lens, paint, sheet, steel
 from scope_ptz.studio.kit.lettering import extent
 from scope_ptz.studio.kit.shading import Shader, plain
@@ -19,7 +20,17 @@ HALF_WIDTH_M = 1.2
 RAKE = 0.20
 """How far the front leans back for each metre of height."""
 
-SECTION = [(0.0, 0.32), (1.02, 0.32), (1.17, 0.45), (1.20, 0.95), (1.20, 2.35), (1.13, 2.85), (0.96, 3.12), (0.55, 3.22), (0.0, 3.24)]
+SECTION = [
+    (0.0, 0.32),
+    (1.02, 0.32),
+    (1.17, 0.45),
+    (1.20, 0.95),
+    (1.20, 2.35),
+    (1.13, 2.85),
+    (0.96, 3.12),
+    (0.55, 3.22),
+    (0.0, 3.24),
+]
 
 
 def _ring(y: float, narrow: float = 1.0, *, front: bool = False) -> list[tuple[float, float, float]]:
@@ -51,9 +62,25 @@ def _end(s: Solid, sign: int, colour: str, line: str, destination: str, number: 
     with s.at(turn=0.0 if sign > 0 else 180.0), s.at(0, y, 0.32, pitch=math.degrees(math.atan(RAKE))):
         k = math.hypot(1.0, RAKE)
         w = 0.86
-        s.prism([(-w, 0.62 * k), (w, 0.62 * k), (w * 0.98, 2.05 * k), (w * 0.80, 2.72 * k), (-w * 0.80, 2.72 * k), (-w * 0.98, 2.05 * k)],
-                (-0.02, 0.012), black, "XZ")  # fmt: skip
-        s.prism([(-w + 0.05, 0.70 * k), (w - 0.05, 0.70 * k), (w * 0.98 - 0.05, 2.02 * k), (-w * 0.98 + 0.05, 2.02 * k)], (0.0, 0.018), dark, "XZ")
+        s.prism(
+            [
+                (-w, 0.62 * k),
+                (w, 0.62 * k),
+                (w * 0.98, 2.05 * k),
+                (w * 0.80, 2.72 * k),
+                (-w * 0.80, 2.72 * k),
+                (-w * 0.98, 2.05 * k),
+            ],
+            (-0.02, 0.012),
+            black,
+            "XZ",
+        )
+        s.prism(
+            [(-w + 0.05, 0.70 * k), (w - 0.05, 0.70 * k), (w * 0.98 - 0.05, 2.02 * k), (-w * 0.98 + 0.05, 2.02 * k)],
+            (0.0, 0.018),
+            dark,
+            "XZ",
+        )
         s.box((1.50, 0.02, 0.40), (0, 0.014, 2.33 * k), plain("tram display", (0.004, 0.004, 0.005), 0.2), 0.01)
         cap = min(0.17, 1.0 / extent(destination, 1.0))
         s.text(line, 0.25, (0.58, 0.0265, 2.33 * k), _led())
@@ -69,15 +96,17 @@ def _end(s: Solid, sign: int, colour: str, line: str, destination: str, number: 
 
 def _led() -> bpy.types.Material:
     found = bpy.data.materials.get("tram led")
-    return found or Shader("tram led").surface(base_color=(1.0, 0.55, 0.06), emission_color=(1.0, 0.50, 0.04), emission_strength=1.5)
+    return found or Shader("tram led").surface(
+        base_color=(1.0, 0.55, 0.06), emission_color=(1.0, 0.50, 0.04), emission_strength=1.5
+    )
 
 
 def tram(colour: str, *, line: str, destination: str, number: str, company: str, second: str = "cream", lit: bool = True) -> Built:
     """A three-part low-floor tram, 19.6 m long: two-tone livery, pantograph, lettering on its ends and sides."""
     s = Solid(f"{colour} tram")
-    skin = paint(colour, dirt=0.22, roughness=0.25)
-    band, dark = paint(second, dirt=0.2, roughness=0.25), plain("tram glass", (0.012, 0.015, 0.017), 0.03)
-    half, joint = LENGTH_M / 2, 2.5
+    skin = paintwork.paint("tram body", colour, dirt_top_m=1.3, dirt=0.4)
+    band, dark = paint(second, dirt=0.05, roughness=0.25), plain("tram glass", (0.012, 0.015, 0.017), 0.03)
+    half, joint = LENGTH_M / 2, 2.7
     for sign in (-1, 1):
         _hull(s, [(sign * (joint + 0.3), 1.0, False), (sign * (half - 1.9), 1.0, False), (sign * (half - 0.6), 0.93, True),
                   (sign * half, 0.78, True)], skin)  # fmt: skip
@@ -90,19 +119,28 @@ def tram(colour: str, *, line: str, destination: str, number: str, company: str,
         for y0, y1 in ((-half + 1.9, -joint - 0.4), (-joint + 0.4, joint - 0.4), (joint + 0.4, half - 1.9)):
             mid, long = (y0 + y1) / 2, y1 - y0
             block(s, (0.012, long, 1.20), (x, mid, 1.78), black)
-            block(s, (0.014, long, 0.20), (x, mid, 0.86), band)
+            block(s, (0.014, long, 0.34), (x, mid, 0.90), band)
+            block(s, (0.014, long, 0.16), (x, mid, 2.50), band)
             panes = max(2, round(long / 1.3))
             for k in range(panes):
                 cy = y0 + long * (k + 0.5) / panes
                 block(s, (0.016, long / panes - 0.07, 1.08), (x, cy, 1.78), dark)
-            for cy in ([mid] if long < 5 else [y0 + long * 0.25, y0 + long * 0.75]):
+            for cy in [mid] if long < 5 else [y0 + long * 0.25, y0 + long * 0.75]:
                 block(s, (0.02, 1.34, 2.16), (x, cy, 1.48), black)
                 for dy in (-0.33, 0.33):
                     block(s, (0.026, 0.60, 1.95), (x, cy + dy, 1.50), dark)
                     block(s, (0.03, 0.03, 0.7), (x, cy + dy * 0.25, 1.35), steel())
-        s.text(company, 0.20, (side * (HALF_WIDTH_M - 0.05), 0.0, 2.58), paint("white", dirt=0.0), facing="+X" if side > 0 else "-X")
+        s.text(
+            company,
+            0.20,
+            (side * (HALF_WIDTH_M + 0.0125), 0.0, 0.90),
+            paint("dark green", dirt=0.0),
+            facing="+X" if side > 0 else "-X",
+        )
         for y in (-half + 3.2, half - 3.2):
-            s.text(number, 0.16, (side * (HALF_WIDTH_M + 0.014), y, 0.60), paint("white", dirt=0.0), facing="+X" if side > 0 else "-X")
+            s.text(
+                number, 0.16, (side * (HALF_WIDTH_M + 0.014), y, 0.60), paint("white", dirt=0.0), facing="+X" if side > 0 else "-X"
+            )
         for y in (-half + 4.0, 0.0, half - 4.0):
             for dy in (-0.75, 0.75):
                 s.lathe([(0.30, -0.06), (0.30, 0.06)], steel(dark=True), (side * 0.76, y + dy, 0.30), "X", 24)
@@ -184,7 +222,11 @@ def overhead_pole(height: float = 6.6, *, reaches: tuple[float, ...] = (2.4, 5.8
     """A tapered steel pole with a bracket towards +y that carries a contact wire at each of ``reaches``."""
     s = Solid("tram pole")
     body = paint("dark green", dirt=0.2)
-    s.lathe([(0.20, 0.0), (0.20, 0.06), (0.13, 0.10), (0.12, 1.2), (0.14, 1.25), (0.11, 1.32), (0.075, height), (0.03, height + 0.15)], body, steps=20)
+    s.lathe(
+        [(0.20, 0.0), (0.20, 0.06), (0.13, 0.10), (0.12, 1.2), (0.14, 1.25), (0.11, 1.32), (0.075, height), (0.03, height + 0.15)],
+        body,
+        steps=20,
+    )
     far = max(reaches) + 0.3
     s.rod((0, 0, wire_m + 0.45), (0, far, wire_m + 0.55), 0.035, body)
     s.rod((0, 0, height - 0.1), (0, far * 0.8, wire_m + 0.56), 0.012, steel(), sides=5)

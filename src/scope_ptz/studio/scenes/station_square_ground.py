@@ -48,7 +48,7 @@ def _surfaces(stage: Stage) -> None:
     stage.put(paving.floor("street", streets, ROAD_M, setts), (0, 0, 0))
     lanes = [(*APPROACH, STREET[1], 40.0), (-43.8, -36.0, -90.0, STREET[0]), (38.0, 45.8, -90.0, STREET[0])]
     stage.put(paving.floor("lanes", lanes, ROAD_M, along), (0, 0, 0))
-    w, e = SQUARE[0], SQUARE[1]
+    e = SQUARE[1]
     lines = [
         ((-120.0, STREET[1] + 0.08), (e - 0.08, STREET[1] + 0.08)),
         ((e - 0.08, STREET[1] + 0.08), (e - 0.08, 24.0)),
@@ -62,7 +62,6 @@ def _surfaces(stage: Stage) -> None:
         ((37.9, -90.0), (37.9, STREET[0])),
         ((45.9, -90.0), (45.9, STREET[0])),
     ]
-    assert w < e
     stage.put(paving.kerbs(lines), (0, 0, 0))
 
 
@@ -80,7 +79,9 @@ def _covers(stage: Stage) -> None:
     for text, x, y in (("WATER", 5.4, -9.2), ("GAS", -9.6, 1.4), ("WATER", 18.2, 17.3), ("TELECOM", 7.2, -26.9)):
         stage.place(paving.manhole_cover(text), "manhole cover", "round manhole cover", (x, y, 0.002), 0, material="iron")
     grate = furniture.drain()
-    for k, (x, y) in enumerate(((-22.0, -12.2), (2.0, -12.2), (24.0, -4.0), (24.0, 9.0), (32.0, 2.0), (-6.0, -25.1), (16.0, -25.1))):
+    for k, (x, y) in enumerate(
+        ((-22.0, -12.2), (2.0, -12.2), (24.0, -4.0), (24.0, 9.0), (32.0, 2.0), (-6.0, -25.1), (16.0, -25.1))
+    ):
         stage.place(grate if k == 0 else grate.copy(), "drain", "drain grate", (x, y, ROAD_M), 0, material="iron")
 
 

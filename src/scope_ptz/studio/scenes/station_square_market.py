@@ -19,38 +19,86 @@ Stall = tuple[str, tuple[str, ...], tuple[float, float], list[Goods]]
 
 STALLS: list[Stall] = [
     (
-        "MARLOWE FISH", ("blue", "white"), (-19.2, -2.2),
+        "MARLOWE FISH",
+        ("blue", "white"),
+        (-19.2, -2.2),
         [("fish", "COD\n6.50"), ("salmon", "SALMON\n9.80"), ("prawns", "PRAWNS\n7.20"), ("fish", None), ("fish", "MACKEREL\n4.40")],
     ),
     (
-        "MARLOW FRUIT", ("red", "white"), (-14.6, 0.5),
-        [("apples", "APPLES\n1.20"), ("green apples", "APPLES\n1.35"), ("oranges", "ORANGES\n1.80"), ("lemons", "LEMONS\n0.45"),
-         ("plums", "PLUMS\n2.40"), ("apples", None), ("oranges", None), ("tomatoes", "TOMATOES\n1.90"), ("plums", None)],
+        "MARLOW FRUIT",
+        ("red", "white"),
+        (-14.6, 0.5),
+        [
+            ("apples", "APPLES\n1.20"),
+            ("green apples", "APPLES\n1.35"),
+            ("oranges", "ORANGES\n1.80"),
+            ("lemons", "LEMONS\n0.45"),
+            ("plums", "PLUMS\n2.40"),
+            ("apples", None),
+            ("oranges", None),
+            ("tomatoes", "TOMATOES\n1.90"),
+            ("plums", None),
+        ],
     ),
     (
-        "GREENWAY VEG", ("green", "green"), (-10.0, 3.2),
-        [("carrots", "CARROTS\n0.80"), ("leeks", "LEEKS\n1.10"), ("cabbages", "CABBAGE\n1.50"), ("lettuces", "LETTUCE\n0.95"),
-         ("peppers", "PEPPERS\n2.20"), ("onions", None), ("potatoes", "POTATOES\n0.70"), ("tomatoes", None), ("carrots", None)],
+        "GREENWAY VEG",
+        ("green", "green"),
+        (-10.0, 3.2),
+        [
+            ("carrots", "CARROTS\n0.80"),
+            ("leeks", "LEEKS\n1.10"),
+            ("cabbages", "CABBAGE\n1.50"),
+            ("lettuces", "LETTUCE\n0.95"),
+            ("peppers", "PEPPERS\n2.20"),
+            ("onions", None),
+            ("potatoes", "POTATOES\n0.70"),
+            ("tomatoes", None),
+            ("carrots", None),
+        ],
     ),
     (
-        "PETAL & STEM", ("purple", "purple"), (-5.4, 5.9), [],
+        "PETAL & STEM",
+        ("purple", "purple"),
+        (-5.4, 5.9),
+        [],
     ),
     (
-        "HILLTOP CHEESE", ("cream", "cream"), (-24.2, 5.0),
+        "HILLTOP CHEESE",
+        ("cream", "cream"),
+        (-24.2, 5.0),
         [("cheeses", "CHEDDAR\n8.60"), ("cheeses", "BRIE\n7.90"), ("cheeses", None), ("cheeses", "GOUDA\n9.10")],
     ),
     (
-        "THE BREAD OVEN", ("yellow", "white"), (-19.6, 7.7),
-        [("baguettes", "BAGUETTE\n1.60"), ("loaves", "RYE LOAF\n3.20"), ("rolls", "ROLLS\n0.55"), ("loaves", None), ("baguettes", None)],
+        "THE BREAD OVEN",
+        ("yellow", "white"),
+        (-19.6, 7.7),
+        [
+            ("baguettes", "BAGUETTE\n1.60"),
+            ("loaves", "RYE LOAF\n3.20"),
+            ("rolls", "ROLLS\n0.55"),
+            ("loaves", None),
+            ("baguettes", None),
+        ],
     ),
     (
-        "ORCHARD FARM", ("orange", "white"), (-15.0, 10.4),
-        [("green apples", "APPLES\n1.25"), ("apples", None), ("plums", "PLUMS\n2.60"), ("potatoes", None), ("onions", "ONIONS\n0.85")],
+        "ORCHARD FARM",
+        ("orange", "white"),
+        (-15.0, 10.4),
+        [
+            ("green apples", "APPLES\n1.25"),
+            ("apples", None),
+            ("plums", "PLUMS\n2.60"),
+            ("potatoes", None),
+            ("onions", "ONIONS\n0.85"),
+        ],
     ),
     (
-        "HOT PANCAKES", ("red", "yellow"), (-10.4, 13.1), [("rolls", None), ("lemons", "LEMON\n2.50")],
+        "HOT PANCAKES",
+        ("red", "yellow"),
+        (-10.4, 13.1),
+        [("rolls", None), ("lemons", "LEMON\n2.50")],
     ),
-]  # fmt: skip
+]
 """Name board, canvas colours, place, goods."""
 
 EMPTY_STALL = (-5.8, 15.8)
@@ -84,35 +132,63 @@ def build(stage: Stage) -> None:
     _flowers(stage, moulds)
     x, y = EMPTY_STALL
     empty = stage.place(
-        market.stall("grey", table=True, rolled=True), "market stall", "empty market stall", (x, y, 0), FACING, state="closed", canopy="rolled up"
+        market.stall("grey", table=True, rolled=True),
+        "market stall",
+        "empty market stall",
+        (x, y, 0),
+        FACING,
+        state="closed",
+        canopy="rolled up",
     )
     cx, cy = spot(EMPTY_STALL, 0.4, 0.5)
-    stage.place(market.price_card("BACK AT\nNOON", cap=0.09), "notice", "notice on the empty stall", (cx, cy, 0.82), FACING, parent=empty)
+    stage.place(
+        market.price_card("BACK AT\nNOON", cap=0.09), "notice", "notice on the empty stall", (cx, cy, 0.82), FACING, parent=empty
+    )
     for k, (right, out) in enumerate(((-2.2, -0.6), (-2.2, 0.1), (2.3, -0.9))):
         x, y = spot(EMPTY_STALL, right, out)
         for level in range(3 if k == 0 else 1):
-            stage.place(moulds.get("empty crate", market.crate), "crate", "empty crate", (x, y, 0.165 * level), FACING + 7 * level, state="empty",
-                        material="timber")  # fmt: skip
+            stage.place(
+                moulds.get("empty crate", market.crate),
+                "crate",
+                "empty crate",
+                (x, y, 0.165 * level),
+                FACING + 7 * level,
+                state="empty",
+                material="timber",
+            )
     _carts(stage, moulds)
     _terrace(stage, moulds)
 
 
-def _stall(stage: Stage, moulds: Moulds, sign: str, canvas: tuple[str, ...], place: tuple[float, float], goods: list[Goods]) -> None:
+def _stall(
+    stage: Stage, moulds: Moulds, sign: str, canvas: tuple[str, ...], place: tuple[float, float], goods: list[Goods]
+) -> None:
     first, second = canvas
     striped = first != second
     colour = f"{first} and {second}" if striped else first
     own = stage.place(
-        market.stall(first, second, sign=sign), "market stall", f"{colour} market stall", (*place, 0.0), FACING,
-        colour=colour, pattern="striped" if striped else "plain", state="open", sells=_sells(sign),
-    )  # fmt: skip
+        market.stall(first, second, sign=sign),
+        "market stall",
+        f"{colour} market stall",
+        (*place, 0.0),
+        FACING,
+        colour=colour,
+        pattern="striped" if striped else "plain",
+        state="open",
+        sells=_sells(sign),
+    )
     for k, (kind, card) in enumerate(goods):
         row, column = divmod(k, 5)
         right, out = -1.17 + 0.585 * column, 0.70 - 0.42 * row
         x, y = spot(place, right, out)
         z = market.COUNTER_M + 0.145 - (out - 0.35) * math.tan(math.radians(14))
         colour = "timber" if kind not in ("fish", "salmon", "prawns") else "white"
-        built = moulds.get(f"{kind} {k % 2}", lambda kind=kind, k=k, colour=colour: market.produce_crate(kind, seed=k % 2, colour=colour))
-        crate = stage.place(built, "crate", f"crate of {kind}", (x, y, z), FACING, lean_deg=(-14, 0), parent=own, contents=kind, state="full")
+        built = moulds.get(
+            f"{kind} {k % 2}", lambda kind=kind, k=k, colour=colour: market.produce_crate(kind, seed=k % 2, colour=colour)
+        )
+        crate = stage.place(
+            built, "crate", f"crate of {kind}", (x, y, z), FACING, lean_deg=(-14, 0), parent=own, contents=kind, state="full"
+        )
         if card:
             cx, cy = spot(place, right, out - 0.19)
             stage.place(
@@ -122,13 +198,29 @@ def _stall(stage: Stage, moulds: Moulds, sign: str, canvas: tuple[str, ...], pla
     for k, right in enumerate((-1.0, 0.2, 1.1)):  # stock under and behind the counter
         if (k + len(sign)) % 2:
             x, y = spot(place, right, -1.35)
-            stage.place(moulds.get("empty crate", market.crate), "crate", "empty crate", (x, y, 0.0), FACING + 20 * right, parent=own, state="empty",
-                        material="timber")  # fmt: skip
+            stage.place(
+                moulds.get("empty crate", market.crate),
+                "crate",
+                "empty crate",
+                (x, y, 0.0),
+                FACING + 20 * right,
+                parent=own,
+                state="empty",
+                material="timber",
+            )
 
 
 def _sells(sign: str) -> str:
-    words = {"FISH": "fish", "FRUIT": "fruit", "VEG": "vegetables", "STEM": "flowers", "CHEESE": "cheese", "BREAD": "bread", "FARM": "fruit",
-             "PANCAKES": "pancakes"}  # fmt: skip
+    words = {
+        "FISH": "fish",
+        "FRUIT": "fruit",
+        "VEG": "vegetables",
+        "STEM": "flowers",
+        "CHEESE": "cheese",
+        "BREAD": "bread",
+        "FARM": "fruit",
+        "PANCAKES": "pancakes",
+    }
     return next(value for key, value in words.items() if key in sign)
 
 
@@ -144,18 +236,24 @@ def _flowers(stage: Stage, moulds: Moulds) -> None:
         stage.place(built, "flower bucket", f"bucket of {bloom} flowers", (x, y, z), 40.0 * k, colour=bloom)
     for text, right in (("ROSES\n5.00", -0.6), ("TULIPS\n3.50", 0.5)):
         x, y = spot(place, right, 0.75)
-        stage.place(market.price_card(text, cap=0.068), "price card", f"price card for {text.split(chr(10))[0].lower()}", (x, y, 0.84), FACING)
+        stage.place(
+            market.price_card(text, cap=0.068),
+            "price card",
+            f"price card for {text.split(chr(10))[0].lower()}",
+            (x, y, 0.84),
+            FACING,
+        )
 
 
 def _carts(stage: Stage, moulds: Moulds) -> None:
-    stage.place(market.hand_cart("green"), "hand cart", "green hand cart", (-2.4, 10.6, 0.0), 205, colour="green", state="loaded")
+    stage.place(market.hand_cart("green"), "hand cart", "green hand cart", (-1.4, 18.2, 0.0), 205, colour="green", state="loaded")
     rng = random.Random("cart")
     for k, kind in enumerate(("cabbages", "apples", "potatoes")):
         b = math.radians(205)
         out = 0.55 - 0.42 * k
         stage.place(
             moulds.get(f"{kind} 0", lambda kind=kind: market.produce_crate(kind)), "crate", f"crate of {kind}",
-            (-2.4 + out * math.sin(b), 10.6 + out * math.cos(b), 0.64), 205 + rng.uniform(-5, 5), contents=kind, state="full",
+            (-1.4 + out * math.sin(b), 18.2 + out * math.cos(b), 0.64), 205 + rng.uniform(-5, 5), contents=kind, state="full",
         )  # fmt: skip
     stage.place(market.hand_cart("red"), "hand cart", "red hand cart", (-26.2, 9.6, 0.0), 70, colour="red", state="empty")
 
@@ -168,32 +266,56 @@ def _terrace(stage: Stage, moulds: Moulds) -> None:
         for column, x in enumerate(TERRACE_COLUMNS):
             mine = sorted(seat for c, r, seat in taken if (c, r) == (column, row))
             table = stage.place(
-                moulds.get("table", cafe.table), "table", "round café table", (x, y, 0.0), 0, state="occupied" if mine else "free", area="terrace"
+                moulds.get("table", cafe.table),
+                "table",
+                "round café table",
+                (x, y, 0.0),
+                0,
+                state="occupied" if mine else "free",
+                area="terrace",
             )
             for seat in range(3):
                 at, bearing = seat_place(column, row, seat)
                 tint = "dark green" if column == 0 else "red"
                 stage.place(
-                    moulds.get(f"chair {tint}", lambda tint=tint: cafe.chair(tint)), "chair", f"{tint.removeprefix('dark ')} café chair", (*at, 0.0),
-                    bearing, colour=tint.removeprefix("dark "), state="occupied" if seat in mine else "empty", area="terrace",
-                )  # fmt: skip
+                    moulds.get(f"chair {tint}", lambda tint=tint: cafe.chair(tint)),
+                    "chair",
+                    f"{tint.removeprefix('dark ')} café chair",
+                    (*at, 0.0),
+                    bearing,
+                    colour=tint.removeprefix("dark "),
+                    state="occupied" if seat in mine else "empty",
+                    area="terrace",
+                )
             for k in range(len(mine) or rng.randrange(2)):
                 a = rng.uniform(0, 6.28)
                 stage.place(
-                    moulds.get("cup", cafe.cup), "cup", "white coffee cup", (x + 0.2 * math.cos(a + 2.2 * k), y + 0.2 * math.sin(a + 2.2 * k), cafe.TABLE_M),
-                    rng.uniform(0, 360), parent=table, colour="white",
-                )  # fmt: skip
+                    moulds.get("cup", cafe.cup),
+                    "cup",
+                    "white coffee cup",
+                    (x + 0.2 * math.cos(a + 2.2 * k), y + 0.2 * math.sin(a + 2.2 * k), cafe.TABLE_M),
+                    rng.uniform(0, 360),
+                    parent=table,
+                    colour="white",
+                )
     middle = sum(TERRACE_COLUMNS) / 2
     shades = [("dark red", "cream", True), ("dark red", "cream", False), ("dark red", "cream", True), ("cream", "cream", True)]
     for (first, second, is_open), y in zip(shades, TERRACE_ROWS, strict=True):
         colour = "cream" if first == second else "red and cream"
         stage.place(
-            cafe.parasol(first, second, open=is_open, text="BELLAVISTA" if is_open else None), "parasol", f"{colour} parasol", (middle, y + 0.1, 0.0), 12,
-            colour=colour, state="open" if is_open else "closed",
-        )  # fmt: skip
+            cafe.parasol(first, second, open=is_open, text="BELLAVISTA" if is_open else None),
+            "parasol",
+            f"{colour} parasol",
+            (middle, y + 0.1, 0.0),
+            12,
+            colour=colour,
+            state="open" if is_open else "closed",
+        )
     stage.place(cafe.parasol("navy", open=False), "parasol", "blue parasol", (-27.0, 4.4, 0.0), 0, colour="blue", state="closed")
     menu = ["MENU", "SOUP 4.50", "OMELETTE 6.20", "FISH PIE 8.90", "PASTA 7.40", "APPLE TART 3.80"]
-    stage.place(cafe.menu_board(menu, cap=0.085), "menu board", "chalk menu board", (-26.6, -4.6, 0.0), 98, colour="black", scale=1.1)
+    stage.place(
+        cafe.menu_board(menu, cap=0.085), "menu board", "chalk menu board", (-26.6, -4.6, 0.0), 98, colour="black", scale=1.1
+    )
 
 
 def seat_place(column: int, row: int, seat: int) -> tuple[tuple[float, float], float]:

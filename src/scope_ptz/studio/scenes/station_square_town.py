@@ -1,17 +1,16 @@
-"""Station square: the station, the buildings round the square with their shops, and the roofs of the town beyond."""
+"""Station square: the station, and the buildings round the square with their shops."""
 
 from __future__ import annotations
 
 import math
-import random
 
 import bpy
 
-from scope_ptz.studio.kit import buildings, clocks, square_shops, station, townhouses, vegetation
+from scope_ptz.studio.kit import buildings, clocks, square_shops, station, townhouses
 from scope_ptz.studio.kit.finishes import paint
 from scope_ptz.studio.kit.lettering import extent
 from scope_ptz.studio.kit.solid import Solid
-from scope_ptz.studio.kit.stage import Built, Stage
+from scope_ptz.studio.kit.stage import Stage
 from scope_ptz.studio.kit.townhouses import CLAY, SLATE, House
 
 STATION_Y = 27.0
@@ -29,8 +28,6 @@ DEPARTURES = [
 def build(stage: Stage) -> None:
     _station(stage)
     _rows(stage)
-    _beyond(stage)
-    _church(stage)
 
 
 def _station(stage: Stage) -> None:
@@ -42,16 +39,27 @@ def _station(stage: Stage) -> None:
         clocks.wall_clock(1.05, 9, 41), "clock", "station clock", (0, STATION_Y - 0.02, station.CLOCK_Z_M), 180,
         parent=front, time="9:41", colour="white", mounted="gable",
     )  # fmt: skip
-    for x, name, state in ((0.0, "middle station door", "open"), (4.3, "right station door", "closed"), (-4.3, "left station door", "closed")):
+    for x, name, state in (
+        (0.0, "middle station door", "open"),
+        (4.3, "right station door", "closed"),
+        (-4.3, "left station door", "closed"),
+    ):
         stage.place(
             station.double_door(open=state == "open"), "door", name, (x, STATION_Y + 0.38, 0.0), 180,
             parent=front, state=state, colour="dark green",
         )  # fmt: skip
+    for x, text in ((-15.2, "TICKETS"), (15.2, "WAY OUT")):
+        stage.place(
+            square_shops.sign_board(text, 3.0, colour="navy", ink="white", cap=0.36, height=0.60), "sign", f"{text.lower()} sign",
+            (x, STATION_Y + station.PROJECTION_M - 3.62, 4.52), 180, parent=front, colour="navy",
+        )  # fmt: skip
     board = station.departures_board(DEPARTURES)
-    stage.place(board, "departures board", "departures board", (10.2, STATION_Y + 0.2, 2.75), 180, parent=front, state="lit", lines=6)
+    stage.place(
+        board, "departures board", "departures board", (10.2, STATION_Y + 0.2, 2.75), 180, parent=front, state="lit", lines=6
+    )
 
 
-def _walls() -> dict[str, bpy.types.Material]:
+def walls() -> dict[str, bpy.types.Material]:
     return {
         "cream": townhouses.stucco("stucco cream", (0.58, 0.50, 0.36)),
         "white": townhouses.stucco("stucco white", (0.64, 0.62, 0.57)),
@@ -72,7 +80,16 @@ def _house(stage: Stage, h: House, place: tuple[float, float, float], colour: st
     plain = {"stone": "beige", "grey stone": "grey", "red brick": "red", "buff brick": "buff"}.get(colour, colour)
     facts = {"shutters": h.shutters} if h.shutters else {}
     return stage.place(
-        townhouses.town_house(h), "building", name, (x, y, 0.0), bearing, colour=plain, material=material, kind=kind, storeys=storeys, **facts
+        townhouses.town_house(h),
+        "building",
+        name,
+        (x, y, 0.0),
+        bearing,
+        colour=plain,
+        material=material,
+        kind=kind,
+        storeys=storeys,
+        **facts,
     )
 
 
@@ -116,9 +133,15 @@ def shop(
     )  # fmt: skip
     dx, dy = _local(place, 0.0, 0.17)
     stage.place(
-        square_shops.shop_door(door_colour or colour, open=door == "open", notice=notice), "door", f"{name} door", (dx, dy, 0.02), bearing,
-        parent=front, state=door, colour=door_colour or colour,
-    )  # fmt: skip
+        square_shops.shop_door(door_colour or colour, open=door == "open", notice=notice),
+        "door",
+        f"{name} door",
+        (dx, dy, 0.02),
+        bearing,
+        parent=front,
+        state=door,
+        colour=door_colour or colour,
+    )
     if awning:
         ax, ay = _local(place, 0.0, 0.30)
         made = square_shops.awning(width - 0.3, *awning, text=awning_text, open=awning_open)
@@ -131,73 +154,187 @@ def shop(
 
 
 def _rows(stage: Stage) -> None:
-    w = _walls()
+    w = walls()
     # West side, in the morning sun
     cafe = (WEST_X, -3.2, 90.0)
     front = _house(stage, House(12.0, w["ochre"], 3, 4, shutters="dark green", dormers=2, roof=CLAY, seed=1), cafe, "ochre",
                    "ochre house with green shutters", "town house", 3)  # fmt: skip
-    shop(stage, front, cafe, name="café", kind="café", text="CAFE BELLAVISTA", width=11.0, colour="dark red", ink="cream", door="open",
-         awning=("dark red", "cream"), awning_text="COFFEE  CAKES  LUNCH", seed=1)  # fmt: skip
+    shop(
+        stage,
+        front,
+        cafe,
+        name="café",
+        kind="café",
+        text="CAFE BELLAVISTA",
+        width=11.0,
+        colour="dark red",
+        ink="cream",
+        door="open",
+        awning=("dark red", "cream"),
+        awning_text="COFFEE  CAKES  LUNCH",
+        seed=1,
+    )
     bakery = (WEST_X, 6.9, 90.0)
     front = _house(stage, House(8.2, w["white"], 3, 3, shutters="blue", seed=2), bakery, "white", "white house with blue shutters",
                    "town house", 3)  # fmt: skip
-    shop(stage, front, bakery, name="bakery", kind="bakery", text="BARTON & SON", width=7.4, colour="navy", ink="white", notice="OPEN",
-         awning=("navy", "white"), seed=2)  # fmt: skip
-    _house(stage, House(6.4, w["pink"], 4, 2, storey_m=2.9, shutters="light grey", door="dark green", seed=3), (WEST_X, 14.2, 90.0), "pink",
-           "pink house with grey shutters", "town house", 4)  # fmt: skip
+    shop(
+        stage,
+        front,
+        bakery,
+        name="bakery",
+        kind="bakery",
+        text="BARTON & SON",
+        width=7.4,
+        colour="navy",
+        ink="white",
+        notice="OPEN",
+        awning=("navy", "white"),
+        seed=2,
+    )
+    _house(
+        stage,
+        House(6.4, w["pink"], 4, 2, storey_m=2.9, shutters="light grey", door="dark green", seed=3),
+        (WEST_X, 14.2, 90.0),
+        "pink",
+        "pink house with grey shutters",
+        "town house",
+        4,
+    )
     bookshop = (WEST_X, 25.0, 90.0)
-    front = _house(stage, House(8.6, w["red brick"], 3, 3, dormers=2, seed=4), bookshop, "red brick", "red brick house", "town house", 3)
-    shop(stage, front, bookshop, name="bookshop", kind="bookshop", text="BARTON'S BOOKS", width=7.6, colour="dark green", ink="cream",
-         notice="CLOSED", awning=("dark green", "dark green"), awning_open=False, seed=3)  # fmt: skip
-    _house(stage, House(9.0, w["buff brick"], 3, 3, seed=5), (WEST_X, 33.8, 90.0), "buff brick", "buff brick house", "town house", 3)
+    front = _house(
+        stage, House(8.6, w["red brick"], 3, 3, dormers=2, seed=4), bookshop, "red brick", "red brick house", "town house", 3
+    )
+    shop(
+        stage,
+        front,
+        bookshop,
+        name="bookshop",
+        kind="bookshop",
+        text="BARTON'S BOOKS",
+        width=7.6,
+        colour="dark green",
+        ink="cream",
+        notice="CLOSED",
+        awning=("dark green", "dark green"),
+        awning_open=False,
+        seed=3,
+    )
+    _house(
+        stage, House(9.0, w["buff brick"], 3, 3, seed=5), (WEST_X, 33.8, 90.0), "buff brick", "buff brick house", "town house", 3
+    )
     # East side
     pharmacy = (EAST_X, -5.4, 270.0)
     front = _house(stage, House(9.4, w["green"], 3, 3, quoins=True, seed=6), pharmacy, "green", "green house", "town house", 3)
-    shop(stage, front, pharmacy, name="pharmacy", kind="pharmacy", text="PHARMACY", width=8.4, colour="white", ink="green", notice="OPEN",
-         door_colour="green", seed=4)  # fmt: skip
+    shop(
+        stage,
+        front,
+        pharmacy,
+        name="pharmacy",
+        kind="pharmacy",
+        text="PHARMACY",
+        width=8.4,
+        colour="white",
+        ink="green",
+        notice="OPEN",
+        door_colour="green",
+        seed=4,
+    )
     x, y = _local(pharmacy, 4.0, 0.0)
-    stage.place(square_shops.pharmacy_cross(), "cross", "green pharmacy cross", (x, y, 4.9), 270, parent=front, colour="green", state="lit")
+    stage.place(
+        square_shops.pharmacy_cross(), "cross", "green pharmacy cross", (x, y, 4.9), 270, parent=front, colour="green", state="lit"
+    )
     _bank(stage, w["grey stone"])
     grocer = (EAST_X, 19.7, 270.0)
-    front = _house(stage, House(8.0, w["cream"], 3, 3, shutters="brown", seed=8), grocer, "cream", "cream house with brown shutters",
-                   "town house", 3)  # fmt: skip
-    shop(stage, front, grocer, name="barber shop", kind="barber", text="BARBER", width=5.4, colour="black", ink="white", door="open",
-         door_colour="red", notice="OPEN", seed=5)  # fmt: skip
+    front = _house(
+        stage,
+        House(8.0, w["cream"], 3, 3, shutters="brown", seed=8),
+        grocer,
+        "cream",
+        "cream house with brown shutters",
+        "town house",
+        3,
+    )
+    shop(
+        stage,
+        front,
+        grocer,
+        name="barber shop",
+        kind="barber",
+        text="BARBER",
+        width=5.4,
+        colour="black",
+        ink="white",
+        door="open",
+        door_colour="red",
+        notice="OPEN",
+        seed=5,
+    )
     _house(stage, House(7.6, w["blue"], 3, 3, door="yellow", seed=9), (EAST_X, 27.5, 270.0), "blue", "blue house", "town house", 3)
-    _house(stage, House(9.0, w["red brick"], 4, 3, storey_m=2.9, seed=10), (EAST_X, 35.8, 270.0), "red brick", "tall brick house", "town house", 4)
+    _house(
+        stage,
+        House(9.0, w["red brick"], 4, 3, storey_m=2.9, seed=10),
+        (EAST_X, 35.8, 270.0),
+        "red brick",
+        "tall brick house",
+        "town house",
+        4,
+    )
     # South side, behind the tramway
     _hotel(stage, w["cream"])
     south = [
-        (-29.7, 8.6, "buff brick", 3, dict(dormers=2), "tobacconist", "GREEN & WEBB", "brown", "yellow", "TRAVEL AGENT"),
-        (-21.0, 8.8, "blue", 3, dict(shutters="white"), "travel agent", "SUNWAY TRAVEL", "yellow", "navy", None),
-        (-12.3, 8.6, "white", 4, dict(storey_m=2.9, balconies=True), "shoe shop", "SOLE MATES", "purple", "white", None),
-        (18.2, 8.4, "red brick", 3, dict(shutters="cream"), "optician", "CLEARVIEW OPTICIANS", "light blue", "navy", None),
-        (26.2, 7.6, "pink", 3, dict(balconies=True), "toy shop", "THE TOY BOX", "red", "yellow", None),
-        (32.9, 5.8, "stone", 4, dict(storey_m=2.9), "watchmaker", "WATCHMAKER", "dark green", "yellow", None),
+        (-29.7, 8.6, "buff brick", 3, {"dormers": 2}, "tobacconist", "GREEN & WEBB", "brown", "yellow", "TRAVEL AGENT"),
+        (-21.0, 8.8, "blue", 3, {"shutters": "white"}, "travel agent", "SUNWAY TRAVEL", "yellow", "navy", None),
+        (-12.3, 8.6, "white", 4, {"storey_m": 2.9, "balconies": True}, "shoe shop", "SOLE MATES", "purple", "white", None),
+        (18.2, 8.4, "red brick", 3, {"shutters": "cream"}, "optician", "CLEARVIEW OPTICIANS", "light blue", "navy", None),
+        (26.2, 7.6, "pink", 3, {"balconies": True}, "toy shop", "THE TOY BOX", "red", "yellow", None),
+        (32.9, 5.8, "stone", 4, {"storey_m": 2.9}, "watchmaker", "WATCHMAKER", "dark green", "yellow", None),
     ]  # fmt: skip
     for k, (at, width, colour, storeys, more, kind, text, board, ink, _) in enumerate(south):
         place = (at, SOUTH_Y, 0.0)
         h = House(width, w[colour], storeys, 3 if width > 7 else 2, seed=20 + k, roof=CLAY if k % 3 == 2 else SLATE, **more)
-        noun = {"buff brick": "buff brick house", "red brick": "red brick house", "stone": "tall stone house"}.get(colour, f"{colour} house")
+        noun = {"buff brick": "buff brick house", "red brick": "red brick house", "stone": "tall stone house"}.get(
+            colour, f"{colour} house"
+        )
         front = _house(stage, h, place, colour, noun, "town house", storeys)
-        shop(stage, front, place, name=kind, kind=kind, text=text, width=width - 1.0, colour=board, ink=ink, notice="OPEN" if k % 2 else None,
-             awning=(("yellow", "white") if k == 1 else ("red", "red")) if k in (1, 4) else None, seed=10 + k)  # fmt: skip
+        shop(
+            stage,
+            front,
+            place,
+            name=kind,
+            kind=kind,
+            text=text,
+            width=width - 1.0,
+            colour=board,
+            ink=ink,
+            notice="OPEN" if k % 2 else None,
+            awning=(("yellow", "white") if k == 1 else ("red", "red")) if k in (1, 4) else None,
+            seed=10 + k,
+        )
 
 
 def _bank(stage: Stage, stone: bpy.types.Material) -> None:
     place = (EAST_X, 9.3, 270.0)
-    h = House(12.4, stone, 3, 5, ground_m=4.6, storey_m=3.4, window=(1.1, 2.0), door="black", quoins=True, trim="light grey", seed=7)
+    h = House(
+        12.4, stone, 3, 5, ground_m=4.6, storey_m=3.4, window=(1.1, 2.0), door="black", quoins=True, trim="light grey", seed=7
+    )
     front = _house(stage, h, place, "grey stone", "stone bank building", "bank", 3)
     x, y = _local(place, 0.0, 0.20)
     stage.place(
-        square_shops.sign_board("COUNTY & BOROUGH BANK", 8.6, colour="dark grey", ink="yellow", cap=0.36, height=0.66), "sign", "bank sign",
-        (x, y, 4.15), 270, parent=front, colour="dark grey",
-    )  # fmt: skip
+        square_shops.sign_board("COUNTY & BOROUGH BANK", 8.6, colour="dark grey", ink="yellow", cap=0.36, height=0.66),
+        "sign",
+        "bank sign",
+        (x, y, 4.15),
+        270,
+        parent=front,
+        colour="dark grey",
+    )
 
 
 def _hotel(stage: Stage, wall: bpy.types.Material) -> None:
     place = (3.0, SOUTH_Y, 0.0)
-    h = House(21.8, wall, 4, 7, depth=11.0, ground_m=4.4, storey_m=3.2, dormers=5, quoins=True, balconies=True, door="black", seed=15)
+    h = House(
+        21.8, wall, 4, 7, depth=11.0, ground_m=4.4, storey_m=3.2, dormers=5, quoins=True, balconies=True, door="black", seed=15
+    )
     front = _house(stage, h, place, "cream", "hotel building", "hotel", 4)
     s = Solid("hotel sign")
     text, cap = "STATION HOTEL", 0.62
@@ -205,107 +342,19 @@ def _hotel(stage: Stage, wall: bpy.types.Material) -> None:
     s.box((extent(text, cap) + 0.8, 0.05, 1.0), (0, 0.02, 0), paint("dark green", dirt=0.1), 0.02)
     s.text(text, cap, (0, 0.05, 0), gold)
     stage.place(s.built(), "sign", "hotel sign", (3.0, SOUTH_Y + 0.26, 4.55), 0, parent=front, colour="dark green")
-
-
-def _beyond(stage: Stage) -> None:
-    """Streets that lead away, closed by houses, and roofs behind the rows; unannotated."""
-    w = _walls()
-    kinds = [
-        House(9.0, w["red brick"], 3, 3, seed=50),
-        House(8.0, w["cream"], 3, 3, shutters="brown", seed=51, roof=CLAY),
-        House(10.0, w["buff brick"], 3, 4, seed=52, door="blue"),
-        House(8.5, w["white"], 2, 3, shutters="green", seed=53, roof=CLAY, door="red"),
-        House(9.5, w["stone"], 4, 3, seed=54, storey_m=2.9, dormers=2, door="black"),
-    ]
-    moulds = [townhouses.town_house(h) for h in kinds]
-    used: set[int] = set()
-    rng = random.Random("beyond")
-
-    def row(x: float, y: float, bearing: float, length: float, first: int) -> None:
-        """Houses side by side from (x, y) along the reader's right when facing their fronts reversed."""
-        b = math.radians(bearing)
-        step, k = 0.0, first
-        while step < length:
-            index = k % len(kinds)
-            width = kinds[index].width
-            step += width / 2
-            _lay(index, x + step * math.cos(b), y - step * math.sin(b), bearing)
-            step += width / 2
-            k += rng.choice((1, 2, 3))
-
-    def _lay(index: int, x: float, y: float, bearing: float) -> None:
-        built: Built = moulds[index].copy() if index in used else moulds[index]
-        used.add(index)
-        stage.put(built, (x, y, 0.0), bearing)
-
-    row(-45.4, -8.0, 180, 62, 0)  # north side of the street, west of the square
-    row(110.0, -8.0, 180, 62, 2)  # and east of it
-    row(-110.0, -34.0, 0, 62, 1)  # south side
-    row(48.5, -34.0, 0, 62, 3)
-    row(-112.0, 4.0, 90, 60, 2)  # closing the street's ends
-    row(112.0, -58.0, 270, 60, 4)
-    row(-47.5, -36.0, 90, 50, 1)  # side streets to the south
-    row(-34.0, -85.0, 270, 38, 0)
-    row(49.5, -86.0, 270, 50, 2)
-    row(35.6, -44.0, 90, 38, 3)
-    row(-50.0, -92.0, 0, 110, 4)
-    row(-66.0, 16.0, 90, 26, 2)  # behind the western row
-    row(-24.0, 46.0, 180, 12, 1)  # beside the station
-    row(36.0, 46.0, 180, 12, 3)
-    for _ in range(150):
-        a, r = rng.uniform(0, 2 * math.pi), rng.uniform(58, 210)
-        x, y = r * math.cos(a), r * math.sin(a)
-        inside = -118 < x < 118 and -96 < y < 60
-        behind_west = -100 < x < -58 and 18 < y < 90
-        behind_east = 58 < x < 110 and 14 < y < 90
-        behind_south = abs(x) < 30 and -84 < y < -50
-        if inside and not (behind_west or behind_east or behind_south):
-            continue
-        _lay(rng.randrange(len(kinds)), x, y, rng.choice((0, 90, 180, 270)) + rng.uniform(-9, 9))
-    _trees(stage, rng)
-
-
-def _trees(stage: Stage, rng: random.Random) -> None:
-    species = (vegetation.OAK, vegetation.LIME, vegetation.POPLAR)
-    far = [vegetation.tree(sp, 7 + k, detail=0.16) for k, sp in enumerate(species)]
-    used: set[int] = set()
-    for k in range(150):
-        a, r = rng.uniform(0, 2 * math.pi), rng.uniform(70, 420)
-        x, y = r * math.cos(a), r * math.sin(a)
-        if (abs(y + 18) < 26 and abs(x) < 112) or (abs(x) < 48 and -95 < y < 74):
-            continue
-        index = rng.choices(range(3), weights=(5, 4, 1))[0]
-        built = far[index].copy() if index in used else far[index]
-        used.add(index)
-        stage.put(built, (x, y, -0.4), rng.uniform(0, 360), scale=rng.uniform(0.8, 1.3))
-        del k
-
-
-def _church(stage: Stage) -> None:
-    """A stone tower with louvred belfry, battlements and a spire above the roofs to the north-west."""
-    s = Solid("church tower")
-    stone = townhouses.ashlar("church stone", (0.40, 0.36, 0.29))
-    slate = buildings.tile_material("church slate", SLATE)
-    s.box((7.0, 7.0, 24.0), (0, 0, 12.0), stone, 0.05)
-    for x in (-3.5, 3.5):
-        for y in (-3.5, 3.5):
-            s.box((1.3, 1.3, 22.0), (x, y, 11.0), stone, 0.05)
-            s.lathe([(0.65, 0.0), (0.05, 3.0)], stone, (x, y, 24.4), steps=4)
-    s.box((7.8, 7.8, 0.5), (0, 0, 23.9), stone, 0.05)
-    for turn in (0, 90, 180, 270):
-        with s.at(turn=turn):
-            for k in range(5):
-                s.box((0.8, 0.4, 0.9), (-2.8 + 1.4 * k, 3.6, 24.6), stone, 0.03)
-            for x in (-1.2, 1.2):
-                s.box((1.3, 0.1, 4.2), (x, 3.5, 19.4), paint("dark grey"), 0.02)
-                s.prism([(x - 0.65, 21.5), (x + 0.65, 21.5), (x, 22.6)], (3.45, 3.55), paint("dark grey"), "XZ")
-                for n in range(9):
-                    with s.at(x, 3.56, 17.6 + 0.44 * n, pitch=30):
-                        s.box((1.2, 0.06, 0.34), (0, 0, 0), stone, 0.0)
-    s.lathe([(3.6, 24.0), (0.08, 43.0)], slate, steps=8)
-    s.rod((0, 0, 42.8), (0, 0, 45.0), 0.06, paint("yellow"))
-    s.box((1.0, 0.1, 0.12), (0, 0, 44.3), paint("yellow"), 0.01)
-    s.prism([(-6.5, 0.0), (6.5, 0.0), (6.5, 8.5), (0, 14.5), (-6.5, 8.5)], (-34.0, -3.0), stone, "XZ")
-    for side in (-1, 1):
-        s.prism([(0, 14.9), (side * 7.2, 8.2), (side * 7.2, 7.8), (0, 14.5)], (-34.4, -3.0), slate, "XZ")
-    stage.place(s.built(), "church", "church tower with a spire", (-62.0, 96.0, -0.3), 160, material="stone", colour="beige", kind="church")
+    stage.place(
+        square_shops.awning(3.6, "dark green", "dark green", reach=1.9, text="RESTAURANT"),
+        "awning",
+        "green hotel awning",
+        (3.0, SOUTH_Y + 0.28, 3.5),
+        0,
+        parent=front,
+        colour="green",
+        pattern="plain",
+        state="open",
+    )
+    for x, text, colour in ((0.2, "VACANCIES", "white"), (5.8, "ROOMS FROM 48.00", "white")):
+        stage.place(
+            square_shops.sign_board(text, 1.5, colour=colour, ink="navy", cap=0.14, height=0.42), "sign", f"{text.lower()} sign",
+            (x, SOUTH_Y + 0.02, 3.35), 0, parent=front, colour=colour,
+        )  # fmt: skip

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from itertools import pairwise
 
 from scope_ptz.studio.kit import cycles, people, stances, tram, vehicles
 from scope_ptz.studio.kit.finishes import glow, paint
@@ -34,11 +35,20 @@ def build(stage: Stage) -> None:
 
 
 def _tram(stage: Stage) -> None:
-    car = tram.tram("dark green", line="2", destination="RIVERSIDE", number="1407", company="ALDERMERE TRAMWAYS")
+    car = tram.tram("red", line="2", destination="RIVERSIDE", number="1407", company="ALDERMERE TRAMWAYS")
     stage.place(
-        car, "tram", "green and cream tram", (-25.4, TRACKS[0], ROAD_M), 90, colour="green and cream", state="standing", facing="east", line="2",
-        destination="riverside", number="1407",
-    )  # fmt: skip
+        car,
+        "tram",
+        "red and cream tram",
+        (-25.4, TRACKS[0], ROAD_M),
+        90,
+        colour="red and cream",
+        state="standing",
+        facing="east",
+        line="2",
+        destination="riverside",
+        number="1407",
+    )
 
 
 def taxi_sign(lit: bool) -> Built:
@@ -53,21 +63,56 @@ def taxi_sign(lit: bool) -> Built:
 def _taxis(stage: Stage) -> None:
     for k, (colour, plate, y, sign) in enumerate(TAXIS):
         cab = stage.place(
-            vehicles.saloon(colour, plate=plate), "taxi", f"{colour} taxi", (25.2, y, ROAD_M), 0, colour=colour, plate=plate, state="parked",
-            facing="north", light=sign, position=k + 1,
-        )  # fmt: skip
-        stage.place(taxi_sign(sign == "lit"), "taxi sign", "taxi roof sign", (25.2, y - 0.25, ROAD_M + TAXI_ROOF_M), 0, parent=cab, state=sign)
+            vehicles.saloon(colour, plate=plate),
+            "taxi",
+            f"{colour} taxi",
+            (25.2, y, ROAD_M),
+            0,
+            colour=colour,
+            plate=plate,
+            state="parked",
+            facing="north",
+            light=sign,
+            position=k + 1,
+        )
+        stage.place(
+            taxi_sign(sign == "lit"),
+            "taxi sign",
+            "taxi roof sign",
+            (25.2, y - 0.25, ROAD_M + TAXI_ROOF_M),
+            0,
+            parent=cab,
+            state=sign,
+        )
 
 
 def _parked(stage: Stage) -> None:
     for make, noun, colour, plate, x, y, bearing in PARKED:
         stage.place(
-            make(colour, plate=plate), "car", f"{colour} {noun}", (x, y, ROAD_M), bearing, colour=colour, kind=noun.lower(), plate=plate, state="parked",
+            make(colour, plate=plate),
+            "car",
+            f"{colour} {noun}",
+            (x, y, ROAD_M),
+            bearing,
+            colour=colour,
+            kind=noun.lower(),
+            plate=plate,
+            state="parked",
             facing="south" if bearing == 180 else "west",
-        )  # fmt: skip
+        )
     van = vehicles.van("blue", plate="WJ69 FDC", lettering="FENWICK\nBAKERS")
-    stage.place(van, "van", "blue delivery van", (31.3, 7.2, ROAD_M), 180, colour="blue", plate="WJ69 FDC", state="parked", facing="south",
-                lettering="fenwick bakers")  # fmt: skip
+    stage.place(
+        van,
+        "van",
+        "blue delivery van",
+        (31.3, 7.2, ROAD_M),
+        180,
+        colour="blue",
+        plate="WJ69 FDC",
+        state="parked",
+        facing="south",
+        lettering="fenwick bakers",
+    )
 
 
 def _bend(centre: tuple[float, float], radius: float, start: float, stop: float, steps: int = 7) -> list[tuple[float, float]]:
@@ -76,12 +121,17 @@ def _bend(centre: tuple[float, float], radius: float, start: float, stop: float,
     return [(centre[0] + radius * math.sin(a), centre[1] + radius * math.cos(a)) for a in angles]
 
 
-def timed(corners: list[tuple[float, float]], speed_mps: float, start_s: float = 0.0, z: float = 0.0) -> list[tuple[float, float, float, float]]:
-    """Way points at an even speed."""
-    way, t = [(start_s, *corners[0], z)], start_s
-    for (x0, y0), (x1, y1) in zip(corners, corners[1:], strict=False):
+def _ground(x: float, y: float) -> float:
+    """Height of the paving there: carriageways lie lower."""
+    return ROAD_M if y < -11.9 or 23.6 < x < 32.4 else 0.0
+
+
+def timed(corners: list[tuple[float, float]], speed_mps: float, start_s: float = 0.0) -> list[tuple[float, float, float, float]]:
+    """Way points at an even speed, on the ground."""
+    way, t = [(start_s, *corners[0], _ground(*corners[0]))], start_s
+    for (x0, y0), (x1, y1) in pairwise(corners):
         t += math.hypot(x1 - x0, y1 - y0) / speed_mps
-        way.append((t, x1, y1, z))
+        way.append((t, x1, y1, _ground(x1, y1)))
     return way
 
 
@@ -102,16 +152,53 @@ def _rider() -> Built:
 
 def actors() -> list[ActorPath]:
     """The taxi that passes along the street, and the cyclist who crosses the square."""
-    taxi = [(-40.2, -58.0), (-40.2, -28.0), *_bend((-32.6, -28.0), 7.6, 270, 360), (33.4, -20.4), *_bend((33.4, -28.0), 7.6, 0, 90), (41.0, -58.0)]
-    ride = [(43.0, -28.0), (43.0, -22.0), (40.0, -17.0), (34.0, -13.2), (24.6, -10.4), (16.0, -9.9), (2.0, -9.8), (-8.0, -6.4), (-21.0, -6.2), (-27.0, 6.4),
-            (-31.2, 18.6), (-37.0, 18.9), (-42.0, 19.0)]  # fmt: skip
+    taxi = [
+        (-40.2, -58.0),
+        (-40.2, -28.0),
+        *_bend((-32.6, -28.0), 7.6, 270, 360),
+        (33.4, -20.4),
+        *_bend((33.4, -28.0), 7.6, 0, 90),
+        (41.0, -58.0),
+    ]
+    ride = [
+        (42.0, -50.0),
+        (42.0, -24.0),
+        (38.0, -17.0),
+        (33.0, -13.4),
+        (24.4, -10.4),
+        (23.2, -10.4),
+        (16.0, -10.5),
+        (3.0, -10.5),
+        (-6.5, -7.6),
+        (-10.4, -4.6),
+        (-11.0, -1.0),
+        (-13.4, 3.4),
+        (-16.3, 7.3),
+        (-18.3, 10.8),
+        (-21.5, 15.5),
+        (-26.5, 18.7),
+        (-36.0, 19.0),
+        (-42.0, 19.0),
+    ]
     return [
         ActorPath(
-            "moving-taxi-01", FIRST_ACTOR, "taxi", "yellow taxi", lambda _phase: _moving_taxi(), timed(taxi, 7.5, 0.0, ROAD_M), 42.0,
+            "moving-taxi-01",
+            FIRST_ACTOR,
+            "taxi",
+            "yellow taxi",
+            lambda _phase: _moving_taxi(),
+            timed(taxi, 7.5),
+            42.0,
             {"colour": "yellow", "state": "moving", "plate": "SD20 KWN"},
         ),
         ActorPath(
-            "moving-cyclist-01", FIRST_ACTOR + 1, "cyclist", "cyclist on a red bicycle", lambda _phase: _rider(), timed(ride, 3.6, 2.0, 0.0), 46.0,
+            "moving-cyclist-01",
+            FIRST_ACTOR + 1,
+            "cyclist",
+            "cyclist on a red bicycle",
+            lambda _phase: _rider(),
+            timed(ride, 3.6, 2.0),
+            46.0,
             {"colour": "light blue", "state": "riding", "bicycle": "red"},
         ),
-    ]  # fmt: skip
+    ]
