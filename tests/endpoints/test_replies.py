@@ -6,7 +6,7 @@ import json
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from scope_ptz.endpoints.bodies import load_object, safe_text
@@ -41,6 +41,7 @@ SAYINGS = st.builds(
 )
 
 
+@settings(deadline=None)
 @given(SAYINGS)
 def test_streamed_or_whole_the_reply_is_the_same(say: Say) -> None:
     if not (say.text.strip() or say.reasoning.strip() or say.tool_calls):
@@ -66,6 +67,7 @@ ANY_JSON = st.recursive(
 )
 
 
+@settings(deadline=None)
 @given(st.dictionaries(st.sampled_from(["choices", "usage", "model"]), ANY_JSON))
 def test_whatever_comes_is_a_reply_or_a_failure(data: dict[str, Any]) -> None:
     try:
@@ -76,6 +78,7 @@ def test_whatever_comes_is_a_reply_or_a_failure(data: dict[str, Any]) -> None:
         assert reply.text.strip() or reply.reasoning.strip() or reply.tool_calls
 
 
+@settings(deadline=None)
 @given(st.binary() | ANY_JSON.map(lambda data: json.dumps({"a": data}).encode()))
 def test_whatever_bytes_come_they_are_an_object_or_a_failure(body: bytes) -> None:
     try:

@@ -7,7 +7,7 @@ from email.utils import format_datetime
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from scope_ptz.endpoints.endpoint import Endpoint
@@ -63,6 +63,7 @@ def test_the_servers_own_words(body: str, words: str) -> None:
     assert words in str(failure)
 
 
+@settings(deadline=None)
 @given(st.integers(300, 999), st.text() | st.builds(str, st.dictionaries(st.text(), st.text())), st.text())
 def test_every_status_and_body_is_a_failure(status: int, body: str, secret: str) -> None:
     failure = status_failure(status, {}, body, AT)

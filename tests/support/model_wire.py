@@ -1,0 +1,85 @@
+"""What a well-behaved model server says: OpenAI chat completions, whole and in pieces, and Moondream's four replies."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from tests.support.loopback import Request
+
+MODEL = "loopback-model"
+
+
+@dataclass(frozen=True)
+class Say:
+    """What the model on the server says."""
+
+    text: str = "All done."
+    reasoning: str = ""
+    tool_calls: tuple[tuple[str, Any], ...] = ()
+    finish_reason: str = ""
+
+    def calls(self) -> list[dict[str, Any]]:
+        return [
+            {
+                "id": f"call-{index}",
+                "type": "function",
+                "function": {"name": name, "arguments": given if isinstance(given, str) else json.dumps(given)},
+            }
+            for index, (name, given) in enumerate(self.tool_calls)
+        ]
+
+    @property
+    def ending(self) -> str:
+        return self.finish_reason or ("tool_calls" if self.tool_calls else "stop")
+
+
+Mind = Callable[[Request], Say]
+
+
+def completion(say: Say) -> dict[str, Any]:
+    """A chat completion as vLLM words it."""
+    message: dict[str, Any] = {"role": "assistant", "content": say.text or None, "tool_calls": say.calls()}
+    if say.reasoning:
+        message["reasoning_content"] = say.reasoning
+    return {
+        "id": "chatcmpl-1",
+        "object": "chat.completion",
+        "created": 1,
+        "model": MODEL,
+        "choices": [{"index": 0, "message": message, "finish_reason": say.ending}],
+        "usage": {"prompt_tokens": 11, "completion_tokens": 7, "total_tokens": 18, "prompt_tokens_details": {"cached_tokens": 4}},
+    }
+
+
+def pieces(say: Say) -> Iterator[dict[str, Any]]:
+    """The same as the chunks of a stream: text and arguments in halves."""
+
+    def chunk(delta: dict[str, Any], ending: str | None = None) -> dict[str, Any]:
+        choice = {"index": 0, "delta": delta, "finish_reason": ending}
+        return {"id": "chatcmpl-1", "object": "chat.completion.chunk", "created": 1, "model": MODEL, "choices": [choice]}
+
+    yield chunk({"role": "assistant", "content": ""})
+    for name, text in (("reasoning_content", say.reasoning), ("content", say.text)):
+        half = len(text) // 2
+        for part in (text[:half], text[half:]):
+            if part:
+                yield chunk({name: part})
+    for index, call in enumerate(say.calls()):
+        arguments = call["function"]["arguments"]
+        half = len(arguments) // 2
+        first = {"name": call["function"]["name"], "arguments": arguments[:half]}
+        yield chunk({"tool_calls": [{"index": index, "id": call["id"], "type": "function", "function": first}]})
+        yield chunk({"tool_calls": [{"index": index, "function": {"arguments": arguments[half:]}}]})
+    yield chunk({}, say.ending)
+    yield {**chunk({}), "choices": [], "usage": completion(say)["usage"]}
+
+
+MOONDREAM: dict[str, dict[str, Any]] = {
+    "query": {"answer": "A white van."},
+    "caption": {"caption": "A road with cars."},
+    "detect": {"objects": [{"x_min": 0.25, "y_min": 0.25, "x_max": 0.5, "y_max": 0.75}]},
+    "point": {"points": [{"x": 0.375, "y": 0.5}]},
+}
