@@ -24,7 +24,7 @@ def setup(
     strength: float = 1.0,
     sun_strength: float = 0.9,
     sun_bearing_deg: float = 215.0,
-    exposure: float = 0.35,
+    exposure: float = 0.50,
 ) -> None:
     """Give ``scene`` its grey world, a veiled sun, and its view transform."""
     world = bpy.data.worlds.new("Overcast")

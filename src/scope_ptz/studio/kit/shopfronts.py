@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from random import Random
 
 import bpy
 
@@ -113,6 +114,27 @@ def _room(s: Solid, spec: Front) -> None:
         s.box((2 * w - 0.4, 0.30, 0.035), (0, d + 0.17, z), shelf, 0.004)
     for k in range(4):
         s.box((0.04, 0.30, 2.2), (-w + 0.22 + (2 * w - 0.44) * k / 3, d + 0.17, 1.2), shelf, 0.004)
+    if spec.lit:
+        _stock(s, w - 0.3, d + 0.18, Random(f"stock {spec.width_m} {spec.colour} {spec.door_x:.2f}"))
+
+
+STOCK = ("red", "navy", "cream", "green", "white", "amber", "brown", "light blue", "dark red")
+
+
+def _stock(s: Solid, half_m: float, y: float, rng: Random) -> None:
+    """Boxes, jars and packets that fill the shelves on the back wall, in runs of a kind."""
+    for z in (0.77, 1.27, 1.77, 2.22):
+        x = -half_m
+        while x < half_m - 0.3:
+            tint = rng.choice(STOCK)
+            wide, tall = rng.uniform(0.07, 0.22), rng.uniform(0.12, 0.36)
+            goods = _inside(f"stock {tint}", PALETTE[tint], 0.30)
+            for _ in range(rng.randrange(2, 6)):
+                if x > half_m - 0.3:
+                    break
+                s.box((wide, 0.22, tall), (x + wide / 2, y, z + tall / 2), goods, 0.006)
+                x += wide + 0.012
+            x += rng.choice((0.02, 0.05, 0.25))
 
 
 def _inside(name: str, colour: tuple[float, float, float], glow: float) -> bpy.types.Material:

@@ -12,7 +12,7 @@ WEST_X, EAST_X = WEST_KERB - 0.55, EAST_KERB + 0.55
 """The line of posts along either kerb."""
 
 LAMPS = (
-    (WEST_X, -34.0, True), (WEST_X, -16.5, True), (WEST_X, 6.0, True), (WEST_X, 31.0, False),
+    (WEST_X - 5.0, -51.3, True), (WEST_X, -16.5, True), (WEST_X, 6.0, True), (WEST_X, 31.0, False),
     (EAST_X, -27.0, True), (EAST_X, -5.0, True), (EAST_X, 21.4, True), (EAST_X, 41.0, True),
 )  # fmt: skip
 BASKETS = (("red", "white"), ("purple", "pink"), ("yellow", "orange"), ("pink", "white"))
@@ -168,7 +168,7 @@ def _signs(stage: Stage) -> None:
     clock = town_furniture.bracket_clock(3, 40)
     stage.place(clock, "clock", "jeweller's clock", plot.at(1.6, 0.0, 4.7), plot.bearing_deg, shows="3:40", colour="black")
     for x, y, bearing, lines in (
-        (WEST_X, -33.9, 90, ("NO LOADING", "MON TO SAT", "8 AM TO 6 PM")), (EAST_X, -26.9, 270, ("1 HOUR", "NO RETURN", "WITHIN 2 HOURS")),
+        (WEST_X, -16.4, 90, ("NO LOADING", "MON TO SAT", "8 AM TO 6 PM")), (EAST_X, -26.9, 270, ("1 HOUR", "NO RETURN", "WITHIN 2 HOURS")),
         (EAST_X, 41.1, 270, ("PERMIT", "HOLDERS B", "OR 1 HOUR")), (WEST_X, 31.1, 90, ("NO LOADING", "AT ANY TIME")),
     ):  # fmt: skip
         made = shopfronts.plate(lines, 0.055, "white", "black")

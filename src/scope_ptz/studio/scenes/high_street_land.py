@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 import random
 
-from scope_ptz.studio.kit import shopfronts, vegetation, wet_ground
+from scope_ptz.studio.kit import shopfronts, town_furniture, vegetation, wet_ground
 from scope_ptz.studio.kit.clocks import dial
+from scope_ptz.studio.kit.finishes import paint
 from scope_ptz.studio.kit.markings import Stencil
 from scope_ptz.studio.kit.masonry import roofing, trim, wall
 from scope_ptz.studio.kit.solid import Solid
@@ -37,6 +38,7 @@ def build(stage: Stage) -> None:
     _zigzags(stage)
     _cross_streets(stage)
     _town_hall(stage)
+    _gables(stage)
     _behind(stage)
 
 
@@ -108,7 +110,7 @@ def _zigzags(stage: Stage) -> None:
     """The zebra's white zigzag lines at both kerbs, and the words BUS STOP on the road."""
     s = Solid("zigzags")
     white = wet_ground.road_paint("white")
-    for x in (WEST_KERB + 0.55, 2.2):
+    for x in (WEST_KERB + 0.62, 0.0, EAST_KERB - 0.55):
         for y0, sign in ((ZEBRA[0] - 0.6, -1), (ZEBRA[1] + 0.6, 1)):
             for k in range(4):
                 a, b = y0 + sign * 2.0 * k, y0 + sign * 2.0 * (k + 1)
@@ -226,6 +228,32 @@ def _town_hall(stage: Stage) -> None:
     stage.place(
         door, "door", "blue door", plot.at(5.6, -0.09, 0.10), 180, parent=hall, colour="blue", state="closed", kind="hall door"
     )
+
+
+def _gables(stage: Stage) -> None:
+    """Old painted advertisements on the gable walls at Church Road, and what stands along the cross streets."""
+    for x, lines, ink in (
+        (-11.9, ("OAKES HARDWARE", "HOME AND GARDEN", "SINCE 1888"), "cream"),
+        (14.1, ("DRINK", "FENWICK TEA", "FULL WEIGHT"), "navy"),
+    ):
+        s = Solid(f"{lines[-1]} wall sign")
+        for k, line in enumerate(lines):
+            s.text(line, (0.55, 0.42, 0.34)[k], (0, 0.02, 0.85 - 0.85 * k), paint(ink, dirt=0.6, roughness=0.8))
+        name = "painted advertisement on a gable"
+        stage.place(
+            s.built(), "wall sign", name, (x, ROW_END, wet_ground.KERB_M + 6.0), 0, lettering=ink, says=" ".join(lines).lower()
+        )
+    lamp = town_furniture.street_lamp(lit=True)
+    far = FAR_FRONT - 3.4
+    spots = [(side * x, sign * far) for sign in (-1, 1) for side in (-1, 1) for x in (19.0, 45.0)]
+    for k, (x, y) in enumerate(spots):
+        built = lamp if k == 0 else lamp.copy()
+        stage.place(built, "lamp post", "street lamp", (x, y, wet_ground.KERB_M), 0, colour="dark green", state="lit")
+    tree = vegetation.tree(vegetation.BIRCH, 71, detail=0.55)
+    for k, (x, y) in enumerate(((-9.5, -60.6), (13.5, -60.6), (-31.0, 60.6), (29.0, 60.6), (58.0, -60.6))):
+        built = tree if k == 0 else tree.copy()
+        here = (x, y, wet_ground.KERB_M)
+        stage.place(built, "tree", "birch tree", here, 70.0 * k, scale=0.62 + 0.05 * (k % 2), colour="green", species="birch")
 
 
 def _behind(stage: Stage) -> None:

@@ -282,7 +282,7 @@ def _actors(stage: Stage) -> None:
         ),
         ActorPath(
             "moving-cyclist-01", FIRST_ACTOR + 1, "cyclist", "cyclist on a blue bicycle", _cyclist,
-            _timed([(2.3, 50.0), (2.45, -38.0)], speed, 14.0), PERIOD_S, {"bicycle": "blue", "state": "riding", "facing": "south"},
+            _timed([(2.3, 50.0), (2.45, -38.0)], speed, 4.0), PERIOD_S, {"bicycle": "blue", "state": "riding", "facing": "south"},
             stride_m=4.4,
         ),
         ActorPath(

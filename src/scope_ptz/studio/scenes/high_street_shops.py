@@ -48,7 +48,7 @@ WEST: tuple[Shop, ...] = (
          small="BUTCHERS", tiles="white", room="white", awning=("dark red", "white", True), open=True, door_side=-0.28,
          hanging=("HARTLEY", "& SONS")),
     Shop(5, 7.5, "café", "THE COPPER KETTLE", "dark green", "cream", "dark green", ("render", "cream"), 2, 3, "clay", lit=((1, 2),),
-         room="orange", open=True, hanging=("COPPER", "KETTLE"), card=("BREAKFAST", "8 TILL 11"), door_side=0.05),
+         room="beige", open=True, hanging=("COPPER", "KETTLE"), card=("BREAKFAST", "8 TILL 11"), door_side=0.05),
     Shop(7, 6.5, "bookshop", "DALBY BOOKS", "black", "white", "blue", ("brick", "buff"), 2, 2, room="beige", open=False,
          card=("CLOSED", "ON MONDAYS"), hanging=("BOOKS",), door_side=0.3),
     Shop(9, 7.0, "bakery", "PELL'S BAKERY", "blue", "white", "blue", ("render", "white"), 3, 3, lit=((2, 1),), small="EST 1924",
@@ -67,7 +67,7 @@ WEST: tuple[Shop, ...] = (
     Shop(23, 8.0, "hardware shop", "OAKES HARDWARE", "dark green", "yellow", "black", ("brick", "brown"), 3, 3, lit=((1, 1), (2, 2)),
          room="beige", open=True, hanging=("TOOLS", "PAINT"), door_side=0.0),
     Shop(25, 10.5, "pub", "THE PLOUGH", "black", "yellow", "black", ("render", "white"), 3, 4, "clay", bars=2, lit=((1, 0), (1, 3)),
-         room="orange", open=True, hanging=("THE", "PLOUGH"), card=("QUIZ NIGHT", "THURSDAY"), door_side=0.0),
+         room="beige", open=True, hanging=("THE", "PLOUGH"), card=("QUIZ NIGHT", "THURSDAY"), door_side=0.0),
 )  # fmt: skip
 EAST: tuple[Shop, ...] = (
     Shop(2, 8.5, "convenience shop", "CORNER STORES", "green", "white", "white", ("brick", "red"), 3, 3, lit=((1, 1),), room="white",
@@ -200,5 +200,11 @@ def _notices(stage: Stage, shop: Shop, plot: Plot, ident: str) -> None:
         made = shopfronts.plate(shop.card, 0.055, "white", "black")
         step = 1.05 if door_x(shop) <= 0 else -1.05
         stage.place(
-            made, "window notice", "notice in the window", plot.at(door_x(shop) + step, 0.015, 1.62), bearing, parent=ident, colour="white"
+            made,
+            "window notice",
+            "notice in the window",
+            plot.at(door_x(shop) + step, 0.015, 1.62),
+            bearing,
+            parent=ident,
+            colour="white",
         )
