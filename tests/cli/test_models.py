@@ -113,6 +113,9 @@ def test_users_models_and_their_addresses(scope: Scope, tmp_path: Path, monkeypa
         assert done.json["tool_calls"][0]["result"]["count"] == 3
         assert server.requests[-1].headers["authorization"] == f"Bearer {KEY}"
         assert KEY not in done.out + scope("models", "show", "mine", "--json").out
+        with Misbehaving(then=good(follow_script)) as stranger:
+            assert ask(scope, "--planner", "mine", "--planner-url", stranger.url).code == 0
+            assert not any("authorization" in r.headers for r in stranger.requests)
 
 
 def test_keys_come_from_the_environment_and_stay_there(scope: Scope, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

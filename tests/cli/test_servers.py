@@ -98,6 +98,11 @@ def test_bad_servers_fail_checks_and_break_nothing(scope: Scope, behaviour: Beha
     assert verdicts["a tool call"] == "failed"
 
 
+def test_what_has_no_server_cannot_be_checked(scope: Scope) -> None:
+    done = scope("doctor", "--planner", "grammar")
+    assert (done.code, done.err.count("\n")) == (2, 1)
+
+
 def test_eyes_are_checked_on_a_frame(scope: Scope) -> None:
     with Misbehaving(then=good(moondream=MOONDREAM)) as server:
         code, verdicts = checks(scope, "--perception", "moondream2", "--eyes-url", server.url)

@@ -116,7 +116,7 @@ class _Chooser:
             return PlannerChoice(GRAMMAR)
         model = self._known(name, "planner", w.planner_url) if name != CHAT else None
         given = w.planner_url or (model.url if model else "") or self.settings.planner_url
-        key = self._key(w.planner_key_file, model, self.settings.planner_key)
+        key = self._key(w.planner_key_file, model, given, self.settings.planner_key)
         endpoint = self._endpoint(given, key, "planner", name, model)
         wanted = w.planner_model or (name if model is None and name != CHAT else None)
         endpoint = await named(endpoint, wanted, model, "--planner-model")
@@ -154,7 +154,7 @@ class _Chooser:
         if backend not in ASKING and not w.eyes_url:
             return self._spec(name, model, None)
         given = w.eyes_url or (model.url if model else "") or self.settings.eyes_url
-        key = self._key(w.eyes_key_file, model, self.settings.eyes_key)
+        key = self._key(w.eyes_key_file, model, given, self.settings.eyes_key)
         endpoint = self._endpoint(given, key, "eyes", name, model)
         if backend == CHATTING_EYES:
             endpoint = await named(endpoint, w.eyes_model, model, "--eyes-model")
@@ -202,7 +202,7 @@ class _Chooser:
         model = self._known_eyes(name)
         if model is None:
             return EyesSpec(name=name, backend=name.replace("-", "_"))
-        endpoint = self._endpoint(model.url, self._key(None, model, None), "eyes", name, model) if model.url else None
+        endpoint = self._endpoint(model.url, self._key(None, model, model.url, None), "eyes", name, model) if model.url else None
         return EyesSpec(name=model.name, backend=model.backend, model=model.repo, endpoint=endpoint, coordinates=model.coordinates)
 
     def _known(self, name: str, role: Role, url: str | None) -> Model | None:
@@ -235,10 +235,12 @@ class _Chooser:
         return Endpoint(url=url, key=key, timeouts=patience)
 
     @staticmethod
-    def _key(file: Path | None, model: Model | None, from_environment: SecretStr | None) -> SecretStr | None:
+    def _key(file: Path | None, model: Model | None, url: str, from_environment: SecretStr | None) -> SecretStr | None:
+        """The key for an address. A model's key file is for the model's own address and goes to no other."""
         from scope_ptz.endpoints.endpoint import key_from_file
 
-        chosen = file or (model.key_file if model else None)
+        own = model.key_file if model is not None and model.url == url else None
+        chosen = file or own
         return key_from_file(chosen) if chosen else from_environment
 
 

@@ -13,6 +13,7 @@ from scope_ptz.cli.display import plain
 from scope_ptz.cli.endings import FAILED, put_json
 from scope_ptz.cli.session import DEFAULT_SCENE, Start, make_perception, open_camera, open_scene
 from scope_ptz.endpoints.conformance import LAST, Check, Verdict, check_chat
+from scope_ptz.errors import InputError
 
 THING = "traffic cone"
 """What the demo scene's home view certainly shows."""
@@ -27,6 +28,8 @@ def check_servers(wishes: Wishes, *, as_json: bool) -> int:
 
     async def work() -> None:
         choice = await choose(wishes)
+        if choice.planner.endpoint is None and choice.eyes.spec is None:
+            raise InputError("There is no server to check. Name one with --planner-url, or with --perception and --eyes-url.")
         async for about, check in _checks(choice.planner, choice.eyes):
             found.append((about, check))
             if not as_json:

@@ -30,13 +30,15 @@ _NO_MODEL = "no-model-has-this-name"
 
 
 class Check(BaseModel):
-    """``partly``: SCOPE works with it, but not as well as it could; ``failed``: it does not."""
+    """``partly``: SCOPE works with it, but not as well as it could; ``failed``: it does not, and ``kind`` is the failure's, if one
+    was raised."""
 
     model_config = ConfigDict(frozen=True)
 
     what: str
     verdict: Verdict
     detail: str = ""
+    kind: str = ""
     seconds: float = 0.0
 
 
@@ -45,12 +47,12 @@ Finding = tuple[Verdict, str]
 
 async def checked(what: str, look: Callable[[], Awaitable[Finding]]) -> Check:
     """Run one check; an error that SCOPE raises on purpose is a failed check."""
-    began = perf_counter()
+    began, kind = perf_counter(), ""
     try:
         verdict, detail = await look()
     except ScopeError as error:
-        verdict, detail = "failed", str(error)
-    return Check(what=what, verdict=verdict, detail=detail, seconds=round(perf_counter() - began, 3))
+        verdict, detail, kind = "failed", str(error), str(getattr(error, "kind", None) or "")
+    return Check(what=what, verdict=verdict, detail=detail, kind=kind, seconds=round(perf_counter() - began, 3))
 
 
 async def check_chat(endpoint: Endpoint) -> AsyncIterator[Check]:
@@ -61,21 +63,13 @@ async def check_chat(endpoint: Endpoint) -> AsyncIterator[Check]:
         yield await checked("list of models", lambda: _listing(patient))
         reached = await checked("an answer", lambda: _answers(client, stream=False))
         yield reached
-        if reached.verdict == "failed" and await _gone(client):
+        if reached.kind in UNREACHABLE:
             return
         yield await checked("an answer, streamed", lambda: _answers(client, stream=True))
         yield await checked("two requests at once", lambda: _two_at_once(client))
         yield await checked(LAST, lambda: _refuses(patient))
     finally:
         await client.close()
-
-
-async def _gone(client: ChatClient) -> bool:
-    try:
-        await client.complete(_GREETING, max_tokens=1)
-    except ServerFailure as failure:
-        return failure.kind in UNREACHABLE
-    return False
 
 
 async def _listing(endpoint: Endpoint) -> Finding:
