@@ -67,18 +67,6 @@ async def test_a_detector_that_breaks_is_an_error(error: Exception) -> None:
         await zero_shot.ZeroShotPerception(detector).detect(pictures.frame(), " ")
 
 
-@pytest.mark.anyio
-async def test_a_panorama_is_looked_at_in_parts() -> None:
-    sizes: list[tuple[int, ...]] = []
-
-    def watching(image: Image, phrase: str) -> zero_shot.Found:
-        sizes.append(image.shape[:2])
-        return []
-
-    await zero_shot.ZeroShotPerception(watching).detect(pictures.frame(width=1800, height=360), "thing")
-    assert len(sizes) == 4 and set(sizes) == {(360, 576)}
-
-
 class Moondream:
     """What Moondream's own code gives a loaded model."""
 

@@ -125,6 +125,8 @@ class Perception(ABC):
 
     name: str
     skills: frozenset[Skill] = ALL_SKILLS
+    sees_wide: bool = False
+    """Whether it finds small things in a panorama by itself. ``perception.wide`` shows the others one part after another."""
 
     @abstractmethod
     async def caption(self, frame: Frame) -> Caption:

@@ -30,6 +30,7 @@ class GroundTruthPerception(Perception):
     """
 
     name = "ground-truth"
+    sees_wide = True
 
     def __init__(self, open_scene: Callable[[str], Scene], look: Look = view_truth) -> None:
         self.open_scene = open_scene

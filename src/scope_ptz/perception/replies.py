@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from scope_ptz.endpoints.bodies import safe_text
 from scope_ptz.errors import PerceptionError
 from scope_ptz.perception.coordinates import RawThing
 
@@ -192,7 +193,7 @@ def _collect(value: Any, depth: int = 0) -> Iterator[RawThing]:
 
 def _named(fields: dict[str, Any]) -> list[RawThing]:
     """The place that one JSON object gives, as a box, a point or both."""
-    label = next((str(fields[k])[:200] for k in _LABEL_KEYS if isinstance(fields.get(k), str)), None)
+    label = next((safe_text(fields[k][:200]) for k in _LABEL_KEYS if isinstance(fields.get(k), str)), None)
     score = next((_number(fields[k]) for k in _SCORE_KEYS if _is_number(fields.get(k))), None)
     found = []
     for keys in (_BOX_KEYS, _POINT_KEYS):

@@ -49,6 +49,8 @@ class _Opinion(Generic[R]):
 class RouterPerception(Perception):
     """Eyes made of others, each optional, at least one of them there."""
 
+    sees_wide = True
+
     def __init__(
         self,
         *,

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from scope_ptz.perception.base import Box
+from scope_ptz.perception.base import Box, Point
 from scope_ptz.perception.memo import Image
 
 WIDEST = 2.4
@@ -17,7 +17,14 @@ OVERLAP = 0.15
 """Share of a tile that its neighbour sees too, so that nothing narrower is cut in both."""
 
 SAME_BOX = 0.5
-"""Overlap (intersection over the smaller box) from which boxes of two neighbouring tiles are one thing."""
+"""Overlap (intersection over the smaller box) from which boxes of two neighbouring tiles are one thing; of the heights, where
+both boxes are cut by the borders of their tiles."""
+
+SEAM = 0.002
+"""A box this near to the end of a panorama all around, in panoramas, may go on at its other end."""
+
+CUT = 0.01
+"""A box this near to the border of its tile, in tiles, may go on beyond it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +41,9 @@ class Tile:
         """A box of the tile as a box of the whole picture of ``width`` pixels."""
         share, start = (self.right - self.left) / width, self.left / width
         return box.model_copy(update={"x_min": start + box.x_min * share, "x_max": min(1.0, start + box.x_max * share)})
+
+    def place_point(self, point: Point, width: int) -> Point:
+        return point.model_copy(update={"x": min(1.0, (self.left + point.x * (self.right - self.left)) / width)})
 
 
 def tiles(width: int, height: int) -> tuple[Tile, ...]:
@@ -62,17 +72,56 @@ def suppressed(boxes: Iterable[Box], threshold: float) -> list[Box]:
     return kept
 
 
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """A box in the whole picture, the tile that it was seen in, and whether that tile's borders cut it."""
+
+    tile: Tile
+    box: Box
+    cut_left: bool
+    cut_right: bool
+
+
 def merged(parts: Iterable[tuple[Tile, Iterable[Box]]], width: int) -> list[Box]:
-    """Boxes of all tiles in the whole picture; what two neighbours saw once each is one box around both."""
-    kept: list[tuple[Tile, Box]] = []
+    """Boxes of all tiles in the whole picture; what several tiles saw is one box around all of it."""
+    kept: list[_Part] = []
     for tile, boxes in parts:
-        for box in (tile.place(b, width) for b in boxes):
-            twin = next((i for i, (other, b) in enumerate(kept) if other != tile and _is_same(b, box)), None)
+        for box in boxes:
+            cut_left, cut_right = tile.left > 0 and box.x_min < CUT, tile.right < width and box.x_max > 1 - CUT
+            part = _Part(tile, tile.place(box, width), cut_left, cut_right)
+            twin = next((i for i, other in enumerate(kept) if other.tile != tile and _is_same(other, part)), None)
             if twin is None:
-                kept.append((tile, box))
+                kept.append(part)
             else:
-                kept[twin] = (kept[twin][0], _around(kept[twin][1], box))
-    return [box for _, box in kept]
+                kept[twin] = _Part(tile, _around(kept[twin].box, part.box), kept[twin].cut_left, part.cut_right)
+    return [part.box for part in kept]
+
+
+def merged_points(parts: Iterable[tuple[Tile, Iterable[Point]]], width: int, near: float) -> list[Point]:
+    """Points of all tiles in the whole picture, once each: two of different tiles within ``near`` of the width are one."""
+    kept: list[tuple[Tile, Point]] = []
+    for tile, points in parts:
+        for point in (tile.place_point(p, width) for p in points):
+            twins = (p for other, p in kept if other != tile)
+            if all(abs(p.x - point.x) > near or abs(p.y - point.y) > 5 * near for p in twins):
+                kept.append((tile, point))
+    return [point for _, point in kept]
+
+
+def without_seam_twins(boxes: list[Box]) -> list[Box]:
+    """Boxes of a panorama all around, where what lies behind the seam shows at both ends: of such a pair the wider half stays."""
+    twins = {
+        (i, j)
+        for i, left in enumerate(boxes)
+        for j, right in enumerate(boxes)
+        if i != j and left.x_min < SEAM and right.x_max > 1 - SEAM and _same_heights(left, right)
+    }
+    lost = {i if boxes[i].width < boxes[j].width else j for i, j in twins}
+    return [box for i, box in enumerate(boxes) if i not in lost]
+
+
+def _same_heights(a: Box, b: Box) -> bool:
+    return min(a.y_max, b.y_max) - max(a.y_min, b.y_min) >= SAME_BOX * max(a.height, b.height)
 
 
 def _shared(a: Box, b: Box) -> float:
@@ -80,9 +129,15 @@ def _shared(a: Box, b: Box) -> float:
     return wide * high if wide > 0 and high > 0 else 0.0
 
 
-def _is_same(a: Box, b: Box) -> bool:
+def _is_same(left: _Part, right: _Part) -> bool:
+    """Whether the part seen in a tile further right is more of what was seen before, or the same again."""
+    a, b = left.box, right.box
     smaller = min(a.width * a.height, b.width * b.height)
-    return smaller > 0 and _shared(a, b) / smaller >= SAME_BOX
+    if smaller > 0 and _shared(a, b) / smaller >= SAME_BOX:
+        return True
+    if not (left.cut_right and right.cut_left) or a.x_max < b.x_min:
+        return False
+    return _same_heights(a, b)
 
 
 def _around(a: Box, b: Box) -> Box:

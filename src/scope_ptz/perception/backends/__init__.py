@@ -15,6 +15,7 @@ from pkgutil import iter_modules
 from scope_ptz.errors import ConfigError, UnknownNameError
 from scope_ptz.perception.backends.spec import EyesSpec
 from scope_ptz.perception.base import Perception
+from scope_ptz.perception.wide import WideEyes
 
 ENTRY_POINTS = "scope_ptz.perception"
 _NO_BACKENDS = {"spec"}
@@ -33,7 +34,8 @@ def make_eyes(spec: EyesSpec) -> Perception:
     name = spec.backend.replace("-", "_")
     if name not in backend_names():
         raise UnknownNameError("perception backend", spec.backend, backend_names())
-    return _maker(name)(spec)
+    eyes = _maker(name)(spec)
+    return eyes if eyes.sees_wide else WideEyes(eyes)
 
 
 def _maker(name: str) -> Maker:

@@ -45,6 +45,8 @@ class OcrPerception(Perception):
     A frame is read once, and remembered for further questions about it.
     """
 
+    sees_wide = True
+
     def __init__(self, reader: Reader, name: str = "ocr") -> None:
         self.name = name
         self._lines: FrameMemo[None, list[Line]] = FrameMemo(lambda image, _: in_reading_order(read_tiles(reader, image)))

@@ -9,7 +9,6 @@ from collections.abc import Callable
 from time import perf_counter
 from typing import Any
 
-import numpy as np
 from anyio import to_thread
 
 from scope_ptz.camera.base import Frame
@@ -18,7 +17,7 @@ from scope_ptz.perception.backends.spec import EyesSpec, Options, need
 from scope_ptz.perception.base import Answer, Box, Caption, Detections, Perception, Point, Points
 from scope_ptz.perception.coordinates import RawThing, convention, located
 from scope_ptz.perception.memo import Image
-from scope_ptz.perception.tiles import merged, suppressed, tiles
+from scope_ptz.perception.tiles import suppressed
 
 Found = list[dict[str, Any]]
 Detector = Callable[[Image, str], Found]
@@ -62,20 +61,14 @@ class ZeroShotPerception(Perception):
         return Points(points=points, source=self.name, raw=found.raw, notes=found.notes, latency_s=found.latency_s)
 
     def _detect(self, image: Image, phrase: str) -> tuple[tuple[Box, ...], str, tuple[str, ...]]:
-        width, parts, said, notes = image.shape[1], [], Found(), list[str]()
-        for tile in tiles(width, image.shape[0]):
-            crop = np.ascontiguousarray(tile.crop(image))
-            try:
-                found = self._detector(crop, phrase)
-            except (RuntimeError, ValueError, MemoryError, IndexError) as error:
-                raise PerceptionError(f"{self.name} failed on a frame of {width}x{image.shape[0]}: {error}") from error
-            said += found
-            things = [t for t in map(_thing, found) if t.score is not None and t.score >= self._options.threshold]
-            places = located(things, convention("pixels"), (crop.shape[1], crop.shape[0]))
-            notes += places.notes
-            parts.append((tile, suppressed(places.boxes, self._options.overlap)))
-        best = sorted(merged(parts, width), key=lambda b: -(b.score or 0.0))
-        return tuple(best), json.dumps(said, default=str), tuple(notes)
+        width, height = image.shape[1], image.shape[0]
+        try:
+            found = self._detector(image, phrase)
+        except (RuntimeError, ValueError, MemoryError, IndexError) as error:
+            raise PerceptionError(f"{self.name} failed on a frame of {width}x{height}: {error}") from error
+        things = [t for t in map(_thing, found) if t.score is not None and t.score >= self._options.threshold]
+        places = located(things, convention("pixels"), (width, height))
+        return tuple(suppressed(places.boxes, self._options.overlap)), json.dumps(found, default=str), places.notes
 
 
 def _thing(found: dict[str, Any]) -> RawThing:
