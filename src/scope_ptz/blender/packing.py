@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import shutil
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,10 +20,12 @@ from scope_ptz.geometry import Perspective
 from scope_ptz.world.layers import write_colour, write_ids
 from scope_ptz.world.models import ActorSheet, Depth, Extent, Layer, Manifest, SceneFile, SceneViewpoint, Tile
 
-COLOUR = ".webp"
-NUMBERS = ".webp"
+COLOUR = ".avif"
+"""At the same structural similarity a third lighter than WebP, which wins where pictures have sharp alpha: in sprites."""
+
+SPRITES = NUMBERS = ".webp"
 SPRITE_CODING = 78
-LOWEST_BASE_CODING, LOWEST_TILE_CODING = 72, 66
+LOWEST_BASE_CODING, LOWEST_TILE_CODING = 70, 66
 CODING_STEP = 4
 MANIFEST_BYTES = 200_000
 
@@ -125,14 +128,20 @@ def _fitting_colour(folder: Path, rendered: Rendered, quality: Quality, limit_by
         base = _colour(folder, f"base{COLOUR}", rendered.base, base_coding)
         room = limit_bytes - others - (folder / base.file).stat().st_size
         for tile_coding in range(quality.tile_coding, LOWEST_TILE_CODING - 1, -CODING_STEP):
-            tiles = [_colour(folder, f"tiles/{k:02d}{COLOUR}", t.colour, tile_coding) for k, t in enumerate(rendered.tiles)]
+            tiles = _tiles(folder, rendered.tiles, tile_coding)
             if sum((folder / t.file).stat().st_size for t in tiles) <= room:
                 return base, tiles
     return base, tiles
 
 
+def _tiles(folder: Path, tiles: list[RenderedTile], coding: int) -> list[Layer]:
+    """Coded side by side: the coder leaves Python's lock, and a pack has a hundred of them."""
+    with ThreadPoolExecutor() as pool:
+        return list(pool.map(lambda k: _colour(folder, f"tiles/{k:02d}{COLOUR}", tiles[k].colour, coding), range(len(tiles))))
+
+
 def _actor(folder: Path, actor: RenderedActor) -> ActorSheet:
-    colour = _colour(folder, f"actors/{actor.number}{COLOUR}", actor.sheet.colour, SPRITE_CODING)
+    colour = _colour(folder, f"actors/{actor.number}{SPRITES}", actor.sheet.colour, SPRITE_CODING)
     depth = _numbers(folder, f"actors/{actor.number}-depth{NUMBERS}", actor.sheet.depth)
     return ActorSheet(number=actor.number, colour=colour, depth=depth, sprites=actor.sheet.sprites, stride_m=actor.stride_m)
 

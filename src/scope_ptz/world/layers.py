@@ -31,7 +31,7 @@ def write_colour(path: Path, picture: NDArray[np.uint8], quality: int) -> None:
         case ".webp":
             image.save(path, "WEBP", quality=quality, method=6, alpha_quality=80)
         case ".avif":
-            image.save(path, "AVIF", quality=quality, speed=4, subsampling="4:2:0")
+            image.save(path, "AVIF", quality=quality, speed=6, subsampling="4:2:0")
         case ".png":
             image.save(path, "PNG", optimize=True)
         case suffix:

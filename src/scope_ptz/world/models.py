@@ -4,11 +4,11 @@ Layout of a scene folder::
 
     scene.json                    SceneFile: instances, texts, presets, actors, absences
     <viewpoint>/manifest.json     Manifest: optics-free geometry of every layer, with checksums
-    <viewpoint>/base.webp         equirectangular colour
-    <viewpoint>/ids.png           equirectangular instance numbers, 16 bit
-    <viewpoint>/depth.png         equirectangular distance, 16 bit, logarithmic
-    <viewpoint>/tiles/NN.webp     perspective colour where zooming pays, NN-ids.png its instance numbers
-    <viewpoint>/actors/ID.webp    sprites of a moving actor along its path (colour, alpha), ID-depth.png their distances
+    <viewpoint>/base.avif         equirectangular colour
+    <viewpoint>/ids.webp          equirectangular instance numbers, 16 bit
+    <viewpoint>/depth.webp        equirectangular distance, 16 bit, logarithmic
+    <viewpoint>/tiles/NN.avif     perspective colour where zooming pays, NN-ids.webp its instance numbers
+    <viewpoint>/actors/ID.webp    sprites of a moving actor along its path (colour, alpha), ID-depth.webp their distances
 
 All angles are in the camera's own frame (pan 0 = the viewpoint's ``pan0_bearing_deg``), all lengths in metres.
 """
