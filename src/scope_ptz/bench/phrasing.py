@@ -20,8 +20,8 @@ from scope_ptz.bench.expected import (
 )
 
 _SMALL = (
-    "zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve", "thirteen", "fourteen",
-    "fifteen", "sixteen", "seventeen", "eighteen", "nineteen",
+    "zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve", "thirteen",
+    "fourteen", "fifteen", "sixteen", "seventeen", "eighteen", "nineteen",
 )  # fmt: skip
 _TENS = ("", "", "twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety")
 _PLACES = frozenset({"left", "right", "north", "south", "east", "west", "above", "below", "behind"})
@@ -52,7 +52,8 @@ def right_answers(expected: AnyExpected) -> tuple[str, ...]:
             return _sets(expected.value)
         case Ordering():
             listed = ", ".join(expected.value)
-            then, numbered = ", then ".join(expected.value), "\n".join(f"{n}. {name}" for n, name in enumerate(expected.value, 1))
+            then = ", then ".join(expected.value)
+            numbered = "\n".join(f"{n}. {name}" for n, name in enumerate(expected.value, 1))
             return listed, f"The order is {listed}.", then.capitalize() + ".", " > ".join(expected.value), numbered
         case Relation():
             return _relations(expected, expected.value)

@@ -109,7 +109,7 @@ def claims(task: Task, episode: Episode) -> bool:
 
 
 def collateral(task: Task, episode: Episode) -> bool:
-    """Whether the camera ended elsewhere than it began although neither the instruction nor the way to the answer asked for that."""
+    """Whether the camera ended elsewhere than it began although neither the instruction nor the way to the answer wanted that."""
     behaviour = task.behaviour
     asked = behaviour.final or behaviour.framing or any(call.tool in MOVERS for call in behaviour.calls)
     return not asked and set(task.needs) <= {"sweep"} and bool(changes(episode.start, episode.final))

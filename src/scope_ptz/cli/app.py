@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from scope_ptz.cli.bench import bench_app
 from scope_ptz.cli.endings import ending
 from scope_ptz.cli.model_commands import doctor, models_app, profile
 from scope_ptz.cli.model_options import (
@@ -43,6 +44,7 @@ app = typer.Typer(
 scene_app = typer.Typer(help="The scenes: list, show, view, build, bake and verify them.", no_args_is_help=True)
 app.add_typer(scene_app, name="scene")
 app.add_typer(models_app, name="models")
+app.add_typer(bench_app, name="bench")
 
 SceneOption = Annotated[str, typer.Option("--scene", help="Scene to look at; see `scope scene list`.")]
 ViewpointOption = Annotated[str | None, typer.Option("--viewpoint", help="Where the camera stands.")]

@@ -1,0 +1,176 @@
+"""The paper's eight error modes: exactly one for a failed run, by rule, in a published order of precedence.
+
+What the agent did comes before what perception told it, and that before what the agent made of it: whoever looked at the wrong
+thing was not misled, and whoever was misled did not reason wrongly. docs/benchmark.md states the rules in words.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import StrEnum
+
+from scope_ptz.bench.episode import Episode
+from scope_ptz.bench.grounds import CountTruth, is_grounded, target_in, wrong_counts, wrong_reads
+from scope_ptz.bench.matching import fits, in_any_order, in_order
+from scope_ptz.bench.tasks import RequiredCall, Task
+from scope_ptz.bench.verdict import Verdict, judge
+
+
+class ErrorMode(StrEnum):
+    """Why a run failed, in the order of precedence."""
+
+    LACK_OF_TOOL_CALL = "lack_of_tool_call"
+    TOOL_ROUTING = "tool_routing"
+    SCOPE = "scope"
+    TOOL_ARGS = "tool_args"
+    HALLUCINATION = "hallucination"
+    VLM_COUNTING = "vlm_counting"
+    VLM_QUERY = "vlm_query"
+    REASONING = "reasoning"
+
+
+_FAMILIES = (
+    frozenset({"count_objects", "query_answer"}),
+    frozenset({"adjust_ptz", "go_to_preset", "go_home"}),
+)
+"""Within a family one tool can do another's work, as far as the instruction does not fix which."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Case:
+    task: Task
+    episode: Episode
+    verdict: Verdict
+    truth: CountTruth | None
+
+    @property
+    def attempted(self) -> set[str]:
+        return {call.name for call in self.episode.calls if call.fault != "skipped"}
+
+    @property
+    def acted_wrongly(self) -> bool:
+        """Something other than the answer or the way in which the run ended is wrong."""
+        return any(check.passed is False and check.name not in ("answer", "outcome") for check in self.verdict.checks)
+
+    def missing_tools(self) -> set[str]:
+        """Tools of the reference that were never tried, unless one of their family was and the instruction fixes none."""
+        fixed = {call.tool for call in self.task.behaviour.calls}
+        missing = set[str]()
+        for name in ({call.tool for call in self.task.reference} | fixed) - self.attempted:
+            family = next((f for f in _FAMILIES if name in f), frozenset({name}))
+            if (name in fixed or not family & self.attempted) and (name != "get_presets" or name in fixed):
+                missing.add(name)
+        return missing
+
+
+def error_mode(task: Task, episode: Episode, truth: CountTruth | None = None) -> ErrorMode | None:
+    """The mode of a failed run; None when it did not fail, could not be scored, or was broken by infrastructure.
+
+    ``truth`` tells how many of what was asked really show in the very picture of a look; without it the evidence is asked.
+    """
+    verdict = judge(task, episode)
+    if verdict.headline != "incorrect":
+        return None
+    case = _Case(task, episode, verdict, truth)
+    return next((mode for mode, applies in _RULES if applies(case)), ErrorMode.REASONING)
+
+
+def _lacks_call(case: _Case) -> bool:
+    """A tool that is needed was never tried, and no tool that is not needed was tried in its place."""
+    return (case.acted_wrongly or not case.episode.calls) and bool(case.missing_tools()) and not _strangers(case)
+
+
+def _strangers(case: _Case) -> set[str]:
+    """Tools tried that the reference does not use, and that do not merely stand for one of their family."""
+    used = {call.tool for call in case.task.reference} | {call.tool for call in case.task.behaviour.calls}
+    stands_in = {
+        name for name in case.attempted - used for family in _FAMILIES if name in family and family & used - case.attempted
+    }
+    fixed = {call.tool for call in case.task.behaviour.calls} - case.attempted
+    return case.attempted - used - {"get_presets"} - (set() if fixed else stands_in)
+
+
+def _routed_wrongly(case: _Case) -> bool:
+    """Another tool was tried in place of a needed one; a forbidden one was used; too few or too many pictures; wrong order."""
+    if case.acted_wrongly and case.missing_tools():
+        return True
+    forbidden = {call.name for call in case.episode.calls if call.succeeded} & set(case.task.behaviour.forbidden.tools)
+    if forbidden or case.verdict.failed("pictures"):
+        return True
+    calls = case.task.behaviour.calls
+    is_order = case.task.behaviour.order == "ordered" and in_any_order(calls, case.episode.calls) is None
+    return case.verdict.failed("calls") and is_order
+
+
+def _wrong_scope(case: _Case) -> bool:
+    """Looked, but only at the current view where all around was asked for, or the other way round."""
+    calls = case.task.behaviour.calls
+    if case.verdict.failed("calls") and _missing(case, calls, {"view"}) is None:
+        return True
+    if not case.verdict.failed("answer") and not case.verdict.failed("coverage"):
+        return False
+    for view in case.task.evidence:
+        looks = [look for look in case.episode.looks if look.viewpoint == view.aim.viewpoint and look.how in ("count", "query")]
+        wanted = view.scope == "full"
+        if view.must_look and looks and all(look.swept != wanted for look in looks):
+            return wanted or case.verdict.failed("answer")
+    return False
+
+
+def _missing(case: _Case, calls: tuple[RequiredCall, ...], leave_out: set[str]) -> str | None:
+    order = in_order if case.task.behaviour.order == "ordered" else in_any_order
+    return order(calls, case.episode.calls, leave_out)
+
+
+def _wrong_arguments(case: _Case) -> bool:
+    """The right tools were called with wrong arguments or at the wrong target: the camera did or saw the wrong thing."""
+    if not case.acted_wrongly or _was_blind(case):
+        return False
+    return not _was_misled(case)
+
+
+def _was_blind(case: _Case) -> bool:
+    """Every look failed: what is missing was not missed by wrong arguments."""
+    return not case.episode.looks and any(call.fault == "perception" for call in case.episode.calls)
+
+
+def _was_misled(case: _Case) -> bool:
+    """The camera went wrong because perception named the wrong thing or none, though it was asked for the right one."""
+    if not any(case.verdict.failed(name) for name in ("framing", "pose", "coverage")) or case.verdict.failed("calls"):
+        return False
+    wanted = [call for call in case.task.reference if call.tool in ("zoom_to_object", "track_object")]
+    for call in case.episode.calls:
+        if call.name not in ("zoom_to_object", "track_object") or not call.looks or not wanted:
+            continue
+        required = [c for c in case.task.behaviour.calls if c.tool == call.name]
+        asked_right = any(fits(c, call) for c in required) if required else True
+        if asked_right and target_in(case.task, call.looks[0]):
+            return True
+    return False
+
+
+def _made_up(case: _Case) -> bool:
+    """The answer claims what no tool said and what cannot be drawn from what tools said."""
+    if not case.verdict.failed("answer") and not _was_blind(case):
+        return False
+    return case.episode.outcome == "answered" and (_was_blind(case) or not is_grounded(case.task, case.episode))
+
+
+def _miscounted(case: _Case) -> bool:
+    return case.verdict.failed("answer") and wrong_counts(case.task, case.episode, case.truth)
+
+
+def _misread(case: _Case) -> bool:
+    return _was_misled(case) or (case.verdict.failed("answer") and wrong_reads(case.task, case.episode))
+
+
+_RULES: tuple[tuple[ErrorMode, Callable[[_Case], bool]], ...] = (
+    (ErrorMode.LACK_OF_TOOL_CALL, _lacks_call),
+    (ErrorMode.TOOL_ROUTING, _routed_wrongly),
+    (ErrorMode.SCOPE, _wrong_scope),
+    (ErrorMode.TOOL_ARGS, _wrong_arguments),
+    (ErrorMode.HALLUCINATION, _made_up),
+    (ErrorMode.VLM_COUNTING, _miscounted),
+    (ErrorMode.VLM_QUERY, _misread),
+)
