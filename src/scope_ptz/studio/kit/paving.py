@@ -70,9 +70,9 @@ def slab_material(name: str = "square paving", *, pitch_m: float = 7.2) -> bpy.t
     s = Shader(name)
     p = s.position()
     x, y, _ = s.xyz(p)
-    slab, slab_joint = _courses(s, p, (0.9, 0.6), 0.009, (0.36, 0.315, 0.25), (0.27, 0.25, 0.215), (0.095, 0.085, 0.072))
+    slab, slab_joint = _courses(s, p, (0.9, 0.6), 0.009, (0.285, 0.240, 0.178), (0.205, 0.184, 0.150), (0.095, 0.085, 0.072))
     tint = s.ramp(s.noise(p, 1.9, 2.0), 0.35, 0.65, 0.0, 0.35)
-    slab = s.mix(tint, slab, (0.38, 0.36, 0.33))
+    slab = s.mix(tint, slab, (0.30, 0.275, 0.235))
     sett, sett_joint = _courses(s, _wobbly(s, p, 0.006, 9.0), (0.20, 0.10), 0.008, (0.15, 0.145, 0.14), (0.085, 0.083, 0.082),
                                 (0.045, 0.041, 0.036))  # fmt: skip
     lines = [s.ramp(s.math("PINGPONG", c, pitch_m / 2), 0.298, 0.302, 1.0, 0.0, smooth=False) for c in (x, y)]
@@ -88,7 +88,7 @@ def flag_material(name: str = "pavement flags") -> bpy.types.Material:
         return found
     s = Shader(name)
     p = s.position()
-    colour, joints = _courses(s, p, (0.75, 0.6), 0.008, (0.30, 0.29, 0.27), (0.22, 0.215, 0.205), (0.08, 0.075, 0.068))
+    colour, joints = _courses(s, p, (0.75, 0.6), 0.008, (0.25, 0.24, 0.22), (0.18, 0.175, 0.165), (0.08, 0.075, 0.068))
     return _worn(s, p, colour, joints)
 
 

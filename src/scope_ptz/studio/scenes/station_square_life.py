@@ -110,7 +110,7 @@ def _pigeons(stage: Stage, moulds: Moulds) -> None:
             colour=colour,
             state={"peck": "pecking"}.get(pose, "standing"),
         )
-    for x, z in ((-3.1, 7.62), (1.4, 7.62), (4.9, 7.62)):
+    for x, z in ((-3.1, 7.29), (1.4, 7.29), (4.9, 7.29)):
         stage.place(
             moulds.get("pigeon grey stand", lambda: birds.pigeon("grey")),
             "pigeon",

@@ -27,6 +27,15 @@ PARKED: list[tuple[Callable[..., Built], str, str, str, float, float, float]] = 
     (vehicles.hatchback, "hatchback", "yellow", "AO18 SVT", 17.8, -24.3, 270.0),
 ]
 
+DOWN_THE_STREET: list[tuple[Callable[..., Built], str, str, str, float]] = [
+    (vehicles.saloon, "saloon", "grey", "EJ18 PYT", 51.0),
+    (vehicles.hatchback, "hatchback", "orange", "NR14 LKV", 57.2),
+    (vehicles.suv, "SUV", "black", "BU22 ODA", 69.5),
+    (vehicles.hatchback, "hatchback", "white", "YC16 FHM", -52.0),
+    (vehicles.saloon, "saloon", "silver", "MT71 ESG", -64.5),
+]
+"""Cars parked farther along the street: colour, plate, x."""
+
 
 def build(stage: Stage) -> None:
     _tram(stage)
@@ -99,6 +108,20 @@ def _parked(stage: Stage) -> None:
             plate=plate,
             state="parked",
             facing="south" if bearing == 180 else "west",
+        )
+    for make, noun, colour, plate, x in DOWN_THE_STREET:
+        stage.place(
+            make(colour, plate=plate),
+            "car",
+            f"{colour} {noun}",
+            (x, -24.3, ROAD_M),
+            270,
+            colour=colour,
+            kind=noun.lower(),
+            plate=plate,
+            state="parked",
+            facing="west",
+            area="street",
         )
     van = vehicles.van("blue", plate="WJ69 FDC", lettering="FENWICK\nBAKERS")
     stage.place(
