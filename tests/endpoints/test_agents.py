@@ -277,6 +277,11 @@ ODD_WORDS = [
     ("a refusal", "I'm sorry, but I can't help with that.", None),
     ("half a fence", '```json\n[{"bbox_2d": [100, 100, 300, 300], "label": "cone"}, {"bbox_2d": [5', 1),
     ("an empty list", "[]", 0),
+    ("a label that UTF-8 cannot carry", '[{"bbox_2d": [100, 100, 300, 300], "label": "\\ud800\\u001b[2J"}]', 1),
+    ("a box outside", '[{"bbox_2d": [-400, 100, 2300, 300], "label": "cone"}]', 1),
+    ("infinite corners", '[{"bbox_2d": [100, 100, Infinity, 300], "label": "cone"}]', None),
+    ("corners as words", '[{"bbox_2d": ["left", "top", "right", "bottom"], "label": "cone"}]', None),
+    ("no box, only labels", '[{"label": "cone"}, {"label": "cone"}]', None),
     ("a list in prose", 'Here: [{"bbox_2d": [100, 100, 300, 300], "label": "锥桶"}] - that is all.', 1),
 ]
 
@@ -295,3 +300,24 @@ async def test_odd_words_for_places(text: str, count: int | None, tmp_path: Path
     else:
         assert outcome.result is not None
         assert outcome.result["count"] == count
+
+
+def _many(number: int) -> list[tuple[float, float]]:
+    return [(0.02 + (i % 25) * 0.038, 0.02 + (i // 25) * 0.045) for i in range(number)]
+
+
+@pytest.mark.parametrize("backend", ["moondream", "openai_vision"])
+async def test_500_points_are_limited_and_said_to_be(backend: str) -> None:
+    frame = await ScriptedCamera().frame()
+    if backend == "moondream":
+        reply = moondream_says(point={"points": [{"x": x, "y": y} for x, y in _many(500)]})
+    else:
+        reply = say(json.dumps([{"point_2d": [1000 * x, 1000 * y], "label": "cone"} for x, y in _many(500)]))
+    with Misbehaving(then=reply) as server:
+        spec = EyesSpec(name="eyes", backend=backend, model="m", endpoint=endpoint(server.url), coordinates="qwen3-vl")
+        eyes = make_eyes(spec)
+        seen = await eyes.point(frame, "cones")
+        await eyes.close()
+    assert 50 <= len(seen.points) <= 500
+    assert all(0 <= point.x <= 1 and 0 <= point.y <= 1 for point in seen.points)
+    assert len(seen.points) == 500 or not seen.complete

@@ -73,7 +73,9 @@ def excerpt(text: str, limit: int = 160) -> str:
 
 _UNKNOWN = re.compile(
     r"^\W*(unknown|n/a|not (visible|legible|readable|clear|sure|possible to (tell|say))\b"
-    r"|(i|we) (can(not|'t|’t)|am (unable|not able) to|do(n't| not) (know|see enough))"
+    r"|(sorry,? (but )?)?(i|we)( am|'m|’m)? (can(not|'t|’t)|unable to|not able to) "
+    r"(tell|say|determine|answer|know|read|help|assist|provide|identify|make out|see (it|that|enough|clearly|the answer))\b"
+    r"|(i|we) do(n't|n’t| not) (know|see enough)"
     r"|it('s| is)? (is )?(not possible|impossible|unclear|hard to (tell|say))"
     r"|(this|that|it|the answer) (can(not|'t|’t) be|is not) (determined|told|seen|read|visible|legible)"
     r"|there is (not enough|no) (information|text|writing)\b)",
@@ -202,7 +204,7 @@ def _named(fields: dict[str, Any]) -> list[RawThing]:
             found += [
                 RawThing(t.numbers, label or t.label, score, named=True) for t in _named({k.lower(): v for k, v in value.items()})
             ]
-        elif isinstance(value, list) and (flat := _flat(value)):
+        elif flat := _flat(_parsed(value)):
             found.append(RawThing(tuple(flat), label, score))
     if found:
         return found
@@ -218,8 +220,17 @@ def _named(fields: dict[str, Any]) -> list[RawThing]:
     return []
 
 
-def _flat(value: list[Any]) -> list[float]:
-    """The numbers of a list that may be nested once (two corners); empty when it holds anything else."""
+def _parsed(value: Any) -> Any:
+    """A list that was written as a text: "[1, 2, 3, 4]"."""
+    if isinstance(value, str) and len(value) < 200 and re.fullmatch(r"[\s\[\](),.\d+-]+", value):
+        return re.findall(r"[-+]?\d+\.?\d*|[-+]?\.\d+", value)
+    return value
+
+
+def _flat(value: Any) -> list[float]:
+    """The numbers of a list that may be nested once (two corners); empty when it is or holds anything else."""
+    if not isinstance(value, list):
+        return []
     inner = [v for part in value for v in (part if isinstance(part, list) else [part])]
     return [_number(v) for v in inner] if all(_is_number(v) for v in inner) else []
 
