@@ -29,6 +29,7 @@ TWO = [*ONE, (5.0, 6.0, 7.0, 8.0)]
         ('{"cones": [[1,2,3,4],[5,6,7,8]]}', TWO),
         ('[{"bbox_2d": ["1", "2.0", "3", "4"]}]', ONE),
         ('[{"bbox": [[1,2],[3,4]]}]', ONE),
+        ('[{"bbox_2d": "[1, 2.0, 3, 4]"}]', ONE),
         ('[{"x_min":1,"y_min":2,"x_max":3,"y_max":4}]', ONE),
         ('[{"box":{"xmin":1,"ymin":2,"xmax":3,"ymax":4},"score":0.5}]', ONE),
         ('[{"x":1,"y":2,"width":2,"height":2}]', ONE),
@@ -186,13 +187,26 @@ def test_long_answers_are_cut() -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["I cannot tell.", "I can't tell from this picture.", "Unknown", "It is not possible to say.", "Not visible."]
+    "text",
+    [
+        "I cannot tell.",
+        "I can't tell from this picture.",
+        "Unknown",
+        "It is not possible to say.",
+        "Not visible.",
+        "I'm sorry, but I can't read it.",
+        "I’m unable to determine that.",
+        "Sorry, I cannot help with that.",
+    ],
 )
 def test_honest_ignorance(text: str) -> None:
     assert cannot_tell(text)
 
 
-@pytest.mark.parametrize("text", ["Red.", "No.", "There is no car.", "Three.", "The text reads UNKNOWN ROAD", "A cannot tell sign"])
+@pytest.mark.parametrize(
+    "text",
+    ["Red.", "No.", "There is no car.", "Three.", "The text reads UNKNOWN ROAD", "I can't see any dogs.", "A cannot tell sign"],
+)
 def test_answers_that_tell(text: str) -> None:
     assert not cannot_tell(text)
 

@@ -217,6 +217,39 @@ async def test_a_wrong_model_name_is_no_reason_to_give_up_the_schema() -> None:
 
 
 @pytest.mark.anyio
+async def test_fields_that_a_server_names_are_left_out() -> None:
+    """A hosted model that wants another token limit and no temperature, and a server that knows no template arguments."""
+    refusals = [
+        bad.status(400, "Unsupported parameter: 'max_tokens'. Use 'max_completion_tokens' instead."),
+        bad.status(400, "'temperature' does not support 0.0 with this model."),
+        bad.status(422, "chat_template_kwargs: extra fields not permitted"),
+    ]
+    with Misbehaving(refusals, then=bad.good(chat_mind("generic"))) as server:
+        options = {"extra": {"chat_template_kwargs": {"enable_thinking": False}}}
+        async with opened(server.url, "openai_vision", options=options) as eyes:
+            for _ in range(2):
+                assert len((await eyes.detect(pictures.frame(), "thing")).boxes) == 1
+        last = server.requests[-1].data
+    assert len(server.requests) == 5
+    assert last["max_completion_tokens"] > 0 and "response_format" in last
+    assert not {"max_tokens", "temperature", "chat_template_kwargs"} & last.keys()
+
+
+@pytest.mark.anyio
+async def test_a_grammar_that_breaks_a_server_is_given_up() -> None:
+    with Misbehaving([bad.status(500, "failed to parse grammar")], then=bad.good(chat_mind("generic"))) as server:
+        async with opened(server.url, "openai_vision") as eyes:
+            assert len((await eyes.detect(pictures.frame(), "thing")).boxes) == 1
+
+
+@pytest.mark.anyio
+async def test_an_answer_cut_at_the_token_limit_says_so() -> None:
+    with Misbehaving(then=bad.good(Say("A road with", finish_reason="length"))) as server:
+        async with opened(server.url, "openai_vision") as eyes:
+            assert "cut off" in (await eyes.query(pictures.frame(), "what is it?")).notes[0]
+
+
+@pytest.mark.anyio
 async def test_a_moondream_that_knows_no_settings_is_asked_without() -> None:
     with Misbehaving([bad.status(422, "unknown field settings")]) as server:
         async with opened(server.url, "moondream") as eyes:

@@ -117,12 +117,15 @@ class Reply:
 
     def caption(self) -> Caption:
         with blamed(self.source, self.attempts):
-            return Caption(text=read_answer(self.text), **self._common())
+            return Caption(text=read_answer(self.text), **self._common(self._cut_answer()))
 
     def answer(self) -> Answer:
         with blamed(self.source, self.attempts):
             text = read_answer(self.text)
-        return Answer(text=text, known=not cannot_tell(text), **self._common())
+        return Answer(text=text, known=not cannot_tell(text), **self._common(self._cut_answer()))
+
+    def _cut_answer(self) -> tuple[str, ...]:
+        return ("The answer was cut off at the token limit.",) if self.cut else ()
 
     def detections(self, convention: Convention, sent: Size) -> Detections:
         found, complete, notes = self._located(convention, sent)

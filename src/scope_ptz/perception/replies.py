@@ -73,7 +73,7 @@ def excerpt(text: str, limit: int = 160) -> str:
 
 _UNKNOWN = re.compile(
     r"^\W*(unknown|n/a|not (visible|legible|readable|clear|sure|possible to (tell|say))\b"
-    r"|(sorry,? (but )?)?(i|we)( am|'m|’m)? (can(not|'t|’t)|unable to|not able to) "
+    r"|((i am |i['’]m )?(sorry|unfortunately),? (but )?)?(i|we)( am|'m|’m)? (can(not|'t|’t)|unable to|not able to) "
     r"(tell|say|determine|answer|know|read|help|assist|provide|identify|make out|see (it|that|enough|clearly|the answer))\b"
     r"|(i|we) do(n't|n’t| not) (know|see enough)"
     r"|it('s| is)? (is )?(not possible|impossible|unclear|hard to (tell|say))"

@@ -33,7 +33,7 @@ NO_PLACES = "none"
 
 class VisionOptions(Options):
     """``max_pixels``: larger frames are shrunk to it; ``max_tokens``: of a reply, places and answers; ``structured``: whether lists
-    are held to a JSON schema (given up when the server refuses it); ``extra``: further request fields that the server or the
+    are held to a JSON schema; ``extra``: further request fields that the server or the
     model family wants, such as ``{"chat_template_kwargs": {"enable_thinking": false}}``."""
 
     max_pixels: int = Field(default=2048 * 1024, ge=64 * 64)
@@ -51,7 +51,7 @@ class OpenAIVisionPerception(Perception):
     ) -> None:
         self.name, self._client, self._style = name, client, style
         self._options = options or VisionOptions()
-        self._structured = self._options.structured
+        self._refused: set[str] = set()
         self.skills = ALL_SKILLS if style is not None else frozenset[Skill](("caption", "query"))
 
     async def caption(self, frame: Frame) -> Caption:
@@ -97,29 +97,48 @@ class OpenAIVisionPerception(Perception):
     async def _ask(
         self, picture: Picture, prompt: str, schema: dict[str, Any] | None = None
     ) -> tuple[ChatReply, tuple[Attempt, ...]]:
-        """The reply, and what was tried before it. A server that refuses the schema is asked without, now and from then on."""
-        if schema is None or not self._structured:
-            return await self._complete(picture, prompt, None), ()
-        try:
-            return await self._complete(picture, prompt, schema), ()
-        except PerceptionError as error:
-            if error.kind != FailureKind.BAD_REQUEST:
-                raise
-            reply = await self._complete(picture, prompt, None)
-            self._structured = False
-            return reply, tuple(a for a in error.attempts if isinstance(a, Attempt))
+        """The reply, and what was tried before it. Fields that a server refuses are left out, now and from then on."""
+        refused, earlier = set(self._refused), tuple[Attempt, ...]()
+        while True:
+            fields = self._fields(schema, refused)
+            try:
+                reply = await self._complete(picture, prompt, fields)
+            except PerceptionError as error:
+                named = refused_fields(error, fields)
+                if not named:
+                    raise PerceptionError(str(error), kind=error.kind, attempts=(*earlier, *error.attempts)) from error
+                refused |= named
+                earlier += tuple(a for a in error.attempts if isinstance(a, Attempt))
+            else:
+                self._refused = refused
+                return reply, earlier
 
-    async def _complete(self, picture: Picture, prompt: str, schema: dict[str, Any] | None) -> ChatReply:
+    def _fields(self, schema: dict[str, Any] | None, refused: set[str]) -> dict[str, Any]:
+        """The request beside the conversation. Newer hosted models want ``max_completion_tokens`` for ``max_tokens``."""
+        limit = "max_completion_tokens" if "max_tokens" in refused else "max_tokens"
+        fields: dict[str, Any] = {limit: self._options.max_tokens, **self._options.extra}
+        if self._options.temperature is not None:
+            fields["temperature"] = self._options.temperature
+        if schema is not None and self._options.structured:
+            fields["response_format"] = {"type": "json_schema", "json_schema": {"name": "places", "schema": schema, "strict": True}}
+        return {name: value for name, value in fields.items() if name not in refused}
+
+    async def _complete(self, picture: Picture, prompt: str, fields: dict[str, Any]) -> ChatReply:
         content = [{"type": "image_url", "image_url": {"url": picture.data_url}}, {"type": "text", "text": prompt}]
-        format_ = {"type": "json_schema", "json_schema": {"name": "places", "schema": schema, "strict": True}}
         with served(self.name):
-            return await self._client.complete(
-                [{"role": "user", "content": content}],
-                max_tokens=self._options.max_tokens,
-                temperature=self._options.temperature,
-                response_format=format_ if schema is not None else None,
-                extra=self._options.extra,
-            )
+            return await self._client.complete([{"role": "user", "content": content}], extra=fields)
+
+
+_OTHER_NAMES = {"response_format": ("response_format", "json_schema", "json schema", "grammar", "guided", "structured")}
+
+
+def refused_fields(error: PerceptionError, sent: dict[str, Any]) -> set[str]:
+    """Which fields of a request a server did not want, by its own words; without a word on any, the schema is the likeliest."""
+    if error.kind not in (FailureKind.BAD_REQUEST, FailureKind.SERVER_ERROR):
+        return set()
+    words = str(error).lower()
+    named = {field for field in sent if any(name in words for name in _OTHER_NAMES.get(field, (field,)))}
+    return named or ({"response_format"} & sent.keys() if error.kind == FailureKind.BAD_REQUEST else set())
 
 
 def make(spec: EyesSpec) -> Perception:
