@@ -171,9 +171,9 @@ def blooms(
     """Flower heads among leaves between two heights; ``ball`` lets them trail over an edge instead of standing up."""
     rng = Random(f"blooms {seed} {colours}")
     green = [plain("flower leaf 0", (0.085, 0.190, 0.040), 0.6), plain("flower leaf 1", (0.15, 0.27, 0.07), 0.6)]
-    for k in range(count * 4):
+    for k in range(count * 6):
         a, share = rng.uniform(0, 2 * math.pi), rng.random() ** 0.5
-        r, flower = spread_m * share, k % 4 == 0
+        r, flower = spread_m * share, k % 3 == 0
         if ball:
             z = low + (high - low) * (0.75 - 1.7 * share**3 * rng.random()) + (0.03 if flower else 0.0)
         else:
@@ -181,10 +181,10 @@ def blooms(
         tip = (r * math.cos(a), r * math.sin(a), z)
         turn = rng.uniform(0, 2 * math.pi)
         if flower:
-            tint = colours[(k // 4) % len(colours)]
-            _flower(s, tip, rng.uniform(0.045, 0.065), turn, plain(f"petal {tint}", PETALS[tint], 0.6))
+            tint = colours[(k // 3) % len(colours)]
+            _flower(s, tip, rng.uniform(0.030, 0.046), turn, plain(f"petal {tint}", PETALS[tint], 0.6))
         else:
-            _leaf(s, tip, rng.uniform(0.04, 0.075), turn, rng.uniform(-0.6, 0.5), green[k % 2])
+            _leaf(s, tip, rng.uniform(0.028, 0.055), turn, rng.uniform(-0.6, 0.5), green[k % 2])
 
 
 def _leaf(s: Solid, at: Point, size: float, turn: float, lift: float, material: bpy.types.Material) -> None:

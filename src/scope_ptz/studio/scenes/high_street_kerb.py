@@ -62,7 +62,7 @@ def _posts(stage: Stage) -> None:
     stage.place(town_furniture.phone_box(), "phone box", "red phone box", (EAST_X + 0.5, 32.6, z), 270, colour="red")
     for colour, x, y, bearing in (
         ("dark green", WEST_X, -4.6, 270), ("dark green", WEST_X, 24.5, 270), ("black", EAST_X, -13.5, 90), ("dark red", EAST_X, 38.7, 270),
-        ("dark green", EAST_X, 9.5, 90),
+        ("dark green", EAST_X, 9.5, 90), ("dark green", 8.6, -59.6, 0),
     ):  # fmt: skip
         stage.place(furniture.bin(colour=colour), "bin", f"{colour} litter bin", (x, y, z), bearing, colour=colour)
     bollard = furniture.bollard()
@@ -88,7 +88,7 @@ def _seats(stage: Stage) -> None:
     shelter = furniture.bus_shelter("HIGH STREET", route="7")
     stage.place(shelter, "bus stop", "bus shelter", (-6.0, -10.0, z), 90, colour="dark grey", route="7", material="glass")
     bench = furniture.bench()
-    for k, (x, y, bearing) in enumerate(((-6.75, -25.6, 90), (8.95, 0.6, 270), (-6.75, 20.2, 90))):
+    for k, (x, y, bearing) in enumerate(((-6.75, -25.6, 90), (8.95, 0.6, 270), (-6.75, 20.2, 90), (5.9, -62.2, 0))):
         stage.place(bench if k == 0 else bench.copy(), "bench", "wooden bench", (x, y, z), bearing, material="timber")
 
 
@@ -146,6 +146,7 @@ def _signs(stage: Stage) -> None:
         (13.0, 48.03, 0, "CHURCH ROAD"),
         (-10.5, -48.03, 180, "MILL LANE"),
         (13.0, -48.03, 180, "MILL LANE"),
+        (0.95, -62.96, 0, "MILL LANE"),
     ):
         made = shopfronts.plate((text,), 0.12, "white", "black")
         stage.place(made, "street name sign", f"{text.title()} name plate", (x, y, KERB_M + 3.2), bearing, colour="white")

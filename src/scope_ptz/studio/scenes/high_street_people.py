@@ -27,7 +27,7 @@ STANDING: tuple[tuple[float, float, float, str, int, str | None, str], ...] = (
     (-5.0, -6.1, 95, "stand", 41, None, "waiting"), (-4.6, -7.2, 60, "phone", 42, None, "on the phone"), (-5.4, -39.0, 178, "walk", 43, "bag", "walking"),
     (8.3, -24.0, 0, "walk", 44, None, "walking"), (7.0, 24.6, 300, "stand", 45, "bag", "standing"), (-6.4, 46.0, 60, "phone", 47, None, "on the phone"),
     (8.6, 38.0, 250, "stand", 48, "bag", "standing"), (-8.0, -50.3, 95, "walk", 49, None, "walking"), (10.5, 50.0, 275, "walk", 50, "bag", "walking"),
-    (2.0, 61.0, 180, "stand", 51, None, "standing"),
+    (2.0, 61.0, 180, "stand", 51, None, "standing"), (2.4, -60.9, 80, "walk", 52, "bag", "walking"), (-11.0, -61.4, 268, "walk", 53, None, "walking"),
 )  # fmt: skip
 """Place, bearing, pose, seed, what they hold, what they do."""
 
@@ -107,7 +107,7 @@ def _vehicles(stage: Stage) -> None:
     rows = (
         (vehicles.saloon, "white", "KP22 SEV", "saloon", (SOUTHBOUND_X + 0.2, -45.4), 180, "waiting", "south"),
         (vehicles.suv, "dark green", "OU71 BFA", "SUV", (-21.0, 57.2), 90, "moving", "east"),
-        (vehicles.hatchback, "light blue", "WJ14 GCT", "hatchback", (24.0, -57.3), 270, "moving", "west"),
+        (vehicles.hatchback, "light blue", "WJ14 GCT", "hatchback", (11.5, -57.3), 270, "moving", "west"),
         (vehicles.saloon, "brown", "HD13 YRM", "saloon", (34.0, 53.4), 270, "parked", "west"),
         (vehicles.suv, "black", "SC20 NOX", "SUV", (-40.0, 53.4), 270, "parked", "west"),
         (vehicles.hatchback, "white", "DG65 LWP", "hatchback", (-30.0, -53.5), 90, "parked", "east"),
