@@ -32,7 +32,14 @@ def _tractor_parts() -> Parts:
     chassis.running_gear(parts, 1.75, [-1.75], _REAR, _FRONT - 0.1)
     chassis.cab(parts, _FRONT, depth=2.15, top=3.02)
     chassis.stores(parts, 0.75)
-    sleeper: list[Flat] = [(0.95, 2.98), (_FRONT - 0.55, 3.0), (_FRONT - 0.42, 3.10), (_FRONT - 0.75, 3.55), (1.35, 3.82), (0.95, 3.82)]
+    sleeper: list[Flat] = [
+        (0.95, 2.98),
+        (_FRONT - 0.55, 3.0),
+        (_FRONT - 0.42, 3.10),
+        (_FRONT - 0.75, 3.55),
+        (1.35, 3.82),
+        (0.95, 3.82),
+    ]
     parts.prism(sleeper, -1.12, 1.12, pw.paint_slot(0), bevel_m=0.08, segments=2, smooth=True)
     for sign in (-1, 1):
         fittings.mirrored(parts, sign)
@@ -58,7 +65,9 @@ def tractor(colour: str, *, plate: str, name: str | None = None, lit: bool = Fal
         for sign in (-1, 1):
             own.box((0.26, 0.03, 0.12), (sign * 0.88, _FRONT + 0.145, 0.72), glow("cream", 9.0), bevel_m=0.02)
             own.box((0.10, 0.03, 0.05), (sign * 0.75, _FRONT - 0.62, 3.60), glow("amber", 5.0), bevel_m=0.01)
-    return bw.finish("tractor unit", bw.body_mesh("tractor unit", _tractor_parts), [pw.paint("lorry cab", colour, dirt_top_m=1.2)], letters, own)
+    return bw.finish(
+        "tractor unit", bw.body_mesh("tractor unit", _tractor_parts), [pw.paint("lorry cab", colour, dirt_top_m=1.2)], letters, own
+    )
 
 
 def _bogie(parts: Parts, *, bed_m: float) -> None:
@@ -127,7 +136,12 @@ def _body_parts(kind: str) -> Parts:
                 parts.box((0.09, 0.05, 0.07), (x, -half - 0.06, z), rail, bevel_m=0.005)
         for z in (1.5, 2.2, 2.9, 3.6):
             parts.box((0.14, 0.05, 0.07), (1.16, -half - 0.045, z), rail, bevel_m=0.005)
-        parts.box((0.06, 0.02, top - bed - 0.2), (1.21, -half - 0.055, (top + bed) / 2), shading.plain("trailer conspicuity", (0.5, 0.02, 0.02), 0.4), bevel_m=0.0)
+        parts.box(
+            (0.06, 0.02, top - bed - 0.2),
+            (1.21, -half - 0.055, (top + bed) / 2),
+            shading.plain("trailer conspicuity", (0.5, 0.02, 0.02), 0.4),
+            bevel_m=0.0,
+        )
         parts.box((0.10, 0.04, 0.08), (1.10, -half - 0.05, top - 0.08), pw.lamp("red"), bevel_m=0.01)
     parts.matrix = Matrix.Identity(4)
     parts.box((0.02, 0.02, top - bed - 0.2), (0, -half - 0.045, (top + bed) / 2), wheels.shade(), bevel_m=0.0)
@@ -169,7 +183,16 @@ def trailer(colour: str, *, kind: str = "curtain", lettering: str, plate: str, f
     letters.append(plate_letters[1])
     tint = fittings.contrast(colour)
     letters += bw.both_sides(lettering, 0.72, 0.0, 2.72, tint, x=1.268, width_m=11.0)
-    letters.append(bw.words(lettering, 0.22, (0, -TRAILER_M / 2 - 0.05, 3.35), "-Y", fittings.contrast(front if kind == "curtain" else colour), width_m=2.0))
+    letters.append(
+        bw.words(
+            lettering,
+            0.22,
+            (0, -TRAILER_M / 2 - 0.05, 3.35),
+            "-Y",
+            fittings.contrast(front if kind == "curtain" else colour),
+            width_m=2.0,
+        )
+    )
     paints = [pw.paint("trailer ends", front if kind == "curtain" else colour, dirt_top_m=1.9, dirt=0.4)]
     if kind == "curtain":
         paints.append(pw.paint("trailer curtain", colour, dirt_top_m=2.3, dirt=0.45, gloss=0.1))
@@ -181,7 +204,12 @@ def skeletal(code: str, colour: str, *, livery: str | None = None, plate: str, f
     mesh = bw.body_mesh("skeletal trailer", _skeletal_parts)
     own, letters = Parts(), []
     _, plate_letters = bw.plates(plate, (90.0, 0.60), (-TRAILER_M / 2 - 0.045, 1.02))
-    own.box((0.52, 0.012, 0.111), (0, -TRAILER_M / 2 - 0.045, 1.02), shading.plain("number plate yellow", (0.86, 0.52, 0.01), 0.35), bevel_m=0.003)
+    own.box(
+        (0.52, 0.012, 0.111),
+        (0, -TRAILER_M / 2 - 0.045, 1.02),
+        shading.plain("number plate yellow", (0.86, 0.52, 0.01), 0.35),
+        bevel_m=0.003,
+    )
     letters.append(plate_letters[1])
     made = bw.finish("skeletal trailer", mesh, [], letters, own)
     load = container(colour, code, feet=feet, livery=livery)
@@ -191,7 +219,17 @@ def skeletal(code: str, colour: str, *, livery: str | None = None, plate: str, f
         obj.parent = made.root
     turned = []
     for mark in load.texts:
-        turned.append(type(mark)(mark.text, tuple(lift @ Vector(mark.centre)), tuple(lift.to_3x3() @ Vector(mark.right)), mark.up, mark.width_m, mark.height_m, mark.cap_height_m))
+        turned.append(
+            type(mark)(
+                mark.text,
+                tuple(lift @ Vector(mark.centre)),
+                tuple(lift.to_3x3() @ Vector(mark.right)),
+                mark.up,
+                mark.width_m,
+                mark.height_m,
+                mark.cap_height_m,
+            )
+        )
     bpy.data.objects.remove(load.root)
     return Built(made.root, [*made.objects, *load.objects], [*made.texts, *turned])
 

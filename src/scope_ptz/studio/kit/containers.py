@@ -38,7 +38,9 @@ def container_paint(colour: str) -> bpy.types.Material:
 
 def _ink(colour: str) -> bpy.types.Material:
     dark = colour in ("white", "cream", "yellow", "light grey", "silver", "beige", "amber")
-    return plain("container letters dark" if dark else "container letters light", (0.02, 0.025, 0.04) if dark else (0.62, 0.62, 0.60), 0.6)
+    return plain(
+        "container letters dark" if dark else "container letters light", (0.02, 0.025, 0.04) if dark else (0.62, 0.62, 0.60), 0.6
+    )
 
 
 def _corrugated(s: Solid, length: float, x: float, z0: float, z1: float, skin: bpy.types.Material) -> None:
@@ -104,7 +106,7 @@ def container(
     s.box((WIDTH_M - 0.16, length - 0.14, 0.05), (0, 0, 0.15), timber(fresh=False), 0.0)
     _doors(s, w, d, h, skin, iron, ink, code, opened=doors == "open")
     if load == "cartons":
-        _cartons(s, w, d, h)
+        _cartons(s, w, d)
     for facing, side in (("+X", 1), ("-X", -1)):
         edge = -side * (d - 0.35)  # the reader's right-hand end
         s.text(code, 0.17, (side * (w + 0.006), -edge * 0.98, h - 0.30), ink, facing=facing, align="RIGHT")
@@ -116,7 +118,16 @@ def container(
 
 
 def _doors(
-    s: Solid, w: float, d: float, h: float, skin: bpy.types.Material, iron: bpy.types.Material, ink: bpy.types.Material, code: str, *, opened: bool
+    s: Solid,
+    w: float,
+    d: float,
+    h: float,
+    skin: bpy.types.Material,
+    iron: bpy.types.Material,
+    ink: bpy.types.Material,
+    code: str,
+    *,
+    opened: bool,
 ) -> None:
     """Two leaves with four lock rods; the code stands on the right-hand leaf."""
     wide, tall = w - 0.13, h - 0.36
@@ -142,7 +153,7 @@ def _doors(
                 s.box((0.30, 0.004, 0.20), (cx, 0.038, tall * 0.30), plain("container placard", (0.55, 0.50, 0.10), 0.5), 0.0)
 
 
-def _cartons(s: Solid, w: float, d: float, h: float) -> None:
+def _cartons(s: Solid, w: float, d: float) -> None:
     """Cartons stowed in courses up to the doors, two of them missing from the top."""
     board = plain("carton board", (0.36, 0.235, 0.125), 0.85)
     tape = plain("carton tape", (0.46, 0.34, 0.20), 0.35)

@@ -11,7 +11,14 @@ from scope_ptz.studio.kit.warehouse import DOCK_SILL_M, DOCK_TALL_M, DOCK_WIDE_M
 OPEN_SHARE = {"closed": 0.0, "half open": 0.5, "open": 0.94}
 
 
-def roller_door(state: str = "closed", *, wide: float = DOCK_WIDE_M, tall: float = DOCK_TALL_M, sill: float = DOCK_SILL_M, colour: str = "light grey") -> Built:
+def roller_door(
+    state: str = "closed",
+    *,
+    wide: float = DOCK_WIDE_M,
+    tall: float = DOCK_TALL_M,
+    sill: float = DOCK_SILL_M,
+    colour: str = "light grey",
+) -> Built:
     """A roller door in its guides, "closed", "half open" or "open"."""
     s = Solid("roller door")
     skin = paint(colour, dirt=0.30)
@@ -64,7 +71,13 @@ def signal(state: str) -> Built:
     for colour, z, brightness in (("red", 0.15, 6.0), ("green", -0.15, 14.0)):
         on = state == colour
         s.lathe([(0.115, 0.10), (0.12, 0.16), (0.105, 0.17)], paint("black"), (0, 0, z), "Y", 24)
-        s.lathe([(0.10, 0.13), (0.095, 0.172), (0.05, 0.190)], glow(colour, brightness) if on else lens(f"dark {colour}"), (0, 0, z), "Y", 24)
+        s.lathe(
+            [(0.10, 0.13), (0.095, 0.172), (0.05, 0.190)],
+            glow(colour, brightness) if on else lens(f"dark {colour}"),
+            (0, 0, z),
+            "Y",
+            24,
+        )
     return s.built()
 
 
@@ -72,8 +85,8 @@ def number(value: str) -> Built:
     """A large dock number on a blue board over the door; its back on y = 0, middle at z = 0."""
     s = Solid("dock number")
     with s.at(0, 0.02, 0):
-        board(s, 1.05, 1.25, "blue", back=False)
-        write(s, value, 0.86, 0, 0, "white")
+        board(s, 1.20, 1.40, "blue", back=False)
+        write(s, value, 1.02, 0, 0, "white")
     return s.built()
 
 
@@ -83,7 +96,12 @@ def wheel_guides(length: float = 8.0) -> Built:
     yellow = paint("yellow", dirt=0.55)
     for side in (-1, 1):
         x = side * 1.42
-        s.tube([(x, 0.3, 0.16), (x, length - 0.8, 0.16), (x + side * 0.35, length, 0.16), (x + side * 0.35, length, 0.0)], 0.075, yellow, sides=12)
+        s.tube(
+            [(x, 0.3, 0.16), (x, length - 0.8, 0.16), (x + side * 0.35, length, 0.16), (x + side * 0.35, length, 0.0)],
+            0.075,
+            yellow,
+            sides=12,
+        )
         for k in range(4):
             s.rod((x, 0.5 + (length - 1.6) * k / 3, 0.0), (x, 0.5 + (length - 1.6) * k / 3, 0.16), 0.05, yellow)
     return s.built()

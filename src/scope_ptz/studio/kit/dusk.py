@@ -40,7 +40,7 @@ class _WorldShader(Shader):
         self.tree.nodes.clear()
 
 
-def setup(scene: bpy.types.Scene, *, sky_strength: float = 0.36, exposure: float = 1.35) -> None:
+def setup(scene: bpy.types.Scene, *, sky_strength: float = 0.36, exposure: float = 1.5) -> None:
     """Give ``scene`` its evening sky, view transform, and light paths that stay clean at eight samples."""
     _world(scene, sky_strength)
     scene.display_settings.display_device = "sRGB"

@@ -28,10 +28,14 @@ def lit_glass(tint: str, strength: float = 0.8) -> bpy.types.Material:
     s = Shader(name)
     p = s.object_coords()
     blotch = s.ramp(s.noise(p, 1.1, 3.0), 0.35, 0.65, 0.45, 1.1)
-    return s.surface(base_color=(0.02, 0.02, 0.02), roughness=0.1, emission_color=rgb, emission_strength=s.math("MULTIPLY", blotch, strength))
+    return s.surface(
+        base_color=(0.02, 0.02, 0.02), roughness=0.1, emission_color=rgb, emission_strength=s.math("MULTIPLY", blotch, strength)
+    )
 
 
-def _panes(s: Solid, width: float, y: float, rows: list[float], rng: random.Random, lit: float, wide: float, tall: float, pitch: float) -> None:
+def _panes(
+    s: Solid, width: float, y: float, rows: list[float], rng: random.Random, lit: float, wide: float, tall: float, pitch: float
+) -> None:
     """Rows of windows on the face ``y`` (towards +y), some of them lit."""
     dark = plain("evening glass", (0.020, 0.026, 0.036), 0.06)
     frame = plain("far frame", (0.10, 0.105, 0.11), 0.6)
@@ -46,7 +50,16 @@ def _panes(s: Solid, width: float, y: float, rows: list[float], rng: random.Rand
 
 
 def industrial(
-    *, width: float, depth: float, height: float, colour: Rgb, lettering: str = "", lit: float = 0.4, cap: float = 1.1, seed: int = 0, doors: int = 2
+    *,
+    width: float,
+    depth: float,
+    height: float,
+    colour: Rgb,
+    lettering: str = "",
+    lit: float = 0.4,
+    cap: float = 1.1,
+    seed: int = 0,
+    doors: int = 2,
 ) -> Built:
     """An industrial shed with roller doors, a strip of windows on its front (+y) and its name in lit letters."""
     s = Solid("industrial shed")
@@ -57,7 +70,14 @@ def industrial(
     s.box((width, depth, h - 0.9), (0, 0, 0.9 + (h - 0.9) / 2), skin, 0.0)
     s.box((width + 0.1, depth + 0.1, 0.95), (0, 0, 0.47), concrete(light=False), 0.0)
     ridge = h + depth * 0.07
-    roof = [(-w - 0.2, -d - 0.2, h), (w + 0.2, -d - 0.2, h), (w + 0.2, 0, ridge), (-w - 0.2, 0, ridge), (w + 0.2, d + 0.2, h), (-w - 0.2, d + 0.2, h)]
+    roof = [
+        (-w - 0.2, -d - 0.2, h),
+        (w + 0.2, -d - 0.2, h),
+        (w + 0.2, 0, ridge),
+        (-w - 0.2, 0, ridge),
+        (w + 0.2, d + 0.2, h),
+        (-w - 0.2, d + 0.2, h),
+    ]
     s.add(roof, [(0, 1, 2, 3), (3, 2, 4, 5), (0, 3, 5), (1, 4, 2)], cladding_material("far roof", (0.16, 0.17, 0.18), 0.33))
     for y in (-d - 0.1, d + 0.1):
         s.box((width + 0.4, 0.2, 0.5), (0, y, h - 0.1), trim, 0.0)
@@ -80,7 +100,9 @@ def industrial(
     return s.built()
 
 
-def flats(*, width: float = 22.0, depth: float = 12.0, floors: int = 5, colour: Rgb = (0.20, 0.14, 0.11), lit: float = 0.45, seed: int = 0) -> Built:
+def flats(
+    *, width: float = 22.0, depth: float = 12.0, floors: int = 5, colour: Rgb = (0.20, 0.14, 0.11), lit: float = 0.45, seed: int = 0
+) -> Built:
     """A block of flats with windows on all four sides."""
     s = Solid("block of flats")
     rng = random.Random(f"flats {seed}")
@@ -106,7 +128,12 @@ def chimney(height: float = 46.0) -> Built:
         s.lathe([(r + 0.5, z - 0.7), (r + 0.5, z - 0.6)], steel(dark=True), steps=28)
         for k in range(4):
             a = math.pi * k / 2 + 0.5
-            s.lathe([(0.20, 0.0), (0.22, 0.25), (0.10, 0.42)], glow("red", 16.0), ((r + 0.35) * math.cos(a), (r + 0.35) * math.sin(a), z - 0.6), steps=12)
+            s.lathe(
+                [(0.20, 0.0), (0.22, 0.25), (0.10, 0.42)],
+                glow("red", 16.0),
+                ((r + 0.35) * math.cos(a), (r + 0.35) * math.sin(a), z - 0.6),
+                steps=12,
+            )
     return s.built()
 
 
@@ -143,6 +170,16 @@ def glimmer(points: list[tuple[float, float, float]], *, seed: int = 0) -> Built
             r = rng.uniform(0.35, 0.7) * (0.6 + math.hypot(x, y) / 900)
             base = len(corners)
             corners += [(x + sx * r, y + sy * r, z + sz * r) for sx in (-1, 1) for sy in (-1, 1) for sz in (-1, 1)]
-            faces += [tuple(base + i for i in f) for f in ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))]
-        parts.append(from_data("glimmer", corners, faces, Shader(f"glimmer {k}").surface(base_color=rgb, emission_color=rgb, emission_strength=strength)))
+            faces += [
+                tuple(base + i for i in f)
+                for f in ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+            ]
+        parts.append(
+            from_data(
+                "glimmer",
+                corners,
+                faces,
+                Shader(f"glimmer {k}").surface(base_color=rgb, emission_color=rgb, emission_strength=strength),
+            )
+        )
     return Built.of("glimmer", parts)

@@ -27,7 +27,9 @@ def forklift(colour: str = "yellow", *, number: str = "3", fork_m: float = 0.10,
     s.box((0.98, 0.16, 0.52), (0, 0.62, 0.82), body, 0.04)
     s.box((0.90, 0.20, 0.10), (0, 0.52, 1.08), dark, 0.03)
     s.rod((0, 0.42, 1.02), (0, 0.24, 1.28), 0.025, black)
-    wheel = [(0.16 * math.cos(a), 0.24 + 0.11 * math.sin(a), 1.28 + 0.12 * math.sin(a)) for a in (math.pi * k / 10 for k in range(20))]
+    wheel = [
+        (0.16 * math.cos(a), 0.24 + 0.11 * math.sin(a), 1.28 + 0.12 * math.sin(a)) for a in (math.pi * k / 10 for k in range(20))
+    ]
     s.tube(wheel, 0.015, black, closed=True)
     for x in (-0.50, 0.50):
         s.tube([(x, 0.64, 1.05), (x * 0.97, 0.46, 2.12), (x * 0.94, -0.66, 2.14), (x, -0.98, 1.10)], 0.038, dark, sides=10)
@@ -39,7 +41,9 @@ def forklift(colour: str = "yellow", *, number: str = "3", fork_m: float = 0.10,
         s.box((0.14, 0.012, 0.10), (side * 0.40, 0.642, 1.86), glow("cream", 9.0) if lit else lens("light grey"), 0.004)
         s.box((0.10, 0.03, 0.16), (side * 0.44, -1.12, 1.20), glow("red", 3.0) if lit else lens("red"), 0.01)
     if beacon:
-        s.lathe([(0.055, 2.16), (0.055, 2.24), (0.03, 2.27)], glow("amber", 6.0) if lit else lens("amber"), (0.0, -0.55, 0), steps=14)
+        s.lathe(
+            [(0.055, 2.16), (0.055, 2.24), (0.03, 2.27)], glow("amber", 6.0) if lit else lens("amber"), (0.0, -0.55, 0), steps=14
+        )
     for facing, x in (("+X", 0.527), ("-X", -0.527)):
         s.text(f"FLT {number}", 0.15, (x, -0.86, 0.80), sheet("black"), facing=facing)
     s.text(number, 0.22, (0, -1.296, 0.62), sheet("white"), facing="-Y")
@@ -52,8 +56,20 @@ def _wheels(s: Solid) -> None:
     for x, y, r, width in ((0.46, 0.55, 0.33, 0.24), (0.44, -0.82, 0.27, 0.20)):
         for side in (-1, 1):
             h = width / 2
-            s.lathe([(r * 0.6, -h), (r * 0.94, -h), (r, -h * 0.7), (r, h * 0.7), (r * 0.94, h), (r * 0.6, h)], rubber(), (side * x, y, r), "X", 28)
-            s.lathe([(r * 0.2, -h * 1.02), (r * 0.58, -h * 0.8), (r * 0.58, h * 0.8), (r * 0.2, h * 1.02)], hub, (side * x, y, r), "X", 20)
+            s.lathe(
+                [(r * 0.6, -h), (r * 0.94, -h), (r, -h * 0.7), (r, h * 0.7), (r * 0.94, h), (r * 0.6, h)],
+                rubber(),
+                (side * x, y, r),
+                "X",
+                28,
+            )
+            s.lathe(
+                [(r * 0.2, -h * 1.02), (r * 0.58, -h * 0.8), (r * 0.58, h * 0.8), (r * 0.2, h * 1.02)],
+                hub,
+                (side * x, y, r),
+                "X",
+                20,
+            )
 
 
 def _mast(s: Solid, fork_m: float) -> None:
@@ -75,4 +91,6 @@ def _mast(s: Solid, fork_m: float) -> None:
     s.box((1.0, 0.03, 0.04), (0, 0.99, base + 1.22), iron, 0.005)
     for x in (-0.28, 0.28):
         s.box((0.12, 0.05, 0.55), (x, 1.04, base + 0.26), iron, 0.008)
-        s.prism([(1.02, base - 0.02), (2.12, base - 0.01), (2.12, base + 0.004), (1.05, base + 0.03)], (x - 0.06, x + 0.06), iron, "YZ")
+        s.prism(
+            [(1.02, base - 0.02), (2.12, base - 0.01), (2.12, base + 0.004), (1.05, base + 0.03)], (x - 0.06, x + 0.06), iron, "YZ"
+        )

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Sequence
+from itertools import pairwise
 
 import bpy
 
@@ -22,10 +23,19 @@ Opening = tuple[float, float, float, float]
 """x from, x to, z from, z to."""
 
 
-def wall(s: Solid, x0: float, x1: float, z0: float, z1: float, openings: Sequence[Opening], material: bpy.types.Material, depth: float = 0.22) -> None:
+def wall(
+    s: Solid,
+    x0: float,
+    x1: float,
+    z0: float,
+    z1: float,
+    openings: Sequence[Opening],
+    material: bpy.types.Material,
+    depth: float = 0.22,
+) -> None:
     """A wall on y = 0 from ``x0`` to ``x1`` with rectangular holes, cut into upright strips at the edges of the openings."""
     cuts = sorted({x0, x1, *(x for a, b, _, _ in openings for x in (a, b) if x0 < x < x1)})
-    for a, b in zip(cuts, cuts[1:], strict=False):
+    for a, b in pairwise(cuts):
         holes = sorted((c, d) for p, q, c, d in openings if p < (a + b) / 2 < q)
         low = z0
         for c, d in [*holes, (z1, z1)]:
@@ -85,7 +95,12 @@ def _roof(s: Solid, w: float, depth: float, h: float) -> None:
             for i in range(6):
                 s.box((1.5, 0.012, 0.03), (0, 0.556, 0.08 + 0.11 * i), steel(dark=True), 0.0)
     for x in (-w * 0.35, w * 0.2, w * 0.62):
-        s.lathe([(0.25, 0.0), (0.25, 1.0), (0.42, 1.05), (0.30, 1.35), (0.05, 1.42)], steel(), (x, -depth * 0.5, h + rise - 0.1), steps=18)
+        s.lathe(
+            [(0.25, 0.0), (0.25, 1.0), (0.42, 1.05), (0.30, 1.35), (0.05, 1.42)],
+            steel(),
+            (x, -depth * 0.5, h + rise - 0.1),
+            steps=18,
+        )
 
 
 def roof_light() -> bpy.types.Material:
@@ -95,7 +110,12 @@ def roof_light() -> bpy.types.Material:
         return found
     s = Shader("roof light")
     ribs = s.ramp(s.math("PINGPONG", s.xyz(s.object_coords())[0], 0.16), 0.02, 0.08, 0.7, 1.0)
-    return s.surface(base_color=(0.5, 0.5, 0.45), roughness=0.4, emission_color=(1.0, 0.88, 0.62), emission_strength=s.math("MULTIPLY", ribs, 0.42))
+    return s.surface(
+        base_color=(0.5, 0.5, 0.45),
+        roughness=0.4,
+        emission_color=(1.0, 0.88, 0.62),
+        emission_strength=s.math("MULTIPLY", ribs, 0.42),
+    )
 
 
 def _hall(s: Solid, w: float, h: float, ramp_to: float) -> None:
@@ -106,7 +126,10 @@ def _hall(s: Solid, w: float, h: float, ramp_to: float) -> None:
     s.box((2 * w - 0.6, 0.1, h), (0, deep, h / 2), pale, 0.0)
     s.box((2 * w - 0.6, 12.8, 0.1), (0, deep / 2, h - 0.35), plain("hall ceiling", (0.25, 0.26, 0.27), 0.8), 0.0)
     blue, orange = paint("blue", dirt=0.2), paint("orange", dirt=0.2)
-    boards = [plain(f"hall carton {k}", c, 0.85) for k, c in enumerate(((0.34, 0.22, 0.12), (0.42, 0.30, 0.17), (0.24, 0.26, 0.30), (0.45, 0.44, 0.42)))]
+    boards = [
+        plain(f"hall carton {k}", c, 0.85)
+        for k, c in enumerate(((0.34, 0.22, 0.12), (0.42, 0.30, 0.17), (0.24, 0.26, 0.30), (0.45, 0.44, 0.42)))
+    ]
     x = -w + 3.0
     while x < w - 4.0:
         for px in (x, x + 2.7):
@@ -152,7 +175,13 @@ def letters(body: str, cap: float, *, lit: bool = True) -> Built:
 
 def glowing_face(colour: str, strength: float) -> bpy.types.Material:
     """The translucent face of a lit sign."""
-    rgb = {"white": (0.95, 0.97, 1.0), "blue": (0.08, 0.28, 0.95), "green": (0.05, 0.75, 0.25), "red": (0.9, 0.06, 0.04), "amber": (1.0, 0.45, 0.05)}
+    rgb = {
+        "white": (0.95, 0.97, 1.0),
+        "blue": (0.08, 0.28, 0.95),
+        "green": (0.05, 0.75, 0.25),
+        "red": (0.9, 0.06, 0.04),
+        "amber": (1.0, 0.45, 0.05),
+    }
     name = f"sign glow {colour} {strength:g}"
     return bpy.data.materials.get(name) or Shader(name).surface(
         base_color=rgb[colour], emission_color=rgb[colour], emission_strength=strength, roughness=0.5
@@ -209,7 +238,12 @@ def window(*, wide: float = 1.5, tall: float = 1.3, lit: bool = True, blind: flo
     s.box((0.5, 0.004, 0.29), (x, -0.765, -tall / 2 + 0.35), glowing_face("blue", 0.9), 0.0)
     for k in range(rng.randrange(2, 5)):
         s.box((0.16, 0.25, rng.uniform(0.3, 0.9)), (a + 0.25 + 0.28 * k, -deep + 0.2, low + 0.9), dark, 0.01)
-    s.box((rng.uniform(0.4, 0.8), 0.02, 0.5), (rng.uniform(-0.2, 0.4), -deep + 0.03, 0.25), plain("room board", (0.30, 0.32, 0.36), 0.6), 0.0)
+    s.box(
+        (rng.uniform(0.4, 0.8), 0.02, 0.5),
+        (rng.uniform(-0.2, 0.4), -deep + 0.03, 0.25),
+        plain("room board", (0.30, 0.32, 0.36), 0.6),
+        0.0,
+    )
     if blind:
         cover = plain("room blind", (0.50, 0.46, 0.38), 0.8)
         for k in range(int(tall * blind / 0.07)):
@@ -254,7 +288,13 @@ def office_panel(colour: tuple[float, float, float]) -> bpy.types.Material:
     s = Shader("office panel")
     p = s.object_coords()
     x, y, z = s.xyz(p)
-    joint = s.math("MAXIMUM", *(s.ramp(s.math("PINGPONG", axis, size / 2), 0.006, 0.014, 1.0, 0.0) for axis, size in ((s.math("ADD", x, y), 1.2), (z, 1.05))))
+    joint = s.math(
+        "MAXIMUM",
+        *(
+            s.ramp(s.math("PINGPONG", axis, size / 2), 0.006, 0.014, 1.0, 0.0)
+            for axis, size in ((s.math("ADD", x, y), 1.2), (z, 1.05))
+        ),
+    )
     stain = s.ramp(s.noise(s.scaled(p, (1.5, 1.5, 0.15)), 1.0, detail=5.0), 0.5, 0.75, 0.0, 0.35)
     tint = s.mix(stain, colour, tuple(c * 0.45 for c in colour))
     return s.surface(base_color=s.mix(joint, tint, (0.03, 0.03, 0.03)), roughness=0.45)

@@ -38,7 +38,13 @@ def fox(*, phase: float | None = None) -> Built:
     dark = plain("fox nose", (0.008, 0.007, 0.007), 0.3)
     s.lathe([(0.004, 0.0), (0.010, 0.006), (0.004, 0.012)], dark, (0, 0.463, 0.430), "Y", 10)
     for side in (-1, 1):
-        s.lathe([(0.001, 0.0), (0.007, 0.004), (0.002, 0.008)], plain("fox eye", (0.10, 0.06, 0.01), 0.15), (side * 0.030, 0.375, 0.468), "Y", 10)
+        s.lathe(
+            [(0.001, 0.0), (0.007, 0.004), (0.002, 0.008)],
+            plain("fox eye", (0.10, 0.06, 0.01), 0.15),
+            (side * 0.030, 0.375, 0.468),
+            "Y",
+            10,
+        )
     return s.built()
 
 
@@ -71,6 +77,8 @@ def _coat() -> bpy.types.Material:
     colour = s.mix(stocking, colour, (0.014, 0.012, 0.011))
     colour = s.mix(s.ramp(z, 0.525, 0.54), colour, (0.014, 0.012, 0.011))
     colour = s.mix(s.ramp(y, -0.66, -0.60, 1.0, 0.0), colour, (0.62, 0.60, 0.55))
-    throat = s.math("MULTIPLY", s.ramp(y, 0.20, 0.24), s.ramp(s.math("SUBTRACT", z, s.math("MULTIPLY", y, 0.42)), 0.255, 0.285, 1.0, 0.0))
+    throat = s.math(
+        "MULTIPLY", s.ramp(y, 0.20, 0.24), s.ramp(s.math("SUBTRACT", z, s.math("MULTIPLY", y, 0.42)), 0.255, 0.285, 1.0, 0.0)
+    )
     colour = s.mix(throat, colour, (0.58, 0.55, 0.50))
     return s.surface(base_color=colour, roughness=0.65, normal=s.bump(hair, 0.5, 0.005))

@@ -143,7 +143,9 @@ def arrow(colour: str = "white", *, length: float = 4.0, turn: str = "ahead") ->
         return s.built()
     k = -1.0 if turn == "left" else 1.0
     flat(s, [(-0.09, -half), (0.09, -half), (0.09, half * 0.35), (-0.09, half * 0.35)], ink)
-    flat(s, [(-0.09 * k, half * 0.35), (0.62 * k, half * 0.35), (0.62 * k, half * 0.35 + 0.30), (-0.09 * k, half * 0.35 + 0.30)], ink)
+    flat(
+        s, [(-0.09 * k, half * 0.35), (0.62 * k, half * 0.35), (0.62 * k, half * 0.35 + 0.30), (-0.09 * k, half * 0.35 + 0.30)], ink
+    )
     flat(s, [(0.60 * k, half * 0.35 - 0.30), (1.15 * k, half * 0.35 + 0.15), (0.60 * k, half * 0.35 + 0.60)], ink)
     return s.built()
 
@@ -157,7 +159,9 @@ def hatch(width: float, depth: float, *, colour: str = "yellow", pitch: float = 
     steps = int((width + depth) / pitch)
     for k in range(1, steps):
         c = -w - d + k * pitch  # the bar x - y = c
-        ends = [(x, y) for x, y in ((-w, -w - c), (w, w - c), (-d + c, -d), (d + c, d)) if abs(x) <= w + 1e-6 and abs(y) <= d + 1e-6]
+        ends = [
+            (x, y) for x, y in ((-w, -w - c), (w, w - c), (-d + c, -d), (d + c, d)) if abs(x) <= w + 1e-6 and abs(y) <= d + 1e-6
+        ]
         if len(ends) >= 2 and math.dist(ends[0], ends[-1]) > 0.2:
             line(s, min(ends), max(ends), 0.11, ink)
     return s.built()
@@ -171,7 +175,7 @@ def words(lines: Sequence[str], cap: float, *, colour: str = "white") -> Built:
     return s.built()
 
 
-def bay(number: str, *, width: float = 2.5, depth: float = 5.0, cap: float = 0.62, colour: str = "white", disabled: bool = False) -> Built:
+def bay(number: str, *, width: float = 2.5, depth: float = 5.0, cap: float = 0.62, colour: str = "white") -> Built:
     """A parking bay, its head at +y: its patch of floor, lines on three sides, and the number near its mouth."""
     s = Solid(f"bay {number}")
     w, d = width / 2, depth / 2

@@ -7,7 +7,7 @@ import math
 import bpy
 
 from scope_ptz.studio.kit import dusk
-from scope_ptz.studio.kit.finishes import concrete, glass, glow, lens, paint, sheet, steel
+from scope_ptz.studio.kit.finishes import concrete, glass, lens, paint, sheet, steel
 from scope_ptz.studio.kit.shading import Shader
 from scope_ptz.studio.kit.solid import Solid
 from scope_ptz.studio.kit.stage import Built
@@ -58,7 +58,12 @@ def wall_pack(*, kind: str = "sodium", lit: bool = True) -> Built:
     s = Solid("wall lamp")
     s.box((0.40, 0.05, 0.26), (0, 0.025, 0), paint("dark grey", dirt=0.2), 0.01)
     s.prism([(0.04, 0.13), (0.24, 0.11), (0.26, 0.04), (0.04, 0.04)], (-0.20, 0.20), paint("dark grey", dirt=0.2), "YZ")
-    s.prism([(0.045, 0.04), (0.25, 0.04), (0.20, -0.09), (0.045, -0.12)], (-0.18, 0.18), lit_lens(kind, 5.0) if lit else lens("light grey"), "YZ")
+    s.prism(
+        [(0.045, 0.04), (0.25, 0.04), (0.20, -0.09), (0.045, -0.12)],
+        (-0.18, 0.18),
+        lit_lens(kind, 5.0) if lit else lens("light grey"),
+        "YZ",
+    )
     return s.built()
 
 
@@ -67,4 +72,16 @@ def strip(length: float = 1.5, *, kind: str = "led", strength: float = 5.0) -> B
     s = Solid("strip lamp")
     s.box((length, 0.13, 0.05), (0, 0, -0.025), paint("light grey", dirt=0.2), 0.01)
     s.box((length - 0.06, 0.10, 0.05), (0, 0, -0.07), lit_lens(kind, strength), 0.02)
+    return s.built()
+
+
+def floodlight() -> Built:
+    """A floodlight on a short arm, tipped down; the wall is y = 0, its middle z = 0."""
+    s = Solid("floodlight")
+    s.tube([(0, 0, 0.10), (0, 0.45, 0.16), (0, 0.62, 0.06)], 0.025, steel(), sides=8)
+    with s.at(0, 0.70, -0.04, pitch=-38):
+        s.box((0.52, 0.12, 0.34), (0, 0, 0), paint("dark grey", dirt=0.2), 0.02)
+        for k in range(5):
+            s.box((0.02, 0.10, 0.30), (-0.20 + 0.10 * k, -0.09, 0), paint("dark grey", dirt=0.2), 0.003)
+        s.box((0.46, 0.012, 0.28), (0, 0.064, 0), lit_lens("led", 7.0), 0.004)
     return s.built()

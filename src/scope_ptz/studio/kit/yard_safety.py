@@ -33,7 +33,9 @@ def wheel_stop(colour: str = "yellow") -> Built:
     s.prism([(-0.075, 0.0), (0.075, 0.0), (0.05, 0.10), (-0.05, 0.10)], (-0.825, 0.825), rubber(), "YZ")
     for k in range(4):
         x = -0.62 + 0.413 * k
-        s.prism([(-0.079, 0.0), (0.079, 0.0), (0.053, 0.103), (-0.053, 0.103)], (x - 0.09, x + 0.09), sheet(colour, dirt=0.45), "YZ")
+        s.prism(
+            [(-0.079, 0.0), (0.079, 0.0), (0.053, 0.103), (-0.053, 0.103)], (x - 0.09, x + 0.09), sheet(colour, dirt=0.45), "YZ"
+        )
     return s.built()
 
 
@@ -42,10 +44,9 @@ def bay_plate(number: str, *, background: str = "blue") -> Built:
     s = Solid("bay plate")
     s.box((0.05, 0.05, 0.55), (0, 0, 0.275), steel(), 0.005)
     for turn in (0, 180):
-        with s.at(0, 0, 0.66, turn=turn):
-            with s.at(0, 0.028, 0):
-                board(s, 0.46, 0.30, background, back=False)
-                write(s, number, 0.19, 0, 0, INK.get(background, "black"))
+        with s.at(0, 0, 0.66, turn=turn), s.at(0, 0.028, 0):
+            board(s, 0.46, 0.30, background, back=False)
+            write(s, number, 0.19, 0, 0, INK.get(background, "black"))
     return s.built()
 
 
@@ -55,7 +56,9 @@ def chain_link(length: float = FENCE_M, height: float = 2.4, *, hole: bool = Fal
     wire, pitch = steel(), 0.085
     half = length / 2
     for x in (-half, half):
-        s.box((0.075, 0.075, height + 0.05), (x, 0, (height + 0.05) / 2), concrete(light=False) if hole else steel(dark=True), 0.006)
+        s.box(
+            (0.075, 0.075, height + 0.05), (x, 0, (height + 0.05) / 2), concrete(light=False) if hole else steel(dark=True), 0.006
+        )
         s.rod((x, 0, height), (x, 0.30, height + 0.35), 0.022, steel(dark=True), sides=6)
     for k in range(3):
         z, y = height + 0.10 + 0.11 * k, 0.09 + 0.095 * k
@@ -87,7 +90,7 @@ def chain_link(length: float = FENCE_M, height: float = 2.4, *, hole: bool = Fal
 
 def _outside(ends: Sequence[tuple[float, float, float]]) -> list[tuple[tuple[float, float, float], tuple[float, float, float]]]:
     """The pieces of a wire that lie outside the hole (an arch 1.0 m wide and 1.25 m high)."""
-    (x0, y0, z0), (x1, y1, z1) = ends
+    (x0, _, z0), (x1, _, z1) = ends
     pieces, steps, start = [], 48, None
     points = [(x0 + (x1 - x0) * t / steps, 0.0, z0 + (z1 - z0) * t / steps) for t in range(steps + 1)]
     for point in points:
@@ -106,10 +109,30 @@ def hydrant() -> Built:
     """A red pillar hydrant, 0.85 m, with capped outlets."""
     s = Solid("fire hydrant")
     red = paint("red", dirt=0.25)
-    s.lathe([(0.17, 0.0), (0.17, 0.05), (0.115, 0.07), (0.11, 0.58), (0.145, 0.60), (0.145, 0.64), (0.12, 0.66), (0.11, 0.74), (0.05, 0.80), (0.035, 0.85)], red, steps=24)
+    s.lathe(
+        [
+            (0.17, 0.0),
+            (0.17, 0.05),
+            (0.115, 0.07),
+            (0.11, 0.58),
+            (0.145, 0.60),
+            (0.145, 0.64),
+            (0.12, 0.66),
+            (0.11, 0.74),
+            (0.05, 0.80),
+            (0.035, 0.85),
+        ],
+        red,
+        steps=24,
+    )
     for turn in (0, 90, -90):
         with s.at(0, 0, 0.46, turn=turn):
-            s.lathe([(0.062, 0.09), (0.062, 0.15), (0.078, 0.155), (0.078, 0.20), (0.025, 0.205), (0.025, 0.235)], red, axis="Y", steps=16)
+            s.lathe(
+                [(0.062, 0.09), (0.062, 0.15), (0.078, 0.155), (0.078, 0.20), (0.025, 0.205), (0.025, 0.235)],
+                red,
+                axis="Y",
+                steps=16,
+            )
     return s.built()
 
 
@@ -165,7 +188,12 @@ def notice(
         if header is not None:
             edge = 0.012
             v0, v1 = height / 2 - head, height / 2 - edge
-            flat(s, [(-width / 2 + edge, v0), (width / 2 - edge, v0), (width / 2 - edge, v1), (-width / 2 + edge, v1)], sheet(header), 0.003)
+            flat(
+                s,
+                [(-width / 2 + edge, v0), (width / 2 - edge, v0), (width / 2 - edge, v1), (-width / 2 + edge, v1)],
+                sheet(header),
+                0.003,
+            )
             if symbol:
                 _symbol(s, symbol, (v0 + v1) / 2, (v1 - v0) * 0.42)
         for i, line in enumerate(lines):
@@ -180,7 +208,7 @@ def _symbol(s: Solid, kind: str, v: float, k: float) -> None:
     """A pictogram of half height ``k`` centred at height ``v``."""
     black, white, red = sheet("black", dirt=0.05), sheet("white"), sheet("red")
 
-    def lay(points: Sequence[tuple[float, float]], ink, lift: float = 0.006) -> None:  # noqa: ANN001
+    def lay(points: Sequence[tuple[float, float]], ink, lift: float = 0.006) -> None:
         flat(s, [(x * k, v + y * k) for x, y in points], ink, lift)
 
     if kind in ("warning", "flt", "bolt"):
@@ -234,7 +262,12 @@ def alarm_beacon(colour: str = "amber", *, lit: bool = True) -> Built:
     """A wall beacon over a door; the wall is y = 0."""
     s = Solid("beacon")
     s.box((0.14, 0.10, 0.10), (0, 0.05, 0), paint("dark grey"), 0.01)
-    s.lathe([(0.07, 0.05), (0.075, 0.16), (0.05, 0.21), (0.01, 0.22)], glow(colour, 6.0) if lit else lens(colour), (0, 0.06, 0), steps=18)
+    s.lathe(
+        [(0.07, 0.05), (0.075, 0.16), (0.05, 0.21), (0.01, 0.22)],
+        glow(colour, 6.0) if lit else lens(colour),
+        (0, 0.06, 0),
+        steps=18,
+    )
     return s.built()
 
 
@@ -252,9 +285,8 @@ def sliding_gate(length: float = 8.0, height: float = 2.2) -> Built:
         s.lathe([(0.10, -0.03), (0.10, 0.03)], steel(dark=True), (x, 0, 0.10), "Y", 18)
     s.box((length + 0.5, 0.06, 0.03), (0, 0, 0.015), steel(), 0.0)
     for turn in (0, 180):
-        with s.at(0, 0, 1.35, turn=turn):
-            with s.at(0, 0.03, 0):
-                board(s, 1.9, 0.62, "blue", back=False)
-                write(s, "GATE LOCKED", 0.15, 0, 0.13, "white")
-                write(s, "22:00 TO 05:00", 0.13, 0, -0.13, "white")
+        with s.at(0, 0, 1.35, turn=turn), s.at(0, 0.03, 0):
+            board(s, 1.9, 0.62, "blue", back=False)
+            write(s, "GATE LOCKED", 0.15, 0, 0.13, "white")
+            write(s, "22:00 TO 05:00", 0.13, 0, -0.13, "white")
     return s.built()

@@ -46,10 +46,9 @@ def gatehouse(name: str = "SECURITY") -> Built:
         s.box((0.006, 0.42, 0.26), (w - 0.323, y, 1.24), glowing_face("blue", 0.9), 0.0)
     s.box((0.05, 0.5, 0.6), (-w + 0.12, -0.6, 0.85), paint("red", dirt=0.1), 0.01)
     for turn in (0, 180):
-        with s.at(turn=turn):
-            with s.at(0, d + 0.46, tall + 0.24):
-                board(s, 1.5, 0.30, "blue", back=False)
-                write(s, name, 0.17, 0, 0, "white")
+        with s.at(turn=turn), s.at(0, d + 0.46, tall + 0.24):
+            board(s, 1.5, 0.30, "blue", back=False)
+            write(s, name, 0.17, 0, 0, "white")
     return s.built()
 
 
@@ -64,7 +63,12 @@ def barrier_arm(length: float = 4.2, *, raised: bool = False) -> Built:
         s.box((0.30, 0.10, 0.20), (0, 0, 0), paint("dark grey", dirt=0.3), 0.02)
         count = round(length / 0.5)
         for k in range(count):
-            s.box((length / count, 0.05, 0.11), (0.15 + length * (k + 0.5) / count, 0, 0), sheet("red" if k % 2 == 0 else "white", dirt=0.15), 0.004)
+            s.box(
+                (length / count, 0.05, 0.11),
+                (0.15 + length * (k + 0.5) / count, 0, 0),
+                sheet("red" if k % 2 == 0 else "white", dirt=0.15),
+                0.004,
+            )
         for k in range(count // 2):
             s.box((0.05, 0.06, 0.04), (0.6 + k * 1.0, 0, 0.075), glow("red", 5.0), 0.006)
         s.box((0.5, 0.12, 0.24), (-0.35, 0, 0), paint("dark grey", dirt=0.3), 0.02)
@@ -81,7 +85,13 @@ def traffic_head(state: str = "red") -> Built:
     s.rod((0, 0, 0), (0, 0, 2.1), 0.04, steel())
     s.box((0.22, 0.14, 0.44), (0, 0.02, 2.3), paint("black", dirt=0.1), 0.02)
     for colour, z, strength in (("red", 2.40, 6.0), ("green", 2.20, 14.0)):
-        s.lathe([(0.075, 0.09), (0.07, 0.105), (0.03, 0.115)], glow(colour, strength) if state == colour else lens(f"dark {colour}"), (0, 0, z), "Y", 20)
+        s.lathe(
+            [(0.075, 0.09), (0.07, 0.105), (0.03, 0.115)],
+            glow(colour, strength) if state == colour else lens(f"dark {colour}"),
+            (0, 0, z),
+            "Y",
+            20,
+        )
     return s.built()
 
 
@@ -139,7 +149,12 @@ def vending_machine(name: str = "FIZZ", colour: str = "red") -> Built:
     for row in range(5):
         for k in range(6):
             tint = rng.choice(["red", "orange", "green", "blue", "yellow", "purple"])
-            s.lathe([(0.032, 0.0), (0.032, 0.10), (0.014, 0.13), (0.014, 0.15)], paint(tint, dirt=0.0), (-0.13 + 0.10 * k, 0.425, 0.44 + 0.20 * row), steps=10)
+            s.lathe(
+                [(0.032, 0.0), (0.032, 0.10), (0.014, 0.13), (0.014, 0.15)],
+                paint(tint, dirt=0.0),
+                (-0.13 + 0.10 * k, 0.425, 0.44 + 0.20 * row),
+                steps=10,
+            )
         s.box((0.60, 0.05, 0.015), (0.12, 0.43, 0.43 + 0.20 * row), steel(), 0.0)
     s.box((0.18, 0.02, 0.26), (-0.33, 0.405, 1.15), paint("black"), 0.006)
     s.box((0.12, 0.006, 0.05), (-0.33, 0.418, 1.23), glowing_face("green", 2.0), 0.0)

@@ -47,13 +47,21 @@ def pallet_load(kind: str = "cartons", *, label: str | None = None, seed: int = 
     lay_pallet(s)
     top = PALLET_M
     if kind == "cartons":
-        tones = [plain(f"stock carton {k}", c, 0.85) for k, c in enumerate(((0.36, 0.235, 0.125), (0.31, 0.20, 0.105), (0.40, 0.27, 0.15)))]
+        tones = [
+            plain(f"stock carton {k}", c, 0.85)
+            for k, c in enumerate(((0.36, 0.235, 0.125), (0.31, 0.20, 0.105), (0.40, 0.27, 0.15)))
+        ]
         for layer in range(4):
             for i in range(3):
                 for j in range(2):
                     if layer == 3 and not wrapped and rng.random() < 0.3:
                         continue
-                    s.box((0.39, 0.48, 0.30), (-0.39 + 0.39 * i + rng.uniform(-0.006, 0.006), -0.24 + 0.48 * j, top + 0.152 + 0.303 * layer), rng.choice(tones), 0.008)
+                    s.box(
+                        (0.39, 0.48, 0.30),
+                        (-0.39 + 0.39 * i + rng.uniform(-0.006, 0.006), -0.24 + 0.48 * j, top + 0.152 + 0.303 * layer),
+                        rng.choice(tones),
+                        0.008,
+                    )
         top += 1.22
     elif kind == "sacks":
         white = cloth("light grey", 0.85)
@@ -106,7 +114,7 @@ def steel_drum(colour: str = "blue", *, label: bool = True) -> Built:
     return s.built()
 
 
-def gas_cage(*, open: bool = False) -> Built:  # noqa: A002
+def gas_cage() -> Built:
     """A mesh cage with eight gas cylinders and its warning sign, 1.9 x 1.0 x 1.9 m, doors towards +y."""
     s = Solid("gas cage")
     frame = steel()
@@ -144,9 +152,20 @@ def tyre_stack(count: int = 5, *, seed: int = 0) -> Built:
     for k in range(count):
         x, y, z = rng.uniform(-0.05, 0.05), rng.uniform(-0.05, 0.05), 0.29 * k
         s.lathe(
-            [(0.29, z + 0.03), (0.34, z), (0.47, z), (0.515, z + 0.05), (0.52, z + 0.24), (0.47, z + 0.285), (0.34, z + 0.285), (0.29, z + 0.25)],
-            rubber(), (x, y, 0), steps=36,
-        )  # fmt: skip
+            [
+                (0.29, z + 0.03),
+                (0.34, z),
+                (0.47, z),
+                (0.515, z + 0.05),
+                (0.52, z + 0.24),
+                (0.47, z + 0.285),
+                (0.34, z + 0.285),
+                (0.29, z + 0.25),
+            ],
+            rubber(),
+            (x, y, 0),
+            steps=36,
+        )
         s.lathe([(0.285, z + 0.04), (0.28, z + 0.14), (0.285, z + 0.24)], lens("black"), (x, y, 0), steps=24)
         for a in range(36):
             with s.at(x, y, z + 0.145, turn=10 * a):
@@ -179,12 +198,19 @@ def wheelie_bin(colour: str = "green", *, open: bool = False, label: str | None 
     """A 1100-litre wheeled bin, lid shut or thrown back."""
     s = Solid(f"{colour} wheelie bin")
     skin = paint(colour, dirt=0.38, roughness=0.45)
-    low, high = [(-0.50, -0.36), (0.50, -0.36), (0.50, 0.36), (-0.50, 0.36)], [(-0.65, -0.50), (0.65, -0.50), (0.65, 0.50), (-0.65, 0.50)]
+    low, high = (
+        [(-0.50, -0.36), (0.50, -0.36), (0.50, 0.36), (-0.50, 0.36)],
+        [(-0.65, -0.50), (0.65, -0.50), (0.65, 0.50), (-0.65, 0.50)],
+    )
     points = [(x, y, 0.22) for x, y in low] + [(x, y, 1.16) for x, y in high]
     inner = [(x * 0.94, y * 0.94, 0.26) for x, y in low] + [(x * 0.95, y * 0.95, 1.16) for x, y in high]
     faces = [(3, 2, 1, 0), *((k, (k + 1) % 4, 4 + (k + 1) % 4, 4 + k) for k in range(4))]
     s.add(points, faces, skin)
-    s.add([*inner, *points], [*(tuple(f[::-1]) for f in faces), *((4 + k, 4 + (k + 1) % 4, 12 + (k + 1) % 4, 12 + k) for k in range(4))], skin)
+    s.add(
+        [*inner, *points],
+        [*(tuple(f[::-1]) for f in faces), *((4 + k, 4 + (k + 1) % 4, 12 + (k + 1) % 4, 12 + k) for k in range(4))],
+        skin,
+    )
     for k in range(5):
         s.box((0.05, 0.05, 0.7), (-0.44 + 0.22 * k, 0.452, 0.68), skin, 0.012)
     for sx in (-1, 1):
@@ -193,7 +219,18 @@ def wheelie_bin(colour: str = "green", *, open: bool = False, label: str | None 
             s.lathe([(0.10, -0.03), (0.10, 0.03)], rubber(), (sx * 0.42, sy * 0.30, 0.10), "X", 20)
             s.box((0.08, 0.10, 0.12), (sx * 0.42, sy * 0.30, 0.18), steel(), 0.01)
     with s.at(0, -0.52, 1.17, pitch=105 if open else 0):
-        arc = [(0.0, 0.0), (0.25, 0.10), (0.55, 0.16), (0.85, 0.12), (1.04, 0.02), (1.04, -0.02), (0.85, 0.07), (0.55, 0.11), (0.25, 0.05), (0.0, -0.04)]
+        arc = [
+            (0.0, 0.0),
+            (0.25, 0.10),
+            (0.55, 0.16),
+            (0.85, 0.12),
+            (1.04, 0.02),
+            (1.04, -0.02),
+            (0.85, 0.07),
+            (0.55, 0.11),
+            (0.25, 0.05),
+            (0.0, -0.04),
+        ]
         s.prism(arc, (-0.68, 0.68), skin, "YZ")
     if label:
         s.box((0.70, 0.006, 0.16), (0, 0.487, 0.80), sheet("white"), 0.0)

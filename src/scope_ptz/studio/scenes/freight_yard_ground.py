@@ -56,13 +56,38 @@ def _markings(stage: Stage) -> None:
         (OUT_X, -8.0, 180, "ahead"), (-16.0, -20.5, 270, "ahead"), (-34.0, -20.5, 270, "ahead"),
     ):  # fmt: skip
         facing = {0: "north", 180: "south", 270: "west"}[bearing]
-        stage.place(yard_ground.arrow(turn=turn), "road marking", "painted arrow", (x, y, 0), bearing, colour="white", kind="arrow", direction=turn, facing=facing)  # fmt: skip
-    boxes = (("yellow", 9.0, 5.0, -24.0, 20.0), ("yellow", 4.6, 6.0, 22.0, 26.0), ("white", 3.0, 9.0, 3.0, -24.0), ("yellow", 6.0, 3.2, 20.5, 9.0))
+        stage.place(
+            yard_ground.arrow(turn=turn),
+            "road marking",
+            "painted arrow",
+            (x, y, 0),
+            bearing,
+            colour="white",
+            kind="arrow",
+            direction=turn,
+            facing=facing,
+        )
+    boxes = (
+        ("yellow", 9.0, 5.0, -24.0, 20.0),
+        ("yellow", 4.6, 6.0, 22.0, 26.0),
+        ("white", 3.0, 9.0, 3.0, -24.0),
+        ("yellow", 6.0, 3.2, 20.5, 9.0),
+    )
     for colour, width, depth, x, y in boxes:
-        stage.place(yard_ground.hatch(width, depth, colour=colour), "hatched zone", f"{colour} hatched zone", (x, y, 0), 0, colour=colour)
+        stage.place(
+            yard_ground.hatch(width, depth, colour=colour), "hatched zone", f"{colour} hatched zone", (x, y, 0), 0, colour=colour
+        )
     stage.place(yard_ground.words(["STOP"], 1.2), "road marking", "painted STOP", (IN_X, -41.6, 0), 0, colour="white", kind="word")
     stage.place(yard_ground.words(["SLOW"], 1.2), "road marking", "painted SLOW", (IN_X, -13.5, 0), 0, colour="white", kind="word")
-    stage.place(yard_ground.words(["KEEP", "CLEAR"], 0.9, colour="yellow"), "road marking", "painted KEEP CLEAR", (22.0, 20.6, 0), 180, colour="yellow", kind="word")  # fmt: skip
+    stage.place(
+        yard_ground.words(["KEEP", "CLEAR"], 0.9, colour="yellow"),
+        "road marking",
+        "painted KEEP CLEAR",
+        (22.0, 20.6, 0),
+        180,
+        colour="yellow",
+        kind="word",
+    )
     stage.place(_stop_line(), "road marking", "stop line", (IN_X, -39.6, 0), 0, colour="white", kind="stop line")
     stage.place(_walkway(), "walkway", "green pedestrian walkway", (-11.2, -15.0, 0), 0, colour="green", state="empty")
     stage.put(_lanes(), (0, 0, 0))
@@ -132,7 +157,7 @@ def _masts(stage: Stage) -> None:
             state="lit" if lit else "unlit", light="orange" if kind == "sodium" else "white", number=number, height_m=10.0,
         )  # fmt: skip
         if lit:
-            yard_lights.mast_light(x, y, bearing, kind=kind, heads=heads)
+            yard_lights.mast_light(x, y, bearing, kind=kind, heads=heads, power_w=820 if kind == "sodium" else 650)
     for x in (-18.0, -4.5, 9.0):
         dusk.pool((x, 28.4, 4.72), 220, dusk.LED, size_m=6.0, stretch=0.06)
     for x in (-20.0, -6.0, 8.0, 22.0):

@@ -30,13 +30,34 @@ def _crew(stage: Stage) -> None:
         facts = {"carrying": holding} if holding else {}
         stage.place(built, "worker", name, (x, y, z), bearing, vest=vest, helmet=helmet or "none", pose=pose, area=area, **facts)
     sweeper = people.worker(vest="yellow", helmet="white", pose="shovel", holding="broom", seed=60)
-    stage.place(sweeper, "worker", "worker sweeping with a broom", (25.0, 13.6, 0), 210, vest="yellow", helmet="white", pose="sweep", carrying="broom", area="apron")
+    stage.place(
+        sweeper,
+        "worker",
+        "worker sweeping with a broom",
+        (25.0, 13.6, 0),
+        210,
+        vest="yellow",
+        helmet="white",
+        pose="sweep",
+        carrying="broom",
+        area="apron",
+    )
 
 
 def _others(stage: Stage) -> None:
     x, y = GATEHOUSE
     guard = people.pedestrian(top="navy", trousers="black", hair="grey", pose="stand", seed=12)
-    stage.place(guard, "security guard", "security guard in the gatehouse", (x - 0.75, y + 0.25, 0.24), 285, top="navy", state="standing", behind="glass", area="gatehouse")
+    stage.place(
+        guard,
+        "security guard",
+        "security guard in the gatehouse",
+        (x - 0.75, y + 0.25, 0.24),
+        285,
+        top="navy",
+        state="standing",
+        behind="glass",
+        area="gatehouse",
+    )
     rows = [
         ("dark red", "denim", "phone", -16.2, 10.9, 200, "lorry driver on the phone", "driver", 21, None),
         ("grey", "black", "stand", -30.4, -7.3, 190, "man in the smoking shelter", "person", 22, None),
