@@ -78,6 +78,13 @@ def test_keys_from_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
     assert settings.eyes_key.get_secret_value() == f"{KEY}-EYES"
 
 
+@pytest.mark.parametrize(("total_s", "first_byte_s"), [(0.5, 0.5), (30, 30), (100, 60), (600, 300)])
+def test_patience_within_a_time(total_s: float, first_byte_s: float) -> None:
+    patience = Timeouts.within(total_s)
+    assert (patience.first_byte_s, patience.total_s) == (first_byte_s, total_s)
+    assert patience.connect_s <= total_s
+
+
 @pytest.mark.parametrize("seconds", [0, -1, float("nan"), float("inf")])
 def test_patience_is_positive_and_finite(seconds: float) -> None:
     with pytest.raises(ValueError, match="total_s"):

@@ -231,8 +231,7 @@ class _Chooser:
             how = f" `scope models serve-command {model.name}` says how to start one." if model else ""
             raise ConfigError(f"'{name}' runs on a model server. Say where it is, with --{role}-url.{how}")
         total = self.wishes.timeout_s
-        patience = Timeouts() if total is None else Timeouts(total_s=total, first_byte_s=min(Timeouts().first_byte_s, total))
-        return Endpoint(url=url, key=key, timeouts=patience)
+        return Endpoint(url=url, key=key, timeouts=Timeouts() if total is None else Timeouts.within(total))
 
     @staticmethod
     def _key(file: Path | None, model: Model | None, url: str, from_environment: SecretStr | None) -> SecretStr | None:

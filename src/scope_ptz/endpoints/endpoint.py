@@ -25,6 +25,16 @@ class Timeouts(BaseModel):
     first_byte_s: float = Field(default=60.0, gt=0, allow_inf_nan=False)
     total_s: float = Field(default=120.0, gt=0, allow_inf_nan=False)
 
+    @classmethod
+    def within(cls, total_s: float) -> Timeouts:
+        """For a call that may take ``total_s``: a slow machine needs half of a long time for its first word."""
+        usual = cls()
+        return cls(
+            connect_s=min(usual.connect_s, total_s),
+            first_byte_s=min(max(usual.first_byte_s, total_s / 2), total_s),
+            total_s=total_s,
+        )
+
 
 class Endpoint(BaseModel):
     """A model server. ``url``: for OpenAI-compatible servers the base with its ``/v1``. ``key`` is never shown anywhere."""
