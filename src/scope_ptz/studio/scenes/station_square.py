@@ -69,7 +69,7 @@ def build(stage: Stage) -> None:
 def _cameras(stage: Stage) -> None:
     stage.viewpoint("kiosk", (4.0, -8.0, 6.4), 0.0, "camera on a lamp mast beside the news kiosk")
     stage.viewpoint("hotel", (6.0, -27.4, 8.0), 0.0, "bracket on the front of the Station Hotel")
-    stage.preset("square", "kiosk", -27, -11, 1.0, "the market, the fountain and the station", home=True)
+    stage.preset("square", "kiosk", -24, -8, 1.0, "the market, the fountain and the station", home=True)
     stage.preset("market", "kiosk", -52, -13, 2.0, "the market stalls and their customers")
     stage.preset("station-front", "kiosk", -7, 0, 1.5, "the station's entrance, clock and name")
     stage.preset("terrace", "kiosk", -82, -9, 2.6, "the café terrace")
