@@ -6,7 +6,14 @@ import bpy
 
 from scope_ptz.studio.kit import overcast, sky
 from scope_ptz.studio.kit.stage import Stage
-from scope_ptz.studio.scenes import high_street_kerb, high_street_land, high_street_people, high_street_shops, high_street_wares
+from scope_ptz.studio.scenes import (
+    high_street_kerb,
+    high_street_land,
+    high_street_people,
+    high_street_shops,
+    high_street_traffic,
+    high_street_wares,
+)
 
 NAME = "high-street"
 TITLE = "High street"
@@ -20,9 +27,10 @@ ABSENT = (
 
 def build(stage: Stage) -> None:
     """Build the whole scene in an empty Blender file and fill in the stage."""
-    stage.start_s = 17.0
+    stage.start_s = 17.0  # car, cyclist, walkers and dog are all in the street then
     overcast.setup(bpy.context.scene)
     high_street_people.build(stage)  # first: melting bodies slows down with every object that the file already holds
+    high_street_traffic.build(stage)
     shops = high_street_shops.build(stage)
     high_street_wares.build(stage, shops)
     high_street_kerb.build(stage)

@@ -61,7 +61,8 @@ def _posts(stage: Stage) -> None:
     )
     stage.place(town_furniture.phone_box(), "phone box", "red phone box", (EAST_X + 0.5, 32.6, z), 270, colour="red")
     for colour, x, y, bearing in (
-        ("dark green", WEST_X, -4.6, 270), ("dark green", WEST_X, 24.5, 270), ("black", EAST_X, -13.5, 90), ("dark red", EAST_X, 38.7, 270),
+        ("dark green", WEST_X, -4.6, 270), ("dark green", WEST_X, 24.5, 270), ("black", EAST_X, -13.5, 90), ("dark red", EAST_X,
+        38.7, 270),
         ("dark green", EAST_X, 9.5, 90), ("dark green", 8.6, -59.6, 0),
     ):  # fmt: skip
         stage.place(furniture.bin(colour=colour), "bin", f"{colour} litter bin", (x, y, z), bearing, colour=colour)
@@ -71,8 +72,9 @@ def _posts(stage: Stage) -> None:
         stage.place(bollard if k == 0 else bollard.copy(), "bollard", "black bollard", (x, y, z), 0, colour="black")
     for x, y, bearing in ((EAST_X, -33.2, 90), (EAST_X, 28.6, 90)):
         stage.place(town_furniture.parking_meter(), "parking meter", "parking meter", (x, y, z), bearing, colour="dark grey")
-    planted = ((WEST_X - 0.1, -30.6, ("red", "yellow")), (WEST_X - 0.1, -21.5, ("purple", "white")), (EAST_X + 0.1, -20.0, ("pink", "red")),
-               (EAST_X + 0.1, 26.0, ("yellow", "purple")), (WEST_X - 0.1, 37.5, ("orange", "red")))  # fmt: skip
+    planted = ((WEST_X - 0.1, -30.6, ("red", "yellow")), (WEST_X - 0.1, -21.5, ("purple", "white")), (EAST_X + 0.1, -20.0,
+    ("pink", "red")),
+               (EAST_X + 0.1, 26.0, ("yellow", "purple")), (WEST_X - 0.1, 40.3, ("orange", "red")))  # fmt: skip
     for k, (x, y, colours) in enumerate(planted):
         built = town_furniture.planter(colours, seed=10 * k)
         stage.place(built, "planter", f"planter of {colours[0]} flowers", (x, y, z), 90, colour=colours[0], material="timber")
@@ -100,14 +102,17 @@ def _bicycles(stage: Stage) -> None:
             stand if k == 0 else stand.copy(), "bike stand", "steel bike stand", (x, -2.2 + 2.5 * k, KERB_M), 0, material="steel"
         )
     rows = (
-        ("red", "town", True, -2.2, -0.28, 0, True), ("blue", "road", False, -2.2, 0.26, 180, True), ("green", "step-through", True, 0.3, 0.27, 0, True),
-        ("black", "town", False, 2.8, -0.27, 180, True), ("yellow", "mountain", False, 2.8, 0.28, 0, True), ("white", "road", False, 5.3, -0.25, 0, False),
+        ("red", "town", True, -2.2, -0.28, 0, True), ("blue", "road", False, -2.2, 0.26, 180, True), ("green", "step-through",
+        True, 0.3, 0.27, 0, True),
+        ("black", "town", False, 2.8, -0.27, 180, True), ("yellow", "mountain", False, 2.8, 0.28, 0, True), ("white", "road",
+        False, 5.3, -0.25, 0, False),
     )  # fmt: skip
     for colour, kind, basket, y, dx, bearing, whole in rows:
         built = cycles.bicycle(colour, kind=kind, basket=basket, front_wheel=whole)
         facts = {} if whole else {"missing": "front wheel"}
         stage.place(
-            built, "bicycle", f"{colour} bicycle", (x + dx, y, KERB_M), bearing, lean_deg=(0.0, 6.0 if (dx < 0) == (bearing == 0) else -6.0),
+            built, "bicycle", f"{colour} bicycle", (x + dx, y, KERB_M), bearing, lean_deg=(0.0,
+            6.0 if (dx < 0) == (bearing == 0) else -6.0),
             colour=colour, kind=f"{kind} bicycle", state="parked", basket=basket, **facts,
         )  # fmt: skip
     stage.place(
@@ -119,7 +124,8 @@ def _bicycles(stage: Stage) -> None:
 def _signals(stage: Stage) -> None:
     z = KERB_M
     for x, y, bearing, state in (
-        (EAST_X + 0.1, -48.6, 0, "red"), (WEST_X - 0.1, -60.2, 0, "red"), (WEST_X - 3.0, -51.3, 270, "green"), (EAST_X + 3.0, -59.7, 90, "green"),
+        (EAST_X + 0.1, -48.6, 0, "red"), (WEST_X - 0.1, -60.2, 0, "red"), (WEST_X - 3.0, -51.3, 270, "green"), (EAST_X + 3.0,
+        -59.7, 90, "green"),
     ):  # fmt: skip
         facing = {0: "north", 90: "east", 270: "west"}[bearing]
         stage.place(
@@ -169,7 +175,8 @@ def _signs(stage: Stage) -> None:
     clock = town_furniture.bracket_clock(3, 40)
     stage.place(clock, "clock", "jeweller's clock", plot.at(1.6, 0.0, 4.7), plot.bearing_deg, shows="3:40", colour="black")
     for x, y, bearing, lines in (
-        (WEST_X, -16.4, 90, ("NO LOADING", "MON TO SAT", "8 AM TO 6 PM")), (EAST_X, -26.9, 270, ("1 HOUR", "NO RETURN", "WITHIN 2 HOURS")),
+        (WEST_X, -16.4, 90, ("NO LOADING", "MON TO SAT", "8 AM TO 6 PM")), (EAST_X, -26.9, 270, ("1 HOUR", "NO RETURN",
+        "WITHIN 2 HOURS")),
         (EAST_X, 41.1, 270, ("PERMIT", "HOLDERS B", "OR 1 HOUR")), (WEST_X, 31.1, 90, ("NO LOADING", "AT ANY TIME")),
     ):  # fmt: skip
         made = shopfronts.plate(lines, 0.055, "white", "black")

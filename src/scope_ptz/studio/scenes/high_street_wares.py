@@ -51,7 +51,8 @@ def _windows(stage: Stage, shops: dict[int, str]) -> None:
     loaves: list[Ware] = [(lambda: goods.loaf(1), "loaf", "loaf of bread", {}), (lambda: goods.loaf(2), "loaf", "crusty loaf", {})]
     _row(stage, 9, shops[9], (-2.7, -2.3, -1.9, -1.5, -1.1), loaves)
     _row(stage, 9, shops[9], (2.7, 2.15, 1.6, 1.05), [
-        (lambda: goods.cake("pink"), "cake", "pink cake", {"colour": "pink"}), (lambda: goods.cake("white"), "cake", "white cake", {"colour": "white"}),
+        (lambda: goods.cake("pink"), "cake", "pink cake", {"colour": "pink"}), (lambda: goods.cake("white"), "cake",
+        "white cake", {"colour": "white"}),
         (lambda: goods.cake("brown"), "cake", "chocolate cake", {"colour": "brown"}),
     ])  # fmt: skip
     _row(stage, 3, shops[3], (2.6, 2.1, 1.6, 1.1, 0.6), [(goods.ham, "ham", "hanging ham", {"state": "hanging"})], z=2.10)
@@ -61,7 +62,8 @@ def _windows(stage: Stage, shops: dict[int, str]) -> None:
     ]
     _row(stage, 7, shops[7], (2.55, -2.4, -2.0, -1.6, -1.2, -0.8, -0.4, 0.0), shelf)
     _row(stage, 17, shops[17], (2.7, 2.3, -2.6, -2.1, -1.6, -1.1, -0.6), [
-        (lambda c=c: goods.bottle(c), "bottle", f"{c} bottle", {"colour": c}) for c in ("green", "blue", "amber", "green", "red", "blue")
+        (lambda c=c: goods.bottle(c), "bottle", f"{c} bottle", {"colour": c}) for c in ("green", "blue", "amber", "green", "red",
+        "blue")
     ])  # fmt: skip
     _row(stage, 15, shops[15], (-2.7, -1.5, 1.4, 2.7), [
         (lambda: goods.mannequin("yellow"), "mannequin", "mannequin in a yellow dress", {"colour": "yellow"}),
@@ -92,8 +94,8 @@ BOARDS: tuple[tuple[int, float, float, tuple[str, ...], str], ...] = (
     (7, -2.4, 2.4, ("BOOK SALE", "TODAY"), "dark red"),
     (17, -2.2, 2.4, ("FLU JABS", "WALK IN"), "green"),
     (25, -3.6, 2.2, ("PIE AND PINT", "12.50", "LIVE MUSIC", "FRIDAY"), "black"),
-    (20, 2.6, 2.4, ("COATS", "FROM 45.00"), "black"),
-    (22, -3.5, 2.3, ("PLUMS", "1.80 A KILO", "LEEKS 0.95"), "dark green"),
+    (20, 2.6, 0.95, ("COATS", "FROM 45.00"), "black"),
+    (22, -3.4, 0.85, ("PLUMS", "1.80 A KILO", "LEEKS 0.95"), "dark green"),
     (16, -2.4, 2.5, ("LAMPS", "HALF PRICE"), "navy"),
     (6, 2.3, 2.4, ("CUT AND DRY", "28.00", "NO BOOKING"), "black"),
 )
@@ -182,7 +184,8 @@ def _cafe(stage: Stage, shop: str) -> None:
             chair = cafe.chair("dark red") if chair is None else chair.copy()
             side = 1 if seat < 90 else -1
             stage.place(
-                chair, "chair", "red café chair", plot.at(x + side * 0.72, 1.05 + 0.1 * side), plot.bearing_deg - 90 * side + (seat % 90), parent=shop,
+                chair, "chair", "red café chair", plot.at(x + side * 0.72, 1.05 + 0.1 * side),
+                plot.bearing_deg - 90 * side + (seat % 90), parent=shop,
                 colour="dark red",
             )  # fmt: skip
         if k < 2:
