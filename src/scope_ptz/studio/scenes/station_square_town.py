@@ -55,7 +55,7 @@ def _station(stage: Stage) -> None:
         )  # fmt: skip
     board = station.departures_board(DEPARTURES)
     stage.place(
-        board, "departures board", "departures board", (10.2, STATION_Y + 0.2, 2.75), 180, parent=front, state="lit", lines=6
+        board, "departures board", "departures board", (10.2, STATION_Y + 0.2, 2.38), 180, parent=front, state="lit", lines=6
     )
 
 
