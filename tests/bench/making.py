@@ -209,7 +209,7 @@ def samples() -> list[tuple[Task, Episode]]:
     more = Relation(value="forward", subject=("gate",), object=("highway",), forward=("more",), backward=("fewer",))
     add(
         "comparative", more, [counted(5, "cars"), GO_HIGHWAY, counted(3, "cars")], "The gate has more cars than the highway.",
-        evidence=[view(START, shows=Number(value=5, unit=("car",))), view(AT_HIGHWAY, shows=Number(value=3, unit=("car",)))],
+        evidence=[view(at, shows=Number(value=n, unit=("car",))) for at, n in ((START, 5), (AT_HIGHWAY, 3))],
         needs=("preset",), instruction="Which shows more cars, gate or highway?",
     )  # fmt: skip
     order = Ordering(
@@ -260,7 +260,8 @@ def samples() -> list[tuple[Task, Episode]]:
     )  # fmt: skip
     machines = NameSet(value=("excavator", "roller"), options={"excavator": ("digger",), "roller": (), "van": (), "generator": ()})
     add(
-        "descriptor", machines, [GO_HIGHWAY, told("an excavator and a roller", "Which machines are there?")], "an excavator and a roller",
+        "descriptor", machines, [GO_HIGHWAY, told("an excavator and a roller", "Which machines are there?")],
+        "an excavator and a roller",
         evidence=[view(AT_HIGHWAY, shows=machines)], needs=("preset",), instruction="Which machines are at the highway?",
     )  # fmt: skip
     scene = Description(

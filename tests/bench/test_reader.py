@@ -1,18 +1,23 @@
-"""The reader against answers written by hand, right and wrong, of every kind."""
+"""The reader against answers written by hand, right and wrong, of every kind; and what must hold for any answer."""
 
 from __future__ import annotations
 
 import json
+import random
 from collections import Counter
+from itertools import permutations
 from pathlib import Path
 
 import pytest
 import yaml
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from pydantic import TypeAdapter
 
-from scope_ptz.bench.expected import ActionOnly, AnyExpected, Expected
+from scope_ptz.bench.expected import ActionOnly, AnyExpected, Choice, Expected, NameSet, Number, Ordering, Text, YesNo
+from scope_ptz.bench.phrasing import right_answers, wrong_answer
 from scope_ptz.bench.reader import agrees, read
-from scope_ptz.bench.reading import Declined
+from scope_ptz.bench.reading import Declined, Unreadable, Value
 
 DATA = Path(__file__).parent / "data"
 ADAPTER: TypeAdapter[AnyExpected] = TypeAdapter(Expected)
@@ -21,6 +26,8 @@ EXPECTATIONS = {
     for name, content in yaml.safe_load((DATA / "expectations.yaml").read_text("utf-8")).items()
 }
 ANSWERS = [json.loads(line) for line in (DATA / "answers.jsonl").read_text("utf-8").splitlines()]
+HELD_OUT = [json.loads(line) for line in (DATA / "answers_held_out.jsonl").read_text("utf-8").splitlines()]
+ANSWERED = {name: expected for name, expected in EXPECTATIONS.items() if not isinstance(expected, ActionOnly)}
 
 
 def verdict(expected: AnyExpected, answer: str) -> str:
@@ -46,3 +53,118 @@ def test_the_answers_are_many_and_of_every_kind() -> None:
     for kind in set(kinds) - {"action_only"}:
         verdicts = {c["verdict"] for c in ANSWERS if EXPECTATIONS[c["expected"]].kind == kind}
         assert {"right", "wrong"} <= verdicts, kind
+
+
+def test_answers_that_the_rules_were_not_written_for() -> None:
+    """What is not read exactly is at worst unscored: nothing wrong passes, nothing right fails."""
+    taken = [(c["verdict"], verdict(EXPECTATIONS[c["expected"]], c["answer"]), c["answer"]) for c in HELD_OUT]
+    assert [row for row in taken if row[1] == "right" != row[0]] == []
+    assert [row for row in taken if row[0] == "right" != row[1]] == []
+    assert sum(one == two for one, two, _ in taken) / len(taken) > 0.98
+
+
+@pytest.mark.parametrize("name", ANSWERED)
+def test_right_and_wrong_answers_of_validation_are_read_as_such(name: str) -> None:
+    expected = EXPECTATIONS[name]
+    wordings = right_answers(expected)
+    assert len(set(wordings)) >= 5
+    assert [w for w in wordings if verdict(expected, w) != "right"] == []
+    wrong = [wrong_answer(expected, random.Random(seed)) for seed in range(20)]
+    assert [w for w in wrong if w is None or verdict(expected, w) != "wrong"] == []
+
+
+@given(
+    st.integers(0, 130), st.integers(0, 3), st.sampled_from(["cone", "person", "bus", "lorry", "traffic cone", ""]), st.integers()
+)
+def test_any_number_in_any_of_its_wordings(value: int, tolerance: int, unit: str, seed: int) -> None:
+    expected = Number(value=value, tolerance=tolerance, unit=(unit,) if unit else ())
+    assert {verdict(expected, answer) for answer in right_answers(expected)} == {"right"}
+    wrong = wrong_answer(expected, random.Random(seed))
+    assert wrong is not None
+    assert verdict(expected, wrong) == "wrong"
+
+
+@given(st.permutations(["cone", "van", "sign", "bus"]), st.integers())
+def test_any_order(order: list[str], seed: int) -> None:
+    expected = Ordering(value=tuple(order), options=dict.fromkeys(sorted(order), ()))
+    assert {verdict(expected, answer) for answer in right_answers(expected)} == {"right"}
+    wrong = wrong_answer(expected, random.Random(seed))
+    assert wrong is not None
+    assert verdict(expected, wrong) == "wrong"
+
+
+@given(st.sets(st.sampled_from(["car", "van", "bus", "lorry", "crane"])), st.integers())
+def test_any_set(names: set[str], seed: int) -> None:
+    expected = NameSet(value=tuple(sorted(names)), options=dict.fromkeys(("car", "van", "bus", "lorry", "crane"), ()))
+    assert {verdict(expected, answer) for answer in right_answers(expected)} == {"right"}
+    wrong = wrong_answer(expected, random.Random(seed))
+    assert wrong is not None
+    assert verdict(expected, wrong) == "wrong"
+
+
+@given(st.from_regex(r"[A-Z]{2}[0-9]{2} [A-Z]{3}", fullmatch=True), st.integers())
+def test_any_number_plate(plate: str, seed: int) -> None:
+    expected = Text(accepted=(plate,), ocr=True)
+    assert {verdict(expected, answer) for answer in right_answers(expected)} == {"right"}
+    wrong = wrong_answer(expected, random.Random(seed))
+    assert wrong is not None
+    assert verdict(expected, wrong) == "wrong"
+
+
+@given(st.text(max_size=200))
+@settings(max_examples=300)
+def test_no_text_breaks_the_reader(text: str) -> None:
+    for expected in ANSWERED.values():
+        assert isinstance(read(expected, text), Value | Declined | Unreadable)
+
+
+WORDS = [
+    "no",
+    "yes",
+    "5",
+    "cones",
+    "not",
+    "or",
+    "and",
+    "red",
+    "gate",
+    "highway",
+    "than",
+    "more",
+    "the",
+    ",",
+    ".",
+    "a",
+    "van",
+    "none",
+    "left",
+]
+
+
+@given(st.lists(st.sampled_from(WORDS), max_size=12).map(" ".join))
+@settings(max_examples=300)
+def test_what_is_read_does_not_depend_on_what_is_right(text: str) -> None:
+    for value in (1, 5):
+        assert read(Number(value=value, unit=("cone",)), text) == read(Number(value=9, unit=("cone",)), text)
+    assert read(YesNo(value=True, affirms=("van",)), text) == read(YesNo(value=False, affirms=("van",)), text)
+    options: dict[str, tuple[str, ...]] = {"red": (), "blue": (), "left": ()}
+    assert read(Choice(value="red", options=options), text) == read(Choice(value="left", options=options), text)
+
+
+@pytest.mark.parametrize("joint", [" ", ", ", " or ", "; ", ". ", " and ", "\n", " / "])
+def test_naming_everything_is_no_answer(joint: str) -> None:
+    """A scattershot answer never passes, in whatever order it comes."""
+    options: dict[str, tuple[str, ...]] = {"red": (), "blue": (), "white": ()}
+    for words in permutations(options):
+        assert verdict(Choice(value="red", options=options), joint.join(words)) != "right"
+    for numbers in permutations(["4", "5", "6"]):
+        assert verdict(EXPECTATIONS["cones"], joint.join(numbers)) != "right"
+    for pair in (("yes", "no"), ("no", "yes")):
+        assert verdict(EXPECTATIONS["van"], joint.join(pair)) != "right"
+        assert verdict(EXPECTATIONS["lorry"], joint.join(pair)) != "right"
+    for texts in permutations(['"ROAD CLOSED"', '"ROAD OPEN"', '"STOP"']):
+        assert verdict(EXPECTATIONS["road-closed"], joint.join(texts)) != "right"
+    for names in permutations(["excavator", "roller", "van"]):
+        assert verdict(EXPECTATIONS["machines"], joint.join(names)) != "right"
+    assert verdict(EXPECTATIONS["bikes"], joint.join(["none", "one bicycle"])) != "right"
+    assert verdict(EXPECTATIONS["more"], joint.join(["the gate has more", "the highway has more"])) != "right"

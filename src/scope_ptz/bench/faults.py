@@ -1,4 +1,4 @@
-"""Known faults to put into a run that passes, by the error mode that each is of.
+"""Known faults of what an agent does, to put into a run that passes: calls left out, wrong tools, scopes and arguments.
 
 Every way gives the run with the fault, or None where the run offers no place for it.
 """
@@ -11,18 +11,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from scope_ptz.bench.episode import Call, Episode, Eyes, Standing, looks_of
-from scope_ptz.bench.error_modes import ErrorMode
 from scope_ptz.bench.expected import (
     ActionOnly,
     AnyExpected,
-    NoneThere,
-    Number,
-    Relation,
-    YesNo,
 )
-from scope_ptz.bench.grounds import is_grounded, numbers_said
 from scope_ptz.bench.matching import in_order
-from scope_ptz.bench.phrasing import right_answers, wrong_answer
+from scope_ptz.bench.phrasing import wrong_answer
 from scope_ptz.bench.reader import read
 from scope_ptz.bench.reading import Value
 from scope_ptz.bench.tasks import Task
@@ -42,7 +36,7 @@ class Setting:
     eyes: Eyes
 
 
-def _replayed(episode: Episode, calls: Iterable[Call], setting: Setting) -> Episode:
+def replayed(episode: Episode, calls: Iterable[Call], setting: Setting) -> Episode:
     """The run with other calls: poses follow on from each other again, and looks are where the camera then is."""
     at, made = episode.start, list[Call]()
     for call in calls:
@@ -69,43 +63,47 @@ def _after(call: Call, at: Standing, episode: Episode, setting: Setting) -> Stan
     return Standing(at.viewpoint, call.after.pose)
 
 
-def _retold(call: Call, **said: Any) -> Call:
+def retold(call: Call, **said: Any) -> Call:
     return replace(call, result={**(call.result or {}), **said})
 
 
-def _changed(episode: Episode, setting: Setting, change: Callable[[Call], Call | None]) -> Episode:
+def changed(episode: Episode, setting: Setting, change: Callable[[Call], Call | None]) -> Episode:
     """The run with each call changed, or left out where the change gives None."""
-    return _replayed(episode, [new for call in episode.calls if (new := change(call)) is not None], setting)
+    return replayed(episode, [new for call in episode.calls if (new := change(call)) is not None], setting)
 
 
 # Lack of a tool call
 
 
-def _drop_all(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
-    return _replayed(episode, (), setting)
+def drop_all(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
+    return replayed(episode, (), setting)
 
 
-def _drop_looks(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
+def drop_looks(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
     if not any(call.name in LOOKERS for call in episode.calls):
         return None
-    return _changed(episode, setting, lambda call: None if call.name in LOOKERS else call)
+    return changed(episode, setting, lambda call: None if call.name in LOOKERS else call)
 
 
-def _drop_pictures(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
+def drop_pictures(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
     if not episode.pictures:
         return None
-    return _changed(episode, setting, lambda call: None if call.name == "take_image" else call)
+    return changed(episode, setting, lambda call: None if call.name == "take_image" else call)
 
 
 # Wrong tool
 
 
-def _swap_tools(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
+_STAND_INS: dict[str, tuple[str, dict[str, Any], dict[str, Any]]] = {
+    "take_image": ("query_answer", {"question": "What is in view?"}, {"message": "A view.", "answer": "A view."}),
+    "zoom_to_object": ("adjust_ptz", {"zoom_factor": 1.2}, {"message": "Moved."}),
+}
+
+
+def swap_tools(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
     """Every call of one tool becomes a call of one that cannot do its work."""
     name = rng.choice([call.name for call in episode.calls])
-    other, arguments = ("query_answer", {"question": "What is in view?"}) if name == "take_image" else ("take_image", {})
-    if name == "zoom_to_object":
-        other, arguments = "adjust_ptz", {"zoom_factor": 1.2}
+    other, arguments, said = _STAND_INS.get(name, ("take_image", {}, {"message": "Done.", "file": "pictures/001.png"}))
     if any(call.name == other for call in episode.calls):
         return None
 
@@ -113,17 +111,12 @@ def _swap_tools(task: Task, episode: Episode, setting: Setting, rng: random.Rand
         if call.name != name:
             return call
         pose = call.before.pose.zoomed(1.2) if other == "adjust_ptz" else call.before.pose
-        said = (
-            {"message": "Done.", "file": "pictures/001.png"}
-            if other == "take_image"
-            else {"message": "A view.", "answer": "A view."}
-        )
         return replace(call, name=other, arguments=arguments, after=Standing(call.before.viewpoint, pose), result=said)
 
-    return _changed(episode, setting, swap)
+    return changed(episode, setting, swap)
 
 
-def _swap_order(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
+def swap_order(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
     if len(task.behaviour.calls) < 2 or task.behaviour.order != "ordered":
         return None
     places = list(range(len(episode.calls) - 1))
@@ -132,14 +125,14 @@ def _swap_order(task: Task, episode: Episode, setting: Setting, rng: random.Rand
         calls = list(episode.calls)
         calls[at], calls[at + 1] = calls[at + 1], calls[at]
         if in_order(task.behaviour.calls, calls) is not None:
-            return _replayed(episode, calls, setting)
+            return replayed(episode, calls, setting)
     return None
 
 
 # Wrong scope
 
 
-def _flip_scope(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
+def flip_scope(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
     if not any(call.name in LOOKERS for call in episode.calls) or isinstance(task.expected, ActionOnly):
         return None
     told = wrong_answer(task.expected, rng)
@@ -150,13 +143,13 @@ def _flip_scope(task: Task, episode: Episode, setting: Setting, rng: random.Rand
         if call.name not in LOOKERS:
             return call
         view = "full" if call.arguments.get("view", "current") == "current" else "current"
-        said: dict[str, Any] = {"count": _count_of(task.expected, told, call)} if call.name == "count_objects" else {"answer": told}
-        return _retold(replace(call, arguments={**call.arguments, "view": view}), view=view, message=told, **said)
+        said: dict[str, Any] = {"count": count_of(task.expected, told, call)} if call.name == "count_objects" else {"answer": told}
+        return retold(replace(call, arguments={**call.arguments, "view": view}), view=view, message=told, **said)
 
-    return replace(_changed(episode, setting, flip), text=told)
+    return replace(changed(episode, setting, flip), text=told)
 
 
-def _count_of(expected: AnyExpected, told: str, call: Call) -> int:
+def count_of(expected: AnyExpected, told: str, call: Call) -> int:
     reading, counted = read(expected, told), int((call.result or {}).get("count", 0))
     if isinstance(reading, Value) and isinstance(reading.value, float):
         return round(reading.value)
@@ -166,7 +159,7 @@ def _count_of(expected: AnyExpected, told: str, call: Call) -> int:
 # Wrong arguments
 
 
-def _other_preset(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
+def other_preset(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
     visited = [call.arguments["name"] for call in episode.calls if call.name == "go_to_preset"]
     if not visited:
         return None
@@ -176,12 +169,12 @@ def _other_preset(task: Task, episode: Episode, setting: Setting, rng: random.Ra
     def go(call: Call) -> Call:
         if call.name != "go_to_preset" or call.arguments["name"] != right:
             return call
-        return _retold(replace(call, arguments={"name": wrong}), message=f"At preset {wrong}.")
+        return retold(replace(call, arguments={"name": wrong}), message=f"At preset {wrong}.")
 
-    return _changed(episode, setting, go)
+    return changed(episode, setting, go)
 
 
-def _turned_round(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
+def turned_round(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
     """ "Panning left when asked to pan right"."""
 
     def turn(call: Call) -> Call:
@@ -192,10 +185,10 @@ def _turned_round(task: Task, episode: Episode, setting: Setting, rng: random.Ra
         pose = Pose(2 * one.pan_deg - two.pan_deg, 2 * one.tilt_deg - two.tilt_deg, two.zoom)
         return replace(call, arguments=arguments, after=Standing(call.after.viewpoint, pose))
 
-    return _changed(episode, setting, turn) if any(call.name == "adjust_ptz" for call in episode.calls) else None
+    return changed(episode, setting, turn) if any(call.name == "adjust_ptz" for call in episode.calls) else None
 
 
-def _other_target(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
+def other_target(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
     """Counts something else than what was asked for."""
     told = wrong_answer(task.expected, rng)
     if told is None or not any(view.about for view in task.evidence):
@@ -205,92 +198,6 @@ def _other_target(task: Task, episode: Episode, setting: Setting, rng: random.Ra
         if call.name != "count_objects":
             return call
         arguments = {**call.arguments, "description": "clouds"}
-        return _retold(replace(call, arguments=arguments), count=_count_of(task.expected, told, call), message=told)
+        return retold(replace(call, arguments=arguments), count=count_of(task.expected, told, call), message=told)
 
-    return replace(_changed(episode, setting, count), text=told)
-
-
-# Perception is wrong
-
-
-def _miscount(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
-    counts = [n for n, call in enumerate(episode.calls) if call.name == "count_objects"]
-    told = wrong_answer(task.expected, rng)
-    if not counts or told is None:
-        return None
-    calls = list(episode.calls)
-    if isinstance(task.expected, Number | NoneThere | YesNo):
-        last = counts[-1]
-        number = _count_of(task.expected, told, calls[last])
-        calls[last] = _retold(calls[last], count=number, message=f"{number} seen")
-    else:
-        numbers = [(calls[n].result or {})["count"] for n in counts]
-        wrong = list(reversed(numbers)) if isinstance(task.expected, Relation) else [numbers[1], numbers[0], *numbers[2:]]
-        for n, number in zip(counts, wrong, strict=True):
-            calls[n] = _retold(calls[n], count=number, message=f"{number} seen")
-    return replace(_replayed(episode, calls, setting), text=told)
-
-
-def _misread(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
-    told = wrong_answer(task.expected, rng)
-    if told is None or not any(call.name == "query_answer" for call in episode.calls):
-        return None
-
-    def misread(call: Call) -> Call:
-        return _retold(call, answer=told, message=told) if call.name == "query_answer" else call
-
-    return replace(_changed(episode, setting, misread), text=told)
-
-
-def _overlook(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
-    """Perception does not find a target that is in view."""
-    if not any(call.name == "zoom_to_object" for call in episode.calls) or not isinstance(task.expected, ActionOnly):
-        return None
-
-    def overlook(call: Call) -> Call:
-        if call.name != "zoom_to_object":
-            return call
-        said = {"message": "Nothing that fits is in view.", "found": False, "matches": 0}
-        return replace(call, result=said, after=call.before)
-
-    return replace(_changed(episode, setting, overlook), text="It is not in view.")
-
-
-# The answer is wrong
-
-
-def _make_up(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
-    for _ in range(_TRIES):
-        told = wrong_answer(task.expected, rng)
-        if told is None:
-            return None
-        if not is_grounded(task, replace(episode, text=told)):
-            return replace(episode, text=told)
-    return None
-
-
-def _conclude_wrongly(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
-    expected = task.expected
-    if isinstance(expected, ActionOnly):
-        return None
-    if isinstance(expected, Number):
-        others = sorted(n for n in numbers_said(episode) if abs(n - expected.value) > expected.tolerance)
-        if others and rng.random() < 0.5:
-            return replace(episode, text=right_answers(expected.model_copy(update={"value": rng.choice(others)}))[0])
-    told = wrong_answer(expected, rng)
-    if told is not None and rng.random() < 0.5 and is_grounded(task, replace(episode, text=told)):
-        return replace(episode, text=told)
-    return replace(episode, text=rng.choice(_DECLINES))
-
-
-Way = Callable[[Task, Episode, Setting, random.Random], Episode | None]
-FAULTS: dict[ErrorMode, tuple[Way, ...]] = {
-    ErrorMode.LACK_OF_TOOL_CALL: (_drop_all, _drop_looks, _drop_pictures),
-    ErrorMode.TOOL_ROUTING: (_swap_tools, _swap_order),
-    ErrorMode.SCOPE: (_flip_scope,),
-    ErrorMode.TOOL_ARGS: (_other_preset, _turned_round, _other_target),
-    ErrorMode.HALLUCINATION: (_make_up,),
-    ErrorMode.VLM_COUNTING: (_miscount,),
-    ErrorMode.VLM_QUERY: (_misread, _overlook),
-    ErrorMode.REASONING: (_conclude_wrongly,),
-}
+    return replace(changed(episode, setting, count), text=told)

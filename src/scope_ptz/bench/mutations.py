@@ -4,15 +4,29 @@ from __future__ import annotations
 
 import random
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
+from scope_ptz.bench import faults, faults_told
 from scope_ptz.bench.episode import Episode
 from scope_ptz.bench.error_modes import ErrorMode, error_mode
-from scope_ptz.bench.faults import FAULTS, Setting
+from scope_ptz.bench.faults import Setting
 from scope_ptz.bench.tasks import Task
 
 __all__ = ["Gold", "Setting", "confusion", "mutate"]
+
+
+Way = Callable[[Task, Episode, Setting, random.Random], Episode | None]
+FAULTS: dict[ErrorMode, tuple[Way, ...]] = {
+    ErrorMode.LACK_OF_TOOL_CALL: (faults.drop_all, faults.drop_looks, faults.drop_pictures),
+    ErrorMode.TOOL_ROUTING: (faults.swap_tools, faults.swap_order),
+    ErrorMode.SCOPE: (faults.flip_scope,),
+    ErrorMode.TOOL_ARGS: (faults.other_preset, faults.turned_round, faults.other_target),
+    ErrorMode.HALLUCINATION: (faults_told.make_up,),
+    ErrorMode.VLM_COUNTING: (faults_told.miscount,),
+    ErrorMode.VLM_QUERY: (faults_told.misread, faults_told.overlook),
+    ErrorMode.REASONING: (faults_told.conclude_wrongly,),
+}
 
 
 @dataclass(frozen=True, slots=True)

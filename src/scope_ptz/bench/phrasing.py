@@ -126,6 +126,8 @@ def _numbers(value: float, unit: Sequence[str]) -> tuple[str, ...]:
     noun = unit[0] if unit else "thing"
     things = noun if value == 1 else plural(noun)
     be = "is" if value == 1 else "are"
+    if value == 0 and not unit:
+        return "0", "Zero.", "None.", "The answer is 0.", "It is zero."
     if value == 0:
         return f"There are no {things}.", "None.", "0", f"I see no {things}.", f"No {things} are visible."
     if not unit:
@@ -168,6 +170,7 @@ def _relations(expected: Relation, value: str) -> tuple[str, ...]:
         for word in way[:2]:
             link = "of" if word in _PLACES else "than"
             said += [f"The {this} is {word} {link} the {that}.", f"{this}: {word} {link} {that}"]
+    said.append(f"I would say that {said[0][0].lower()}{said[0][1:]}")
     if not any(word in _PLACES for word in (*words, *turned)):
         said += [f"The {one if value == 'forward' else two}."]
     return tuple(said)

@@ -34,7 +34,7 @@ def verdict_words(script: Script) -> set[bool]:
         if len(words) == 1 and words[0] in _NO:
             said.add(False)
     said |= {word == "yes" for word in re.findall(r"\b(?:answer|verdict) is (?:a clear )?(yes|no)\b", script.text())}
-    if re.match(r"yes and no\b", script.text()):
+    if re.match(r"(yes|no) (and |or )?(yes|no)\b", script.text()):
         return {True, False}
     return said
 

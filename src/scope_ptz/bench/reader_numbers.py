@@ -39,7 +39,7 @@ _BOUNDS = re.compile(
 )
 _TOTALS = re.compile(r"\b(total|altogether|overall|in all|combined|sum|makes|making|therefore|thus|hence|so|final|finally)\b")
 _NONE = re.compile(
-    r"^(no|nope|none|nothing|nobody|no one|zero)$|^(none|nothing|nobody|no one)\b(?! (of|but))"
+    r"^(no|nope|none|nothing|nobody|no one|zero)$|^(none|nothing|nobody|no one)\b(?! (of (?!them|these|those)|but))"
     r"|\bthere (is|are|were) (none|nothing)\b"
     r"|\bnot (any|one|a single one)( (here|there|visible|in view))?$"
 )

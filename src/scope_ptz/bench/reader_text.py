@@ -119,7 +119,8 @@ class Script:
         while at >= 0 and self.words[at].segment == segment:
             word = self.words[at]
             if word.text in NEGATORS:
-                return not (word.text == "no" and self.words[at + 1].text == "other")
+                after = self.words[at + 1].text
+                return not (word.text == "no" and after == "other") and not (word.text == "none" and after != "of")
             ends_list = word.text == "and" and self.words[at + 1].text in _ARTICLES
             if word.text in _STOPS or ends_list:
                 return False

@@ -46,8 +46,5 @@ def _task(row: Any, path: Path, number: int) -> Task:
 
 def dump_tasks(tasks: Iterable[Task], path: Path) -> None:
     """Write tasks as JSONL, without what is default but the canary."""
-    rows = (
-        task.model_dump_json(exclude_defaults=True, exclude={"canary"})[:-1] + f',"canary":{json.dumps(task.canary)}}}'
-        for task in tasks
-    )
+    rows = ({**task.model_dump(mode="json", exclude_defaults=True), "canary": task.canary} for task in tasks)
     path.write_text("".join(json.dumps(row, ensure_ascii=False) + "\n" for row in rows), "utf-8")

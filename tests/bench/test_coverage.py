@@ -1,0 +1,142 @@
+"""Coverage: what a frame holds, at which size, from where, when, and about what."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from scope_ptz.bench.coverage import box_directions, density_px_deg, gap, inside, reference_directions, shows
+from scope_ptz.bench.episode import Look, Standing
+from scope_ptz.bench.tasks import EvidenceView, Item
+from scope_ptz.geometry import Pose, direction, pan_tilt_deg
+from tests.bench.making import EYES, view
+
+PANS, TILTS, ZOOMS = st.floats(-179, 179), st.floats(-55, 25), st.floats(1, 5)
+POSES = st.builds(Pose, PANS, TILTS, ZOOMS)
+
+
+def look(pose: Pose, viewpoint: str = "mast", **further: Any) -> Look:
+    return Look(viewpoint, EYES.view(pose), further.pop("time_s", 0.0), further.pop("how", "count"), **further)
+
+
+SWEEP = Look("mast", EYES.sweep(), 0.0, "count")
+
+
+def evidence(pose: Pose, **further: Any) -> EvidenceView:
+    return view(Standing("mast", pose), **further)
+
+
+@given(POSES)
+def test_a_frame_covers_the_view_that_it_is(pose: Pose) -> None:
+    assert gap(evidence(pose), [look(pose)]) is None
+    assert gap(evidence(pose), [look(pose, "bridge")]) is not None
+    assert gap(evidence(pose), []) is not None
+
+
+@given(POSES, st.floats(0.06, 1.0), st.sampled_from([1, -1]))
+def test_a_frame_turned_away_by_more_than_the_inset_does_not(pose: Pose, share: float, side: int) -> None:
+    fov = EYES.optics.hfov_deg(pose.zoom)
+    turned = Pose(pose.pan_deg + side * share * fov / math.cos(math.radians(pose.tilt_deg)), pose.tilt_deg, pose.zoom)
+    assert gap(evidence(pose), [look(turned)]) is not None
+
+
+@given(POSES)
+def test_within_half_a_degree_and_three_percent_of_zoom_a_view_at_the_wide_end_is_covered(pose: Pose) -> None:
+    assume(pose.zoom <= 1.5)
+    near = Pose(pose.pan_deg + 0.5, pose.tilt_deg, pose.zoom * 0.99)
+    assert gap(evidence(pose), [look(near)]) is None
+
+
+@given(POSES)
+def test_zooming_in_loses_the_border_and_zooming_out_the_detail(pose: Pose) -> None:
+    assume(1.5 <= pose.zoom <= 3.5)
+    closer, wider = Pose(pose.pan_deg, pose.tilt_deg, pose.zoom * 1.2), Pose(pose.pan_deg, pose.tilt_deg, pose.zoom / 1.4)
+    assert gap(evidence(pose), [look(closer)]) is not None
+    assert gap(evidence(pose), [look(wider)]) is None
+    needs = density_px_deg(look(pose))
+    assert gap(evidence(pose, min_density_px_deg=needs), [look(pose)]) is None
+    assert gap(evidence(pose, min_density_px_deg=needs), [look(wider)]) is not None
+
+
+@given(POSES)
+def test_two_halves_cover_a_view_together(pose: Pose) -> None:
+    assume(abs(pose.tilt_deg) < 15)
+    fov = EYES.optics.hfov_deg(pose.zoom)
+    halves = [look(Pose(pose.pan_deg + side * fov * 0.25, pose.tilt_deg, pose.zoom * 0.8)) for side in (1, -1)]
+    if pose.zoom * 0.8 >= 1:
+        assert gap(evidence(pose), halves) is None
+        assert gap(evidence(pose), halves[:1]) is not None
+
+
+@given(POSES)
+def test_a_sweep_covers_its_band_and_nothing_else_does(pose: Pose) -> None:
+    sweep = EYES.sweep()
+    band = (sweep.bottom_tilt_deg + 1, sweep.top_tilt_deg - 1)
+    around = evidence(pose, scope="full", band_deg=band)
+    assert gap(around, [SWEEP]) is None
+    assert gap(around, [look(pose)]) is not None
+
+
+def test_a_ring_of_frames_covers_what_a_sweep_covers() -> None:
+    around = evidence(Pose(), scope="full", band_deg=(-12.0, 12.0))
+    assert gap(around, [look(Pose(pan, 0.0, 1.0)) for pan in range(-180, 180, 30)]) is None
+    assert gap(around, [look(Pose(pan, 0.0, 1.0)) for pan in range(-180, 120, 30)]) is not None
+
+
+@given(PANS, TILTS, st.floats(0.5, 4.0), ZOOMS)
+def test_an_item_counts_where_its_whole_box_is_in_the_frame(pan: float, tilt: float, size: float, zoom: float) -> None:
+    low, high = pan - size / 2, pan + size / 2
+    item = Item(instance="x", box_deg=(low, tilt - size / 2, high if high <= 180 else high - 360, tilt + size / 2))
+    fov = EYES.optics.hfov_deg(zoom)
+    assert shows(item, look(Pose(pan, tilt, zoom)))
+    edge = Pose(pan + fov / 2 / math.cos(math.radians(tilt)), tilt, zoom)
+    assert not shows(item, look(edge))
+
+
+@given(PANS, st.floats(-30, 10), ZOOMS)
+def test_small_things_must_be_large_enough(pan: float, tilt: float, zoom: float) -> None:
+    frame = look(Pose(pan, tilt, zoom))
+    pixels = density_px_deg(frame) * 1.0
+    box = (pan - 0.25, tilt - 0.5, pan + 0.25, tilt + 0.5)
+    assert shows(Item(instance="x", box_deg=box, min_px=pixels * 0.95), frame)
+    assert not shows(Item(instance="x", box_deg=box, min_px=pixels * 1.1), frame)
+
+
+@pytest.mark.parametrize(("zoom", "legible"), [(1.0, False), (5.0, True)])
+def test_capitals_must_be_fourteen_pixels_high(zoom: float, legible: bool) -> None:
+    text = Item(instance="t", box_deg=(0.0, 0.0, 2.0, 0.3), cap_height_deg=0.2)
+    assert shows(text, look(Pose(1.0, 0.1, zoom))) == legible
+
+
+def test_only_looks_about_the_thing_at_the_time_count() -> None:
+    pose = Pose(10, -10, 1)
+    about = evidence(pose, about=("cone", "traffic cone"))
+    assert gap(about, [look(pose, asked="orange traffic cones")]) is None
+    assert gap(about, [look(pose, asked="How many cones are there?")]) is None
+    assert gap(about, [look(pose, asked="clouds")]) is not None
+    assert gap(about, [look(pose, how="planner")]) is None
+    timed = evidence(pose, window_s=(10.0, 20.0))
+    assert gap(timed, [look(pose, time_s=12.0)]) is None
+    assert gap(timed, [look(pose, time_s=22.0)]) is not None
+
+
+@given(st.floats(-180, 180), st.floats(-40, 20), st.floats(0.1, 30), st.floats(0.1, 20))
+def test_a_box_across_the_back_is_as_wide_as_any_other(left: float, bottom: float, width: float, height: float) -> None:
+    right = left + width
+    outline = box_directions((left, bottom, right if right <= 180 else right - 360, bottom + height))
+    pans, tilts = pan_tilt_deg(outline)
+    turned = np.mod(pans - left + 180, 360) - 180
+    assert turned.min() > -1e-6
+    assert turned.max() < width + 1e-6
+    assert tilts.max() < bottom + height + 1e-6
+
+
+@given(POSES)
+def test_reference_directions_lie_in_the_reference_frame(pose: Pose) -> None:
+    assert inside(look(pose), reference_directions(evidence(pose))).all()
+    assert not inside(look(pose), direction([pose.pan_deg + 180.0], [-pose.tilt_deg])).any()

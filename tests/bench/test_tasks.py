@@ -1,0 +1,101 @@
+"""Task data: what is refused, what survives a file, and that the published schema is the one in force."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from pydantic import ValidationError
+from typer.testing import CliRunner
+
+import scope_ptz
+from scope_ptz.bench.expected import ActionOnly, Choice, Number, Ordering
+from scope_ptz.bench.task_files import dump_tasks, load_tasks
+from scope_ptz.bench.tasks import CANARY, TASK, Argument, schema
+from scope_ptz.cli.app import app
+from scope_ptz.errors import InputError
+from tests.bench.making import samples
+
+PUBLISHED = Path(scope_ptz.__file__).parent / "data" / "tasks.schema.json"
+TASKS = tuple(task for task, _ in samples())
+
+
+def content(**changes: Any) -> dict[str, Any]:
+    return {**TASKS[0].model_dump(mode="json"), **changes}
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"id": "counting-1"}, "pattern"),
+        ({"id": "scope2-test-counting-001"}, "dataset version"),
+        ({"stratum": "paraphrase"}, "paraphrase of"),
+        ({"paraphrase_of": "scope1-test-counting-002"}, "paraphrase of"),
+        ({"expected": {"kind": "action_only"}, "behaviour": {}}, "nothing would be checked"),
+        ({"evidence": []}, "rests on nothing"),
+        ({"answer": "five"}, "Extra inputs"),
+        ({"expected": {"kind": "number", "value": float("nan")}}, "finite"),
+        ({"canary": "another"}, "Input should be"),
+        ({"category": "juggling"}, "Input should be"),
+    ],
+)
+def test_a_task_that_is_not_sound_is_refused(changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValidationError, match=message):
+        TASK.validate_python(content(**changes))
+
+
+def test_an_action_needs_a_check_and_an_answer_needs_evidence_but_a_reaction_neither() -> None:
+    reaction = content(
+        stratum="reaction", expected=ActionOnly().model_dump(), evidence=[], behaviour={"outcomes": ["refused", "clarification"]}
+    )
+    assert TASK.validate_python(reaction).behaviour.outcomes == ("refused", "clarification")
+
+
+def test_expected_values_must_be_among_their_options() -> None:
+    with pytest.raises(ValidationError, match="not among the options"):
+        Choice(value="mauve", options={"red": ()})
+    with pytest.raises(ValidationError, match="each once"):
+        Ordering(value=("a", "b"), options={"a": (), "b": (), "c": ()})
+    with pytest.raises(ValidationError, match="either equals"):
+        Argument(equals=1.0, mentions=("one",))
+    with pytest.raises(ValidationError):
+        Number(value=1, tolerance=-1)
+
+
+@pytest.mark.parametrize("suffix", [".jsonl", ".yaml"])
+def test_tasks_come_back_from_a_file_as_they_were(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"tasks{suffix}"
+    if suffix == ".jsonl":
+        dump_tasks(TASKS, path)
+        rows = path.read_text("utf-8").splitlines()
+        assert all(CANARY in row for row in rows)
+        assert all('"kind"' in row for row in rows)
+    else:
+        path.write_text(yaml.safe_dump([task.model_dump(mode="json") for task in TASKS]), "utf-8")
+    assert load_tasks(path) == TASKS
+
+
+def test_a_damaged_file_is_told_with_file_and_task(tmp_path: Path) -> None:
+    path = tmp_path / "tasks.jsonl"
+    with pytest.raises(InputError, match="cannot be read"):
+        load_tasks(path)
+    path.write_text("{", "utf-8")
+    with pytest.raises(InputError, match="holds no tasks"):
+        load_tasks(path)
+    path.write_text(json.dumps(content(scene=3)), "utf-8")
+    with pytest.raises(InputError, match=r"scope1-test-counting-001: scene"):
+        load_tasks(path)
+    dump_tasks((TASKS[0], TASKS[0]), path)
+    with pytest.raises(InputError, match="more than once"):
+        load_tasks(path)
+
+
+def test_the_published_schema_is_the_one_in_force() -> None:
+    """`scope bench schema` writes it."""
+    assert json.loads(PUBLISHED.read_text("utf-8")) == schema()
+    printed = CliRunner().invoke(app, ["bench", "schema"])
+    assert printed.exit_code == 0
+    assert json.loads(printed.stdout) == schema()
