@@ -29,7 +29,7 @@ ABSENT = (
 
 def build(stage: Stage) -> None:
     """Build the whole scene in an empty Blender file and fill in the stage."""
-    stage.start_s = 11.0
+    stage.start_s = 12.5  # the van, the guard, the forklift and the fox are all in the home view then
     dusk.setup(bpy.context.scene)
     freight_yard_people.build(stage)  # first, and lettering next: both slow down with every object that the file already holds
     freight_yard_fixtures.build(stage)

@@ -189,8 +189,8 @@ def _standing(stage: Stage) -> None:
         (
             n(["DOCKS 5 TO 8"], background="white", cap=0.24, post_height=1.5),
             "docks sign",
-            14.0,
-            12.4,
+            12.6,
+            17.2,
             338,
             {"kind": "direction", "colour": "white"},
         ),
@@ -214,7 +214,7 @@ def _standing(stage: Stage) -> None:
     for built, name, x, y, bearing, facts in standing:
         words = " ".join(t.text for t in built.texts).lower()
         stage.place(built, "sign", name, (x, y, 0), bearing, reads=words, **facts)
-    for limit, x, y, bearing in (("10", -4.2, -30.4, 180), ("5", -3.6, 5.2, 180), ("5", 9.8, 9.4, 0)):
+    for limit, x, y, bearing in (("10", -4.2, -30.4, 180), ("5", -3.6, 5.2, 180), ("5", 8.2, 12.8, 0)):
         stage.place(
             signs.round_limit(limit, diameter=0.60, post_height=1.7),
             "speed sign",

@@ -15,7 +15,7 @@ def build(stage: Stage) -> None:
 def _crew(stage: Stage) -> None:
     rows = [
         ("yellow", "white", "clipboard", -13.4, 25.6, 0.0, 150, "worker with a clipboard", "clipboard", "docks"),
-        ("orange", "blue", "carry", 20.8, 26.6, 0.0, 200, "worker carrying a box", "box", "goods in"),
+        ("orange", "blue", "carry", 18.6, 27.2, 0.0, 200, "worker carrying a box", "box", "goods in"),
         ("yellow", "red", "stand", -13.9, 31.6, 1.2, 170, "worker in an open dock", None, "docks"),
         ("orange", "white", "point", -4.2, 14.8, 0.0, 260, "pointing worker", None, "apron"),
         ("orange", "yellow", "kneel", 17.2, -27.6, 0.0, 80, "kneeling worker", None, "stacks"),
@@ -62,7 +62,7 @@ def _others(stage: Stage) -> None:
         ("dark red", "denim", "phone", -16.2, 10.9, 200, "lorry driver on the phone", "driver", 21, None),
         ("grey", "black", "stand", -30.4, -7.3, 190, "man in the smoking shelter", "person", 22, None),
         ("light blue", "denim", "stand", -26.5, -8.3, 355, "person at the vending machine", "person", 23, None),
-        ("purple", "black", "walk", -31.2, -20.2, 90, "person walking with a bag", "person", 24, "bag"),
+        ("purple", "black", "walk", -31.2, -22.3, 90, "person walking with a bag", "person", 24, "bag"),
         ("green", "beige", "stand", -39.0, -37.6, 40, "visitor beside a car", "person", 25, "bag"),
     ]  # fmt: skip
     for top, trousers, pose, px, py, bearing, name, category, seed, holding in rows:
