@@ -7,6 +7,8 @@ from contextlib import AbstractAsyncContextManager, asynccontextmanager
 from pathlib import Path
 
 import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
 
 from scope_ptz.camera.base import Frame
 from scope_ptz.endpoints.endpoint import Endpoint
@@ -15,6 +17,7 @@ from scope_ptz.perception.backends import make_eyes
 from scope_ptz.perception.backends.spec import EyesSpec
 from scope_ptz.perception.base import Perception
 from scope_ptz.perception.conformance import PerceptionConformance
+from scope_ptz.perception.coordinates import smart_resize
 from tests.full import vision
 from tests.full.serving import transformers_serve
 
@@ -127,3 +130,14 @@ async def test_a_model_that_is_not_there_is_an_error(backend: str, tmp_path: Pat
     eyes = make_eyes(EyesSpec(name="eyes", backend=backend, model=str(tmp_path / "nowhere")))
     with pytest.raises(PerceptionError):
         await eyes.detect(vision.frame("top left"), "square")
+
+
+@given(st.integers(14, 6000), st.integers(14, 6000), st.sampled_from([28, 32]), st.sampled_from([3136, 65536]))
+def test_pictures_are_resized_as_the_models_themselves_would(width: int, height: int, factor: int, min_pixels: int) -> None:
+    from transformers.models.qwen2_vl.image_processing_pil_qwen2_vl import smart_resize as theirs
+
+    assume(max(width, height) / min(width, height) <= 200 and min(width, height) * 2 > factor)
+    ours = smart_resize(width, height, factor=factor, min_pixels=min_pixels, max_pixels=1_310_720)
+    assert ours[::-1] == theirs(height, width, factor=factor, min_pixels=min_pixels, max_pixels=1_310_720)
+    if max(ours) / min(ours) <= 200:
+        assert theirs(ours[1], ours[0], factor=factor, min_pixels=min_pixels, max_pixels=12_845_056) == ours[::-1]
