@@ -94,7 +94,7 @@ class Viewpoint:
 
     def check_files(self) -> int:
         """Hold every file against its checksum; the number of files. Raises ``PackError`` for the first that is not as baked."""
-        return sum(1 for layer in self.files() if self._verified(layer))
+        return len([self._verified(layer) for layer in self.files()])
 
     def colour(self, layer: Layer) -> NDArray[np.uint8]:
         """(H, W, 3) RGB, or (H, W, 4) for the sheets of actors."""
