@@ -15,16 +15,28 @@ from tests.cli.conftest import SCENE, Scope
 from tests.full.serving import transformers_serve
 from tests.support.misbehaving import Misbehaving, Request, Say, good
 
-pytestmark = pytest.mark.full
+pytestmark = [
+    pytest.mark.full,
+    pytest.mark.filterwarnings("ignore::DeprecationWarning"),
+    pytest.mark.filterwarnings("ignore::FutureWarning"),
+    pytest.mark.filterwarnings("ignore::UserWarning"),
+]
 
 GREETING = "Say hello."
 COUNT = "how many balls are visible?"
+SQUARE = "Is there a square?"
 TOOL_CALLS: dict[str, tuple[str, dict[str, Any]]] = {
     PICTURE: ("take_image", {}),
     TURN: ("adjust_ptz", {"pan_deg": 20}),
     COUNT: ("count_objects", {"description": "balls", "view": "current"}),
+    SQUARE: ("query_answer", {"question": SQUARE, "view": "current"}),
 }
-ANSWERS = {PICTURE: "The picture is saved.", TURN: "The camera has turned.", COUNT: "I counted the balls."}
+ANSWERS = {
+    PICTURE: "The picture is saved.",
+    TURN: "The camera has turned.",
+    COUNT: "I counted the balls.",
+    SQUARE: "I looked for it.",
+}
 
 
 def teacher(request: Request) -> Say:
@@ -67,7 +79,8 @@ def _lessons(folder: Path, scenes: Path) -> Sequence[Any]:
 
     environment = {**os.environ, "SCOPE_SCENES_DIR": str(scenes), "SCOPE_RUNS_DIR": str(folder / "runs")}
     with Misbehaving(then=good(teacher)) as server:
-        for arguments in (["doctor", "--planner-url", server.url], ["ask", COUNT, "--scene", SCENE, "--planner-url", server.url]):
+        runs = [["ask", asked, "--scene", SCENE] for asked in (COUNT, SQUARE)]
+        for arguments in ([*command, "--planner-url", server.url] for command in (["doctor"], *runs)):
             subprocess.run([sys.executable, "-m", "scope_ptz.cli", *arguments], env=environment, check=True, capture_output=True)
         asked = [r for r in server.requests if r.chat]
     lessons = {}
@@ -121,3 +134,42 @@ def test_the_profile_of_a_served_checkpoint(scope: Scope, planner_server: Served
     speed = done.json["planner"]["planner"]
     assert (speed["valid"]["share"], speed["right"]["share"]) == (1.0, 1.0)
     assert speed["first_token_s"]["median"] > 0
+
+
+@pytest.fixture(scope="session")
+def eyes_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    """A vision model that has learned the very prompts that the eyes send."""
+    from tests.full import vision
+
+    folder = tmp_path_factory.mktemp("eyes")
+    checkpoint = vision.taught(folder / "eyes")
+    with transformers_serve(checkpoint, folder / "serve.log") as url:
+        yield Served(url, str(checkpoint))
+
+
+MINE = """
+models:
+  tiny-eyes: {{repo: {eyes.model}, url: '{eyes.url}', roles: [eyes], backend: openai_vision, coordinates: qwen3-vl, size_b: 0.001,
+    active_b: 0.001, precision: fp32, context: 2048, licence: none}}
+  tiny-owl: {{repo: {owl}, roles: [eyes], backend: zero_shot, coordinates: pixels, size_b: 0.001, active_b: 0.001, precision: fp32,
+    context: 0, licence: none}}
+"""
+
+
+def test_planner_eyes_and_detector_are_all_checkpoints(
+    scope: Scope, planner_server: Served, eyes_server: Served, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from tests.full.tiny_eyes import tiny_owlv2
+
+    mine = tmp_path / "models.yaml"
+    mine.write_text(MINE.format(eyes=eyes_server, owl=tiny_owlv2(tmp_path / "owl")))
+    monkeypatch.setenv("SCOPE_MODELS", str(mine))
+    brain = ("--planner-url", planner_server.url, "--planner-model", planner_server.model, "--scene", SCENE, "--json")
+    said = scope("ask", SQUARE, *brain, "--perception", "tiny-eyes").json
+    assert (said["outcome"], said["answer"]) == ("answered", ANSWERS[SQUARE])
+    assert said["tool_calls"][0]["result"]["answer"].startswith(("Yes, ", "No."))
+    said = scope("ask", COUNT, *brain, "--perception", "tiny-eyes", "--detector", "tiny-owl").json
+    assert (said["outcome"], said["answer"]) == ("answered", ANSWERS[COUNT])
+    (call,) = said["tool_calls"]
+    assert call["error"] is None
+    assert call["result"]["count"] >= 0
