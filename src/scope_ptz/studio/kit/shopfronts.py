@@ -236,7 +236,7 @@ def house_door(colour: str, *, number: str | None = None) -> Built:
     s.tube([(-0.035, 0.05, 1.42), (-0.03, 0.055, 1.34), (0.03, 0.055, 1.34), (0.035, 0.05, 1.42)], 0.009, brass)
     s.lathe([(0.03, 0.0), (0.032, 0.03), (0.01, 0.04)], brass, (-0.40, 0.025, 1.02), "Y", 14)
     if number:
-        with s.at(0, 0.026, 1.92):
+        with s.at(0, 0.026, 1.60):
             write(s, number, 0.10, 0, 0, "white" if colour not in ("white", "cream", "yellow") else "black", lift=0.003)
     return s.built()
 
