@@ -19,6 +19,8 @@ MEMORY_NOTE = (
     f"Memory in GB, computed, not measured: parameters x bytes + cache for {WINDOW} tokens + {RUNTIME_GB:g} GB. "
     "'from' is the least that any server needs (4-bit weights where there are any)."
 )
+_WIDE, _PIPE = 120, 180
+"""Columns from which the longer table fits, and those of what is no terminal."""
 _THINKING = {"none": "no", "optional": "when asked", "default": "unless told not to", "always": "always"}
 
 
@@ -34,15 +36,29 @@ def list_models(role: str | None, memory_gb: float | None, *, as_json: bool) -> 
     if as_json:
         put_json([describe(known, model) for model in chosen], indent=2)
         return
-    table = Table("name", "role", "size", "active", "precision", "memory", "from", "context", "thinks", "licence", box=None)
+    console = _console()
+    wide = console.width >= _WIDE
+    table = Table(box=None)
+    for column in (
+        "name",
+        "role",
+        "size",
+        "active",
+        "precision",
+        "memory",
+        "from",
+        "context",
+        *(("thinks", "licence") if wide else ()),
+    ):
+        table.add_column(column, no_wrap=True)
     for m in chosen:
         roles, (_, least) = "+".join(sorted(m.roles, reverse=True)), m.smallest()
+        more = (_THINKING[m.thinking], m.licence) if wide else ()
         table.add_row(
             m.name, roles, f"{m.size_b:g}B", f"{m.active_b:g}B", m.precision, f"{m.memory_for():.1f}", f"{least:.1f}",
-            f"{m.context:,}" if m.context else "-", _THINKING[m.thinking], m.licence,
+            f"{m.context:,}" if m.context else "-", *more,
             style="bold" if m.origin == "paper" else "",
         )  # fmt: skip
-    console = Console(highlight=False)
     console.print(table)
     console.print(Text(MEMORY_NOTE, style="dim"))
     if console.is_terminal:
@@ -123,7 +139,7 @@ def list_pairs(*, as_json: bool) -> None:
     for row in rows:
         average = row["paper_average"]
         table.add_row(str(row["name"]), f"{row['memory_gb']:.1f}", f"{average:.1f} %" if average is not None else "-")
-    console = Console(highlight=False)
+    console = _console()
     console.print(table)
     console.print(Text("Averages are the paper's figures (macro, over its eight categories), not measured here.", style="dim"))
     console.print(Text("Any PLANNER+EYES of `scope models` works, and so does one model that is both.", style="dim"))
@@ -143,6 +159,12 @@ def describe(known: Registry, model: Model) -> dict[str, Any]:
         for server, serving in model.serve.items()
     }
     return {**data, "memory_gb": model.memory_for(), "least_memory_gb": model.smallest()[1], "serve": servings}
+
+
+def _console() -> Console:
+    """A terminal as wide as it is; a file or pipe as wide as the table."""
+    console = Console(highlight=False)
+    return console if console.is_terminal else Console(highlight=False, width=_PIPE)
 
 
 def _role(role: str | None) -> Role | None:
