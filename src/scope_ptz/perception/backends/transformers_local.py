@@ -148,13 +148,15 @@ class TransformersChat:
         with self._lock:
             processor, model = self._loaded = self._loaded or self._load()
             parts = [{"type": "image", "image": _pillow(image)}, {"type": "text", "text": prompt}]
+            # A switch that the template does not know would be taken for an option of the processor.
+            quiet = {"enable_thinking": False} if "enable_thinking" in str(processor.chat_template) else {}
             inputs = processor.apply_chat_template(
                 [{"role": "user", "content": parts}],
                 add_generation_prompt=True,
                 tokenize=True,
                 return_dict=True,
                 return_tensors="pt",
-                enable_thinking=False,
+                **quiet,
             ).to(model.device)
             asked = inputs["input_ids"].shape[1]
             written = model.generate(**inputs, max_new_tokens=self._options.max_tokens, do_sample=False)[0][asked:]
