@@ -30,11 +30,8 @@ class ErrorMode(StrEnum):
     REASONING = "reasoning"
 
 
-_FAMILIES = (
-    frozenset({"count_objects", "query_answer"}),
-    frozenset({"adjust_ptz", "go_to_preset", "go_home"}),
-)
-"""Within a family one tool can do another's work, as far as the instruction does not fix which."""
+_LOOKERS = frozenset({"count_objects", "query_answer"})
+_MOVERS = frozenset({"adjust_ptz", "go_to_preset", "go_home"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,15 +50,33 @@ class _Case:
         """Something other than the answer or the way in which the run ended is wrong."""
         return any(check.passed is False and check.name not in ("answer", "outcome") for check in self.verdict.checks)
 
+    @property
+    def fixed(self) -> set[str]:
+        """Tools that the instruction fixes."""
+        return {call.tool for call in self.task.behaviour.calls}
+
+    @property
+    def needed(self) -> set[str]:
+        """Tools that the instruction fixes or the reference uses; listing the presets is never needed unless asked for."""
+        return {call.tool for call in self.task.reference if call.tool != "get_presets"} | self.fixed
+
+    def alike(self, name: str) -> frozenset[str]:
+        """Tools that do the work of a tool: either of the two that look; any that moves, as long as the camera got there."""
+        if name in _LOOKERS:
+            return _LOOKERS
+        astray = any(self.verdict.failed(check) for check in ("pose", "coverage", "framing"))
+        return _MOVERS if name in _MOVERS and not astray else frozenset({name})
+
     def missing_tools(self) -> set[str]:
-        """Tools of the reference that were never tried, unless one of their family was and the instruction fixes none."""
-        fixed = {call.tool for call in self.task.behaviour.calls}
-        missing = set[str]()
-        for name in ({call.tool for call in self.task.reference} | fixed) - self.attempted:
-            family = next((f for f in _FAMILIES if name in f), frozenset({name}))
-            if (name in fixed or not family & self.attempted) and (name != "get_presets" or name in fixed):
-                missing.add(name)
-        return missing
+        """Needed tools that were never tried, unless one that does their work was and the instruction fixes none."""
+        untried = self.needed - self.attempted
+        return {name for name in untried if name in self.fixed or not self.alike(name) & self.attempted}
+
+    def strangers(self) -> set[str]:
+        """Tools tried that are not needed and do not do the work of one that is."""
+        idle = self.needed - self.attempted - self.fixed
+        stand_ins = {other for name in idle for other in self.alike(name)}
+        return self.attempted - self.needed - stand_ins - {"get_presets"}
 
 
 def error_mode(task: Task, episode: Episode, truth: CountTruth | None = None) -> ErrorMode | None:
@@ -78,17 +93,7 @@ def error_mode(task: Task, episode: Episode, truth: CountTruth | None = None) ->
 
 def _lacks_call(case: _Case) -> bool:
     """A tool that is needed was never tried, and no tool that is not needed was tried in its place."""
-    return (case.acted_wrongly or not case.episode.calls) and bool(case.missing_tools()) and not _strangers(case)
-
-
-def _strangers(case: _Case) -> set[str]:
-    """Tools tried that the reference does not use, and that do not merely stand for one of their family."""
-    used = {call.tool for call in case.task.reference} | {call.tool for call in case.task.behaviour.calls}
-    stands_in = {
-        name for name in case.attempted - used for family in _FAMILIES if name in family and family & used - case.attempted
-    }
-    fixed = {call.tool for call in case.task.behaviour.calls} - case.attempted
-    return case.attempted - used - {"get_presets"} - (set() if fixed else stands_in)
+    return (case.acted_wrongly or not case.episode.calls) and bool(case.missing_tools()) and not case.strangers()
 
 
 def _routed_wrongly(case: _Case) -> bool:

@@ -1,0 +1,252 @@
+"""Every check, passing and failing, and what a verdict makes of them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from scope_ptz.bench.checks import check_pose, framed, run_checks
+from scope_ptz.bench.episode import Episode, Picture, Standing
+from scope_ptz.bench.expected import ActionOnly, Number
+from scope_ptz.bench.matching import in_any_order, in_order
+from scope_ptz.bench.tasks import Argument, Behaviour, Forbidden, Framing, RequiredCall, Task
+from scope_ptz.bench.verdict import judge, tally
+from scope_ptz.errors import ScopeError
+from scope_ptz.geometry import Pose, pan_tilt_deg
+from tests.bench.making import AT_HIGHWAY, EYES, GO_HIGHWAY, START, Step, counted, final, play, samples, task, told, view
+
+SAMPLES = samples()
+COUNT_TASK, COUNT_RUN = SAMPLES[0]
+SWEEP_TASK, _ = SAMPLES[1]
+
+
+def outcome_of(name: str, of: Task, episode: Episode) -> bool | None:
+    return next(check.passed for check in run_checks(of, episode) if check.name == name)
+
+
+def action(behaviour: Behaviour, **further: Any) -> Task:
+    return task(900, "single_call", ActionOnly(), [], behaviour=behaviour, **further)
+
+
+@pytest.mark.parametrize(("of", "episode"), SAMPLES, ids=[t.id for t, _ in SAMPLES])
+def test_every_sample_passes_and_doing_nothing_never_does(of: Task, episode: Episode) -> None:
+    assert judge(of, episode).headline == "correct"
+    idle = play([], episode.text)
+    assert judge(of, idle).headline == "incorrect"
+    assert judge(of, play([], "I did nothing.")).headline != "correct"
+
+
+@pytest.mark.parametrize("text", ["none", "0", "yes", "no", "5", "red"])
+@pytest.mark.parametrize("of", [t for t, _ in SAMPLES], ids=[t.id for t, _ in SAMPLES])
+def test_no_answer_passes_without_looking(of: Task, text: str) -> None:
+    assert judge(of, play([], text)).headline != "correct"
+
+
+@pytest.mark.parametrize(
+    ("text", "passed"),
+    [("5 cones", True), ("four cones", False), ("several cones", None), ("I cannot tell.", False), ("", None)],
+)
+def test_the_answer(text: str, passed: bool | None) -> None:
+    episode = replace(COUNT_RUN, text=text)
+    assert outcome_of("answer", COUNT_TASK, episode) is passed
+    headline = {True: "correct", False: "incorrect", None: "unscored"}[passed]
+    assert judge(COUNT_TASK, episode).headline == headline
+
+
+def test_an_answer_that_was_never_given_is_wrong() -> None:
+    for outcome in ("step_limit", "budget"):
+        assert judge(COUNT_TASK, replace(COUNT_RUN, outcome=outcome)).headline == "incorrect"
+    assert judge(COUNT_TASK, replace(COUNT_RUN, outcome="clarification", text="Which cones?")).headline == "incorrect"
+
+
+@pytest.mark.parametrize(
+    ("steps", "passed"),
+    [
+        ([GO_HIGHWAY, counted(5)], True),
+        ([counted(5), GO_HIGHWAY], False),
+        ([GO_HIGHWAY, told("5", "How many cones are there?")], True),
+        ([GO_HIGHWAY, counted(5, "clouds")], False),
+        ([GO_HIGHWAY, ("count_objects", {"description": "cones"}, {"error": "the server is down", "fault": "perception"})], False),
+        ([counted(5, where="full"), GO_HIGHWAY], True),
+        ([GO_HIGHWAY, ("adjust_ptz", {"zoom_factor": 2.0}), counted(5), ("adjust_ptz", {"zoom_factor": 0.5})], False),
+    ],
+)
+def test_coverage(steps: list[Step], passed: bool) -> None:
+    assert outcome_of("coverage", COUNT_TASK, play(steps, "5")) is passed
+
+
+@pytest.mark.parametrize(
+    ("pan", "tilt", "zoom", "viewpoint", "passed"),
+    [
+        (0.0, 0.0, 1.0, "mast", True),
+        (0.5, -0.5, 1.03, "mast", True),
+        (0.51, 0.0, 1.0, "mast", False),
+        (0.0, 0.51, 1.0, "mast", False),
+        (0.0, 0.0, 1.031, "mast", False),
+        (0.0, 0.0, 0.96, "mast", False),
+        (360.0, 0.0, 1.0, "mast", True),
+        (0.0, 0.0, 1.0, "bridge", False),
+    ],
+)
+def test_the_final_pose(pan: float, tilt: float, zoom: float, viewpoint: str, passed: bool) -> None:
+    wanted = action(Behaviour(final=final(AT_HIGHWAY)))
+    pose = AT_HIGHWAY.pose
+    ends = Standing(viewpoint, Pose(pose.pan_deg + pan, pose.tilt_deg + tilt, pose.zoom * zoom))
+    result = check_pose(wanted, replace(COUNT_RUN, final=ends))
+    assert result is not None
+    assert result.passed is passed
+
+
+HIGHWAY = RequiredCall(tool="go_to_preset", arguments={"name": Argument(equals="highway")})
+PICTURE = RequiredCall(tool="take_image")
+CONES = RequiredCall(
+    tool="count_objects", arguments={"description": Argument(mentions=("cone",)), "view": Argument(equals="current")}
+)
+
+
+def steps_right(times: int) -> RequiredCall:
+    return RequiredCall(tool="adjust_ptz", arguments={"pan_deg": Argument(equals=15.0, within=0.1)}, times=times)
+
+
+RIGHT: Step = ("adjust_ptz", {"pan_deg": 15.0})
+TAKE: Step = ("take_image", {})
+
+
+@pytest.mark.parametrize(
+    ("wanted", "steps", "ordered", "anyhow"),
+    [
+        ([HIGHWAY, PICTURE], [GO_HIGHWAY, TAKE], True, True),
+        ([HIGHWAY, PICTURE], [TAKE, GO_HIGHWAY], False, True),
+        ([HIGHWAY, PICTURE], [GO_HIGHWAY, counted(1), TAKE], True, True),
+        ([HIGHWAY, PICTURE], [GO_HIGHWAY], False, False),
+        ([HIGHWAY], [("go_to_preset", {"name": "gate"})], False, False),
+        ([HIGHWAY], [("go_to_preset", {"name": "highway"}, {"error": "no"})], False, False),
+        ([CONES], [counted(3, "traffic cones")], True, True),
+        ([CONES], [counted(3, "traffic cones", "full")], False, False),
+        ([CONES], [("count_objects", {"description": "cone"}, {"count": 3})], True, True),
+        ([steps_right(2)], [RIGHT, RIGHT], True, True),
+        ([steps_right(2)], [RIGHT], False, False),
+        ([steps_right(1)], [("adjust_ptz", {"pan_deg": -15.0})], False, False),
+        ([PICTURE, HIGHWAY, PICTURE], [TAKE, GO_HIGHWAY, TAKE], True, True),
+        ([PICTURE, HIGHWAY, PICTURE], [GO_HIGHWAY, TAKE, TAKE], False, True),
+    ],
+)
+def test_required_calls(wanted: list[RequiredCall], steps: list[Step], ordered: bool, anyhow: bool) -> None:
+    calls = play(steps, "").calls
+    assert (in_order(wanted, calls) is None) is ordered
+    assert (in_any_order(wanted, calls) is None) is anyhow
+
+
+def test_a_zoom_by_percent_is_a_zoom_by_its_factor_and_calls_are_matched_best_in_any_order() -> None:
+    twice = RequiredCall(tool="adjust_ptz", arguments={"zoom_factor": Argument(equals=2.0, within=0.01)})
+    assert in_order([twice], play([("adjust_ptz", {"zoom_percent": 100.0})], "").calls) is None
+    some, cones = RequiredCall(tool="count_objects"), CONES
+    assert in_any_order([some, cones], play([counted(1, "cones"), counted(2, "cars")], "").calls) is None
+
+
+def test_what_must_not_happen() -> None:
+    still = action(Behaviour(forbidden=Forbidden(tools=("adjust_ptz",), changes=("zoom", "pan"))))
+    assert outcome_of("forbidden", still, play([counted(2)], "")) is True
+    assert outcome_of("forbidden", still, play([("adjust_ptz", {"pan_deg": 1.0}), ("adjust_ptz", {"pan_deg": -1.0})], "")) is False
+    zoomed = play(
+        [("zoom_to_object", {"description": "van"}, {"found": True, "pose": {"pan_deg": 10, "tilt_deg": -10, "zoom": 3}})], ""
+    )
+    assert outcome_of("forbidden", still, zoomed) is False
+    failed: Step = ("adjust_ptz", {"pan_deg": 900.0}, {"error": "wrong"})
+    assert outcome_of("forbidden", still, play([failed], "")) is True
+
+
+def test_pictures_must_be_as_many_and_exist() -> None:
+    two = action(Behaviour(pictures=2))
+    assert outcome_of("pictures", two, play([TAKE, TAKE], "")) is True
+    assert outcome_of("pictures", two, play([TAKE], "")) is False
+    assert outcome_of("pictures", two, play([TAKE, TAKE, TAKE], "")) is False
+    lost = replace(play([TAKE, TAKE], ""), pictures=(Picture("a.png", True), Picture("b.png", False)))
+    assert outcome_of("pictures", two, lost) is False
+    unkept = replace(lost, pictures=(Picture("a.png"), Picture("b.png")))
+    assert outcome_of("pictures", two, unkept) is True
+
+
+@given(st.floats(-170, 170), st.floats(-50, 20), st.floats(0.55, 0.95), st.floats(-0.03, 0.03))
+def test_framing_is_fill_of_the_limiting_side_and_offset_from_the_middle(pan: float, tilt: float, fill: float, off: float) -> None:
+    frame = EYES.view(Pose(pan, tilt, 3.0))
+    low, high = 0.5 - fill / 2, 0.5 + fill / 2
+    corners = frame.directions([[low + off, 0.4], [high + off, 0.4], [high + off, 0.6], [low + off, 0.6]])
+    pans, tilts = pan_tilt_deg(corners)
+    outline = tuple((float(p), float(t)) for p, t in zip(pans, tilts, strict=True))
+    episode = replace(COUNT_RUN, final=Standing("mast", Pose(pan, tilt, 3.0)))
+    measured, offset = framed(outline, episode)
+    assert measured == pytest.approx(fill, abs=1e-3)
+    assert offset == pytest.approx(abs(off), abs=1e-3)
+    wanted = action(Behaviour(framing=Framing(instance="x", viewpoint="mast", outline_deg=outline)))
+    if not (abs(fill - 0.6) < 1e-3 or abs(fill - 0.9) < 1e-3 or abs(abs(off) - 0.02) < 1e-3):
+        assert outcome_of("framing", wanted, episode) is (0.6 <= fill <= 0.9 and abs(off) <= 0.02)
+    assert outcome_of("framing", wanted, replace(episode, final=Standing("bridge", Pose(pan, tilt, 3.0)))) is False
+    assert outcome_of("framing", wanted, replace(episode, final=Standing("mast", Pose(pan + 180, -tilt, 3.0)))) is False
+
+
+def test_the_right_calls_with_a_wrong_answer_and_the_right_answer_at_a_wrong_pose_both_fail() -> None:
+    assert judge(COUNT_TASK, replace(COUNT_RUN, text="6")).headline == "incorrect"
+    wrong_pose = play([GO_HIGHWAY, counted(5), ("adjust_ptz", {"pan_deg": 3.0})], "There are 5 cones.")
+    assert [c.name for c in judge(COUNT_TASK, wrong_pose).checks if not c.passed] == ["pose"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "headline"),
+    [
+        ({"outcome": None}, "infrastructure"),
+        ({"outcome": "camera_error"}, "infrastructure"),
+        ({"outcome": "cancelled"}, "infrastructure"),
+        ({"outcome": "planner_error", "failure": "total-timeout"}, "infrastructure"),
+        ({"outcome": "planner_error", "failure": "empty"}, "incorrect"),
+        ({"outcome": "planner_error", "failure": None}, "incorrect"),
+        ({"outcome": "step_limit"}, "incorrect"),
+        ({"outcome": "budget"}, "incorrect"),
+    ],
+)
+def test_infrastructure_is_its_own_outcome(changes: dict[str, Any], headline: str) -> None:
+    assert judge(COUNT_TASK, replace(COUNT_RUN, **changes)).headline == headline
+
+
+def test_failed_eyes_are_infrastructure_unless_the_agent_claims_to_have_seen() -> None:
+    blind: list[Step] = [GO_HIGHWAY, ("count_objects", {"description": "cones"}, {"error": "timeout", "fault": "perception"})]
+    assert judge(COUNT_TASK, play(blind, "I could not see: perception failed.")).headline == "infrastructure"
+    assert judge(COUNT_TASK, play(blind, "There are 5 cones.")).headline == "incorrect"
+    assert judge(COUNT_TASK, play([*blind, counted(5)], "There are 5 cones.")).headline == "correct"
+
+
+def test_a_reaction_is_judged_by_how_the_run_ends() -> None:
+    refusal = action(
+        Behaviour(outcomes=("refused", "clarification"), forbidden=Forbidden(changes=("pan", "tilt"))), stratum="reaction"
+    )
+    assert judge(refusal, play([], "There is no such preset.", outcome="refused")).headline == "correct"
+    assert judge(refusal, play([], "Done.", outcome="answered")).headline == "incorrect"
+    assert judge(refusal, play([GO_HIGHWAY], "No.", outcome="refused")).headline == "incorrect"
+
+
+def test_a_task_without_a_check_is_an_error() -> None:
+    empty = COUNT_TASK.model_copy(update={"expected": ActionOnly(), "behaviour": Behaviour(), "evidence": ()})
+    with pytest.raises(ScopeError, match="no check"):
+        judge(empty, COUNT_RUN)
+
+
+def test_collateral_change_is_told_but_decides_nothing() -> None:
+    here = task(901, "counting", Number(value=2, unit=("cone",)), [counted(2)], evidence=[view(START)])
+    assert not judge(here, play([counted(2)], "2")).collateral
+    wandered = judge(here, play([counted(2), ("adjust_ptz", {"pan_deg": 30.0})], "2"))
+    assert (wandered.headline, wandered.collateral) == ("correct", True)
+    assert not judge(COUNT_TASK, COUNT_RUN).collateral
+
+
+def test_the_headline_counts_what_is_unscored_as_not_correct_and_shows_the_bounds() -> None:
+    texts = ["5", "5", "6", "several"]
+    verdicts = [judge(COUNT_TASK, replace(COUNT_RUN, text=text)) for text in texts]
+    verdicts.append(judge(COUNT_TASK, replace(COUNT_RUN, outcome=None)))
+    counted_up = tally(verdicts)
+    assert counted_up.counts == {"correct": 2, "incorrect": 1, "unscored": 1, "infrastructure": 1}
+    assert (counted_up.share, counted_up.low, counted_up.high) == (0.5, 0.4, 0.8)
+    assert tally([]).share is None

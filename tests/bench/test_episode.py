@@ -1,0 +1,121 @@
+"""Runs from recorded traces: poses, viewpoints, looks, pictures and ends, as a real loop writes them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import anyio
+import pytest
+
+from scope_ptz.agent.records import Budgets
+from scope_ptz.agent.store import RunFolder
+from scope_ptz.agent.trace import TraceWriter, read_trace
+from scope_ptz.bench.episode import Episode, Eyes, Places, episode_of
+from scope_ptz.errors import PerceptionError
+from scope_ptz.geometry import Equirectangular, Perspective, Pose
+from scope_ptz.tools.sweep import sweep
+from tests.agent.scripted import ScriptedCamera, answer, calls, make_agent
+
+PLACES = Places({"gate": "mast", "highway": "bridge"}, "mast")
+COUNT = ("count_objects", {"description": "cones"})
+
+
+def run(folder: Path, *script: Any, **options: Any) -> Episode:
+    reading = {name: options.pop(name) for name in ("planner_sees", "keeps_files") if name in options}
+    run_folder = RunFolder.create(folder, "go")
+
+    async def work() -> None:
+        with TraceWriter(run_folder.trace) as trace:
+            await make_agent(*script, images=run_folder, **options).run("go", listener=trace)
+
+    anyio.run(work)
+    return episode_of(read_trace(run_folder.path), PLACES, **reading)
+
+
+def test_poses_and_viewpoints_follow_the_calls(tmp_path: Path) -> None:
+    episode = run(
+        tmp_path,
+        calls(("go_to_preset", {"name": "highway"})),
+        calls(("adjust_ptz", {"pan_deg": 15.0})),
+        calls(COUNT),
+        calls(("go_home", {})),
+        calls(COUNT),
+        answer("Two."),
+        counts=[2],
+    )
+    assert [c.after.viewpoint for c in episode.calls] == ["bridge", "bridge", "bridge", "mast", "mast"]
+    assert [c.after.pose.pan_deg for c in episode.calls] == [20.0, 35.0, 35.0, 0.0, 0.0]
+    assert [c.before.pose.pan_deg for c in episode.calls] == [0.0, 20.0, 35.0, 35.0, 0.0]
+    first, second = episode.looks
+    assert (first.viewpoint, second.viewpoint) == ("bridge", "mast")
+    assert isinstance(first.projection, Perspective)
+    assert (first.projection.pan_deg, first.asked, first.how) == (35.0, "cones", "count")
+    assert (episode.outcome, episode.text, episode.final.viewpoint) == ("answered", "Two.", "mast")
+
+
+def test_a_failed_look_is_no_look_and_a_wrong_preset_moves_nothing(tmp_path: Path) -> None:
+    episode = run(
+        tmp_path,
+        calls(("go_to_preset", {"name": "nowhere"})),
+        calls(COUNT),
+        answer("None."),
+        counts=[PerceptionError("down")],
+    )
+    assert [c.fault for c in episode.calls] == ["bad_call", "perception"]
+    assert episode.looks == ()
+    assert {c.after.pose for c in episode.calls} == {Pose()}
+
+
+def test_pictures_exist_in_the_run_folder_or_were_not_kept_on_purpose(tmp_path: Path) -> None:
+    kept = run(tmp_path, calls(("take_image", {}), ("take_image", {})), answer())
+    assert [(p.file, p.exists) for p in kept.pictures] == [("pictures/001.png", True), ("pictures/002.png", True)]
+    unkept = run(tmp_path, calls(("take_image", {})), answer(), keeps_files=False)
+    assert [p.exists for p in unkept.pictures] == [None]
+
+
+def test_what_a_seeing_planner_was_shown_counts_as_looks(tmp_path: Path) -> None:
+    blind = run(tmp_path, calls(("adjust_ptz", {"pan_deg": 15.0})), answer("Five."))
+    assert blind.looks == ()
+    seeing = run(tmp_path, calls(("adjust_ptz", {"pan_deg": 15.0})), answer("Five."), planner_sees=True)
+    assert [(look.how, look.projection.pan_deg) for look in seeing.looks if isinstance(look.projection, Perspective)] == [
+        ("planner", 0.0),
+        ("planner", 15.0),
+    ]
+
+
+def test_a_zoom_looks_first_from_where_it_began_and_a_track_all_along(tmp_path: Path) -> None:
+    zoomed = run(tmp_path, calls(("zoom_to_object", {"description": "van"})), answer(), counts=[1])
+    assert zoomed.looks[0].how == "locate"
+    assert isinstance(zoomed.looks[0].projection, Perspective)
+    assert zoomed.looks[0].projection.pan_deg == 0.0
+    tracked = run(tmp_path, calls(("track_object", {"description": "van", "duration_s": 2.0})), answer(), counts=[1])
+    assert len(tracked.looks) >= 3
+    assert tracked.looks[-1].time_s > tracked.looks[0].time_s
+
+
+def test_a_run_that_was_cut_off_has_no_outcome(tmp_path: Path) -> None:
+    folder = RunFolder.create(tmp_path, "go")
+
+    async def work() -> None:
+        with TraceWriter(folder.trace) as trace:
+            await make_agent(calls(COUNT), answer(), images=folder).run("go", listener=trace)
+
+    anyio.run(work)
+    lines = folder.trace.read_text("utf-8").splitlines(keepends=True)
+    folder.trace.write_text("".join(lines[:-1]), "utf-8")
+    episode = episode_of(read_trace(folder.path), PLACES)
+    assert (episode.outcome, episode.text) == (None, "")
+    limited = run(tmp_path, calls(COUNT), budgets=Budgets(max_steps=2))
+    assert limited.outcome == "step_limit"
+
+
+@pytest.mark.parametrize("size", [(1280, 720), (640, 480)])
+def test_the_sweep_of_an_episode_is_the_sweep_that_the_tool_takes(size: tuple[int, int]) -> None:
+    camera = ScriptedCamera()
+    taken = anyio.run(sweep, camera).projection
+    assert isinstance(taken, Equirectangular)
+    assert Eyes(64, 36).sweep() == taken
+    band = Eyes(*size).sweep()
+    assert band.pan_span_deg == 360.0
+    assert band.bottom_tilt_deg < -60

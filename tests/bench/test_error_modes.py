@@ -1,0 +1,125 @@
+"""Error modes: known faults are named as what they are, and cases that a person would decide at a glance."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import replace
+
+import pytest
+
+from scope_ptz.bench.episode import Look
+from scope_ptz.bench.error_modes import ErrorMode, error_mode
+from scope_ptz.bench.mutations import Gold, Setting, confusion, mutate
+from scope_ptz.bench.tasks import Task
+from tests.bench.making import EYES, GO_BRIDGE, GO_HIGHWAY, PRESETS, Step, counted, play, samples, told
+
+SAMPLES = samples()
+BY_NAME = {task.id.removeprefix("scope1-test-"): task for task, _ in SAMPLES}
+SETTING = Setting(PRESETS, EYES)
+
+
+def gold() -> list[Gold]:
+    made = (
+        mutate(task, episode, mode, SETTING, random.Random(seed))
+        for task, episode in SAMPLES
+        for mode in ErrorMode
+        for seed in range(4)
+    )
+    return [one for one in made if one is not None]
+
+
+def test_every_known_fault_is_named_and_none_is_let_through() -> None:
+    runs = gold()
+    matrix = confusion(runs)
+    assert len(runs) >= 200
+    assert {mode for mode, _ in matrix} == set(ErrorMode)
+    assert {(mode, named): n for (mode, named), n in matrix.items() if mode != named} == {}
+
+
+def test_a_run_that_passes_or_cannot_be_scored_has_no_mode() -> None:
+    for task, episode in SAMPLES:
+        assert error_mode(task, episode) is None
+    task, episode = SAMPLES[0]
+    assert error_mode(task, replace(episode, text="several cones")) is None
+    assert error_mode(task, replace(episode, outcome="camera_error")) is None
+
+
+BLIND: Step = ("count_objects", {"description": "cones", "view": "current"}, {"error": "timeout", "fault": "perception"})
+NO_PRESET: Step = ("go_to_preset", {"name": "motorway"}, {"error": "no such preset"})
+FULL_CARS: Step = counted(12, "cars", "full")
+
+
+@pytest.mark.parametrize(
+    ("name", "steps", "text", "mode"),
+    [
+        ("counting-001", [], "There are 5 cones.", ErrorMode.LACK_OF_TOOL_CALL),
+        ("counting-001", [counted(5)], "There are 5 cones.", ErrorMode.LACK_OF_TOOL_CALL),
+        ("counting-001", [GO_HIGHWAY], "There are 5 cones.", ErrorMode.LACK_OF_TOOL_CALL),
+        ("counting-001", [GO_HIGHWAY, ("take_image", {})], "There are 5 cones.", ErrorMode.TOOL_ROUTING),
+        ("counting-001", [NO_PRESET, counted(5)], "There are 5 cones.", ErrorMode.TOOL_ARGS),
+        ("counting-001", [GO_BRIDGE, counted(5)], "There are 5 cones.", ErrorMode.TOOL_ARGS),
+        ("counting-001", [GO_HIGHWAY, counted(9, "cars")], "There are 9 cones.", ErrorMode.TOOL_ARGS),
+        ("counting-001", [GO_HIGHWAY, counted(8, where="full")], "There are 8 cones.", ErrorMode.SCOPE),
+        ("counting-001", [GO_HIGHWAY, counted(4)], "There are 4 cones.", ErrorMode.VLM_COUNTING),
+        ("counting-001", [GO_HIGHWAY, told("four cones", "How many cones?")], "Four cones.", ErrorMode.VLM_COUNTING),
+        ("counting-001", [GO_HIGHWAY, counted(5)], "There are 7 cones.", ErrorMode.HALLUCINATION),
+        ("counting-001", [GO_HIGHWAY, BLIND], "There are 7 cones.", ErrorMode.HALLUCINATION),
+        ("counting-001", [GO_HIGHWAY, BLIND], "There are 5 cones.", ErrorMode.HALLUCINATION),
+        ("counting-001", [GO_HIGHWAY, counted(5)], "I cannot tell.", ErrorMode.REASONING),
+        ("counting-002", [counted(3, "cars")], "There are 3 cars.", ErrorMode.SCOPE),
+        ("counting-002", [counted(11, "cars", "full")], "There are 11 cars.", ErrorMode.VLM_COUNTING),
+        ("counting-002", [FULL_CARS, counted(3, "cars")], "There are 3 cars.", ErrorMode.REASONING),
+        ("descriptor-003", [GO_BRIDGE, told("The van is blue.", "What colour is the van?")], "It is blue.", ErrorMode.VLM_QUERY),
+        ("descriptor-003", [GO_BRIDGE, told("The van is red.", "What colour is the van?")], "It is blue.", ErrorMode.HALLUCINATION),
+        ("descriptor-003", [told("The van is red.", "What colour is the van?")], "It is red.", ErrorMode.LACK_OF_TOOL_CALL),
+        ("ocr-004", [told("ROAD CLOSED", "What does the sign say?")], "ROAD CLOSED", ErrorMode.LACK_OF_TOOL_CALL),
+        ("location-005", [GO_HIGHWAY, counted(2, "bicycles")], "There are 2 bicycles.", ErrorMode.VLM_COUNTING),
+        ("location-005", [GO_HIGHWAY, counted(0, "bicycles")], "Yes, there is a bicycle.", ErrorMode.HALLUCINATION),
+        ("location-006", [GO_HIGHWAY, counted(1, "van")], "No, there is no van.", ErrorMode.REASONING),
+        ("location-006", [GO_HIGHWAY, counted(0, "van")], "No, there is no van.", ErrorMode.VLM_COUNTING),
+        (
+            "comparative-007",
+            [counted(5, "cars"), GO_HIGHWAY, counted(3, "cars")],
+            "The highway has more cars.",
+            ErrorMode.REASONING,
+        ),
+        (
+            "comparative-007",
+            [counted(2, "cars"), GO_HIGHWAY, counted(3, "cars")],
+            "The highway has more cars.",
+            ErrorMode.VLM_COUNTING,
+        ),
+        ("comparative-007", [counted(5, "cars")], "The gate has more cars.", ErrorMode.LACK_OF_TOOL_CALL),
+        ("single-call-009", [("adjust_ptz", {"pan_deg": -20.0, "tilt_deg": -10.0})], "Done.", ErrorMode.TOOL_ARGS),
+        ("single-call-009", [], "Done.", ErrorMode.LACK_OF_TOOL_CALL),
+        ("single-call-009", [GO_HIGHWAY], "Done.", ErrorMode.TOOL_ROUTING),
+        ("single-call-009", [("take_image", {})], "Done.", ErrorMode.TOOL_ROUTING),
+        ("multi-step-command-010", [GO_HIGHWAY, ("go_home", {})], "Done.", ErrorMode.LACK_OF_TOOL_CALL),
+        ("multi-step-command-010", [("take_image", {}), GO_HIGHWAY, ("go_home", {})], "Done.", ErrorMode.TOOL_ROUTING),
+        ("multi-step-command-010", [GO_BRIDGE, ("take_image", {}), ("go_home", {})], "Done.", ErrorMode.TOOL_ARGS),
+        ("single-call-011", [("adjust_ptz", {"zoom_factor": 3.0})], "Done.", ErrorMode.TOOL_ROUTING),
+        (
+            "single-call-011",
+            [("zoom_to_object", {"description": "the sign"}, {"found": False, "matches": 0})],
+            "It is not there.",
+            ErrorMode.VLM_QUERY,
+        ),
+    ],
+)
+def test_what_a_person_would_say(name: str, steps: list[Step], text: str, mode: ErrorMode) -> None:
+    assert error_mode(BY_NAME[name], play(steps, text)) is mode
+
+
+def test_the_truth_of_the_very_view_goes_before_the_evidence() -> None:
+    """A count at another place is compared with what shows there, which the evidence cannot know."""
+    task: Task = BY_NAME["comparative-007"]
+    extra: Episode = play(
+        [counted(5, "cars"), GO_BRIDGE, counted(9, "cars"), GO_HIGHWAY, counted(3, "cars")], "The highway has more."
+    )
+    assert error_mode(task, extra) is ErrorMode.REASONING
+
+    def truth(look: Look) -> int | None:
+        return {"mast": None, "bridge": 8}.get(look.viewpoint or "")
+
+    assert error_mode(task, extra, truth) is ErrorMode.VLM_COUNTING
+    assert error_mode(task, extra, lambda look: 9 if look.viewpoint == "bridge" else None) is ErrorMode.REASONING
