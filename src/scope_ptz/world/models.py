@@ -8,7 +8,7 @@ Layout of a scene folder::
     <viewpoint>/ids.webp          equirectangular instance numbers, 16 bit
     <viewpoint>/depth.webp        equirectangular distance, 16 bit, logarithmic
     <viewpoint>/tiles/NN.avif     perspective colour where zooming pays, NN-ids.webp its instance numbers
-    <viewpoint>/actors/ID.webp    sprites of a moving actor along its path (colour, alpha), ID-depth.webp their distances
+    <viewpoint>/actors/ID.avif    sprites of a moving actor along its path (colour, alpha), ID-depth.webp their distances
 
 All angles are in the camera's own frame (pan 0 = the viewpoint's ``pan0_bearing_deg``), all lengths in metres.
 """
