@@ -113,9 +113,7 @@ def test_what_a_person_would_say(name: str, steps: list[Step], text: str, mode: 
 def test_the_truth_of_the_very_view_goes_before_the_evidence() -> None:
     """A count at another place is compared with what shows there, which the evidence cannot know."""
     task: Task = BY_NAME["comparative-007"]
-    extra: Episode = play(
-        [counted(5, "cars"), GO_BRIDGE, counted(9, "cars"), GO_HIGHWAY, counted(3, "cars")], "The highway has more."
-    )
+    extra = play([counted(5, "cars"), GO_BRIDGE, counted(9, "cars"), GO_HIGHWAY, counted(3, "cars")], "The highway has more.")
     assert error_mode(task, extra) is ErrorMode.REASONING
 
     def truth(look: Look) -> int | None:

@@ -45,6 +45,12 @@ def test_an_answer_is_read_as_a_person_reads_it(case: dict[str, str]) -> None:
     assert verdict(expected, case["answer"]) == case["verdict"], (case["answer"], read(expected, case["answer"]))
 
 
+@pytest.mark.parametrize("note", [" (Source: the simulator's ground truth.)", " (seen by moondream3)", "\n"])
+def test_a_note_of_the_source_changes_nothing(note: str) -> None:
+    changed = [c["answer"] for c in ANSWERS if verdict(EXPECTATIONS[c["expected"]], c["answer"] + note) != c["verdict"]]
+    assert changed == []
+
+
 def test_the_answers_are_many_and_of_every_kind() -> None:
     assert len(ANSWERS) >= 300
     kinds = Counter(EXPECTATIONS[c["expected"]].kind for c in ANSWERS)

@@ -29,12 +29,16 @@ _T = TypeVar("_T", bound=_Expected)
 
 
 class Number(_Expected):
-    """How many or how much. ``tolerance`` is what "about" allows; ``unit``: the task's own words for what is counted."""
+    """How many or how much. ``tolerance`` is what "about" allows; ``unit``: the task's own words for what is counted.
+
+    ``part``: a part of something is asked for, so that "5 of the 7 cones" means 5; otherwise it is not a readable number.
+    """
 
     kind: Literal["number"] = "number"
     value: Annotated[float, Field(allow_inf_nan=False)]
     tolerance: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
     unit: Wordings = ()
+    part: bool = False
 
 
 class YesNo(_Expected):
@@ -47,11 +51,15 @@ class YesNo(_Expected):
 
 
 class Choice(_Expected):
-    """One of several. Give every option that an answer could sensibly name, so that a wrong one is read as wrong."""
+    """One of several. Give every option that an answer could sensibly name, so that a wrong one is read as wrong.
+
+    ``picks``: words that tell which is chosen ("most") where an answer names several.
+    """
 
     kind: Literal["choice"] = "choice"
     value: Wording
     options: Options
+    picks: Wordings = ()
 
     @model_validator(mode="after")
     def _known(self) -> Choice:
@@ -59,7 +67,10 @@ class Choice(_Expected):
 
 
 class Text(_Expected):
-    """What is written somewhere. ``ocr``: look-alikes (0/O, 1/I/l, 5/S, 8/B) count as the same letter."""
+    """What is written somewhere. ``ocr``: look-alikes (0/O, 1/I/l, 5/S, 8/B) count as the same letter.
+
+    Texts that stand apart are written "A482 / Harrowfield" and may be given in any order.
+    """
 
     kind: Literal["text"] = "text"
     accepted: Annotated[Wordings, Field(min_length=1)]

@@ -40,7 +40,7 @@ def read(expected: AnyExpected, answer: str) -> Reading:
 def _read(expected: AnyExpected, said: Script, answer: str) -> Reading:
     match expected:
         case Number():
-            number = Unreadable("only a guess") if said.hedged else read_number(said, expected.unit)
+            number = Unreadable("only a guess") if said.hedged else read_number(said, expected.unit, part=expected.part)
             return number if isinstance(number, Unreadable) else Unreadable(number) if isinstance(number, str) else Value(number)
         case YesNo():
             return read_yes_no(expected, said)

@@ -60,12 +60,28 @@ def read_choice(expected: Choice, script: Script) -> Reading:
     if any(m.name == "same" for m in mentions):
         return Value("same")
     named = {m.name for m in mentions}
+    if len(named) > 1 and expected.picks:
+        named = _picked(expected, script, mentions) or named
     if len(named) > 1:
         last = max((i for i, w in enumerate(script.words) if w.text in _CONCLUDES), default=len(script.words))
         named = {m.name for m in mentions if m.start > last} or named
     if len(named) == 1:
         return Value(named.pop())
     return Unreadable("several options: " + ", ".join(sorted(named)) if named else "no option is named")
+
+
+def _picked(expected: Choice, script: Script, mentions: Sequence[Mention]) -> set[str]:
+    """What is named before a word that picks, in its segment or else its clause."""
+    picked = set[str]()
+    for pick in script.mentions({"pick": expected.picks}):
+        if pick.denied:
+            continue
+        word = script.words[pick.start]
+        near = [m for m in mentions if script.words[m.start].segment == word.segment]
+        near = near or [m for m in mentions if script.words[m.start].clause == word.clause]
+        before = [m for m in near if m.start < pick.start]
+        picked |= {(before[-1] if before else near[0]).name} if near else set()
+    return picked
 
 
 def after_than(script: Script, mention: Mention) -> bool:

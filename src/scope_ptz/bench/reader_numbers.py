@@ -65,11 +65,15 @@ def says_none(script: Script) -> bool:
     return any(_NONE.search(part) for part in parts)
 
 
-def read_number(script: Script, unit: Sequence[str]) -> float | str:
-    """The number that a text gives as its answer, or the reason why there is none."""
+def read_number(script: Script, unit: Sequence[str], *, part: bool = False) -> float | str:
+    """The number that a text gives as its answer, or the reason why there is none. ``part``: "5 of the 7" means 5."""
     quantities = [q for q in find_quantities(script, unit) if not q.denied]
-    if _part_of(script, quantities):
+    wholes = _wholes(script, quantities)
+    if wholes and not part:
         return "a part of a number"
+    if part and re.search(r"\bnone of (the|those|these)\b", script.text()):
+        return 0.0
+    quantities = [q for q in quantities if q not in wholes]
     if _is_range(script, quantities):
         return "a range"
     definite = [q for q in quantities if not q.bound and not q.other]
@@ -204,13 +208,11 @@ def _announced(words: Sequence[Word], start: int, unit: Sequence[str]) -> bool:
     return False
 
 
-def _part_of(script: Script, quantities: Sequence[Quantity]) -> bool:
-    """ "5 of the 7 cones", "5 out of 7"."""
-    for one, two in pairwise(quantities):
-        between = [w.text for w in script.words[one.end : two.start]]
-        if between in (["of", "the"], ["of"], ["out", "of"], ["out", "of", "the"], ["of", "these"], ["of", "those"]):
-            return True
-    return False
+def _wholes(script: Script, quantities: Sequence[Quantity]) -> list[Quantity]:
+    """The 7 of "5 of the 7 cones" and "5 out of 7"."""
+    links = (["of", "the"], ["of"], ["out", "of"], ["out", "of", "the"], ["of", "these"], ["of", "those"])
+    pairs = pairwise(quantities)
+    return [two for one, two in pairs if [w.text for w in script.words[one.end : two.start]] in links]
 
 
 def _is_range(script: Script, quantities: Sequence[Quantity]) -> bool:

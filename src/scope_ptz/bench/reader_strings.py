@@ -9,6 +9,9 @@ from scope_ptz.bench.expected import Text
 from scope_ptz.bench.reader_text import Script, clean
 from scope_ptz.bench.reading import Reading, Unreadable, Value
 
+APART = " / "
+"""Between texts that stand apart from each other."""
+
 _LOOK_ALIKES = str.maketrans({"o": "0", "i": "1", "l": "1", "|": "1", "s": "5", "b": "8"})
 _NUMERALS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
 _DIGITS = {word: str(number) for number, word in enumerate(_NUMERALS)}
@@ -17,18 +20,23 @@ _CUE = re.compile(
     r"\b(?:reads|read|says|say|displays|spells|shows|called|named|(?<!there )is|(?<!there )are)\b\s*:?\s*|:\s+", re.IGNORECASE
 )
 _TRAILERS = re.compile(
-    r"\s+(?:in|on|above|below|with|at|written|painted|printed|near|beside)\s+(?:(?:the|a|an|its|big|large|small|bold|capital|white|black|red|"
+    r",?\s+(?:in|on|above|below|with|at|written|painted|printed|near|beside)\s+(?:(?:the|a|an|its|big|large|small|bold|capital|white|black|red|"
     r"blue|green|yellow|dark|light|orange)\s+)*(?:letters?|lettering|capitals|sign|board|text|background|front|back|plate|door|van|car|"
     r"lorry|truck|bus|shop|wall|view|top|bottom|left|right|gantry|white|black|red|blue|green|yellow|orange)\b.*$",
     re.IGNORECASE,
 )
+_NEXT_SENTENCE = re.compile(r"[.!]\s+(?=(?:It|This|That|The|There|I|They|In|On|At|Source)\b)")
 _MOST_WORDS = {"is": 6, "are": 6}
 _MOST_AFTER_A_CUE = 14
 
 
 def same_text(one: str, other: str, *, ocr: bool) -> bool:
-    """Whether two texts are the same but for case, punctuation and spaces, and with ``ocr`` but for look-alikes."""
-    return folded(one, ocr) == folded(other, ocr)
+    """Whether two texts are the same but for case, punctuation and spaces, and with ``ocr`` but for look-alikes.
+
+    Parts that stand apart (" / ") may come in any order.
+    """
+    parts, others = ([folded(part, ocr) for part in text.split(APART)] for text in (one, other))
+    return "".join(parts) == "".join(others) or sorted(parts) == sorted(others)
 
 
 def folded(text: str, ocr: bool) -> str:
@@ -53,7 +61,9 @@ def read_text(expected: Text, script: Script, answer: str) -> Reading:
             candidate, most = text[cue.end() :], _MOST_WORDS.get(cue.group().strip().lower(), _MOST_AFTER_A_CUE)
             if most == _MOST_AFTER_A_CUE:
                 break
-    candidate = _TRAILERS.sub("", candidate.strip().strip(".!")).strip()
+    candidate = _NEXT_SENTENCE.split(candidate)[0]
+    candidate = _TRAILERS.sub("", candidate.strip().strip(".!,")).strip()
+    candidate = re.sub(r"\s*\n\s*", APART, candidate)
     words = candidate.split()
     if re.match(r"there (?:is|are)\b|done\b", candidate, re.IGNORECASE):
         return Unreadable("no text is quoted")
@@ -67,4 +77,4 @@ def read_text(expected: Text, script: Script, answer: str) -> Reading:
 def _from_quotes(quoted: Sequence[str], text: str) -> Reading:
     if len({folded(q, ocr=False) for q in quoted}) > 1 and re.search(r"[\"']\s*,?\s+(?:or|and then|not)\s+[\"']", text):
         return Unreadable("an alternative")
-    return Value(" ".join(dict.fromkeys(quoted)))
+    return Value(APART.join(dict.fromkeys(quoted)))

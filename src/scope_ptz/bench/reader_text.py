@@ -170,8 +170,9 @@ def _grouped(labels: Sequence[int]) -> list[list[int]]:
 
 
 def clean(text: str) -> str:
-    """Without markup; quotation marks, dashes and spaces of one sort; capitals kept."""
+    """Without markup and notes of the source; quotation marks, dashes and spaces of one sort; capitals kept."""
     text = unicodedata.normalize("NFKC", text)
+    text = re.sub(r"\s*\((?:source:|seen by)[^)]*\)", "", text, flags=re.IGNORECASE)
     text = re.sub(r"[‘’´`]", "'", re.sub(r"[“”„«»]", '"', text)).replace("−", "-")
     text = re.sub(r"(?<!\w)'(?=\d+'(?!\w))|(?<=\d)'(?!\w)", " ", text)
     text = re.sub(r"\*\*|__|^#+\s*|^>\s*|(?<!\w)\*(?=\w)|(?<=\w)\*(?!\w)", "", text, flags=re.MULTILINE)
@@ -209,9 +210,10 @@ def script(text: str) -> Script:
     kept, declined, hedged = list[Word](), False, False
     for positions in _grouped([w.clause for w in words]):
         said = " ".join(words[i].text for i in positions)
-        refuses = _DECLINES.search(said)
-        if refuses and not re.search(r"\bbut\b", said[refuses.end() :]):
+        refused = [m.end() for m in _DECLINES.finditer(said)]
+        if refused and not re.search(r"\bbut\b", said[refused[-1] :]):
             declined = True
+            kept += _reason([words[i] for i in positions], said[: refused[-1]].count(" ") + 1)
         elif _HEDGES.search(said):
             hedged = True
         else:
@@ -227,6 +229,12 @@ def names_any(text: str, wordings: Iterable[str]) -> bool:
             if all(same_word(words[at + i], p) for i, p in enumerate(phrase)):
                 return True
     return False
+
+
+def _reason(words: Sequence[Word], start: int) -> Sequence[Word]:
+    """What stands after "I cannot tell:" or "... because"; nothing when no reason is given."""
+    begins = (at for at in range(start, len(words)) if ":" in words[at].gap or words[at].text == "because")
+    return words[next(begins, len(words)) :]
 
 
 @lru_cache(maxsize=4096)
