@@ -7,21 +7,22 @@ from dataclasses import replace
 
 import pytest
 
-from scope_ptz.bench.episode import Look
+from scope_ptz.bench.episode import Episode, Look
 from scope_ptz.bench.error_modes import ErrorMode, error_mode
+from scope_ptz.bench.expected import ActionOnly
 from scope_ptz.bench.mutations import Gold, Setting, confusion, mutate
-from scope_ptz.bench.tasks import Task
-from tests.bench.making import EYES, GO_BRIDGE, GO_HIGHWAY, PRESETS, Step, counted, play, samples, told
+from scope_ptz.bench.tasks import Argument, Behaviour, RequiredCall, Task
+from tests.bench.making import EYES, GO_BRIDGE, GO_HIGHWAY, PRESETS, Step, counted, play, samples, task, told
 
 SAMPLES = samples()
-BY_NAME = {task.id.removeprefix("scope1-test-"): task for task, _ in SAMPLES}
+BY_NAME = {of.id.removeprefix("scope1-test-"): of for of, _ in SAMPLES}
 SETTING = Setting(PRESETS, EYES)
 
 
 def gold() -> list[Gold]:
     made = (
-        mutate(task, episode, mode, SETTING, random.Random(seed))
-        for task, episode in SAMPLES
+        mutate(of, episode, mode, SETTING, random.Random(seed))
+        for of, episode in SAMPLES
         for mode in ErrorMode
         for seed in range(4)
     )
@@ -37,11 +38,11 @@ def test_every_known_fault_is_named_and_none_is_let_through() -> None:
 
 
 def test_a_run_that_passes_or_cannot_be_scored_has_no_mode() -> None:
-    for task, episode in SAMPLES:
-        assert error_mode(task, episode) is None
-    task, episode = SAMPLES[0]
-    assert error_mode(task, replace(episode, text="several cones")) is None
-    assert error_mode(task, replace(episode, outcome="camera_error")) is None
+    for of, episode in SAMPLES:
+        assert error_mode(of, episode) is None
+    of, episode = SAMPLES[0]
+    assert error_mode(of, replace(episode, text="several cones")) is None
+    assert error_mode(of, replace(episode, outcome="camera_error")) is None
 
 
 BLIND: Step = ("count_objects", {"description": "cones", "view": "current"}, {"error": "timeout", "fault": "perception"})
@@ -112,12 +113,27 @@ def test_what_a_person_would_say(name: str, steps: list[Step], text: str, mode: 
 
 def test_the_truth_of_the_very_view_goes_before_the_evidence() -> None:
     """A count at another place is compared with what shows there, which the evidence cannot know."""
-    task: Task = BY_NAME["comparative-007"]
+    of: Task = BY_NAME["comparative-007"]
     extra = play([counted(5, "cars"), GO_BRIDGE, counted(9, "cars"), GO_HIGHWAY, counted(3, "cars")], "The highway has more.")
-    assert error_mode(task, extra) is ErrorMode.REASONING
+    assert error_mode(of, extra) is ErrorMode.REASONING
 
     def truth(look: Look) -> int | None:
         return {"mast": None, "bridge": 8}.get(look.viewpoint or "")
 
-    assert error_mode(task, extra, truth) is ErrorMode.VLM_COUNTING
-    assert error_mode(task, extra, lambda look: 9 if look.viewpoint == "bridge" else None) is ErrorMode.REASONING
+    assert error_mode(of, extra, truth) is ErrorMode.VLM_COUNTING
+    assert error_mode(of, extra, lambda look: 9 if look.viewpoint == "bridge" else None) is ErrorMode.REASONING
+
+
+def test_a_target_that_perception_does_not_find_is_its_fault_and_one_that_was_never_asked_for_the_agents() -> None:
+    van = Argument(mentions=("van",))
+    calls = (RequiredCall(tool="track_object", arguments={"description": van}),)
+    track = task(
+        99, "single_call", ActionOnly(), [("track_object", {"description": "white van"})], behaviour=Behaviour(calls=calls)
+    )
+
+    def tracked(description: str, found: bool) -> Episode:
+        return play([("track_object", {"description": description}, {"found": found, "held_share": float(found)})], "Done.")
+
+    assert error_mode(track, tracked("the van", True)) is None
+    assert error_mode(track, tracked("the van", False)) is ErrorMode.VLM_QUERY
+    assert error_mode(track, tracked("the bus", True)) is ErrorMode.TOOL_ARGS

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.bench.episode import Look
-from scope_ptz.bench.reader_text import names_any
+from scope_ptz.bench.reader_words import names_any
 from scope_ptz.bench.tasks import EvidenceView, Item
 from scope_ptz.geometry import Equirectangular, Perspective, direction
 

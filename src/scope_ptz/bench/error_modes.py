@@ -142,15 +142,14 @@ def _was_blind(case: _Case) -> bool:
 
 def _was_misled(case: _Case) -> bool:
     """The camera went wrong because perception named the wrong thing or none, though it was asked for the right one."""
-    if not any(case.verdict.failed(name) for name in ("framing", "pose", "coverage")) or case.verdict.failed("calls"):
+    required = case.task.behaviour.calls
+    if not case.acted_wrongly or (case.verdict.failed("calls") and _missing(case, required, {"found"}) is not None):
         return False
-    wanted = [call for call in case.task.reference if call.tool in ("zoom_to_object", "track_object")]
+    wanted = case.needed & {"zoom_to_object", "track_object"}
     for call in case.episode.calls:
-        if call.name not in ("zoom_to_object", "track_object") or not call.looks or not wanted:
-            continue
-        required = [c for c in case.task.behaviour.calls if c.tool == call.name]
-        asked_right = any(fits(c, call) for c in required) if required else True
-        if asked_right and target_in(case.task, call.looks[0]):
+        fixed = [spec for spec in required if spec.tool == call.name]
+        asked_right = all(fits(spec, call, {"found"}) for spec in fixed)
+        if call.name in wanted and call.looks and asked_right and target_in(case.task, call.looks[0]):
             return True
     return False
 

@@ -21,7 +21,8 @@ from scope_ptz.bench.expected import (
 from scope_ptz.bench.reader import agrees, read
 from scope_ptz.bench.reader_numbers import find_quantities
 from scope_ptz.bench.reader_strings import folded
-from scope_ptz.bench.reader_text import names_any, script
+from scope_ptz.bench.reader_text import script
+from scope_ptz.bench.reader_words import names_any
 from scope_ptz.bench.reading import Value
 from scope_ptz.bench.tasks import EvidenceView, Task
 
@@ -173,8 +174,9 @@ def _reach_deg(view: EvidenceView) -> float:
 
 
 def target_in(task: Task, look: Look) -> bool:
-    """Whether anything that the task is about is in the picture of a look."""
-    return any(shows(item, look) for view in task.evidence for item in view.items if view.aim.viewpoint == look.viewpoint)
+    """Whether something that the task is about is in the picture of a look; taken for granted where the evidence names nothing."""
+    items = [item for view in task.evidence for item in view.items if view.aim.viewpoint == look.viewpoint]
+    return any(shows(item, look) for item in items) if items else not any(view.items for view in task.evidence)
 
 
 def _looks(episode: Episode) -> Iterator[tuple[Call, Look]]:

@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from scope_ptz.bench.episode import Call
-from scope_ptz.bench.reader_text import names_any
+from scope_ptz.bench.reader_words import names_any
 from scope_ptz.bench.tasks import Argument, RequiredCall
 
 _DEFAULTS: dict[str, dict[str, Any]] = {
@@ -27,11 +27,11 @@ def arguments_of(call: Call) -> Mapping[str, Any]:
 
 
 def fits(wanted: RequiredCall, call: Call, leave_out: Collection[str] = ()) -> bool:
-    """Whether a call is the required one. ``leave_out``: arguments that are not compared; "*" compares the tool alone."""
+    """Whether a call is the required one and found its target, if it has one. ``leave_out``: arguments that are not compared."""
     if not call.succeeded or call.name != wanted.tool:
         return False
-    if "*" in leave_out:
-        return True
+    if "found" not in leave_out and (call.result or {}).get("found") is False:
+        return False
     given = arguments_of(call)
     return all(_fits_argument(spec, given.get(name)) for name, spec in wanted.arguments.items() if name not in leave_out)
 

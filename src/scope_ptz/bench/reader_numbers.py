@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from scope_ptz.bench.reader_text import Script, Word, plain_words, same_word
+from scope_ptz.bench.reader_text import Script
+from scope_ptz.bench.reader_words import Word, plain_words, same_word
 
 _UNITS = {
     "zero": 0, "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "seven": 7, "eight": 8, "nine": 9, "ten": 10,

@@ -6,7 +6,8 @@ import re
 from collections.abc import Sequence
 
 from scope_ptz.bench.expected import Text
-from scope_ptz.bench.reader_text import Script, clean
+from scope_ptz.bench.reader_text import Script
+from scope_ptz.bench.reader_words import clean
 from scope_ptz.bench.reading import Reading, Unreadable, Value
 
 APART = " / "

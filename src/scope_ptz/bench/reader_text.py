@@ -6,28 +6,10 @@ This is the benchmark's own reading of English. It shares nothing with the langu
 from __future__ import annotations
 
 import re
-import unicodedata
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 
-_SPELLINGS = {
-    "color": "colour", "colors": "colours", "gray": "grey", "center": "centre", "meter": "metre", "tire": "tyre", "curb": "kerb",
-    "sidewalk": "pavement", "license": "licence", "story": "storey", "aluminum": "aluminium", "colored": "coloured",
-}  # fmt: skip
-_IRREGULAR = {"people": "person", "men": "man", "women": "woman", "children": "child", "persons": "person"}
-_IDIOMS = (
-    "without a doubt", "without doubt", "no doubt", "no problem", "of course", "for sure", "not only", "no wonder",
-    "needless to say", "as you can see", "not surprisingly",
-)  # fmt: skip
-_CONTRACTIONS = (
-    (re.compile(r"\bcan'?t\b|\bcannot\b"), "can not"),
-    (re.compile(r"\bwon't\b"), "will not"),
-    (re.compile(r"n't\b"), " not"),
-    (re.compile(r"\b(it|there|that|he|she|what|here|one|everything|who|let)'s\b"), r"\1 is"),
-    (re.compile(r"\b(i|we|you|they)'(m|re|ve|d|ll)\b"), r"\1"),
-)
-_WORD = re.compile(r"\d+(?:,\d{3})+(?:\.\d+)?|\d+(?:\.\d+)?|[^\W\d_]+(?:'[^\W\d_]+)*|[°%]")
+from scope_ptz.bench.reader_words import Word, clean, plain_words, same_word, words_of
 
 NEGATORS = frozenset({"no", "not", "never", "without", "neither", "nor", "none", "nobody", "nothing", "zero", "0", "lacks", "lack"})
 _ASIDE = (
@@ -36,7 +18,6 @@ _ASIDE = (
 )  # fmt: skip
 _ARTICLES = frozenset({"a", "an", "the", "one", "two", "three", "some", "its", "his", "their"})
 _STOPS = frozenset({"but", "just", "only", "however", "although", "though", "yet", "while", "whereas", "instead"})
-_HARD = re.compile(r"[!?;\n]|\.(?!\d)|\s[—–-]\s|—")
 _HEDGES = re.compile(
     r"\b(maybe|perhaps|possibly|might|may|conceivably|i guess|just a guess|at a guess|or so|could (be|have)"
     r"(?! (found|seen|detected|made|spotted|identified|located)))\b"
@@ -49,17 +30,6 @@ _DECLINES = re.compile(
     r"|\btoo (\w+ )?(dark|blurry|blurred|small|far|distant|dim|unclear|bright|faint)\b.* to (\w+ )?"
     r"(see|tell|say|read|count|make|determine|identify|judge|be)\b"
 )
-
-
-@dataclass(frozen=True, slots=True)
-class Word:
-    """``text`` in lower case and British spelling; ``gap``: what stands between it and the word before; ``segment`` ends at commas
-    and colons too, ``clause`` only where a sentence could."""
-
-    text: str
-    gap: str
-    clause: int
-    segment: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,44 +139,10 @@ def _grouped(labels: Sequence[int]) -> list[list[int]]:
     return list(groups.values())
 
 
-def clean(text: str) -> str:
-    """Without markup and notes of the source; quotation marks, dashes and spaces of one sort; capitals kept."""
-    text = unicodedata.normalize("NFKC", text)
-    text = re.sub(r"\s*\((?:source:|seen by)[^)]*\)", "", text, flags=re.IGNORECASE)
-    text = re.sub(r"[‘’´`]", "'", re.sub(r"[“”„«»]", '"', text)).replace("−", "-")
-    text = re.sub(r"(?<!\w)'(?=\d+'(?!\w))|(?<=\d)'(?!\w)", " ", text)
-    text = re.sub(r"\*\*|__|^#+\s*|^>\s*|(?<!\w)\*(?=\w)|(?<=\w)\*(?!\w)", "", text, flags=re.MULTILINE)
-    return re.sub(r"^\s*(?:[-*•]|\d+[.)])\s+", "", text, flags=re.MULTILINE).strip()
-
-
-def plain_words(text: str) -> list[str]:
-    """The words of a text, as they are compared."""
-    return [w.text for w in _words(clean(text))]
-
-
-def _words(text: str) -> list[Word]:
-    low = text.lower()
-    for pattern, plain in _CONTRACTIONS:
-        low = pattern.sub(plain, low)
-    for idiom in _IDIOMS:
-        low = re.sub(rf"\b{idiom}\b", " ", low)
-    words, end, clause, segment = list[Word](), 0, 0, 0
-    for match in _WORD.finditer(low):
-        gap = low[end : match.start()]
-        word = match.group()
-        end = match.end()
-        if words and _HARD.search(gap):
-            clause += 1
-        if words and (_HARD.search(gap) or re.search(r"[,:]", gap) or word in ("but", "whereas", "while", "although", "so")):
-            segment += 1
-        words.append(Word(_SPELLINGS.get(word, word), gap, clause, segment))
-    return words
-
-
 def script(text: str) -> Script:
     """Make a text ready for reading. Questions are left out: they claim nothing."""
     cleaned = clean(text)
-    words = _words(re.sub(r"[^.!?\n]*\?", "", cleaned))
+    words = words_of(re.sub(r"[^.!?\n]*\?", "", cleaned))
     kept, declined, hedged = list[Word](), False, False
     for positions in _grouped([w.clause for w in words]):
         said = " ".join(words[i].text for i in positions)
@@ -221,37 +157,10 @@ def script(text: str) -> Script:
     return Script(tuple(kept), declined, hedged)
 
 
-def names_any(text: str, wordings: Iterable[str]) -> bool:
-    """Whether one of the wordings stands anywhere in a text, be it asked or stated."""
-    words = plain_words(text)
-    for phrase in (plain_words(w) for w in wordings):
-        for at in range(len(words) - len(phrase) + 1):
-            if all(same_word(words[at + i], p) for i, p in enumerate(phrase)):
-                return True
-    return False
-
-
 def _reason(words: Sequence[Word], start: int) -> Sequence[Word]:
     """What stands after "I cannot tell:" or "... because"; nothing when no reason is given."""
     begins = (at for at in range(start, len(words)) if ":" in words[at].gap or words[at].text == "because")
     return words[next(begins, len(words)) :]
-
-
-@lru_cache(maxsize=4096)
-def _forms(word: str) -> frozenset[str]:
-    forms = {word, _IRREGULAR.get(word, word)}
-    if len(word) > 3 and word.endswith("s") and not word.endswith("ss"):
-        forms.add(word[:-1])
-        if word.endswith("es"):
-            forms.add(word[:-2])
-        if word.endswith("ies"):
-            forms.add(word[:-3] + "y")
-    return frozenset(forms)
-
-
-def same_word(one: str, other: str) -> bool:
-    """Whether two words are the same but for their number."""
-    return one == other or one in _forms(other) or other in _forms(one)
 
 
 def wordings_of(name: str, further: Iterable[str]) -> tuple[str, ...]:

@@ -1,0 +1,100 @@
+"""Words of a free text as they are compared: markup, spelling, contractions and number set aside."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import lru_cache
+
+_SPELLINGS = {
+    "color": "colour", "colors": "colours", "gray": "grey", "center": "centre", "meter": "metre", "tire": "tyre", "curb": "kerb",
+    "sidewalk": "pavement", "license": "licence", "story": "storey", "aluminum": "aluminium", "colored": "coloured",
+}  # fmt: skip
+_IRREGULAR = {"people": "person", "men": "man", "women": "woman", "children": "child", "persons": "person"}
+_IDIOMS = (
+    "without a doubt", "without doubt", "no doubt", "no problem", "of course", "for sure", "not only", "no wonder",
+    "needless to say", "as you can see", "not surprisingly",
+)  # fmt: skip
+_CONTRACTIONS = (
+    (re.compile(r"\bcan'?t\b|\bcannot\b"), "can not"),
+    (re.compile(r"\bwon't\b"), "will not"),
+    (re.compile(r"n't\b"), " not"),
+    (re.compile(r"\b(it|there|that|he|she|what|here|one|everything|who|let)'s\b"), r"\1 is"),
+    (re.compile(r"\b(i|we|you|they)'(m|re|ve|d|ll)\b"), r"\1"),
+)
+_WORD = re.compile(r"\d+(?:,\d{3})+(?:\.\d+)?|\d+(?:\.\d+)?|[^\W\d_]+(?:'[^\W\d_]+)*|[°%]")
+_HARD = re.compile(r"[!?;\n]|\.(?!\d)|\s[—–-]\s|—")
+
+
+@dataclass(frozen=True, slots=True)
+class Word:
+    """``text`` in lower case and British spelling; ``gap``: what stands between it and the word before; ``segment`` ends at commas
+    and colons too, ``clause`` only where a sentence could."""
+
+    text: str
+    gap: str
+    clause: int
+    segment: int
+
+
+def clean(text: str) -> str:
+    """Without markup and notes of the source; quotation marks, dashes and spaces of one sort; capitals kept."""
+    text = unicodedata.normalize("NFKC", text)
+    text = re.sub(r"\s*\((?:source:|seen by)[^)]*\)", "", text, flags=re.IGNORECASE)
+    text = re.sub(r"[‘’´`]", "'", re.sub(r"[“”„«»]", '"', text)).replace("−", "-")
+    text = re.sub(r"\*\*|__|^#+\s*|^>\s*|(?<!\w)\*(?=\w)|(?<=\w)\*(?!\w)", "", text, flags=re.MULTILINE)
+    return re.sub(r"^\s*(?:[-*•]|\d+[.)])\s+", "", text, flags=re.MULTILINE).strip()
+
+
+def plain_words(text: str) -> list[str]:
+    """The words of a text, as they are compared."""
+    return [w.text for w in words_of(clean(text))]
+
+
+def words_of(text: str) -> list[Word]:
+    """The words of a clean text in order, with where clauses end."""
+    low = text.lower()
+    for pattern, plain in _CONTRACTIONS:
+        low = pattern.sub(plain, low)
+    for idiom in _IDIOMS:
+        low = re.sub(rf"\b{idiom}\b", " ", low)
+    words, end, clause, segment = list[Word](), 0, 0, 0
+    for match in _WORD.finditer(low):
+        gap = low[end : match.start()]
+        word = match.group()
+        end = match.end()
+        if words and _HARD.search(gap):
+            clause += 1
+        if words and (_HARD.search(gap) or re.search(r"[,:]", gap) or word in ("but", "whereas", "while", "although", "so")):
+            segment += 1
+        words.append(Word(_SPELLINGS.get(word, word), gap, clause, segment))
+    return words
+
+
+def names_any(text: str, wordings: Iterable[str]) -> bool:
+    """Whether one of the wordings stands anywhere in a text, be it asked or stated."""
+    words = plain_words(text)
+    for phrase in (plain_words(w) for w in wordings):
+        for at in range(len(words) - len(phrase) + 1):
+            if all(same_word(words[at + i], p) for i, p in enumerate(phrase)):
+                return True
+    return False
+
+
+@lru_cache(maxsize=4096)
+def _forms(word: str) -> frozenset[str]:
+    forms = {word, _IRREGULAR.get(word, word)}
+    if len(word) > 3 and word.endswith("s") and not word.endswith("ss"):
+        forms.add(word[:-1])
+        if word.endswith("es"):
+            forms.add(word[:-2])
+        if word.endswith("ies"):
+            forms.add(word[:-3] + "y")
+    return frozenset(forms)
+
+
+def same_word(one: str, other: str) -> bool:
+    """Whether two words are the same but for their number."""
+    return one == other or one in _forms(other) or other in _forms(one)
