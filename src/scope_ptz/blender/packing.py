@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,6 +25,7 @@ COLOUR = ".avif"
 
 NUMBERS = ".webp"
 SPRITE_CODING = 62
+FINEST_BASE_CODING = 94
 LOWEST_BASE_CODING, LOWEST_TILE_CODING = 74, 48
 CODING_STEP = 4
 MANIFEST_BYTES = 200_000
@@ -122,16 +123,32 @@ def weight_bytes(folder: Path) -> int:
 
 
 def _fitting_colour(folder: Path, rendered: Rendered, quality: Quality, limit_bytes: int) -> tuple[Layer, list[Layer]]:
-    """Base and tiles, the tiles coded more coarsely until everything fits; when that is not enough, the base too."""
-    others = weight_bytes(folder)
-    for base_coding in range(quality.base_coding, LOWEST_BASE_CODING - 1, -CODING_STEP):
-        base = _colour(folder, f"base{COLOUR}", rendered.base, base_coding)
-        room = limit_bytes - others - (folder / base.file).stat().st_size
-        for tile_coding in range(quality.tile_coding, LOWEST_TILE_CODING - 1, -CODING_STEP):
-            tiles = _tiles(folder, rendered.tiles, tile_coding)
-            if sum((folder / t.file).stat().st_size for t in tiles) <= room:
-                return base, tiles
-    return base, tiles
+    """Base and tiles in the finest codings that fit.
+
+    Room to spare goes to the base; when room is short, the tiles give way first.
+    """
+    room = limit_bytes - weight_bytes(folder)
+    coded = (-1, -1)
+    layers: list[Layer] = []
+    for codings in _codings(quality):
+        if codings[0] != coded[0]:
+            layers[:1] = [_colour(folder, f"base{COLOUR}", rendered.base, codings[0])]
+        if codings[1] != coded[1]:
+            layers[1:] = _tiles(folder, rendered.tiles, codings[1])
+        coded = codings
+        if sum((folder / layer.file).stat().st_size for layer in layers) <= room:
+            break
+    return layers[0], layers[1:]
+
+
+def _codings(quality: Quality) -> Iterator[tuple[int, int]]:
+    """Codings of the base and the tiles, finest first."""
+    for base in range(FINEST_BASE_CODING, quality.base_coding, -CODING_STEP):
+        yield base, quality.tile_coding
+    for tile in range(quality.tile_coding, LOWEST_TILE_CODING, -CODING_STEP):
+        yield quality.base_coding, tile
+    for base in range(quality.base_coding, LOWEST_BASE_CODING - 1, -CODING_STEP):
+        yield base, LOWEST_TILE_CODING
 
 
 def _tiles(folder: Path, tiles: list[RenderedTile], coding: int) -> list[Layer]:
