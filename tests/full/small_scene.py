@@ -46,7 +46,7 @@ def build(stage: Stage) -> None:
         )
     )  # fmt: skip
     stage.absent.append("dog")
-    sky.finish_materials()
+    stage.finish = sky.finish_materials
 
 
 def _ground(stage: Stage) -> None:

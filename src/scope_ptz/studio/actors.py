@@ -9,7 +9,6 @@ from contextlib import contextmanager
 import bpy
 import numpy as np
 
-from scope_ptz.studio.kit import sky
 from scope_ptz.studio.kit.stage import INSTANCE_PROP, ActorPath, Built, Stage
 
 GAIT_PHASES = 8
@@ -30,7 +29,7 @@ class Troupe:
         if key not in self._bodies:
             finished = tuple(m.name for m in bpy.data.materials)
             built = actor.build(index / GAIT_PHASES)
-            sky.finish_materials(spare=finished)
+            self._stage.finish(spare=finished)
             for obj in built.objects:
                 obj[INSTANCE_PROP] = actor.id
                 obj.pass_index = actor.number

@@ -54,6 +54,7 @@ class Studio:
         name = getattr(module, "NAME", Path(source).stem.replace("_", "-"))
         stage = Stage(name, getattr(module, "TITLE", name.replace("-", " ").capitalize()))
         module.build(stage)
+        stage.finish()
         bpy.context.view_layer.update()
         self._stage = stage
         return {"name": stage.name, "title": stage.title, "instances": len(stage.instances), "device": render.use_gpu() or "CPU"}

@@ -7,7 +7,7 @@ Every kit builder models its object at the origin, standing on z = 0, facing nor
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -124,8 +124,16 @@ class ActorPath:
     stride_m: float | None = None
 
 
+def _leave(*, spare: tuple[str, ...] = ()) -> None:
+    """Materials stay as they are."""
+
+
 class Stage:
-    """Collects what a scene module builds. Ids are ``category-NN`` in order of placement, and never change afterwards."""
+    """Collects what a scene module builds. Ids are ``category-NN`` in order of placement, and never change afterwards.
+
+    ``finish`` is the last step for materials: called once after the scene is built, and again for each moving thing that is built
+    later, with the names of the materials to leave alone (``spare``). Haze, for instance, goes on here.
+    """
 
     def __init__(self, name: str, title: str) -> None:
         self.name = name
@@ -137,6 +145,7 @@ class Stage:
         self.actors: list[ActorPath] = []
         self.absent: list[str] = []
         self.start_s = 0.0
+        self.finish: Callable[..., None] = _leave
         self._numbers: dict[str, int] = {}
 
     def place(

@@ -42,7 +42,7 @@ def build(stage: Stage) -> None:
     freight_yard_actors.build(stage)
     _cameras(stage)
     stage.absent = list(ABSENT)
-    dusk.finish_materials()
+    stage.finish = dusk.finish_materials
 
 
 def _cameras(stage: Stage) -> None:

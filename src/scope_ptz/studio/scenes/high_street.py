@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import bpy
 
 from scope_ptz.studio.kit import overcast, sky
@@ -37,7 +39,7 @@ def build(stage: Stage) -> None:
     high_street_land.build(stage)
     _cameras(stage)
     stage.absent = list(ABSENT)
-    sky.finish_materials(visibility_m=700.0)
+    stage.finish = partial(sky.finish_materials, visibility_m=700.0)
 
 
 def _cameras(stage: Stage) -> None:

@@ -28,7 +28,7 @@ def build(stage: Stage) -> None:
     highway_plants.build(stage)  # last: lettering slows down with every object that the file already holds
     _cameras(stage)
     stage.absent = list(ABSENT)
-    sky.finish_materials()
+    stage.finish = sky.finish_materials
 
 
 def _cameras(stage: Stage) -> None:

@@ -63,7 +63,7 @@ def build(stage: Stage) -> None:
     station_square_beyond.build(stage)  # last: everything else slows down with each object that the file already holds
     _cameras(stage)
     stage.absent = list(ABSENT)
-    sky.finish_materials()
+    stage.finish = sky.finish_materials
 
 
 def _cameras(stage: Stage) -> None:
