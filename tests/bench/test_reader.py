@@ -26,7 +26,11 @@ EXPECTATIONS = {
     for name, content in yaml.safe_load((DATA / "expectations.yaml").read_text("utf-8")).items()
 }
 ANSWERS = [json.loads(line) for line in (DATA / "answers.jsonl").read_text("utf-8").splitlines()]
-HELD_OUT = [json.loads(line) for line in (DATA / "answers_held_out.jsonl").read_text("utf-8").splitlines()]
+HELD_OUT = [
+    json.loads(line)
+    for name in ("answers_held_out.jsonl", "answers_models.jsonl")
+    for line in (DATA / name).read_text("utf-8").splitlines()
+]
 ANSWERED = {name: expected for name, expected in EXPECTATIONS.items() if not isinstance(expected, ActionOnly)}
 
 

@@ -17,9 +17,7 @@ _UNITS = {
 }  # fmt: skip
 _TENS = {"twenty": 20, "thirty": 30, "forty": 40, "fifty": 50, "sixty": 60, "seventy": 70, "eighty": 80, "ninety": 90}
 _BIG = {"hundred": 100, "thousand": 1000}
-_MEASURES = frozenset(
-    {"°", "%", "x", "degree", "percent", "second", "sec", "s", "minute", "metre", "m", "km", "px", "pixel", "time"}
-)
+_MEASURES = ("degree", "percent", "x", "second", "minute", "metre", "kilometre", "px", "pixel", "time")
 _LABELS = frozenset({
     "zoom", "pan", "tilt", "preset", "lane", "bay", "platform", "exit", "step", "junction", "number", "no", "reading",
     "marked", "labelled", "saying",
@@ -94,14 +92,14 @@ def read_number(script: Script, unit: Sequence[str], *, part: bool = False) -> f
 
 
 def find_quantities(script: Script, unit: Sequence[str]) -> list[Quantity]:
-    """Every number that could be a count, in order; measures (15 degrees, 2x), ordinals and labels (lane 3) are none."""
+    """Every number that could be a count, in order; measures (15 degrees, 2x) not asked for, ordinals and labels are none."""
     words, found, at = script.words, list[Quantity](), 0
     while at < len(words):
         value, end = _number_at(words, at)
         if value is None:
             at += 1
             continue
-        if not _is_no_count(words, at, end):
+        if _followed_by(words, end, unit) or not _is_no_count(words, at, end):
             found.append(_quantity(script, value, at, end, unit))
         at = end
     return found
@@ -173,7 +171,7 @@ def _number_words(words: Sequence[Word], at: int) -> tuple[float | None, int]:
 def _is_no_count(words: Sequence[Word], start: int, end: int) -> bool:
     after = words[end] if end < len(words) else None
     if after is not None and after.segment == words[end - 1].segment:
-        if any(same_word(after.text, m) for m in _MEASURES) and (after.text != "s" or after.gap == ""):
+        if any(same_word(after.text, measure) for measure in _MEASURES):
             return True
         if after.gap == "" and after.text in ("st", "nd", "rd", "th"):
             return True

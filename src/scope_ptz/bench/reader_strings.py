@@ -17,9 +17,14 @@ _LOOK_ALIKES = str.maketrans({"o": "0", "i": "1", "l": "1", "|": "1", "s": "5", 
 _NUMERALS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
 _DIGITS = {word: str(number) for number, word in enumerate(_NUMERALS)}
 _QUOTED = re.compile(r'"([^"]+)"|(?<!\w)\'([^\']+(?:\'\w[^\']*)*)\'(?!\w)')
-_CUE = re.compile(
-    r"\b(?:reads|read|says|say|displays|spells|shows|called|named|(?<!there )is|(?<!there )are)\b\s*:?\s*|:\s+", re.IGNORECASE
+_CUES = (
+    (re.compile(r"\b(?:reads?|says?|states?|displays?|spells?)\b\s*:?\s*", re.IGNORECASE), 14),
+    (re.compile(r":\s+"), 14),
+    (re.compile(r"\b(?:shows?|called|named)\b\s*", re.IGNORECASE), 14),
+    (re.compile(r"\b(?:(?<!there )is|(?<!there )are)\b\s*", re.IGNORECASE), 6),
 )
+"""What comes before a text, the surest first, and how many words may follow; of the last sort the last one counts."""
+_LEADS = re.compile(r"^(?:the )?(?:text|words?|letters|lettering)\s+(?:that reads?\s+)?", re.IGNORECASE)
 _TRAILERS = re.compile(
     r",?\s+(?:in|on|above|below|with|at|written|painted|printed|near|beside)\s+(?:(?:the|a|an|its|big|large|small|bold|capital|white|black|red|"
     r"blue|green|yellow|dark|light|orange)\s+)*(?:letters?|lettering|capitals|sign|board|text|background|front|back|plate|door|van|car|"
@@ -27,8 +32,7 @@ _TRAILERS = re.compile(
     re.IGNORECASE,
 )
 _NEXT_SENTENCE = re.compile(r"[.!]\s+(?=(?:It|This|That|The|There|I|They|In|On|At|Source)\b)")
-_MOST_WORDS = {"is": 6, "are": 6}
-_MOST_AFTER_A_CUE = 14
+_MOST_ALONE = 8
 
 
 def same_text(one: str, other: str, *, ocr: bool) -> bool:
@@ -56,15 +60,10 @@ def read_text(expected: Text, script: Script, answer: str) -> Reading:
         return _from_quotes(quoted, text)
     if re.search(r"\b(?:no (?:text|letters|writing)|blank|nothing (?:is )?written)\b", text, re.IGNORECASE):
         return Value("")
-    candidate, most = text, 8
-    for cue in _CUE.finditer(text):
-        if cue.end() < len(text):
-            candidate, most = text[cue.end() :], _MOST_WORDS.get(cue.group().strip().lower(), _MOST_AFTER_A_CUE)
-            if most == _MOST_AFTER_A_CUE:
-                break
+    candidate, most = _after_cue(text)
     candidate = _NEXT_SENTENCE.split(candidate)[0]
     candidate = _TRAILERS.sub("", candidate.strip().strip(".!,")).strip()
-    candidate = re.sub(r"\s*\n\s*", APART, candidate)
+    candidate = _LEADS.sub("", re.sub(r"\s*\n\s*", APART, candidate))
     words = candidate.split()
     if re.match(r"there (?:is|are)\b|done\b", candidate, re.IGNORECASE):
         return Unreadable("no text is quoted")
@@ -73,6 +72,15 @@ def read_text(expected: Text, script: Script, answer: str) -> Reading:
     if "or" in [w.lower() for w in words] and not any("or" in a.lower().split() for a in expected.accepted):
         return Unreadable("an alternative")
     return Value(candidate)
+
+
+def _after_cue(text: str) -> tuple[str, int]:
+    """What follows the surest cue, and how many words it may have; the whole text where there is no cue."""
+    for cue, most in _CUES:
+        ends = [match.end() for match in cue.finditer(text) if match.end() < len(text)]
+        if ends:
+            return text[ends[-1] if cue is _CUES[-1][0] else ends[0] :], most
+    return text, _MOST_ALONE
 
 
 def _from_quotes(quoted: Sequence[str], text: str) -> Reading:

@@ -115,7 +115,7 @@ class Script:
             re.match(
                 r"(\w+ ){0,2}?(is|are|was|were|can|could) not (\w+ )?"
                 r"(visible|present|there|seen|found|shown|here|anywhere|in|be (seen|found))\b"
-                r"|(is |are )?(absent|missing|nowhere)\b|(none|no|0|zero)$",
+                r"|(is |are )?(absent|missing|nowhere)\b|(is |are |was |were )?(none|no|0|zero)$",
                 after,
             )
         )

@@ -9,9 +9,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 _SPELLINGS = {
-    "color": "colour", "colors": "colours", "gray": "grey", "center": "centre", "meter": "metre", "tire": "tyre", "curb": "kerb",
+    "color": "colour", "gray": "grey", "center": "centre", "meter": "metre", "tire": "tyre", "curb": "kerb",
     "sidewalk": "pavement", "license": "licence", "story": "storey", "aluminum": "aluminium", "colored": "coloured",
 }  # fmt: skip
+_MEASURES = {"°": "degree", "deg": "degree", "%": "percent", "m": "metre", "km": "kilometre", "s": "second", "sec": "second"}
 _IRREGULAR = {"people": "person", "men": "man", "women": "woman", "children": "child", "persons": "person"}
 _IDIOMS = (
     "without a doubt", "without doubt", "no doubt", "no problem", "of course", "for sure", "not only", "no wonder",
@@ -53,6 +54,12 @@ def plain_words(text: str) -> list[str]:
     return [w.text for w in words_of(clean(text))]
 
 
+def _british(word: str) -> str:
+    if word.endswith("s") and word[:-1] in _SPELLINGS:
+        return _SPELLINGS[word[:-1]] + "s"
+    return _SPELLINGS.get(word, word)
+
+
 def words_of(text: str) -> list[Word]:
     """The words of a clean text in order, with where clauses end."""
     low = text.lower()
@@ -62,14 +69,15 @@ def words_of(text: str) -> list[Word]:
         low = re.sub(rf"\b{idiom}\b", " ", low)
     words, end, clause, segment = list[Word](), 0, 0, 0
     for match in _WORD.finditer(low):
-        gap = low[end : match.start()]
-        word = match.group()
+        gap, word = low[end : match.start()], match.group()
+        if words and words[-1].text[0].isdigit() and not gap.strip():
+            word = _MEASURES.get(word, word)
         end = match.end()
         if words and _HARD.search(gap):
             clause += 1
         if words and (_HARD.search(gap) or re.search(r"[,:]", gap) or word in ("but", "whereas", "while", "although", "so")):
             segment += 1
-        words.append(Word(_SPELLINGS.get(word, word), gap, clause, segment))
+        words.append(Word(_british(word), gap, clause, segment))
     return words
 
 
