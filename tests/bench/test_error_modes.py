@@ -6,12 +6,15 @@ import random
 from dataclasses import replace
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from scope_ptz.bench.episode import Episode, Look
 from scope_ptz.bench.error_modes import ErrorMode, error_mode
 from scope_ptz.bench.expected import ActionOnly
 from scope_ptz.bench.mutations import Gold, Setting, confusion, mutate
 from scope_ptz.bench.tasks import Argument, Behaviour, RequiredCall, Task
+from scope_ptz.bench.verdict import judge
 from tests.bench.making import EYES, GO_BRIDGE, GO_HIGHWAY, PRESETS, Step, counted, play, samples, task, told
 
 SAMPLES = samples()
@@ -137,3 +140,39 @@ def test_a_target_that_perception_does_not_find_is_its_fault_and_one_that_was_ne
     assert error_mode(track, tracked("the van", True)) is None
     assert error_mode(track, tracked("the van", False)) is ErrorMode.VLM_QUERY
     assert error_mode(track, tracked("the bus", True)) is ErrorMode.TOOL_ARGS
+
+
+STEPS: st.SearchStrategy[Step] = st.sampled_from(
+    [
+        GO_HIGHWAY,
+        GO_BRIDGE,
+        BLIND,
+        NO_PRESET,
+        counted(0),
+        counted(5),
+        counted(12, "cars", "full"),
+        told("It is red.", "What colour is the van?"),
+        told("I cannot tell.", "What does the sign say?"),
+        ("adjust_ptz", {"pan_deg": 15.0}),
+        ("adjust_ptz", {"pan_deg": -20.0, "tilt_deg": -10.0}),
+        ("zoom_to_object", {"description": "the sign"}, {"found": False, "matches": 0}),
+        ("take_image", {}),
+        ("get_presets", {}, {"presets": ["gate", "highway", "bridge"]}),
+        ("go_home", {}),
+    ]
+)
+TEXTS = st.sampled_from(["Done.", "5", "12 cars", "none", "yes", "no", "It is red.", "The gate.", "I cannot tell.", "several"])
+ENDS = st.sampled_from(["answered", "clarification", "refused", "step_limit", "budget", "planner_error", "camera_error"])
+
+
+@given(st.sampled_from(SAMPLES), st.lists(STEPS, max_size=6), TEXTS, ENDS)
+def test_any_run_that_is_judged_incorrect_has_exactly_one_mode_and_no_other_run_has_any(
+    sample: tuple[Task, Episode], steps: list[Step], text: str, end: str
+) -> None:
+    of, _ = sample
+    episode = play(steps, text, outcome=end)
+    verdict = judge(of, episode)
+    assert (error_mode(of, episode) is not None) == (verdict.headline == "incorrect")
+    if verdict.headline == "correct":
+        assert all(check.passed for check in verdict.checks)
+        assert end == "answered"
