@@ -71,7 +71,6 @@ def _cameras(stage: Stage) -> None:
     stage.viewpoint("hotel", (6.0, -27.4, 8.0), 0.0, "bracket on the front of the Station Hotel")
     stage.preset("square", "kiosk", -24, -8, 1.0, "the market, the fountain and the station", home=True)
     stage.preset("market", "kiosk", -52, -13, 2.0, "the market stalls and their customers")
-    stage.preset("station-front", "kiosk", -7, 0, 1.5, "the station's entrance, clock and name")
     stage.preset("terrace", "kiosk", -82, -9, 2.6, "the café terrace")
     stage.preset("taxi-rank", "kiosk", 66, -13, 1.2, "the taxi rank and the shops on the eastern side")
     stage.preset("forecourt", "hotel", -3, -13, 1.0, "the whole square with the station behind it")
