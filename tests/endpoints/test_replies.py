@@ -131,3 +131,44 @@ def test_nothing_that_breaks_files_or_terminals() -> None:
 
 def test_raw_line_ends_in_strings_are_let_pass() -> None:
     assert load_object(b'{"a": "x\ny"}', AT, 200) == {"a": "x\ny"}
+
+
+def test_a_whole_call_is_never_a_piece_of_another() -> None:
+    reply = gather({"choices": [{"message": {"tool_calls": [call("{}", index=0, id="a"), call("{}", index=0, id="a")]}}]})
+    assert [call.arguments_text for call in reply.tool_calls] == ["{}", "{}"]
+
+
+@pytest.mark.parametrize("marks", [{"id": "a"}, {"id": "a", "index": 0}, {}])
+def test_pieces_that_repeat_their_name_are_one_call(marks: dict[str, Any]) -> None:
+    parts = ("", '{"pan', '_deg": 5}', "")
+    reply = gather(*(delta(tool_calls=[call(part, **marks)]) for part in parts))
+    assert [call.arguments_text for call in reply.tool_calls] == ['{"pan_deg": 5}']
+
+
+@pytest.mark.parametrize("marks", [{"id": "a"}, {"id": "a", "index": 0}, {}])
+def test_streamed_calls_that_share_their_marks_are_told_apart_by_being_complete(marks: dict[str, Any]) -> None:
+    reply = gather(*(delta(tool_calls=[call(given, **marks)]) for given in ('{"a":', "1}", "{}")))
+    assert [call.arguments_text for call in reply.tool_calls] == ['{"a":1}', "{}"]
+
+
+@pytest.mark.parametrize("streamed", [False, True])
+def test_the_interface_before_tools(streamed: bool) -> None:
+    message = {"content": None, "function_call": {"name": "go_home", "arguments": "{}"}}
+    reply = gather(delta(**message) if streamed else {"choices": [{"message": message}]})
+    assert [(call.name, call.arguments_text) for call in reply.tool_calls] == [("go_home", "{}")]
+
+
+@pytest.mark.parametrize(
+    "body",
+    [{"detail": "not loaded"}, {"message": "not loaded", "code": 500}, {"status": "error", "message": "not loaded"}],
+)
+def test_a_body_of_nothing_but_words_is_an_error(body: dict[str, Any]) -> None:
+    with pytest.raises(ServerFailure) as raised:
+        load_object(json.dumps(body).encode(), AT, 200)
+    assert raised.value.kind == FailureKind.ERROR_BODY
+    assert "not loaded" in str(raised.value)
+
+
+def test_what_cannot_be_read_is_quoted_in_brief() -> None:
+    with pytest.raises(ServerFailure, match="in 'Internal Server Error'"):
+        load_object(b"Internal Server Error", AT, 200)

@@ -213,3 +213,13 @@ def test_answers_that_tell(text: str) -> None:
 
 def test_reasoning_is_cut_in_all_its_forms() -> None:
     assert without_reasoning("<think>a</think>b<thinking>c</thinking>d") == "bd"
+
+
+@pytest.mark.parametrize("unit", ['[{"bbox_2d":[100,200,300,400]},', '{"objects":[', "[", "{'a':", "[[1,2,3,4],"])
+def test_a_model_that_opens_brackets_for_ever_is_no_crash(unit: str) -> None:
+    try:
+        read = read_places(unit * 5000)
+    except PerceptionError as error:
+        assert error.kind == "malformed"
+    else:
+        assert not read.complete

@@ -8,13 +8,16 @@ from collections.abc import AsyncGenerator
 from typing import TYPE_CHECKING, Any
 
 from scope_ptz.endpoints.endpoint import MAX_BODY_BYTES, Endpoint
-from scope_ptz.endpoints.failures import FailureKind, ServerFailure, scrub
+from scope_ptz.endpoints.failures import FailureKind, ServerFailure, in_brief, scrub
 from scope_ptz.endpoints.translate import error_body
 
 if TYPE_CHECKING:
     from httpx2 import Response
 
 K = FailureKind
+
+_QUOTED = 80
+"""Bytes of an unreadable body that its failure shows."""
 
 _JSON_TYPE = re.compile(r"^(application|text)/([\w.+-]+\+)?json$")
 _UNSAFE = re.compile("[\\x00-\\x08\\x0b\\x0c\\x0e-\\x1f\\x7f-\\x9f\\ud800-\\udfff]")
@@ -79,7 +82,8 @@ def load_object(body: bytes, endpoint: Endpoint, status: int) -> dict[str, Any]:
         # Some servers put raw line ends into strings.
         data: Any = json.loads(scrub(body.decode("utf-8"), endpoint.secret), strict=False)
     except (ValueError, RecursionError) as error:
-        raise ServerFailure(K.MALFORMED, where=endpoint.url, status=status, detail=_no_json(error)) from None
+        detail = f"{_no_json(error)} in '{in_brief(body[:_QUOTED].decode(errors='replace'), endpoint.secret)}'"
+        raise ServerFailure(K.MALFORMED, where=endpoint.url, status=status, detail=detail) from None
     if not isinstance(data, dict):
         raise ServerFailure(K.MALFORMED, where=endpoint.url, status=status, detail=f"a JSON {type(data).__name__}, not an object")
     whole: dict[str, Any] = _safe(data) if _UNSAFE_ESCAPE.search(body) else data

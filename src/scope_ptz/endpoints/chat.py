@@ -11,7 +11,8 @@ from pydantic_core import to_json
 from scope_ptz.endpoints.bodies import chunks, content_type, is_json, load_object, read_object, wrong_type
 from scope_ptz.endpoints.calls import Caller
 from scope_ptz.endpoints.endpoint import Endpoint
-from scope_ptz.endpoints.failures import Attempt, FailureKind, ServerFailure
+from scope_ptz.endpoints.events import DONE, Events
+from scope_ptz.endpoints.failures import Attempt, FailureKind, ServerFailure, in_brief
 from scope_ptz.endpoints.replies import ChatReply, Gathering, RawToolCall
 
 if TYPE_CHECKING:
@@ -115,17 +116,23 @@ class ChatClient:
 
     async def _read_stream(self, response: Response, began: float) -> ChatReply:
         gathering, first_token_s, done = Gathering(self.endpoint), None, False
-        events = _Events()
+        head, events = b"", Events()
         pieces = chunks(response, self.endpoint)
+
+        def take(stream: list[bytes]) -> bool:
+            nonlocal first_token_s
+            for data in stream:
+                if data == DONE:
+                    return True
+                brought = gathering.add(load_object(data, self.endpoint, response.status_code))
+                if brought and first_token_s is None:
+                    first_token_s = perf_counter() - began
+            return False
+
         try:
             async for piece in pieces:
-                for data in events.feed(piece):
-                    if data == b"[DONE]":
-                        done = True
-                        break
-                    brought = gathering.add(load_object(data, self.endpoint, response.status_code))
-                    if brought and first_token_s is None:
-                        first_token_s = perf_counter() - began
+                head = head or piece
+                done = take(events.feed(piece))
                 if done:
                     break
             if done:
@@ -134,10 +141,20 @@ class ChatClient:
                         pass
         finally:
             await pieces.aclose()
+        done = done or take(events.end())
         if not done and gathering.finish_reason is None:
-            detail = "the stream ended before the answer did"
-            raise ServerFailure(K.CUT_OFF, where=self.endpoint.url, status=response.status_code, detail=detail)
+            raise self._broken_off(gathering, head, response.status_code)
         return gathering.reply().model_copy(update={"first_token_s": first_token_s})
+
+    def _broken_off(self, gathering: Gathering, head: bytes, status: int) -> ServerFailure:
+        """A stream without an end: it stopped in its midst, or never was one. ``head``: how it began."""
+        where = self.endpoint.url
+        if gathering.pieces:
+            return ServerFailure(K.CUT_OFF, where=where, status=status, detail="the stream ended before the answer did")
+        if not head.strip():
+            return ServerFailure(K.EMPTY, where=where, status=status, detail="an empty body")
+        detail = f"no event stream: {in_brief(head[:200].decode(errors='replace'), self.endpoint.secret)}"
+        return ServerFailure(K.MALFORMED, where=where, status=status, detail=detail)
 
     def _client(self) -> AsyncOpenAI:
         if self._openai is None:
@@ -157,15 +174,3 @@ class ChatClient:
         if self._openai is not None:
             client, self._openai = self._openai, None
             await client.close()
-
-
-class _Events:
-    """The data of server-sent events, from bytes that come in any cut. One data line is one event."""
-
-    def __init__(self) -> None:
-        self._rest = b""
-
-    def feed(self, piece: bytes) -> list[bytes]:
-        lines = (self._rest + piece).split(b"\n")
-        self._rest = lines.pop()
-        return [line[5:].strip() for line in lines if line.startswith(b"data:") and line[5:].strip()]

@@ -50,6 +50,7 @@ class Gathering:
         self.finish_reason: str | None = None
         self.model = ""
         self.has_choice = False
+        self.pieces = 0
         self._text: list[str] = []
         self._reasoning: list[str] = []
         self._calls: list[dict[str, str]] = []
@@ -58,6 +59,7 @@ class Gathering:
 
     def add(self, data: dict[str, Any]) -> bool:
         """Take in a completion or a chunk. Whether it brought anything of the reply itself."""
+        self.pieces += 1
         self.model = self.model or _text_of(data.get("model"))
         self._usage = _object_of(data.get("usage")) or self._usage
         choices = data.get("choices")
@@ -70,19 +72,22 @@ class Gathering:
             raise self._malformed("a choice is no object")
         self.has_choice = True
         self.finish_reason = _text_of(choice.get("finish_reason")) or self.finish_reason
-        message = choice.get("delta") or choice.get("message")
-        return self._add_message(message) if isinstance(message, dict) else False
+        delta = choice.get("delta")
+        message = delta or choice.get("message")
+        return self._add_message(message, whole=not delta) if isinstance(message, dict) else False
 
-    def _add_message(self, message: dict[str, Any]) -> bool:
+    def _add_message(self, message: dict[str, Any], *, whole: bool) -> bool:
         text = self._content(message.get("content")) or _text_of(message.get("refusal"))
         reasoning = _text_of(message.get("reasoning_content")) or _text_of(message.get("reasoning"))
         calls = message.get("tool_calls") or []
         if not isinstance(calls, list):
             raise self._malformed("'tool_calls' is no list")
+        if not calls and message.get("function_call"):  # the interface before tools
+            calls = [{"index": 0, "function": message["function_call"]}]
         self._text.append(text)
         self._reasoning.append(reasoning)
         for call in calls:
-            self._add_call(call)
+            self._add_call(call, whole=whole)
         return bool(text or reasoning or calls)
 
     def _content(self, content: Any) -> str:
@@ -92,14 +97,15 @@ class Gathering:
             return "".join(_text_of(part.get("text")) for part in content if isinstance(part, dict))
         raise self._malformed("'content' is no text")
 
-    def _add_call(self, call: Any) -> None:
-        """Pieces of a call share an index; some servers give none, or give every call the same one and an id of its own."""
+    def _add_call(self, call: Any, *, whole: bool) -> None:
         function = _object_of(call.get("function")) if isinstance(call, dict) else None
         if function is None:
             raise self._malformed("a tool call is no object")
         index, call_id, name = call.get("index"), _text_of(call.get("id")), _text_of(function.get("name"))
-        slot = self._slots.get(index) if isinstance(index, int) else (len(self._calls) - 1 if not name and self._calls else None)
-        if slot is None or (name and call_id and self._calls[slot]["id"] not in ("", call_id)):
+        given = function.get("arguments")
+        arguments = given if isinstance(given, str) else "" if given is None else json.dumps(given)
+        slot = None if whole else self._slot(index, call_id, name, arguments)
+        if slot is None:
             slot = len(self._calls)
             self._calls.append({"id": "", "name": "", "arguments": ""})
             if isinstance(index, int):
@@ -107,8 +113,17 @@ class Gathering:
         held = self._calls[slot]
         held["id"] = held["id"] or call_id
         held["name"] = held["name"] or name
-        arguments = function.get("arguments")
-        held["arguments"] += arguments if isinstance(arguments, str) else "" if arguments is None else json.dumps(arguments)
+        held["arguments"] += arguments
+
+    def _slot(self, index: Any, call_id: str, name: str, arguments: str) -> int | None:
+        """The call that a piece goes on with; None when it begins one. Pieces of a call share an index; some servers give none,
+        give every call the same one, or repeat id and name in every piece."""
+        slot = self._slots.get(index) if isinstance(index, int) else len(self._calls) - 1 if self._calls else None
+        if slot is None or not name:
+            return slot
+        held = self._calls[slot]
+        another = (held["id"] and call_id and held["id"] != call_id) or (held["name"] and held["name"] != name)
+        return None if another or (arguments and _is_object(held["arguments"])) else slot
 
     def reply(self) -> ChatReply:
         """The whole.
@@ -148,6 +163,14 @@ def _text_of(value: Any) -> str:
 
 def _object_of(value: Any) -> dict[str, Any] | None:
     return value if isinstance(value, dict) else None
+
+
+def _is_object(arguments: str) -> bool:
+    """Whether arguments are complete, so that what comes with a name of its own is another call."""
+    try:
+        return isinstance(json.loads(arguments), dict)
+    except (ValueError, RecursionError):
+        return False
 
 
 def _count_of(value: Any) -> int:

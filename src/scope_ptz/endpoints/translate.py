@@ -117,7 +117,7 @@ def status_failure(status: int, headers: Mapping[str, str], body: str, endpoint:
 
 def error_body(body: dict[str, Any], endpoint: Endpoint, status: int = 200) -> ServerFailure | None:
     """The failure in a reply that claims success; None when there is no error in it."""
-    if not body.get("error") and body.get("object") != "error":
+    if not body.get("error") and body.get("object") != "error" and not _only_words(body):
         return None
     said = _Said(json.dumps(body))
     if said.overflow:
@@ -129,6 +129,15 @@ def error_body(body: dict[str, Any], endpoint: Endpoint, status: int = 200) -> S
     else:
         kind = K.ERROR_BODY
     return ServerFailure(kind, where=endpoint.url, status=status, detail=in_brief(said.message, endpoint.secret))
+
+
+_WORDS = frozenset({"detail", "message"})
+_AROUND_WORDS = _WORDS | {"code", "error", "status", "status_code", "statusCode", "title", "type", "success", "request_id"}
+
+
+def _only_words(body: dict[str, Any]) -> bool:
+    """Whether a body is a message and nothing else: how gateways, and frameworks without a convention, tell of errors."""
+    return body.keys() <= _AROUND_WORDS and any(body.get(name) for name in _WORDS)
 
 
 class _Said:

@@ -156,7 +156,7 @@ def _lenient(text: str) -> Any:
 
         try:
             return repair_json(text, return_objects=True, skip_json_loads=True)
-        except RecursionError:
+        except (ValueError, RecursionError):  # nested too deeply, in its words or in Python's
             return None
 
 

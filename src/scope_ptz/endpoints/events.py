@@ -1,0 +1,62 @@
+"""Server-sent events, from bytes that come in any cut."""
+
+from __future__ import annotations
+
+import codecs
+import json
+
+DONE = b"[DONE]"
+
+
+class Events:
+    """The data of events, one after the other.
+
+    By the standard: any of the three line ends, comments and other fields skipped, an event's data lines joined, a byte order mark
+    dropped. Beyond it: servers that leave out the blank line behind an event, or the last line end, are understood too.
+    """
+
+    def __init__(self) -> None:
+        self._rest = b""
+        self._data: list[bytes] = []
+        self._begun = False
+
+    def feed(self, piece: bytes) -> list[bytes]:
+        """The events that a piece completes."""
+        text = self._rest + piece
+        if not self._begun:
+            if codecs.BOM_UTF8.startswith(text):
+                self._rest = text  # Not enough yet to tell, or nothing but the mark
+                return []
+            text, self._begun = text.removeprefix(codecs.BOM_UTF8), True
+        # A carriage return at the end may be half of a line end.
+        held = text.endswith(b"\r")
+        lines = (text[:-1] if held else text).replace(b"\r\n", b"\n").replace(b"\r", b"\n").split(b"\n")
+        self._rest = lines.pop() + (b"\r" if held else b"")
+        return [event for line in lines for event in self._line(line)]
+
+    def end(self) -> list[bytes]:
+        """The events of what is left when nothing more comes."""
+        rest, self._rest = self._rest.strip(b"\r").removeprefix(codecs.BOM_UTF8), b""
+        return [*self._line(rest), *self._line(b"")]
+
+    def _line(self, line: bytes) -> list[bytes]:
+        if line.startswith(b"data:"):
+            before = self._taken() if self._data and _whole(b"\n".join(self._data)) else []
+            self._data.append(line[5:].strip())
+            return before
+        return [] if line else self._taken()
+
+    def _taken(self) -> list[bytes]:
+        data, self._data = b"\n".join(self._data).strip(), []
+        return [data] if data else []
+
+
+def _whole(data: bytes) -> bool:
+    """Whether data needs no further line. Asked only where a line of data follows another at once, which is rare."""
+    if data == DONE:
+        return True
+    try:
+        json.loads(data)
+    except (ValueError, RecursionError):
+        return False
+    return True
