@@ -8,7 +8,7 @@ import pytest
 from scope_ptz.blender.band import Panorama, reachable_band
 from scope_ptz.blender.keyframes import MAX_SIDE_PX, keyframes
 from scope_ptz.blender.panorama import joined, smoothed
-from scope_ptz.blender.tiles import Cell, Target, cover, covers, most_useful, targets
+from scope_ptz.blender.tiles import Cell, Target, cover, covers, joined, most_useful, targets
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, direction, pan_tilt_deg
 from scope_ptz.world.models import Band, SceneActor, SceneFile, ScenePreset, SceneText, SceneViewpoint
 
@@ -82,12 +82,24 @@ def test_cells_cover_all_targets_with_few_tiles() -> None:
         Target(f"thing-{k}", np.array([[pan, tilt]]) + rng.uniform(-0.5, 0.5, (40, 2)))
         for k, (pan, tilt) in enumerate([(-179.8, -5), (0, -8), (3, -8), (90, -44), (91, 20)])
     ]
-    views = [cell.view(48.0) for cell in cover(wanted)]
+    cells = cover(wanted)
+    views = [cell.view(48.0) for cell in cells]
     assert all(covers(views, target) for target in wanted)
     assert len(views) <= 12
-    best = most_useful(views, wanted, 2)
-    assert len(best) == 2 and all(view in views for view in best)
+    best = most_useful(cells, wanted, 2)
+    assert len(best) == 2 and all(cell in cells for cell in best)
     assert cover([]) == []
+
+
+def test_neighbours_in_a_row_are_rendered_as_one() -> None:
+    row = [Cell(6.0 * k, -4.0, 6.0, 4.0) for k in (0, 1, 2, 3, 6)]
+    found = joined([*row, Cell(0.0, 4.0, 6.0, 4.0), Cell(0.0, -60.0, 12.0, 4.0), Cell(12.0, -60.0, 12.0, 4.0)])
+    assert [(c.pan_deg, c.tilt_deg, c.span_pan_deg) for c in found] == [
+        (0.0, -60.0, 12.0), (12.0, -60.0, 12.0), (6.0, -4.0, 18.0), (18.0, -4.0, 6.0), (36.0, -4.0, 6.0), (0.0, 4.0, 6.0)
+    ]  # fmt: skip
+    for cell in row:
+        spots = Target("cell", np.array([[cell.pan_deg + x, cell.tilt_deg + y] for x in (-2.9, 2.9) for y in (-1.9, 1.9)]))
+        assert covers([c.view(48.0) for c in found], spots)
 
 
 def test_small_things_are_targets_and_large_ones_are_not() -> None:

@@ -60,7 +60,7 @@ def baked(command: list[str], tmp_path_factory: pytest.TempPathFactory) -> Scene
     folder = tmp_path_factory.mktemp("scenes") / "small-yard"
     cache = tmp_path_factory.mktemp("cache")
     found = bake(SCENE, folder, quality=TINY, command=command, cache_dir=cache, viewpoints=["mast"], progress=silent)
-    assert found.packs[0].tiles == TINY.max_tiles
+    assert 1 <= found.packs[0].tiles <= TINY.max_cells
     assert {r.viewpoint for r in found.reports} == {"mast"}, "the finished pack is held against live renders"
     file = folder / "scene.json"
     scene = SceneFile.model_validate_json(file.read_text())

@@ -18,7 +18,7 @@ DEPTH_STEP = 48
 
 @dataclass(frozen=True, slots=True)
 class Quality:
-    """Sizes in pixels, samples a pixel, and the colour coder's own scale.
+    """Sizes in pixels, samples a pixel, most cells of the sphere that get tiles, and the colour coder's own scale.
 
     ``check_samples`` and ``check_width`` are those of the live renders that a finished pack is compared with, and ``judged`` says
     whether it must hold the tolerances.
@@ -31,7 +31,7 @@ class Quality:
     depth_width: int
     tile_samples: int
     tile_density_px_per_deg: float
-    max_tiles: int
+    max_cells: int
     sprite_samples: int
     max_sprites: int
     base_coding: int
