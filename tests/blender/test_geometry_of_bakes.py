@@ -8,7 +8,7 @@ import pytest
 from scope_ptz.blender.band import Panorama, reachable_band
 from scope_ptz.blender.keyframes import MAX_SIDE_PX, keyframes
 from scope_ptz.blender.panorama import joined, smoothed
-from scope_ptz.blender.tiles import Cell, Target, cover, covers, joined, most_useful, targets
+from scope_ptz.blender.tiles import Cell, Target, cover, covers, in_rows, most_useful, targets
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, direction, pan_tilt_deg
 from scope_ptz.world.models import Band, SceneActor, SceneFile, ScenePreset, SceneText, SceneViewpoint
 
@@ -93,7 +93,7 @@ def test_cells_cover_all_targets_with_few_tiles() -> None:
 
 def test_neighbours_in_a_row_are_rendered_as_one() -> None:
     row = [Cell(6.0 * k, -4.0, 6.0, 4.0) for k in (0, 1, 2, 3, 6)]
-    found = joined([*row, Cell(0.0, 4.0, 6.0, 4.0), Cell(0.0, -60.0, 12.0, 4.0), Cell(12.0, -60.0, 12.0, 4.0)])
+    found = in_rows([*row, Cell(0.0, 4.0, 6.0, 4.0), Cell(0.0, -60.0, 12.0, 4.0), Cell(12.0, -60.0, 12.0, 4.0)])
     assert [(c.pan_deg, c.tilt_deg, c.span_pan_deg) for c in found] == [
         (0.0, -60.0, 12.0), (12.0, -60.0, 12.0), (6.0, -4.0, 18.0), (18.0, -4.0, 6.0), (36.0, -4.0, 6.0), (0.0, 4.0, 6.0)
     ]  # fmt: skip

@@ -22,7 +22,7 @@ from scope_ptz.blender.quality import DEPTH_STEP, FAR_M, NEAR_M, PACK_BYTES, Qua
 from scope_ptz.blender.requests import panorama_request, perspective_request
 from scope_ptz.blender.sheets import make_sheet
 from scope_ptz.blender.sources import scene_key
-from scope_ptz.blender.tiles import cover, covers, joined, most_useful, targets
+from scope_ptz.blender.tiles import cover, covers, in_rows, most_useful, targets
 from scope_ptz.blender.verify import PoseReport, draw_poses, verify
 from scope_ptz.blender.workshop import Progress, Workshop
 from scope_ptz.errors import BlenderError, UnknownNameError
@@ -130,7 +130,7 @@ class _Baker:
         panorama = Panorama.of(q.base_width, self._band)
         base = render_base(self._worker, self._shop, name, panorama, q.base_samples)
         wanted = targets(self._scene, viewpoint, ids, wide.projection)
-        views = [cell.view(q.tile_density_px_per_deg) for cell in joined(most_useful(cover(wanted), wanted, q.max_cells))]
+        views = [cell.view(q.tile_density_px_per_deg) for cell in in_rows(most_useful(cover(wanted), wanted, q.max_cells))]
         tiles = self._tiles(name, views)
         actors = [a for actor in self._scene.actors if (a := self._actor(viewpoint, actor)) is not None]
         rendered = Rendered(panorama, base, ids, encode_depth(metres, NEAR_M, FAR_M, DEPTH_STEP), tiles, actors, silhouettes)

@@ -151,7 +151,7 @@ def most_useful(cells: Sequence[Cell], wanted: Sequence[Target], most: int) -> l
     return [cells[k] for k in kept]
 
 
-def joined(cells: Sequence[Cell]) -> list[Cell]:
+def in_rows(cells: Sequence[Cell]) -> list[Cell]:
     """The same parts of the sphere in fewer pieces: neighbours in a row become one, so that less is spent on starting renders.
 
     Rows far from the horizon are left alone: there a long cell fills its picture badly.
