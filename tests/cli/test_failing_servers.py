@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import SCENE, Done, Scope
-from tests.support.misbehaving import Misbehaving, echo_key, nobody_listens, say, status
+from tests.support.misbehaving import Misbehaving, echo_key, good, nobody_listens, say, status
 
 KEY = "sk-very-secret-0123456789"
 ASK = ("ask", "how many cones are there?", "--scene", SCENE, "--fast", "--timeout", "10")
@@ -76,6 +76,14 @@ def test_eyes_that_fail_are_an_error_to_the_planner_and_counted(scope: Scope, tm
     ended = json.loads(next(tmp_path.rglob("trace.jsonl")).read_text().splitlines()[-1])
     assert ended["perception_failures"] == 1
     assert ended["server_events"] == {"server-error": 3}
+
+
+def test_a_count_of_places_that_were_partly_lost_is_a_lower_bound(scope: Scope, tmp_path: Path) -> None:
+    box = {"x_min": 0.1, "y_min": 0.1, "x_max": 0.2, "y_max": 0.2}
+    with Misbehaving(then=good(moondream={"detect": {"objects": [box, {**box, "x_min": "left"}]}})) as eyes:
+        done = scope(*ASK, "--perception", "moondream", "--eyes-url", eyes.url, "--json")
+    assert "at least 1 cone" in shown(done, tmp_path)
+    assert done.json["tool_calls"][0]["result"]["complete"] is False
 
 
 def test_an_address_with_a_key_in_it_is_refused(scope: Scope, tmp_path: Path) -> None:

@@ -10,7 +10,18 @@ import pytest
 
 from scope_ptz.planner.chat.conformance import PICTURE, TURN
 from tests.cli.conftest import SCENE, Scope
-from tests.support.misbehaving import MODEL, Behaviour, Exchange, Misbehaving, Request, Say, body, good, nobody_listens, status
+from tests.support.misbehaving import (
+    MODEL,
+    Behaviour,
+    Exchange,
+    Misbehaving,
+    Request,
+    Say,
+    body,
+    good,
+    nobody_listens,
+    status,
+)
 
 MOONDREAM: dict[str, dict[str, Any]] = {
     "query": {"answer": "A yard."},
@@ -112,9 +123,9 @@ def test_eyes_are_checked_on_a_frame(scope: Scope) -> None:
     assert verdicts["boxes of 'traffic cone'"] == "partly"
 
 
-def profiled(scope: Scope, *options: str) -> Any:
+def profiled(scope: Scope, *options: str, code: int = 0) -> Any:
     done = scope("profile", "--scene", SCENE, "--frames", "2", "--json", *options)
-    assert done.code == 0, done.err
+    assert done.code == code, done.err
     return done.json
 
 
@@ -147,9 +158,28 @@ def test_a_profile_tells_speed_validity_and_the_verdict(scope: Scope, tmp_path: 
 
 def test_failures_are_counted_and_no_verdict_is_invented(scope: Scope) -> None:
     with Misbehaving(then=status(401)) as server:
-        report = profiled(scope, "--perception", "moondream2", "--eyes-url", server.url)
+        report = profiled(scope, "--perception", "moondream2", "--eyes-url", server.url, code=1)
         assert report["eyes"]["eyes"]["failures"] == {"unauthorised": 8}
     assert report["real_time"] == "unknown"
+
+
+def test_eyes_that_fail_at_one_thing_do_not_meet_the_bar(scope: Scope) -> None:
+    with Misbehaving(then=good(moondream={**MOONDREAM, "detect": {"error": "out of memory"}})) as server:
+        report = profiled(scope, "--perception", "moondream2", "--eyes-url", server.url, code=1)
+    eyes = report["eyes"]["eyes"]
+    assert (set(eyes["by_skill"]), eyes["never_worked"]) == ({"query", "caption", "point"}, ["detect"])
+    assert "out of memory" in eyes["first_failure"]
+    assert report["real_time"] == "unknown"
+
+
+def test_a_planner_whose_server_fails_is_not_said_to_choose_wrongly(scope: Scope) -> None:
+    with Misbehaving(then=status(503, "loading")) as server:
+        report = profiled(scope, "--planner-url", server.url, "--prompts", "--limit", "3", code=1)
+    planner = report["planner"]["planner"]
+    assert planner["failures"] == {"circuit-open": 3}
+    assert "loading" in planner["first_failure"]
+    assert [planner[rate]["of"] for rate in ("valid", "right", "inverted")] == [0, 0, 0]
+    assert "prompts" not in report
 
 
 @pytest.mark.parametrize(

@@ -127,9 +127,17 @@ def test_what_reaches_over_the_border_is_cut_and_said() -> None:
 def test_what_is_no_place_is_dropped_and_counted() -> None:
     things = [(10, 10, 500, 500), (math.nan, 0, 5, 5), (5, 5, 5, 90), (1200, 10, 1500, 90), (10, 10, 500, 500), (1, 2, 3)]
     found = located([RawThing(t) for t in things], convention("thousand"), SENT)
-    assert len(found.boxes) == 1 and found.complete
+    assert len(found.boxes) == 1
     for what in ("1 not finite", "1 without an area", "1 outside the picture", "1 repeated", "1 no place"):
         assert what in found.notes[0]
+
+
+def test_a_thing_whose_place_is_lost_makes_a_count_a_lower_bound() -> None:
+    cone, lost = RawThing((10, 10, 500, 500)), RawThing((math.nan, 0, 5, 5))
+    assert not located([cone, lost], convention("thousand"), SENT).complete
+    assert not located([cone, RawThing(())], convention("thousand"), SENT).complete
+    # What lies outside or was named before is nothing more to count.
+    assert located([cone, cone, RawThing((1200, 10, 1500, 90))], convention("thousand"), SENT).complete
 
 
 @pytest.mark.parametrize("numbers", [(1500, 10, 1900, 90), (math.nan,) * 4, (math.inf, 1), (5, 5, 5, 5), ()])

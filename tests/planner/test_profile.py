@@ -112,6 +112,20 @@ async def test_failures_and_wrong_calls_are_told_apart() -> None:
 
     report = await measure(lambda _: Altered(spoil), rows=ROWS[:2], edits=())
     assert (report.failed.count, report.valid.count, report.right.count) == (1, 0, 0)
+    assert report.valid.of == report.right.of == 1
+
+
+async def test_a_server_that_fails_changes_no_choice() -> None:
+    def gone(state: State, decision: Decision) -> Decision:
+        raise PlannerError("gone", kind="refused")
+
+    def make(prompt: Prompt) -> Planner:
+        return Altered(gone) if "assistant" in prompt.text else Altered()
+
+    report = await measure(make, rows=ROWS[:5], edits=PROMPT_EDITS)
+    assert report.by_prompt.count == 0
+    assert report.by_prompt.of == 5 * (len(PROMPT_EDITS) - 1)
+    assert {e.edit: e.tools_changed.of for e in report.edits}["an assistant first"] == 0
 
 
 def test_inversion_and_rates() -> None:

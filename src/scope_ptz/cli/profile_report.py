@@ -14,17 +14,19 @@ from scope_ptz.planner.profile.speed import Speed, Spread
 
 
 class EyesSpeed(BaseModel):
-    """Seconds by skill over frames of a scene; ``failures`` counted by kind."""
+    """Seconds by skill over frames of a scene; ``failures`` counted by kind, with the words of the first."""
 
     model_config = ConfigDict(frozen=True)
 
     frames: int
     by_skill: dict[str, Spread]
+    never_worked: tuple[str, ...] = ()
     failures: dict[str, int]
+    first_failure: str = ""
 
 
 class Side(BaseModel):
-    """A planner or eyes as they were measured. ``meets_real_time`` is None when nothing succeeded."""
+    """A planner or eyes as they were measured. ``meets_real_time`` is None when nothing, or nothing of one skill, succeeded."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -45,7 +47,7 @@ def show(console: Console, report: dict[str, Any]) -> None:
     for role in ("planner", "eyes"):
         if role in report:
             _show_side(console, role, Side.model_validate(report[role]))
-    words = {"met": "met", "missed": "missed", "unknown": "cannot be told: nothing succeeded"}[report["real_time"]]
+    words = {"met": "met", "missed": "missed", "unknown": "cannot be told: something never worked"}[report["real_time"]]
     style = {"met": "bold green", "missed": "bold yellow", "unknown": "bold red"}[report["real_time"]]
     console.print(Text.assemble("Real-time bar of the paper (2 Hz, 500 ms an inference): ", (words, style)))
     if "prompts" in report:
@@ -70,12 +72,14 @@ def _show_side(console: Console, role: str, side: Side) -> None:
                 else f"{rate.share:.1%} ({rate.count} of {rate.of}, 95% {rate.low:.0%} to {rate.high:.0%})"
             )
             console.print(f"  {label:16}{share}")
-        _counts(console, p.failures)
+        _failures(console, p.failures, p.first_failure)
     if side.eyes is not None:
         console.print(f"  {side.eyes.frames} frames")
         for skill, spread in side.eyes.by_skill.items():
             _line(console, skill, spread, " s")
-        _counts(console, side.eyes.failures)
+        for skill in side.eyes.never_worked:
+            console.print(Text(f"  {skill:16}never worked", style="red"))
+        _failures(console, side.eyes.failures, side.eyes.first_failure)
     told = f"{side.memory_gb:g} GB, as the server tells" if side.memory_gb is not None else "not told by the server"
     computed = f"; computed: {side.computed_memory_gb:g} GB" if side.computed_memory_gb is not None else ""
     console.print(f"  {'memory':16}{told}{computed}")
@@ -87,9 +91,11 @@ def _line(console: Console, label: str, spread: Spread | None, unit: str) -> Non
     console.print(f"  {label:16}{'-' if spread is None else f'{spread.median:.3g}{unit} (95%: {spread.p95:.3g}{unit})'}")
 
 
-def _counts(console: Console, failures: dict[str, int]) -> None:
+def _failures(console: Console, failures: dict[str, int], first: str) -> None:
     if failures:
         console.print(Text(f"  {'failures':16}{', '.join(f'{n} {kind}' for kind, n in failures.items())}", style="red"))
+    if failures and first:
+        console.print(Text(f"  {'the first':16}{plain(first)}", style="red"), soft_wrap=True)
 
 
 def _show_prompts(console: Console, s: Sensitivity) -> None:

@@ -16,7 +16,7 @@ from rich.console import Console
 from rich.progress import Progress, TextColumn
 
 from scope_ptz.cli.choosing import EyesChoice, PlannerChoice, Wishes, choose
-from scope_ptz.cli.endings import put_json
+from scope_ptz.cli.endings import FAILED, put_json
 from scope_ptz.cli.profile_report import EyesSpeed, Side, show
 from scope_ptz.cli.session import Start, make_perception, make_planner, open_camera, open_scene
 from scope_ptz.endpoints.serving_facts import memory_gb, serving_facts
@@ -45,7 +45,7 @@ class Extent:
 
 
 def profile(wishes: Wishes, extent: Extent, *, as_json: bool) -> int:
-    """Measure and print; exit code 0 whatever the verdict is."""
+    """Measure and print; exit code 0 whatever the verdict is, 1 when there is nothing to judge: no request of a side succeeded."""
     report: dict[str, Any] = {}
     rows = _rows(extent)
 
@@ -60,7 +60,7 @@ def profile(wishes: Wishes, extent: Extent, *, as_json: bool) -> int:
             sides["eyes"] = await _eyes_side(choice.eyes, extent)
         report.update({role: side.model_dump() for role, side in sides.items()})
         report["real_time"] = _verdict([side.meets_real_time for side in sides.values()])
-        if extent.prompts and choice.planner.endpoint is not None:
+        if extent.prompts and "planner" in sides and sides["planner"].meets_real_time is not None:
             report["prompts"] = (await _sensitivity(choice.planner, rows)).model_dump()
 
     anyio.run(work)
@@ -68,7 +68,7 @@ def profile(wishes: Wishes, extent: Extent, *, as_json: bool) -> int:
         put_json(report)
     else:
         show(Console(highlight=False), report)
-    return 0
+    return FAILED if report["real_time"] == "unknown" else 0
 
 
 def _rows(extent: Extent) -> tuple[Row, ...]:
@@ -105,20 +105,21 @@ class _Line(BaseModel):
     instruction: str
     kind: str = ""
     calls: list[dict[str, Any]] = []
+    alternatives: tuple[str, ...] = ()
 
 
 async def _planner_side(choice: PlannerChoice, rows: tuple[Row, ...]) -> Side:
     assert choice.endpoint is not None  # noqa: S101 - asked for only then
     planner, trials = make_planner(choice), []
     try:
-        await ask_once(planner, rows[0])  # Loads the model, opens the connection, fills the prefix cache
+        first = await ask_once(planner, rows[0])  # Loads the model, opens the connection, fills the prefix cache
         with _bar("planner", len(rows)) as advance:
             for row in rows:
                 trials.append(await ask_once(planner, row))
                 advance()
     finally:
         await planner.close()
-    speed, facts = speed_of(trials), await serving_facts(choice.endpoint)
+    speed, facts = speed_of(trials, first), await serving_facts(choice.endpoint)
     middle = speed.turn_s.median if speed.turn_s else None
     return Side(
         name=choice.name,
@@ -142,7 +143,8 @@ async def _eyes_side(choice: EyesChoice, extent: Extent) -> Side:
     finally:
         await eyes.close()
     facts = await serving_facts(choice.spec.endpoint) if choice.spec.endpoint else {}
-    slowest = max((spread.median for spread in speed.by_skill.values()), default=None)
+    # A skill that never worked is not fast.
+    slowest = max((spread.median for spread in speed.by_skill.values()), default=None) if not speed.never_worked else None
     return Side(
         name=choice.name,
         served_as=choice.spec.model,
@@ -184,6 +186,7 @@ async def _look(eyes: Perception, frames: list[Frame]) -> EyesSpeed:
     }
     times: dict[str, list[float]] = {name: [] for name in skills if name in eyes.skills}
     failures: dict[str, int] = {}
+    first = ""
     with _bar("eyes", len(frames) * len(times)) as advance:
         for number, frame in enumerate([frames[0], *frames]):
             for name in times:
@@ -193,11 +196,17 @@ async def _look(eyes: Perception, frames: list[Frame]) -> EyesSpeed:
                     if number:  # The first round loads the model and opens the connection
                         times[name].append(perf_counter() - began)
                 except PerceptionError as error:
-                    kind = error.kind or "perception"
+                    kind, first = error.kind or "perception", first or str(error)
                     failures[kind] = failures.get(kind, 0) + bool(number)
                 advance(bool(number))
     by_skill = {name: spread for name, values in times.items() if (spread := Spread.of(values)) is not None}
-    return EyesSpeed(frames=len(frames), by_skill=by_skill, failures={k: n for k, n in failures.items() if n})
+    return EyesSpeed(
+        frames=len(frames),
+        by_skill=by_skill,
+        never_worked=tuple(name for name in times if name not in by_skill),
+        failures={k: n for k, n in failures.items() if n},
+        first_failure=first,
+    )
 
 
 async def _sensitivity(choice: PlannerChoice, rows: tuple[Row, ...]) -> Sensitivity:

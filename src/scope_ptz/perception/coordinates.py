@@ -144,10 +144,15 @@ def located(things: Iterable[RawThing], convention: Convention, sent: tuple[int,
     return _capped(list(boxes.values()), list(points.values()), counts, limit)
 
 
+_LOST = ("not finite", "no place")
+"""Things that the reply names and gives no place to: there are more than those whose place is known."""
+
+
 def _capped(boxes: list[Box], points: list[Point], counts: Counter[str], limit: int) -> Located:
     notes = [f"Among the places in the reply: {_listing(counts)}."] if counts else []
-    complete = max(len(boxes), len(points)) <= limit
-    if not complete:
+    within = max(len(boxes), len(points)) <= limit
+    complete = within and not any(counts[lost] for lost in _LOST)
+    if not within:
         notes.append(f"The reply names {max(len(boxes), len(points))} things; the first {limit} are kept.")
     return Located(tuple(boxes[:limit]), tuple(points[:limit]), tuple(notes), complete)
 

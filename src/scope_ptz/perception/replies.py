@@ -121,6 +121,10 @@ def _documents(body: str) -> tuple[list[Any], bool]:
     return found, True
 
 
+_DEEPEST = 64
+"""A list of places is no deeper; a model that opens brackets for ever has none to give."""
+
+
 def _repair(text: str) -> tuple[Any, bool, int]:
     """A broken document, whether it was closed, and its length. Of a document cut off only what was complete is kept: half a
     number is another number."""
@@ -138,6 +142,8 @@ def _repair(text: str) -> tuple[Any, bool, int]:
             quote = char
         elif char in "[{":
             stack.append("]" if char == "[" else "}")
+            if len(stack) > _DEEPEST:
+                return None, False, end + 1
         elif char in "]}" and stack:
             stack.pop()
             last = (end + 1, "".join(reversed(stack)))
@@ -156,7 +162,7 @@ def _lenient(text: str) -> Any:
 
         try:
             return repair_json(text, return_objects=True, skip_json_loads=True)
-        except (ValueError, RecursionError):  # nested too deeply, in its words or in Python's
+        except Exception:  # A library at its wits' end: it raises of all kinds, assertions too, for text that is beyond repair
             return None
 
 

@@ -66,8 +66,10 @@ def _many(word: str) -> str:
     return word + ("es" if low.endswith(("s", "x", "ch", "sh")) else "s")
 
 
-def counted(description: str, count: int) -> str:
-    return f"{'no' if count == 0 else count} {noun(description, count)}"
+def counted(description: str, count: int, *, complete: bool = True) -> str:
+    """ "3 cones", "no cones"; "at least 3 cones" when there may be more."""
+    number = ("no" if count == 0 else str(count)) if complete else f"at least {count}"
+    return f"{number} {noun(description, count)}"
 
 
 def where(view: str) -> str:

@@ -162,7 +162,8 @@ class Program(Judging):
             result = yield from self._looked("count_objects", description=thing.text, view=view)
             if result is not None:
                 self._last_yes = result["count"] > 0
-                self._note(f"I can see {say.counted(thing.text, result['count'])} {say.where(view)}")
+                seen = say.counted(thing.text, result["count"], complete=result.get("complete", True))
+                self._note(f"I can see {seen} {say.where(view)}")
 
     def _ask(self, step: ast.Ask) -> Run:
         result = yield from self._looked("query_answer", question=step.question, view=step.view or "current")

@@ -58,7 +58,8 @@ class EditEffect(_Model):
 class Sensitivity(_Model):
     """The report.
 
-    ``valid``, ``right``, ``inverted``, ``failed`` are of the instructions as they are. ``noise`` is how often the tools change
+    ``valid``, ``right``, ``inverted``, ``failed`` are of the instructions as they are. A trial in which the planner or its server
+    failed counts in ``failed`` only: it chose nothing, so its choice did not change. ``noise`` is how often the tools change
     when nothing was edited: what edits do is what exceeds it. ``inverted_anywhere`` is over all trials with a move in them.
     ``inversions`` and ``changes`` are examples.
     """
@@ -137,7 +138,12 @@ def _cases(rows: Sequence[Row], prompt: Prompt, edits: Sequence[Edit]) -> list[_
 
 def _report(prompt: Prompt, rows: Sequence[Row], cases: Sequence[_Case], trials: Sequence[Trial]) -> Sensitivity:
     plain = {trial.row.instruction: trial for trial in trials if not trial.edit}
-    pairs = [(case, trial) for case, trial in zip(cases, trials, strict=True) if trial.edit]
+    chose = {words: trial for words, trial in plain.items() if trial.failure is None}
+    pairs = [
+        (case, trial)
+        for case, trial in zip(cases, trials, strict=True)
+        if trial.edit and trial.failure is None and trial.row.instruction in chose
+    ]
 
     def changed(trial: Trial) -> bool:
         return not same_choice(plain[trial.row.instruction].calls, trial.calls)
@@ -153,18 +159,18 @@ def _report(prompt: Prompt, rows: Sequence[Row], cases: Sequence[_Case], trials:
             inverted=Rate.over(t.inverted for t in edited if _moves(t)),
         )
 
-    names = list(dict.fromkeys((case.edit, case.where) for case, _ in pairs if case.where))
+    names = list(dict.fromkeys((case.edit, case.where) for case in cases if case.where))
     return Sensitivity(
         prompt=prompt.name,
         instructions=len(rows),
-        valid=Rate.over(t.failure is None and not t.invalid and bool(t.calls) for t in plain.values()),
-        right=Rate.over(t.right for t in plain.values()),
-        inverted=Rate.over(t.inverted for t in plain.values() if _moves(t)),
+        valid=Rate.over(not t.invalid and bool(t.calls) for t in chose.values()),
+        right=Rate.over(t.right for t in chose.values()),
+        inverted=Rate.over(t.inverted for t in chose.values() if _moves(t)),
         failed=Rate.over(t.failure is not None for t in plain.values()),
         noise=Rate.over(changed(t) for case, t in pairs if case.edit == AGAIN),
         by_prompt=Rate.over(changed(t) for case, t in pairs if case.where == "prompt"),
         by_instruction=Rate.over(changed(t) for case, t in pairs if case.where == "instruction"),
-        inverted_anywhere=Rate.over(t.inverted for t in trials if _moves(t)),
+        inverted_anywhere=Rate.over(t.inverted for t in trials if t.failure is None and _moves(t)),
         edits=tuple(effect(name, where) for name, where in names),
         inversions=tuple(_example(t) for t in trials if t.inverted)[:20],
         changes=tuple(_example(t) for case, t in pairs if case.where and changed(t))[:20],

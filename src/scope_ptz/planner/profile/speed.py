@@ -31,7 +31,8 @@ class Spread(BaseModel):
 
 class Speed(BaseModel):
     """Seconds and tokens per second. ``valid``: turns that called tools, and only in ways that the tools take, of those that called
-    at all; ``right``: turns whose first call was the expected one; ``failures``: counted by kind."""
+    at all; ``right``: turns whose first call was the expected one. A turn that failed is in ``failures``, by kind, and in no rate;
+    ``first_failure`` is what the first one said."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -43,10 +44,11 @@ class Speed(BaseModel):
     right: Rate
     inverted: Rate
     failures: dict[str, int]
+    first_failure: str = ""
 
 
-def speed_of(trials: Sequence[Trial]) -> Speed:
-    """The figures of a planner from its trials."""
+def speed_of(trials: Sequence[Trial], warm_up: Trial | None = None) -> Speed:
+    """The figures of a planner from its trials. ``warm_up``: one before them, which counts for nothing but its words."""
     good = [t for t in trials if t.failure is None]
     called = [t for t in good if t.calls or t.invalid]
     return Speed(
@@ -55,9 +57,10 @@ def speed_of(trials: Sequence[Trial]) -> Speed:
         first_token_s=Spread.of([t.first_token_s for t in good if t.first_token_s is not None]),
         tokens_per_s=Spread.of([rate for t in good if (rate := _tokens_per_s(t)) is not None]),
         valid=Rate.over(not t.invalid for t in called),
-        right=Rate.over(t.right for t in trials),
-        inverted=Rate.over(t.inverted for t in trials if any(c.name == "adjust_ptz" for c in t.row.calls)),
+        right=Rate.over(t.right for t in good),
+        inverted=Rate.over(t.inverted for t in good if any(c.name == "adjust_ptz" for c in t.row.calls)),
         failures=dict(Counter(t.failure for t in trials if t.failure is not None)),
+        first_failure=next((t.text for t in (warm_up, *trials) if t is not None and t.failure is not None), ""),
     )
 
 
