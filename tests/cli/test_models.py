@@ -137,6 +137,36 @@ def test_addresses_come_from_the_environment_for_models_only(scope: Scope, monke
         assert ask(scope, "--planner", "qwen3-4b").json["answer"] == "I looked."
 
 
+ASKS_A_SERVER = """
+from scope_ptz.perception.backends import moondream
+
+def make(spec):
+    spec.needed_endpoint()
+    return moondream.make(spec)
+"""
+
+
+def test_a_backend_of_ones_own_gets_the_address_of_its_model_or_of_the_environment(
+    scope: Scope, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import scope_ptz.perception.backends as backends
+
+    (tmp_path / "our_eyes.py").write_text(ASKS_A_SERVER)
+    monkeypatch.setattr(backends, "__path__", [*backends.__path__, str(tmp_path)])
+    file = tmp_path / "mine.yaml"
+    with Misbehaving() as server:
+        file.write_text(
+            "models: {mine: {repo: a/b, roles: [eyes], backend: our_eyes, size_b: 1, active_b: 1, precision: bf16, context: 4096,"
+            f" licence: MIT, url: '{server.url}'}}}}"
+        )
+        assert ask(scope, "--perception", "our_eyes").code == 2
+        monkeypatch.setenv("SCOPE_MODELS", str(file))
+        assert ask(scope, "--perception", "mine").json["tool_calls"][0]["error"] is None
+        monkeypatch.setenv("SCOPE_EYES_URL", server.url)
+        assert ask(scope, "--perception", "our_eyes").json["tool_calls"][0]["error"] is None
+        assert len(server.requests) == 2
+
+
 def test_a_server_with_several_models_wants_a_name(scope: Scope) -> None:
     from tests.support.misbehaving import body
 

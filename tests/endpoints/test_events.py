@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -14,11 +15,11 @@ from scope_ptz.endpoints.events import Events
 from scope_ptz.endpoints.failures import FailureKind, ServerFailure
 from tests.support.misbehaving import Misbehaving, Say, body, pieces
 
-WANTED = [{"a": "Käse 三"}, {"b": {"c": [1, 2]}}]
+WANTED: list[dict[str, Any]] = [{"a": "Käse 三"}, {"b": {"c": [1, 2]}}]
 LINES = [json.dumps(event, ensure_ascii=False) for event in WANTED]
 
 
-def spread(event: dict[str, object]) -> str:
+def spread(event: dict[str, Any]) -> str:
     return "\n".join(f"data: {line}" for line in json.dumps(event, indent=1, ensure_ascii=False).split("\n")) + "\n\n"
 
 

@@ -24,7 +24,9 @@ BUILT_IN_EYES = ("ground-truth", "noisy")
 GRAMMAR, CHAT = "grammar", "chat"
 CHATTING_EYES = "openai_vision"
 ASKING = ("moondream", CHATTING_EYES)
-"""Backends that ask a server. Every other one brings its model or loads it, unless it is given an address."""
+"""Backends that cannot do without a server."""
+SERVERLESS = ("ocr", "router", "transformers_local", "zero_shot")
+"""Those that have no use for one. Other people's backends get an address when there is one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,9 +153,9 @@ class _Chooser:
             return self._spec(name, same.model, same.endpoint)
         model = self._known_eyes(name)
         backend = self._backend(name, model)
-        if backend not in ASKING and not w.eyes_url:
+        given = w.eyes_url or (model.url if model else "") or ("" if backend in SERVERLESS else self.settings.eyes_url)
+        if not given and backend not in ASKING:
             return self._spec(name, model, None)
-        given = w.eyes_url or (model.url if model else "") or self.settings.eyes_url
         key = self._key(w.eyes_key_file, model, given, self.settings.eyes_key)
         endpoint = self._endpoint(given, key, "eyes", name, model)
         if backend == CHATTING_EYES:
