@@ -1,0 +1,171 @@
+"""Proof of a dataset: reference programs pass, other right ways pass, cheats do not. Every run goes through the real tools."""
+
+from __future__ import annotations
+
+import random
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from scope_ptz.bench.cheats import Attempt, cheats, common_answers, honest, right_texts
+from scope_ptz.bench.episode import Episode, Eyes
+from scope_ptz.bench.expected import ActionOnly, NoneThere, Number
+from scope_ptz.bench.phrasing import right_answers
+from scope_ptz.bench.reader import agrees, read
+from scope_ptz.bench.run_program import Equip, Stage
+from scope_ptz.bench.tasks import Task
+from scope_ptz.bench.verdict import judge
+from scope_ptz.world.pack import Scene
+
+MOST_CHEATED = 0.03
+"""No cheat passes more of all tasks than this; what passes at all is listed."""
+
+EYES = Eyes(1280, 720)
+Say = Callable[[int, int], None]
+
+
+@dataclass(frozen=True)
+class Fault:
+    """What a task did not do: ``attempt`` passed or failed against expectation."""
+
+    task: str
+    attempt: str
+    reason: str
+
+
+@dataclass
+class Report:
+    """``disagreements``: where the eyes that looked count otherwise than the task expects; they are told, not judged."""
+
+    tasks: int = 0
+    by_category: Counter[str] = field(default_factory=Counter)
+    by_stratum: Counter[str] = field(default_factory=Counter)
+    passed: Counter[str] = field(default_factory=Counter)
+    tried: Counter[str] = field(default_factory=Counter)
+    faults: list[Fault] = field(default_factory=list)
+    cheated: list[Fault] = field(default_factory=list)
+    disagreements: list[Fault] = field(default_factory=list)
+
+    @property
+    def cheat_shares(self) -> dict[str, float]:
+        """Of each cheat the share of all tasks that it passes."""
+        return {name: self.passed[name] / self.tasks for name in sorted(self.tried) if name not in _HONEST and self.tasks}
+
+    @property
+    def sound(self) -> bool:
+        """Whether every reference and every other right way passed, and no cheat passed anything."""
+        return bool(self.tasks) and not self.faults and not self.cheated
+
+    def as_dict(self) -> dict[str, Any]:
+        return {
+            "sound": self.sound,
+            "tasks": self.tasks,
+            "by_category": dict(self.by_category),
+            "by_stratum": dict(self.by_stratum),
+            "right_ways": {name: {"passed": self.passed[name], "of": self.tried[name]} for name in _HONEST if self.tried[name]},
+            "cheats": {name: {"passed": self.passed[name], "of": self.tried[name], "share_of_all": share} for name, share in self.cheat_shares.items()},
+            "faults": [vars(fault) for fault in self.faults],
+            "cheated": [vars(fault) for fault in self.cheated],
+            "disagreements": [vars(fault) for fault in self.disagreements],
+        }
+
+
+_HONEST = ("reference", "detour", "twice", "worded")
+
+
+async def validate(tasks: Sequence[Task], scenes: Mapping[str, Scene], equip: Equip, *, seed: int = 1, say: Say | None = None) -> Report:
+    """Run everything on every task. Right ways are held to pass all, cheats to pass none."""
+    report, common = Report(), common_answers(tasks)
+    siblings = sibling_answers(tasks)
+    stages = {name: Stage(scene, equip, EYES) for name, scene in scenes.items()}
+    for number, task in enumerate(tasks, 1):
+        report.tasks += 1
+        report.by_stratum[task.stratum] += 1
+        if task.stratum == "core":
+            report.by_category[task.category] += 1
+        await _Proof(report, task, stages[task.scene]).run(common.get(task.category, "2"), siblings.get(task.id), seed)
+        if say is not None:
+            say(number, len(tasks))
+    report.faults += structure(tasks)
+    return report
+
+
+class _Proof:
+    """All attempts at one task. Programs that several attempts share are run once."""
+
+    def __init__(self, report: Report, task: Task, stage: Stage) -> None:
+        self.report, self.task, self.stage = report, task, stage
+        self._ran: dict[str, Episode] = {}
+
+    async def run(self, common: str, sibling: str | None, seed: int) -> None:
+        for attempt in honest(self.task):
+            await self._hold(attempt, attempt.name, passes=True)
+        for text in right_texts(self.task):
+            await self._hold(Attempt("worded", self.task.reference, text, self.task.behaviour.outcomes[0]), "worded", passes=True)
+        self._compare(await self._episode(Attempt("reference", self.task.reference, "")))
+        tried = set[str]()
+        for attempt in cheats(self.task, common, sibling, random.Random(f"{seed}:{self.task.id}")):
+            # Four guesses make one cheat: whichever passes counts once.
+            again = attempt.name in tried
+            tried.add(attempt.name)
+            await self._hold(attempt, attempt.name, passes=False, again=again)
+
+    async def _episode(self, attempt: Attempt) -> Episode:
+        key = str([(call.tool, call.arguments) for call in attempt.program])
+        if key not in self._ran:
+            self._ran[key] = await self.stage.run(self.task, attempt.program, attempt.text, attempt.outcome)
+        return replace(self._ran[key], text=attempt.text, outcome=attempt.outcome)
+
+    async def _hold(self, attempt: Attempt, name: str, *, passes: bool, again: bool = False) -> None:
+        verdict = judge(self.task, await self._episode(attempt))
+        passed = verdict.headline == "correct"
+        self.report.tried[name] += not again
+        self.report.passed[name] += passed
+        if passed != passes:
+            reason = f"{attempt.text!r}: {verdict.reason}"
+            (self.report.faults if passes else self.report.cheated).append(Fault(self.task.id, name, reason))
+
+    def _compare(self, episode: Episode) -> None:
+        """Whether what was counted on the way is what the evidence shows."""
+        counts = [call for call in episode.calls if call.name == "count_objects" and call.result is not None]
+        shows = [view.shows for view in self.task.evidence if isinstance(view.shows, Number | NoneThere)]
+        for call, wanted in zip(counts, shows, strict=False):
+            number = wanted.value if isinstance(wanted, Number) else 0
+            told = (call.result or {}).get("count")
+            if told != number:
+                reason = f"count_objects({call.arguments['description']}) is {told}, the evidence shows {number:g}"
+                self.report.disagreements.append(Fault(self.task.id, "count", reason))
+
+
+def sibling_answers(tasks: Sequence[Task]) -> dict[str, str]:
+    """For each task the right answer to another: its twin, else the next like it whose answer is another one."""
+    by_id = {task.id: task for task in tasks}
+    found = {}
+    for at, task in enumerate(tasks):
+        if isinstance(task.expected, ActionOnly):
+            continue
+        twin = by_id.get(task.pair or "")
+        later = (*tasks[at + 1 :], *tasks[:at])
+        others = [twin] if twin else [t for t in later if t.category == task.category and t.expected.kind == task.expected.kind]
+        for other in others:
+            text = right_answers(other.expected)[0]
+            if agrees(task.expected, read(task.expected, text)) is not True:
+                found[task.id] = text
+                break
+    return found
+
+
+def structure(tasks: Sequence[Task]) -> list[Fault]:
+    """What must hold between tasks: no text twice, twins that know each other, paraphrases of tasks that are there."""
+    faults = []
+    by_id = {task.id: task for task in tasks}
+    texts = Counter((task.scene, task.preset, task.instruction.lower()) for task in tasks)
+    for task in tasks:
+        if texts[(task.scene, task.preset, task.instruction.lower())] > 1:
+            faults.append(Fault(task.id, "text", "another task says the same"))
+        if task.pair is not None and (task.pair not in by_id or by_id[task.pair].pair != task.id):
+            faults.append(Fault(task.id, "pair", f"{task.pair} is not its twin"))
+        if task.paraphrase_of is not None and (original := by_id.get(task.paraphrase_of)) is not None and original.expected != task.expected:
+            faults.append(Fault(task.id, "paraphrase", f"{task.paraphrase_of} expects something else"))
+    return faults

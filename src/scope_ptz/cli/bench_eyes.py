@@ -1,0 +1,56 @@
+"""The eyes of validation: the ground truth of blank frames, each view read once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from scope_ptz.camera.base import Frame
+from scope_ptz.bench.run_program import Equip
+from scope_ptz.geometry import Projection
+from scope_ptz.perception.ground_truth import GroundTruthPerception
+from scope_ptz.tools.context import ToolContext
+from scope_ptz.world.actors import appearances, shows
+from scope_ptz.world.pack import Scene
+from scope_ptz.world.truth import ViewTruth, view_truth
+
+
+class NamesOnly:
+    """Gives pictures names and keeps none of them."""
+
+    def __init__(self) -> None:
+        self._taken = 0
+
+    def _next(self) -> str:
+        self._taken += 1
+        return f"{self._taken:04d}.png"
+
+    def save_look(self, frame: Frame) -> str:  # noqa: ARG002
+        return self._next()
+
+    def save_picture(self, frame: Frame) -> str:  # noqa: ARG002
+        return self._next()
+
+
+class KnownViews:
+    """The truth of views, remembered: while no actor is in view, a view looks the same at all times."""
+
+    def __init__(self, limit: int = 400) -> None:
+        self._limit = limit
+        self._known: dict[tuple[str, str, Projection, float | None], ViewTruth] = {}
+
+    def look(self, scene: Scene, viewpoint: str, projection: Projection, time_s: float) -> ViewTruth:
+        moving = any(shows(a, projection) for a in appearances(scene, scene.viewpoint(viewpoint), time_s))
+        key = (scene.name, viewpoint, projection, round(time_s, 3) if moving else None)
+        if key not in self._known:
+            if len(self._known) >= self._limit:
+                self._known.pop(next(iter(self._known)))
+            self._known[key] = view_truth(scene, viewpoint, projection, time_s)
+        return self._known[key]
+
+
+def equip_with_truth(scenes: Mapping[str, Scene]) -> Equip:
+    """Equipment for cameras in these scenes: eyes that know the truth, and a store that keeps nothing."""
+    eyes = GroundTruthPerception(lambda name: scenes[name], KnownViews().look)
+    return lambda camera: ToolContext(camera, eyes, NamesOnly())
+
+
