@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import product
+from itertools import pairwise, product
 
 import numpy as np
 
@@ -90,8 +90,13 @@ class Kind:
 
 def near_colours(one: str | None, other: str) -> bool:
     """Whether people disagree on which of two colours a thing has."""
-    pairs = ({"silver", "grey"}, {"silver", "white"}, {"orange", "yellow"}, {"orange", "red"}, {"cream", "white"}, {"buff", "yellow"})
-    return one is not None and any({one, *other.split()} >= pair for pair in pairs)
+    return one is not None and any({one, *other.split()} >= pair for pair in _NEAR_COLOURS)
+
+
+_NEAR_COLOURS = (
+    {"silver", "grey"}, {"silver", "white"}, {"orange", "yellow"}, {"orange", "red"}, {"cream", "white"}, {"buff", "yellow"},
+    {"purple", "pink"}, {"beige", "cream"}, {"beige", "brown"}, {"grey", "black"},
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -202,7 +207,7 @@ class Sight:
         """Things from left to right (or top to bottom); None when two of them are about level."""
         spots = {s.instance.number: self.spot(s) for s in things}
         order = sorted(things, key=lambda s: spots[s.instance.number][0][axis])
-        for one, two in zip(order, order[1:], strict=False):
+        for one, two in pairwise(order):
             pairs = zip(spots[one.instance.number], spots[two.instance.number], strict=False)
             if any(b[axis] - a[axis] < margin for a, b in pairs):
                 return None
@@ -211,9 +216,7 @@ class Sight:
     @cached_property
     def legible(self) -> tuple[TextSighting, ...]:
         """Texts that can surely be read, top to bottom and left to right."""
-        sure = [
-            {t.text.id for t in truth.texts if all(legible(t, scale) for scale in THRESHOLDS)} for truth in self.samples
-        ]
+        sure = [{t.text.id for t in truth.texts if all(legible(t, scale) for scale in THRESHOLDS)} for truth in self.samples]
         ids = frozenset.intersection(*(frozenset(names) for names in sure))
         return tuple(sorted((t for t in self.samples[0].texts if t.text.id in ids), key=lambda t: (round(t.box[1], 2), t.box[0])))
 
@@ -249,7 +252,8 @@ class Sight:
             x0, x1, y0, y1 = (v + (m - v) * 0.15 for v, m in ((x0, middle_x), (x1, middle_x), (y0, middle_y), (y1, middle_y)))
             x0, x1, y0, y1 = (min(max(v, 0.015), 0.985) for v in (x0, x1, y0, y1))
         size = (points.max(axis=0) - points.min(axis=0)) * (self.projection.width, self.projection.height)
-        return Item(instance=name, value=value, box_deg=deg, min_px=round(0.7 * float(size.max()), 1), cap_height_deg=cap_deg and round(cap_deg * 0.97, 4))
+        cap = None if cap_deg is None else round(cap_deg * 0.97, 4)
+        return Item(instance=name, value=value, box_deg=deg, min_px=round(0.7 * float(size.max()), 1), cap_height_deg=cap)
 
 
 def visible(sighting: Sighting, scale: float = 1.0) -> bool:

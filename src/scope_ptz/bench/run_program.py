@@ -1,6 +1,6 @@
 """Runs programs of tool calls as an agent would, through the real tools and the simulated camera, fast and in memory.
 
-Which eyes look, and where pictures go, is the caller's choice; a camera whose frames are blank serves eyes that read the ground truth.
+Which eyes look, and where pictures go, is the caller's choice; blank frames serve eyes that read the ground truth.
 """
 
 from __future__ import annotations

@@ -64,7 +64,10 @@ class Report:
             "by_category": dict(self.by_category),
             "by_stratum": dict(self.by_stratum),
             "right_ways": {name: {"passed": self.passed[name], "of": self.tried[name]} for name in _HONEST if self.tried[name]},
-            "cheats": {name: {"passed": self.passed[name], "of": self.tried[name], "share_of_all": share} for name, share in self.cheat_shares.items()},
+            "cheats": {
+                name: {"passed": self.passed[name], "of": self.tried[name], "share_of_all": share}
+                for name, share in self.cheat_shares.items()
+            },
             "faults": [vars(fault) for fault in self.faults],
             "cheated": [vars(fault) for fault in self.cheated],
             "disagreements": [vars(fault) for fault in self.disagreements],
@@ -74,7 +77,9 @@ class Report:
 _HONEST = ("reference", "detour", "twice", "worded")
 
 
-async def validate(tasks: Sequence[Task], scenes: Mapping[str, Scene], equip: Equip, *, seed: int = 1, say: Say | None = None) -> Report:
+async def validate(
+    tasks: Sequence[Task], scenes: Mapping[str, Scene], equip: Equip, *, seed: int = 1, say: Say | None = None
+) -> Report:
     """Run everything on every task. Right ways are held to pass all, cheats to pass none."""
     report, common = Report(), common_answers(tasks)
     siblings = sibling_answers(tasks)
@@ -166,6 +171,10 @@ def structure(tasks: Sequence[Task]) -> list[Fault]:
             faults.append(Fault(task.id, "text", "another task says the same"))
         if task.pair is not None and (task.pair not in by_id or by_id[task.pair].pair != task.id):
             faults.append(Fault(task.id, "pair", f"{task.pair} is not its twin"))
-        if task.paraphrase_of is not None and (original := by_id.get(task.paraphrase_of)) is not None and original.expected != task.expected:
+        if (
+            task.paraphrase_of is not None
+            and (original := by_id.get(task.paraphrase_of)) is not None
+            and original.expected != task.expected
+        ):
             faults.append(Fault(task.id, "paraphrase", f"{task.paraphrase_of} expects something else"))
     return faults

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from scope_ptz.camera.base import Frame
 from scope_ptz.bench.run_program import Equip
+from scope_ptz.camera.base import Frame
 from scope_ptz.geometry import Projection
 from scope_ptz.perception.ground_truth import GroundTruthPerception
 from scope_ptz.tools.context import ToolContext
@@ -52,5 +52,3 @@ def equip_with_truth(scenes: Mapping[str, Scene]) -> Equip:
     """Equipment for cameras in these scenes: eyes that know the truth, and a store that keeps nothing."""
     eyes = GroundTruthPerception(lambda name: scenes[name], KnownViews().look)
     return lambda camera: ToolContext(camera, eyes, NamesOnly())
-
-

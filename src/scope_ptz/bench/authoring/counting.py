@@ -1,0 +1,99 @@
+"""Counting: how many of a kind there are in a view or all around, and where there are none."""
+
+from __future__ import annotations
+
+import random
+
+from scope_ptz.bench.authoring.drafts import Draft, Question, count, scope_of, view
+from scope_ptz.bench.authoring.places import Place
+from scope_ptz.bench.authoring.words import UNCOUNTED, about, noun_of, plural, unit_of
+from scope_ptz.bench.expected import NoneThere, Number
+from scope_ptz.bench.ground import Kind, Sight, kinds_in
+
+MOST = 14
+"""More than this nobody counts alike."""
+
+
+def question(kind: Kind, place: Place) -> Question:
+    many = plural(noun_of(kind))
+    where = " in the whole scene" if place.swept else ""
+    around = " anywhere around" if place.swept else " in view"
+    return Question(
+        (
+            (f"how many {many} are there{where}?", f"how many {many} there are{where}"),
+            (
+                f"how many {many} can you see{around if place.swept else ''}?",
+                f"how many {many} you can see{around if place.swept else ''}",
+            ),
+            (f"what is the number of {many}{around}?", f"the number of {many}{around}"),
+            (f"how many {many} are visible{where}?", f"how many {many} are visible{where}"),
+            (f"what's the count of {many}{around}?", f"the count of {many}{around}"),
+        )
+    )
+
+
+def counted(sight: Sight) -> list[tuple[Kind, int]]:
+    """Kinds in a view that can be counted surely, with how many there are (at least one)."""
+    found = []
+    for kind in kinds_in(s.instance for s in sight.clear):
+        if kind.category in UNCOUNTED:
+            continue
+        things = sight.of(kind)
+        if things and len(things) <= MOST and min(t.pixels for t in things) >= 160:
+            alone = kind.colour is not None and len(things) == len(sight.of(Kind(kind.category)) or ())
+            if not alone:  # "red cars" among red cars only is the same question as "cars"
+                found.append((kind, len(things)))
+    return found
+
+
+def absent(sight: Sight, nouns: frozenset[str]) -> list[Kind]:
+    """Kinds of which nothing at all shows, though they could be expected: other categories of scenes, and other colours."""
+    kinds = [Kind(noun) for noun in sorted(nouns)]
+    categories = sorted({s.instance.category for s in sight.clear if "colour" in s.instance.attributes} - UNCOUNTED)
+    kinds += [Kind(category, colour) for category in categories for colour in ("red", "blue", "green", "yellow", "black", "pink")]
+    return [kind for kind in kinds if kind.category not in UNCOUNTED and sight.lacks(kind)]
+
+
+def drafts(place: Place, nouns: frozenset[str], rng: random.Random) -> list[Draft]:
+    """Everything to be counted at a place, and absences, each with a presence of like wording."""
+    sight = place.sight
+    present = [_number(place, kind, n) for kind, n in counted(sight)]
+    twins = list(present)
+    rng.shuffle(twins)
+    missing = absent(sight, nouns)
+    rng.shuffle(missing)
+    none = [
+        Draft(
+            category="counting",
+            kind="none",
+            key=f"count:{noun_of(kind)}",
+            place=place,
+            expected=(expected := NoneThere(subject=unit_of(kind)[:2])),
+            question=question(kind, place),
+            evidence=(view(place, expected, about(kind), whole=True),),
+            looks=(count(plural(noun_of(kind)), place),),
+            tags=("none-there", scope_of(place)),
+            twin=twin,
+            reads="none",
+        )
+        for kind, twin in zip(missing, twins, strict=False)
+    ]
+    return [*present, *none]
+
+
+def _number(place: Place, kind: Kind, number: int) -> Draft:
+    things = place.sight.of(kind) or ()
+    expected = Number(value=number, unit=unit_of(kind))
+    return Draft(
+        category="counting",
+        kind="all-around" if place.swept else "coloured" if kind.colour else "count",
+        key=f"count:{noun_of(kind)}",
+        place=place,
+        expected=expected,
+        question=question(kind, place),
+        evidence=(view(place, expected, about(kind), [place.sight.item(t, True) for t in things], whole=True),),
+        looks=(count(plural(noun_of(kind)), place),),
+        tags=(scope_of(place),),
+        weight=number,
+        reads=str(number),
+    )

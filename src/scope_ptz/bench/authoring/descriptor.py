@@ -1,0 +1,215 @@
+"""Descriptors: colour, clothing, state, material and kind of one thing; whether something is there; what of a list is there."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator, Mapping, Sequence
+
+from scope_ptz.bench.authoring.counting import absent, counted
+from scope_ptz.bench.authoring.drafts import Draft, Question, ask, scope_of, view
+from scope_ptz.bench.authoring.naming import Named, ends, singles
+from scope_ptz.bench.authoring.places import Place
+from scope_ptz.bench.authoring.words import about, article, colour_options, listing, noun_of, plain_colour, plural, unit_of
+from scope_ptz.bench.expected import Choice, NameSet, NoneThere, Options, YesNo
+from scope_ptz.bench.ground import Kind, Thing
+
+STATES: tuple[tuple[str, ...], ...] = (("open", "closed"), ("lit", "unlit"), ("full", "empty"))
+_SYNONYMS = {
+    "closed": ("shut",),
+    "lit": ("on", "switched on", "lit up"),
+    "unlit": ("off", "switched off", "dark", "not lit"),
+    "suv": ("SUV", "4x4"),
+    "hatchback": ("hatch",),
+    "saloon": ("sedan",),
+    "estate": ("station wagon",),
+    "timber": ("wood", "wooden"),
+    "steel": ("metal",),
+    "metal cladding": ("metal",),
+    "brick": ("bricks",),
+    "full": ("filled", "loaded"),
+}
+Values = Mapping[tuple[str, str], Sequence[str]]
+"""(category, attribute) -> every value that it takes in the scenes."""
+
+
+def values_of(things: Sequence[Thing]) -> Values:
+    found: dict[tuple[str, str], set[str]] = {}
+    for thing in things:
+        for key, value in thing.attributes.items():
+            if isinstance(value, str) and value and " and " not in value:
+                found.setdefault((thing.category, key), set()).add(value)
+    return {key: sorted(said) for key, said in found.items()}
+
+
+def options(values: Sequence[str]) -> Options:
+    return {value: _SYNONYMS.get(value, ()) for value in values}
+
+
+def drafts(place: Place, nouns: frozenset[str], values: Values, rng: random.Random) -> list[Draft]:
+    return [*_attributes(place, values), *_presence(place, nouns, rng), *_lists(place, nouns, rng)]
+
+
+def _attributes(place: Place, values: Values) -> Iterator[Draft]:
+    named = [*singles(place.sight, coloured=False, min_pixels=300)]
+    if not place.swept:
+        named += list(ends(place.sight, 300))
+    for one in named:
+        facts = one.thing.instance.attributes
+        colour = plain_colour(facts.get("colour"))
+        if colour is not None and colour not in one.thing.instance.category:
+            yield _choice(
+                place,
+                one,
+                "colour",
+                Choice(value=colour, options=colour_options()),
+                (
+                    ("what colour is the {n}?", "what colour the {n} is"),
+                    ("what is the colour of the {n}?", "the colour of the {n}"),
+                    ("which colour does the {n} have?", "which colour the {n} has"),
+                    ("the {n}: what colour is it?", "what colour the {n} is"),
+                ),
+            )
+        for key, garment in (
+            ("vest", "hi-vis vest"),
+            ("helmet", "helmet"),
+            ("coat", "coat"),
+            ("jacket", "jacket"),
+            ("umbrella", "umbrella"),
+        ):
+            if (worn := plain_colour(facts.get(key))) is not None and one.thing.pixels >= 500:
+                yield _choice(
+                    place,
+                    one,
+                    key,
+                    Choice(value=worn, options=colour_options()),
+                    (
+                        (f"what colour is the {garment} of the {{n}}?", f"what colour the {garment} of the {{n}} is"),
+                        (f"which colour is the {{n}}'s {garment}?", f"which colour the {{n}}'s {garment} is"),
+                    ),
+                )
+        state = facts.get("state")
+        for pair in STATES:
+            if state in pair and one.thing.pixels >= 500:
+                first, second = pair
+                yield _choice(
+                    place,
+                    one,
+                    "state",
+                    Choice(value=str(state), options=options(pair)),
+                    (
+                        (f"is the {{n}} {first} or {second}?", f"whether the {{n}} is {first} or {second}"),
+                        (f"what state is the {{n}} in, {first} or {second}?", f"if the {{n}} is {first} or {second}"),
+                    ),
+                )
+        for key, ask_it in _KINDS.items():
+            known = values.get((one.thing.instance.category, key), ())
+            value = facts.get(key)
+            if isinstance(value, str) and value in known and len(known) >= 2 and one.thing.pixels >= 900 and value not in one.name:
+                yield _choice(place, one, key, Choice(value=value, options=options(known)), ask_it)
+
+
+_KINDS: dict[str, tuple[tuple[str, str], ...]] = {
+    "kind": (
+        ("what kind of {c} is the {n}?", "what kind of {c} the {n} is"),
+        ("which type of {c} is the {n}?", "which type of {c} the {n} is"),
+    ),
+    "material": (
+        ("what is the {n} made of?", "what the {n} is made of"),
+        ("which material is the {n}?", "which material the {n} is made of"),
+    ),
+    "carrying": (
+        ("what is the {n} carrying?", "what the {n} is carrying"),
+        ("what does the {n} have in their hands?", "what the {n} is holding"),
+    ),
+    "load": (("what is on the {n}?", "what is on the {n}"), ("what does the {n} hold?", "what the {n} holds")),
+}
+
+
+def _choice(place: Place, one: Named, key: str, expected: Choice, forms: Sequence[tuple[str, str]]) -> Draft:
+    words = {"n": one.name, "c": one.kind.category}
+    asked = Question(tuple((d.format(**words), i.format(**words)) for d, i in forms))
+    item = place.sight.item(one.thing, expected.value)
+    return Draft(
+        category="descriptor",
+        kind=key,
+        key=f"{key}:{one.thing.instance.id}",
+        place=place,
+        expected=expected,
+        question=asked,
+        evidence=(view(place, expected, about(one.kind), [item], whole=one.place and not place.swept),),
+        looks=(ask(asked.forms[0][0], place),),
+        tags=("attribute", key, scope_of(place)),
+        reads=expected.value,
+    )
+
+
+def _presence(place: Place, nouns: frozenset[str], rng: random.Random) -> Iterator[Draft]:
+    present = [kind for kind, _ in counted(place.sight)]
+    missing = absent(place.sight, nouns)
+    rng.shuffle(present)
+    rng.shuffle(missing)
+    for here, gone in zip(present, missing, strict=False):
+        yield _there(place, gone, there=False, twin=_there(place, here, there=True))
+
+
+def _there(place: Place, kind: Kind, *, there: bool, twin: Draft | None = None) -> Draft:
+    one, many = noun_of(kind), plural(noun_of(kind))
+    where = " anywhere around" if place.swept else ""
+    expected = YesNo(value=True, affirms=unit_of(kind)[:2]) if there else NoneThere(subject=unit_of(kind)[:2])
+    things = (place.sight.of(kind) or ())[:1] if there else ()
+    return Draft(
+        category="descriptor",
+        kind="there" if there else "not-there",
+        key=f"there:{one}",
+        place=place,
+        expected=expected,
+        question=Question(
+            (
+                (f"is there {article(one)}{where}?", f"whether there is {article(one)}{where}"),
+                (f"are there any {many}{where}?", f"whether there are any {many}{where}"),
+                (f"can you see {article(one)}{where}?", f"if you can see {article(one)}{where}"),
+                (f"do you see any {many}{where}?", f"whether you see any {many}{where}"),
+            )
+        ),
+        evidence=(view(place, expected, about(kind), [place.sight.item(t, True) for t in things], whole=not there),),
+        looks=(ask(f"are there any {many}?", place),),
+        tags=("presence",) if there else ("none-there",),
+        twin=twin,
+        reads="yes" if there else "none",
+    )
+
+
+def _lists(place: Place, nouns: frozenset[str], rng: random.Random) -> Iterator[Draft]:
+    """Which of four are there."""
+    here = [kind for kind, _ in counted(place.sight) if kind.colour is None]
+    gone = [kind for kind in absent(place.sight, nouns) if kind.colour is None]
+    rng.shuffle(here)
+    rng.shuffle(gone)
+    for number in (2, 3, 1):
+        if len(here) < number or len(gone) < 4 - number:
+            continue
+        chosen, rest = here[:number], gone[: 4 - number]
+        four = [*chosen, *rest]
+        rng.shuffle(four)
+        names = [article(noun_of(kind)) for kind in four]
+        expected = NameSet(value=tuple(noun_of(k) for k in chosen), options={noun_of(k): () for k in four})
+        items = [place.sight.item(t, True) for k in chosen for t in (place.sight.of(k) or ())[:1]]
+        listed = listing(names, "or")
+        yield Draft(
+            category="descriptor",
+            kind="which-of",
+            key=f"which-of:{'/'.join(sorted(noun_of(k) for k in four))}",
+            place=place,
+            expected=expected,
+            question=Question(
+                (
+                    (f"which of these can be seen: {listed}?", f"which of these can be seen: {listed}"),
+                    (f"what of the following is there: {listed}?", f"what of the following is there: {listed}"),
+                )
+            ),
+            evidence=(view(place, expected, about(*four), items, whole=True),),
+            looks=tuple(ask(f"are there any {plural(noun_of(k))}?", place) for k in four),
+            tags=("list",),
+            weight=4,
+            reads="/".join(expected.value),
+        )

@@ -1,0 +1,200 @@
+"""Reasoning over several looks: sums, differences, conditions, and plans that depend on what is seen."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from itertools import pairwise
+
+from scope_ptz.bench.authoring.counting import absent, counted
+from scope_ptz.bench.authoring.drafts import Draft, Question, count, view
+from scope_ptz.bench.authoring.places import Place, Places, go, preset_at
+from scope_ptz.bench.authoring.words import about, article, noun_of, plural, unit_of
+from scope_ptz.bench.expected import ActionOnly, NoneThere, Number, YesNo
+from scope_ptz.bench.ground import Kind
+from scope_ptz.bench.tasks import Behaviour, EvidenceView
+
+_SUMS = (
+    "How many {many} do the {p} and {q} presets show in total?",
+    "Add up the {many} at {p} and those at {q}. What is the total?",
+    "Count the {many} at the {p} preset, then at {q}, and give me the sum.",
+    "What do you get when you add the {many} in view at {q} to those at {p}?",
+    "Taking the views {p} and {q} together, how many {many} are in them?",
+    "I want one figure: the {many} seen from {p} plus those seen from {q}.",
+)
+_GAPS = (
+    "How many more {many} are there at {p} than at {q}?",
+    "By how many does the number of {many} at the {p} preset exceed that at {q}?",
+    "Look at {p} and at {q}: what is the difference in the number of {many}?",
+    "Count the {many} at {q} and at {p}. How many more has {p}?",
+)
+_BRANCHES = (
+    "Check the {p} preset. If you can see {least} {many} there, go to {yes}; otherwise go to {no}.",
+    "Go to {p} and count the {many}. With {least} of them, switch to the {yes} preset, and with fewer to {no}.",
+    "If there are {least} {many} in the {p} view, move the camera to {yes}. If not, move it to {no}.",
+    "Depending on the {many} at {p}: {least}, and you go on to {yes}; fewer, and you go on to {no}.",
+)
+_WHERE = (
+    "Check the presets {p} and {q}: is there {one} in either of them?",
+    "Is {one} to be seen from {p} or from {q}?",
+    "Look from {p}, then from {q}, and tell me whether {one} is there in one of them.",
+    "Do the {p} and {q} views show {one} between them?",
+    "Have a look at {p} and {q}. Can you find {one}?",
+)
+
+
+def drafts(one: Place, two: Place, places: Places, nouns: frozenset[str], rng: random.Random) -> list[Draft]:
+    """What takes two presets."""
+    p, q = one.preset, two.preset
+    if p is None or q is None or p == q:
+        return []
+    return [*_totals(one, two, p, q), *_branches(one, p, places, rng), *_either(one, two, p, q, nouns, rng)]
+
+
+def _seen(place: Place, kind: Kind, number: int) -> EvidenceView:
+    shows = Number(value=number, unit=unit_of(kind)) if number else NoneThere(subject=unit_of(kind)[:2])
+    return view(place, shows, about(kind), [place.sight.item(t, True) for t in place.sight.of(kind) or ()], whole=True)
+
+
+def _totals(one: Place, two: Place, p: str, q: str) -> Iterator[Draft]:
+    there = dict(counted(two.sight))
+    start = Place(one.scene, one.start, (), one.at)
+    for kind, n in counted(one.sight):
+        m = there.get(kind)
+        if m is None:
+            continue
+        many = plural(noun_of(kind))
+        program = (go(p), count(many, one), go(q), count(many, two))
+        seen = (_seen(one, kind, n), _seen(two, kind, m))
+        sorts = [("sum", n + m, _SUMS)] + ([("difference", n - m, _GAPS)] if n > m else [])
+        for sort, value, texts in sorts:
+            yield Draft(
+                category="multi_step_reasoning",
+                kind=sort,
+                key=f"{sort}:{p}:{q}:{many}",
+                place=start,
+                expected=Number(value=value, unit=unit_of(kind)),
+                orders=tuple(t.format(many=many, p=p, q=q) for t in texts),
+                evidence=seen,
+                program=program,
+                needs=("preset",),
+                tags=("two-views",),
+                weight=n + m,
+                reads=str(value),
+            )
+
+
+def within(place: Place, rng: random.Random) -> list[Draft]:
+    """Sums and differences within one view."""
+    found = list[Draft]()
+    plain = [(k, n) for k, n in counted(place.sight) if k.colour is None]
+    rng.shuffle(plain)
+    for (one, n), (two, m) in pairwise(plain):
+        first, second = plural(noun_of(one)), plural(noun_of(two))
+        together = Question(
+            (
+                (f"how many {first} and {second} are there together?", f"how many {first} and {second} there are together"),
+                (f"what is the total of {first} and {second}?", f"the total of {first} and {second}"),
+            )
+        )
+        apart = Question(
+            (
+                (f"how many more {first} than {second} are there?", f"how many more {first} than {second} there are"),
+                (f"by how many do the {first} outnumber the {second}?", f"by how many the {first} outnumber the {second}"),
+            )
+        )
+        sorts = [("together", n + m, together)] + ([("excess", n - m, apart)] if n > m + 1 else [])
+        for sort, value, asked in sorts:
+            # No unit: a sum of two kinds has none, and their own numbers must not be taken for it.
+            found.append(
+                Draft(
+                    category="multi_step_reasoning",
+                    kind=sort,
+                    key=f"{sort}:{first}:{second}",
+                    place=place,
+                    expected=Number(value=value),
+                    question=asked,
+                    evidence=(_seen(place, one, n), _seen(place, two, m)),
+                    looks=(count(first, place), count(second, place)),
+                    tags=("arithmetic",),
+                    weight=n + m,
+                    reads=str(value),
+                )
+            )
+    return found
+
+
+def _branches(one: Place, p: str, places: Places, rng: random.Random) -> Iterator[Draft]:
+    others = [name for name in places.presets if name != p and name != one.start]
+    if len(others) < 2:
+        return
+    start = Place(one.scene, one.start, (), one.at)
+    for kind, n in counted(one.sight):
+        if n < 2 or kind.colour is not None:
+            continue
+        yes, no = rng.sample(others, 2)
+        least = n + rng.choice((-1, 0, 2)) if n > 2 else n + rng.choice((0, 1))
+        end = yes if n >= least else no
+        final = Place(one.scene, one.start, (), preset_at(places.presets[end])).final
+        many = plural(noun_of(kind))
+        yield Draft(
+            category="multi_step_reasoning",
+            kind="condition",
+            key=f"if:{p}:{many}:{least}",
+            place=start,
+            expected=ActionOnly(),
+            orders=tuple(t.format(p=p, many=many, least=f"at least {least}", yes=yes, no=no) for t in _BRANCHES),
+            evidence=(_seen(one, kind, n),),
+            program=(go(p), count(many, one), go(end)),
+            behaviour=Behaviour(final=final),
+            needs=("preset",),
+            tags=("condition",),
+            weight=n,
+            reads=end,
+        )
+
+
+def _either(one: Place, two: Place, p: str, q: str, nouns: frozenset[str], rng: random.Random) -> Iterator[Draft]:
+    elsewhere = set(absent(two.sight, nouns))
+    gone = [kind for kind in absent(one.sight, nouns) if kind in elsewhere]
+    shown = [
+        (kind, place)
+        for place, other in ((one, two), (two, one))
+        for kind, _ in counted(place.sight)
+        if other.sight.of(kind) is not None
+    ]
+    rng.shuffle(gone)
+    rng.shuffle(shown)
+    start = Place(one.scene, one.start, (), one.at)
+    for kind, (present, place) in zip(gone, shown, strict=False):
+        texts = (plural(noun_of(kind)), plural(noun_of(present)))
+        yes = YesNo(value=True, affirms=unit_of(present)[:2])
+        first = place.sight.of(present) or ()
+        twin = Draft(
+            category="multi_step_reasoning",
+            kind="either",
+            key=f"either:{p}:{q}:{noun_of(present)}",
+            place=start,
+            expected=yes,
+            orders=tuple(t.format(p=p, q=q, one=article(noun_of(present))) for t in _WHERE),
+            evidence=(view(place, yes, about(present), [place.sight.item(first[0], True)], whole=False),),
+            program=(go(p), count(texts[1], one), go(q), count(texts[1], two)),
+            needs=("preset",),
+            tags=("presence",),
+            reads="yes",
+        )
+        none = NoneThere(subject=unit_of(kind)[:2])
+        yield Draft(
+            category="multi_step_reasoning",
+            kind="neither",
+            key=f"either:{p}:{q}:{noun_of(kind)}",
+            place=start,
+            expected=none,
+            orders=tuple(t.format(p=p, q=q, one=article(noun_of(kind))) for t in _WHERE),
+            evidence=(view(one, none, about(kind), [], whole=True), view(two, none, about(kind), [], whole=True)),
+            program=(go(p), count(texts[0], one), go(q), count(texts[0], two)),
+            needs=("preset",),
+            tags=("none-there", "two-views"),
+            twin=twin,
+            reads="none",
+        )

@@ -1,0 +1,101 @@
+"""English for instructions: nouns in number, articles, numbers, and how values are called."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from scope_ptz.bench.expected import Options, Wordings
+from scope_ptz.bench.ground import Kind
+
+_IRREGULAR = {
+    "person": "people", "man": "men", "woman": "women", "child": "children", "shelf": "shelves", "leaf": "leaves", "mouse": "mice",
+    "goose": "geese", "sheep": "sheep", "deer": "deer", "banksman": "banksmen", "aircraft": "aircraft", "knife": "knives",
+}  # fmt: skip
+UNCOUNTED = frozenset({
+    "tree", "bush", "hedge", "building", "house", "pylon", "guardrail", "bridge", "hill", "road", "pavement", "surface", "fence",
+    "fence panel", "wall", "sky", "field", "grass", "plant", "shrub", "kerb", "roof", "platform", "track", "shopfront", "window",
+    "railing", "bunting", "cable", "puddle", "produce", "goods", "scaffolding", "gravel pile", "sand pile", "ground", "marker post",
+    "warehouse", "church", "station", "canopy", "flower bed", "box of fruit", "crate", "pipe stack", "terrace", "townhouse", "yew",
+})  # fmt: skip
+"""What people do not count alike: where one ends and the next begins, or which of many far ones still counts, is anyone's guess."""
+
+_FAMILIES: dict[str, Wordings] = {
+    "white": ("off-white",), "black": (), "grey": ("gray", "silver", "dark grey", "light grey"),
+    "red": ("dark red", "maroon", "crimson"),
+    "blue": ("dark blue", "light blue", "navy", "sky blue", "navy blue"), "green": ("dark green", "light green", "lime"),
+    "yellow": ("gold",), "orange": ("amber",), "brown": ("dark brown", "light brown"), "purple": ("violet",), "pink": (),
+}  # fmt: skip
+"""Plain colours and what else they are called."""
+
+_FAMILY = {name: plain for plain, others in _FAMILIES.items() for name in (plain, *others)}
+
+
+def plural(noun: str) -> str:
+    """The plural of a noun phrase whose last word, or the one before "of", "with" ..., is its noun."""
+    words = noun.split()
+    head = next((i for i, word in enumerate(words) if i and word in {"of", "with", "in", "on", "for", "carrying"}), len(words)) - 1
+    words[head] = _plural(words[head])
+    return " ".join(words)
+
+
+def _plural(word: str) -> str:
+    if word in _IRREGULAR:
+        return _IRREGULAR[word]
+    if word.endswith("man") and word not in {"human"}:
+        return word[:-3] + "men"
+    if word.endswith("y") and word[-2:-1] not in "aeiou":
+        return word[:-1] + "ies"
+    return word + ("es" if word.endswith(("s", "x", "ch", "sh")) else "s")
+
+
+def article(noun: str) -> str:
+    """The noun with "a" or "an"."""
+    first = noun.lower()
+    vowel = first[0] in "aeio" or (first[0] == "u" and not first.startswith(("uni", "use", "uti")))
+    return f"{'an' if vowel else 'a'} {noun}"
+
+
+def listing(names: Sequence[str], word: str = "and") -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} {word} {names[-1]}"
+
+
+def noun_of(kind: Kind) -> str:
+    """What one thing of a kind is called, attributes in their usual order."""
+    if kind.attribute is not None:
+        return _WITH.get(kind.attribute[0], "{value} {noun}").format(value=kind.attribute[1], noun=kind.category)
+    return f"{kind.colour} {kind.category}" if kind.colour else kind.category
+
+
+_WITH = {"vest": "{noun} in {value} vest", "helmet": "{noun} with {value} helmet"}
+
+
+def unit_of(kind: Kind) -> Wordings:
+    """The words for what is counted: the whole name, the category, its last word."""
+    return tuple(dict.fromkeys((noun_of(kind), kind.category, kind.category.split()[-1])))
+
+
+def about(*kinds: Kind) -> Wordings:
+    """The words that a look at things of these kinds mentions."""
+    return tuple(dict.fromkeys(word for kind in kinds for word in (kind.category, kind.category.split()[-1])))
+
+
+def plain_colour(colour: object) -> str | None:
+    """The plain colour that a thing has; None where people would not agree."""
+    return _FAMILY.get(str(colour))
+
+
+def colour_options() -> Options:
+    return dict(_FAMILIES)
+
+
+def degrees(number: float) -> str:
+    return f"{number:g} degrees" if number != 1 else "1 degree"
+
+
+def times(factor: float) -> str:
+    """A magnification in words: "twice", "three times", "1.5 times"."""
+    return {2.0: "twice", 3.0: "three times", 4.0: "four times"}.get(factor, f"{factor:g} times")
+
+
+def capital(text: str) -> str:
+    return text[:1].upper() + text[1:]

@@ -1,0 +1,36 @@
+"""The report of a validation in lines of text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from scope_ptz.bench.validate import Fault, Report
+
+MOST_LISTED = 40
+
+
+def report_lines(report: Report) -> Iterator[str]:
+    """Counts by category, right ways, cheats, then every failure."""
+    content = report.as_dict()
+    yield f"{report.tasks} tasks: " + ", ".join(f"{number} {name}" for name, number in sorted(report.by_stratum.items()))
+    for name, number in report.by_category.items():
+        yield f"  {name:<22}{number:>5}"
+    yield "right ways"
+    for name, row in content["right_ways"].items():
+        yield f"  {name:<22}{row['passed']:>5} of {row['of']}"
+    yield "cheats"
+    for name, row in content["cheats"].items():
+        yield f"  {name:<22}{row['passed']:>5} of {row['of']}  ({row['share_of_all']:.1%} of all tasks)"
+    yield from _listed("failed", report.faults)
+    yield from _listed("cheated", report.cheated)
+    yield from _listed("seen otherwise by the ground-truth perception", report.disagreements)
+    yield "sound" if report.sound else "NOT SOUND"
+
+
+def _listed(title: str, faults: Sequence[Fault]) -> Iterator[str]:
+    if faults:
+        yield f"{title}: {len(faults)}"
+    for fault in faults[:MOST_LISTED]:
+        yield f"  {fault.task} [{fault.attempt}] {fault.reason}"
+    if len(faults) > MOST_LISTED:
+        yield f"  ... and {len(faults) - MOST_LISTED} more"
