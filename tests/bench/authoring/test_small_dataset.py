@@ -1,0 +1,132 @@
+"""A dataset of the synthetic scene: quotas, distinctness, pairs, the same bytes again, and that faults are caught."""
+
+from __future__ import annotations
+
+import random
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+
+import anyio
+import pytest
+
+from scope_ptz.bench.authoring.assembly import QUOTAS as PUBLISHED
+from scope_ptz.bench.authoring.assembly import Built, build
+from scope_ptz.bench.authoring.reactions import reactions
+from scope_ptz.bench.expected import NoneThere, Number
+from scope_ptz.bench.task_files import dump_tasks, load_tasks
+from scope_ptz.bench.tasks import Task
+from scope_ptz.bench.validate import Report, structure, validate
+from scope_ptz.cli.bench_eyes import equip_with_truth
+from scope_ptz.cli.bench_report import report_lines
+from scope_ptz.world.pack import Scene
+from tests.bench.authoring.conftest import QUOTAS
+
+
+def core(built: Built) -> list[Task]:
+    return [task for task in built.tasks if task.stratum == "core"]
+
+
+def prove(tasks: list[Task], scene: Scene) -> Report:
+    scenes = {scene.name: scene}
+    return anyio.run(lambda: validate(tasks, scenes, equip_with_truth(scenes)))
+
+
+def test_the_published_numbers_are_the_papers() -> None:
+    assert sum(PUBLISHED.values()) == 536
+
+
+def test_quotas_are_filled_or_what_is_short_is_told(built: Built) -> None:
+    counts = Counter(task.category for task in core(built))
+    assert {name: counts[name] + built.short.get(name, 0) for name in QUOTAS} == QUOTAS
+    assert counts["counting"] == QUOTAS["counting"]
+
+
+def test_the_same_seed_makes_the_same_bytes_and_another_seed_does_not(built: Built, analytic_folder: Path, tmp_path: Path) -> None:
+    again, other = (build([Scene(analytic_folder)], seed, QUOTAS) for seed in (1, 2))
+    files = [tmp_path / f"{n}.jsonl" for n in range(3)]
+    for file, dataset in zip(files, (built, again, other), strict=True):
+        dump_tasks(dataset.tasks, file)
+    one, same, another = (file.read_bytes() for file in files)
+    assert one == same != another
+    assert load_tasks(files[0]) == tuple(built.tasks)
+
+
+def test_no_two_ask_the_same(built: Built) -> None:
+    assert not structure(built.tasks)
+    views = Counter((t.evidence[0].aim, t.evidence[0].scope, t.expected, t.tags) for t in core(built) if t.category == "counting")
+    assert max(views.values()) == 1
+    assert len({task.id for task in built.tasks}) == len(built.tasks)
+
+
+def test_absences_stand_beside_presences_of_like_wording(built: Built) -> None:
+    by_id = {task.id: task for task in built.tasks}
+    absences = [task for task in core(built) if isinstance(task.expected, NoneThere)]
+    assert absences
+    for task in absences:
+        twin = by_id[task.pair or ""]
+        assert twin.pair == task.id
+        assert not isinstance(twin.expected, NoneThere)
+        assert task.preset == twin.preset or task.evidence[0].aim.viewpoint == twin.evidence[0].aim.viewpoint
+
+
+def test_paraphrases_expect_what_their_task_expects(built: Built) -> None:
+    by_id = {task.id: task for task in built.tasks}
+    wordings = [task for task in built.tasks if task.stratum == "paraphrase"]
+    assert wordings
+    for task in wordings:
+        original = by_id[task.paraphrase_of or ""]
+        assert task.instruction != original.instruction
+        assert (task.expected, task.behaviour, task.reference) == (original.expected, original.behaviour, original.reference)
+
+
+def test_everything_is_proved(report: Report) -> None:
+    assert report.sound, "\n".join(report_lines(report))
+    assert not report.disagreements
+    assert report.passed["reference"] == report.tasks
+    assert all(share == 0 for share in report.cheat_shares.values())
+    assert {"nothing", "guess", "blind", "stay", "wrong-answer", "ignored", "wrong-pose"} <= set(report.tried)
+
+
+def wrong_count(task: Task) -> Task:
+    assert isinstance(task.expected, Number)
+    return task.model_copy(update={"expected": task.expected.model_copy(update={"value": task.expected.value + 1})})
+
+
+def without_evidence_of_looking(task: Task) -> Task:
+    views = tuple(view.model_copy(update={"must_look": False}) for view in task.evidence)
+    return task.model_copy(update={"evidence": views, "behaviour": task.behaviour.model_copy(update={"final": None})})
+
+
+def elsewhere(task: Task) -> Task:
+    final = task.behaviour.final
+    assert final is not None
+    moved = final.model_copy(update={"pan_deg": final.pan_deg + 2.0})
+    return task.model_copy(update={"behaviour": task.behaviour.model_copy(update={"final": moved})})
+
+
+@pytest.mark.parametrize(("spoil", "caught"), [(without_evidence_of_looking, "cheated"), (elsewhere, "faults")])
+def test_a_spoilt_task_is_caught(built: Built, analytic_scene: Scene, spoil: Callable[[Task], Task], caught: str) -> None:
+    task = next(t for t in core(built) if t.category == "counting" and isinstance(t.expected, Number) and t.behaviour.final)
+    spoilt = prove([spoil(task).model_copy(update={"pair": None})], analytic_scene)
+    assert not spoilt.sound
+    assert getattr(spoilt, caught)
+
+
+def test_a_wrong_expected_count_is_told(built: Built, analytic_scene: Scene) -> None:
+    task = next(t for t in core(built) if t.category == "counting" and isinstance(t.expected, Number))
+    spoilt = prove([wrong_count(task).model_copy(update={"pair": None})], analytic_scene)
+    assert not spoilt.sound
+    assert any("evidence" in fault.reason for fault in spoilt.faults)
+
+
+def test_a_twin_that_is_gone_is_told(built: Built) -> None:
+    task = next(t for t in core(built) if t.pair)
+    assert [fault.attempt for fault in structure([task])] == ["pair"]
+
+
+def test_reactions_leave_the_camera_alone(analytic_scene: Scene) -> None:
+    tasks, missing = reactions([analytic_scene], 1)
+    assert missing == 0 and len(tasks) >= 40
+    assert len({task.instruction for task in tasks}) == len(tasks)
+    assert prove(random.Random(1).sample(tasks, 3), analytic_scene).sound

@@ -1,0 +1,52 @@
+"""Nouns in number, with articles and attributes."""
+
+from __future__ import annotations
+
+import pytest
+
+from scope_ptz.bench.authoring.words import about, article, listing, noun_of, plain_colour, plural, unit_of
+from scope_ptz.bench.ground import Kind
+
+
+@pytest.mark.parametrize(
+    ("one", "many"),
+    [
+        ("car", "cars"), ("bus", "buses"), ("lorry", "lorries"), ("bench", "benches"), ("box lorry", "box lorries"),
+        ("person", "people"), ("woman", "women"), ("banksman", "banksmen"), ("toolbox", "toolboxes"), ("tram", "trams"),
+        ("child", "children"), ("pile of sand", "piles of sand"), ("emergency phone", "emergency phones"), ("shelf", "shelves"),
+        ("traffic cone", "traffic cones"), ("gantry", "gantries"), ("tray", "trays"), ("pallet of bags", "pallets of bags"),
+    ],
+)  # fmt: skip
+def test_plurals(one: str, many: str) -> None:
+    assert plural(one) == many
+
+
+@pytest.mark.parametrize(
+    ("noun", "said"),
+    [
+        ("orange cone", "an orange cone"),
+        ("car", "a car"),
+        ("umbrella", "an umbrella"),
+        ("used car", "a used car"),
+        ("excavator", "an excavator"),
+    ],
+)
+def test_articles(noun: str, said: str) -> None:
+    assert article(noun) == said
+
+
+def test_lists() -> None:
+    assert listing(["a"]) == "a"
+    assert listing(["a", "b", "c"], "or") == "a, b or c"
+
+
+def test_names_of_kinds() -> None:
+    assert noun_of(Kind("traffic cone", "orange")) == "orange traffic cone"
+    assert noun_of(Kind("worker", None, ("vest", "orange"))) == "worker in orange vest"
+    assert unit_of(Kind("traffic cone")) == ("traffic cone", "cone")
+    assert about(Kind("car", "red")) == ("car",)
+
+
+def test_shades_are_called_by_their_plain_colour() -> None:
+    assert plain_colour("dark blue") == "blue"
+    assert plain_colour("red and white") is None
