@@ -22,7 +22,7 @@ _IRREGULAR = {
 _SINGULAR = {plural: singular for singular, plural in _IRREGULAR.items()}
 _AFTER_HEAD = re.compile(
     r"\s(?:in|on|at|of|with|by|near|behind|beside|under|above|between|from|inside|outside|to|that|which|who|next|wearing|holding|carrying|parked|standing|"
-    r"facing|driving|walking|visible|along|across|over|below|against|without)\b"
+    r"facing|driving|walking|visible|along|across|over|below|against|without|not)\b"
 )
 _OPERATORS = {">=": "at least ", "<=": "at most ", ">": "more than ", "<": "fewer than ", "==": "exactly "}
 

@@ -92,6 +92,10 @@ class Builder(MoveRules, JudgingRules):
             return self._repeated_by(body, times, sizes[0])
         return Repeat(body, times, group=node.has("COMMA"))
 
+    def repeated_each(self, node: Node) -> tuple[Step, ...]:
+        """ "Pan left 20 three times taking a picture after each"."""
+        return (*self._body(node, 0), EachTime(self._body(node, 1)))
+
     @staticmethod
     def _repeated_by(body: tuple[Step, ...], times: int, size: Amount | StepSize) -> Step:
         """ "Turn left twice by 30"."""

@@ -239,11 +239,15 @@ class MoveRules(Rules):
     def zout(self, node: Node) -> int:
         return -1
 
-    def _zoomed(self, node: Node, sign: int) -> tuple[Part, ...]:
+    def _zoomed(self, node: Node, sign: int, bare: bool = False) -> tuple[Part, ...] | Unclear:
         hows = [b for b in node.branches() if b.name.startswith("z_")]
         if not hows:
             return (Zoom("factor", _PLAIN_ZOOM if sign > 0 else 1 / _PLAIN_ZOOM),)
         kind, value = self.visit(hows[0])
+        if kind == "percent" and value < 0:
+            return (Zoom("percent", value),) if sign < 0 or bare else Unclear("Shall I zoom in or out?")
+        if kind in {"factor", "fraction"} and not 0 < value < float("inf"):
+            return Unclear("How many times shall I zoom?")
         if kind == "limit":
             return (Zoom("in" if sign > 0 else "out"),)
         if kind == "percent":
@@ -252,24 +256,28 @@ class MoveRules(Rules):
             return (Zoom("factor", 1 + value if sign > 0 else 1 - value),)
         return (Zoom("factor", value if sign > 0 or value < 1 else 1 / value),)
 
-    def zoom_rel(self, node: Node) -> tuple[Part, ...]:
+    def zoom_rel(self, node: Node) -> tuple[Part, ...] | Unclear:
         sign = next(self.visit(b) for b in node.branches() if b.name in {"zin", "zout"})
         return self._zoomed(node, sign)
 
     def zoom_limit(self, node: Node) -> tuple[Part, ...]:
         return (Zoom("in" if self.visit(node.branches()[0]) > 0 else "out"),)
 
-    def zoom_more(self, node: Node) -> tuple[Part, ...]:
+    def zoom_right(self, node: Node) -> tuple[Part, ...] | Unclear:
+        """ "Zoom right out": right to the stop."""
+        return self.zoom_limit(node) if self.text(node.leaves("RIGHT")).lower() == "right" else Unclear("Shall I zoom, or turn right?")
+
+    def zoom_more(self, node: Node) -> tuple[Part, ...] | Unclear:
         return self._zoomed(node, 1)
 
-    def zoom_less(self, node: Node) -> tuple[Part, ...]:
+    def zoom_less(self, node: Node) -> tuple[Part, ...] | Unclear:
         return self._zoomed(node, -1)
 
     def zoom_bare(self, node: Node) -> tuple[Part, ...] | Unclear:
         hows = [b.name for b in node.branches()]
         if not hows or hows[0] in {"z_little", "z_lot", "z_plain"}:
             return Unclear("Shall I zoom in or out?")
-        return self._zoomed(node, 1)
+        return self._zoomed(node, 1, bare=True)
 
     def zoom_double(self, node: Node) -> tuple[Part, ...]:
         said = " ".join(self.words_of(leaf) for leaf in node.leaves())
@@ -278,7 +286,9 @@ class MoveRules(Rules):
     def zoom_halve(self, node: Node) -> tuple[Part, ...]:
         return (Zoom("factor", 1 / (3.0 if any("thr" in self.words_of(leaf) for leaf in node.leaves()) else 2.0)),)
 
-    def zoom_to_value(self, node: Node) -> tuple[Part, ...]:
+    def zoom_to_value(self, node: Node) -> tuple[Part, ...] | Unclear:
+        if self.number(node) <= 0:
+            return Unclear("To how many times shall I zoom?")
         return (Aim("zoom", self.number(node)),)
 
     def zoom_to_percent(self, node: Node) -> tuple[Part, ...]:
@@ -291,7 +301,7 @@ class MoveRules(Rules):
         return (Zoom("out"),)
 
     def z_factor(self, node: Node) -> tuple[str, float]:
-        return ("percent" if node.has("PERCENT") else "factor"), abs(self.number(node))
+        return ("percent" if node.has("PERCENT") else "factor"), self.number(node)
 
     def z_twice(self, node: Node) -> tuple[str, float]:
         said = " ".join(self.words_of(leaf) for leaf in node.leaves())
@@ -301,7 +311,7 @@ class MoveRules(Rules):
         return "fraction", self.fraction(node)
 
     def z_percent(self, node: Node) -> tuple[str, float]:
-        return "percent", abs(self.number(node))
+        return "percent", self.number(node)
 
     def z_little(self, node: Node) -> tuple[str, float]:
         return "factor", _LITTLE_ZOOM

@@ -50,6 +50,7 @@ _RELATIVE = (
     (re.compile(r"^(?:currently )?visible (?=\w)", re.IGNORECASE), ""),
     (re.compile(r" (?:what|that)$", re.IGNORECASE), ""),
 )
+_FUSED = re.compile(r"^(?:the|this|that) (?=\w+ ?\w)", re.IGNORECASE)
 _DURATIONS = {"seconds", "minutes", "part_minute", "minute_and_part", "minutes_seconds", "hours"}
 
 
@@ -60,7 +61,9 @@ class SceneRules(Rules):
         determiner = any(self.words_of(leaf).split()[0] in {"the", "that", "this", "these", "those"} for leaf in node.leaves("DET"))
         leaves = parts[0].all_leaves()
         odd = not any(leaf.kind == "WORD" or self.lexemes[leaf.index].kinds & _NOUNS for leaf in leaves)
-        return Thing(described(self.text([leaf for part in parts for leaf in part.all_leaves()])), definite=determiner, odd=odd)
+        said = described(self.text([leaf for part in parts for leaf in part.all_leaves()]))
+        bare = _FUSED.sub("", said)  # "the site office": "the site" is one lexeme
+        return Thing(bare, definite=determiner or bare != said, odd=odd)
 
     def thing(self, node: Node) -> Thing:
         made: Thing = self.visit(node.branches()[0])

@@ -83,6 +83,8 @@ def _add(out: list[Step], link: str, step: Step) -> None:
         out[-1] = replace(last, body=tuple(compose([Linked("and", step)], last.body)))
     elif isinstance(step, Loop | Repeat):
         out.append(_stepped_loop(step))
+    elif isinstance(step, GoPreset) and step.how == "bare" and link == "and" and isinstance(last, Ask):
+        out.append(Unclear("I can look at each place in turn, but not answer that about both at once. What shall I look for there?"))
     else:
         out.append(_stepped(step))
 

@@ -73,6 +73,8 @@ def _cardinal(words: list[str]) -> tuple[float, int]:
     spoken = next((i for i, w in enumerate(words) if NUMBER_WORDS.get(w, 10) > 9), len(words))
     if spoken > 1 and not used:  # "three zero" on the radio
         return float("".join(str(int(NUMBER_WORDS[w])) for w in words[:spoken])), spoken
+    if not used and _hundreds(words):  # "one eighty", "two seventy"
+        current, used = 100 * NUMBER_WORDS[words[0]], 1
     while used < len(words):
         word = words[used]
         if (
@@ -105,6 +107,11 @@ def _cardinal(words: list[str]) -> tuple[float, int]:
             used += 1
         return total + current + float("0." + digits), used
     return total + current, used
+
+
+def _hundreds(words: list[str]) -> bool:
+    """Whether a digit before a ten counts hundreds, as in "one eighty"."""
+    return len(words) > 1 and words[0] in {"one", "two", "three"} and 20 <= NUMBER_WORDS.get(words[1], 0) <= 90
 
 
 def _continues(current: float, value: float) -> bool:

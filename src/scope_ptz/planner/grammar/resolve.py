@@ -18,7 +18,7 @@ from scope_ptz.tools.arguments import View
 
 _CLOSE_ENOUGH = 0.8
 _LONGEST_NAME = 4
-_NOWHERE = frozenset({"around", "everywhere", "there", "here", "away", "about"})
+_NOWHERE = frozenset({"nothing", "around", "everywhere", "there", "here", "away", "about"})
 _NO_PLACE = frozenset({"mode", "sleep", "hell", "bed", "town", "pieces", "waste"})
 _SHORTEST_ABBREVIATION = 3
 _WAITING = re.compile(r"(when|once|as soon as|whenever)\b", re.IGNORECASE)
@@ -38,6 +38,13 @@ _PRONOUN = re.compile(r"\b(it|they|them|that one|this one)\b", re.IGNORECASE)
 _IMPERSONAL = re.compile(
     r"\bit\s+(raining|dark|light|day|night|sunny|foggy|cloudy|snowing|busy|daytime|wet|bright|safe|windy|snowy|like)\b"
     r"|\bwhat('s| is) it\b|\bit is\b",
+    re.IGNORECASE,
+)
+
+
+_BESIDE = re.compile(
+    r"(?:(?:just|only|slightly|a (?:bit|little|touch|tad)|right|directly) )*"
+    r"((?:to the )?(?:left|right) of|above|below|under|underneath|beneath|over|beyond|past|behind|beside|next to|in front of) \w",
     re.IGNORECASE,
 )
 
@@ -284,6 +291,10 @@ class Resolver:
         return [ast.Read(self.thing(step.thing), self._view(step.view))]
 
     def _zoomto(self, step: ast.ZoomTo) -> Sequence[ast.Step]:
+        if re.search(r"\b\d[\d.]* ?(?:x|times|%|percent)$", step.thing.text):
+            raise UnresolvedError("I zoom in on a thing until it fills the view. Shall I do that, or zoom by an amount where I look now?")
+        if beside := _BESIDE.match(step.thing.text):
+            raise UnresolvedError(f"I can centre on a thing, not on what is {beside[1]} it. By how many degrees shall I move?")
         return [ast.ZoomTo(self.thing(step.thing))]
 
     def _track(self, step: ast.Track) -> Sequence[ast.Step]:

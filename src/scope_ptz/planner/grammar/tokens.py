@@ -30,6 +30,7 @@ _LONGEST_PHRASE = 9
 _LETTERS = {"r": "right", "l": "left", "u": "up", "d": "down"}
 _TURNED = frozenset({"TILT", "PAN", "MOVE", "LOOK", "CAMERA"})
 _NEVER_DONE = frozenset({*SEPARATORS, "DET", "ONEOF", "PREP", "SAYS", "BY", "SHOWS", "VISIBLE", "FILLS"})
+_HEDGES = frozenset({"FILLER", "BY"})
 _DIAGONALS = ("UPLEFT", "UPRIGHT", "DOWNLEFT", "DOWNRIGHT")
 
 
@@ -148,6 +149,9 @@ class Lexer:
             run.append(w.text)
         preset = self._longest([(preset_key(w) or (w,))[0] for w in run], self._presets) if self._presets else 0
         phrase = self._longest(run, self._table)
+        if run[:1] == ["the"] and phrase > 1 and self._presets:
+            named = self._longest([(preset_key(w) or (w,))[0] for w in run[1:]], self._presets)
+            phrase = 1 if named >= phrase - 1 else phrase  # "the overview" where a preset is called so
         if (
             before
             and phrase > 1
@@ -190,7 +194,7 @@ class Lexer:
             addressed = i + length < len(words) and words[i + length].text in {",", ":"} and _starts_clause(before)
             if in_name and kinds == {"FILLER"} and length == 1:
                 return Lexeme(frozenset({"TEXT"}), start, end)
-            if kinds == {"FILLER"} or addressed:
+            if kinds == {"FILLER"} or addressed or (kinds <= _HEDGES and _starts_clause(before) and i + length < len(words)):
                 return None
         doing = words[i].text.endswith("ing") and not kinds & _NEVER_DONE
         return Lexeme(kinds | {"GERUND"} if doing else kinds, start, end)
