@@ -277,5 +277,5 @@ def sight(scene: Scene, at: Standing, time_s: float, *, swept: bool = False) -> 
 
 def kinds_in(things: Iterable[Thing]) -> list[Kind]:
     """Every category, and every category with a colour, in a fixed order."""
-    found = {(t.category, c) for t in things for c in (None, t.attributes.get("colour"))}
+    found = {(t.category, c) for t in things for c in (None, t.attributes.get("colour")) if c is None or " and " not in str(c)}
     return [Kind(category, str(colour) if colour else None) for category, colour in sorted(found, key=str)]

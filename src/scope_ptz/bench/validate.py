@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from scope_ptz.bench.cheats import Attempt, cheats, common_answers, honest, right_texts
+from scope_ptz.bench.consistency import Look, inconsistencies
 from scope_ptz.bench.episode import Episode, Eyes
 from scope_ptz.bench.expected import ActionOnly, NoneThere, Number
 from scope_ptz.bench.phrasing import right_answers
@@ -17,6 +18,7 @@ from scope_ptz.bench.run_program import Equip, Stage
 from scope_ptz.bench.tasks import Task
 from scope_ptz.bench.verdict import judge
 from scope_ptz.world.pack import Scene
+from scope_ptz.world.truth import view_truth
 
 MOST_CHEATED = 0.03
 """No cheat passes more of all tasks than this; what passes at all is listed."""
@@ -78,9 +80,18 @@ _HONEST = ("reference", "detour", "twice", "worded")
 
 
 async def validate(
-    tasks: Sequence[Task], scenes: Mapping[str, Scene], equip: Equip, *, seed: int = 1, say: Say | None = None
+    tasks: Sequence[Task],
+    scenes: Mapping[str, Scene],
+    equip: Equip,
+    *,
+    seed: int = 1,
+    look: Look = view_truth,
+    say: Say | None = None,
 ) -> Report:
-    """Run everything on every task. Right ways are held to pass all, cheats to pass none."""
+    """Run everything on every task. Right ways are held to pass all, cheats to pass none.
+
+    ``look`` reads the truth of a view; one that remembers views saves most of the time.
+    """
     report, common = Report(), common_answers(tasks)
     siblings = sibling_answers(tasks)
     stages = {name: Stage(scene, equip, EYES) for name, scene in scenes.items()}
@@ -89,6 +100,7 @@ async def validate(
         report.by_stratum[task.stratum] += 1
         if task.stratum == "core":
             report.by_category[task.category] += 1
+        report.faults += [Fault(task.id, "truth", reason) for reason in inconsistencies(task, scenes[task.scene], look)]
         await _Proof(report, task, stages[task.scene]).run(common.get(task.category, "2"), siblings.get(task.id), seed)
         if say is not None:
             say(number, len(tasks))

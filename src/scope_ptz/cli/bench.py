@@ -67,12 +67,13 @@ def validate(
         import anyio
 
         from scope_ptz.bench.validate import validate as prove
-        from scope_ptz.cli.bench_eyes import equip_with_truth
+        from scope_ptz.cli.bench_eyes import KnownViews, equip_with_truth
         from scope_ptz.cli.bench_report import report_lines
 
         rows = _tasks(tasks)
         scenes = _scenes(sorted({task.scene for task in rows}))
-        report = anyio.run(lambda: prove(rows, scenes, equip_with_truth(scenes), seed=seed))
+        views = KnownViews()
+        report = anyio.run(lambda: prove(rows, scenes, equip_with_truth(scenes, views), seed=seed, look=views.look))
         if as_json:
             put_json(report.as_dict())
         else:

@@ -48,7 +48,7 @@ class KnownViews:
         return self._known[key]
 
 
-def equip_with_truth(scenes: Mapping[str, Scene]) -> Equip:
+def equip_with_truth(scenes: Mapping[str, Scene], views: KnownViews | None = None) -> Equip:
     """Equipment for cameras in these scenes: eyes that know the truth, and a store that keeps nothing."""
-    eyes = GroundTruthPerception(lambda name: scenes[name], KnownViews().look)
+    eyes = GroundTruthPerception(lambda name: scenes[name], (views or KnownViews()).look)
     return lambda camera: ToolContext(camera, eyes, NamesOnly())

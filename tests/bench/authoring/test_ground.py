@@ -22,7 +22,7 @@ def yard(analytic_scene: Scene) -> Sight:
 
 def thing(category: str, name: str, **attributes: str) -> SceneInstance:
     return SceneInstance(
-        id="x", number=1, category=category, name=name, attributes=attributes, box_min_m=(0, 0, 0), box_max_m=(1, 1, 1)
+        id="x", number=1, category=category, name=name, attributes=dict(attributes), box_min_m=(0, 0, 0), box_max_m=(1, 1, 1)
     )
 
 

@@ -26,8 +26,8 @@ PAIRS: dict[Category, int] = {"counting": 28, "descriptor": 18, "location": 9, "
 REACTIONS = 44
 PARAPHRASED, WORDINGS = 64, 3
 FRAME_SHARE = 0.06
-ANSWER_SHARE = 0.2
-"""No wording, and no answer, is more frequent in a category than this."""
+ANSWER_SHARE, TEXT_SHARE = 0.2, 0.06
+"""No wording, no answer, and no text that is to be read, is more frequent in a category than this."""
 
 Say = Callable[[str], None]
 
@@ -184,7 +184,8 @@ class _Category:
     def _add(self, draft: Draft, scene: str, like: str | None = None) -> str | None:
         """Take a draft, unless it was asked already or its answer is too frequent; the frame of its wording."""
         free = draft.reads in ("none", "yes") or draft.expected.kind == "action_only"
-        if draft.full_key in self.builder.asked or (not free and self.answers[draft.reads] >= max(2, self.quota * ANSWER_SHARE)):
+        share = TEXT_SHARE if self.category == "ocr" else ANSWER_SHARE
+        if draft.full_key in self.builder.asked or (not free and self.answers[draft.reads] >= max(2, int(self.quota * share))):
             return None
         worded = self.frames.word(draft, self.rng, like and f"{draft.kind}/{like}")
         if worded is None or self.frames.used[worded[1]] >= self.most:

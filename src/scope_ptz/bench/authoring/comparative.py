@@ -9,7 +9,7 @@ from itertools import combinations
 from scope_ptz.bench.authoring.counting import counted
 from scope_ptz.bench.authoring.drafts import Draft, Question, ask, count, view
 from scope_ptz.bench.authoring.naming import singles
-from scope_ptz.bench.authoring.places import Place, go
+from scope_ptz.bench.authoring.places import Place, elsewhere, go
 from scope_ptz.bench.authoring.words import about, listing, noun_of, plural, unit_of
 from scope_ptz.bench.expected import Choice, Number, Options, Ordering
 from scope_ptz.bench.ground import Kind
@@ -30,10 +30,11 @@ def options(names: Sequence[str]) -> Options:
 
 def _more(place: Place, rng: random.Random) -> Iterator[Draft]:
     pairs = [
-        (a, b) for a, b in combinations(counted(place.sight), 2) if a[0].category != b[0].category or (a[0].colour and b[0].colour)
+        (a, b)
+        for a, b in combinations(counted(place.sight), 2)
+        if (a[0].category != b[0].category or (a[0].colour and b[0].colour)) and a[1] + b[1] >= 3
     ]
     rng.shuffle(pairs)
-    where = " all around" if place.swept else ""
     for (one, n), (two, m) in pairs[:12]:
         first, second = plural(noun_of(one)), plural(noun_of(two))
         fewer = rng.random() < 0.4 and n != m
@@ -43,19 +44,19 @@ def _more(place: Place, rng: random.Random) -> Iterator[Draft]:
         asked = Question(
             (
                 (
-                    f"are there {word} {first} or {word} {second}{where}?",
-                    f"whether there are {word} {first} or {word} {second}{where}",
+                    f"are there {word} {first} or {word} {second}?",
+                    f"whether there are {word} {first} or {word} {second}",
                 ),
                 (
-                    f"which are there {word} of{where}, {first} or {second}?",
-                    f"which there are {word} of{where}, {first} or {second}",
+                    f"which are there {word} of, {first} or {second}?",
+                    f"which there are {word} of, {first} or {second}",
                 ),
-                (f"do you see {word} {first} or {second}{where}?", f"if there are {word} {first} or {second}{where}"),
+                (f"do you see {word} {first} or {second}?", f"if there are {word} {first} or {second}"),
             )
         )
         yield Draft(
             category="comparative",
-            kind="more-around" if place.swept else "fewer" if fewer else "more",
+            kind=f"{word}-around" if place.swept else word,
             key=f"more:{'/'.join(sorted((first, second)))}",
             place=place,
             expected=expected,
@@ -216,7 +217,7 @@ def between(one: Place, two: Place, rng: random.Random) -> list[Draft]:
             options={p: (p.replace("-", " "),) if "-" in p else (), q: (q.replace("-", " "),) if "-" in q else (), "same": SAME},
             picks=("more", "most"),
         )
-        start = Place(one.scene, one.start, (), one.at)
+        start = elsewhere(one, two)
         orders = tuple(text.format(many=many, p=p, q=q) for text in _BETWEEN)
         found.append(
             Draft(

@@ -14,20 +14,15 @@ MOST = 14
 """More than this nobody counts alike."""
 
 
-def question(kind: Kind, place: Place) -> Question:
+def question(kind: Kind) -> Question:
     many = plural(noun_of(kind))
-    where = " in the whole scene" if place.swept else ""
-    around = " anywhere around" if place.swept else " in view"
     return Question(
         (
-            (f"how many {many} are there{where}?", f"how many {many} there are{where}"),
-            (
-                f"how many {many} can you see{around if place.swept else ''}?",
-                f"how many {many} you can see{around if place.swept else ''}",
-            ),
-            (f"what is the number of {many}{around}?", f"the number of {many}{around}"),
-            (f"how many {many} are visible{where}?", f"how many {many} are visible{where}"),
-            (f"what's the count of {many}{around}?", f"the count of {many}{around}"),
+            (f"how many {many} are there?", f"how many {many} there are"),
+            (f"how many {many} can you see?", f"how many {many} you can see"),
+            (f"what is the number of {many}?", f"the number of {many}"),
+            (f"how many {many} are visible?", f"how many {many} are visible"),
+            (f"what's the count of {many}?", f"the count of {many}"),
         )
     )
 
@@ -69,7 +64,7 @@ def drafts(place: Place, nouns: frozenset[str], rng: random.Random) -> list[Draf
             key=f"count:{noun_of(kind)}",
             place=place,
             expected=(expected := NoneThere(subject=unit_of(kind)[:2])),
-            question=question(kind, place),
+            question=question(kind),
             evidence=(view(place, expected, about(kind), whole=True),),
             looks=(count(plural(noun_of(kind)), place),),
             tags=("none-there", scope_of(place)),
@@ -90,7 +85,7 @@ def _number(place: Place, kind: Kind, number: int) -> Draft:
         key=f"count:{noun_of(kind)}",
         place=place,
         expected=expected,
-        question=question(kind, place),
+        question=question(kind),
         evidence=(view(place, expected, about(kind), [place.sight.item(t, True) for t in things], whole=True),),
         looks=(count(plural(noun_of(kind)), place),),
         tags=(scope_of(place),),

@@ -105,9 +105,14 @@ def _attributes(place: Place, values: Values) -> Iterator[Draft]:
             known = values.get((one.thing.instance.category, key), ())
             value = facts.get(key)
             if isinstance(value, str) and value in known and len(known) >= 2 and one.thing.pixels >= 900 and value not in one.name:
-                yield _choice(place, one, key, Choice(value=value, options=options(known)), ask_it)
+                forms = _ONLY_ONE if key == "kind" and one.name == one.kind.category else ask_it
+                yield _choice(place, one, key, Choice(value=value, options=options(known)), forms)
 
 
+_ONLY_ONE = (
+    ("what kind of {c} can you see?", "what kind of {c} you can see"),
+    ("which type of {c} is there?", "which type of {c} is there"),
+)
 _KINDS: dict[str, tuple[tuple[str, str], ...]] = {
     "kind": (
         ("what kind of {c} is the {n}?", "what kind of {c} the {n} is"),
@@ -154,7 +159,6 @@ def _presence(place: Place, nouns: frozenset[str], rng: random.Random) -> Iterat
 
 def _there(place: Place, kind: Kind, *, there: bool, twin: Draft | None = None) -> Draft:
     one, many = noun_of(kind), plural(noun_of(kind))
-    where = " anywhere around" if place.swept else ""
     expected = YesNo(value=True, affirms=unit_of(kind)[:2]) if there else NoneThere(subject=unit_of(kind)[:2])
     things = (place.sight.of(kind) or ())[:1] if there else ()
     return Draft(
@@ -165,10 +169,10 @@ def _there(place: Place, kind: Kind, *, there: bool, twin: Draft | None = None) 
         expected=expected,
         question=Question(
             (
-                (f"is there {article(one)}{where}?", f"whether there is {article(one)}{where}"),
-                (f"are there any {many}{where}?", f"whether there are any {many}{where}"),
-                (f"can you see {article(one)}{where}?", f"if you can see {article(one)}{where}"),
-                (f"do you see any {many}{where}?", f"whether you see any {many}{where}"),
+                (f"is there {article(one)}?", f"whether there is {article(one)}"),
+                (f"are there any {many}?", f"whether there are any {many}"),
+                (f"can you see {article(one)}?", f"if you can see {article(one)}"),
+                (f"do you see any {many}?", f"whether you see any {many}"),
             )
         ),
         evidence=(view(place, expected, about(kind), [place.sight.item(t, True) for t in things], whole=not there),),

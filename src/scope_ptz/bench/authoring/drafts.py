@@ -27,6 +27,11 @@ _AT_PRESET = (
     "At the {p} preset, {d}", "From the {p} preset, {d}", "{D} Use the {p} preset.", "Check the {p} view: {d}",
     "Looking from the {p} preset, {d}", "In the {p} view, {d}", "Using the preset {p}, tell me {i}.",
 )  # fmt: skip
+_AROUND = (
+    "In the whole scene, {d}", "Taking in everything around the camera, {d}", "{D} Consider the whole scene.",
+    "All around the camera, {d}", "Over the full scene, tell me {i}.", "{D} Not in this view only, but all around.",
+    "Looking in every direction, {d}",
+)  # fmt: skip
 _STAYING = (
     "{D}", "In the current view, {d}", "Tell me {i} in this view.", "Looking straight at what the camera shows now, {d}",
     "Without moving the camera, {d}", "Right here in this view, {d}",
@@ -106,6 +111,8 @@ class Frames:
                 continue
             if place.preset is not None and not place.swept:
                 options += [(w.format(p=place.preset, **words), f"{name}/preset{k}") for k, w in enumerate(_AT_PRESET)]
+            if place.swept and not place.calls:
+                options += [(w.format(**words), f"{name}/around{k}") for k, w in enumerate(_AROUND)]
             for k, wrapper in enumerate(_WRAPPERS):
                 moves = place.said(rng)
                 options.append((wrapper.format(m=moves, M=capital(moves), **words), f"{name}/{k}"))

@@ -145,6 +145,14 @@ def go(preset: str) -> ProgramCall:
     return ProgramCall(tool="go_to_preset", arguments={"name": preset})
 
 
+def elsewhere(one: Place, two: Place) -> Place:
+    """A start for what is asked of two presets: the first one's own, unless that is the second and there is a third."""
+    names = [p.name for p in one.scene.file.presets]
+    others = [name for name in names if name not in (one.preset, two.preset)]
+    start = one.start if one.start != two.preset or not others else others[len(one.start) % len(others)]
+    return Place(one.scene, start, (), one.at)
+
+
 class Places:
     """The places of a scene in a seeded order: viewpoints in turn, presets first, then views off them."""
 

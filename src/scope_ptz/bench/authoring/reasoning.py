@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from scope_ptz.bench.authoring.counting import absent, counted
 from scope_ptz.bench.authoring.drafts import Draft, Question, count, view
-from scope_ptz.bench.authoring.places import Place, Places, go, preset_at
+from scope_ptz.bench.authoring.places import Place, Places, elsewhere, go, preset_at
 from scope_ptz.bench.authoring.words import about, article, noun_of, plural, unit_of
 from scope_ptz.bench.expected import ActionOnly, NoneThere, Number, YesNo
 from scope_ptz.bench.ground import Kind
@@ -58,7 +58,7 @@ def _seen(place: Place, kind: Kind, number: int) -> EvidenceView:
 
 def _totals(one: Place, two: Place, p: str, q: str) -> Iterator[Draft]:
     there = dict(counted(two.sight))
-    start = Place(one.scene, one.start, (), one.at)
+    start = elsewhere(one, two)
     for kind, n in counted(one.sight):
         m = there.get(kind)
         if m is None:
@@ -103,7 +103,7 @@ def within(place: Place, rng: random.Random) -> list[Draft]:
                 (f"by how many do the {first} outnumber the {second}?", f"by how many the {first} outnumber the {second}"),
             )
         )
-        sorts = [("together", n + m, together)] + ([("excess", n - m, apart)] if n > m + 1 else [])
+        sorts = ([("together", n + m, together)] if n + m > 3 else []) + ([("excess", n - m, apart)] if n > m + 1 else [])
         for sort, value, asked in sorts:
             # No unit: a sum of two kinds has none, and their own numbers must not be taken for it.
             found.append(
@@ -165,7 +165,9 @@ def _either(one: Place, two: Place, p: str, q: str, nouns: frozenset[str], rng: 
     ]
     rng.shuffle(gone)
     rng.shuffle(shown)
-    start = Place(one.scene, one.start, (), one.at)
+    start = elsewhere(one, two)
+    if start.start == q:
+        return  # what is there at the start would be seen without going anywhere
     for kind, (present, place) in zip(gone, shown, strict=False):
         texts = (plural(noun_of(kind)), plural(noun_of(present)))
         yes = YesNo(value=True, affirms=unit_of(present)[:2])

@@ -11,7 +11,7 @@ from scope_ptz.bench.authoring.naming import singles
 from scope_ptz.bench.authoring.places import Place, Places, adjust, go, move, preset_at, say
 from scope_ptz.bench.authoring.targets import framing
 from scope_ptz.bench.authoring.words import about, capital, noun_of, plural, unit_of
-from scope_ptz.bench.expected import ActionOnly, NameSet, Number
+from scope_ptz.bench.expected import ActionOnly, Number
 from scope_ptz.bench.tasks import Behaviour, Category, Need, ProgramCall, RequiredCall
 
 _POLITE = ("{M}.", "Please {m}.", "{M}, please.", "Could you {m}?", "I need you to {m}.", "{M} now.", "Now {m}.")
@@ -121,15 +121,11 @@ def _services(places: Places, rng: random.Random) -> Iterator[Draft]:
     scene, home = places.scene, places.scene.file.home_preset
     others = [name for name in places.presets if name != home]
     rng.shuffle(others)
-    title = scene.file.title
     for n, name in enumerate(others[:3]):
         start = places.stay(name)
         final = Place(scene, name, (), preset_at(places.presets[home])).final
-        orders = tuple(
-            f"{o[:-1]} from the {name} view{o[-1]}"
-            for w in ("go home", "return to the home position", "take the camera back home")
-            for o in polite(w)[:5]
-        )
+        ways = ("go home", "return to the home position", "take the camera back home", "move back to the home view")
+        orders = tuple(order for way in ways for order in polite(way))
         yield command(
             "single_call",
             "home",
@@ -157,30 +153,14 @@ def _services(places: Places, rng: random.Random) -> Iterator[Draft]:
             ("picture",),
         )
         if n == 0:
-            names = tuple(places.presets)
             orders = (
-                f"Which presets are stored for {title}?",
-                f"List the preset views of {title}.",
-                f"What views have been saved for this camera at {title}?",
+                f"Which presets are stored for {scene.file.title}?",
+                f"List the preset views of {scene.file.title}.",
+                f"What views have been saved for the camera at {scene.file.title}?",
             )
-            yield Draft(
-                category="single_call",
-                kind="list",
-                key="presets",
-                place=start,
-                orders=orders,
-                expected=NameSet(value=names, options={p: (p.replace("-", " "),) if "-" in p else () for p in (*names, *_FOREIGN)}),
-                program=(ProgramCall(tool="get_presets"),),
-                behaviour=Behaviour(calls=(RequiredCall(tool="get_presets"),), final=start.final),
-                needs=(),
-                tags=("presets",),
-                reads="presets",
-                evidence=(view(start, None, (), [], whole=True).model_copy(update={"must_look": False}),),
-            )
-
-
-_FOREIGN = ("rooftop", "car-park", "reception")
-"""Presets that no scene has: naming one is a mistake."""
+            calls = (ProgramCall(tool="get_presets"),)
+            behaviour = Behaviour(calls=(RequiredCall(tool="get_presets"),), final=start.final)
+            yield command("single_call", "list", "presets", start, orders, calls, behaviour, (), ("presets",))
 
 
 def _close_ups(pool: list[Place]) -> Iterator[Draft]:
