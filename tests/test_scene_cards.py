@@ -1,0 +1,21 @@
+"""The pages about scenes in the documentation are their cards, word for word."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from scope_ptz.cli.cards import markdown
+from scope_ptz.world.pack import list_scenes, load_scene
+
+DOCS = Path(__file__).parent.parent / "docs"
+
+
+@pytest.mark.parametrize("name", list_scenes())
+def test_a_scene_has_its_card_in_the_docs(name: str) -> None:
+    picture = f"../images/{name}.jpg"
+    page = DOCS / "scenes" / f"{name}.md"
+    assert page.read_text() == markdown(load_scene(name), picture), f"scope scene show {name} --markdown --contact-sheet {picture}"
+    assert (page.parent / picture).is_file()
+    assert f"({page.relative_to(DOCS)})" in (DOCS / "scenes.md").read_text()
