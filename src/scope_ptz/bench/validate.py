@@ -38,13 +38,19 @@ class Fault:
 
 @dataclass
 class Report:
-    """``disagreements``: where the eyes that looked count otherwise than the task expects; they are told, not judged."""
+    """``disagreements``: where the eyes that looked count otherwise than the task expects; they are told, not judged.
+
+    ``absences``: core tasks whose answer is that there is none, each with a twin; ``from_start``: core tasks that need neither a
+    move, nor a zoom, nor a sweep.
+    """
 
     tasks: int = 0
     by_category: Counter[str] = field(default_factory=Counter)
     by_stratum: Counter[str] = field(default_factory=Counter)
     passed: Counter[str] = field(default_factory=Counter)
     tried: Counter[str] = field(default_factory=Counter)
+    absences: int = 0
+    from_start: int = 0
     faults: list[Fault] = field(default_factory=list)
     cheated: list[Fault] = field(default_factory=list)
     disagreements: list[Fault] = field(default_factory=list)
@@ -65,6 +71,8 @@ class Report:
             "tasks": self.tasks,
             "by_category": dict(self.by_category),
             "by_stratum": dict(self.by_stratum),
+            "absences": self.absences,
+            "from_start": self.from_start,
             "right_ways": {name: {"passed": self.passed[name], "of": self.tried[name]} for name in _HONEST if self.tried[name]},
             "cheats": {
                 name: {"passed": self.passed[name], "of": self.tried[name], "share_of_all": share}
@@ -100,6 +108,8 @@ async def validate(
         report.by_stratum[task.stratum] += 1
         if task.stratum == "core":
             report.by_category[task.category] += 1
+            report.absences += isinstance(task.expected, NoneThere) and task.pair is not None
+            report.from_start += not task.needs
         report.faults += [Fault(task.id, "truth", reason) for reason in inconsistencies(task, scenes[task.scene], look)]
         await _Proof(report, task, stages[task.scene]).run(common.get(task.category, "2"), siblings.get(task.id), seed)
         if say is not None:

@@ -15,6 +15,7 @@ def report_lines(report: Report) -> Iterator[str]:
     yield f"{report.tasks} tasks: " + ", ".join(f"{number} {name}" for name, number in sorted(report.by_stratum.items()))
     for name, number in report.by_category.items():
         yield f"  {name:<22}{number:>5}"
+    yield f"  there is none: {report.absences}, each with a twin; can be done from the start view: {report.from_start}"
     yield "right ways"
     for name, row in content["right_ways"].items():
         yield f"  {name:<22}{row['passed']:>5} of {row['of']}"

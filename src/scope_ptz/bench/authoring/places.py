@@ -149,8 +149,10 @@ def elsewhere(one: Place, two: Place) -> Place:
     """A start for what is asked of two presets: the first one's own, unless that is the second and there is a third."""
     names = [p.name for p in one.scene.file.presets]
     others = [name for name in names if name not in (one.preset, two.preset)]
-    start = one.start if one.start != two.preset or not others else others[len(one.start) % len(others)]
-    return Place(one.scene, start, (), one.at)
+    if one.start == two.preset and others:
+        # Any will do, but the same each time, and not the same for all.
+        return Place(one.scene, others[sum(map(ord, f"{one.preset}{two.preset}")) % len(others)], (), one.at)
+    return Place(one.scene, one.start, (), one.at)
 
 
 class Places:

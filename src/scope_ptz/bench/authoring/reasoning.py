@@ -155,8 +155,8 @@ def _branches(one: Place, p: str, places: Places, rng: random.Random) -> Iterato
 
 
 def _either(one: Place, two: Place, p: str, q: str, nouns: frozenset[str], rng: random.Random) -> Iterator[Draft]:
-    elsewhere = set(absent(two.sight, nouns))
-    gone = [kind for kind in absent(one.sight, nouns) if kind in elsewhere]
+    missing_there = set(absent(two.sight, nouns))
+    gone = [kind for kind in absent(one.sight, nouns) if kind in missing_there]
     shown = [
         (kind, place)
         for place, other in ((one, two), (two, one))
