@@ -24,6 +24,10 @@ Look = Callable[[Scene, str, Perspective | Equirectangular, float], ViewTruth]
 
 def inconsistencies(task: Task, scene: Scene, look: Look = view_truth) -> list[str]:
     """What of a task disagrees with the truth of its scene, in words."""
+    if task.preset not in {preset.name for preset in scene.file.presets}:
+        return [f"the scene has no preset {task.preset}"]
+    if gone := {view.aim.viewpoint for view in task.evidence} - {viewpoint.name for viewpoint in scene.file.viewpoints}:
+        return [f"the scene has no viewpoint {', '.join(sorted(gone))}"]
     wrong = [w for view in task.evidence for w in _view(task, view, scene, look)]
     worked_out = _worked_out(task)
     if worked_out is not None and worked_out != _value(task.expected):

@@ -130,3 +130,9 @@ def test_reactions_leave_the_camera_alone(analytic_scene: Scene) -> None:
     assert missing == 0 and len(tasks) >= 40
     assert len({task.instruction for task in tasks}) == len(tasks)
     assert prove(random.Random(1).sample(tasks, 3), analytic_scene).sound
+
+
+def test_a_preset_that_is_gone_is_told(built: Built, analytic_scene: Scene) -> None:
+    task = next(t for t in core(built) if t.pair is None).model_copy(update={"preset": "old-gate"})
+    report = prove([task], analytic_scene)
+    assert [fault.reason for fault in report.faults] == ["the scene has no preset old-gate"]

@@ -36,7 +36,9 @@ def _in_view(place: Place, named: list[Named]) -> Iterator[Draft]:
 def _zoomed(place: Place, named: list[Named]) -> Iterator[Draft]:
     """What cannot be read from here, but can once the camera has zoomed in on it."""
     for one in named:
-        if one.place or place.sight.texts_on(one.thing.instance):
+        family = place.scene.families[one.thing.instance.id]
+        lettered = any(place.scene.by_id[text.parent].number in family for text in place.scene.file.texts)
+        if one.place or not lettered or place.sight.texts_on(one.thing.instance):
             continue
         close = framed(place, one.thing, one.thing.instance)
         if close is None:

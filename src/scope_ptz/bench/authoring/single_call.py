@@ -12,7 +12,9 @@ from scope_ptz.bench.authoring.places import Place, Places, adjust, go, move, pr
 from scope_ptz.bench.authoring.targets import framing
 from scope_ptz.bench.authoring.words import about, capital, noun_of, plural, unit_of
 from scope_ptz.bench.expected import ActionOnly, Number
-from scope_ptz.bench.tasks import Behaviour, Category, Need, ProgramCall, RequiredCall
+from scope_ptz.bench.ground import TRACE_PX, Kind
+from scope_ptz.bench.tasks import Argument, Behaviour, Category, Need, ProgramCall, RequiredCall
+from scope_ptz.world.models import SceneActor
 
 _POLITE = ("{M}.", "Please {m}.", "{M}, please.", "Could you {m}?", "I need you to {m}.", "{M} now.", "Now {m}.")
 
@@ -49,6 +51,7 @@ def drafts(places: Places, pool: list[Place], rng: random.Random) -> Iterator[Dr
         _presets(places, rng),
         _pans(places, rng),
         _close_ups(pool),
+        _follows(pool),
         _sweeps(places),
         _moves(places, rng),
         _services(places, rng),
@@ -193,6 +196,42 @@ def _close_ups(pool: list[Place]) -> Iterator[Draft]:
                 Behaviour(framing=target),
                 ("zoom",),
                 ("framing",),
+            )
+
+
+def _follows(pool: list[Place]) -> Iterator[Draft]:
+    """Something that moves, in view when the task begins and for the seconds after, and the only one of its kind."""
+    for n, place in enumerate(pool):
+        here = Place(place.scene, place.preset or place.start, (), place.at)
+        began = here.sight.samples[0]
+        later = here.sight.look(here.scene, str(here.at.viewpoint), here.sight.projection, here.sight.time_s + 1.5)
+        for sighting in began.visible:
+            actor = sighting.instance
+            kind = Kind(actor.category)
+            if not isinstance(actor, SceneActor) or sighting.pixels < 600 or sighting.share < 0.9:
+                continue
+            others = [s for s in began.sightings if s.instance is not actor]
+            rivals = [s for s in others if kind.fits(s.instance) or kind.doubtful(s.instance)]
+            if any(s.pixels > TRACE_PX for s in rivals) or actor.number not in {s.instance.number for s in later.visible}:
+                continue
+            seconds = (4.0, 5.0, 6.0, 8.0)[n % 4]
+            ways = (
+                f"follow the {kind.category} for {seconds:g} seconds",
+                f"keep the {kind.category} in view for {seconds:g} seconds",
+                f"track the {kind.category} for the next {seconds:g} seconds",
+            )
+            call = ProgramCall(tool="track_object", arguments={"description": kind.category, "duration_s": seconds})
+            wanted = {"description": Argument(mentions=unit_of(kind)), "duration_s": Argument(equals=seconds, within=0.5)}
+            yield command(
+                "single_call",
+                "follow",
+                f"follow:{actor.id}",
+                here,
+                tuple(order for way in ways for order in polite(way)),
+                (call,),
+                Behaviour(calls=(RequiredCall(tool="track_object", arguments=wanted),)),
+                ("move",),
+                ("moving",),
             )
 
 
