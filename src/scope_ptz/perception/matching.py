@@ -24,12 +24,24 @@ _SIDES: dict[str, s.OrderKey] = {"left": "left", "right": "right", "top": "top",
 
 def find(view: View, description: s.Description) -> list[Thing]:
     """Everything that the description means, best first."""
+    found = _things(view, description)
+    return _worn(view, description.phrases[0]) if not found and len(description.phrases) == 1 else found
+
+
+def _things(view: View, description: s.Description) -> list[Thing]:
     found = _two_coloured(view, description)
     if found:
         return found
     for phrase in description.phrases:
         found += [t for t in find_phrase(view, phrase) if t not in found]
     return found if len(description.phrases) == 1 else sorted(found, key=pixels, reverse=True)
+
+
+def _worn(view: View, phrase: s.Phrase) -> list[Thing]:
+    """ "Hard hats" are no things of their own: they are where the people are who wear them."""
+    if phrase.tests or phrase.order or phrase.ordinal or not nouns_in(phrase.words):
+        return []
+    return sorted((t for t in view.things if "person" in t.concepts and wears(view, t, phrase.words)), key=pixels, reverse=True)
 
 
 def _two_coloured(view: View, description: s.Description) -> list[Thing]:
@@ -173,7 +185,7 @@ def _has(view: View, thing: Thing, what: s.Description) -> bool:
 
 def related(view: View, thing: Thing, kind: s.RelationKind, other: s.Description) -> bool:
     """Whether a thing stands in a relation to any thing that fits ``other``."""
-    others = find(view, other)
+    others = _things(view, other)
     if kind == "on" and thing not in others and _said(view, thing, other):
         return True
     return any(relation_holds(view, thing, kind, o) for o in others if o is not thing)

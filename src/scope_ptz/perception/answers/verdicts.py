@@ -8,7 +8,7 @@ from dataclasses import replace
 from scope_ptz.perception.answers.counting import exists
 from scope_ptz.perception.answers.naming import Reply, name, place, reply, unknown
 from scope_ptz.perception.answers.values import absent, part_values
-from scope_ptz.perception.answers.wording import after_noun, as_asked, holds_words, none_of, noun, plural
+from scope_ptz.perception.answers.wording import after_noun, as_asked, holds_words, none_of, noun, plural, the
 from scope_ptz.perception.facts import canonical, colour_of, fact_words, fits_noun, opposite
 from scope_ptz.perception.language import syntax as s
 from scope_ptz.perception.language import words as w
@@ -65,7 +65,8 @@ def _of_a_part(view: View, subject: s.Description, tests: tuple[s.Test, ...]) ->
         return None
     wanted = canonical(tests[0].words[-1])
     value = canonical(values[0][1].lower())
-    said = f"the {subject.phrases[0].words[-1]} is {value}"
+    noun_said = subject.phrases[0].words[-1]
+    said = f"the {noun_said} {'are' if w.is_plural(noun_said) else 'is'} {value}"
     return reply(f"{'yes' if wanted in value.split() else 'no'}, {said}")
 
 
@@ -134,6 +135,7 @@ def _verdict(
 ) -> Reply:
     total, many = len(found), noun(view, subject, many=True)
     union = len(subject.phrases) > 1
+    said = the(view, subject) if total == 1 and not union else as_asked(view, subject)
     if any(p.words[-1] in _EVERYBODY for p in subject.phrases if p.words):
         scope = "all"
     some = scope == "any" or any(p.words[-1] in _ANYBODY for p in subject.phrases if p.words)
@@ -146,9 +148,9 @@ def _verdict(
             return reply(f"no, {fact}")
         if some or (total > 1 and not union):
             return reply(f"no, none of the {total} {many} in view {holds_words(view, tests, 1)}")
-        return reply(f"no, {as_asked(view, subject)} {holds_words(view, tests, total, negated=True)}")
+        return reply(f"no, {said} {holds_words(view, tests, total, negated=True)}")
     if len(yes) == total:
-        every = f"{'both' if total == 2 else f'all {total}'} {many}" if total > 1 and not union else as_asked(view, subject)
+        every = f"{'both' if total == 2 else f'all {total}'} {many}" if total > 1 and not union else said
         return reply(f"yes, {every} {holds_words(view, tests, total)}")
     if scope == "all" or (plural(subject) and not some):
         return reply(f"no, only {share}")

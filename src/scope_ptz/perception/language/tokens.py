@@ -50,6 +50,7 @@ _FRAME_FILLERS = frozenset(
         "same",
     ]
 )
+_PLACE_WORDS = frozenset(["site", "area", "place", "premises", "property", "worksite"])
 _FRAME_PREPOSITIONS = frozenset(["in", "of", "from", "on", "across", "within", "throughout", "inside", "around", "for"])
 _TEXT_ENDS = frozenset({"visible", "there", "?"})
 _PARTICLES = frozenset(["on", "off", "up", "down", "in", "out"])
@@ -150,12 +151,19 @@ def _without_frame(words: list[str]) -> list[str]:
         if words[i] in _FRAME_PREPOSITIONS and i > 0:
             while end < len(words) and words[end] in _FRAME_FILLERS and not (words[end] in _FRAME_WORDS and _closes(words, end)):
                 end += 1
-            if end < len(words) and words[end] in _FRAME_WORDS and _closes(words, end) and end > i + 1:
+            if _ends_in_place(words, end) or (
+                end < len(words) and words[end] in _FRAME_WORDS and _closes(words, end) and end > i + 1
+            ):
                 i = end + 1
                 continue
         kept.append(words[i])
         i += 1
     return kept
+
+
+def _ends_in_place(words: list[str], at: int) -> bool:
+    """Whether the words end in "site" or the like here ("on site", but not "on the site office")."""
+    return at < len(words) and words[at] in _PLACE_WORDS and words[at + 1 :] in ([], ["?"])
 
 
 def _closes(words: list[str], at: int) -> bool:

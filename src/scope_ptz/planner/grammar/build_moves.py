@@ -40,10 +40,10 @@ _VERBS = (
 
 
 class StepSize:
-    """A "in 15 degree steps", with how many if said."""
+    """A "in 15 degree steps", with how many if said; ``whole``: so many steps of the whole, "20 degrees in 2 steps"."""
 
-    def __init__(self, size: Amount, count: int | None = None) -> None:
-        self.size, self.count = size, count
+    def __init__(self, size: Amount, count: int | None = None, whole: bool = False) -> None:
+        self.size, self.count, self.whole = size, count, whole
 
 
 class MoveRules(Rules):
@@ -88,6 +88,10 @@ class MoveRules(Rules):
     def step_of(self, node: Node) -> StepSize:
         return StepSize(Amount("degrees", abs(self.visit(node.branches()[0]))))
 
+    def in_steps(self, node: Node) -> StepSize:
+        number = abs(self.number(node))
+        return StepSize(Amount("degrees", number), max(1, round(number)), whole=True)
+
     def step_small(self, node: Node) -> StepSize:
         return StepSize(Amount("degrees", _SMALL_STEP_DEG))
 
@@ -128,6 +132,10 @@ class MoveRules(Rules):
                 step = made
             else:
                 amount = made
+        if step and step.whole and step.count and amount and amount.kind == "degrees":
+            step = StepSize(Amount("degrees", abs(amount.degrees) / step.count), step.count)
+        elif step and step.whole:
+            step = StepSize(step.size)
         return tuple(
             Turn(axis, sign, amount, step.size if step else None, step.count if step else None)  # type: ignore[arg-type]
             for axis, sign in directions
@@ -265,7 +273,9 @@ class MoveRules(Rules):
 
     def zoom_right(self, node: Node) -> tuple[Part, ...] | Unclear:
         """ "Zoom right out": right to the stop."""
-        return self.zoom_limit(node) if self.text(node.leaves("RIGHT")).lower() == "right" else Unclear("Shall I zoom, or turn right?")
+        return (
+            self.zoom_limit(node) if self.text(node.leaves("RIGHT")).lower() == "right" else Unclear("Shall I zoom, or turn right?")
+        )
 
     def zoom_more(self, node: Node) -> tuple[Part, ...] | Unclear:
         return self._zoomed(node, 1)

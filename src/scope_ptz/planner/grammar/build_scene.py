@@ -216,6 +216,8 @@ class SceneRules(Rules):
         )
         if not thing.text:
             return Count((Thing(f"{'not ' if denied else ''}{rest} ones"),), self._view(node))
+        if any(re.match(r"ha(?:s|ve|sn|ven)\b", self.words_of(leaf)) for leaf in node.leaves("BE")):
+            return Count((Thing(f"{thing.text} {'without' if denied else 'with'} {rest}"),), self._view(node))
         adjective = " " not in rest and leaves[0].kind == "WORD" and not rest.endswith("ing") and not denied
         said = f"{rest} {thing.text}" if adjective else f"{thing.text} {'not ' if denied else ''}{rest}"
         return Count((Thing(described(said)),), self._view(node))

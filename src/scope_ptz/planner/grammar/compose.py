@@ -84,7 +84,7 @@ def _add(out: list[Step], link: str, step: Step) -> None:
     elif isinstance(step, Loop | Repeat):
         out.append(_stepped_loop(step))
     elif isinstance(step, GoPreset) and step.how == "bare" and link == "and" and isinstance(last, Ask):
-        out.append(Unclear("I can look at each place in turn, but not answer that about both at once. What shall I look for there?"))
+        out.append(Unclear("I can look at one place after the other, but not answer that about both. What shall I look for?"))
     else:
         out.append(_stepped(step))
 

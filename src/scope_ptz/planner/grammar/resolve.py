@@ -21,6 +21,7 @@ _LONGEST_NAME = 4
 _NOWHERE = frozenset({"nothing", "around", "everywhere", "there", "here", "away", "about"})
 _NO_PLACE = frozenset({"mode", "sleep", "hell", "bed", "town", "pieces", "waste"})
 _SHORTEST_ABBREVIATION = 3
+_NO_THING = re.compile(r"(?:who|what)(?:['’]s| is| are)\?*", re.IGNORECASE)
 _WAITING = re.compile(r"(when|once|as soon as|whenever)\b", re.IGNORECASE)
 _EXISTENCE = re.compile(
     r"(?:(?:is|are) there|(?:can|do) you see) (?:an? |any |the |some )?(.+?)"
@@ -266,6 +267,8 @@ class Resolver:
         if _WAITING.match(step.question):
             raise UnresolvedError("I cannot wait for something to happen. Shall I look for it now?")
         question, place = self._asked_at(embedded(step.question) if step.embedded else step.question)
+        if _NO_THING.fullmatch(question.strip()):
+            question = f"{question.strip(' ?')} there?"
         if self.antecedent and not _IMPERSONAL.search(question) and not re.search(r"\bthe \w+.*\b(it|they|them)\b", question):
             question = _POSSESSIVE.sub(
                 f"the {self.antecedent}'s", _PRONOUN.sub(f"the {self.antecedent}", question, count=1), count=1
@@ -292,7 +295,7 @@ class Resolver:
 
     def _zoomto(self, step: ast.ZoomTo) -> Sequence[ast.Step]:
         if re.search(r"\b\d[\d.]* ?(?:x|times|%|percent)$", step.thing.text):
-            raise UnresolvedError("I zoom in on a thing until it fills the view. Shall I do that, or zoom by an amount where I look now?")
+            raise UnresolvedError("A thing I zoom in on fills the view. Shall I do that, or zoom where I look now?")
         if beside := _BESIDE.match(step.thing.text):
             raise UnresolvedError(f"I can centre on a thing, not on what is {beside[1]} it. By how many degrees shall I move?")
         return [ast.ZoomTo(self.thing(step.thing))]
