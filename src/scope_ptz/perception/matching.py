@@ -24,11 +24,12 @@ _SIDES: dict[str, s.OrderKey] = {"left": "left", "right": "right", "top": "top",
 
 def find(view: View, description: s.Description) -> list[Thing]:
     """Everything that the description means, best first."""
-    found = _things(view, description)
+    found = things_named(view, description)
     return _worn(view, description.phrases[0]) if not found and len(description.phrases) == 1 else found
 
 
-def _things(view: View, description: s.Description) -> list[Thing]:
+def things_named(view: View, description: s.Description) -> list[Thing]:
+    """Only what is a thing of its own, not what people wear."""
     found = _two_coloured(view, description)
     if found:
         return found
@@ -185,7 +186,7 @@ def _has(view: View, thing: Thing, what: s.Description) -> bool:
 
 def related(view: View, thing: Thing, kind: s.RelationKind, other: s.Description) -> bool:
     """Whether a thing stands in a relation to any thing that fits ``other``."""
-    others = _things(view, other)
+    others = things_named(view, other)
     if kind == "on" and thing not in others and _said(view, thing, other):
         return True
     return any(relation_holds(view, thing, kind, o) for o in others if o is not thing)

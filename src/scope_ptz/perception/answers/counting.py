@@ -9,7 +9,7 @@ from scope_ptz.perception.answers.wording import holds_words, none_of, not_told,
 from scope_ptz.perception.facts import wears
 from scope_ptz.perception.language import syntax as s
 from scope_ptz.perception.language import words as w
-from scope_ptz.perception.matching import find
+from scope_ptz.perception.matching import find, things_named
 from scope_ptz.perception.view import Thing, View
 
 TOLD_APART = 3
@@ -49,10 +49,11 @@ def _owner(view: View, what: s.Description) -> Thing | None:
 
 def there_are(view: View, what: s.Description, found: list[Thing]) -> str:
     """ "there are 2 cars: a red car on the left and a white car in the middle"."""
+    worn = not things_named(view, what)
     if len(found) == 1:
-        return f"there is {several(found)}"
+        return f"there is {w.article(noun(view, what))} on {several(found)}" if worn else f"there is {several(found)}"
     said = f"there are {len(found)} {noun(view, what, many=True)}"
-    return f"{said}: {several(found)}" if len(found) <= TOLD_APART else said
+    return f"{said}{', on' if worn else ':'} {several(found)}" if len(found) <= TOLD_APART else said
 
 
 def count(view: View, question: s.Count) -> Reply:

@@ -46,10 +46,12 @@ _RELATIVE = (
         "without",
     ),
     (re.compile(r"\b(?:who|that|which)(?: (?:are|is)|['’](?:re|s)) (?=\w)", re.IGNORECASE), ""),
+    (re.compile(r"(?<!\bthat)(?<!\bwho)(?<!\bwhich) (?:have|has) (?=\w)", re.IGNORECASE), " with "),
     (re.compile(r"^(?:me|us) (?:all )?(?:the )?", re.IGNORECASE), ""),
     (re.compile(r"^(?:currently )?visible (?=\w)", re.IGNORECASE), ""),
     (re.compile(r" (?:what|that)$", re.IGNORECASE), ""),
 )
+_ASKING = re.compile(r"(?:what|where|which|who|why|how|is|are|does|do)(?:['’]s)?\b", re.IGNORECASE)
 _FUSED = re.compile(r"^(?:the|this|that) (?=\w+ ?\w)", re.IGNORECASE)
 _DURATIONS = {"seconds", "minutes", "part_minute", "minute_and_part", "minutes_seconds", "hours"}
 
@@ -200,8 +202,12 @@ class SceneRules(Rules):
         return made if isinstance(made, tuple) else (made,)
 
     # Counting and asking -----------------------------------------------------------------------------------------------
-    def count(self, node: Node) -> Step:
-        return Count(self._things(node), self._view(node))
+    def count(self, node: Node) -> Step | tuple[Step, ...]:
+        """Things side by side, unless the last of them is a question of its own."""
+        *things, last = self._things(node)
+        if things and _ASKING.match(last.text):
+            return (Count(tuple(things), self._view(node)), Ask(last.text + "?", self._view(node)))
+        return Count((*things, last), self._view(node))
 
     def count_pronoun(self, node: Node) -> Step:
         return Count((Thing(),), self._view(node))

@@ -96,24 +96,9 @@ def plausible_name(text: str) -> bool:
     """Whether words may be a preset's name, where no presets are known: few, and none that tells how the camera moves."""
     words = [(word,) for word in preset_key(text)]
     telling = {
-        "DEG",
-        "PRON",
-        "NUM",
-        "LEFT",
-        "RIGHT",
-        "UP",
-        "DOWN",
-        "ZOOM",
-        "PAN",
-        "TILT",
-        "TELL",
-        "MOVE",
-        "LIMIT",
-        "CAMERA",
-        "PREVIOUS",
-        "HOWMANY",
-        "BE",
-    }
+        "DEG", "PRON", "NUM", "LEFT", "RIGHT", "UP", "DOWN", "ZOOM", "PAN",
+        "TILT", "TELL", "MOVE", "LIMIT", "CAMERA", "PREVIOUS", "HOWMANY", "BE",
+    }  # fmt: skip
     if not 0 < len(words) <= _LONGEST_NAME or any(word in _NO_PLACE for (word,) in words):
         return False
     return not any(phrase_table().get(word, frozenset()) & telling for word in words)
