@@ -79,8 +79,8 @@ class Kind:
         """Whether somebody could call a thing that does not fit by this kind's name."""
         if self.fits(thing):
             return False
-        words, name = set(self.category.split()), set(f"{thing.category} {thing.name}".lower().split())
         if thing.category != self.category:
+            words, name = set(self.category.split()), set(f"{thing.category} {thing.name}".lower().split())
             return words <= name or any({self.category, thing.category} <= group for group in TWIN_KINDS)
         if self.attribute is not None:
             return self.attribute[0] not in thing.attributes
@@ -186,8 +186,13 @@ class Sight:
         """Whether nothing of a kind, nor anything that could be taken for it, shows at all, now or later."""
         if any(kind.fits(a) or kind.doubtful(a) for a in self.scene.file.actors if a.number in self.passing):
             return False
-        seen = (s for truth in self.samples for s in truth.sightings if s.pixels > TRACE_PX)
-        return not any(kind.fits(s.instance) or kind.doubtful(s.instance) for s in seen)
+        return not any(kind.fits(thing) or kind.doubtful(thing) for thing in self.traces)
+
+    @cached_property
+    def traces(self) -> tuple[Thing, ...]:
+        """Everything of which more than a trace shows in any of the samples."""
+        numbers = {s.instance.number for truth in self.samples for s in truth.sightings if s.pixels > TRACE_PX}
+        return tuple(self.scene.by_number[number] for number in sorted(numbers))
 
     def spot(self, sighting: Sighting) -> list[tuple[float, float]]:
         """The middle of a thing in the frame (x, y in 0..1), at the pose and around it."""

@@ -10,7 +10,11 @@ from dataclasses import dataclass, field
 from scope_ptz.bench.authoring.descriptor import values_of
 from scope_ptz.bench.authoring.desk import Desk
 from scope_ptz.bench.authoring.drafts import Draft, Frames, difficulty
+from scope_ptz.bench.authoring.places import preset_at
 from scope_ptz.bench.authoring.reactions import DATASET, reactions
+from scope_ptz.bench.coverage import gap
+from scope_ptz.bench.episode import Look
+from scope_ptz.bench.ground import EYES
 from scope_ptz.bench.tasks import Behaviour, Category, Task
 from scope_ptz.world.pack import Scene
 
@@ -187,6 +191,8 @@ class _Category:
         share = TEXT_SHARE if self.category == "ocr" else ANSWER_SHARE
         if draft.full_key in self.builder.asked or (not free and self.answers[draft.reads] >= max(2, int(self.quota * share))):
             return None
+        if _seen_from_start(draft):
+            return None
         worded = self.frames.word(draft, self.rng, like and f"{draft.kind}/{like}")
         if worded is None or self.frames.used[worded[1]] >= self.most:
             return None
@@ -200,9 +206,23 @@ class _Category:
         return frame
 
 
+def _seen_from_start(draft: Draft) -> bool:
+    """Whether what is meant to take a move or a sweep could be answered at the start view, and nothing else would tell."""
+    place = draft.place
+    needs = place.needs if draft.needs is None else draft.needs
+    views = [view for view in draft.evidence if view.must_look]
+    preset = next(p for p in place.scene.file.presets if p.name == place.start)
+    start = preset_at(preset)
+    moved = draft.program is None and not draft.looks_closer and place.at != start
+    if not needs or not views or moved or (draft.behaviour is not None and draft.behaviour.final is not None):
+        return False
+    looks = (Look(start.viewpoint, EYES.view(start.pose), place.scene.file.start_s, "query", " ".join(v.about)) for v in views)
+    return all(gap(view, [look]) is None for view, look in zip(views, looks, strict=True))
+
+
 def _task(row: _Chosen, text: str, wording: int = 0) -> Task:
     draft, place = row.draft, row.draft.place
-    fixed = draft.program is None and not any(call.tool == "zoom_to_object" for call in draft.looks)
+    fixed = draft.program is None and not draft.looks_closer
     behaviour = draft.behaviour or (Behaviour(final=place.final) if fixed else Behaviour())
     return Task(
         id=f"{row.id.replace(f'-{row.scene}-', f'-{row.scene}-wording-')}{wording}" if wording else row.id,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from functools import lru_cache
 
 from scope_ptz.bench.authoring.drafts import Draft, Question, count, scope_of, view
 from scope_ptz.bench.authoring.places import Place
@@ -27,7 +28,8 @@ def question(kind: Kind) -> Question:
     )
 
 
-def counted(sight: Sight) -> list[tuple[Kind, int]]:
+@lru_cache(maxsize=512)
+def counted(sight: Sight) -> tuple[tuple[Kind, int], ...]:
     """Kinds in a view that can be counted surely, with how many there are (at least one)."""
     found = []
     for kind in kinds_in(s.instance for s in sight.clear):
@@ -38,15 +40,16 @@ def counted(sight: Sight) -> list[tuple[Kind, int]]:
             alone = kind.colour is not None and len(things) == len(sight.of(Kind(kind.category)) or ())
             if not alone:  # "red cars" among red cars only is the same question as "cars"
                 found.append((kind, len(things)))
-    return found
+    return tuple(found)
 
 
-def absent(sight: Sight, nouns: frozenset[str]) -> list[Kind]:
+@lru_cache(maxsize=512)
+def absent(sight: Sight, nouns: frozenset[str]) -> tuple[Kind, ...]:
     """Kinds of which nothing at all shows, though they could be expected: other categories of scenes, and other colours."""
     kinds = [Kind(noun) for noun in sorted(nouns)]
     categories = sorted({s.instance.category for s in sight.clear if "colour" in s.instance.attributes} - UNCOUNTED)
     kinds += [Kind(category, colour) for category in categories for colour in ("red", "blue", "green", "yellow", "black", "pink")]
-    return [kind for kind in kinds if kind.category not in UNCOUNTED and sight.lacks(kind)]
+    return tuple(kind for kind in kinds if kind.category not in UNCOUNTED and sight.lacks(kind))
 
 
 def drafts(place: Place, nouns: frozenset[str], rng: random.Random) -> list[Draft]:
@@ -55,7 +58,7 @@ def drafts(place: Place, nouns: frozenset[str], rng: random.Random) -> list[Draf
     present = [_number(place, kind, n) for kind, n in counted(sight)]
     twins = list(present)
     rng.shuffle(twins)
-    missing = absent(sight, nouns)
+    missing = list(absent(sight, nouns))
     rng.shuffle(missing)
     none = [
         Draft(

@@ -150,7 +150,7 @@ def _choice(place: Place, one: Named, key: str, expected: Choice, forms: Sequenc
 
 def _presence(place: Place, nouns: frozenset[str], rng: random.Random) -> Iterator[Draft]:
     present = [kind for kind, _ in counted(place.sight)]
-    missing = absent(place.sight, nouns)
+    missing = list(absent(place.sight, nouns))
     rng.shuffle(present)
     rng.shuffle(missing)
     for here, gone in zip(present, missing, strict=False):

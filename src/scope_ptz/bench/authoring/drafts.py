@@ -75,6 +75,11 @@ class Draft:
         return self.program if self.program is not None else (*self.place.calls, *self.looks)
 
     @property
+    def looks_closer(self) -> bool:
+        """Whether the camera ends where a close-up leaves it."""
+        return any(call.tool == "zoom_to_object" for call in self.looks)
+
+    @property
     def full_key(self) -> str:
         return f"{self.place.key}|{self.key}"
 

@@ -225,7 +225,7 @@ def _in_half_pairs(place: Place, nouns: frozenset[str], rng: random.Random) -> I
         for k, _ in counted(place.sight)
         if len(s := {place.sight.side(t, 0) for t in place.sight.of(k) or ()}) == 1 and None not in s
     ]
-    gone = absent(place.sight, nouns)
+    gone = list(absent(place.sight, nouns))
     rng.shuffle(gone)
     for (kind, sides), missing in zip(here, gone, strict=False):
         side = _SIDES[0][next(iter(sides)) or 0]
