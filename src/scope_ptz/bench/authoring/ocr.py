@@ -14,7 +14,7 @@ from scope_ptz.bench.expected import Text
 from scope_ptz.bench.tasks import ProgramCall
 from scope_ptz.world.truth import TextSighting
 
-LONGEST = 60
+LONGEST = 80
 """Longer texts are not asked for: nobody would dictate them."""
 
 
@@ -57,7 +57,7 @@ def wanted(one: Named, texts: tuple[TextSighting, ...] | None) -> Text | None:
     said = list(dict.fromkeys(t.text.text.strip() for t in texts))
     whole = " / ".join(said)
     name = set(re.findall(r"\w+", one.name.lower()))
-    if len(whole) > LONGEST or len(said) > 3 or set(re.findall(r"\w+", whole.lower())) <= name or not re.search(r"\w", whole):
+    if len(whole) > LONGEST or len(said) > 4 or set(re.findall(r"\w+", whole.lower())) <= name or not re.search(r"\w", whole):
         return None
     return Text(accepted=(whole,), ocr=True)
 
