@@ -165,4 +165,4 @@ Difficulty = Literal["easy", "medium", "hard"]
 def difficulty(calls: Sequence[ProgramCall], size: float, *, swept: bool) -> Difficulty:
     """By rule: what it takes, and how much there is to tell. ``size``: how many things must be told apart."""
     points = (len(calls) > 2) + (len(calls) > 4) + (size > 4) + (size > 9) + swept
-    return "easy" if points == 0 else "medium" if points < 3 else "hard"
+    return "easy" if points == 0 else "medium" if points == 1 else "hard"
