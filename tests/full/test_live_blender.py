@@ -30,7 +30,7 @@ from scope_ptz.world.views import instance_numbers
 pytestmark = pytest.mark.full
 
 SCENE = str(Path(__file__).with_name("small_scene.py"))
-TINY = Quality("tiny", 2048, 6, 2048, 1024, 6, 24.0, 3, 6, 10, 90, 90)
+TINY = Quality("tiny", 2048, 6, 2048, 1024, 6, 24.0, 3, 6, 10, 90, 90, check_samples=8, check_width=320)
 
 
 def silent(part: str, done: int, total: int, seconds: float) -> None:
