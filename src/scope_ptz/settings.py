@@ -27,7 +27,6 @@ class ScopeSettings(BaseSettings):
     blender: Path | None = Field(default=None, description="A blender program to use instead of the bpy wheel.")
     planner_key: SecretStr | None = Field(default=None, description="The key of the planner's server.")
     eyes_key: SecretStr | None = Field(default=None, description="The key of the perception server.")
-    judge_key: SecretStr | None = Field(default=None, description="The key of the judge's server.")
     models: Path | None = Field(default=None, description="A YAML file of models beside the built-in ones.")
     planner_url: str = Field(default="", description="Where the planner's model server listens.")
     eyes_url: str = Field(default="", description="Where the model server of the eyes listens.")
