@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, JsonValue, TypeAdapter, model_validator
 
 from scope_ptz.bench.expected import ActionOnly, Expected, Wordings
+from scope_ptz.world.pack import variation_name
 
 CANARY: Literal["SCOPE-BENCH-CANARY 6b0c2f0e-9d1e-4f6c-8a57-0e2f6a1d7c34"] = (
     "SCOPE-BENCH-CANARY 6b0c2f0e-9d1e-4f6c-8a57-0e2f6a1d7c34"
@@ -170,12 +171,13 @@ class ProgramCall(_Model):
 
 class Task(_Model):
     """A task. ``preset``: where the camera starts; ``time_s``: scene time then; ``pair``: the task of like wording whose answer is
-    a presence where this one's is an absence, or the other way round."""
+    a presence where this one's is an absence, or the other way round; ``variation``: which varied world of the scene, if one."""
 
     id: Annotated[str, Field(pattern=r"^scope\d+(-[a-z0-9]+)+-\d{3,}$")]
     dataset: Annotated[str, Field(pattern=r"^scope\d+$")]
     stratum: Stratum = "core"
     scene: str
+    variation: int | None = Field(default=None, ge=1, lt=10**9)
     preset: str
     time_s: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
     instruction: Annotated[str, Field(min_length=1, max_length=4000)]
@@ -191,6 +193,11 @@ class Task(_Model):
     pair: str | None = None
     paraphrase_of: str | None = None
     canary: Literal["SCOPE-BENCH-CANARY 6b0c2f0e-9d1e-4f6c-8a57-0e2f6a1d7c34"] = CANARY
+
+    @property
+    def world(self) -> str:
+        """The name under which the world of the task is opened: its scene's, or that of the variation of it."""
+        return self.scene if self.variation is None else variation_name(self.scene, self.variation)
 
     @model_validator(mode="after")
     def _sound(self) -> Task:

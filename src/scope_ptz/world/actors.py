@@ -6,6 +6,7 @@ nearest sprite is turned to the true direction and scaled to the true distance. 
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import cv2
@@ -59,7 +60,7 @@ class Whereabouts:
 def whereabouts(actor: SceneActor, time_s: float) -> Whereabouts | None:
     """Where an actor is at a scene time, None while it is out of the scene."""
     path = np.array(actor.waypoints, dtype=np.float64)
-    path_s = time_s % actor.period_s
+    path_s = (time_s - actor.delay_s) % actor.period_s
     if not path[0, 0] <= path_s <= path[-1, 0]:
         return None
     walked = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(path[:, 1:], axis=0), axis=-1)))
@@ -69,10 +70,20 @@ def whereabouts(actor: SceneActor, time_s: float) -> Whereabouts | None:
 
 def appearances(scene: Scene, viewpoint: Viewpoint, time_s: float) -> list[Appearance]:
     """The actors that are in the scene at a time and have sprites from this viewpoint, farthest first."""
+    return _seen(viewpoint, ((actor, time_s) for actor in scene.file.actors))
+
+
+def composited(scene: Scene, viewpoint: Viewpoint, time_s: float) -> list[Appearance]:
+    """All that is set into the picture of the still world: the actors, and what a variation of the scene holds."""
+    moving = ((actor, time_s) for actor in scene.file.actors)
+    return _seen(viewpoint, (*moving, *((held.actor, held.time_s) for held in scene.held)))
+
+
+def _seen(viewpoint: Viewpoint, actors: Iterable[tuple[SceneActor, float]]) -> list[Appearance]:
     sheets = {sheet.number: sheet for sheet in viewpoint.manifest.actors}
     seen = [
         _appearance(viewpoint, actor, sheets[actor.number], here)
-        for actor in scene.file.actors
+        for actor, time_s in actors
         if actor.number in sheets and (here := whereabouts(actor, time_s)) is not None
     ]
     return sorted(seen, key=lambda a: (-a.distance_m, a.actor.number))

@@ -85,7 +85,8 @@ class SceneViewpoint(Model):
 class SceneActor(Model):
     """A moving thing. ``waypoints`` are ``(t_s, x, y, z)``, joined by straight lines; the path repeats every ``period_s``.
 
-    Outside the time between the first and the last waypoint the actor is not in the scene.
+    Outside the time between the first and the last waypoint the actor is not in the scene. ``delay_s``: the scene time at which
+    the time of its path begins.
     """
 
     id: str
@@ -95,6 +96,7 @@ class SceneActor(Model):
     attributes: dict[str, Attribute] = {}
     waypoints: list[tuple[Number, Number, Number, Number]] = Field(min_length=2)
     period_s: Number = Field(gt=0)
+    delay_s: Number = 0.0
     size_m: Vec3
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from functools import cached_property
 from importlib.resources import files
@@ -10,6 +11,7 @@ from threading import RLock
 
 from scope_ptz.errors import PackError, UnknownNameError
 from scope_ptz.world.models import SceneActor, SceneFile, SceneInstance
+from scope_ptz.world.variation import Held, vary
 from scope_ptz.world.viewpoint import Viewpoint, read_json
 
 
@@ -30,28 +32,54 @@ def list_scenes(search: Iterable[Path] = ()) -> list[str]:
 
 
 def load_scene(name: str, search: Iterable[Path] = ()) -> Scene:
-    """Open a scene by name. ``UnknownNameError`` when there is none, ``PackError`` when its files are damaged."""
+    """Open a scene by name, ``highway-works``, or a variation of one, ``highway-works-v7``.
+
+    Raises:
+        UnknownNameError: there is no such scene.
+        PackError: its files are damaged.
+    """
     folders = find_scenes(search)
-    if name not in folders:
+    if name in folders:
+        return Scene(folders[name])
+    varied = _VARIED.fullmatch(name)
+    if varied is None or varied["scene"] not in folders:
         raise UnknownNameError("scene", name, folders)
-    return Scene(folders[name])
+    return Scene(folders[varied["scene"]]).varied(int(varied["number"]))
+
+
+def variation_name(scene: str, number: int) -> str:
+    """The name under which variation ``number`` of a scene is opened."""
+    return f"{scene}-v{number}"
+
+
+_VARIED = re.compile(r"(?P<scene>.+)-v(?P<number>[1-9]\d{0,8})")
 
 
 class Scene:
-    """A scene folder: its instance table at once, its viewpoints when asked for. Safe to share between threads and cameras."""
+    """A scene folder: its instance table at once, its viewpoints when asked for. Safe to share between threads and cameras.
+
+    ``held``: what a variation of the scene keeps in one place that else moves.
+    """
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self.file = read_json(folder / "scene.json", SceneFile)
         if self.file.name != folder.name:
             raise PackError(f"{folder} holds the scene '{self.file.name}': a scene folder must bear its scene's name. Rename it.")
+        self.name = self.file.name
+        self.held: tuple[Held, ...] = ()
         self._viewpoints: dict[str, Viewpoint] = {}
         self._lock = RLock()
         _check_references(self.file, folder)
 
-    @property
-    def name(self) -> str:
-        return self.file.name
+    def varied(self, number: int) -> Scene:
+        """A variation of this scene; it shares the layers of its viewpoints."""
+        extents = {place.name: self.viewpoint(place.name).manifest.extents for place in self.file.viewpoints}
+        variation = vary(self.file, number, extents)
+        other = Scene(self.folder)
+        other.name, other.file, other.held = variation_name(self.name, number), variation.file, variation.held
+        other._viewpoints, other._lock = self._viewpoints, self._lock
+        return other
 
     @property
     def things(self) -> list[SceneInstance | SceneActor]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from scope_ptz.errors import PackError
 from scope_ptz.geometry import Equirectangular, Projection, angle_between_deg, direction, pan_tilt_deg
-from scope_ptz.world.actors import appearances, extent
+from scope_ptz.world.actors import composited, extent
 from scope_ptz.world.models import Extent, SceneActor, SceneInstance, SceneText
 from scope_ptz.world.pack import Scene
 from scope_ptz.world.runs import measure
@@ -104,7 +104,7 @@ def view_truth(scene: Scene, viewpoint: str, projection: Projection, time_s: flo
     """The ground truth of a picture taken from ``viewpoint`` at scene time ``time_s`` through ``projection``."""
     here = scene.viewpoint(viewpoint)
     numbers = instance_numbers(scene, viewpoint, projection, time_s)
-    extents = here.extents | {a.actor.number: extent(here, a) for a in appearances(scene, here, time_s)}
+    extents = here.extents | {a.actor.number: extent(here, a) for a in composited(scene, here, time_s)}
     return ViewTruth(_sightings(scene, projection, numbers, extents), _texts(scene, here, projection, numbers))
 
 

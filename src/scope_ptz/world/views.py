@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.geometry import Projection
-from scope_ptz.world.actors import Appearance, appearances, draw, shows
+from scope_ptz.world.actors import Appearance, composited, draw, shows
 from scope_ptz.world.pack import Scene
 from scope_ptz.world.reproject import colour_view, id_view, outlined_depth_view
 from scope_ptz.world.viewpoint import Viewpoint
@@ -35,4 +35,4 @@ def instance_numbers(scene: Scene, viewpoint: str, projection: Projection, time_
 
 
 def _in_view(scene: Scene, viewpoint: Viewpoint, projection: Projection, time_s: float) -> list[Appearance]:
-    return [a for a in appearances(scene, viewpoint, time_s) if shows(a, projection)]
+    return [a for a in composited(scene, viewpoint, time_s) if shows(a, projection)]
