@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import traceback
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Awaitable, Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import anyio
 
@@ -25,6 +25,9 @@ from scope_ptz.tools.results import Result
 
 MOST_AT_ONCE = 8
 """Looks. A model server answers more of them no sooner."""
+
+RunTool = Callable[[ToolContext, str, Any], Awaitable[Result]]
+"""How a checked call is made: ``tools.registry.run_tool``, or something around it that watches."""
 
 _NOT_DONE = "Not done, because the call before it failed."
 
@@ -67,9 +70,10 @@ class Calls:
         *,
         snapshots: bool,
         sees: bool,
+        run_tool: RunTool = run_tool,
     ) -> None:
         self._raw_camera, self._perception, self._images, self._watch, self._emit = camera, perception, images, watch, emit
-        self._snapshots, self._sees = snapshots, sees
+        self._snapshots, self._sees, self._run_tool = snapshots, sees, run_tool
         self.camera = TimedCamera(camera, watch)
         self.pose = Pose()
         self.bad_calls = self.perception_failures = 0
@@ -119,7 +123,7 @@ class Calls:
         raised: Exception | None = None
         frame: str | None = None
         try:
-            result = await _run(call, ToolContext(camera, eyes, images))
+            result = await self._run(call, ToolContext(camera, eyes, images))
             self.pose = await camera.pose()
             if self._snapshots and self.pose != pose and not getattr(result, "frames", ()):
                 frame = self._images.save_look(await camera.frame())
@@ -145,6 +149,11 @@ class Calls:
             end = End("camera_error", words, traceback.format_exc())
         made[index] = _Done(outcome, fault, time_s, self._watch.read() - before, eyes.drain(), frame, end, raised)
 
+    async def _run(self, call: ToolCall, context: ToolContext) -> Result:
+        if call.problem is not None:
+            raise ToolCallError(call.problem)
+        return await self._run_tool(context, call.name, call.arguments)
+
     def _skip(self, step: int, calls: Sequence[ToolCall], first: int, done: dict[int, _Done]) -> None:
         now = self._watch.read()
         for index in range(first, len(calls)):
@@ -168,12 +177,6 @@ class Calls:
                 frame=done.frame,
             )
         )
-
-
-async def _run(call: ToolCall, context: ToolContext) -> Result:
-    if call.problem is not None:
-        raise ToolCallError(call.problem)
-    return await run_tool(context, call.name, call.arguments)
 
 
 def batches(calls: Sequence[ToolCall]) -> Iterator[list[int]]:

@@ -13,7 +13,7 @@ from datetime import UTC, datetime
 import anyio
 
 from scope_ptz import __version__
-from scope_ptz.agent.calls import Calls, End, in_words
+from scope_ptz.agent.calls import Calls, End, RunTool, in_words
 from scope_ptz.agent.records import Budgets, Decided, Ended, Labels, Listener, Place, Run, Started
 from scope_ptz.agent.seeing import newest_view
 from scope_ptz.agent.timing import Stopwatch, server_events
@@ -24,7 +24,7 @@ from scope_ptz.geometry import Pose
 from scope_ptz.perception.base import Perception
 from scope_ptz.planner.base import Briefing, CallTools, Decision, Exchange, Finish, PastTurn, Planner, State, Usage
 from scope_ptz.tools.context import ImageStore
-from scope_ptz.tools.registry import schemas
+from scope_ptz.tools.registry import run_tool, schemas
 
 MAX_INSTRUCTION_CHARS = 4000
 STOP_TIMEOUT_S = 5.0
@@ -43,10 +43,15 @@ class Agent:
         budgets: Budgets | None = None,
         labels: Labels | None = None,
         snapshots: bool = True,
+        run_tool: RunTool = run_tool,
     ) -> None:
-        """``snapshots``: keep the first view and the view after each move; tools keep what perception looks at in any case."""
+        """``snapshots``: keep the first view and the view after each move; tools keep what perception looks at in any case.
+
+        ``run_tool``: what makes the calls, for whoever wants to watch them being made.
+        """
         self.planner, self.camera, self.perception, self.images = planner, camera, perception, images
         self.budgets, self.labels, self.snapshots = budgets or Budgets(), labels or Labels(), snapshots
+        self.run_tool = run_tool
 
     async def run(self, instruction: str, *, conversation: tuple[PastTurn, ...] = (), listener: Listener = lambda _: None) -> Run:
         """Carry out an instruction.
@@ -79,6 +84,7 @@ class _Episode:
             listener,
             snapshots=agent.snapshots,
             sees=agent.planner.sees,
+            run_tool=agent.run_tool,
         )
         self.camera = self.calls.camera
         self.history: list[Exchange] = []
