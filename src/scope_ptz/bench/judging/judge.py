@@ -1,0 +1,134 @@
+"""A judge: a run in, a judgement out. It knows neither the evaluation engine nor a server, only a port that completes messages."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from time import perf_counter
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict
+
+from scope_ptz.agent.trace import Trace
+from scope_ptz.bench.judging.case import Case, case_of
+from scope_ptz.bench.judging.quoting import cut
+from scope_ptz.bench.judging.rendering import LEAST_CHARS, render
+from scope_ptz.bench.judging.replies import REPLY_SCHEMA, JudgeReply, read_reply
+from scope_ptz.bench.judging.rubrics import prompt_version, system_prompt
+from scope_ptz.bench.trials import Judgement, TaskFacts
+from scope_ptz.errors import ScopeError
+
+DEFAULT_JUDGE = "gpt-oss-120b"
+ATTEMPTS = 3
+"""How often a judge may answer before its verdict counts as unparseable."""
+
+BUDGET_CHARS = 60_000
+"""Of a run as it is told; some 15 thousand tokens."""
+
+_ECHO_CHARS = 2_000
+Message = dict[str, Any]
+
+
+class Reply(BaseModel):
+    """What a judge's model said, without its reasoning. ``cut_off``: it was stopped at a limit of tokens."""
+
+    model_config = ConfigDict(frozen=True)
+
+    text: str
+    input_tokens: int = 0
+    output_tokens: int = 0
+    cut_off: bool = False
+
+
+class NoReplyError(ScopeError):
+    """A judge's server gave no usable reply. ``overflow``: the messages outgrew the model's context."""
+
+    def __init__(self, message: str, *, overflow: bool = False) -> None:
+        self.overflow = overflow
+        super().__init__(message)
+
+
+Complete = Callable[[list[Message], dict[str, Any]], Awaitable[Reply]]
+"""The port: messages and the reply's JSON schema in, a reply out. It raises ``NoReplyError`` and nothing else."""
+
+
+class Judge:
+    """May judge many runs at once; it keeps nothing between them. ``name``: of its model, as judgements are to tell it."""
+
+    def __init__(self, name: str, complete: Complete, *, attempts: int = ATTEMPTS, budget_chars: int = BUDGET_CHARS) -> None:
+        self.name, self.complete, self.attempts, self.budget_chars = name, complete, attempts, budget_chars
+
+    async def judge(self, facts: TaskFacts, trace: Trace, *, repeat: int = 0) -> Judgement:
+        """The judgement on a recorded run. Never raises for what a model or server does: see ``Judgement.verdict``."""
+        return await self.judge_case(facts, case_of(trace), repeat=repeat)
+
+    async def judge_case(self, facts: TaskFacts, case: Case, *, repeat: int = 0) -> Judgement:
+        """The judgement on a run. ``repeat``: number of the judgement, where one judge gives several."""
+        session = _Session(self, repeat)
+        began = perf_counter()
+        judgement = await session.run(facts, case)
+        return judgement.model_copy(update={"latency_s": perf_counter() - began})
+
+
+class _Session:
+    """All attempts at one judgement."""
+
+    def __init__(self, judge: Judge, repeat: int) -> None:
+        self.judge, self.repeat = judge, repeat
+        self.asked = self.input_tokens = self.output_tokens = 0
+
+    async def run(self, facts: TaskFacts, case: Case) -> Judgement:
+        budget, problem = self.judge.budget_chars, ""
+        begun = messages(facts, case, budget)
+        now, answers = begun, 0
+        while answers < self.judge.attempts:
+            self.asked += 1
+            try:
+                reply = await self.judge.complete(now, REPLY_SCHEMA)
+            except NoReplyError as failure:
+                if failure.overflow and budget > LEAST_CHARS:
+                    budget = max(budget // 2, LEAST_CHARS)
+                    now = begun = messages(facts, case, budget)
+                    continue
+                return self._made("failed", str(failure))
+            answers += 1
+            self.input_tokens += reply.input_tokens
+            self.output_tokens += reply.output_tokens
+            read = "it was cut off at the limit of tokens" if reply.cut_off else read_reply(reply.text)
+            if isinstance(read, JudgeReply):
+                made = self._made(read.verdict, read.reason)
+                return made.model_copy(update={"error_mode": read.error_mode})
+            problem = read
+            now = [*begun, *_told_back(reply.text, problem)]
+        return self._made("unparseable", problem)
+
+    def _made(self, verdict: str, reason: str) -> Judgement:
+        return Judgement.model_validate(
+            {
+                "judge": self.judge.name,
+                "prompt": prompt_version(),
+                "repeat": self.repeat,
+                "verdict": verdict,
+                "reason": reason,
+                "attempts": self.asked,
+                "input_tokens": self.input_tokens,
+                "output_tokens": self.output_tokens,
+            }
+        )
+
+
+def messages(facts: TaskFacts, case: Case, budget_chars: int = BUDGET_CHARS) -> list[Message]:
+    """What a judge is sent about a run."""
+    return [
+        {"role": "system", "content": system_prompt(facts.category)},
+        {"role": "user", "content": render(facts, case, budget_chars)},
+    ]
+
+
+def _told_back(said: str, problem: str) -> list[Message]:
+    return [
+        {"role": "assistant", "content": cut(said, _ECHO_CHARS) or "(nothing)"},
+        {
+            "role": "user",
+            "content": f"This is no valid verdict: {problem}. Reply again with one JSON object in the given schema, nothing else.",
+        },
+    ]

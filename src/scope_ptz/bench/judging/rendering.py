@@ -1,0 +1,135 @@
+"""A run in the words that a judge reads, within a budget of characters.
+
+What decides a verdict is never left out: instruction, expectation and answer stay. A run that is too long first loses the middle of
+long tool results, then the calls in its middle, of which a count by tool remains.
+"""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from scope_ptz.bench.judging.case import Case, CaseCall
+from scope_ptz.bench.judging.quoting import cut, inline, quoted
+from scope_ptz.bench.trials import TaskFacts
+from scope_ptz.geometry import Pose
+
+LEAST_CHARS = 6_000
+"""A budget below this would leave nothing to judge by."""
+
+_INSTRUCTION_CHARS, _EXPECTED_CHARS, _ANSWER_CHARS = 4_000, 2_000, 8_000
+_RESULT_CHARS = (4_000, 1_200, 300)
+"""Of one result, tried in this order."""
+
+_NAME_CHARS, _MOST_PRESETS = 60, 40
+_BULK = frozenset({"boxes", "box", "path", "frames", "source"})
+"""Parts of results that tell a judge nothing, or who looked, which is none of its business."""
+
+_ENDINGS = {
+    "answered": "the agent gave a final answer",
+    "clarification": "the agent asked a question back",
+    "refused": "the agent declined the request",
+    "step_limit": "the agent was stopped at its limit of steps and gave no answer",
+    "budget": "the agent ran out of its budget and gave no answer",
+    "planner_error": "the agent's planner broke down and gave no answer",
+    "camera_error": "the camera failed",
+    "cancelled": "the run was cancelled",
+}
+
+
+def render(facts: TaskFacts, case: Case, budget: int) -> str:
+    """The task and the run. ``budget``: characters; at least ``LEAST_CHARS`` are used."""
+    head, tail = _task_part(facts, case), _end_part(case)
+    room = max(budget, LEAST_CHARS) - len(head) - len(tail)
+    return f"{head}\n\n{_calls_part(case.calls, max(room, LEAST_CHARS // 4))}\n\n{tail}"
+
+
+def _task_part(facts: TaskFacts, case: Case) -> str:
+    names = [inline(name, _NAME_CHARS) for name in case.presets[:_MOST_PRESETS]]
+    more = len(case.presets) - len(names)
+    presets = ", ".join(names) + (f" and {more} more" if more > 0 else "") if names else "none"
+    where = f" at viewpoint {inline(case.viewpoint, _NAME_CHARS)}" if case.viewpoint else ""
+    lines = [
+        f"Category: {facts.category}",
+        f"Observation scope that the task is about: {facts.scope}",
+        "",
+        "Instruction to the agent:",
+        quoted(cut(case.instruction, _INSTRUCTION_CHARS)),
+        "",
+        "Expected answer:",
+        quoted(cut(facts.expected, _EXPECTED_CHARS)),
+    ]
+    if facts.demands:
+        lines += ["", "What the run must have done:", quoted(cut("\n".join(facts.demands), _EXPECTED_CHARS))]
+    lines += [
+        "",
+        f"Start: preset {inline(facts.preset, _NAME_CHARS)}{where}, camera at {in_words(case.start)}.",
+        f"Presets of the camera: {presets}.",
+    ]
+    if case.sees:
+        lines.append("The agent was shown the camera's picture before its steps and may answer from what it saw there.")
+    return "\n".join(lines)
+
+
+def _end_part(case: Case) -> str:
+    ending = _ENDINGS.get(case.outcome or "", "the run was cut off before its end")
+    return "\n".join(
+        (
+            f"How the run ended: {ending}.",
+            f"Final camera pose: {in_words(case.final)}.",
+            "",
+            "What the agent said in the end:",
+            quoted(cut(case.answer, _ANSWER_CHARS) if case.answer.strip() else "(nothing)"),
+        )
+    )
+
+
+def _calls_part(calls: Sequence[CaseCall], room: int) -> str:
+    if not calls:
+        return "Tool calls: none."
+    title = f"Tool calls, in order ({len(calls)}):"
+    for most in _RESULT_CHARS:
+        told = [_call_text(number, call, most) for number, call in enumerate(calls, 1)]
+        if sum(len(text) + 1 for text in told) <= room:
+            return "\n".join((title, *told))
+    return "\n".join((title, *_ends_kept(calls, told, room)))
+
+
+def _ends_kept(calls: Sequence[CaseCall], told: Sequence[str], room: int) -> list[str]:
+    """The first and the last calls, as many as there is room for, taken in turn from both ends, and what the rest were."""
+    first, last = 0, len(told)
+    left = room - 300
+    while first < last:
+        from_front = first <= len(told) - last
+        text = told[first] if from_front else told[last - 1]
+        if len(text) + 1 > left:
+            break
+        left -= len(text) + 1
+        first, last = (first + 1, last) if from_front else (first, last - 1)
+    tools = Counter(inline(call.name, 30) for call in calls[first:last])
+    failed = sum(call.error is not None for call in calls[first:last])
+    most = ", ".join(f"{name} {number} times" for name, number in tools.most_common(9))
+    note = f"[Calls {first + 1} to {last} are left out because the run is long: {most}; {failed} of them failed.]"
+    return [*told[:first], note, *told[last:]]
+
+
+def _call_text(number: int, call: CaseCall, most: int) -> str:
+    arguments = cut(_json(call.arguments), most)
+    said = f"error: {cut(call.error, most)}" if call.error is not None else f"result: {cut(_json(_kept(call.result or {})), most)}"
+    body = quoted(f"{cut(call.name, 80)} {arguments}\n{said}")
+    return f"Call {number}:\n{body}\nCamera afterwards: {in_words(call.pose)}."
+
+
+def _kept(result: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in result.items() if name not in _BULK and name != "pose"}
+
+
+def _json(content: Mapping[str, Any]) -> str:
+    return json.dumps(dict(content), ensure_ascii=False, default=str)
+
+
+def in_words(pose: Pose) -> str:
+    """A pose as a person reads it."""
+    return f"pan {pose.pan_deg:.1f}, tilt {pose.tilt_deg:.1f} degrees, zoom {pose.zoom:.2f}x"

@@ -1,0 +1,43 @@
+"""What judges are told: the published prompt, a file. Another wording is another file, or scores stop being comparable.
+
+The name of the file and a digest of its text stand in every judgement.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+from functools import cache
+from importlib.resources import files
+
+from scope_ptz.bench.judging.replies import REPLY_SCHEMA
+from scope_ptz.bench.tasks import Category
+
+PROMPT = "judge-1"
+_HEADING = re.compile(r"^# (.+)\n", re.MULTILINE)
+
+
+def system_prompt(category: Category) -> str:
+    """What a judge is told before it sees a run of this category."""
+    parts = _sections()
+    rubric = f"For tasks of the category {category}:\n{parts[category]}"
+    reply = parts["reply"].replace("{schema}", json.dumps(REPLY_SCHEMA))
+    return "\n\n".join((parts["task"], rubric, f"Error modes\n{parts['error modes']}", reply))
+
+
+def prompt_version() -> str:
+    """The name of the prompt and a digest of what it really says, as it stands in judgements."""
+    text = _text() + json.dumps(REPLY_SCHEMA)
+    return f"{PROMPT}:{hashlib.sha256(text.encode()).hexdigest()[:12]}"
+
+
+@cache
+def _text() -> str:
+    return (files("scope_ptz.bench.judging") / "prompts" / f"{PROMPT}.md").read_text("utf-8")
+
+
+@cache
+def _sections() -> dict[str, str]:
+    pieces = _HEADING.split(_text())[1:]
+    return {name: body.strip() for name, body in zip(pieces[::2], pieces[1::2], strict=True)}
