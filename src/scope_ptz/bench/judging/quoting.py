@@ -38,8 +38,10 @@ def cut(text: str, most: int) -> str:
 
 
 def _harmless(line: str) -> str:
-    shown = "".join(character if character.isprintable() else _escape(character) for character in line.replace("\t", " "))
-    return _TOKENS.sub(_apart, shown)
+    line = line.replace("\t", " ")
+    if not line.isprintable():
+        line = "".join(character if character.isprintable() else _escape(character) for character in line)
+    return _TOKENS.sub(_apart, line)
 
 
 def _apart(token: re.Match[str]) -> str:

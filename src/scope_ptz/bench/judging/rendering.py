@@ -23,7 +23,7 @@ _INSTRUCTION_CHARS, _EXPECTED_CHARS, _ANSWER_CHARS = 4_000, 2_000, 8_000
 _RESULT_CHARS = (4_000, 1_200, 300)
 """Of one result, tried in this order."""
 
-_NAME_CHARS, _MOST_PRESETS = 60, 40
+_NAME_CHARS, _MOST_PRESETS, _NOTE_CHARS = 60, 40, 300
 _BULK = frozenset({"boxes", "box", "path", "frames", "source"})
 """Parts of results that tell a judge nothing, or who looked, which is none of its business."""
 
@@ -91,28 +91,40 @@ def _calls_part(calls: Sequence[CaseCall], room: int) -> str:
         return "Tool calls: none."
     title = f"Tool calls, in order ({len(calls)}):"
     for most in _RESULT_CHARS:
-        told = [_call_text(number, call, most) for number, call in enumerate(calls, 1)]
-        if sum(len(text) + 1 for text in told) <= room:
+        told = _all_told(calls, most, room)
+        if told is not None:
             return "\n".join((title, *told))
-    return "\n".join((title, *_ends_kept(calls, told, room)))
+    return "\n".join((title, *_ends_kept(calls, room)))
 
 
-def _ends_kept(calls: Sequence[CaseCall], told: Sequence[str], room: int) -> list[str]:
+def _all_told(calls: Sequence[CaseCall], most: int, room: int) -> list[str] | None:
+    """Every call, unless that takes more than there is room for."""
+    told, left = list[str](), room
+    for number, call in enumerate(calls, 1):
+        told.append(_call_text(number, call, most))
+        left -= len(told[-1]) + 1
+        if left < 0:
+            return None
+    return told
+
+
+def _ends_kept(calls: Sequence[CaseCall], room: int) -> list[str]:
     """The first and the last calls, as many as there is room for, taken in turn from both ends, and what the rest were."""
-    first, last = 0, len(told)
-    left = room - 300
-    while first < last:
-        from_front = first <= len(told) - last
-        text = told[first] if from_front else told[last - 1]
-        if len(text) + 1 > left:
-            break
+    front, back = list[str](), list[str]()
+    left = room - _NOTE_CHARS
+    while len(front) + len(back) < len(calls):
+        at = len(front) if len(front) <= len(back) else len(calls) - 1 - len(back)
+        text = _call_text(at + 1, calls[at], _RESULT_CHARS[-1])
         left -= len(text) + 1
-        first, last = (first + 1, last) if from_front else (first, last - 1)
+        if left < 0:
+            break
+        (front if len(front) <= len(back) else back).append(text)
+    first, last = len(front), len(calls) - len(back)
     tools = Counter(inline(call.name, 30) for call in calls[first:last])
     failed = sum(call.error is not None for call in calls[first:last])
     most = ", ".join(f"{name} {number} times" for name, number in tools.most_common(9))
     note = f"[Calls {first + 1} to {last} are left out because the run is long: {most}; {failed} of them failed.]"
-    return [*told[:first], note, *told[last:]]
+    return [*front, note, *reversed(back)]
 
 
 def _call_text(number: int, call: CaseCall, most: int) -> str:

@@ -12,6 +12,9 @@ from scope_ptz.bench.error_modes import ErrorMode
 
 NO_MODE = "none"
 MOST_REASON_CHARS = 1_000
+_MOST_BRACES = 100
+"""That open nothing readable. A text with more of them has run away."""
+
 REPLY_SCHEMA: dict[str, Any] = {
     "type": "object",
     "properties": {
@@ -84,12 +87,12 @@ def read_reply(text: str) -> JudgeReply | str:
 
 def _objects(text: str) -> Iterator[Any]:
     """Every JSON object in a text that is not inside another one. A name given twice makes an object unreadable."""
-    decoder, at = json.JSONDecoder(object_pairs_hook=_once), text.find("{")
-    while at != -1:
+    decoder, at, failed = json.JSONDecoder(object_pairs_hook=_once), text.find("{"), 0
+    while at != -1 and failed < _MOST_BRACES:
         try:
             content, end = decoder.raw_decode(text, at)
         except (ValueError, RecursionError):
-            at = text.find("{", at + 1)
+            at, failed = text.find("{", at + 1), failed + 1
             continue
         yield content
         at = text.find("{", end)

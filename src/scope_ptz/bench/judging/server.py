@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from copy import copy
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -38,33 +40,37 @@ class JudgeOptions(BaseModel):
     reasoning_effort: Literal["low", "medium", "high"] | None = None
 
 
+@dataclass
+class _Known:
+    """What a server turned out to take; shared by all ports to it."""
+
+    dialect: Dialect = field(default_factory=lambda: Dialect("native", fixed=True))
+    form: int = 0
+
+
 class ServerPort:
     """Callable as the judge's port; may be shared by concurrent judgements. It keeps connections, and what the server refuses."""
 
-    def __init__(self, endpoint: Endpoint, options: JudgeOptions | None = None, *, client: ChatClient | None = None) -> None:
-        self.options, self.client = options or JudgeOptions(), client or ChatClient(endpoint)
-        self._dialect = Dialect("native", fixed=True)
-        self._form = 0
+    def __init__(self, endpoint: Endpoint, options: JudgeOptions | None = None) -> None:
+        self.options, self.client, self._known = options or JudgeOptions(), ChatClient(endpoint), _Known()
 
     def repeated(self, repeat: int) -> ServerPort:
         """The port for a further judgement by the same judge: another seed, the same connections."""
-        port = ServerPort(
-            self.client.endpoint, self.options.model_copy(update={"seed": self.options.seed + repeat}), client=self.client
-        )
-        port._dialect, port._form = self._dialect, self._form
+        port = copy(self)
+        port.options = self.options.model_copy(update={"seed": self.options.seed + repeat})
         return port
 
     async def __call__(self, messages: list[Message], schema: dict[str, Any]) -> Reply:
         """Ask. Raises ``NoReplyError``."""
-        form, quiet = self._form, False
+        form, quiet, dialect = self._known.form, False, self._known.dialect
         for _ in range(_MOST_LESSONS):
-            fields = self._dialect.fields(self.options.model_dump())
+            fields = dialect.fields(self.options.model_dump())
             try:
                 reply = await self.client.complete(
-                    self._dialect.messages(messages), extra={**fields, **_response_format(_FORMS[form], schema)}
+                    dialect.messages(messages), extra={**fields, **_response_format(_FORMS[form], schema)}
                 )
             except ServerFailure as failure:
-                if self._dialect.learn(failure, fields, with_tools=False):
+                if dialect.learn(failure, fields, with_tools=False):
                     continue
                 if form + 1 < len(_FORMS) and (failure.kind is K.EMPTY or _refuses_form(failure)):
                     form, quiet = form + 1, quiet or failure.kind is K.EMPTY
@@ -73,7 +79,7 @@ class ServerPort:
                     return Reply(text="")
                 raise NoReplyError(str(failure), overflow=failure.kind is K.CONTEXT_OVERFLOW) from None
             if not quiet:  # Silence may pass; a refusal stays.
-                self._form = max(self._form, form)
+                self._known.form = max(self._known.form, form)
             return _read(reply)
         raise NoReplyError(f"The judge's server at {self.client.endpoint.url} refuses every form of request.")
 
