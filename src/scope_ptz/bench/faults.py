@@ -24,8 +24,7 @@ from scope_ptz.bench.verdict import MOVERS
 from scope_ptz.geometry import Pose
 
 LOOKERS = frozenset({"count_objects", "query_answer"})
-_TRIES = 24
-_DECLINES = ("I cannot tell.", "I'm not sure.", "It is not possible to say.")
+TURNS = ("pan_deg", "tilt_deg")
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,28 +175,38 @@ def other_preset(task: Task, episode: Episode, setting: Setting, rng: random.Ran
 
 def turned_round(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
     """ "Panning left when asked to pan right"."""
+    if not any(call.name == "adjust_ptz" and turns(call) for call in episode.calls):
+        return None
 
     def turn(call: Call) -> Call:
         if call.name != "adjust_ptz":
             return call
         one, two = call.before.pose, call.after.pose
-        arguments = {k: -v if k in ("pan_deg", "tilt_deg") else v for k, v in call.arguments.items()}
+        arguments = {k: -v if k in TURNS else v for k, v in call.arguments.items()}
         pose = Pose(2 * one.pan_deg - two.pan_deg, 2 * one.tilt_deg - two.tilt_deg, two.zoom)
         return replace(call, arguments=arguments, after=Standing(call.after.viewpoint, pose))
 
-    return changed(episode, setting, turn) if any(call.name == "adjust_ptz" for call in episode.calls) else None
+    return changed(episode, setting, turn)
+
+
+def turns(call: Call) -> bool:
+    """Whether an adjustment changes the direction, not the magnification alone."""
+    return any(call.arguments.get(name) for name in TURNS)
 
 
 def other_target(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
-    """Counts something else than what was asked for."""
+    """Counts, or asks about, something else than what was asked for."""
     told = wrong_answer(task.expected, rng)
-    if told is None or not any(view.about for view in task.evidence):
+    if told is None or not any(view.about for view in task.evidence) or not any(call.name in LOOKERS for call in episode.calls):
         return None
 
-    def count(call: Call) -> Call:
-        if call.name != "count_objects":
-            return call
-        arguments = {**call.arguments, "description": "clouds"}
-        return retold(replace(call, arguments=arguments), count=count_of(task.expected, told, call), message=told)
+    def aside(call: Call) -> Call:
+        if call.name == "count_objects":
+            arguments = {**call.arguments, "description": "clouds"}
+            return retold(replace(call, arguments=arguments), count=count_of(task.expected, told, call), message=told)
+        if call.name == "query_answer":
+            arguments = {**call.arguments, "question": "What is the weather like?"}
+            return retold(replace(call, arguments=arguments), answer=told, known=True, message=told)
+        return call
 
-    return replace(changed(episode, setting, count), text=told)
+    return replace(changed(episode, setting, aside), text=told)

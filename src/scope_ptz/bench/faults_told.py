@@ -6,10 +6,11 @@ Every way gives the run with the fault, or None where the run offers no place fo
 from __future__ import annotations
 
 import random
+from collections.abc import Iterator
 from dataclasses import replace
 
 from scope_ptz.bench.episode import Call, Episode
-from scope_ptz.bench.expected import ActionOnly, NoneThere, Number, Relation, YesNo
+from scope_ptz.bench.expected import ActionOnly, AnyExpected, NoneThere, Number, Relation, YesNo
 from scope_ptz.bench.faults import Setting, changed, count_of, replayed, retold
 from scope_ptz.bench.grounds import is_grounded, numbers_said
 from scope_ptz.bench.phrasing import right_answers, wrong_answer
@@ -27,17 +28,32 @@ def miscount(task: Task, episode: Episode, setting: Setting, rng: random.Random)
     told = wrong_answer(task.expected, rng)
     if not counts or told is None:
         return None
-    calls = list(episode.calls)
-    if isinstance(task.expected, Number | NoneThere | YesNo):
-        last = counts[-1]
-        number = count_of(task.expected, told, calls[last])
-        calls[last] = retold(calls[last], count=number, message=f"{number} seen")
-    else:
-        numbers = [(calls[n].result or {})["count"] for n in counts]
-        wrong = list(reversed(numbers)) if isinstance(task.expected, Relation) else [numbers[1], numbers[0], *numbers[2:]]
+    for wrong in _miscounts(task.expected, told, [episode.calls[n] for n in counts]):
+        calls = list(episode.calls)
         for n, number in zip(counts, wrong, strict=True):
-            calls[n] = retold(calls[n], count=number, message=f"{number} seen")
-    return replace(replayed(episode, calls, setting), text=told)
+            calls[n] = recounted(calls[n], number)
+        made = replace(replayed(episode, calls, setting), text=told)
+        if is_grounded(task, made):
+            return made
+    return None
+
+
+def _miscounts(expected: AnyExpected, told: str, counts: list[Call]) -> Iterator[list[int]]:
+    """Wrong counts that could lead to what is told."""
+    numbers = [int((call.result or {})["count"]) for call in counts]
+    if not isinstance(expected, Number | NoneThere | YesNo):
+        exchanged = list(reversed(numbers)) if isinstance(expected, Relation) else [*numbers[1::-1], *numbers[2:]]
+        yield exchanged if exchanged != numbers else [numbers[0] + 2, *numbers[1:]]
+        return
+    last = count_of(expected, told, counts[-1])
+    off = last - round(expected.value) if isinstance(expected, Number) else 0
+    for number in (last, numbers[-1] + off, numbers[-1] - off):
+        if number >= 0 and number != numbers[-1]:
+            yield [*numbers[:-1], number]
+
+
+def recounted(call: Call, number: int) -> Call:
+    return retold(call, count=number, message=f"{number} of '{call.arguments.get('description')}' in view.")
 
 
 def misread(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:

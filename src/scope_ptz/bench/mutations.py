@@ -31,19 +31,22 @@ FAULTS: dict[ErrorMode, tuple[Way, ...]] = {
 
 @dataclass(frozen=True, slots=True)
 class Gold:
-    """A run with a known fault."""
+    """A run with a known fault. ``fault``: the name of the function that put it in."""
 
     mode: ErrorMode
     task: Task
     episode: Episode
+    fault: str
 
 
 def mutate(task: Task, episode: Episode, mode: ErrorMode, setting: Setting, rng: random.Random) -> Gold | None:
     """The run with one fault of a mode, or None when it has no place for one (who looks at nothing cannot miscount)."""
     ways = list(FAULTS[mode])
     rng.shuffle(ways)
-    faulty = next((made for way in ways if (made := way(task, episode, setting, rng)) is not None), None)
-    return None if faulty is None else Gold(mode, task, faulty)
+    for way in ways:
+        if (faulty := way(task, episode, setting, rng)) is not None:
+            return Gold(mode, task, faulty, way.__name__)
+    return None
 
 
 def confusion(gold: Iterable[Gold]) -> Counter[tuple[ErrorMode, ErrorMode | None]]:

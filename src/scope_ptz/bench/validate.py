@@ -110,11 +110,11 @@ async def validate(
             report.by_category[task.category] += 1
             report.absences += isinstance(task.expected, NoneThere) and task.pair is not None
             report.from_start += not task.needs
-        wrong = inconsistencies(task, scenes[task.scene], look)
+        wrong = inconsistencies(task, scenes[task.world], look)
         report.faults += [Fault(task.id, "truth", reason) for reason in wrong]
-        if task.preset not in {preset.name for preset in scenes[task.scene].file.presets}:
+        if task.preset not in {preset.name for preset in scenes[task.world].file.presets}:
             continue  # nothing can be run from there
-        await _Proof(report, task, stages[task.scene]).run(common.get(task.category, "2"), siblings.get(task.id), seed)
+        await _Proof(report, task, stages[task.world]).run(common.get(task.category, "2"), siblings.get(task.id), seed)
         if say is not None:
             say(number, len(tasks))
     report.faults += structure(tasks)
@@ -190,9 +190,9 @@ def structure(tasks: Sequence[Task]) -> list[Fault]:
     """What must hold between tasks: no text twice, twins that know each other, paraphrases of tasks that are there."""
     faults = []
     by_id = {task.id: task for task in tasks}
-    texts = Counter((task.scene, task.preset, task.instruction.lower()) for task in tasks)
+    texts = Counter((task.world, task.preset, task.instruction.lower()) for task in tasks)
     for task in tasks:
-        if texts[(task.scene, task.preset, task.instruction.lower())] > 1:
+        if texts[(task.world, task.preset, task.instruction.lower())] > 1:
             faults.append(Fault(task.id, "text", "another task says the same"))
         if task.pair is not None and (task.pair not in by_id or by_id[task.pair].pair != task.id):
             faults.append(Fault(task.id, "pair", f"{task.pair} is not its twin"))

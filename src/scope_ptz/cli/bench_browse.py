@@ -1,70 +1,78 @@
-"""A task for a person to look at: its words, the run of its reference program, the frames of its evidence."""
+"""``scope bench browse``: one task with all that it rests on, or a list of those that fit."""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterator
+import random
 from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
 
-import anyio
-import cv2
-import numpy as np
-from numpy.typing import NDArray
+import typer
 
-from scope_ptz.bench.coverage import box_directions
-from scope_ptz.bench.episode import Eyes
-from scope_ptz.bench.phrasing import right_answers
-from scope_ptz.bench.run_program import Stage
-from scope_ptz.bench.tasks import EvidenceView, Task
-from scope_ptz.bench.verdict import judge
-from scope_ptz.cli.bench_eyes import equip_with_truth
-from scope_ptz.geometry import Pose
-from scope_ptz.world.pack import Scene
-from scope_ptz.world.views import picture
+from scope_ptz.cli.bench_inputs import worlds_of
+from scope_ptz.cli.endings import ending, put
+from scope_ptz.errors import InputError
 
-EYES = Eyes(1280, 720)
-_YELLOW = (255, 220, 0)
+if TYPE_CHECKING:
+    from scope_ptz.bench.tasks import Task
+
+CATEGORIES = (
+    "counting", "descriptor", "location", "ocr", "single_call", "multi_step_command", "multi_step_reasoning", "comparative",
+)  # fmt: skip
 
 
-def summary(task: Task) -> Iterator[str]:
-    yield f"{task.id}  ({task.category}, {task.difficulty}, {task.scope} scope; needs {', '.join(task.needs) or 'nothing'})"
-    yield f"asked      {task.instruction}"
-    yield f"starts     {task.scene}, preset {task.preset}, {task.time_s:g} s"
-    yield f"expected   {json.dumps(task.expected.model_dump(exclude_defaults=True), ensure_ascii=False)}"
-    for view in task.evidence:
-        pose = view.aim
-        items = ", ".join(item.instance for item in view.items) or "nothing"
-        yield f"evidence   {pose.viewpoint} at {pose.pan_deg:g}/{pose.tilt_deg:g}/{pose.zoom:g}x, {view.scope}: {items}"
+def browse(
+    task: Annotated[str, typer.Argument(help="Id of a task, or its end (counting-017).")] = "",
+    tasks: Annotated[str, typer.Option("--tasks", help="Split or task file; by default the core, then the others.")] = "",
+    category: Annotated[str, typer.Option(help="Only tasks of this category.")] = "",
+    scene: Annotated[str, typer.Option("--scene", help="Only tasks of this scene.")] = "",
+    at_random: Annotated[bool, typer.Option("--random", help="Show any one of those that fit.")] = False,
+    seed: Annotated[int | None, typer.Option(help="With --random: which one.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for pictures of the start and of the evidence.")] = None,
+) -> None:
+    """Show a task: what is asked and expected, the run of its reference program, and the frames that it rests on.
+
+    Without an id the tasks that fit are listed.
+    """
+    with ending():
+        rows = _fitting(_tasks(tasks), category, scene)
+        if task:
+            chosen = _named(rows, task)
+        elif at_random:
+            chosen = random.Random(seed).choice(rows)
+        else:
+            for row in rows:
+                put(f"{row.id:<52} {row.instruction}")
+            return
+        from scope_ptz.cli.bench_show import reference_run, summary, write_frames
+
+        (world,) = worlds_of([chosen]).values()
+        for line in (*summary(chosen, [r for r in _tasks(tasks) if r.paraphrase_of == chosen.id]), *reference_run(chosen, world)):
+            put(line)
+        if out is not None:
+            for path in write_frames(chosen, world, out):
+                put(f"picture    {path}")
 
 
-def reference_run(task: Task, scene: Scene) -> Iterator[str]:
-    """The calls of the reference program with what the tools said, and the verdict on it."""
-    text, outcome = right_answers(task.expected)[0], task.behaviour.outcomes[0]
-    stage = Stage(scene, equip_with_truth({scene.name: scene}), EYES)
-    episode = anyio.run(stage.run, task, task.reference, text, outcome)
-    for call in episode.calls:
-        yield f"call       {call.name} {json.dumps(dict(call.arguments))} -> {call.error or (call.result or {}).get('message')}"
-    yield f"answer     {text}"
-    verdict = judge(task, episode)
-    yield f"verdict    {verdict.headline}: {verdict.reason}"
+def _tasks(name: str) -> tuple[Task, ...]:
+    from scope_ptz.bench.splits import load_split
+
+    return load_split(name) if name else (*load_split("all"), *load_split("unseen"))
 
 
-def frames(task: Task, scene: Scene, out: Path) -> Iterator[Path]:
-    """A picture of each view of the evidence, what counted in it outlined."""
-    out.mkdir(parents=True, exist_ok=True)
-    for number, view in enumerate(task.evidence, 1):
-        path = out / f"{task.id}-{number}.jpg"
-        cv2.imwrite(str(path), cv2.cvtColor(_frame(view, scene, task.time_s), cv2.COLOR_RGB2BGR))
-        yield path
+def _fitting(tasks: tuple[Task, ...], category: str, scene: str) -> list[Task]:
+    if category and category not in CATEGORIES:
+        raise InputError(f"There is no category '{category}'. There are: {', '.join(CATEGORIES)}.")
+    found = [row for row in tasks if category in ("", row.category) and scene in ("", row.scene, row.world)]
+    if not found:
+        raise InputError("No task fits. Leave out --category or --scene, or name other tasks with --tasks.")
+    return found
 
 
-def _frame(view: EvidenceView, scene: Scene, time_s: float) -> NDArray[np.uint8]:
-    aim = view.aim
-    projection = EYES.sweep() if view.scope == "full" else EYES.view(Pose(aim.pan_deg, aim.tilt_deg, aim.zoom))
-    image = picture(scene, aim.viewpoint, projection, time_s)
-    for item in view.items:
-        points = projection.points(box_directions(item.box_deg)) * (projection.width, projection.height)
-        if not np.isnan(points).any():
-            low, high = (tuple(int(v) for v in corner) for corner in (points.min(axis=0), points.max(axis=0)))
-            cv2.rectangle(image, low, high, _YELLOW, 2)
-    return image
+def _named(tasks: list[Task], name: str) -> Task:
+    exact = [row for row in tasks if row.id == name]
+    found = exact or [row for row in tasks if row.id.endswith(f"-{name}")]
+    if not found:
+        raise InputError(f"There is no task '{name}'. List them with 'scope bench browse --category counting'.")
+    if len(found) > 1:
+        raise InputError(f"There is more than one task '{name}': {', '.join(row.id for row in found[:4])}. Give a whole id.")
+    return found[0]

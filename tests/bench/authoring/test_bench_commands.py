@@ -53,7 +53,7 @@ def test_browse_shows_words_run_and_frames(scope: Scope, few: Path, tmp_path: Pa
     done = scope("bench", "browse", task.id, "--tasks", str(few), "--out", str(tmp_path / "frames"))
     assert done.code == 0, done.err
     assert task.instruction in done.out and "verdict    correct" in done.out
-    assert len(list((tmp_path / "frames").glob("*.jpg"))) == len(task.evidence)
+    assert len(list((tmp_path / "frames").glob("*.png"))) == 1 + len(task.evidence)
 
 
 def test_browse_wants_a_task_that_is_there(scope: Scope, few: Path) -> None:

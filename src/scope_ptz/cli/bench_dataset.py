@@ -1,0 +1,58 @@
+"""The whole dataset in one go: every split, its proof, and the gold runs of the error modes."""
+
+from __future__ import annotations
+
+import json
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import anyio
+
+from scope_ptz.bench.authoring.assembly import build
+from scope_ptz.bench.gold import write_gold
+from scope_ptz.bench.splits import write_manifest, write_splits
+from scope_ptz.bench.unseen import build_unseen
+from scope_ptz.cli.bench_build import tell_short
+from scope_ptz.cli.bench_gold import made_gold, matrix_lines
+from scope_ptz.cli.bench_proof import prove
+from scope_ptz.cli.endings import complain, put
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from scope_ptz.bench.tasks import Category
+    from scope_ptz.world.pack import Scene
+
+GOLD, PROOF = "gold.jsonl.gz", "proof.json"
+
+
+def build_dataset(
+    scenes: Mapping[str, Scene], out: Path, seed: int, numbers: Sequence[int], quotas: dict[Category, int] | None
+) -> bool:
+    """Write everything into a folder; whether all of it is as it should be. The same scenes and numbers give the same bytes."""
+    core = build(list(scenes.values()), seed, quotas, complain)
+    unseen = build_unseen(list(scenes.values()), numbers, quotas, lambda said: complain(f"unseen {said}"))
+    short = [tell_short(core), tell_short(unseen, " unseen")]
+    written = write_splits(core.tasks, unseen.tasks, out, seed=seed)
+    put(f"{len(core.tasks)} tasks and {len(unseen.tasks)} unseen ones in {out}")
+
+    proofs = {}
+    for name, tasks in (("published", core.tasks), ("unseen", unseen.tasks)):
+        proofs[name] = prove(tasks, seed, partial(_tell, f"{name}: proved"))
+        put(f"{name}: {'sound' if proofs[name].sound else 'NOT SOUND: see scope bench validate'}")
+    written.append(out / PROOF)
+    written[-1].write_text(json.dumps({name: proof.as_dict() for name, proof in proofs.items()}, indent=1) + "\n", "utf-8")
+
+    gold = anyio.run(made_gold, [task for task in core.tasks if task.stratum == "core"], seed)
+    written.append(out / GOLD)
+    write_gold(gold, written[-1])
+    for line in matrix_lines(gold):
+        put(line)
+    write_manifest(out, written, scenes.values(), seed=seed, unseen=list(numbers), share="all" if quotas is None else quotas)
+    return not any(short) and all(proof.sound for proof in proofs.values())
+
+
+def _tell(what: str, done: int, of: int) -> None:
+    if done % 100 == 0 or done == of:
+        complain(f"{what} {done} of {of}")

@@ -1,0 +1,107 @@
+"""``scope bench gold``: runs with known faults, and whether the rules still name them."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from scope_ptz.cli.bench_inputs import TasksOption, worlds_of
+from scope_ptz.cli.endings import FAILED, ending, put, put_json
+
+if TYPE_CHECKING:
+    from scope_ptz.bench.mutations import Gold
+    from scope_ptz.bench.tasks import Task
+
+gold_app = typer.Typer(help="Runs with one known fault each: what the error-mode rules make of them.", no_args_is_help=True)
+AsJson = Annotated[bool, typer.Option("--json", help="The result as JSON.")]
+
+
+@gold_app.command("make")
+def make(
+    out: Annotated[Path, typer.Option("--out", help="Where the runs go (gzipped JSONL).")],
+    tasks: TasksOption = "core",
+    seed: Annotated[int, typer.Option(help="Another seed puts other faults into other runs.")] = 1,
+    as_json: AsJson = False,
+) -> None:
+    """Run the reference programs through the real tools and put one known fault into each of some of them."""
+    with ending(as_json=as_json):
+        import anyio
+
+        from scope_ptz.bench.gold import matrix, write_gold
+        from scope_ptz.bench.splits import load_split
+
+        gold = anyio.run(made_gold, load_split(tasks), seed)
+        out.parent.mkdir(parents=True, exist_ok=True)
+        write_gold(gold, out)
+        if as_json:
+            put_json(matrix(gold).as_dict())
+            return
+        for line in (*matrix_lines(gold), f"{len(gold)} runs in {out}"):
+            put(line)
+
+
+@gold_app.command("check")
+def check(
+    gold: Annotated[Path | None, typer.Option("--gold", help="File of gold runs; by default the published one.")] = None,
+    tasks: TasksOption = "core",
+    as_json: AsJson = False,
+) -> None:
+    """Apply the rules to the gold runs again. Exit code 1 when fewer faults are named, or more let through, than published."""
+    with ending(as_json=as_json):
+        from scope_ptz.bench.gold import matrix, read_gold
+        from scope_ptz.bench.splits import load_split, published_folder
+
+        published, runs = read_gold(gold or published_folder() / "gold.jsonl.gz", load_split(tasks))
+        result = matrix(runs)
+        worse = result.worse_than(published)
+        if as_json:
+            put_json({**result.as_dict(), "published": published, "worse": worse})
+        else:
+            for line in matrix_lines(runs):
+                put(line)
+            put(f"published: {published['named']} named, {published['accepted']} accepted; {'WORSE' if worse else 'not worse'} now")
+        if worse:
+            sys.exit(FAILED)
+
+
+async def made_gold(tasks: Sequence[Task], seed: int) -> list[Gold]:
+    """Gold runs of tasks: their reference programs through the tools with the ground truth for eyes, then the faults."""
+    from scope_ptz.bench.authoring.places import preset_at
+    from scope_ptz.bench.gold import EYES, gold_runs
+    from scope_ptz.bench.mutations import Setting
+    from scope_ptz.bench.phrasing import right_answers
+    from scope_ptz.bench.run_program import Stage
+    from scope_ptz.bench.verdict import judge
+    from scope_ptz.cli.bench_eyes import KnownViews, equip_with_truth
+
+    worlds = worlds_of(tasks)
+    equip = equip_with_truth(worlds, KnownViews())
+    stages = {name: Stage(world, equip, EYES) for name, world in worlds.items()}
+    settings = {name: Setting({p.name: preset_at(p) for p in world.file.presets}, EYES) for name, world in worlds.items()}
+    runs = []
+    for task in tasks:
+        if task.stratum == "core" and task.reference:
+            episode = await stages[task.world].run(task, task.reference, right_answers(task.expected)[0])
+            if judge(task, episode).headline == "correct":
+                runs.append((task, episode))
+    return gold_runs(runs, settings, seed)
+
+
+def matrix_lines(gold: Sequence[Gold]) -> Iterator[str]:
+    """The confusion matrix, rows the faults put in, columns what they were taken for; then every run off the diagonal."""
+    from scope_ptz.bench.error_modes import ErrorMode
+    from scope_ptz.bench.gold import OTHER, matrix
+
+    result = matrix(gold)
+    columns = [*(mode.value for mode in ErrorMode), *OTHER]
+    yield f"{'fault put in':<20}" + "".join(f"{name.replace('_', ' ')[:10]:>11}" for name in columns)
+    for mode in ErrorMode:
+        yield f"{mode.value.replace('_', ' '):<20}" + "".join(f"{result.cells[mode.value, told] or '.':>11}" for told in columns)
+    accepted = f"{result.accepted} judged correct, a false-accept rate of {result.false_accept_rate:.1%}"
+    yield f"{result.named} of {result.total} named as they are; {accepted}"
+    for task, fault, mode_in, told in result.astray:
+        yield f"  {task}: {fault} ({mode_in}) was taken for {told}"

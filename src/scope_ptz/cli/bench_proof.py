@@ -1,0 +1,21 @@
+"""Proof of tasks in the worlds that they are set in."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+import anyio
+
+from scope_ptz.bench.validate import Report, validate
+from scope_ptz.cli.bench_eyes import KnownViews, equip_with_truth
+from scope_ptz.cli.bench_inputs import worlds_of
+
+if TYPE_CHECKING:
+    from scope_ptz.bench.tasks import Task
+
+
+def prove(tasks: Sequence[Task], seed: int, say: Callable[[int, int], None] | None = None) -> Report:
+    """The report of a validation."""
+    worlds, views = worlds_of(tasks), KnownViews()
+    return anyio.run(lambda: validate(tasks, worlds, equip_with_truth(worlds, views), seed=seed, look=views.look, say=say))
