@@ -28,9 +28,9 @@ def test_the_first_scene_is_shipped() -> None:
 
 def test_a_world_rich_enough_to_ask_about(scene: Scene) -> None:
     file = scene.file
-    assert len(file.instances) >= 120
-    assert len({i.category for i in file.instances}) >= 15
-    assert len(file.presets) >= 5
+    assert len(file.instances) >= 150
+    assert len({i.category for i in file.instances}) >= 20
+    assert all(2 <= sum(p.viewpoint == v.name for p in file.presets) <= 4 for v in file.viewpoints)
     assert len(file.viewpoints) >= 2
     assert file.absent
     assert len(file.actors) >= 2

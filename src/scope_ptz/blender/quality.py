@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from scope_ptz.errors import UnknownNameError
 
-PACK_BYTES = 5_500_000
+PACK_BYTES = 6_000_000
 """All layers of one viewpoint together."""
 
 NEAR_M, FAR_M = 0.3, 20000.0
@@ -52,7 +52,7 @@ QUALITIES = {
     q.name: q
     for q in (
         Quality("draft", 2048, 4, 4096, 2048, 4, 48.0, 8, 4, 12, 75, 70, 4, 480, judged=False),
-        Quality("standard", 6144, 8, 8192, 4096, 8, 96.0, 144, 10, 32, 82, 68),
-        Quality("high", 6144, 32, 8192, 4096, 24, 96.0, 144, 32, 56, 82, 68),
+        Quality("standard", 6144, 8, 8192, 4096, 8, 96.0, 208, 10, 32, 82, 68),
+        Quality("high", 6144, 32, 8192, 4096, 24, 96.0, 208, 32, 56, 82, 68),
     )
 }
