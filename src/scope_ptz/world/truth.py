@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -160,9 +160,24 @@ def _share_inside(extent: Extent, projection: Projection) -> float:
 
 
 def _texts(scene: Scene, viewpoint: Viewpoint, projection: Projection, numbers: NDArray[np.uint16]) -> tuple[TextSighting, ...]:
-    families = scene.families
-    seen = (_text(text, families[text.parent], viewpoint, projection, numbers) for text in scene.file.texts)
+    families, texts = scene.families, scene.file.texts
+    near = np.flatnonzero(_may_show(texts, viewpoint, projection)) if texts else ()
+    seen = (_text(texts[k], families[texts[k].parent], viewpoint, projection, numbers) for k in near)
     return tuple(s for s in seen if s is not None)
+
+
+def _may_show(texts: Sequence[SceneText], viewpoint: Viewpoint, projection: Projection) -> NDArray[np.bool_]:
+    """Which texts face the viewpoint with their front, and whose corners do not all lie beyond one edge of the frame."""
+    centre, right, up = (np.array([getattr(t, name) for t in texts], dtype=np.float64) for name in ("centre_m", "right", "up"))
+    half = np.array([(t.width_m / 2, t.height_m / 2) for t in texts])
+    facing = np.sum(np.cross(right, up) * (viewpoint.position_m - centre), axis=-1) > 0
+    across, along = right * half[:, :1], up * half[:, 1:]
+    corners = np.stack([centre + a * across + b * along for a in (-1, 1) for b in (-1, 1)], axis=1)
+    points = projection.points(viewpoint.offset(corners.reshape(-1, 3))).reshape(len(texts), 4, 2)
+    with np.errstate(invalid="ignore"):
+        beyond = np.any(np.all(points < 0, axis=1) | np.all(points > 1, axis=1), axis=-1)
+    behind = np.isnan(points).all(axis=(1, 2))
+    return np.asarray(facing & ~beyond & ~behind)
 
 
 def _text(
