@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from importlib.resources import files
 from pathlib import Path
@@ -25,7 +26,7 @@ from scope_ptz.world.pack import Scene
 SPLITS = ("core", "lite", "paraphrase", "reaction", "unseen", "all")
 FILES = {"core": "tasks.jsonl", "paraphrase": "paraphrase.jsonl", "reaction": "reaction.jsonl", "unseen": "unseen.jsonl"}
 LITE, MANIFEST = "lite.txt", "manifest.json"
-LITE_EVERY = 10
+LITE_SHARE = 0.1
 
 
 def published_folder() -> Path:
@@ -70,17 +71,28 @@ def _named(tasks: Iterable[Task], path: Path) -> tuple[Task, ...]:
 
 
 def lite(tasks: Sequence[Task], seed: int) -> tuple[Task, ...]:
-    """Every tenth core task of a list in which tasks of a category, scene and difficulty stand together.
+    """A tenth of the core tasks: of every category, scene and difficulty, and of every combination of them, as near as may be.
 
-    Of a group of n there are n/10 in it, rounded up or down; the same holds for every category, and for the whole.
+    One task after the other is taken from the group that its category, scene, difficulty and combination lack most.
     """
     core = [task for task in tasks if task.stratum == "core"]
-
-    def rank(task: Task) -> tuple[str, str, str, str]:
-        return task.category, task.scene, task.difficulty, hashlib.sha256(f"{seed}:{task.id}".encode()).hexdigest()
-
-    chosen = {task.id for task in sorted(core, key=rank)[LITE_EVERY // 2 :: LITE_EVERY]}
+    waiting: dict[tuple[str, ...], list[str]] = {}
+    for task in sorted(core, key=lambda t: hashlib.sha256(f"{seed}:{t.id}".encode()).hexdigest()):
+        waiting.setdefault((task.category, task.scene, task.difficulty), []).append(task.id)
+    share = Counter(mark for task in core for mark in _marks((task.category, task.scene, task.difficulty)))
+    taken, chosen = Counter[tuple[str, ...]](), set[str]()
+    for _ in range(round(len(core) * LITE_SHARE)):
+        group = max(
+            (g for g, ids in waiting.items() if ids),
+            key=lambda g: (round(sum(share[mark] * LITE_SHARE - taken[mark] for mark in _marks(g)), 6), g),
+        )
+        chosen.add(waiting[group].pop())
+        taken.update(_marks(group))
     return tuple(task for task in core if task.id in chosen)
+
+
+def _marks(group: tuple[str, ...]) -> list[tuple[str, ...]]:
+    return [group, *(("any", part) for part in group)]
 
 
 def of_stratum(tasks: Iterable[Task], stratum: Stratum) -> tuple[Task, ...]:

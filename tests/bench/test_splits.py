@@ -1,0 +1,82 @@
+"""Splits: who belongs where, a small one that stands for all, files that cannot be changed unnoticed."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from scope_ptz.bench.splits import lite, load_split, read_manifest, write_manifest, write_splits
+from scope_ptz.bench.tasks import Task
+from scope_ptz.errors import InputError, UnknownNameError
+from scope_ptz.world.pack import load_scene
+from tests.bench.making import samples
+
+SAMPLES = [task for task, _ in samples()]
+
+
+def many(number: int = 536) -> list[Task]:
+    """Core tasks of several scenes and difficulties."""
+    tasks = []
+    for n in range(number):
+        of = SAMPLES[n * 7 % len(SAMPLES)]
+        scene = ("north", "south", "east")[n % 3]
+        facts = {"id": f"scope1-{scene}-{of.category.replace('_', '-')}-{n:03d}", "scene": scene}
+        tasks.append(of.model_copy(update={**facts, "difficulty": ("easy", "medium", "hard")[n % 5 % 3], "pair": None}))
+    return tasks
+
+
+def test_lite_is_a_tenth_of_every_category_scene_and_difficulty() -> None:
+    tasks = many()
+    chosen = lite(tasks, 1)
+    assert len(chosen) == 54
+    for key in ("category", "scene", "difficulty"):
+        whole, part = (Counter(getattr(task, key) for task in rows) for rows in (tasks, chosen))
+        assert all(abs(part[name] - number / 10) <= 1 for name, number in whole.items()), key
+
+
+def test_lite_is_the_same_whatever_the_order_and_another_for_another_seed() -> None:
+    tasks = many()
+    ids = {task.id for task in lite(tasks, 1)}
+    assert ids == {task.id for task in lite(tasks[::-1], 1)}
+    assert ids != {task.id for task in lite(tasks, 2)}
+
+
+@pytest.fixture
+def dataset(tmp_path: Path) -> Path:
+    core = many(40)
+    further = [
+        core[0].model_copy(update={"id": "scope1-north-wording-001", "stratum": "paraphrase", "paraphrase_of": core[0].id}),
+        core[1].model_copy(update={"id": "scope1-north-reaction-001", "stratum": "reaction"}),
+    ]
+    unseen = [core[2].model_copy(update={"id": "scope1-north-v7-counting-001", "variation": 7})]
+    written = write_splits([*core, *further], unseen, tmp_path, seed=1)
+    write_manifest(tmp_path, written, [load_scene("highway-works")], seed=1)
+    return tmp_path
+
+
+def test_every_split_is_read_back(dataset: Path) -> None:
+    sizes = {name: len(load_split(name, dataset)) for name in ("core", "lite", "paraphrase", "reaction", "unseen", "all")}
+    assert sizes == {"core": 40, "lite": 4, "paraphrase": 1, "reaction": 1, "unseen": 1, "all": 42}
+    (unseen,) = load_split("unseen", dataset)
+    assert unseen.world == f"{unseen.scene}-v7"
+    assert load_split(dataset / "tasks.jsonl") == load_split("core", dataset)
+
+
+def test_a_dataset_that_was_changed_is_told(dataset: Path) -> None:
+    assert read_manifest(dataset)["made_with"] == {"seed": 1}
+    (dataset / "lite.txt").write_text("scope1-nowhere-001\n")
+    with pytest.raises(InputError, match=r"lite\.txt is not as it was built"):
+        read_manifest(dataset)
+    with pytest.raises(InputError, match="scope1-nowhere-001"):
+        load_split("lite", dataset)
+
+
+def test_what_is_no_split_is_told(tmp_path: Path) -> None:
+    with pytest.raises(UnknownNameError, match="paraphrase"):
+        load_split("paraphrases", tmp_path)
+    with pytest.raises(InputError, match="scope bench build"):
+        load_split("core", tmp_path)
+    with pytest.raises(InputError, match="cannot be read"):
+        load_split("none.jsonl")
