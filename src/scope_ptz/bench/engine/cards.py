@@ -1,0 +1,68 @@
+"""The run card of a log: under what conditions it ran, as models and servers report themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib.metadata import version
+from typing import Any
+
+from inspect_ai.log import EvalLog
+from pydantic import ValidationError
+
+from scope_ptz.agent.trace import Trace
+from scope_ptz.bench.trials import ModelCard, RunCard
+from scope_ptz.errors import TraceError
+
+ENGINE = "inspect-ai"
+CARD = "card"
+SCOPE = "scope"
+DETERMINISTIC = ("grammar", "ground-truth", "noisy")
+
+
+def engine_version() -> str:
+    """The engine that is installed, as logs tell it."""
+    return f"{ENGINE} {version(ENGINE.replace('-', '_'))}"
+
+
+def card_of(header: EvalLog, trace: Trace | None) -> RunCard:
+    """The card that the front end wrote; of a log that the engine's own command line made, what can be told from it.
+
+    ``trace``: of any run of the log, for what it says of the planner. Raises ``TraceError``.
+    """
+    metadata = header.eval.metadata or {}
+    try:
+        if CARD in metadata:
+            return RunCard.model_validate(metadata[CARD])
+        return _told(header, metadata[SCOPE], trace.started.planner_details if trace is not None else {})
+    except (ValidationError, KeyError) as error:
+        raise TraceError(f"The run card of {header.location} is damaged: {error}.") from error
+
+
+def _told(header: EvalLog, facts: Mapping[str, Any], planner: Mapping[str, str]) -> RunCard:
+    config = header.eval.config
+    return RunCard(
+        run_id=header.eval.run_id,
+        started=str(header.eval.created),
+        engine_version=f"{ENGINE} {header.eval.packages.get('inspect_ai', '')}".strip(),
+        planner=_model(header, "planner"),
+        perception=_model(header, "eyes"),
+        epochs=config.epochs or 1,
+        prompt_digest=planner.get("prompt_sha256", ""),
+        sampling=dict(planner),
+        concurrency=config.max_samples or 1,
+        contended=(config.max_samples or 0) != 1,
+        **facts,
+    )
+
+
+def _model(header: EvalLog, role: str) -> ModelCard:
+    bound = (header.eval.model_roles or {}).get(role)
+    bound = bound[0] if isinstance(bound, list) else bound
+    if bound is None:
+        return ModelCard(name="none")
+    provider, _, name = bound.model.partition("/")
+    return ModelCard(
+        name=name or provider,
+        provider=bound.base_url or provider,
+        deterministic=provider == SCOPE + "_ptz" and name in DETERMINISTIC,
+    )

@@ -1,0 +1,145 @@
+"""Logs read: what every report, gate and judge is made from. Logs of runs that go on or were killed can be read as far as they
+got."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from zipfile import BadZipFile, ZipFile
+
+import inspect_ai.log  # noqa: F401 - teaches zipfile the compression of logs
+from inspect_ai.log import EvalLog, read_eval_log
+from pydantic import ValidationError
+from pydantic_core import from_json
+
+from scope_ptz.agent.trace import Trace
+from scope_ptz.bench.engine.cards import card_of
+from scope_ptz.bench.engine.entries import Entry
+from scope_ptz.bench.engine.judgements import judgements_in
+from scope_ptz.bench.engine.pictures import jpeg_of
+from scope_ptz.bench.engine.sampling import STORE, Kept, sample_name, trace_of
+from scope_ptz.bench.engine.scorers import CHECKS, TRIAL
+from scope_ptz.bench.engine.trialing import trial_of
+from scope_ptz.bench.trials import Evaluation, Trial
+from scope_ptz.errors import TraceError
+
+ATTACHMENT = "attachment://"
+_SAMPLES = "samples/"
+
+
+@dataclass(frozen=True, slots=True)
+class SampleFiles:
+    """One run of a log: its trace, and its pictures by the names that the trace gives them."""
+
+    trace: Trace
+    references: Mapping[str, str]
+    attachments: Mapping[str, str]
+
+    def picture(self, name: str) -> bytes | None:
+        """A picture as JPEG; None when it was not kept."""
+        data = self.attachments.get(self.references.get(name, "").removeprefix(ATTACHMENT))
+        return jpeg_of(data) if data is not None else None
+
+
+def read_evaluation(path: Path) -> Evaluation:
+    """A log as data. Runs come in the order of tasks and epochs.
+
+    Raises:
+        TraceError: there is no log, it is damaged, or no log of this benchmark.
+    """
+    with reading(path):
+        header = read_header(path)
+        wanted = (header.eval.dataset.samples or 0) * (header.eval.config.epochs or 1)
+        trials = [trial_in(sample, path) for sample in samples(path)]
+        first = next((kept_in(sample) for sample in samples(path)), None)
+        card = card_of(header, trace_of(first.trace, path) if first is not None else None)
+    order = {str(name): at for at, name in enumerate(header.eval.dataset.sample_ids or ())}
+    trials.sort(key=lambda trial: (order.get(trial.task.id, len(order)), trial.task.id, trial.epoch))
+    return Evaluation(card=card, trials=tuple(trials), wanted=wanted, log=str(path))
+
+
+def open_sample(path: Path, sample: str) -> SampleFiles:
+    """One run of a log by its name (``Trial.sample``). Raises ``TraceError``."""
+    task, _, epoch = sample.rpartition("#")
+    with reading(path):
+        found = next(
+            (row for row in samples(path, f"{task}_epoch_{epoch}") if sample_name(row["id"], row["epoch"]) == sample), None
+        )
+        if found is None:
+            raise TraceError(f"The log {path} holds no run {sample}.")
+        kept = kept_in(found)
+        trace = trace_of(kept.trace, path) if kept is not None else None
+        if kept is None or trace is None:
+            raise TraceError(f"The run {sample} of {path} never began: there is nothing to see.")
+        return SampleFiles(trace, kept.pictures, found.get("attachments", {}))
+
+
+@contextmanager
+def reading(path: Path) -> Iterator[None]:
+    """Turns every way in which a file can be no log of ours into one error that says so."""
+    try:
+        yield
+    except TraceError:
+        raise
+    except FileNotFoundError:
+        raise TraceError(f"There is no log at {path}.") from None
+    except OSError as error:
+        raise TraceError(f"The log {path} cannot be read: {error.strerror or error}.") from error
+    except (BadZipFile, ValidationError, ValueError, KeyError, EOFError, TypeError, AttributeError, NotImplementedError) as error:
+        raise TraceError(
+            f"{path} is no log of an evaluation, or it is damaged ({type(error).__name__}: {str(error)[:200]})."
+        ) from error
+
+
+def read_header(path: Path) -> EvalLog:
+    """What a log says about itself; of one that was killed, what it said when it began. Raises ``TraceError``."""
+    with reading(path):
+        if not path.is_file():
+            raise FileNotFoundError(path)
+        header = read_eval_log(str(path), header_only=True)
+        if "scope" not in (header.eval.metadata or {}):
+            raise TraceError(f"{path} is the log of another evaluation ({header.eval.task}), not of this benchmark.")
+        return header
+
+
+def samples(path: Path, name: str | None = None) -> Iterator[dict[str, Any]]:
+    """The samples of a log as plain data, all of them or one by the name of its file. A later one of a name replaces an earlier."""
+    with ZipFile(path) as archive:
+        wanted = f"{_SAMPLES}{name}.json" if name else None
+        for member in dict.fromkeys(n for n in archive.namelist() if n.startswith(_SAMPLES)):
+            if wanted is None or member == wanted:
+                sample = from_json(archive.read(member))
+                if not isinstance(sample, dict):
+                    raise TraceError(f"{path}: {member} is no sample.")
+                yield sample
+
+
+def kept_in(sample: Mapping[str, Any]) -> Kept | None:
+    """What the run of a sample left: in its store; in one that was rescued after a crash, in the last event that tells of it."""
+    attachments = sample.get("attachments", {})
+    left = (sample.get("store") or {}).get(STORE)
+    if left is None:
+        changes = (c for e in sample.get("events") or () if e.get("event") == "store" for c in e.get("changes") or ())
+        left = next((c["value"] for c in reversed(list(changes)) if c.get("path") == f"/{STORE}"), None)
+    if left is None:
+        return None
+    kept = Kept.of_store(left)
+    if kept.trace.startswith(ATTACHMENT):
+        whole = attachments[kept.trace.removeprefix(ATTACHMENT)]
+        return Kept(whole, kept.presets, kept.home, kept.sees, kept.pictures, kept.truths)
+    return kept
+
+
+def trial_in(sample: Mapping[str, Any], path: Path) -> Trial:
+    """The judged run of a sample: as its checks were scored last, with every judgement."""
+    entry, scores = Entry.of_metadata(sample["metadata"]), sample.get("scores") or {}
+    judgements = judgements_in(scores)
+    newest = next((scores[name] for name in reversed(scores) if name.split("-")[0] == CHECKS), None)
+    told = (newest.get("metadata") or {}).get(TRIAL) if newest else None
+    if told is None or entry.task is None:
+        kept = kept_in(sample) or Kept("", {}, "")
+        return trial_of(entry, kept, sample["epoch"], path, judgements)
+    return Trial.model_validate({**told, "task": entry.facts, "judgements": judgements})

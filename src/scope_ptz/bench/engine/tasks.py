@@ -1,0 +1,57 @@
+"""The benchmark as a task of the engine."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from inspect_ai import Epochs, Task
+
+from scope_ptz import __version__
+from scope_ptz.bench.engine.entries import Entry, datasets, digest
+from scope_ptz.bench.engine.sampling import dataset_of
+from scope_ptz.bench.engine.scorers import checks
+from scope_ptz.bench.engine.solver import OWN_AGENT, scope_agent
+
+MOST_BROKEN = 0.1
+"""Share of runs that infrastructure may break before the evaluation as a whole counts as failed."""
+
+
+def bench_task(
+    entries: Sequence[Entry],
+    split: str,
+    *,
+    agent: str = OWN_AGENT,
+    pictures: bool = True,
+    max_steps: int = 60,
+    time_s: float | None = None,
+    seed: int = 1,
+    epochs: int = 1,
+) -> Task:
+    """Entries to run, the agent as their solver, the checks as their scorer. Broken runs are scored, and counted apart."""
+    return Task(
+        dataset=dataset_of(entries, name=f"{datasets(entries)} {split}"),
+        solver=scope_agent(agent, pictures, max_steps, time_s, seed),
+        scorer=checks(),
+        epochs=Epochs(epochs, "mean"),
+        fail_on_error=MOST_BROKEN,
+        continue_on_fail=True,
+        score_on_error=True,
+        version=datasets(entries),
+        metadata=facts(entries, split, agent=agent, max_steps=max_steps, seed=seed),
+    )
+
+
+def facts(entries: Sequence[Entry], split: str, *, agent: str, max_steps: int, seed: int) -> dict[str, Any]:
+    """What a log says of the tasks and the loop, whoever started it."""
+    return {
+        "scope": {
+            "package_version": __version__,
+            "dataset": datasets(entries),
+            "dataset_digest": digest(entries),
+            "split": split,
+            "agent": agent,
+            "max_steps": max_steps,
+            "seed": seed,
+        }
+    }

@@ -1,0 +1,114 @@
+"""From what a run left to a judged run."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Literal
+
+from scope_ptz.agent.records import Ended
+from scope_ptz.agent.trace import Trace
+from scope_ptz.bench.engine.entries import Entry
+from scope_ptz.bench.engine.sampling import Kept, sample_name, trace_of
+from scope_ptz.bench.episode import Episode, Look
+from scope_ptz.bench.error_modes import ErrorMode, error_mode
+from scope_ptz.bench.trials import Check, Judgement, Trial
+from scope_ptz.bench.verdict import AGENTS_OWN_FAILURES, Headline, judge
+
+View = Literal["current", "full"]
+_LOOKERS = ("count_objects", "query_answer")
+
+
+def trial_of(entry: Entry, kept: Kept, epoch: int, where: Path, judgements: tuple[Judgement, ...] = ()) -> Trial:
+    """The judged run: by its task's checks, or by the newest judgement where there are none."""
+    name = sample_name(entry.facts.id, epoch)
+    trace = trace_of(kept.trace, where)
+    if trace is None:
+        reason = "the run did not begin"
+        return Trial(
+            task=entry.facts, epoch=epoch, sample=name, headline="infrastructure", reason=reason, outcome=None, answer="",
+            judgements=judgements,
+        )  # fmt: skip
+    verdict = _by_checks(entry, kept, trace) if entry.task else _by_judge(trace, judgements)
+    return Trial.model_validate(
+        {"task": entry.facts, "epoch": epoch, "sample": name, "judgements": judgements} | verdict | _run(trace)
+    )
+
+
+def _by_checks(entry: Entry, kept: Kept, trace: Trace) -> dict[str, Any]:
+    assert entry.task is not None  # noqa: S101 - the caller has looked
+    episode = kept.episode(trace)
+    verdict = judge(entry.task, episode)
+    truth = _Truths(episode, kept.truths)
+    return {
+        "headline": verdict.headline,
+        "scored_by": "checks",
+        "reason": verdict.reason,
+        "error_mode": error_mode(entry.task, episode, truth if kept.truths else None),
+        "checks": tuple(Check(name=c.name, passed=c.passed, reason=c.reason) for c in verdict.checks),
+        "collateral": verdict.collateral,
+    }
+
+
+class _Truths:
+    """The truth of the looks of a run, as it was looked up when the run was over."""
+
+    def __init__(self, episode: Episode, truths: Mapping[str, int | None]) -> None:
+        looks = [(look, truths.get(str(number))) for number, call in enumerate(episode.calls) for look in call.looks]
+        self._known = {id(look): really for look, really in looks}
+        self._looks = [look for look, _ in looks]
+
+    def __call__(self, look: Look) -> int | None:
+        return next((self._known[id(own)] for own in self._looks if own == look), None)
+
+
+def _by_judge(trace: Trace, judgements: tuple[Judgement, ...]) -> dict[str, Any]:
+    broken = broken_by(trace.ended)
+    last = judgements[-1] if judgements else None
+    headline: Headline
+    mode: ErrorMode | None = None
+    if broken is not None:
+        headline, reason = "infrastructure", broken
+    elif last is None:
+        headline, reason = "unscored", "no judge has said anything yet, and there are no checks of this answer"
+    elif last.verdict in ("correct", "incorrect"):
+        headline, reason = ("correct" if last.verdict == "correct" else "incorrect"), last.reason or f"said {last.judge}"
+        mode = (last.error_mode or ErrorMode.REASONING) if headline == "incorrect" else None
+    else:
+        headline, reason = "unscored", f"the judge {last.judge} gave no verdict ({last.verdict})"
+    return {"headline": headline, "scored_by": "judge", "reason": reason, "error_mode": mode}
+
+
+def broken_by(ended: Ended | None) -> str | None:
+    """Why a run says nothing about the agent, as far as its end alone can tell; None when it does."""
+    if ended is None:
+        return "the run was cut off"
+    if ended.outcome in ("camera_error", "cancelled"):
+        return f"the run ended {ended.outcome}"
+    if ended.outcome == "planner_error" and ended.kind is not None and ended.kind not in AGENTS_OWN_FAILURES:
+        return f"the planner's server failed: {ended.kind}"
+    return None
+
+
+def _run(trace: Trace) -> dict[str, Any]:
+    """What the trace tells of how it went."""
+    ended, looks = trace.ended, dict[View, list[float]]()
+    for called in trace.calls:
+        call = called.outcome.call
+        if call.name in _LOOKERS and called.outcome.error is None:
+            view: View = "full" if call.arguments.get("view") == "full" else "current"
+            looks.setdefault(view, []).append(max(called.timings.total_s, 0.0))
+    return {
+        "outcome": ended.outcome if ended else None,
+        "answer": ended.text if ended else "",
+        "steps": ended.steps if ended else len(trace.decisions),
+        "tool_calls": dict(Counter(c.outcome.call.name for c in trace.calls if c.fault != "skipped")),
+        "bad_calls": sum(c.fault == "bad_call" for c in trace.calls),
+        "perception_failures": sum(c.fault == "perception" for c in trace.calls),
+        "server_events": ended.server_events if ended else {},
+        "input_tokens": ended.usage.input_tokens if ended else 0,
+        "output_tokens": ended.usage.output_tokens if ended else 0,
+        "timings": ended.timings if ended else {},
+        "look_s": looks,
+    }

@@ -1,0 +1,131 @@
+"""What the command line lends to the evaluation engine: concrete planners, eyes, scenes and tasks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from anyio import to_thread
+
+from scope_ptz.bench.engine.entries import Entry, entries_of
+from scope_ptz.bench.engine.equipment import Equipment, ModelWish, Watcher
+from scope_ptz.bench.episode import Look
+from scope_ptz.camera.base import Frame, FrameOrigin
+from scope_ptz.cli.choosing import EyesChoice, PlannerChoice, Wishes, choose
+from scope_ptz.cli.session import GROUND_TRUTH_NOTE, NOISY_NOTE, make_planner, open_scene
+from scope_ptz.errors import PerceptionError
+from scope_ptz.geometry import Equirectangular, Pose
+from scope_ptz.planner.base import Decision, Planner, State
+from scope_ptz.world.pack import Scene
+
+if TYPE_CHECKING:
+    from scope_ptz.perception.base import Perception
+
+
+class Aside(Planner):
+    """A planner that thinks without pause, put into a worker thread: other runs go on meanwhile."""
+
+    def __init__(self, think: Callable[[State], Decision], name: str) -> None:
+        self._think, self.name = think, name
+
+    async def step(self, state: State) -> Decision:
+        return await to_thread.run_sync(self._think, state)
+
+
+def planner_for(choice: PlannerChoice) -> Planner:
+    """The planner that was chosen, as the engine wants it: not blocking, its requests in the log."""
+    if choice.endpoint is None:
+        from scope_ptz.planner.grammar import decide
+
+        return Aside(decide, make_planner(choice).name)
+    from scope_ptz.bench.engine.wire import LoggedChat
+    from scope_ptz.planner.chat import ChatPlanner
+
+    return ChatPlanner(choice.endpoint, choice.options, client=LoggedChat(choice.endpoint))
+
+
+def eyes_for(choice: EyesChoice, scenes: Callable[[str], Scene], seed: int) -> Perception:
+    """The eyes that were chosen, for frames of any scene."""
+    if choice.spec is not None:
+        from scope_ptz.perception.backends import make_eyes
+
+        return make_eyes(choice.spec)
+    from scope_ptz.cli.bench_eyes import KnownViews
+    from scope_ptz.perception.ground_truth import GroundTruthPerception
+
+    truth = GroundTruthPerception(scenes, KnownViews().look)
+    if choice.name == "ground-truth":
+        return truth
+    from scope_ptz.perception.noisy import NoisyPerception
+
+    return NoisyPerception(truth, seed=seed)
+
+
+def lend(
+    *,
+    seed: int,
+    planner: PlannerChoice | None = None,
+    eyes: EyesChoice | None = None,
+    watcher: Watcher | None = None,
+) -> Equipment:
+    """Equipment for an evaluation. Models that were not chosen yet are made from their names when they are wanted."""
+    scenes = lru_cache(maxsize=None)(open_scene)
+
+    async def a_planner(wish: ModelWish) -> Planner:
+        return planner_for(planner or (await choose(_wishes(wish, "planner"))).planner)
+
+    async def some_eyes(wish: ModelWish) -> Perception:
+        return eyes_for(eyes or (await choose(_wishes(wish, "eyes"))).eyes, scenes, seed)
+
+    truth = eyes_for(EyesChoice("ground-truth"), scenes, seed)
+
+    async def really(scene: str, look: Look) -> int | None:
+        return await _count(truth, scene, look)
+
+    notes = {"ground-truth": GROUND_TRUTH_NOTE, "noisy": NOISY_NOTE}
+    return Equipment(
+        open_scene=scenes,
+        make_planner=a_planner,
+        make_eyes=some_eyes,
+        load_tasks=lambda split: tasks_of(split, scenes),
+        truth=really,
+        watcher=watcher or Watcher(),
+        perception_note=notes.get(eyes.name, "") if eyes else "",
+    )
+
+
+def _wishes(wish: ModelWish, role: str) -> Wishes:
+    """A model of the engine's own command line as options of ours: ``served``, ``key_file`` and what the backend knows."""
+    given: Mapping[str, Any] = wish.options
+    further = tuple(f"{name}={value}" for name, value in given.items() if name not in ("served", "key_file"))
+    key = Path(str(given["key_file"])) if "key_file" in given else None
+    served = given.get("served")
+    if role == "planner":
+        return Wishes(planner=wish.name, planner_url=wish.url, planner_model=served, planner_key_file=key, planner_options=further)
+    return Wishes(perception=wish.name, eyes_url=wish.url, eyes_model=served, eyes_key_file=key, eyes_options=further)
+
+
+async def _count(truth: Perception, scene: str, look: Look) -> int | None:
+    """How many of what a look was asked for show in its very picture; None where the description cannot be told."""
+    if look.viewpoint is None:
+        return None
+    view = look.projection
+    pose = Pose() if isinstance(view, Equirectangular) else Pose(view.pan_deg, view.tilt_deg)
+    frame = Frame(
+        image=np.zeros((1, 1, 3), np.uint8), pose=pose, hfov_deg=0.0, time_s=look.time_s, projection=view,
+        origin=FrameOrigin(scene, look.viewpoint, pose, look.time_s),
+    )  # fmt: skip
+    try:
+        return len((await truth.detect(frame, look.asked)).boxes)
+    except PerceptionError:
+        return None
+
+
+def tasks_of(split: str, scenes: Callable[[str], Scene]) -> tuple[Entry, ...]:
+    """The tasks of a split by name, or of a file."""
+    from scope_ptz.bench.splits import load_split
+
+    return entries_of(load_split(split), scenes)
