@@ -30,6 +30,9 @@ class ScopeSettings(BaseSettings):
     models: Path | None = Field(default=None, description="A YAML file of models beside the built-in ones.")
     planner_url: str = Field(default="", description="Where the planner's model server listens.")
     eyes_url: str = Field(default="", description="Where the model server of the eyes listens.")
+    judge_url: str = Field(default="", description="Where the model server of the benchmark's judge listens.")
+    judge_model: str = Field(default="", description="What that server calls the judge.")
+    judge_key: SecretStr | None = Field(default=None, description="The key of the judge's server.")
 
     def models_file(self) -> Path | None:
         """The user's own models: the file that is named, or the one in the configuration folder when it is there."""

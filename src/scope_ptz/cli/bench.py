@@ -7,10 +7,13 @@ from typing import Annotated
 
 import typer
 
+from scope_ptz.cli.bench_agree import agree
 from scope_ptz.cli.bench_browse import browse
 from scope_ptz.cli.bench_build import build
 from scope_ptz.cli.bench_gold import gold_app
 from scope_ptz.cli.bench_inputs import TasksOption
+from scope_ptz.cli.bench_judge_gold import judge_gold
+from scope_ptz.cli.bench_label import label
 from scope_ptz.cli.endings import FAILED, ending, put, put_json
 
 bench_app = typer.Typer(help="The benchmark: its tasks and how they are checked.", no_args_is_help=True)
@@ -32,6 +35,9 @@ def schema() -> None:
 
 bench_app.command("build")(build)
 bench_app.command("browse")(browse)
+bench_app.command("agree")(agree)
+bench_app.command("label")(label)
+bench_app.command("judge-gold")(judge_gold)
 bench_app.add_typer(gold_app, name="gold")
 
 

@@ -26,6 +26,11 @@ def system_prompt(category: Category) -> str:
     return "\n\n".join((parts["task"], rubric, f"Error modes\n{parts['error modes']}", reply))
 
 
+def mode_lines() -> list[str]:
+    """The error modes with their definitions, numbered, in the order of precedence."""
+    return [line for line in _sections()["error modes"].splitlines() if line[:1].isdigit()]
+
+
 def prompt_version() -> str:
     """The name of the prompt and a digest of what it really says, as it stands in judgements."""
     text = _text() + json.dumps(REPLY_SCHEMA)

@@ -1,0 +1,184 @@
+"""Who agrees with whom about runs: judges, their repeats, the executable checks, people, and the known faults of gold runs."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Hashable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import combinations
+from typing import Any, Literal
+
+from scope_ptz.bench.error_modes import ErrorMode
+from scope_ptz.bench.judging.kappa import Agreement, cohen, fleiss
+from scope_ptz.bench.trials import Evaluation, Judgement, Trial
+
+CORRECT, INCORRECT = "correct", "incorrect"
+Kind = Literal["checks", "judge", "person", "gold"]
+
+
+@dataclass(frozen=True, slots=True)
+class Rating:
+    """``mode``: of an incorrect run, None where the rater names none."""
+
+    correct: bool
+    mode: ErrorMode | None = None
+
+    @property
+    def verdict(self) -> str:
+        return CORRECT if self.correct else INCORRECT
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """A run that is rated: ``cluster`` is the task that it is of, whose runs are alike."""
+
+    log: str
+    sample: str
+    cluster: Hashable
+
+
+@dataclass
+class Rater:
+    """``group``: raters that are repeats of one another share it. ``apart``: what was no rating, by its name."""
+
+    name: str
+    kind: Kind
+    group: str
+    ratings: dict[Item, Rating] = field(default_factory=dict)
+    apart: Counter[str] = field(default_factory=Counter)
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two raters about the runs that both rated. ``modes``: of those that both call incorrect and give a mode, the modes."""
+
+    first: str
+    second: str
+    verdicts: Agreement
+    modes: Agreement
+
+
+@dataclass(frozen=True)
+class Group:
+    """Several raters about the runs that all of them rated, and how many runs only some of them did."""
+
+    raters: tuple[str, ...]
+    what: str
+    verdicts: Agreement
+    left_out: int
+
+
+@dataclass(frozen=True)
+class Report:
+    raters: tuple[Rater, ...]
+    pairs: tuple[Pair, ...]
+    groups: tuple[Group, ...]
+
+    def as_dict(self) -> dict[str, Any]:
+        """As JSON data."""
+        return {
+            "raters": [
+                {
+                    "name": rater.name,
+                    "kind": rater.kind,
+                    "rated": len(rater.ratings),
+                    "correct": sum(rating.correct for rating in rater.ratings.values()),
+                    "apart": dict(rater.apart),
+                }
+                for rater in self.raters
+            ],
+            "pairs": [
+                {"first": p.first, "second": p.second, "verdicts": p.verdicts.as_dict(), "modes": p.modes.as_dict()}
+                for p in self.pairs
+            ],
+            "groups": [
+                {"raters": list(g.raters), "what": g.what, "left_out": g.left_out, **g.verdicts.as_dict()} for g in self.groups
+            ],
+        }
+
+
+def agreement(raters: Sequence[Rater], seed: int = 1) -> Report:
+    """All of it. Of a judge's repeats the first stands for it against others; the repeats are compared with one another."""
+    first = {rater.group: rater for rater in reversed(raters)}
+    leading = [rater for rater in raters if first[rater.group] is rater]
+    repeats: dict[str, list[Rater]] = {}
+    for rater in raters:
+        repeats.setdefault(rater.group, []).append(rater)
+    pairs = [_pair(one, two, seed) for one, two in combinations(leading, 2)]
+    pairs += [_pair(one, two, seed) for group in repeats.values() for one, two in combinations(group, 2)]
+    groups = [_group(group, f"repeats of {name}", seed) for name, group in repeats.items() if len(group) > 1]
+    for kind, what in (("judge", "judges"), ("person", "people")):
+        alike = [rater for rater in leading if rater.kind == kind]
+        if len(alike) > 1:
+            groups.append(_group(alike, what, seed))
+    return Report(tuple(raters), tuple(p for p in pairs if p.verdicts.runs), tuple(g for g in groups if g.verdicts.runs))
+
+
+def _pair(one: Rater, two: Rater, seed: int) -> Pair:
+    shared = [item for item in one.ratings if item in two.ratings]
+    both = [(item, one.ratings[item], two.ratings[item]) for item in shared]
+    blamed = [(item, a.mode.value, b.mode.value) for item, a, b in both if a.mode is not None and b.mode is not None]
+    return Pair(
+        one.name,
+        two.name,
+        cohen([a.verdict for _, a, _ in both], [b.verdict for _, _, b in both], [item.cluster for item, _, _ in both], seed),
+        cohen([a for _, a, _ in blamed], [b for _, _, b in blamed], [item.cluster for item, _, _ in blamed], seed),
+    )
+
+
+def _group(raters: Sequence[Rater], what: str, seed: int) -> Group:
+    anyone = {item for rater in raters for item in rater.ratings}
+    shared = [item for item in raters[0].ratings if all(item in rater.ratings for rater in raters)]
+    rows = [[rater.ratings[item].verdict for rater in raters] for item in shared]
+    agreed = fleiss(rows, [item.cluster for item in shared], seed)
+    return Group(tuple(rater.name for rater in raters), what, agreed, len(anyone) - len(shared))
+
+
+def raters_of(evaluations: Iterable[Evaluation]) -> list[Rater]:
+    """Everyone who rated runs of these evaluations: the checks first, then judges, then people."""
+    found = _Found()
+    for evaluation in evaluations:
+        for trial in evaluation.trials:
+            found.take(trial, evaluation.log or evaluation.card.run_id)
+    order = {"checks": 0, "judge": 1, "person": 2, "gold": 3}
+    return sorted(found.raters.values(), key=lambda rater: (order[rater.kind], rater.group, rater.name))
+
+
+class _Found:
+    """Raters as they turn up."""
+
+    def __init__(self) -> None:
+        self.raters: dict[str, Rater] = {}
+
+    def take(self, trial: Trial, log: str) -> None:
+        item = Item(log, trial.sample, trial.task.paraphrase_of or trial.task.id)
+        if trial.scored_by == "checks":
+            self._rate("the checks", "checks", "the checks", item, trial.headline, trial.error_mode)
+        for name, group, judgement in numbered(trial.judgements):
+            self._rate(name, "judge", group, item, judgement.verdict, judgement.error_mode)
+        for label in trial.labels:
+            self._rate(label.by, "person", label.by, item, label.verdict, label.error_mode)
+
+    def _rate(self, name: str, kind: Kind, group: str, item: Item, verdict: str, mode: ErrorMode | None) -> None:
+        rater = self.raters.setdefault(f"{kind}:{name}", Rater(name, kind, f"{kind}:{group}"))
+        rate(rater, item, verdict, mode)
+
+
+def rate(rater: Rater, item: Item, verdict: str, mode: ErrorMode | None) -> None:
+    """Note a rating, or what is none ("unscored", "unparseable", "failed", "unclear", ...), which is counted apart."""
+    if verdict in (CORRECT, INCORRECT):
+        rater.ratings[item] = Rating(verdict == CORRECT, mode)
+    else:
+        rater.apart[verdict] += 1
+
+
+def numbered(judgements: Sequence[Judgement]) -> Iterator[tuple[str, str, Judgement]]:
+    """Judgements of one run with the name of the rater, "gpt-oss-120b #2" for a second judgement, and that of the judge.
+
+    One model under two prompts is two judges.
+    """
+    times = Counter[str]()
+    for judgement in judgements:
+        group = f"{judgement.judge} ({judgement.prompt})"
+        times[group] += 1
+        yield (group if times[group] == 1 else f"{group} #{times[group]}"), group, judgement

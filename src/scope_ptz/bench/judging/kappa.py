@@ -1,0 +1,146 @@
+"""How far raters agree beyond chance: Cohen's kappa for two (1960), Fleiss' for more (1971), with bootstrap intervals.
+
+Point estimates are statsmodels'. Intervals are percentile bootstraps over clusters (Efron and Tibshirani 1993, section 13.3):
+ratings of runs of one task are alike, so that whole tasks are drawn. kappa = (p_o - p_e) / (1 - p_e) has no value where every
+rating is the same (p_e = 1).
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Hashable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+LEVEL = 0.95
+DRAWS = 2000
+_LEAST_DEFINED = 0.5
+"""Of all draws: below this share of draws in which kappa has a value, an interval would be of something else."""
+
+Numbers = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Agreement:
+    """``raw``: share of runs (of pairs of ratings, for more than two raters) that agree; ``kappa``: None where it has no value.
+
+    ``confusion``: of two raters, how often the first said one label and the second another; empty for more.
+    """
+
+    runs: int
+    raters: int
+    raw: float | None
+    kappa: float | None
+    low: float | None = None
+    high: float | None = None
+    confusion: tuple[tuple[str, str, int], ...] = ()
+
+    def as_dict(self) -> dict[str, Any]:
+        """As JSON data."""
+        confusion = [{"first": one, "second": two, "runs": number} for one, two, number in self.confusion]
+        figures = {name: getattr(self, name) for name in ("runs", "raters", "raw", "kappa", "low", "high")}
+        return {**figures, **({"confusion": confusion} if confusion else {})}
+
+
+def cohen(first: Sequence[str], second: Sequence[str], clusters: Sequence[Hashable], seed: int = 1) -> Agreement:
+    """Agreement of two raters. All three sequences have one element a run; ``clusters``: which runs belong together."""
+    if not first:
+        return Agreement(0, 2, None, None)
+    labels = sorted({*first, *second})
+    place = {label: at for at, label in enumerate(labels)}
+    tables = _by_cluster(
+        clusters, [place[a] * len(labels) + place[b] for a, b in zip(first, second, strict=True)], len(labels) ** 2
+    )
+    table = tables.sum(axis=0).reshape(len(labels), len(labels))
+    counted = Counter(zip(first, second, strict=True))
+    return Agreement(
+        runs=len(first),
+        raters=2,
+        raw=float(np.trace(table) / table.sum()),
+        kappa=_statsmodels_cohen(table) if len(labels) > 1 else None,
+        **_interval(tables, lambda sums: cohen_values(sums.reshape(-1, len(labels), len(labels))), seed),
+        confusion=tuple((a, b, number) for (a, b), number in sorted(counted.items())),
+    )
+
+
+def fleiss(ratings: Sequence[Sequence[str]], clusters: Sequence[Hashable], seed: int = 1) -> Agreement:
+    """Agreement of any number of raters. ``ratings``: of each run the labels, as many for every run."""
+    if not ratings:
+        return Agreement(0, 0, None, None)
+    raters = len(ratings[0])
+    labels = sorted({label for row in ratings for label in row})
+    counts = np.array([[row.count(label) for label in labels] for row in map(list, ratings)], dtype=float)
+    if raters < 2 or not (counts.sum(axis=1) == raters).all():
+        raise ValueError("every run needs the same number of ratings, and at least two")
+    pairs = (counts * (counts - 1)).sum(axis=1) / (raters * (raters - 1))
+    rows = np.column_stack([counts, pairs, np.ones(len(ratings))])
+    names = list(dict.fromkeys(clusters))
+    sums = np.zeros((len(names), rows.shape[1]))
+    np.add.at(sums, [names.index(cluster) for cluster in clusters], rows)
+    return Agreement(
+        runs=len(ratings),
+        raters=raters,
+        raw=float(pairs.mean()),
+        kappa=_statsmodels_fleiss(counts) if len(labels) > 1 else None,
+        **_interval(sums, fleiss_values, seed),
+    )
+
+
+def cohen_values(tables: Numbers) -> Numbers:
+    """Cohen's kappa of each table of counts (n, k, k); NaN where it has none."""
+    total = tables.sum(axis=(1, 2))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        observed = np.trace(tables, axis1=1, axis2=2) / total
+        by_chance = (tables.sum(axis=2) * tables.sum(axis=1)).sum(axis=1) / total**2
+        return _beyond_chance(observed, by_chance)
+
+
+def fleiss_values(sums: Numbers) -> Numbers:
+    """Fleiss' kappa of each row (n, k + 2): sums over runs of counts by label, of the share of agreeing pairs, and of runs."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        shares = sums[:, :-2] / sums[:, :-2].sum(axis=1, keepdims=True)
+        return _beyond_chance(sums[:, -2] / sums[:, -1], (shares**2).sum(axis=1))
+
+
+def _beyond_chance(observed: Numbers, by_chance: Numbers) -> Numbers:
+    room = 1 - by_chance
+    return np.where(room > 1e-12, (observed - by_chance) / np.where(room > 1e-12, room, 1.0), np.nan)
+
+
+def _by_cluster(clusters: Sequence[Hashable], cells: Sequence[int], size: int) -> Numbers:
+    """Counts of cells by cluster, (clusters, size)."""
+    known: dict[Hashable, int] = {}
+    rows = [known.setdefault(cluster, len(known)) for cluster in clusters]
+    counts = np.zeros((len(known), size))
+    np.add.at(counts, (rows, list(cells)), 1.0)
+    return counts
+
+
+def _interval(by_cluster: Numbers, value: Callable[[Numbers], Numbers], seed: int) -> dict[str, Any]:
+    """Percentiles of a statistic of the summed rows when clusters are drawn with replacement; None where it cannot be told."""
+    clusters = len(by_cluster)
+    if clusters < 2:
+        return {"low": None, "high": None}
+    drawn = np.random.default_rng(seed).multinomial(clusters, np.full(clusters, 1 / clusters), size=DRAWS)
+    values = value(drawn @ by_cluster)
+    values = values[~np.isnan(values)]
+    if len(values) < DRAWS * _LEAST_DEFINED:
+        return {"low": None, "high": None}
+    tail = (1 - LEVEL) / 2
+    low, high = np.quantile(values, (tail, 1 - tail))
+    return {"low": float(low), "high": float(high)}
+
+
+def _statsmodels_cohen(table: Numbers) -> float:
+    from statsmodels.stats.inter_rater import cohens_kappa  # type: ignore[import-untyped]
+
+    return float(cohens_kappa(table, return_results=False))
+
+
+def _statsmodels_fleiss(counts: Numbers) -> float:
+    from statsmodels.stats.inter_rater import fleiss_kappa
+
+    return float(fleiss_kappa(counts))
