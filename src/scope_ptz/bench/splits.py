@@ -12,12 +12,12 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections import Counter
 from collections.abc import Iterable, Sequence
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from scope_ptz.bench.sampling import stratified
 from scope_ptz.bench.task_files import dump_tasks, load_tasks
 from scope_ptz.bench.tasks import CANARY, Stratum, Task
 from scope_ptz.errors import InputError, OutputError, UnknownNameError
@@ -71,28 +71,9 @@ def _named(tasks: Iterable[Task], path: Path) -> tuple[Task, ...]:
 
 
 def lite(tasks: Sequence[Task], seed: int) -> tuple[Task, ...]:
-    """A tenth of the core tasks: of every category, scene and difficulty, and of every combination of them, as near as may be.
-
-    One task after the other is taken from the group that its category, scene, difficulty and combination lack most.
-    """
-    core = [task for task in tasks if task.stratum == "core"]
-    waiting: dict[tuple[str, ...], list[str]] = {}
-    for task in sorted(core, key=lambda t: hashlib.sha256(f"{seed}:{t.id}".encode()).hexdigest()):
-        waiting.setdefault((task.category, task.scene, task.difficulty), []).append(task.id)
-    share = Counter(mark for task in core for mark in _marks((task.category, task.scene, task.difficulty)))
-    taken, chosen = Counter[tuple[str, ...]](), set[str]()
-    for _ in range(round(len(core) * LITE_SHARE)):
-        group = max(
-            (g for g, ids in waiting.items() if ids),
-            key=lambda g: (round(sum(share[mark] * LITE_SHARE - taken[mark] for mark in _marks(g)), 6), g),
-        )
-        chosen.add(waiting[group].pop())
-        taken.update(_marks(group))
-    return tuple(task for task in core if task.id in chosen)
-
-
-def _marks(group: tuple[str, ...]) -> list[tuple[str, ...]]:
-    return [group, *(("any", part) for part in group)]
+    """A stratified tenth of the core tasks."""
+    core = of_stratum(tasks, "core")
+    return stratified(core, round(len(core) * LITE_SHARE), seed)
 
 
 def of_stratum(tasks: Iterable[Task], stratum: Stratum) -> tuple[Task, ...]:

@@ -8,8 +8,10 @@ from typing import Annotated
 import typer
 
 from scope_ptz.cli.bench_agree import agree
+from scope_ptz.cli.bench_audit import audit_app
 from scope_ptz.cli.bench_browse import browse
 from scope_ptz.cli.bench_build import build
+from scope_ptz.cli.bench_card import card
 from scope_ptz.cli.bench_gold import gold_app
 from scope_ptz.cli.bench_inputs import TasksOption
 from scope_ptz.cli.bench_judge_gold import judge_gold
@@ -35,10 +37,12 @@ def schema() -> None:
 
 bench_app.command("build")(build)
 bench_app.command("browse")(browse)
+bench_app.command("card")(card)
 bench_app.command("agree")(agree)
 bench_app.command("label")(label)
 bench_app.command("judge-gold")(judge_gold)
 bench_app.add_typer(gold_app, name="gold")
+bench_app.add_typer(audit_app, name="audit")
 
 
 @bench_app.command("validate")

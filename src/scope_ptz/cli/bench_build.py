@@ -27,15 +27,21 @@ def build(
     share: Annotated[float, typer.Option(min=0.02, max=1.0, help="Share of the published numbers to make.")] = 1.0,
     seeds: Annotated[list[int] | None, typer.Option("--seeds", min=1, help="Tasks of varied worlds: 7 8 9.")] = None,
     whole: Annotated[bool, typer.Option("--all", help="The whole dataset: every split, its proof and the gold runs.")] = False,
+    card: Annotated[Path | None, typer.Option("--card", help="With --all: where the dataset card goes (Markdown).")] = None,
 ) -> None:
     """Make tasks from the ground truth of scenes. Exit code 1 when the scenes do not yield the numbers wanted."""
     with ending():
         numbers = _numbers(seeds, further)
         quotas = _quotas(share)
+        if card is not None and not whole:
+            raise InputError("A card is made of a whole dataset: give --all with --card, or use 'scope bench card'.")
         if whole:
+            from scope_ptz.cli.bench_card import write_card
             from scope_ptz.cli.bench_dataset import build_dataset
 
             good = build_dataset(scenes_named(scene), out, seed, numbers or UNSEEN_NUMBERS, quotas)
+            if card is not None:
+                write_card(out, card)
             sys.exit(0 if good else FAILED)
         from scope_ptz.bench.authoring.assembly import build as make
         from scope_ptz.bench.task_files import dump_tasks

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import anyio
 
 from scope_ptz.bench.authoring.assembly import build
+from scope_ptz.bench.card import GOLD, PROOF
 from scope_ptz.bench.gold import write_gold
 from scope_ptz.bench.splits import write_manifest, write_splits
 from scope_ptz.bench.unseen import build_unseen
@@ -23,8 +24,6 @@ if TYPE_CHECKING:
 
     from scope_ptz.bench.tasks import Category
     from scope_ptz.world.pack import Scene
-
-GOLD, PROOF = "gold.jsonl.gz", "proof.json"
 
 
 def build_dataset(
@@ -49,7 +48,7 @@ def build_dataset(
     write_gold(gold, written[-1])
     for line in matrix_lines(gold):
         put(line)
-    write_manifest(out, written, scenes.values(), seed=seed, unseen=list(numbers), share="all" if quotas is None else quotas)
+    write_manifest(out, written, scenes.values(), seed=seed, unseen=list(numbers), **({} if quotas is None else {"quotas": quotas}))
     return not any(short) and all(proof.sound for proof in proofs.values())
 
 
