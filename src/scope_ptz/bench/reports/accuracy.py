@@ -1,0 +1,152 @@
+"""Accuracy by category as in the paper's table, with bounds, and the judge's beside the checks'."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+
+from scope_ptz.bench.reports import drawing
+from scope_ptz.bench.reports.judged import judge_name, verdicts
+from scope_ptz.bench.reports.runs import CATEGORY_TITLES, Run, macro, main_task_set, scores_of
+from scope_ptz.bench.reports.sections import Section
+from scope_ptz.bench.reports.tables import Column, Marked, Table, Value, bare
+from scope_ptz.bench.statistics.clustered import Estimate, share
+from scope_ptz.bench.trials import Trial
+
+KIND_WORDS = {
+    "models": "models",
+    "reference": "reference",
+    "blind": "blind baseline",
+    "person": "person",
+}
+INTERVALS = (
+    "In brackets: 95% interval, clustered by viewpoint (linearised variance by cluster, Student's t with one degree of freedom fewer "
+    "than there are viewpoints, Wilson's form at the effective sample size). With a single viewpoint there is none."
+)
+
+
+def accuracy_section(runs: Sequence[Run]) -> Section:
+    """Accuracy of every run that has core tasks, model pairs apart from what is no model pair."""
+    having = [run for run in runs if run.scored]
+    ranked, others = [r for r in having if r.ranked], [r for r in having if not r.ranked]
+    tables = [category_table("accuracy", "Accuracy by category (%): model pairs", ranked, rank=True)]
+    if others:
+        tables.append(category_table("accuracy_not_ranked", "Accuracy by category (%): not ranked", others, rank=False))
+    tables.append(_bounds(having))
+    if any(t.judgements for run in having for t in run.scored):
+        tables.append(_by_judge(having))
+    text = [
+        "Macro is the unweighted mean over categories, which is what the paper calls average; micro is the share of all trials (a trial is "
+        "one run of one task). Both count correct trials among those that infrastructure did not break; an unscored trial is not correct."
+    ]
+    if len({(run.task_set, run.tasks) for run in having}) > 1:
+        text.append(
+            "Not all runs did the same tasks: the best values are marked among runs of exactly the same tasks, and the chart shows the main task set."
+        )
+    if others:
+        text.append(
+            "The grammar planner and ground-truth eyes are no models: they are exact by construction. Runs with either, blind baselines "
+            "and people stand in a table of their own and take no part in any ranking."
+        )
+    main = [run for run in having if run.task_set == main_task_set(runs)]
+    charts = (drawing.accuracy_chart(main),) if main else ()
+    return Section("accuracy", "Accuracy", tuple(text), charts, tuple(tables))
+
+
+def category_table(key: str, title: str, runs: Sequence[Run], *, rank: bool) -> Table:
+    """A row a run, grouped by eyes. Best of its eyes: bold; best of its task set: underlined too."""
+    columns = [Column("run", "Run"), Column("macro", "Macro average", "share"), Column("micro", "Micro average", "share")]
+    columns += [Column(name, words, "share") for name, words in CATEGORY_TITLES.items()]
+    columns.append(Column("tasks", "Tasks", "count"))
+    raw = [(run, [run.macro, run.micro, *(_category(run, name) for name in CATEGORY_TITLES)]) for run in runs]
+    rows, groups = [], {}
+    previous = None
+    for number, (run, values) in enumerate(raw):
+        group = f"{run.evaluation.card.perception.name} ({' '.join(run.task_set)})"
+        if group != previous:
+            groups[number], previous = group, group
+        cells = [_marked(value, index, run, raw) if rank else value for index, value in enumerate(values)]
+        cells[0] = _partial_macro(cells[0], run)
+        rows.append((run.label, *cells, len(run.tasks)))
+    notes = (INTERVALS, "Bold: the best with these eyes; underlined: the best of all on these tasks; only where there is another.")
+    return Table(key, title, tuple(columns), tuple(rows), notes if rank else (INTERVALS,), groups)
+
+
+def _category(run: Run, name: str) -> Estimate | None:
+    return share(scores_of([t for t in run.scored if t.task.category == name]))
+
+
+def _marked(value: Estimate | None, index: int, run: Run, raw: Sequence[tuple[Run, list[Estimate | None]]]) -> Value:
+    if value is None:
+        return None
+    same_tasks = [(r, v[index]) for r, v in raw if r.task_set == run.task_set and r.tasks == run.tasks]
+    alike = [v.value for r, v in same_tasks if v and r.evaluation.card.perception.name == run.evaluation.card.perception.name]
+    every = [v.value for _, v in same_tasks if v]
+    return Marked(value, len(alike) > 1 and value.value >= max(alike), len(every) > 1 and value.value >= max(every))
+
+
+def _partial_macro(value: Value, run: Run) -> Value:
+    """A macro average that lacks categories says so."""
+    number = len({t.task.category for t in run.scored})
+    if number == len(CATEGORY_TITLES):
+        return value
+    marks = value if isinstance(value, Marked) else Marked(bare(value))
+    return replace(marks, note=f"over {number} of {len(CATEGORY_TITLES)} categories")
+
+
+def _bounds(runs: Sequence[Run]) -> Table:
+    columns = (
+        Column("run", "Run"), Column("trials", "Trials", "count"), Column("correct", "Correct", "count"),
+        Column("incorrect", "Incorrect", "count"), Column("unscored", "Unscored", "count"),
+        Column("infrastructure", "Infrastructure", "count"), Column("share", "Correct (%)", "share"),
+        Column("at_least", "At least (%)", "share"), Column("at_most", "At most (%)", "share"),
+    )  # fmt: skip
+    notes = (
+        "Unscored: no check failed, but the answer could not be read. Infrastructure: servers or the camera failed, which says nothing "
+        "about the agent. At least and at most: all of these wrong, or all of them right.",
+    )
+    return Table("outcomes", "What came of the trials, with bounds", columns, tuple(_counted(run) for run in runs), notes)
+
+
+def _counted(run: Run) -> tuple[Value, ...]:
+    found = Counter(t.headline for t in run.headline)
+    total = len(run.headline)
+    ran = total - found["infrastructure"]
+    return (
+        run.label, total, found["correct"], found["incorrect"], found["unscored"], found["infrastructure"],
+        found["correct"] / ran if ran else None, found["correct"] / total, 1 - found["incorrect"] / total,
+    )  # fmt: skip
+
+
+def _by_judge(runs: Sequence[Run]) -> Table:
+    columns = (
+        Column("run", "Run"), Column("judge", "Judge"), Column("judged", "Judged", "count"),
+        Column("unparseable", "Unparseable", "count"), Column("failed", "Judge failed", "count"),
+        Column("macro_judge", "Macro by judge (%)", "share"), Column("macro_checks", "Macro by checks (%)", "share"),
+        Column("agreement", "Verdicts alike (%)", "share"),
+    )  # fmt: skip
+    notes = (
+        "The paper's accuracy is the judge's. Both macros are of the same trials: those that have a verdict of the judge. Unparseable and "
+        "failed judgements are in neither. Trials that the judge itself scored (no check of the answer) are left out of the agreement.",
+    )
+    return Table("judge", "The judge's verdicts beside the checks'", columns, tuple(_judged_row(run) for run in runs), notes)
+
+
+def _judged_row(run: Run) -> tuple[Value, ...]:
+    name = judge_name([run])
+    if name is None:
+        return run.label, None, 0, 0, 0, None, None, None
+    said = verdicts(run.scored, name)
+    states = Counter(judgement.verdict for _, judgement in said)
+    clear = [(t, j.verdict == "correct") for t, j in said if j.verdict in ("correct", "incorrect")]
+    trials = [t for t, _ in clear]
+    own = [(t, right) for t, right in clear if t.scored_by == "checks" and t.headline != "unscored"]
+    alike = sum((t.headline == "correct") == right for t, right in own) / len(own) if own else None
+    by_judge = macro(scores_of(trials, [right for _, right in clear]))
+    return run.label, name, len(said), states["unparseable"], states["failed"], by_judge, macro(scores_of(trials)), alike
+
+
+def share_correct(trials: Sequence[Trial]) -> float | None:
+    """Share of correct runs among those given; None without any."""
+    return sum(t.headline == "correct" for t in trials) / len(trials) if trials else None

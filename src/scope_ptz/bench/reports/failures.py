@@ -1,0 +1,149 @@
+"""Why trials failed: error modes by the rules and by the judge, and what perfect perception would change."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from statistics import fmean
+
+from scope_ptz.bench.error_modes import ErrorMode
+from scope_ptz.bench.reports import drawing
+from scope_ptz.bench.reports.comparing import Comparison, compare
+from scope_ptz.bench.reports.judged import judge_name, verdicts
+from scope_ptz.bench.reports.runs import Run, macro, scores_of
+from scope_ptz.bench.reports.sections import Section
+from scope_ptz.bench.reports.tables import Column, Table, Value
+from scope_ptz.bench.statistics.clustered import Estimate
+from scope_ptz.bench.trials import Judgement, Trial
+
+MODE_TITLES = {
+    ErrorMode.VLM_QUERY: "VLM query", ErrorMode.VLM_COUNTING: "VLM counting", ErrorMode.REASONING: "Reasoning",
+    ErrorMode.HALLUCINATION: "Hallucination", ErrorMode.LACK_OF_TOOL_CALL: "Lack of tool call", ErrorMode.TOOL_ARGS: "Tool args",
+    ErrorMode.SCOPE: "Scope", ErrorMode.TOOL_ROUTING: "Tool routing",
+}  # fmt: skip
+"""In the order of the paper's table."""
+PERCEPTION = frozenset({ErrorMode.VLM_QUERY, ErrorMode.VLM_COUNTING})
+
+
+def by_rules(run: Run) -> Counter[ErrorMode]:
+    """Failed trials by mode, as the rules say."""
+    return Counter(t.error_mode for t in run.scored if t.error_mode is not None)
+
+
+def by_judge(run: Run, judge: str) -> Counter[ErrorMode]:
+    """Trials that a judge failed, by the mode that it named."""
+    said = [j for _, j in verdicts(run.scored, judge) if j.verdict == "incorrect"]
+    return Counter(j.error_mode for j in said if j.error_mode is not None)
+
+
+def error_section(runs: Sequence[Run]) -> Section:
+    """Error modes of runs of the main task set."""
+    rules = {run.label: by_rules(run) for run in runs}
+    tables = [_mode_table("error_modes", "Failed trials by error mode, by the rules", rules)]
+    charts = [drawing.mode_chart("error_modes", "Failed trials by error mode, by the rules", runs, rules, {run.label: len(run.scored) for run in runs}, MODE_TITLES)]
+    judge = judge_name(runs)
+    if judge is not None:
+        said = {run.label: by_judge(run, judge) for run in runs if verdicts(run.scored, judge)}
+        judged = [run for run in runs if run.label in said]
+        title = f"Failed trials by error mode, by the judge ({judge})"
+        tables.append(_mode_table("error_modes_judge", title, said))
+        charts.append(drawing.mode_chart("error_modes_judge", title, judged, said, {run.label: len(_clear(run, judge)) for run in judged}, MODE_TITLES))
+    text = (
+        "Every failed trial has exactly one error mode: by rules in a published order, and beside it the one that the judge named for the "
+        "trials that it found wrong." + ("" if judge else " No judge took part: its modes are not measured."),
+    )
+    return Section("errors", "Error modes", text, tuple(charts), tuple(tables))
+
+
+def _mode_table(key: str, title: str, counted: Mapping[str, Counter[ErrorMode]]) -> Table:
+    columns = [Column("run", "Run"), *(Column(mode.value, words, "count") for mode, words in MODE_TITLES.items())]
+    columns += [Column("failed", "All", "count"), Column("perception", "VLM query and counting (%)", "share")]
+    rows = tuple(
+        (
+            label,
+            *(found[mode] for mode in MODE_TITLES),
+            found.total(),
+            sum(found[m] for m in PERCEPTION) / found.total() if found else None,
+        )
+        for label, found in counted.items()
+    )
+    return Table(key, title, tuple(columns), rows)
+
+
+def oracle_section(ranked: Sequence[Run], every: Sequence[Run]) -> Section:
+    """The oracle setting in both ways. ``every``: all runs, among which those with ground-truth eyes are looked for."""
+    judge = judge_name(ranked)
+    rows = [(run, _by_rules_oracle(run), _judge_oracle(run, judge), _rerun(run, every)) for run in ranked]
+    table_rows: list[tuple[Value, ...]] = [_oracle_row(run, rules, judged, again) for run, rules, judged, again in rows]
+    if len(table_rows) > 1:
+        table_rows.append(_means(table_rows))
+    columns = (
+        Column("run", "Run"), Column("macro_judge", "Macro by judge (%)", "share"),
+        Column("oracle_judge", "Judge's VLM failures as right (%)", "share"),
+        Column("perception_judge", "VLM's share of errors, judge (%)", "share"),
+        Column("macro_checks", "Macro by checks (%)", "share"), Column("oracle_rules", "Rules' VLM failures as right (%)", "share"),
+        Column("perception_rules", "VLM's share of errors, rules (%)", "share"),
+        Column("macro_rerun", "Run again with ground-truth eyes (%)", "share"),
+        Column("gain_rerun", "Gain, paired (points)", "points"),
+    )  # fmt: skip
+    text = (
+        "How good the pairs would be if perception never failed. As in the paper: failures that the judge attributes to VLM counting or "
+        "VLM query are counted as right; the same with the rules' error modes; and, where such a log was given, the same planner really "
+        "run again with ground-truth eyes, on the tasks that both runs did. Relabelling cannot know whether the planner would have gone "
+        "on rightly; the run can.",
+    )
+    table = Table("oracle", "The oracle setting", columns, tuple(table_rows))
+    charts = (drawing.oracle_chart(table),) if rows else ()
+    return Section("oracle", "If perception never failed", text, charts, (table,))
+
+
+Oracle = tuple[Estimate | None, Estimate | None, float | None]
+"""Macro as it is, macro with perception's failures as right, and perception's share of all errors."""
+
+
+def _by_rules_oracle(run: Run) -> Oracle:
+    right = [t.headline == "correct" or t.error_mode in PERCEPTION for t in run.scored]
+    failed = by_rules(run)
+    return run.macro, macro(scores_of(run.scored, right)), _perception_share(failed)
+
+
+def _judge_oracle(run: Run, judge: str | None) -> Oracle:
+    said = _clear(run, judge)
+    trials = [t for t, _ in said]
+    plain = macro(scores_of(trials, [j.verdict == "correct" for _, j in said]))
+    lifted = macro(scores_of(trials, [j.verdict == "correct" or j.error_mode in PERCEPTION for _, j in said]))
+    return plain, lifted, _perception_share(by_judge(run, judge) if judge else Counter())
+
+
+def _clear(run: Run, judge: str | None) -> list[tuple[Trial, Judgement]]:
+    """Trials on which the judge gave a verdict."""
+    return [(t, j) for t, j in verdicts(run.scored, judge or "") if j.verdict in ("correct", "incorrect")]
+
+
+def _perception_share(failed: Counter[ErrorMode]) -> float | None:
+    return sum(failed[mode] for mode in PERCEPTION) / failed.total() if failed else None
+
+
+def _rerun(run: Run, every: Sequence[Run]) -> tuple[Run, Comparison | None] | None:
+    """The run of the same planner with ground-truth eyes over the same task set, compared with this one."""
+    planner, _, agent, variant = run.system
+    for other in every:
+        card = other.evaluation.card
+        same = (card.planner.name, card.agent, card.variant) == (planner, agent, variant) and other.task_set == run.task_set
+        if same and card.perception.deterministic and not card.planner.deterministic:
+            return other, compare(other, run)
+    return None
+
+
+def _oracle_row(run: Run, rules: Oracle, judged: Oracle, again: tuple[Run, Comparison | None] | None) -> tuple[Value, ...]:
+    gain = again[1].macro if again and again[1] else None
+    return run.label, judged[0], judged[1], judged[2], rules[0], rules[1], rules[2], again[0].macro if again else None, gain
+
+
+def _means(rows: Sequence[tuple[Value, ...]]) -> tuple[Value, ...]:
+    """Mean over pairs, as the paper gives it; of the pairs that have a value."""
+    means: list[Value] = ["Mean of the pairs"]
+    for column in list(zip(*rows, strict=True))[1:]:
+        known = [v.value if isinstance(v, Estimate) else v for v in column if isinstance(v, Estimate | float)]
+        means.append(fmean(known) if known else None)
+    return tuple(means)

@@ -1,0 +1,181 @@
+"""The paper's published figures: a panel of their own, marked as the paper's."""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.resources import files
+
+from pydantic import BaseModel, ConfigDict
+
+from scope_ptz.bench.reports.runs import CATEGORY_TITLES
+from scope_ptz.bench.reports.sections import Section
+from scope_ptz.bench.reports.tables import Column, Marked, Table, Value
+
+
+class _Row(BaseModel):
+    """``line``: of the paper's LaTeX source."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+    line: int
+
+
+class PaperSource(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+    title: str
+    doi: str
+    judge: str
+
+
+class PaperCategory(_Row):
+    category: str
+    tasks: int
+
+
+class PaperMode(_Row):
+    mode: str
+    description: str
+
+
+class PaperModel(_Row):
+    title: str
+    name: str
+    role: str
+    size_b: float
+    active_b: float
+    precision: str
+
+
+class PaperAccuracy(_Row):
+    """Percent. ``planner`` and ``eyes`` are names of the registry."""
+
+    planner: str
+    eyes: str
+    average: float
+    comparative: float
+    counting: float
+    descriptor: float
+    location: float
+    multi_step_command: float
+    multi_step_reasoning: float
+    ocr: float
+    single_call: float
+
+    def category(self, name: str) -> float:
+        return float(getattr(self, name))
+
+
+class PaperLatency(_Row):
+    role: str
+    name: str
+    median_s: float
+    tool_calls: float
+
+
+class PaperFigure(_Row):
+    what: str
+    value: str
+
+
+class Paper(BaseModel):
+    """All tables of the paper that hold figures."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+    paper: PaperSource
+    categories: tuple[PaperCategory, ...]
+    error_modes: tuple[PaperMode, ...]
+    models: tuple[PaperModel, ...]
+    accuracy: tuple[PaperAccuracy, ...]
+    latency: tuple[PaperLatency, ...]
+    figures: tuple[PaperFigure, ...]
+
+    def micro(self, row: PaperAccuracy) -> float:
+        """Micro average in percent, computed from a row's shares and the numbers of tasks; the paper gives only the macro."""
+        right = sum(round(row.category(c.category) * c.tasks / 100) for c in self.categories)
+        return 100 * right / sum(c.tasks for c in self.categories)
+
+
+@cache
+def load_paper() -> Paper:
+    """The figures that come with the package."""
+    import yaml
+
+    text = files("scope_ptz").joinpath("data", "paper.yaml").read_text(encoding="utf-8")
+    return Paper.model_validate(yaml.safe_load(text))
+
+
+def paper_section() -> Section:
+    """The panel."""
+    paper = load_paper()
+    text = (
+        f"Everything in this panel is copied from the paper ({paper.paper.title}, doi {paper.paper.doi}); nothing in it was measured here. "
+        f"It stands for orientation and is not comparable task by task: the paper's 536 tasks, scenes and servers are others, and its "
+        f"verdicts are those of a judge ({paper.paper.judge}), not of checks.",
+    )
+    tables = (_accuracy(paper), _latency(paper), _figures(paper), _models(paper), _categories(paper), _modes(paper))
+    return Section(
+        "paper", "The paper's published figures", text, (), tables, frozenset({"paper_models", "paper_categories", "paper_modes"})
+    )
+
+
+def _accuracy(paper: Paper) -> Table:
+    columns = [Column("planner", "Planner"), *(Column(n, words, "share") for n, words in CATEGORY_TITLES.items())]
+    columns += [Column("average", "Average (macro)", "share"), Column("micro", "Micro, computed from these", "share")]
+    columns.append(Column("line", "Line", "count"))
+    groups, rows, previous = {}, [], None
+    for number, row in enumerate(paper.accuracy):
+        if row.eyes != previous:
+            groups[number] = previous = row.eyes
+        own = [other for other in paper.accuracy if other.eyes == row.eyes]
+        names = (*CATEGORY_TITLES, "average")
+        cells: list[Value] = [
+            Marked(
+                float(getattr(row, name)) / 100,
+                best=getattr(row, name) >= max(getattr(other, name) for other in own),
+                best_of_all=getattr(row, name) >= max(getattr(other, name) for other in paper.accuracy),
+            )
+            for name in names
+        ]
+        rows.append((row.planner, *cells, paper.micro(row) / 100, row.line))
+    notes = (
+        "Percent. The paper's average is the macro average. 36.5 (qwen3-next-80b-a3b with moondream2-4bit, comparative) is no share of 62.",
+    )
+    return Table("paper_accuracy", "The paper: accuracy by category", tuple(columns), tuple(rows), notes, groups)
+
+
+def _latency(paper: Paper) -> Table:
+    columns = (
+        Column("model", "Model"), Column("role", "Role"), Column("median_s", "Median latency (s)", "seconds"),
+        Column("tool_calls", "Tool calls, mean", "number"), Column("line", "Line", "count"),
+    )  # fmt: skip
+    rows = tuple((row.name, row.role, row.median_s, row.tool_calls, row.line) for row in paper.latency)
+    notes = ("Inference latency in its serving set-up, partly under contention, as its own limitations say.",)
+    return Table("paper_latency", "The paper: latency and tool calls", columns, rows, notes)
+
+
+def _figures(paper: Paper) -> Table:
+    columns = (Column("what", "Figure"), Column("value", "Value"), Column("line", "Line", "count"))
+    rows = tuple((figure.what, figure.value, figure.line) for figure in paper.figures)
+    return Table("paper_figures", "The paper: further figures", columns, rows)
+
+
+def _models(paper: Paper) -> Table:
+    columns = (
+        Column("title", "Model"), Column("name", "Name in the registry"), Column("role", "Role"),
+        Column("size_b", "Parameters (10^9)", "number"), Column("active_b", "Active (10^9)", "number"),
+        Column("precision", "Precision"), Column("line", "Line", "count"),
+    )  # fmt: skip
+    rows = tuple((m.title, m.name, m.role, m.size_b, m.active_b, m.precision, m.line) for m in paper.models)
+    return Table("paper_models", "The paper: models", columns, rows)
+
+
+def _categories(paper: Paper) -> Table:
+    columns = (Column("category", "Category"), Column("tasks", "Tasks", "count"), Column("line", "Line", "count"))
+    rows = tuple((CATEGORY_TITLES[c.category], c.tasks, c.line) for c in paper.categories)
+    return Table("paper_categories", "The paper: tasks by category", columns, rows)
+
+
+def _modes(paper: Paper) -> Table:
+    columns = (Column("mode", "Error mode"), Column("description", "Meaning"), Column("line", "Line", "count"))
+    return Table(
+        "paper_modes", "The paper: error modes", columns, tuple((m.mode, m.description, m.line) for m in paper.error_modes)
+    )

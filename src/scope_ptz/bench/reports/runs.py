@@ -1,0 +1,199 @@
+"""Runs as a report sees them: labelled, joined with what the registry knows of their models, and grouped by what they may be
+compared with."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import PurePath
+from typing import Literal
+
+import numpy as np
+
+from scope_ptz.bench.statistics.clustered import Estimate, Scores, macro_weights, share
+from scope_ptz.bench.trials import Evaluation, ModelCard, Trial
+from scope_ptz.errors import UnknownNameError
+from scope_ptz.registry import Model, Registry
+
+Kind = Literal["models", "reference", "blind", "person"]
+"""``reference``: the grammar planner or ground-truth eyes took part; ``blind``: nothing was seen; ``person``: a human baseline."""
+HEADLINE_STRATA = ("core", "imported")
+FULL_PRECISION = ("fp32", "fp16", "bf16")
+CATEGORY_TITLES = {
+    "comparative": "Comparative", "counting": "Counting", "descriptor": "Descriptor", "location": "Location",
+    "multi_step_command": "Multi-step command", "multi_step_reasoning": "Multi-step reasoning", "ocr": "OCR",
+    "single_call": "Single call",
+}  # fmt: skip
+"""In the order of the paper's table."""
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One evaluation; a trial is one run of one task in it. ``label``: how the report calls it, unlike any other; ``planner`` and ``eyes``: None where the registry has
+    no such model."""
+
+    number: int
+    evaluation: Evaluation
+    label: str
+    planner: Model | None
+    eyes: Model | None
+
+    @property
+    def kind(self) -> Kind:
+        card = self.evaluation.card
+        if card.agent == "human":
+            return "person"
+        if "blind" in (card.perception.name, card.variant):
+            return "blind"
+        return "models" if card.ranked else "reference"
+
+    @property
+    def ranked(self) -> bool:
+        return self.kind == "models"
+
+    @property
+    def system(self) -> tuple[str, str, str, str]:
+        """What was run, whatever the tasks: planner, eyes, agent, variant."""
+        card = self.evaluation.card
+        return card.planner.name, card.perception.name, card.agent, card.variant
+
+    @property
+    def task_set(self) -> tuple[str, str]:
+        """Dataset and split: runs of one task set may be compared."""
+        return self.evaluation.card.dataset, split_name(self.evaluation.card.split)
+
+    @property
+    def memory_gb(self) -> float | None:
+        """Computed memory to serve both models at the precision that the registry gives; one model that is both counts once."""
+        if self.planner is None or self.eyes is None:
+            return None
+        return sum(model.memory_for() for model in {m.name: m for m in (self.planner, self.eyes)}.values())
+
+    @cached_property
+    def headline(self) -> tuple[Trial, ...]:
+        """Trials of core tasks (or of an imported file's): what accuracy is told of."""
+        return tuple(t for t in self.evaluation.trials if t.task.stratum in HEADLINE_STRATA)
+
+    @cached_property
+    def scored(self) -> tuple[Trial, ...]:
+        """Of these, all that infrastructure did not break; unscored ones are among them and count as not correct."""
+        return tuple(t for t in self.headline if t.headline != "infrastructure")
+
+    @cached_property
+    def tasks(self) -> frozenset[str]:
+        """Ids of the tasks that its headline is told of."""
+        return frozenset(t.task.id for t in self.headline)
+
+    @cached_property
+    def macro(self) -> Estimate | None:
+        """Unweighted mean over the categories that occur."""
+        return macro(scores_of(self.scored)) if self.scored else None
+
+    @cached_property
+    def micro(self) -> Estimate | None:
+        return share(scores_of(self.scored))
+
+
+def scores_of(trials: Sequence[Trial], right: Iterable[bool] | None = None) -> Scores:
+    """Outcomes by category and viewpoint; ``right`` replaces the headline."""
+    values = [t.headline == "correct" for t in trials] if right is None else list(right)
+    return Scores(np.array(values, dtype=np.float64), tuple(t.task.category for t in trials), tuple(viewpoint(t) for t in trials))
+
+
+def macro(scores: Scores) -> Estimate | None:
+    """Macro accuracy with its interval; None without data."""
+    return share(scores, macro_weights(scores)) if len(scores.values) else None
+
+
+def viewpoint(trial: Trial) -> str:
+    """What trials are clustered by."""
+    return f"{trial.task.scene}/{trial.task.viewpoint}"
+
+
+def collect(evaluations: Sequence[Evaluation], registry: Registry) -> tuple[Run, ...]:
+    """Runs in the order of the paper's table: by eyes, then by the planner's size; other splits and reference runs last."""
+    wanted = [_label(e) for e in evaluations]
+    times, seen = Counter(wanted), Counter[str]()
+    runs = []
+    for evaluation, label in zip(evaluations, wanted, strict=True):
+        seen[label] += 1
+        unlike = f"{label} #{seen[label]}" if times[label] > 1 else label
+        card = evaluation.card
+        runs.append(Run(0, evaluation, unlike, _known(card.planner, registry), _known(card.perception, registry)))
+    ordered = sorted(runs, key=_order)
+    return tuple(Run(n, run.evaluation, run.label, run.planner, run.eyes) for n, run in enumerate(ordered, 1))
+
+
+def _label(evaluation: Evaluation) -> str:
+    card = evaluation.card
+    parts = [card.pair]
+    parts += [f"agent {card.agent}"] if card.agent != "scope" else []
+    parts += [card.variant] if card.variant else []
+    parts += [f"{split_name(card.split)} split"] if card.split != "core" else []
+    return ", ".join(parts)
+
+
+def split_name(split: str) -> str:
+    """A split as reports call it: of a file its name, not where it lay."""
+    return PurePath(split.replace("\\", "/")).name or split
+
+
+def _known(card: ModelCard, registry: Registry) -> Model | None:
+    try:
+        return registry.model(card.registry) if card.registry else None
+    except UnknownNameError:
+        return None
+
+
+def _order(run: Run) -> tuple[bool, bool, str, str, float, str, str]:
+    card = run.evaluation.card
+    size = run.planner.size_b if run.planner else 0.0
+    return not run.ranked, card.split != "core", card.split, card.perception.name, size, card.planner.name, run.label
+
+
+def main_task_set(runs: Sequence[Run]) -> tuple[str, str] | None:
+    """The task set with the most ranked runs that have headline tasks; of equals the one with more trials."""
+    having = [run for run in runs if run.headline]
+    weight: dict[tuple[str, str], tuple[int, int]] = {}
+    for run in having:
+        ranked, trials = weight.get(run.task_set, (0, 0))
+        weight[run.task_set] = (ranked + run.ranked, trials + len(run.headline))
+    return max(weight, key=lambda key: weight[key]) if weight else None
+
+
+def primary(runs: Sequence[Run]) -> tuple[Run, ...]:
+    """One run a system: the one with the most headline tasks scored, of equals the first."""
+    best: dict[tuple[str, str, str, str], Run] = {}
+    for run in runs:
+        if run.system not in best or len(run.scored) > len(best[run.system].scored):
+            best[run.system] = run
+    return tuple(run for run in runs if best[run.system] is run)
+
+
+def pairs_of(main: Sequence[Run]) -> tuple[Run, ...]:
+    """The ranked systems of a task set; a variant of a pair that is there as it is belongs to the sensitivity section."""
+    ranked = [run for run in main if run.ranked]
+    plain = {run.system[:3] for run in ranked if not run.system[3]}
+    return primary([run for run in ranked if not run.system[3] or run.system[:3] not in plain])
+
+
+def on_the_same_tasks(ranked: Sequence[Run]) -> tuple[Run, ...]:
+    """The runs over the set of tasks that most of them did, of equals the larger set: means over others are not comparable."""
+    if not ranked:
+        return ()
+    counted = Counter(run.tasks for run in ranked)
+    common = max(counted, key=lambda tasks: (counted[tasks], len(tasks)))
+    return tuple(run for run in ranked if run.tasks == common)
+
+
+def timed(run: Run, runs: Sequence[Run]) -> Run:
+    """The run from which a system's latency is taken: one without contention if there is any, of these the longest."""
+    alone = [other for other in runs if other.system == run.system and not other.evaluation.card.contended and other.headline]
+    return max(alone, key=lambda other: len(other.headline)) if alone else run
+
+
+def is_mixture(model: Model) -> bool:
+    """Mixture of experts: fewer parameters are active than there are."""
+    return model.active_b < model.size_b

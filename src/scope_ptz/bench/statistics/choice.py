@@ -1,0 +1,14 @@
+"""Choosing among several goods at once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+
+def undominated(points: Sequence[tuple[float, ...]]) -> list[bool]:
+    """Which points are on the Pareto front, where less of every coordinate is better: no other is as good in all and better in one."""
+    return [not any(_dominates(other, point) for other in points) for point in points]
+
+
+def _dominates(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
+    return all(a <= b for a, b in zip(one, other, strict=True)) and one != other

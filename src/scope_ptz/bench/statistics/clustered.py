@@ -1,0 +1,165 @@
+"""Means over strata with intervals that know that tasks of one viewpoint are alike.
+
+An estimate is a weighted sum of stratum means, theta = sum_k w_k mean_k: with w_k = 1/K the macro average, with a single stratum the
+micro average, with weights +1 and -1 a contrast. Its variance is that of the linearised estimate, summed by cluster (Liang and Zeger
+1986), times G/(G-1); quantiles are Student's with G-1 degrees of freedom (Cameron and Miller 2015, sections II.A and VI.D).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass
+from math import sqrt
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import stdtr, stdtrit
+
+LEVEL = 0.95
+Numbers = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Scores:
+    """Outcomes with what they are grouped by, all of length n: ``values`` (n,) float, ``strata`` and ``clusters`` any labels."""
+
+    values: Numbers
+    strata: tuple[Hashable, ...]
+    clusters: tuple[Hashable, ...]
+
+    def __post_init__(self) -> None:
+        if not len(self.values) == len(self.strata) == len(self.clusters):
+            raise ValueError("values, strata and clusters differ in length")
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """``low`` and ``high``: the 95% interval, None where there is only one cluster. ``se``: standard error; ``n``: outcomes."""
+
+    value: float
+    low: float | None
+    high: float | None
+    se: float | None
+    n: int
+    clusters: int
+
+
+def macro_weights(scores: Scores) -> dict[Hashable, float]:
+    """Every stratum that occurs counts the same."""
+    present = set(scores.strata)
+    return {stratum: 1.0 / len(present) for stratum in present}
+
+
+def pooled(scores: Scores) -> Scores:
+    """The same outcomes in one stratum."""
+    return Scores(scores.values, ("all",) * len(scores.values), scores.clusters)
+
+
+def weighted_mean(scores: Scores, weights: Mapping[Any, float]) -> float:
+    """Sum of weight times stratum mean. Raises ``ValueError`` when a stratum of ``weights`` has no outcome."""
+    codes, share = _coded(scores, weights)
+    return float(np.sum(share[codes] * scores.values))
+
+
+def cluster_variance(scores: Scores, weights: Mapping[Any, float]) -> float | None:
+    """Variance of ``weighted_mean`` over clusters: G/(G-1) sum_g u_g^2, where u_g is the sum over the cluster's outcomes of
+    w_k/n_k (x - mean_k). None with fewer than two clusters.
+
+    With one stratum it is the CR1 variance of a regression on a constant.
+    """
+    labels, index = _factorise(scores.clusters)
+    if len(labels) < 2:
+        return None
+    residuals, share = _residuals(scores, weights)
+    sums = np.bincount(index, weights=residuals * share, minlength=len(labels))
+    return float(len(labels) / (len(labels) - 1) * np.sum(sums**2))
+
+
+def independent_variance(scores: Scores, weights: Mapping[Any, float]) -> float:
+    """Variance of ``weighted_mean`` if all outcomes were independent: sum_k w_k^2 s_k^2 / n_k."""
+    residuals, share = _residuals(scores, weights)
+    return float(np.sum((residuals * share) ** 2))
+
+
+def standard_error(scores: Scores, weights: Mapping[Any, float]) -> float | None:
+    """Root of the larger of the two variances: a few clusters that agree by chance must not feign precision."""
+    clustered = cluster_variance(scores, weights)
+    return None if clustered is None else sqrt(max(clustered, independent_variance(scores, weights)))
+
+
+def share(scores: Scores, weights: Mapping[Any, float] | None = None) -> Estimate | None:
+    """A share in [0, 1] with a Wilson interval at the effective sample size p(1-p)/se^2 (Dean and Pagano 2015); None without data.
+
+    ``weights``: of strata; none means that all outcomes are pooled. Where every outcome is alike, so that the variance is 0, the
+    effective size is the number of outcomes.
+    """
+    if not len(scores.values):
+        return None
+    scores, weights = (pooled(scores), {"all": 1.0}) if weights is None else (scores, weights)
+    value, se, clusters = weighted_mean(scores, weights), standard_error(scores, weights), len(set(scores.clusters))
+    low = high = None
+    if se is not None:
+        size = value * (1 - value) / se**2 if se > 0 else float(len(scores.values))
+        low, high = wilson(value, size, t_quantile(clusters))
+    return Estimate(value, low, high, se, len(scores.values), clusters)
+
+
+def difference(scores: Scores, weights: Mapping[Any, float] | None = None) -> Estimate | None:
+    """A mean difference or contrast with the interval value +- t se; None without data."""
+    if not len(scores.values):
+        return None
+    scores, weights = (pooled(scores), {"all": 1.0}) if weights is None else (scores, weights)
+    value, se, clusters = weighted_mean(scores, weights), standard_error(scores, weights), len(set(scores.clusters))
+    half = None if se is None else se * t_quantile(clusters)
+    low, high = (None, None) if half is None else (value - half, value + half)
+    return Estimate(value, low, high, se, len(scores.values), clusters)
+
+
+def wilson(value: float, size: float, quantile: float) -> tuple[float, float]:
+    """Wilson's interval (1927) of a proportion ``value`` among ``size``, which need not be whole. Within [0, 1]."""
+    square = quantile**2 / size
+    centre = (value + square / 2) / (1 + square)
+    half = quantile / (1 + square) * sqrt(max(0.0, value * (1 - value)) / size + square / (4 * size))
+    return max(0.0, centre - half), min(1.0, centre + half)
+
+
+def t_quantile(clusters: int, level: float = LEVEL) -> float:
+    """Two-sided quantile of Student's t with one degree of freedom fewer than there are clusters."""
+    return float(stdtrit(clusters - 1, 0.5 + level / 2))
+
+
+def two_sided_p(estimate: Estimate) -> float | None:
+    """P value of the hypothesis that a difference is 0; None where there is no standard error."""
+    if estimate.se is None:
+        return None
+    if estimate.se == 0:
+        return 1.0 if estimate.value == 0 else 0.0
+    return float(2 * stdtr(estimate.clusters - 1, -abs(estimate.value) / estimate.se))
+
+
+def detectable(se: float, clusters: int, power: float = 0.8, level: float = LEVEL) -> float:
+    """The smallest true difference that a two-sided test finds with the given power: (t_(1-a/2) + t_power) se (Bloom 1995)."""
+    return se * float(stdtrit(clusters - 1, 0.5 + level / 2) + stdtrit(clusters - 1, power))
+
+
+def _factorise(labels: Sequence[Hashable]) -> tuple[list[Hashable], NDArray[np.intp]]:
+    known: dict[Hashable, int] = {}
+    codes = np.array([known.setdefault(label, len(known)) for label in labels], dtype=np.intp)
+    return list(known), codes
+
+
+def _coded(scores: Scores, weights: Mapping[Any, float]) -> tuple[NDArray[np.intp], Numbers]:
+    """The stratum of each outcome, (n,), and each stratum's weight over its number of outcomes."""
+    strata, codes = _factorise(scores.strata)
+    if absent := set(weights) - set(strata):
+        raise ValueError(f"no outcome in {', '.join(sorted(map(str, absent)))}")
+    counts = np.bincount(codes, minlength=len(strata))
+    return codes, np.array([weights.get(stratum, 0.0) / n for stratum, n in zip(strata, counts, strict=True)])
+
+
+def _residuals(scores: Scores, weights: Mapping[Any, float]) -> tuple[Numbers, Numbers]:
+    """Distance of each outcome from its stratum's mean, and its share in the estimate, both (n,)."""
+    codes, weight = _coded(scores, weights)
+    means = np.bincount(codes, weights=scores.values) / np.bincount(codes)
+    return scores.values - means[codes], weight[codes]

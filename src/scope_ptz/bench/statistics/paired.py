@@ -1,0 +1,57 @@
+"""Two runs over the same tasks: exact test, bootstrap over viewpoints, and what to do about many tests."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+from math import comb
+
+import numpy as np
+
+from scope_ptz.bench.statistics.clustered import Scores
+
+DRAWS = 10_000
+
+
+def mcnemar_exact(only_first: int, only_second: int) -> float:
+    """Two-sided exact p value of McNemar's test (1947): of the tasks on which two runs differ, as many favour either by chance.
+
+    min(1, 2 P(X <= min(b, c))) with X binomial(b + c, 1/2). With repeats it is the sign test of the tasks' mean differences.
+    """
+    differing = only_first + only_second
+    tail = sum(comb(differing, k) for k in range(min(only_first, only_second) + 1))
+    return min(1.0, float(2 * tail / 2**differing))
+
+
+def holm(p_values: Sequence[float | None]) -> list[float | None]:
+    """Holm's step-down adjustment (1979). None stays None and is no test."""
+    tests = sorted((p, index) for index, p in enumerate(p_values) if p is not None)
+    adjusted: list[float | None] = [None] * len(p_values)
+    highest = 0.0
+    for rank, (p, index) in enumerate(tests):
+        highest = max(highest, min(1.0, (len(tests) - rank) * p))
+        adjusted[index] = highest
+    return adjusted
+
+
+def cluster_bootstrap(scores: Scores, *, seed: int = 0, draws: int = DRAWS) -> tuple[float, float] | None:
+    """95% percentile interval of the macro mean of paired differences, whole clusters drawn with replacement (Field and Welsh 2007).
+
+    ``scores.values``: one difference a task. Strata that a draw lacks are left out of its mean. None with fewer than two clusters.
+    """
+    clusters, strata = _codes(scores.clusters), _codes(scores.strata)
+    size = (max(clusters) + 1, max(strata) + 1) if clusters else (0, 0)
+    if size[0] < 2:
+        return None
+    sums, counts = np.zeros(size), np.zeros(size)
+    np.add.at(sums, (clusters, strata), scores.values)
+    np.add.at(counts, (clusters, strata), 1.0)
+    times = np.random.default_rng(seed).multinomial(size[0], np.full(size[0], 1 / size[0]), size=draws)
+    drawn = times @ counts
+    means = np.divide(times @ sums, drawn, out=np.full(drawn.shape, np.nan), where=drawn > 0)
+    low, high = np.quantile(np.nanmean(means, axis=1), (0.025, 0.975))
+    return float(low), float(high)
+
+
+def _codes(labels: Sequence[Hashable]) -> list[int]:
+    known: dict[Hashable, int] = {}
+    return [known.setdefault(label, len(known)) for label in labels]
