@@ -82,7 +82,7 @@ def _what(data: Dataset) -> Iterator[str]:
     )
     yield "## How it was made"
     yield (
-        "The instructions, the scenes and the programs are the project's own. No language model takes part and no expected value is "
+        "The instructions, the scenes and the programs are the project's own. No language model takes part, no expected value is "
         "typed by hand: a program reads the ground truth of views of the scenes, drafts what can be asked of them, and keeps what "
         "is so beyond doubt, at poses 0.5 degrees and 3% of zoom around and with visibility thresholds 30% lower and higher. "
         "[The benchmark](benchmark.md) has the rules. The same scenes and seed give the same bytes:"
@@ -167,8 +167,9 @@ def _gold(data: Dataset) -> Iterator[str]:
     yield "## Error modes"
     yield (
         f"{result.total} reference runs with one known fault each (`scope bench gold check`): {result.named} are named as what "
-        f"they are, {result.accepted} are judged correct (false-accept rate {result.false_accept_rate:.1%}). The faults were put in by "
-        "rules, so this proves that the rules for error modes are consistent, not that people would agree with them on every run."
+        f"they are, {result.accepted} are judged correct (false-accept rate {result.false_accept_rate:.1%}). The faults were put "
+        "in by rules, so this proves that the rules for error modes are consistent, not that people would agree with them on "
+        "every run."
     )
     rows = [(m.value, *(result.cells[m.value, told] or "·" for told in columns)) for m in ErrorMode]
     yield d.markdown_table(("put in \\ taken for", *columns), rows)
@@ -203,7 +204,7 @@ def _audit(data: Dataset) -> Iterator[str]:
 def _finding(row: Held, by_id: Mapping[str, Task]) -> str:
     task = by_id.get(row.task)
     mended = task is None or task_digest(task) != row.digest
-    return f"{row.finding}{' ' if row.finding else ''}{'(mended)' if mended else ''}" or "open"
+    return " ".join(part for part in (row.finding, "(mended)" if mended else "") if part) or "open"
 
 
 def _files(data: Dataset) -> Iterator[str]:
