@@ -16,6 +16,8 @@ from scope_ptz.cli.bench_gold import gold_app
 from scope_ptz.cli.bench_inputs import TasksOption
 from scope_ptz.cli.bench_judge_gold import judge_gold
 from scope_ptz.cli.bench_label import label
+from scope_ptz.cli.bench_reporting import report, submission_app
+from scope_ptz.cli.bench_run import run
 from scope_ptz.cli.endings import FAILED, ending, put, put_json
 
 bench_app = typer.Typer(help="The benchmark: its tasks and how they are checked.", no_args_is_help=True)
@@ -35,11 +37,14 @@ def schema() -> None:
         put_json(task_schema(), indent=2)
 
 
+bench_app.command("run")(run)
 bench_app.command("build")(build)
 bench_app.command("browse")(browse)
 bench_app.command("card")(card)
 bench_app.command("agree")(agree)
 bench_app.command("label")(label)
+bench_app.command("report")(report)
+bench_app.add_typer(submission_app, name="submission")
 bench_app.command("judge-gold")(judge_gold)
 bench_app.add_typer(gold_app, name="gold")
 bench_app.add_typer(audit_app, name="audit")

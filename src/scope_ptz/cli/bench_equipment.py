@@ -11,7 +11,7 @@ import numpy as np
 from anyio import to_thread
 
 from scope_ptz.bench.engine.entries import Entry, entries_of
-from scope_ptz.bench.engine.equipment import Equipment, ModelWish, Watcher
+from scope_ptz.bench.engine.equipment import Equipment, ModelWish
 from scope_ptz.bench.episode import Look
 from scope_ptz.camera.base import Frame, FrameOrigin
 from scope_ptz.cli.choosing import EyesChoice, PlannerChoice, Wishes, choose
@@ -69,13 +69,16 @@ def lend(
     seed: int,
     planner: PlannerChoice | None = None,
     eyes: EyesChoice | None = None,
-    watcher: Watcher | None = None,
+    made: Planner | None = None,
 ) -> Equipment:
-    """Equipment for an evaluation. Models that were not chosen yet are made from their names when they are wanted."""
+    """Equipment for an evaluation. Models that were not chosen yet are made from their names when they are wanted.
+
+    ``made``: the planner, where it is there already.
+    """
     scenes = lru_cache(maxsize=None)(open_scene)
 
     async def a_planner(wish: ModelWish) -> Planner:
-        return planner_for(planner or (await choose(_wishes(wish, "planner"))).planner)
+        return made or planner_for(planner or (await choose(_wishes(wish, "planner"))).planner)
 
     async def some_eyes(wish: ModelWish) -> Perception:
         return eyes_for(eyes or (await choose(_wishes(wish, "eyes"))).eyes, scenes, seed)
@@ -92,14 +95,13 @@ def lend(
         make_eyes=some_eyes,
         load_tasks=lambda split: tasks_of(split, scenes),
         truth=really,
-        watcher=watcher or Watcher(),
         perception_note=notes.get(eyes.name, "") if eyes else "",
     )
 
 
 def _wishes(wish: ModelWish, role: str) -> Wishes:
     """A model of the engine's own command line as options of ours: ``served``, ``key_file`` and what the backend knows."""
-    given: Mapping[str, Any] = wish.options
+    given: Mapping[str, Any] = {name: value for name, value in wish.options.items() if value is not None}
     further = tuple(f"{name}={value}" for name, value in given.items() if name not in ("served", "key_file"))
     key = Path(str(given["key_file"])) if "key_file" in given else None
     served = given.get("served")

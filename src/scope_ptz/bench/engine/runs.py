@@ -1,0 +1,187 @@
+"""An evaluation from its first sample to its last, however often it is broken off in between.
+
+The log of an evaluation is the record of what is done. One that was killed is found again by its identity, a digest of everything
+that decides its results; what it holds is taken over, and only the rest is run.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import hashlib
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from inspect_ai import Task, eval_async
+from inspect_ai._eval.loader import resolve_task_args
+from inspect_ai._eval.task.task import PreviousTask
+from inspect_ai.log import EvalLog, EvalLogInfo, read_eval_log, read_eval_log_sample_summaries
+from inspect_ai.log._recover import RecoveryNotAvailable, recover_eval_log_async
+from inspect_ai.model import Model
+from inspect_ai.util._display import init_display_type
+
+from scope_ptz.bench.engine.cards import CARD, card_of
+from scope_ptz.bench.engine.logs import read_evaluation, read_header, reading
+from scope_ptz.bench.trials import Evaluation, RunCard
+from scope_ptz.errors import InputError, OutputError, TraceError
+
+IDENTITY = "identity"
+SUPERSEDED = "superseded"
+"""Folder of logs whose runs another log has taken over."""
+
+QUIET = "error"
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """A log of the very evaluation that is wanted. ``done``: runs that need not be made again."""
+
+    path: Path
+    header: EvalLog
+    done: int
+
+    @property
+    def finished(self) -> bool:
+        return self.header.status == "success"
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """How an evaluation is run, beside its task. ``planner``: None for other people's agents."""
+
+    log_dir: Path
+    planner: Model | None
+    eyes: Model
+    concurrency: int
+    identity: str
+    card: RunCard
+
+
+def identity_of(*parts: Any) -> str:
+    """Names an evaluation by everything that decides its results."""
+    return hashlib.sha256(json.dumps(parts, sort_keys=True, default=str).encode()).hexdigest()[:16]
+
+
+def find(log_dir: Path, identity: str) -> Found | None:
+    """The log in a folder that got furthest with an evaluation."""
+    logs = []
+    for path in sorted(log_dir.glob("*.eval")):
+        try:
+            header = read_header(path)
+            if (header.eval.metadata or {}).get(IDENTITY) == identity:
+                logs.append(Found(path, header, _done(path)))
+        except TraceError:
+            continue  # another evaluation's, or nothing that can be gone on with
+    return max(logs, key=lambda f: (f.finished, f.done), default=None)
+
+
+def found(path: Path) -> Found:
+    """A log to go on with. Raises ``TraceError``."""
+    return Found(path, read_header(path), _done(path))
+
+
+def earlier(log_dir: Path, planner: str, eyes: str) -> list[Evaluation]:
+    """Evaluations of a pair of which there are logs in a folder."""
+    told = []
+    for path in sorted(log_dir.glob("*.eval")):
+        try:
+            card = card_of(read_header(path), None)
+            if (card.planner.name, card.perception.name) == (planner, eyes):
+                told.append(read_evaluation(path))
+        except TraceError:
+            continue  # what cannot be read tells nothing
+    return told
+
+
+def _done(path: Path) -> int:
+    with reading(path):
+        return sum(not summary.error for summary in read_eval_log_sample_summaries(str(path)))
+
+
+@contextmanager
+def alone(log_dir: Path, identity: str) -> Iterator[None]:
+    """Keeps a second program from doing the same evaluation at the same time. Raises ``InputError`` or ``OutputError``."""
+    try:
+        log_dir.mkdir(parents=True, exist_ok=True)
+        lock = (log_dir / f".{identity}.lock").open("w")
+    except OSError as error:
+        raise OutputError(f"The log folder {log_dir} cannot be written: {error.strerror}. Choose another with --out.") from error
+    with lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise InputError(f"This very evaluation is running already, into {log_dir}.") from None
+        yield
+
+
+async def run(task: Task, setting: Setting, before: Found | None) -> Path:
+    """Run a task, taking over what ``before`` holds; the path of the log. An evaluation that is cancelled leaves its log behind."""
+    init_display_type("none")
+    tasks: Task | PreviousTask = task
+    card = setting.card
+    taken: list[Path] = []
+    if before is not None:
+        header, path = await _rescued(before)
+        taken = [before.path, path]
+        told = (header.eval.metadata or {}).get(CARD)
+        card = RunCard.model_validate(told) if told else card
+        tasks = PreviousTask(
+            id=header.eval.task_id, task=task, task_args=resolve_task_args(task), model=None, model_roles=None, sandbox=None,
+            log=header, log_info=_info(path, header),
+        )  # fmt: skip
+    (log,) = await eval_async(
+        tasks,
+        model=setting.planner or setting.eyes,
+        model_roles=_roles(setting),
+        metadata={CARD: card.model_dump(mode="json"), IDENTITY: setting.identity},
+        log_dir=str(setting.log_dir),
+        log_format="eval",
+        log_images=True,
+        log_header_only=True,
+        log_level=QUIET,
+        max_samples=setting.concurrency,
+        score_display=False,
+        ctl_server=False,
+    )
+    if log.error is not None and not (log.results and log.results.completed_samples):
+        raise TraceError(f"The evaluation failed: {log.error.message}")
+    written = Path(log.location)
+    if log.status in ("success", "error"):
+        _put_away([path for path in dict.fromkeys(taken) if path != written])
+    return written
+
+
+def _roles(setting: Setting) -> Mapping[str, Model | list[Model] | str | list[str]]:
+    return {"eyes": setting.eyes} | ({"planner": setting.planner} if setting.planner is not None else {})
+
+
+async def _rescued(before: Found) -> tuple[EvalLog, Path]:
+    """The log to go on from: with the runs that a killed program had finished and not yet written."""
+    if before.header.status == "started":
+        try:
+            log = await recover_eval_log_async(str(before.path), cleanup=False)
+        except RecoveryNotAvailable:
+            pass
+        else:
+            path = Path(log.location)
+            return read_eval_log(str(path), header_only=True), path
+    return before.header, before.path
+
+
+def _info(path: Path, header: EvalLog) -> EvalLogInfo:
+    return EvalLogInfo(
+        name=str(path), type="file", size=path.stat().st_size, mtime=path.stat().st_mtime, task=header.eval.task,
+        task_id=header.eval.task_id, suffix=None,
+    )  # fmt: skip
+
+
+def _put_away(paths: Sequence[Path]) -> None:
+    """Move logs aside whose runs are all in another one: nothing is deleted, and no report counts a run twice."""
+    for path in paths:
+        if path.is_file():
+            folder = path.parent / SUPERSEDED
+            folder.mkdir(exist_ok=True)
+            path.replace(folder / path.name)

@@ -1,0 +1,87 @@
+"""The run card of an evaluation that begins: who plans and who sees, as registry and servers tell it."""
+
+from __future__ import annotations
+
+import platform
+import uuid
+from datetime import UTC, datetime
+from typing import Any
+
+import anyio
+
+from scope_ptz import __version__
+from scope_ptz.bench.engine.cards import DETERMINISTIC, engine_version
+from scope_ptz.bench.engine.entries import Entry, datasets, digest
+from scope_ptz.bench.trials import ModelCard, RunCard
+from scope_ptz.cli.choosing import Choice, EyesChoice, PlannerChoice
+from scope_ptz.endpoints.endpoint import Endpoint
+from scope_ptz.planner.base import Planner
+
+PATIENCE_S = 10.0
+"""For servers that do not say how they were set up."""
+
+
+async def run_card(
+    choice: Choice,
+    planner: Planner | None,
+    entries: tuple[Entry, ...],
+    *,
+    agent: str,
+    concurrency: int,
+    contended: bool,
+    variant: str,
+    **facts: Any,
+) -> RunCard:
+    """The card. ``planner``: for its exact prompt and sampling; None for other agents; ``facts``: split, seed, epochs, ..."""
+    details = planner.details if planner is not None else {}
+    spec = choice.eyes.spec
+    sampling: dict[str, Any] = {"planner": details}
+    if spec is not None:
+        sampling["perception"] = {"backend": spec.backend, "coordinates": spec.coordinates, **_plain(spec.options)}
+    return RunCard(
+        run_id=uuid.uuid4().hex,
+        started=datetime.now(UTC).isoformat(timespec="seconds"),
+        package_version=__version__,
+        engine_version=engine_version(),
+        dataset=datasets(entries),
+        dataset_digest=digest(entries),
+        planner=await _planner_card(choice.planner) if planner is not None else ModelCard(name=agent),
+        perception=await _eyes_card(choice.eyes),
+        agent=agent,
+        variant=variant,
+        sampling=sampling,
+        prompt_digest=details.get("prompt_sha256", ""),
+        concurrency=concurrency,
+        contended=contended,
+        host=f"{platform.machine()} {platform.system()}, Python {platform.python_version()}",
+        **facts,
+    )
+
+
+async def _planner_card(choice: PlannerChoice) -> ModelCard:
+    return await _card(choice.name, choice.model.name if choice.model else None, choice.endpoint)
+
+
+async def _eyes_card(choice: EyesChoice) -> ModelCard:
+    card = await _card(choice.name, choice.model.name if choice.model else None, choice.spec.endpoint if choice.spec else None)
+    return card if choice.spec is None or card.provider else card.model_copy(update={"provider": choice.spec.backend})
+
+
+async def _card(name: str, registered: str | None, endpoint: Endpoint | None) -> ModelCard:
+    if endpoint is None:
+        return ModelCard(name=name, registry=registered, deterministic=name in DETERMINISTIC)
+    from scope_ptz.endpoints.serving_facts import serving_facts
+
+    reported: dict[str, str] = {}
+    with anyio.move_on_after(PATIENCE_S):
+        reported = await serving_facts(endpoint)
+    served = {"model": endpoint.model} if endpoint.model else {}
+    return ModelCard(name=name, registry=registered, provider=endpoint.url, reported=served | reported)
+
+
+def _plain(options: dict[str, Any]) -> dict[str, Any]:
+    """Options that a card can hold; eyes made of several are told by their names."""
+    return {
+        name: value if isinstance(value, str | int | float | bool) else str(getattr(value, "name", value))
+        for name, value in options.items()
+    }

@@ -1,0 +1,190 @@
+"""One evaluation from options to its log: choose, estimate, run or go on, tell."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import anyio
+
+from scope_ptz.bench.trials import Evaluation
+from scope_ptz.cli.choosing import Choice, Wishes, choose
+from scope_ptz.cli.endings import complain
+from scope_ptz.errors import ConfigError, InputError, ScopeError
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from scope_ptz.bench.engine.entries import Entry
+    from scope_ptz.bench.engine.estimate import Price
+    from scope_ptz.bench.engine.runs import Found, Setting
+
+OWN_AGENT = "scope"
+WITH_MODELS = 8
+"""Runs at a time when a model server answers."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunOptions:
+    """The options of `scope bench run`, as they were typed. ``concurrency``: None for what suits the models."""
+
+    wishes: Wishes
+    out: Path
+    tasks: str = "core"
+    categories: tuple[str, ...] = ()
+    scenes: tuple[str, ...] = ()
+    limit: int | None = None
+    epochs: int = 1
+    seed: int = 1
+    agent: str = OWN_AGENT
+    max_steps: int = 60
+    time_s: float | None = None
+    concurrency: int | None = None
+    latency: bool = False
+    pictures: bool = True
+    variant: str = ""
+    fresh: bool = False
+    resume: Path | None = None
+    price: Price | None = None
+
+
+def need_engine() -> None:
+    """Raises ``ConfigError`` when the evaluation engine is not installed."""
+    from importlib.util import find_spec
+
+    if find_spec("inspect_ai") is None:
+        raise ConfigError("Evaluations need Inspect AI. Install it with: pip install 'scope-ptz[bench]'")
+
+
+async def evaluate(options: RunOptions, console: Console) -> Evaluation:
+    """Run an evaluation, or go on with it, or just read it when it is done."""
+    from scope_ptz.bench.engine.logs import read_evaluation
+    from scope_ptz.bench.engine.runs import alone
+
+    choice = await choose(options.wishes)
+    prepared = _Prepared(options, choice)
+    with alone(options.out, prepared.identity):
+        before = prepared.before()
+        if before is not None and before.finished:
+            complain(f"this evaluation is done: {before.path} (--fresh runs it again)")
+            return read_evaluation(before.path)
+        return read_evaluation(await prepared.run(console, before))
+
+
+class _Prepared:
+    """An evaluation that has its tasks and its models, and has not begun."""
+
+    def __init__(self, options: RunOptions, choice: Choice) -> None:
+        from scope_ptz.bench.engine.entries import chosen, digest
+        from scope_ptz.bench.engine.runs import identity_of
+        from scope_ptz.cli.bench_equipment import lend, planner_for
+
+        self.options, self.choice = options, choice
+        self.planner = planner_for(choice.planner) if options.agent == OWN_AGENT else None
+        self.lent = lend(seed=options.seed, planner=choice.planner, eyes=choice.eyes, made=self.planner)
+        self.entries: tuple[Entry, ...] = chosen(
+            self.lent.load_tasks(options.tasks), options.categories, options.scenes, options.limit
+        )
+        if not options.pictures and choice.eyes.spec is not None:
+            raise InputError(f"The eyes '{choice.eyes.name}' look at pictures: leave --no-pictures out.")
+        if not options.pictures and self.planner is not None and self.planner.sees:
+            raise InputError(f"The planner '{self.planner.name}' looks at pictures: leave --no-pictures out.")
+        calm = choice.planner.endpoint is None and choice.eyes.spec is None and options.agent == OWN_AGENT
+        self.concurrency = 1 if options.latency else options.concurrency or ((os.cpu_count() or 1) if calm else WITH_MODELS)
+        details = self.planner.details if self.planner is not None else {}
+        spec = choice.eyes.spec
+        self.identity = identity_of(
+            digest(self.entries), options.epochs, options.seed, options.agent, options.max_steps, options.time_s,
+            options.pictures, options.latency, options.variant, choice.planner.name, choice.eyes.name, details,
+            spec.model_dump(mode="json", exclude={"endpoint"}) if spec else None, _place(choice),
+        )  # fmt: skip
+
+    def before(self) -> Found | None:
+        """The log to go on with."""
+        from scope_ptz.bench.engine.runs import find, found
+
+        if self.options.resume is not None:
+            log = found(self.options.resume)
+            if (log.header.eval.metadata or {}).get("identity") != self.identity:
+                raise InputError(
+                    f"{log.path} is of another evaluation: tasks, models or settings differ. Give its own options."
+                )
+            return log
+        return None if self.options.fresh else find(self.options.out, self.identity)
+
+    async def run(self, console: Console, before: Found | None) -> Path:
+        from scope_ptz.bench.engine.equipment import EQUIPMENT
+        from scope_ptz.bench.engine.logs import read_evaluation
+        from scope_ptz.bench.engine.runs import run
+        from scope_ptz.cli.bench_live import LiveTable
+        from scope_ptz.cli.inspect_entry import bench
+
+        done = tuple(t for t in read_evaluation(before.path).trials if t.headline != "infrastructure") if before else ()
+        wanted = len(self.entries) * self.options.epochs
+        self._foretell(console, wanted, done, before)
+        setting = await self._setting()
+        with anyio.CancelScope() as scope, LiveTable(console, wanted, done, setting.card.pair, scope.cancel) as table:
+            EQUIPMENT.set(replace(self.lent, watcher=table, load_tasks=lambda _: self.entries))
+            options = self.options
+            task = bench(
+                split=options.tasks, category=list(options.categories) or None, scene=list(options.scenes) or None,
+                limit=options.limit, agent=options.agent, pictures=options.pictures, max_steps=options.max_steps,
+                time_s=options.time_s, seed=options.seed, epochs=options.epochs,
+            )  # fmt: skip
+            written = await run(task, setting, before)
+        if table.stopped:
+            raise ScopeError(
+                "Too many runs in a row were broken by infrastructure, so the evaluation stopped. Look after the servers; "
+                "the same command goes on where it stopped."
+            )
+        return written
+
+    async def _setting(self) -> Setting:
+        from inspect_ai.model import GenerateConfig, get_model
+
+        import scope_ptz.cli.inspect_entry  # noqa: F401 - the models of this project
+        from scope_ptz.bench.engine.runs import Setting
+        from scope_ptz.cli.bench_cards import run_card
+
+        options, choice = self.options, self.choice
+        card = await run_card(
+            choice, self.planner, self.entries, agent=options.agent, concurrency=self.concurrency,
+            contended=not options.latency, variant=options.variant, split=options.tasks, seed=options.seed,
+            max_steps=options.max_steps, epochs=options.epochs,
+        )  # fmt: skip
+        # Looks of one step are made at the same time, as many as the loop allows.
+        config = GenerateConfig(max_connections=self.concurrency * 8)
+        endpoint, spec = choice.planner.endpoint, choice.eyes.spec
+        planner = None
+        if self.planner is not None:
+            planner = get_model(
+                f"scope_ptz/{choice.planner.name}",
+                base_url=endpoint.url if endpoint else None,
+                config=config,
+                memoize=False,
+                served=endpoint.model if endpoint else None,
+            )
+        url = spec.endpoint.url if spec is not None and spec.endpoint is not None else None
+        eyes = get_model(f"scope_ptz/{choice.eyes.name}", base_url=url, config=config, memoize=False)
+        return Setting(options.out, planner, eyes, self.concurrency, self.identity, card)
+
+    def _foretell(self, console: Console, wanted: int, done: tuple[Any, ...], before: Found | None) -> None:
+        from scope_ptz.bench.engine.estimate import estimate
+        from scope_ptz.bench.engine.runs import earlier
+        from scope_ptz.cli.bench_foretelling import lines
+
+        if before is not None:
+            console.print(f"Going on with {before.path}: {len(done)} of {wanted} runs are done.", highlight=False, soft_wrap=True)
+        known = earlier(self.options.out, self.choice.planner.name, self.choice.eyes.name)
+        told = estimate(self.entries, self.options.epochs, self.concurrency, known, self.options.price)
+        for line in lines(told, self.choice, self.concurrency):
+            console.print(line, highlight=False, soft_wrap=True)
+
+
+def _place(choice: Choice) -> list[str]:
+    """Which served models are asked. Where a server listens may change between a run and its continuation."""
+    spec = choice.eyes.spec
+    eyes = spec.endpoint.model if spec is not None and spec.endpoint is not None else ""
+    return [choice.planner.endpoint.model if choice.planner.endpoint else "", eyes]

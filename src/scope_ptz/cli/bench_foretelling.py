@@ -1,0 +1,32 @@
+"""The estimate before an evaluation, in words. What nobody knows is said to be unknown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from scope_ptz.bench.engine.estimate import Estimate
+from scope_ptz.cli.bench_live import clock
+from scope_ptz.cli.choosing import Choice
+
+
+def lines(told: Estimate, choice: Choice, concurrency: int) -> Iterator[str]:
+    """Runs, calls, time and cost, one a line."""
+    runs = f"{told.runs} run{'s' if told.runs != 1 else ''}"
+    yield f"{runs} of {choice.planner.name} + {choice.eyes.name}, {concurrency} at a time"
+    yield f"calls   about {told.decisions} of the planner and {told.looks} of the eyes, as the reference programs need them"
+    if told.seconds is None:
+        yield "time    unknown: this pair has no log here yet; the table tells how long is left after the first runs"
+    else:
+        yield f"time    about {clock(told.seconds)}, by {told.measured_on} earlier runs of this pair"
+    if choice.planner.endpoint is None:
+        yield "cost    nothing is asked of a paid server for planning"
+    elif told.input_tokens is None or told.output_tokens is None:
+        yield "cost    unknown: tokens are known after a first run of this pair (--limit 10), prices by --price IN,OUT"
+    else:
+        tokens = f"about {told.input_tokens / 1e6:.2f} million tokens in and {told.output_tokens / 1e6:.2f} million out"
+        price = (
+            f", {told.cost_usd:.2f} US dollars"
+            if told.cost_usd is not None
+            else "; give prices by --price IN,OUT (dollars per million)"
+        )
+        yield f"cost    {tokens} for the planner{price}; what the eyes cost is not known"
