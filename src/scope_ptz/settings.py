@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
+from typing import Literal
 
 from platformdirs import user_cache_path, user_config_path
 from pydantic import Field, SecretStr, ValidationError
@@ -55,3 +56,14 @@ def load_settings() -> ScopeSettings:
 def has_desktop() -> bool:
     """Whether this machine has a desktop on which a picture that is opened would be seen."""
     return sys.platform in ("darwin", "win32") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
+Inline = Literal["iterm", "kitty"]
+"""Ways in which terminals show pictures among the text."""
+
+
+def inline_pictures() -> Inline | None:
+    """How the terminal that the program runs in shows pictures, None when it does not say that it can."""
+    if os.environ.get("TERM_PROGRAM") in ("iTerm.app", "WezTerm"):
+        return "iterm"
+    return "kitty" if os.environ.get("KITTY_WINDOW_ID") or os.environ.get("TERM") == "xterm-kitty" else None

@@ -1,0 +1,88 @@
+"""Runs of people as judged runs: the same checks, in the same records as an evaluation of models."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from scope_ptz import __version__
+from scope_ptz.agent.timing import Timings
+from scope_ptz.agent.trace import Trace
+from scope_ptz.bench.audit import digest_of
+from scope_ptz.bench.episode import Places, episode_of
+from scope_ptz.bench.error_modes import error_mode
+from scope_ptz.bench.judging.wording import facts_of
+from scope_ptz.bench.tasks import Task
+from scope_ptz.bench.trials import Check, Evaluation, ModelCard, RunCard, Trial
+from scope_ptz.bench.verdict import judge
+from scope_ptz.errors import InputError, OutputError
+from scope_ptz.world.models import SceneFile
+
+RESULT = "evaluation.json"
+DIGEST_CHARS = 16
+
+
+def card(by: str, split: str, tasks: Sequence[Task], started: str, max_steps: int) -> RunCard:
+    """The run card of a person: planner and eyes are one."""
+    who = ModelCard(name=by, provider="person")
+    return RunCard(
+        run_id=f"human-{by}",
+        started=started,
+        package_version=__version__,
+        engine_version="none",
+        dataset=tasks[0].dataset,
+        dataset_digest=digest_of(tasks)[:DIGEST_CHARS],
+        split=split,
+        planner=who,
+        perception=who,
+        max_steps=max_steps,
+        contended=False,
+    )
+
+
+def trial(task: Task, scene: SceneFile, trace: Trace, sample: str) -> Trial:
+    """A finished run, judged by the task's checks. The person saw every view that the camera showed before a decision."""
+    episode = episode_of(trace, Places.of(scene), planner_sees=True)
+    verdict, ended = judge(task, episode), trace.ended
+    viewpoint = next(preset.viewpoint for preset in scene.presets if preset.name == task.preset)
+    return Trial(
+        task=facts_of(task, viewpoint),
+        sample=sample,
+        headline=verdict.headline,
+        reason=verdict.reason,
+        error_mode=error_mode(task, episode),
+        checks=tuple(Check(name=c.name, passed=c.passed, reason=c.reason) for c in verdict.checks),
+        collateral=verdict.collateral,
+        outcome=episode.outcome,
+        answer=episode.text,
+        steps=ended.steps if ended else len(trace.decisions),
+        tool_calls=dict(Counter(call.outcome.call.name for call in trace.calls if call.fault != "skipped")),
+        bad_calls=sum(call.fault == "bad_call" for call in trace.calls),
+        perception_failures=sum(call.fault == "perception" for call in trace.calls),
+        timings=ended.timings if ended else Timings(),
+    )
+
+
+def write_result(evaluation: Evaluation, folder: Path) -> Path:
+    """Write the result, whole or not at all: a program that is stopped leaves the one before."""
+    path, fresh = folder / RESULT, folder / f"{RESULT}.new"
+    try:
+        fresh.write_text(evaluation.model_dump_json(indent=1) + "\n", "utf-8")
+        fresh.replace(path)
+    except OSError as error:
+        raise OutputError(f"The result {path} cannot be written: {error.strerror}.") from error
+    return path
+
+
+def read_result(path: Path) -> Evaluation:
+    """A result of ``scope bench human``. Raises ``InputError`` when it is none."""
+    try:
+        return Evaluation.model_validate_json(path.read_bytes())
+    except OSError as error:
+        raise InputError(f"The result {path} cannot be read: {error.strerror}.") from error
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        raise InputError(f"{path} holds no result: {'.'.join(map(str, first['loc']))}: {first['msg']}.") from error
