@@ -13,6 +13,7 @@ from scope_ptz.cli.bench_browse import browse
 from scope_ptz.cli.bench_build import build
 from scope_ptz.cli.bench_card import card
 from scope_ptz.cli.bench_gold import gold_app
+from scope_ptz.cli.bench_import import import_tasks
 from scope_ptz.cli.bench_inputs import TasksOption
 from scope_ptz.cli.bench_judge_gold import judge_gold
 from scope_ptz.cli.bench_label import label
@@ -46,6 +47,7 @@ bench_app.command("label")(label)
 bench_app.command("report")(report)
 bench_app.add_typer(submission_app, name="submission")
 bench_app.command("judge-gold")(judge_gold)
+bench_app.command("import")(import_tasks)
 bench_app.add_typer(gold_app, name="gold")
 bench_app.add_typer(audit_app, name="audit")
 

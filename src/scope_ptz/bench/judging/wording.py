@@ -84,7 +84,8 @@ def demands(task: Task) -> Iterator[str]:
         yield f"The run must end {_or([_OUTCOMES[name] for name in behaviour.outcomes], marks='')}."
     if behaviour.calls:
         order = "in this order" if behaviour.order == "ordered" and len(behaviour.calls) > 1 else "in any order"
-        yield f"These calls must succeed, {order}, others may come between: {'; '.join(_call(call) for call in behaviour.calls)}."
+        calls = "; ".join(call_in_words(call) for call in behaviour.calls)
+        yield f"These calls must succeed, {order}, others may come between: {calls}."
     if (final := behaviour.final) is not None:
         yield (
             f"The camera must end at viewpoint {final.viewpoint}, pan {final.pan_deg:g}, tilt {final.tilt_deg:g}, "
@@ -107,7 +108,8 @@ def _view(scope: str, viewpoint: str) -> str:
     return f"the {'whole scene around' if scope == 'full' else 'part in question of the scene at'} viewpoint {viewpoint}"
 
 
-def _call(call: RequiredCall) -> str:
+def call_in_words(call: RequiredCall) -> str:
+    """A required call as it would be written, with what its arguments may be."""
     arguments = ", ".join(f"{name}={_argument(spec)}" for name, spec in call.arguments.items())
     times = f" {call.times} times" if call.times > 1 else ""
     return f"{call.tool}({arguments}){times}"
