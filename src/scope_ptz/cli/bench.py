@@ -13,6 +13,7 @@ from scope_ptz.cli.bench_browse import browse
 from scope_ptz.cli.bench_build import build
 from scope_ptz.cli.bench_card import card
 from scope_ptz.cli.bench_gold import gold_app
+from scope_ptz.cli.bench_human import human
 from scope_ptz.cli.bench_import import import_tasks
 from scope_ptz.cli.bench_inputs import TasksOption
 from scope_ptz.cli.bench_judge_gold import judge_gold
@@ -42,6 +43,7 @@ bench_app.command("run")(run)
 bench_app.command("build")(build)
 bench_app.command("browse")(browse)
 bench_app.command("card")(card)
+bench_app.command("human")(human)
 bench_app.command("agree")(agree)
 bench_app.command("label")(label)
 bench_app.command("report")(report)

@@ -21,7 +21,8 @@ KIND_WORDS = {
     "person": "person",
 }
 INTERVALS = (
-    "In brackets: 95% interval, clustered by viewpoint (linearised variance by cluster, Student's t with one degree of freedom fewer "
+    "In brackets: 95% interval, clustered by viewpoint (linearised variance by cluster, Student's t with one degree of "
+    "freedom fewer "
     "than there are viewpoints, Wilson's form at the effective sample size). With a single viewpoint there is none."
 )
 
@@ -37,16 +38,20 @@ def accuracy_section(runs: Sequence[Run]) -> Section:
     if any(t.judgements for run in having for t in run.scored):
         tables.append(_by_judge(having))
     text = [
-        "Macro is the unweighted mean over categories, which is what the paper calls average; micro is the share of all trials (a trial is "
-        "one run of one task). Both count correct trials among those that infrastructure did not break; an unscored trial is not correct."
+        "Macro is the unweighted mean over categories, which is what the paper calls average; micro is the share of all "
+        "trials (a trial is "
+        "one run of one task). Both count correct trials among those that infrastructure did not break; an unscored trial is "
+        "not correct."
     ]
     if len({(run.task_set, run.tasks) for run in having}) > 1:
         text.append(
-            "Not all runs did the same tasks: the best values are marked among runs of exactly the same tasks, and the chart shows the main task set."
+            "Not all runs did the same tasks: the best values are marked among runs of exactly the same tasks, and the chart "
+            "shows the main task set."
         )
     if others:
         text.append(
-            "The grammar planner and ground-truth eyes are no models: they are exact by construction. Runs with either, blind baselines "
+            "The grammar planner and ground-truth eyes are no models: they are exact by construction. Runs with either, "
+            "blind baselines "
             "and people stand in a table of their own and take no part in any ranking."
         )
     main = [run for run in having if run.task_set == main_task_set(runs)]
@@ -103,7 +108,8 @@ def _bounds(runs: Sequence[Run]) -> Table:
         Column("at_least", "At least (%)", "share"), Column("at_most", "At most (%)", "share"),
     )  # fmt: skip
     notes = (
-        "Unscored: no check failed, but the answer could not be read. Infrastructure: servers or the camera failed, which says nothing "
+        "Unscored: no check failed, but the answer could not be read. Infrastructure: servers or the camera failed, which "
+        "says nothing "
         "about the agent. At least and at most: all of these wrong, or all of them right.",
     )
     return Table("outcomes", "What came of the trials, with bounds", columns, tuple(_counted(run) for run in runs), notes)
@@ -127,8 +133,10 @@ def _by_judge(runs: Sequence[Run]) -> Table:
         Column("agreement", "Verdicts alike (%)", "share"),
     )  # fmt: skip
     notes = (
-        "The paper's accuracy is the judge's. Both macros are of the same trials: those that have a verdict of the judge. Unparseable and "
-        "failed judgements are in neither. Trials that the judge itself scored (no check of the answer) are left out of the agreement.",
+        "The paper's accuracy is the judge's. Both macros are of the same trials: those that have a verdict of the judge. "
+        "Unparseable and "
+        "failed judgements are in neither. Trials that the judge itself scored (no check of the answer) are left out of the "
+        "agreement.",
     )
     return Table("judge", "The judge's verdicts beside the checks'", columns, tuple(_judged_row(run) for run in runs), notes)
 

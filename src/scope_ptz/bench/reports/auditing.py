@@ -19,7 +19,8 @@ MOST_LISTED = 60
 def audit_section(ranked: Sequence[Run], reference: Sequence[Run], pages: Mapping[str, str]) -> Section:
     """Tasks with low success across pairs. ``pages``: the page of a failed task, by its id."""
     text = [
-        f"Tasks on which the pairs together succeed in at most {LOW:.0%} of their trials. Such a task is hard, or wrong: whoever audits the "
+        f"Tasks on which the pairs together succeed in at most {LOW:.0%} of their trials. Such a task is hard, or wrong: "
+        "whoever audits the "
         "benchmark begins here. A task that the exact reference planner and eyes fail as well is suspect."
     ]
     if len(ranked) < 2:
@@ -30,10 +31,17 @@ def audit_section(ranked: Sequence[Run], reference: Sequence[Run], pages: Mappin
     chosen = [(value, task) for value, task in low if value <= LOW]
     exact = _by_task(reference)
     columns = (
-        Column("task", "Task"), Column("category", "Category"), Column("scope", "Scope"), Column("instruction", "Instruction"),
-        Column("expected", "Expected"), Column("success", "Success (%)", "share"), Column("trials", "Trials", "count"),
-        Column("passed_by", "Passed by"), Column("modes", "Error modes (rules)"), Column("reference", "Reference runs (%)", "share"),
-    )  # fmt: skip
+        Column("task", "Task"),
+        Column("category", "Category"),
+        Column("scope", "Scope"),
+        Column("instruction", "Instruction"),
+        Column("expected", "Expected"),
+        Column("success", "Success (%)", "share"),
+        Column("trials", "Trials", "count"),
+        Column("passed_by", "Passed by"),
+        Column("modes", "Error modes (rules)"),
+        Column("reference", "Reference runs (%)", "share"),
+    )
     rows = tuple(_audit_row(task, value, by_task[task], exact.get(task, []), pages) for value, task in chosen[:MOST_LISTED])
     text.append(
         f"{len(chosen)} of {len(by_task)} tasks." + (f" The first {MOST_LISTED} are listed." if len(chosen) > MOST_LISTED else "")
@@ -58,22 +66,38 @@ def _audit_row(
     named = ", ".join(f"{mode} {number}" for mode, number in modes.most_common())
     reference = fmean(trial.headline == "correct" for _, trial in exact) if exact else None
     return (
-        Marked(task, link=pages.get(task, "")), facts.category, facts.scope, facts.instruction, facts.expected, success, len(own),
-        "; ".join(passed) or "nobody", named or "none", reference,
-    )  # fmt: skip
+        Marked(task, link=pages.get(task, "")),
+        facts.category,
+        facts.scope,
+        facts.instruction,
+        facts.expected,
+        success,
+        len(own),
+        "; ".join(passed) or "nobody",
+        named or "none",
+        reference,
+    )
 
 
 def costs_section(runs: Sequence[Run]) -> Section:
     """Tokens and money."""
     columns = (
-        Column("run", "Run"), Column("trials", "Trials", "count"), Column("input_tokens", "Input tokens", "count"),
-        Column("output_tokens", "Output tokens", "count"), Column("tokens_a_trial", "Tokens a trial, mean", "count"),
-        Column("priced", "Priced trials", "count"), Column("cost_usd", "Cost of priced trials (USD)", "usd"),
-        Column("cost_a_trial", "USD a trial", "usd"), Column("cost_a_success", "USD a correct trial", "usd"),
+        Column("run", "Run"),
+        Column("trials", "Trials", "count"),
+        Column("input_tokens", "Input tokens", "count"),
+        Column("output_tokens", "Output tokens", "count"),
+        Column("tokens_a_trial", "Tokens a trial, mean", "count"),
+        Column("priced", "Priced trials", "count"),
+        Column("cost_usd", "Cost of priced trials (USD)", "usd"),
+        Column("cost_a_trial", "USD a trial", "usd"),
+        Column("cost_a_success", "USD a correct trial", "usd"),
         Column("judge_tokens", "Judge's tokens", "count"),
-    )  # fmt: skip
-    notes = ("Tokens are the planner's and the eyes' as their servers report them; not measured where none are reported. A cost stands only "
-             "where the log has one.",)  # fmt: skip
+    )
+    notes = (
+        "Tokens are the planner's and the eyes' as their servers report them; not measured where none are reported. A cost "
+        "stands only "
+        "where the log has one.",
+    )
     return Section("costs", "Cost", (), (), (Table("costs", "Tokens and cost", columns, tuple(_cost_row(r) for r in runs), notes),))
 
 
@@ -86,21 +110,35 @@ def _cost_row(run: Run) -> tuple[Value, ...]:
     right = sum(t.headline == "correct" for t in priced)
     judge = sum(j.input_tokens + j.output_tokens for t in trials for j in t.judgements)
     return (
-        run.label, len(trials), given if counted else None, taken if counted else None,
-        (given + taken) / len(trials) if counted else None, len(priced), cost,
-        cost / len(priced) if cost is not None else None, cost / right if cost is not None and right else None, judge or None,
-    )  # fmt: skip
+        run.label,
+        len(trials),
+        given if counted else None,
+        taken if counted else None,
+        (given + taken) / len(trials) if counted else None,
+        len(priced),
+        cost,
+        cost / len(priced) if cost is not None else None,
+        cost / right if cost is not None and right else None,
+        judge or None,
+    )
 
 
 def conduct_section(runs: Sequence[Run]) -> Section:
     """Collateral change, wrong calls, failed looks and failing servers."""
     columns = (
-        Column("run", "Run"), Column("collateral", "Collateral change (%)", "share"), Column("bad_calls", "Wrong calls a trial", "number"),
-        Column("perception_failures", "Failed looks a trial", "number"), Column("steps", "Steps a trial", "number"),
-        Column("limit", "At the step or time limit (%)", "share"), Column("server_events", "Server failures, made good or not"),
-    )  # fmt: skip
-    notes = ("Collateral change: the camera ended elsewhere although neither the instruction nor the way to the answer wanted that. It decides "
-             "nothing.",)  # fmt: skip
+        Column("run", "Run"),
+        Column("collateral", "Collateral change (%)", "share"),
+        Column("bad_calls", "Wrong calls a trial", "number"),
+        Column("perception_failures", "Failed looks a trial", "number"),
+        Column("steps", "Steps a trial", "number"),
+        Column("limit", "At the step or time limit (%)", "share"),
+        Column("server_events", "Server failures, made good or not"),
+    )
+    notes = (
+        "Collateral change: the camera ended elsewhere although neither the instruction nor the way to the answer wanted "
+        "that. It decides "
+        "nothing.",
+    )
     having = [run for run in runs if run.evaluation.trials]
     rows = tuple(_conduct_row(run) for run in having)
     return Section(
@@ -115,7 +153,11 @@ def _conduct_row(run: Run) -> tuple[Value, ...]:
     if not trials:
         return run.label, None, None, None, None, None, told
     return (
-        run.label, fmean(t.collateral for t in trials), fmean(t.bad_calls for t in trials),
-        fmean(t.perception_failures for t in trials), fmean(t.steps for t in trials),
-        fmean(t.outcome in ("step_limit", "budget") for t in trials), told,
-    )  # fmt: skip
+        run.label,
+        fmean(t.collateral for t in trials),
+        fmean(t.bad_calls for t in trials),
+        fmean(t.perception_failures for t in trials),
+        fmean(t.steps for t in trials),
+        fmean(t.outcome in ("step_limit", "budget") for t in trials),
+        told,
+    )

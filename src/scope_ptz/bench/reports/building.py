@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
 
 from scope_ptz.bench.reports.accuracy import KIND_WORDS, accuracy_section
 from scope_ptz.bench.reports.auditing import audit_section, conduct_section, costs_section
@@ -37,7 +38,7 @@ class Report:
 
 
 def build_report(evaluations: Sequence[Evaluation], registry: Registry, pages: Mapping[str, str] | None = None) -> Report:
-    """All sections. ``pages``: the page of each failed task, by the task's id. Raises ``InputError`` when there is nothing to report."""
+    """All sections. ``pages``: the page of each failed task, by the task's id. Raises ``InputError`` without any trial."""
     runs = collect(evaluations, registry)
     if not any(run.evaluation.trials for run in runs):
         raise InputError("These logs hold no finished run of a task. Finish one with 'scope bench run' first.")
@@ -48,25 +49,65 @@ def build_report(evaluations: Sequence[Evaluation], registry: Registry, pages: M
     shown = [*ranked, *exact]
     links = pages or {}
     sections: list[Section | None] = [
-        accuracy_section(runs), comparison_section(ranked), repeats_section(main), error_section(shown) if shown else None,
-        oracle_section(alike, runs), spread_section(alike), scope_section(shown), latency_section(runs), design_section(alike, runs),
-        architecture_section(alike, runs), sensitivity_section(runs), reaction_section(runs), baseline_section(runs),
-        audit_section(ranked, exact, links), costs_section(runs), conduct_section(runs), _failed_tasks(runs, links), _overview(runs),
+        accuracy_section(runs),
+        comparison_section(ranked),
+        repeats_section(main),
+        error_section(shown) if shown else None,
+        oracle_section(alike, runs),
+        spread_section(alike),
+        scope_section(shown),
+        latency_section(runs),
+        design_section(alike, runs),
+        architecture_section(alike, runs),
+        sensitivity_section(runs),
+        reaction_section(runs),
+        baseline_section(runs),
+        audit_section(ranked, exact, links),
+        costs_section(runs),
+        conduct_section(runs),
+        _failed_tasks(runs, links),
+        _overview(runs),
         paper_section(),
-    ]  # fmt: skip
-    return Report(runs, _summary(runs, ranked, alike), _warnings(runs, ranked, alike), tuple(s for s in sections if s is not None))
+    ]
+    return Report(
+        runs, _summary(runs, ranked, alike), _warnings(runs, ranked, alike), tuple(_told(s) for s in sections if s is not None)
+    )
+
+
+def _told(section: Section) -> Section:
+    """A section without empty tables: what they would hold is said to be missing."""
+    empty = [table.title for table in section.tables if not table.rows]
+    if not empty:
+        return section
+    text = (*section.text, f"Not measured by these runs: {'; '.join(empty)}.")
+    return replace(section, text=text, tables=tuple(table for table in section.tables if table.rows))
 
 
 def _overview(runs: Sequence[Run]) -> Section:
     columns = (
-        Column("run", "Run"), Column("kind", "What it is"), Column("dataset", "Dataset"), Column("split", "Split"),
-        Column("trials", "Trials", "count"), Column("wanted", "of", "count"), Column("epochs", "Repeats", "count"),
-        Column("agent", "Agent"), Column("variant", "Variant"), Column("max_steps", "Most steps", "count"), Column("seed", "Seed"),
-        Column("sampling", "Sampling"), Column("prompt", "Prompt"), Column("planner_reported", "Planner's server says"),
-        Column("eyes_reported", "Eyes' server says"), Column("concurrency", "At once", "count"), Column("timing", "Timing"),
-        Column("package", "scope-ptz"), Column("engine", "Engine"), Column("tasks_digest", "Tasks' digest"), Column("started", "Started"),
+        Column("run", "Run"),
+        Column("kind", "What it is"),
+        Column("dataset", "Dataset"),
+        Column("split", "Split"),
+        Column("trials", "Trials", "count"),
+        Column("wanted", "of", "count"),
+        Column("epochs", "Repeats", "count"),
+        Column("agent", "Agent"),
+        Column("variant", "Variant"),
+        Column("max_steps", "Most steps", "count"),
+        Column("seed", "Seed"),
+        Column("sampling", "Sampling"),
+        Column("prompt", "Prompt"),
+        Column("planner_reported", "Planner's server says"),
+        Column("eyes_reported", "Eyes' server says"),
+        Column("concurrency", "At once", "count"),
+        Column("timing", "Timing"),
+        Column("package", "scope-ptz"),
+        Column("engine", "Engine"),
+        Column("tasks_digest", "Tasks' digest"),
+        Column("started", "Started"),
         Column("host", "Host"),
-    )  # fmt: skip
+    )
     text = ("Under what conditions each run was made, from its run card.",)
     table = Table("runs", "Runs and their conditions", columns, tuple(_card_row(run) for run in runs))
     return Section("runs", "Conditions", text, (), (table,), frozenset({"runs"}))
@@ -74,14 +115,40 @@ def _overview(runs: Sequence[Run]) -> Section:
 
 def _card_row(run: Run) -> tuple[Value, ...]:
     card = run.evaluation.card
-    sampling = ", ".join(f"{key} {value}" for key, value in sorted(card.sampling.items()))
+    sampling = ", ".join(f"{key} {value}" for key, value in _flat(card.sampling))
     return (
-        run.label, KIND_WORDS[run.kind], card.dataset, run.task_set[1], len(run.evaluation.trials), run.evaluation.wanted, card.epochs,
-        card.agent, card.variant or "as it is", card.max_steps, None if card.seed is None else str(card.seed), sampling or None,
-        card.prompt_digest[:12] or None, _reported(card.planner.reported), _reported(card.perception.reported), card.concurrency,
-        "contended" if card.contended else "alone", card.package_version, card.engine_version, card.dataset_digest[:12] or None,
-        card.started, card.host or None,
-    )  # fmt: skip
+        run.label,
+        KIND_WORDS[run.kind],
+        card.dataset,
+        run.task_set[1],
+        len(run.evaluation.trials),
+        run.evaluation.wanted,
+        card.epochs,
+        card.agent,
+        card.variant or "as it is",
+        card.max_steps,
+        None if card.seed is None else str(card.seed),
+        sampling or None,
+        card.prompt_digest[:12] or None,
+        _reported(card.planner.reported),
+        _reported(card.perception.reported),
+        card.concurrency,
+        "contended" if card.contended else "alone",
+        card.package_version,
+        card.engine_version,
+        card.dataset_digest[:12] or None,
+        card.started,
+        card.host or None,
+    )
+
+
+def _flat(settings: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
+    """Settings with the names of those that they are in."""
+    for key, value in sorted(settings.items()):
+        if isinstance(value, Mapping):
+            yield from _flat(value, f"{before}{key}.")
+        else:
+            yield f"{before}{key}", value
 
 
 def _reported(said: Mapping[str, str]) -> str | None:
@@ -96,13 +163,15 @@ def _warnings(runs: Sequence[Run], ranked: Sequence[Run], alike: Sequence[Run]) 
     ]
     if left_out := [run.label for run in ranked if run not in alike]:
         told.append(
-            f"Not over the same tasks as the other pairs: {'; '.join(left_out)}. Their means are not comparable and stay out of the oracle "
+            f"Not over the same tasks as the other pairs: {'; '.join(left_out)}. Their means are not comparable and stay out "
+            "of the oracle "
             "setting, spreads and the choice of a pair; paired comparisons use shared tasks."
         )
     if len({run.task_set for run in runs if run.headline}) > 1:
         chosen = main_task_set(runs)
         told.append(
-            f"There are several task sets. Everything but accuracy, latency, cost and sensitivity is told of {' '.join(chosen or ())}."
+            "There are several task sets. Everything but accuracy, latency, cost and sensitivity is told of "
+            f"{' '.join(chosen or ())}."
         )
     if not all(run.ranked for run in runs):
         told.append(
@@ -115,7 +184,8 @@ def _warnings(runs: Sequence[Run], ranked: Sequence[Run], alike: Sequence[Run]) 
 def _summary(runs: Sequence[Run], ranked: Sequence[Run], alike: Sequence[Run]) -> tuple[str, ...]:
     trials = sum(len(run.evaluation.trials) for run in runs)
     told = [
-        f"{_number(len(runs), 'run')} with {_number(trials, 'trial')} (a trial is one run of one task); {_number(len(ranked), 'pair')} of models on the main task set."
+        f"{_number(len(runs), 'run')} with {_number(trials, 'trial')} (a trial is one run of one task); "
+        f"{_number(len(ranked), 'pair')} of models on the main task set."
     ]
     order = sorted((r for r in alike if r.macro), key=lambda r: -(r.macro.value if r.macro else 0.0))
     if order and order[0].macro:
@@ -148,9 +218,14 @@ def _number(count: int, one: str, many: str = "") -> str:
 def _failed_tasks(runs: Sequence[Run], pages: Mapping[str, str]) -> Section:
     """Every task that some run failed, with its page."""
     columns = (
-        Column("task", "Task"), Column("category", "Category"), Column("instruction", "Instruction"), Column("expected", "Expected"),
-        Column("failed", "Failed trials", "count"), Column("trials", "of", "count"), Column("failed_by", "Failed by"),
-    )  # fmt: skip
+        Column("task", "Task"),
+        Column("category", "Category"),
+        Column("instruction", "Instruction"),
+        Column("expected", "Expected"),
+        Column("failed", "Failed trials", "count"),
+        Column("trials", "of", "count"),
+        Column("failed_by", "Failed by"),
+    )
     by_task = defaultdict(list)
     for run in runs:
         for trial in run.evaluation.trials:

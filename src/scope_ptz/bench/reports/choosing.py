@@ -1,4 +1,4 @@
-"""Choosing what to deploy: spreads, scopes, mixtures against dense models, quantised against full precision, and the Pareto front."""
+"""Choosing what to deploy: spreads, scopes, mixtures against dense models, quantised against full precision, the Pareto front."""
 
 from __future__ import annotations
 
@@ -54,22 +54,32 @@ def design_section(ranked: Sequence[Run], every: Sequence[Run]) -> Section:
     """Accuracy, latency and memory together, and what fits into how much memory."""
     found = candidates(ranked, every)
     columns = (
-        Column("run", "Run"), Column("macro", "Macro (%)", "share"), Column("latency_s", "Trial, median (s)", "seconds"),
-        Column("contended", "Measured"), Column("memory_gb", "Memory (GB, computed)", "gb"), Column("front", "On the Pareto front"),
-    )  # fmt: skip
+        Column("run", "Run"),
+        Column("macro", "Macro (%)", "share"),
+        Column("latency_s", "Trial, median (s)", "seconds"),
+        Column("contended", "Measured"),
+        Column("memory_gb", "Memory (GB, computed)", "gb"),
+        Column("front", "On the Pareto front"),
+    )
     rows = tuple(
         (
-            c.run.label, c.accuracy, c.latency_s, "contended" if c.contended else "alone", c.memory_gb,
+            c.run.label,
+            c.accuracy,
+            c.latency_s,
+            "contended" if c.contended else "alone",
+            c.memory_gb,
             ("yes" if c.on_front else "no") if c.complete else None,
         )
         for c in sorted(found, key=lambda c: -(c.accuracy or 0.0))
-    )  # fmt: skip
+    )
     notes = (
-        "Memory is computed from the registry (parameters at their precision, cache for 16,384 tokens, 1.5 GB for each server), not "
+        "Memory is computed from the registry (parameters at their precision, cache for 16,384 tokens, 1.5 GB for each "
+        "server), not "
         "measured. On the front: no other pair is at least as accurate, as fast and as small, and better in one of these.",
     )
     text = (
-        "A pair worth choosing is one that no other beats in accuracy, latency and memory at once. Differences in accuracy that were not "
+        "A pair worth choosing is one that no other beats in accuracy, latency and memory at once. Differences in accuracy "
+        "that were not "
         "shown (see the comparisons) are no reason to prefer the larger pair.",
     )
     charts = (drawing.front_chart(found),) if any(c.complete for c in found) else ()
@@ -101,8 +111,11 @@ def spread_section(ranked: Sequence[Run]) -> Section:
         _spread("spread_planner", "Changing only the planner", "Eyes held", ranked, lambda r: r.system[1], lambda r: r.system[0]),
         _spread("spread_eyes", "Changing only the eyes", "Planner held", ranked, lambda r: r.system[0], lambda r: r.system[1]),
     )
-    text = ("The spread is the highest macro accuracy minus the lowest with one side of the pair held. It grows with the number of pairs and "
-            "with noise: see which of the differences were shown.",)  # fmt: skip
+    text = (
+        "The spread is the highest macro accuracy minus the lowest with one side of the pair held. It grows with the "
+        "number of pairs and "
+        "with noise: see which of the differences were shown.",
+    )
     return Section("spread", "Planner spread against vision spread", text, (), tables)
 
 
@@ -110,9 +123,14 @@ def _spread(
     key: str, title: str, held_title: str, runs: Sequence[Run], held: Callable[[Run], str], changed: Callable[[Run], str]
 ) -> Table:
     columns = (
-        Column("held", held_title), Column("pairs", "Pairs", "count"), Column("lowest", "Lowest"), Column("low", "Macro (%)", "share"),
-        Column("highest", "Highest"), Column("high", "Macro (%)", "share"), Column("spread", "Spread (points)", "points"),
-    )  # fmt: skip
+        Column("held", held_title),
+        Column("pairs", "Pairs", "count"),
+        Column("lowest", "Lowest"),
+        Column("low", "Macro (%)", "share"),
+        Column("highest", "Highest"),
+        Column("high", "Macro (%)", "share"),
+        Column("spread", "Spread (points)", "points"),
+    )
     rows: list[tuple[Value, ...]] = []
     for name in dict.fromkeys(held(run) for run in runs):
         own = [
@@ -129,17 +147,23 @@ def _spread(
 def scope_section(runs: Sequence[Run]) -> Section:
     """Current view against full scene."""
     columns = (
-        Column("run", "Run"), Column("current_trials", "Trials, current", "count"), Column("current", "Current view (%)", "share"),
-        Column("full_trials", "Trials, full", "count"), Column("full", "Full scene (%)", "share"),
+        Column("run", "Run"),
+        Column("current_trials", "Trials, current", "count"),
+        Column("current", "Current view (%)", "share"),
+        Column("full_trials", "Trials, full", "count"),
+        Column("full", "Full scene (%)", "share"),
         Column("difference", "Current minus full (points)", "points"),
-    )  # fmt: skip
+    )
     rows = [_scope_row(run) for run in runs]
     ranked = [row for row, run in zip(rows, runs, strict=True) if run.ranked]
     if len(ranked) > 1:
         counts = [sum(int(str(row[index])) for row in ranked) for index in (1, 3)]
         rows.append(("Mean of the model pairs", counts[0], _mean(ranked, 2), counts[1], _mean(ranked, 4), _mean(ranked, 5)))
-    text = ("Micro accuracy by what the task asks about. The two kinds of task also differ in category, so that the difference is not the "
-            "panorama's alone.",)  # fmt: skip
+    text = (
+        "Micro accuracy by what the task asks about. The two kinds of task also differ in category, so that the difference "
+        "is not the "
+        "panorama's alone.",
+    )
     return Section("scope", "Current view against full scene", text, (), (Table("scope", "By scope", columns, tuple(rows)),))
 
 
@@ -212,7 +236,9 @@ def _mixtures(ranked: Sequence[Run], every: Sequence[Run]) -> Table:
                 moe, dense = (_average(kind, "accuracy") for kind in kinds)
                 gap = None if moe is None or dense is None else moe - dense
                 rows.append((name, "planners" if side == "planner" else "eyes", *cells, gap))
-    notes = ("Means over the pairs of each kind. Where a model that is held had only one kind beside it, there is nothing to compare.",)
+    notes = (
+        "Means over the pairs of each kind. Where a model that is held had only one kind beside it, there is nothing to compare.",
+    )
     return Table("mixtures", "Mixtures of experts against dense models", tuple(columns), tuple(rows), notes)
 
 

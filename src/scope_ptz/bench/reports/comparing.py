@@ -22,8 +22,8 @@ SEED = 0
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """``macro``: first minus second over shared tasks; ``bootstrap``: the same by drawing viewpoints; ``least``: smallest difference
-    found with 80% power."""
+    """``macro``: first minus second over shared tasks; ``bootstrap``: the same by drawing viewpoints; ``least``: smallest
+    difference found with 80% power."""
 
     first: str
     second: str
@@ -107,9 +107,12 @@ def comparison_section(runs: Sequence[Run]) -> Section:
     """Every two ranked runs of the main task set."""
     found = [c for one, two in combinations(runs, 2) if (c := compare(one, two)) is not None]
     text = [
-        "Two runs are compared on the tasks that both did, task by task; repeats of a task are averaged first. McNemar's exact test asks "
-        "whether the tasks on which they differ favour one side (with repeats it is the sign test of the tasks' means). The clustered "
-        "test also allows for tasks of a viewpoint being alike. P values are adjusted by Holm's method for the number of comparisons, "
+        "Two runs are compared on the tasks that both did, task by task; repeats of a task are averaged first. McNemar's "
+        "exact test asks "
+        "whether the tasks on which they differ favour one side (with repeats it is the sign test of the tasks' means). The "
+        "clustered "
+        "test also allows for tasks of a viewpoint being alike. P values are adjusted by Holm's method for the number of "
+        "comparisons, "
         "and two runs are said to differ only when both adjusted p values are below 0.05."
     ]
     single = _resolution(runs)
@@ -124,8 +127,10 @@ def comparison_section(runs: Sequence[Run]) -> Section:
     )
     text.append(f"{number} of {len(found)} comparisons show a difference.{resolved}")
     notes = (
-        f"Bootstrap: 10,000 draws of viewpoints with replacement, percentile interval, seed {SEED}; a cross-check of the interval beside "
-        "it. Better: tasks that one of the two did better. Least that could be seen: the true difference that the clustered test finds with "
+        f"Bootstrap: 10,000 draws of viewpoints with replacement, percentile interval, seed {SEED}; a cross-check of the "
+        "interval beside "
+        "it. Better: tasks that one of the two did better. Least that could be seen: the true difference that the clustered "
+        "test finds with "
         "80% power, (t at 97.5% + t at 80%) times the standard error, before adjustment for many tests.",
     )
     table = comparison_table("comparisons", "Paired comparisons", found, notes)

@@ -1,9 +1,10 @@
-"""Charts as SVG. Colour-blind-safe colours, text as text, axes in the colour of the page's ink so that they work in light and dark."""
+"""Charts as SVG. Colour-blind-safe colours, text as text, axes in the colour of the page's ink: they work in light and dark."""
 
 from __future__ import annotations
 
 import io
 import re
+import warnings
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -28,8 +29,9 @@ HUES = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E4
 """Okabe and Ito (2008)."""
 GREY = "#8a8f98"
 PX = 96.0
-_SETTINGS: dict[str, Any] = {
-    "svg.fonttype": "none", "svg.hashsalt": "scope", "font.family": "DejaVu Sans", "font.size": 10.5, "text.color": INK,
+_SETTINGS: Any = {
+    "svg.fonttype": "none", "svg.hashsalt": "scope",
+    "text.parse_math": False, "font.family": "DejaVu Sans", "font.size": 10.5, "text.color": INK,
     "axes.edgecolor": INK, "axes.labelcolor": INK, "xtick.color": INK, "ytick.color": INK, "axes.spines.top": False,
     "axes.spines.right": False, "axes.grid": True, "axes.axisbelow": True, "grid.color": FAINT, "grid.linewidth": 0.7,
     "figure.facecolor": "none", "axes.facecolor": "none", "savefig.facecolor": "none", "legend.frameon": False,
@@ -42,7 +44,8 @@ def _canvas(width_px: int, height_px: int) -> Iterator[tuple[Figure, Axes]]:
     from matplotlib.backends.backend_svg import FigureCanvasSVG
     from matplotlib.figure import Figure
 
-    with mpl.rc_context(_SETTINGS):
+    with mpl.rc_context(_SETTINGS), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph")  # The reader's browser has the glyphs; only their width is guessed here.
         figure = Figure(figsize=(width_px / PX, height_px / PX), dpi=PX, layout="constrained")
         FigureCanvasSVG(figure)
         yield figure, figure.subplots()
@@ -85,13 +88,9 @@ def _mixed(colour: str, share: float) -> str:
 
 
 def _short(label: str, most: int = 46) -> str:
-    """A label that fits; never read as a formula."""
-    return plain(label if len(label) <= most else label[: most - 1] + "…")
-
-
-def plain(text: str) -> str:
-    """Text that the drawing library does not take for mathematics."""
-    return text.replace("$", r"\$")
+    """A label that fits, without characters that no picture can hold."""
+    shown = "".join(mark if mark.isprintable() else " " for mark in label)
+    return shown if len(shown) <= most else shown[: most - 1] + "…"
 
 
 def accuracy_chart(runs: Sequence[Run]) -> Chart:
@@ -147,7 +146,8 @@ def oracle_chart(table: Table) -> Chart:
     names = [column.name for column in table.columns]
     series = (
         ("macro_checks", "as it is, by checks", "o", HUES[0]), ("oracle_rules", "rules' VLM failures as right", "s", HUES[1]),
-        ("oracle_judge", "judge's VLM failures as right", "^", HUES[3]), ("macro_rerun", "run again with ground-truth eyes", "D", HUES[2]),
+        ("oracle_judge", "judge's VLM failures as right", "^", HUES[3]),
+        ("macro_rerun", "run again with ground-truth eyes", "D", HUES[2]),
     )  # fmt: skip
     rows = list(reversed(table.rows))
     with _canvas(880, 150 + 30 * len(rows)) as (figure, axes):
@@ -217,7 +217,9 @@ def front_chart(found: Sequence[Candidate]) -> Chart:
                 linestyle="--" if c.contended else "-",
                 label=f"{number}  {_short(c.run.label, 40)}, {c.memory_gb:.0f} GB",
             )
-            axes.annotate(str(number), at, ha="center", va="center", fontsize=9.5, fontweight="bold", color="#000" if c.on_front else INK)
+            axes.annotate(
+                str(number), at, ha="center", va="center", fontsize=9.5, fontweight="bold", color="#000" if c.on_front else INK
+            )
         axes.set_xscale("log")
         axes.margins(x=0.12, y=0.14)
         axes.xaxis.set_major_locator(LogLocator(base=10, subs=(1.0, 2.0, 3.0, 5.0, 7.0)))
@@ -230,7 +232,9 @@ def front_chart(found: Sequence[Candidate]) -> Chart:
             if isinstance(handle, PathCollection):
                 handle.set_sizes([70.0])
         on = "; ".join(
-            f"{c.run.label} {100 * (c.accuracy or 0):.1f}%, {c.latency_s:.2f} s, {c.memory_gb:.0f} GB" for c in complete if c.on_front
+            f"{c.run.label} {100 * (c.accuracy or 0):.1f}%, {c.latency_s:.2f} s, {c.memory_gb:.0f} GB"
+            for c in complete
+            if c.on_front
         )
         alt = f"Scatter: accuracy against latency, area by memory. On the Pareto front: {on}."
         title = "Accuracy, latency and memory. Filled: on the Pareto front; area: memory; broken outline: timed under contention"

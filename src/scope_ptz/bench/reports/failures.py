@@ -40,16 +40,30 @@ def error_section(runs: Sequence[Run]) -> Section:
     """Error modes of runs of the main task set."""
     rules = {run.label: by_rules(run) for run in runs}
     tables = [_mode_table("error_modes", "Failed trials by error mode, by the rules", rules)]
-    charts = [drawing.mode_chart("error_modes", "Failed trials by error mode, by the rules", runs, rules, {run.label: len(run.scored) for run in runs}, MODE_TITLES)]
+    charts = [
+        drawing.mode_chart(
+            "error_modes",
+            "Failed trials by error mode, by the rules",
+            runs,
+            rules,
+            {run.label: len(run.scored) for run in runs},
+            MODE_TITLES,
+        )
+    ]
     judge = judge_name(runs)
     if judge is not None:
         said = {run.label: by_judge(run, judge) for run in runs if verdicts(run.scored, judge)}
         judged = [run for run in runs if run.label in said]
         title = f"Failed trials by error mode, by the judge ({judge})"
         tables.append(_mode_table("error_modes_judge", title, said))
-        charts.append(drawing.mode_chart("error_modes_judge", title, judged, said, {run.label: len(_clear(run, judge)) for run in judged}, MODE_TITLES))
+        charts.append(
+            drawing.mode_chart(
+                "error_modes_judge", title, judged, said, {run.label: len(_clear(run, judge)) for run in judged}, MODE_TITLES
+            )
+        )
     text = (
-        "Every failed trial has exactly one error mode: by rules in a published order, and beside it the one that the judge named for the "
+        "Every failed trial has exactly one error mode: by rules in a published order, and beside it the one that the judge "
+        "named for the "
         "trials that it found wrong." + ("" if judge else " No judge took part: its modes are not measured."),
     )
     return Section("errors", "Error modes", text, tuple(charts), tuple(tables))
@@ -87,9 +101,12 @@ def oracle_section(ranked: Sequence[Run], every: Sequence[Run]) -> Section:
         Column("gain_rerun", "Gain, paired (points)", "points"),
     )  # fmt: skip
     text = (
-        "How good the pairs would be if perception never failed. As in the paper: failures that the judge attributes to VLM counting or "
-        "VLM query are counted as right; the same with the rules' error modes; and, where such a log was given, the same planner really "
-        "run again with ground-truth eyes, on the tasks that both runs did. Relabelling cannot know whether the planner would have gone "
+        "How good the pairs would be if perception never failed. As in the paper: failures that the judge attributes to VLM "
+        "counting or "
+        "VLM query are counted as right; the same with the rules' error modes; and, where such a log was given, the same "
+        "planner really "
+        "run again with ground-truth eyes, on the tasks that both runs did. Relabelling cannot know whether the planner "
+        "would have gone "
         "on rightly; the run can.",
     )
     table = Table("oracle", "The oracle setting", columns, tuple(table_rows))

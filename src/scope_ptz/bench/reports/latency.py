@@ -15,8 +15,12 @@ from scope_ptz.bench.trials import Trial
 
 STAGES = ("planner_s", "perception_s", "camera_s", "render_s", "total_s")
 STAGE_TITLES = {
-    "planner_s": "Planner", "perception_s": "Perception", "camera_s": "Camera", "render_s": "Rendering", "total_s": "Whole trial",
-}  # fmt: skip
+    "planner_s": "Planner",
+    "perception_s": "Perception",
+    "camera_s": "Camera",
+    "render_s": "Rendering",
+    "total_s": "Whole trial",
+}
 
 
 def stage_seconds(run: Run, stage: str) -> list[float]:
@@ -52,12 +56,14 @@ def latency_section(runs: Sequence[Run]) -> Section:
     )
     shared = [run.label for run in sources if run.evaluation.card.contended]
     text = [
-        "Wall seconds. What goes on at the same time counts once. A stage's figures are of the trials that used it. Where a pair was also "
+        "Wall seconds. What goes on at the same time counts once. A stage's figures are of the trials that used it. Where a "
+        "pair was also "
         "run without contention, its latency is taken from that run."
     ]
     if shared:
         text.append(
-            f"Marked “contended”: {len(shared)} of {len(sources)} model pairs were timed only while other runs used the same machine or "
+            f"Marked “contended”: {len(shared)} of {len(sources)} model pairs were timed only while other runs used the same "
+            "machine or "
             "servers, so that their latency is not their own."
         )
     charts = (drawing.time_chart(having, STAGE_TITLES),) if any(stage_seconds(r, "total_s") for r in having) else ()
@@ -77,7 +83,10 @@ def _alone(runs: Sequence[Run]) -> Sequence[Run]:
 def _by_stage(runs: Sequence[Run]) -> Table:
     columns = [Column("run", "Run"), Column("contended", "Measured"), Column("timed", "Timed trials", "count")]
     for stage, words in STAGE_TITLES.items():
-        columns += [Column(f"{stage}_median", f"{words}, median (s)", "seconds"), Column(f"{stage}_p95", f"{words}, p95 (s)", "seconds")]
+        columns += [
+            Column(f"{stage}_median", f"{words}, median (s)", "seconds"),
+            Column(f"{stage}_p95", f"{words}, p95 (s)", "seconds"),
+        ]
     columns += [
         Column("first_token_s_median", "Before first tokens, median (s)", "seconds"),
         Column("calls", "Tool calls, mean", "number"),
@@ -105,11 +114,15 @@ def _by_model(
 ) -> Table:
     unit = "step" if stage == "planner_s" else "look"
     columns = (
-        Column("model", "Model"), Column("contended", "Measured"), Column("pairs", "Pairs", "count"),
-        Column("trial_median", "Seconds a trial, median", "seconds"), Column("trial_p95", "Seconds a trial, p95", "seconds"),
-        Column(f"{unit}_median", f"Seconds a {unit}, median", "seconds"), Column(f"{unit}_p95", f"Seconds a {unit}, p95", "seconds"),
+        Column("model", "Model"),
+        Column("contended", "Measured"),
+        Column("pairs", "Pairs", "count"),
+        Column("trial_median", "Seconds a trial, median", "seconds"),
+        Column("trial_p95", "Seconds a trial, p95", "seconds"),
+        Column(f"{unit}_median", f"Seconds a {unit}, median", "seconds"),
+        Column(f"{unit}_p95", f"Seconds a {unit}, p95", "seconds"),
         Column("calls", "Tool calls, mean", "number"),
-    )  # fmt: skip
+    )
     rows = []
     for model in dict.fromkeys(name(run) for run in runs):
         own = _alone([run for run in runs if name(run) == model])
@@ -118,7 +131,8 @@ def _by_model(
         calls = calls_made([t for run in own for t in run.scored])
         rows.append((model, _contended(own), len(own), middle(seconds), tail(seconds), middle(single), tail(single), calls))
     notes = (
-        f"Trials of all model pairs with this {'planner' if unit == 'step' else 'vision model'}, pooled; only those without contention where there are any. Reference runs are left out.",
+        f"Trials of all model pairs with this {'planner' if unit == 'step' else 'vision model'}, pooled; only those without "
+        "contention where there are any. Reference runs are left out.",
     )
     return Table(key, title, columns, tuple(rows), notes)
 
@@ -126,11 +140,16 @@ def _by_model(
 def _views(runs: Sequence[Run]) -> Table:
     """What the sweep costs, by eyes and over all of them."""
     columns = (
-        Column("model", "Eyes"), Column("contended", "Measured"), Column("current_looks", "Looks, current view", "count"),
-        Column("current_median", "Current, median (s)", "seconds"), Column("current_p95", "Current, p95 (s)", "seconds"),
-        Column("full_looks", "Looks, panorama", "count"), Column("full_median", "Panorama, median (s)", "seconds"),
-        Column("full_p95", "Panorama, p95 (s)", "seconds"), Column("ratio", "Panorama to current", "ratio"),
-    )  # fmt: skip
+        Column("model", "Eyes"),
+        Column("contended", "Measured"),
+        Column("current_looks", "Looks, current view", "count"),
+        Column("current_median", "Current, median (s)", "seconds"),
+        Column("current_p95", "Current, p95 (s)", "seconds"),
+        Column("full_looks", "Looks, panorama", "count"),
+        Column("full_median", "Panorama, median (s)", "seconds"),
+        Column("full_p95", "Panorama, p95 (s)", "seconds"),
+        Column("ratio", "Panorama to current", "ratio"),
+    )
     names = list(dict.fromkeys(run.evaluation.card.perception.name for run in runs))
     groups = [(name, _alone([r for r in runs if r.evaluation.card.perception.name == name])) for name in names]
     if len(groups) > 1:

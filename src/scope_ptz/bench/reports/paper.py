@@ -107,8 +107,10 @@ def paper_section() -> Section:
     """The panel."""
     paper = load_paper()
     text = (
-        f"Everything in this panel is copied from the paper ({paper.paper.title}, doi {paper.paper.doi}); nothing in it was measured here. "
-        f"It stands for orientation and is not comparable task by task: the paper's 536 tasks, scenes and servers are others, and its "
+        f"Everything in this panel is copied from the paper ({paper.paper.title}, doi {paper.paper.doi}); nothing in it was "
+        "measured here. "
+        "It stands for orientation and is not comparable task by task: the paper's 536 tasks, scenes and servers are others, "
+        "and its "
         f"verdicts are those of a judge ({paper.paper.judge}), not of checks.",
     )
     tables = (_accuracy(paper), _latency(paper), _figures(paper), _models(paper), _categories(paper), _modes(paper))
@@ -137,7 +139,8 @@ def _accuracy(paper: Paper) -> Table:
         ]
         rows.append((row.planner, *cells, paper.micro(row) / 100, row.line))
     notes = (
-        "Percent. The paper's average is the macro average. 36.5 (qwen3-next-80b-a3b with moondream2-4bit, comparative) is no share of 62.",
+        "Percent. The paper's average is the macro average. 36.5 (qwen3-next-80b-a3b with moondream2-4bit, comparative) is "
+        "no share of 62.",
     )
     return Table("paper_accuracy", "The paper: accuracy by category", tuple(columns), tuple(rows), notes, groups)
 

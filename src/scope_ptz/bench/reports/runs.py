@@ -31,7 +31,9 @@ CATEGORY_TITLES = {
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """One evaluation; a trial is one run of one task in it. ``label``: how the report calls it, unlike any other; ``planner`` and ``eyes``: None where the registry has
+    """One evaluation; a trial is one run of one task in it.
+
+    ``label``: how the report calls it, unlike any other; ``planner`` and ``eyes``: None where the registry has
     no such model."""
 
     number: int

@@ -34,7 +34,7 @@ def sensitivity_section(runs: Sequence[Run]) -> Section:
 
 
 def _by_system(runs: Sequence[Run]) -> dict[System, list[Trial]]:
-    """First trials of each task of a system, whichever logs they are in; infrastructure failures left out. Of several logs the first."""
+    """First trials of each task of a system, infrastructure left out, whichever logs hold them; of several logs the first."""
     found: dict[System, dict[str, Trial]] = defaultdict(dict)
     for run in runs:
         for trial in run.evaluation.trials:
@@ -54,10 +54,14 @@ def _scenarios(trials: Sequence[Trial]) -> list[list[bool]]:
 
 def _wordings(runs: Sequence[Run]) -> Table:
     columns = (
-        Column("system", "Pair"), Column("scenarios", "Scenarios", "count"), Column("wordings", "Wordings", "count"),
-        Column("mean", "Mean over wordings (%)", "share"), Column("all", "Every wording right (%)", "share"),
-        Column("any", "Some wording right (%)", "share"), Column("mixed", "Depends on the wording (%)", "share"),
-    )  # fmt: skip
+        Column("system", "Pair"),
+        Column("scenarios", "Scenarios", "count"),
+        Column("wordings", "Wordings", "count"),
+        Column("mean", "Mean over wordings (%)", "share"),
+        Column("all", "Every wording right (%)", "share"),
+        Column("any", "Some wording right (%)", "share"),
+        Column("mixed", "Depends on the wording (%)", "share"),
+    )
     rows: list[tuple[Value, ...]] = []
     for system, trials in _by_system(runs).items():
         found = _scenarios(trials)
@@ -96,7 +100,8 @@ def repeats_section(runs: Sequence[Run]) -> Section:
         tasks = _passed(run)
         rows.append((run.label, len(tasks), *(mean_pass_all(tasks, k)[0] for k in range(1, most + 1))))
     text = (
-        "pass^k is the chance that k trials of a task all succeed, C(c, k) / C(n, k) for c of n, averaged over the tasks with at least k "
+        "pass^k is the chance that k trials of a task all succeed, C(c, k) / C(n, k) for c of n, averaged over the tasks "
+        "with at least k "
         "trials that infrastructure did not break. pass^1 is the mean over tasks. Runs without repeats are left out.",
     )
     table = Table("repeats", "pass^k", tuple(columns), tuple(rows))
@@ -121,10 +126,13 @@ def reaction_section(runs: Sequence[Run]) -> Section | None:
     if not having:
         return None
     columns = (
-        Column("run", "Run"), Column("trials", "Trials", "count"), Column("correct", "Correct (%)", "share"),
-        Column("answered", "Answered anyway (%)", "share"), Column("asked", "Asked back (%)", "share"),
+        Column("run", "Run"),
+        Column("trials", "Trials", "count"),
+        Column("correct", "Correct (%)", "share"),
+        Column("answered", "Answered anyway (%)", "share"),
+        Column("asked", "Asked back (%)", "share"),
         Column("refused", "Refused (%)", "share"),
-    )  # fmt: skip
+    )
     rows = tuple(
         (
             run.label,
@@ -134,8 +142,11 @@ def reaction_section(runs: Sequence[Run]) -> Section | None:
         )
         for run, own in having
     )
-    text = ("Requests that are unclear, impossible or not allowed: right is a question back or a refusal, with the camera left where it is. "
-            "They are no part of accuracy.",)  # fmt: skip
+    text = (
+        "Requests that are unclear, impossible or not allowed: right is a question back or a refusal, with the camera left "
+        "where it is. "
+        "They are no part of accuracy.",
+    )
     table = Table("reactions", "Requests that want a question or a refusal", columns, rows)
     return Section("reactions", "Unclear, impossible and forbidden requests", text, (), (table,))
 
@@ -153,12 +164,13 @@ def baseline_section(runs: Sequence[Run]) -> Section | None:
     columns.append(Column("macro", "Macro (%)", "share"))
     rows = tuple(
         (
-            run.label, "sees nothing" if run.kind == "blind" else "a person",
+            run.label,
+            "sees nothing" if run.kind == "blind" else "a person",
             *(share_correct([t for t in run.scored if t.task.category == name]) for name in CATEGORY_TITLES),
             run.macro,
         )
         for run in having
-    )  # fmt: skip
+    )
     text = (
         "What a planner gets right without seeing anything is no merit of the eyes; what a person gets right is what can be had.",
     )

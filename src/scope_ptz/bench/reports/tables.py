@@ -11,12 +11,12 @@ from scope_ptz.bench.statistics.clustered import Estimate
 
 MISSING = "not measured"
 Kind = Literal["text", "count", "share", "points", "width", "seconds", "number", "gb", "usd", "p", "ratio"]
-"""``share``: 0..1, shown in percent; ``points``: a difference of shares, in percentage points; ``width``: the same without a sign."""
+"""``share``: 0..1, shown in percent; ``points``: a difference, in percentage points; ``width``: that without a sign."""
 
 
 @dataclass(frozen=True, slots=True)
 class Marked:
-    """A value with what the page adds to it. ``best``: in its group; ``best_of_all``: in the table; ``link``: a page of the report."""
+    """A value with what the page adds to it. ``best``: in its group; ``best_of_all``: in the table; ``link``: a page."""
 
     value: str | int | float | Estimate | None
     best: bool = False

@@ -1,4 +1,4 @@
-"""What stands on the page of a failed task: what was asked and expected, and every trial that failed, step by step with its frames."""
+"""What stands on the page of a failed task: what was asked and expected, and every trial that failed, step by step."""
 
 from __future__ import annotations
 
@@ -174,7 +174,8 @@ def _call(called: Called, sample: SampleFiles, frames: FrameStore) -> CallShown:
     pose = f"pan {called.pose.pan_deg:.1f}°, tilt {called.pose.tilt_deg:.1f}°, zoom {called.pose.zoom:.2f}x"
     replies = tuple(
         cut(
-            f"{reply.kind}{f' “{reply.asked}”' if reply.asked else ''}: {reply.error or _message(reply.result)} ({reply.wall_s:.2f} s)"
+            f"{reply.kind}{f' “{reply.asked}”' if reply.asked else ''}: {reply.error or _message(reply.result)} "
+            f"({reply.wall_s:.2f} s)"
         )
         for reply in called.replies
     )

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 
 def undominated(points: Sequence[tuple[float, ...]]) -> list[bool]:
-    """Which points are on the Pareto front, where less of every coordinate is better: no other is as good in all and better in one."""
+    """Which points are on the Pareto front, less being better: no other is as good in every coordinate and better in one."""
     return [not any(_dominates(other, point) for other in points) for point in points]
 
 

@@ -1,8 +1,8 @@
 """Means over strata with intervals that know that tasks of one viewpoint are alike.
 
-An estimate is a weighted sum of stratum means, theta = sum_k w_k mean_k: with w_k = 1/K the macro average, with a single stratum the
-micro average, with weights +1 and -1 a contrast. Its variance is that of the linearised estimate, summed by cluster (Liang and Zeger
-1986), times G/(G-1); quantiles are Student's with G-1 degrees of freedom (Cameron and Miller 2015, sections II.A and VI.D).
+An estimate is a weighted sum of stratum means, theta = sum_k w_k mean_k: with w_k = 1/K the macro average, with a single stratum
+the micro average, with weights +1 and -1 a contrast. Its variance is that of the linearised estimate, summed by cluster (Liang and
+Zeger 1986), times G/(G-1); quantiles are Student's with G-1 degrees of freedom (Cameron and Miller 2015, sections II.A and VI.D).
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import stdtr, stdtrit
+from scipy.special import stdtr, stdtrit  # type: ignore[import-untyped]
 
 LEVEL = 0.95
 Numbers = NDArray[np.float64]

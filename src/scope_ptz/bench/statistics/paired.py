@@ -34,7 +34,7 @@ def holm(p_values: Sequence[float | None]) -> list[float | None]:
 
 
 def cluster_bootstrap(scores: Scores, *, seed: int = 0, draws: int = DRAWS) -> tuple[float, float] | None:
-    """95% percentile interval of the macro mean of paired differences, whole clusters drawn with replacement (Field and Welsh 2007).
+    """95% percentile interval of the macro mean of paired differences, whole clusters drawn with replacement (Field, Welsh 2007).
 
     ``scores.values``: one difference a task. Strata that a draw lacks are left out of its mean. None with fewer than two clusters.
     """

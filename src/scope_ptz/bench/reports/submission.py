@@ -1,0 +1,226 @@
+"""The file for a public leaderboard: JSON lines, a header and then a line for every trial, without keys and addresses.
+
+Its schema is ``data/submission.schema.json``; docs/reports.md says what a validator makes of it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, Any, Literal, Protocol, get_args
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+
+from scope_ptz.bench.error_modes import ErrorMode
+from scope_ptz.bench.reports.runs import split_name
+from scope_ptz.bench.tasks import CANARY, Category, ToolName
+from scope_ptz.bench.trials import Check, Count, Evaluation, ModelCard, RunCard, Seconds, Trial
+from scope_ptz.bench.verdict import Headline
+from scope_ptz.errors import InputError, OutputError
+
+MOST_ANSWER = 8_000
+CUT = " [cut]"
+TOOLS = frozenset(get_args(ToolName))
+UNKNOWN_TOOL = "unknown"
+_SAME = (
+    "epoch", "headline", "scored_by", "error_mode", "outcome", "steps", "bad_calls", "perception_failures", "collateral",
+    "input_tokens", "output_tokens", "cost_usd",
+)  # fmt: skip
+"""What is published as it is."""
+Line = Annotated[str, Field(max_length=500)]
+_SECRET = re.compile(
+    r"(?:\b(?:sk|pk|rk)-[A-Za-z0-9_-]{16,}|\bhf_[A-Za-z0-9]{16,}|\bgh[pousr]_[A-Za-z0-9]{20,}|\bAKIA[A-Z0-9]{16}\b"
+    r"|\beyJ[\w-]{10,}\.[\w-]{10,}\.|bearer\s+[\w.~+/-]{12,}|://[^/\s:@]+:[^/\s@]+@|-----BEGIN [A-Z ]*PRIVATE KEY)",
+    re.IGNORECASE,
+)
+_SECRET_NAMES = re.compile(r"key|token$|secret|password|authori[sz]ation|cookie|credential", re.IGNORECASE)
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Totals(_Part):
+    """Trials by headline, and failed ones by error mode. Derived again by whoever checks the file."""
+
+    trials: Count
+    headlines: dict[Headline, Count]
+    error_modes: dict[ErrorMode, Count]
+
+
+class Header(_Part):
+    """``tasks_digest``: SHA-256 over the tasks' ids, categories, scopes and wordings; ``wanted``: trials of a complete file."""
+
+    kind: Literal["header"] = "header"
+    format: Literal[1] = 1
+    canary: Literal["SCOPE-BENCH-CANARY 6b0c2f0e-9d1e-4f6c-8a57-0e2f6a1d7c34"] = CANARY
+    card: RunCard
+    tasks_digest: Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
+    tasks: Count
+    wanted: Count
+    totals: Totals
+
+
+class Times(_Part):
+    """Wall seconds."""
+
+    planner_s: Seconds
+    perception_s: Seconds
+    camera_s: Seconds
+    render_s: Seconds
+    total_s: Seconds
+
+
+class JudgeSaid(_Part):
+    judge: Line
+    prompt: Line
+    verdict: Literal["correct", "incorrect", "unparseable", "failed"]
+    error_mode: ErrorMode | None = None
+
+
+class TrialLine(_Part):
+    """One trial. ``answer``: the final text, cut at ``MOST_ANSWER`` characters; ``checks``: passed, failed, or None."""
+
+    kind: Literal["trial"] = "trial"
+    task: Annotated[str, Field(min_length=1, max_length=200)]
+    category: Category
+    epoch: Annotated[int, Field(ge=1)]
+    headline: Headline
+    scored_by: Literal["checks", "judge"]
+    error_mode: ErrorMode | None = None
+    checks: dict[str, bool | None]
+    outcome: str | None
+    answer: Annotated[str, Field(max_length=MOST_ANSWER + len(CUT))]
+    steps: Count
+    tool_calls: dict[str, Count]
+    bad_calls: Count
+    perception_failures: Count
+    collateral: bool
+    input_tokens: Count
+    output_tokens: Count
+    cost_usd: Annotated[float, Field(ge=0, allow_inf_nan=False)] | None
+    times: Times
+    judged: tuple[JudgeSaid, ...] = ()
+
+
+LINE: TypeAdapter[Header | TrialLine] = TypeAdapter(Annotated[Header | TrialLine, Field(discriminator="kind")])
+
+
+class Described(Protocol):
+    """A task or what is known of one."""
+
+    @property
+    def id(self) -> str: ...
+    @property
+    def category(self) -> Category: ...
+    @property
+    def scope(self) -> Any: ...
+    @property
+    def instruction(self) -> str: ...
+
+
+def submission_schema() -> dict[str, Any]:
+    """The JSON schema of one line, as it is published."""
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "A line of a submission", **LINE.json_schema()}
+
+
+def tasks_digest(tasks: Iterable[Described]) -> str:
+    """Names exactly these tasks, whatever their order and however often they occur."""
+    rows = sorted({f"{task.id}\t{task.category}\t{task.scope}\t{task.instruction}" for task in tasks})
+    return hashlib.sha256("\n".join(rows).encode()).hexdigest()
+
+
+def totals_of(lines: Sequence[TrialLine]) -> Totals:
+    """Counted from the lines."""
+    modes = Counter(line.error_mode for line in lines if line.error_mode is not None)
+    return Totals(trials=len(lines), headlines=dict(Counter(line.headline for line in lines)), error_modes=dict(modes))
+
+
+def submission_lines(evaluation: Evaluation) -> tuple[Header, list[TrialLine]]:
+    """Header and trials. Raises ``InputError`` for an unfinished run, which would be no fair entry."""
+    card = evaluation.card
+    if not evaluation.finished or not evaluation.trials:
+        raise InputError(f"This run is unfinished: {len(evaluation.trials)} of {evaluation.wanted} trials. Resume it first.")
+    lines = [_line(trial) for trial in sorted(evaluation.trials, key=lambda t: (t.task.id, t.epoch))]
+    facts = {t.task.id: t.task for t in evaluation.trials}
+    public = card.model_copy(
+        update={
+            "planner": _public(card.planner),
+            "perception": _public(card.perception),
+            "sampling": _harmless(card.sampling),
+            "host": "",
+            "split": split_name(card.split),
+        }
+    )
+    digest = tasks_digest(facts.values())
+    return Header(card=public, tasks_digest=digest, tasks=len(facts), wanted=evaluation.wanted, totals=totals_of(lines)), lines
+
+
+def write_submission(parts: tuple[Header, list[TrialLine]], out: Path) -> None:
+    """Write the file. Raises ``OutputError``."""
+    header, lines = parts
+    try:
+        out.parent.mkdir(parents=True, exist_ok=True)
+        out.write_text("".join(row.model_dump_json() + "\n" for row in (header, *lines)), "utf-8")
+    except OSError as error:
+        raise OutputError(f"The submission {out} cannot be written: {error.strerror}.") from error
+
+
+def secrets_in(content: Any, where: str = "") -> Iterator[str]:
+    """Places of a piece of JSON that look like keys, tokens or passwords."""
+    if isinstance(content, dict):
+        for name, value in content.items():
+            place = f"{where}.{name}" if where else str(name)
+            if _SECRET_NAMES.search(str(name)) and isinstance(value, str) and value:
+                yield place
+            yield from secrets_in(value, place)
+    elif isinstance(content, list | tuple):
+        for value in content:
+            yield from secrets_in(value, where)
+    elif isinstance(content, str) and _SECRET.search(content):
+        yield where
+
+
+def _line(trial: Trial) -> TrialLine:
+    answer = trial.answer if len(trial.answer) <= MOST_ANSWER else trial.answer[:MOST_ANSWER] + CUT
+    said = tuple(
+        JudgeSaid(judge=j.judge, prompt=j.prompt, verdict=j.verdict, error_mode=j.error_mode)
+        for j in trial.judgements
+        if j.repeat == 0
+    )
+    times = Times(**{name: max(0.0, getattr(trial.timings, name)) for name in Times.model_fields})
+    return TrialLine(
+        task=trial.task.id,
+        category=trial.task.category,
+        checks=_verdicts(trial.checks),
+        answer=_SECRET.sub("[removed]", answer),
+        tool_calls=_tools(trial.tool_calls),
+        times=times,
+        judged=said,
+        **{name: getattr(trial, name) for name in _SAME},
+    )
+
+
+def _verdicts(checks: Sequence[Check]) -> dict[str, bool | None]:
+    return {check.name: check.passed for check in checks}
+
+
+def _tools(calls: Mapping[str, int]) -> dict[str, int]:
+    """Calls by tool; whatever else a model invented counts under one name."""
+    known = Counter({name: number for name, number in calls.items() if name in TOOLS})
+    invented = sum(number for name, number in calls.items() if name not in TOOLS)
+    return dict(known | Counter({UNKNOWN_TOOL: invented})) if invented else dict(known)
+
+
+def _public(model: ModelCard) -> ModelCard:
+    """A model without its server's address, which the provider may be."""
+    provider = "" if "://" in model.provider else model.provider
+    return model.model_copy(update={"reported": _harmless(model.reported), "provider": provider})
+
+
+def _harmless(said: Any) -> dict[str, Any]:
+    """Settings without what looks like a secret or an address."""
+    return {k: v for k, v in said.items() if not any(secrets_in({k: v})) and "://" not in str(v)}

@@ -1,0 +1,223 @@
+"""Whether a submission can be believed: every line is held against the schema, the others, and the tasks themselves."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from scope_ptz import __version__
+from scope_ptz.agent.records import OUTCOMES
+from scope_ptz.bench.expected import ActionOnly
+from scope_ptz.bench.reader import agrees, read
+from scope_ptz.bench.reports.submission import (
+    CUT,
+    LINE,
+    TOOLS,
+    UNKNOWN_TOOL,
+    Header,
+    TrialLine,
+    secrets_in,
+    tasks_digest,
+    totals_of,
+)
+from scope_ptz.bench.splits import SPLITS, load_split
+from scope_ptz.bench.tasks import Task
+from scope_ptz.errors import InputError
+
+MOST_BYTES = 200_000_000
+NOT_RANKED = "not ranked: {pair} uses the grammar planner or ground-truth eyes, which are no models"
+SLACK_S = 0.5
+"""By how much the parts of a time may exceed the whole: clocks are read one after the other."""
+
+
+@dataclass(frozen=True, slots=True)
+class Findings:
+    """``faults``: one sentence each, with the line; ``counts``: what the file comes to when it is counted again."""
+
+    file: str
+    faults: tuple[str, ...]
+    counts: Mapping[str, int] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+    @property
+    def told(self) -> str:
+        counts = ", ".join(f"{number} {name}" for name, number in self.counts.items())
+        verdict = f"NOT VALID: {len(self.faults)} faults" if self.faults else "valid"
+        return "\n".join([f"{self.file}: {verdict}" + (f" ({counts})" if counts else ""), *self.notes])
+
+    def as_dict(self) -> dict[str, Any]:
+        return {
+            "file": self.file,
+            "valid": not self.faults,
+            "faults": list(self.faults),
+            "counts": dict(self.counts),
+            "notes": list(self.notes),
+        }
+
+
+def check_submission(path: Path, tasks: Sequence[Task] | None = None) -> Findings:
+    """Check a file. ``tasks``: what it should have run; without them the published split that it names.
+
+    Raises ``InputError`` when there is no file, or its split is not known and no tasks are given.
+    """
+    rows, faults = _rows(path)
+    headers = [(number, row) for number, row in rows if isinstance(row, Header)]
+    lines = [(number, row) for number, row in rows if isinstance(row, TrialLine)]
+    if len(headers) != 1 or headers[0][0] != 1:
+        faults.append(f"line 1: a submission begins with its only header; this one has {len(headers)}")
+    if not headers:
+        return Findings(path.name, tuple(faults))
+    header = headers[0][1]
+    known = {task.id: task for task in (tasks if tasks is not None else _published(header))}
+    faults += [f"line 1: {fault}" for fault in _header_faults(header, [row for _, row in lines], known)]
+    for number, row in lines:
+        faults += [f"line {number} ({row.task}): {fault}" for fault in _line_faults(row, header, known.get(row.task))]
+    faults += _completeness(header, [row for _, row in lines], known)
+    counted = totals_of([row for _, row in lines])
+    notes = [] if header.card.ranked else [NOT_RANKED.format(pair=header.card.pair)]
+    counts = {"trials": counted.trials, **{str(name): number for name, number in counted.headlines.items()}}
+    return Findings(path.name, tuple(faults), counts, tuple(notes))
+
+
+def _rows(path: Path) -> tuple[list[tuple[int, Header | TrialLine]], list[str]]:
+    try:
+        if path.stat().st_size > MOST_BYTES:
+            raise InputError(f"{path} is larger than {MOST_BYTES // 1_000_000} MB: it is no submission.")
+        content = path.read_text("utf-8")
+    except OSError as error:
+        raise InputError(f"The submission {path} cannot be read: {error.strerror}.") from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"The submission {path} is no UTF-8 text.") from error
+    rows: list[tuple[int, Header | TrialLine]] = []
+    faults = []
+    for number, text in enumerate(content.split("\n"), 1):
+        if text.strip():
+            try:
+                raw = json.loads(text, parse_constant=_no_constant)
+                rows.append((number, LINE.validate_python(raw)))
+                faults += [f"line {number}: {place} looks like a secret" for place in secrets_in(raw)]
+            except ValidationError as error:
+                first = error.errors(include_url=False, include_input=False)[0]
+                faults.append(f"line {number}: {'.'.join(map(str, first['loc'])) or 'as a whole'}: {first['msg']}")
+            except (ValueError, RecursionError) as error:
+                faults.append(f"line {number}: no JSON ({error})")
+    return rows, faults
+
+
+def _no_constant(name: str) -> float:
+    raise ValueError(f"{name} is no number")
+
+
+def _published(header: Header) -> Sequence[Task]:
+    if header.card.split not in SPLITS:
+        raise InputError(f"The submission is of '{header.card.split}', which is no published split. Give its tasks with --tasks.")
+    return load_split(header.card.split)
+
+
+def _header_faults(header: Header, lines: Sequence[TrialLine], known: Mapping[str, Task]) -> Iterator[str]:
+    counted = totals_of(lines)
+    if header.totals.trials != counted.trials:
+        yield f"totals say {header.totals.trials} trials, there are {counted.trials}"
+    for kind, said, found in (
+        ("headline", header.totals.headlines, counted.headlines),
+        ("error mode", header.totals.error_modes, counted.error_modes),
+    ):
+        for name in sorted({*said, *found}):
+            if said.get(name, 0) != found.get(name, 0):
+                yield f"totals say {said.get(name, 0)} times {kind} {name}, counted {found.get(name, 0)}"
+    datasets = {task.dataset for task in known.values()}
+    if header.card.dataset not in {"+".join(sorted(datasets)), *datasets}:
+        yield f"dataset {header.card.dataset} is not that of the tasks ({', '.join(sorted(datasets))})"
+    if header.tasks_digest != tasks_digest(known.values()):
+        yield "the digest of the tasks is another: wordings, categories or the choice of tasks differ"
+    if header.tasks != len(known):
+        yield f"it names {header.tasks} tasks, the split has {len(known)}"
+    if header.wanted != len(known) * header.card.epochs:
+        whole = len(known) * header.card.epochs
+        yield f"{header.wanted} trials were wanted where {len(known)} tasks times {header.card.epochs} are {whole}"
+    if (version := _version(header.card.package_version)) is None:
+        yield f"package version {header.card.package_version} is no version"
+    elif version > (_version(__version__) or ()):
+        yield f"made with scope-ptz {header.card.package_version}, which is newer than this one ({__version__}): update first"
+
+
+def _version(text: str) -> tuple[int, ...] | None:
+    numbers = text.split("+")[0].split(".")[:3]
+    return tuple(int(n) for n in numbers) if all(n.isdigit() for n in numbers) else None
+
+
+def _line_faults(line: TrialLine, header: Header, task: Task | None) -> Iterator[str]:
+    if line.epoch > header.card.epochs:
+        yield f"repeat {line.epoch} of {header.card.epochs}"
+    if line.error_mode is not None and line.headline != "incorrect":
+        yield f"error mode {line.error_mode} although the trial is {line.headline}"
+    if line.error_mode is None and line.headline == "incorrect" and line.scored_by == "checks":
+        yield "an incorrect trial has no error mode"
+    yield from _verdict_faults(line)
+    if line.outcome is not None and line.outcome not in OUTCOMES:
+        yield f"outcome {line.outcome} is none of {', '.join(OUTCOMES)}"
+    if strange := sorted(set(line.tool_calls) - TOOLS - {UNKNOWN_TOOL}):
+        yield f"there are no tools {', '.join(strange)[:200]}"
+    if line.steps > header.card.max_steps:
+        yield f"{line.steps} steps where {header.card.max_steps} are the most"
+    times = line.times
+    longest = max(times.planner_s, times.perception_s, times.camera_s, times.render_s)
+    if longest > times.total_s + SLACK_S:
+        yield f"a stage took {longest:g} s of {times.total_s:g} s in all"
+    if task is not None:
+        if line.category != task.category:
+            yield f"category {line.category} where the task's is {task.category}"
+        yield from _answer_faults(line, task)
+
+
+def _verdict_faults(line: TrialLine) -> Iterator[str]:
+    """The headline follows from the checks."""
+    if line.scored_by == "judge":
+        if line.headline in ("correct", "incorrect") and line.headline not in {said.verdict for said in line.judged}:
+            yield f"{line.headline} by the judge, which no judgement says"
+        return
+    passed = list(line.checks.values())
+    if line.headline in ("correct", "incorrect", "unscored") and not passed:
+        yield "no check at all"
+    elif line.headline == "correct" and not all(p is True for p in passed):
+        yield "correct although not every check passed"
+    elif line.headline == "incorrect" and False not in passed:
+        yield "incorrect although no check failed"
+    elif line.headline == "unscored" and (False in passed or None not in passed):
+        yield "unscored although the checks tell"
+
+
+def _answer_faults(line: TrialLine, task: Task) -> Iterator[str]:
+    """The answer, read again, gives what the answer check says."""
+    if isinstance(task.expected, ActionOnly) or line.scored_by == "judge" or line.answer.endswith(CUT):
+        return
+    if "answer" not in line.checks:
+        if line.headline != "infrastructure":
+            yield "the task wants an answer and there is no answer check"
+        return
+    ended = line.outcome in ("answered", "clarification", "refused")
+    found = agrees(task.expected, read(task.expected, line.answer)) if ended else False
+    if found != line.checks["answer"]:
+        yield f"the answer reads as {_words(found)} and its check says {_words(line.checks['answer'])}"
+
+
+def _words(passed: bool | None) -> str:
+    return {True: "right", False: "wrong", None: "unreadable"}[passed]
+
+
+def _completeness(header: Header, lines: Sequence[TrialLine], known: Mapping[str, Task]) -> Iterator[str]:
+    counted = Counter((line.task, line.epoch) for line in lines)
+    for task, epoch in sorted(key for key, number in counted.items() if number > 1):
+        yield f"{task}, repeat {epoch}, stands {counted[task, epoch]} times"
+    for task in sorted({task for task, _ in counted} - set(known)):
+        yield f"{task} is no task of the split"
+    for task in sorted(known):
+        missing = [epoch for epoch in range(1, header.card.epochs + 1) if (task, epoch) not in counted]
+        if missing:
+            yield f"{task} is missing" + (f" (repeats {', '.join(map(str, missing))})" if header.card.epochs > 1 else "")
