@@ -12,6 +12,8 @@ from scope_ptz.cli.bench_audit import audit_app
 from scope_ptz.cli.bench_browse import browse
 from scope_ptz.cli.bench_build import build
 from scope_ptz.cli.bench_card import card
+from scope_ptz.cli.bench_gate import gate
+from scope_ptz.cli.bench_generate import generate
 from scope_ptz.cli.bench_gold import gold_app
 from scope_ptz.cli.bench_human import human
 from scope_ptz.cli.bench_import import import_tasks
@@ -19,7 +21,9 @@ from scope_ptz.cli.bench_inputs import TasksOption
 from scope_ptz.cli.bench_judge_gold import judge_gold
 from scope_ptz.cli.bench_label import label
 from scope_ptz.cli.bench_reporting import report, submission_app
+from scope_ptz.cli.bench_rescore import rescore
 from scope_ptz.cli.bench_run import run
+from scope_ptz.cli.bench_sweep import sweep
 from scope_ptz.cli.endings import FAILED, ending, put, put_json
 
 bench_app = typer.Typer(help="The benchmark: its tasks and how they are checked.", no_args_is_help=True)
@@ -40,10 +44,14 @@ def schema() -> None:
 
 
 bench_app.command("run")(run)
+bench_app.command("sweep")(sweep)
+bench_app.command("rescore")(rescore)
+bench_app.command("gate")(gate)
 bench_app.command("build")(build)
 bench_app.command("browse")(browse)
 bench_app.command("card")(card)
 bench_app.command("human")(human)
+bench_app.command("generate")(generate)
 bench_app.command("agree")(agree)
 bench_app.command("label")(label)
 bench_app.command("report")(report)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Awaitable, Callable, Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,6 +22,8 @@ from scope_ptz.planner.base import Decision, Planner, State
 from scope_ptz.world.pack import Scene
 
 if TYPE_CHECKING:
+    from scope_ptz.bench.judging.judge import Complete
+    from scope_ptz.bench.judging.server import ServerPort
     from scope_ptz.perception.base import Perception
 
 
@@ -70,10 +72,11 @@ def lend(
     planner: PlannerChoice | None = None,
     eyes: EyesChoice | None = None,
     made: Planner | None = None,
+    judge: ServerPort | None = None,
 ) -> Equipment:
     """Equipment for an evaluation. Models that were not chosen yet are made from their names when they are wanted.
 
-    ``made``: the planner, where it is there already.
+    ``made`` and ``judge``: the planner and the judge, where they are there already.
     """
     scenes = lru_cache(maxsize=None)(open_scene)
 
@@ -82,6 +85,9 @@ def lend(
 
     async def some_eyes(wish: ModelWish) -> Perception:
         return eyes_for(eyes or (await choose(_wishes(wish, "eyes"))).eyes, scenes, seed)
+
+    async def a_judge(wish: ModelWish, repeat: int) -> Complete:
+        return (await _judge(wish)).repeated(repeat)
 
     truth = eyes_for(EyesChoice("ground-truth"), scenes, seed)
 
@@ -93,6 +99,7 @@ def lend(
         open_scene=scenes,
         make_planner=a_planner,
         make_eyes=some_eyes,
+        make_judge=judge_maker(judge) if judge is not None else a_judge,
         load_tasks=lambda split: tasks_of(split, scenes),
         truth=really,
         perception_note=notes.get(eyes.name, "") if eyes else "",
@@ -108,6 +115,24 @@ def _wishes(wish: ModelWish, role: str) -> Wishes:
     if role == "planner":
         return Wishes(planner=wish.name, planner_url=wish.url, planner_model=served, planner_key_file=key, planner_options=further)
     return Wishes(perception=wish.name, eyes_url=wish.url, eyes_model=served, eyes_key_file=key, eyes_options=further)
+
+
+def judge_maker(port: ServerPort) -> Callable[[ModelWish, int], Awaitable[Complete]]:
+    """Lends one judge, whatever name it is asked for by."""
+
+    async def make(wish: ModelWish, repeat: int) -> Complete:  # noqa: ARG001 - the engine asks by name
+        return port.repeated(repeat)
+
+    return make
+
+
+async def _judge(wish: ModelWish) -> ServerPort:
+    from scope_ptz.cli.bench_judge import TIMEOUT_S, open_judge
+
+    options = {name: value for name, value in wish.options.items() if value is not None}
+    served, key = options.pop("served", wish.name), options.pop("key_file", None)
+    further = [f"{name}={value}" for name, value in options.items()]
+    return await open_judge(wish.url, str(served), Path(str(key)) if key else None, TIMEOUT_S, further)
 
 
 async def _count(truth: Perception, scene: str, look: Look) -> int | None:

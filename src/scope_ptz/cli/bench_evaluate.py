@@ -20,10 +20,23 @@ if TYPE_CHECKING:
     from scope_ptz.bench.engine.entries import Entry
     from scope_ptz.bench.engine.estimate import Price
     from scope_ptz.bench.engine.runs import Found, Setting
+    from scope_ptz.bench.judging.server import ServerPort
 
 OWN_AGENT = "scope"
 WITH_MODELS = 8
 """Runs at a time when a model server answers."""
+
+
+@dataclass(frozen=True, slots=True)
+class JudgeWish:
+    """A judge's server, and how often it judges each run."""
+
+    url: str | None
+    model: str | None
+    key_file: Path | None
+    timeout_s: float
+    options: tuple[str, ...] = ()
+    repeats: int = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +61,7 @@ class RunOptions:
     fresh: bool = False
     resume: Path | None = None
     price: Price | None = None
+    judge: JudgeWish | None = None
 
 
 def need_engine() -> None:
@@ -108,9 +122,7 @@ class _Prepared:
         if self.options.resume is not None:
             log = found(self.options.resume)
             if (log.header.eval.metadata or {}).get("identity") != self.identity:
-                raise InputError(
-                    f"{log.path} is of another evaluation: tasks, models or settings differ. Give its own options."
-                )
+                raise InputError(f"{log.path} is of another evaluation: tasks, models or settings differ. Give its own options.")
             return log
         return None if self.options.fresh else find(self.options.out, self.identity)
 
@@ -118,20 +130,24 @@ class _Prepared:
         from scope_ptz.bench.engine.equipment import EQUIPMENT
         from scope_ptz.bench.engine.logs import read_evaluation
         from scope_ptz.bench.engine.runs import run
+        from scope_ptz.cli.bench_equipment import judge_maker
         from scope_ptz.cli.bench_live import LiveTable
         from scope_ptz.cli.inspect_entry import bench
 
         done = tuple(t for t in read_evaluation(before.path).trials if t.headline != "infrastructure") if before else ()
         wanted = len(self.entries) * self.options.epochs
         self._foretell(console, wanted, done, before)
-        setting = await self._setting()
+        judge = await self._judge()
+        setting = await self._setting(judge)
         with anyio.CancelScope() as scope, LiveTable(console, wanted, done, setting.card.pair, scope.cancel) as table:
-            EQUIPMENT.set(replace(self.lent, watcher=table, load_tasks=lambda _: self.entries))
+            lent = self.lent if judge is None else replace(self.lent, make_judge=judge_maker(judge))
+            EQUIPMENT.set(replace(lent, watcher=table, load_tasks=lambda _: self.entries))
             options = self.options
             task = bench(
                 split=options.tasks, category=list(options.categories) or None, scene=list(options.scenes) or None,
                 limit=options.limit, agent=options.agent, pictures=options.pictures, max_steps=options.max_steps,
                 time_s=options.time_s, seed=options.seed, epochs=options.epochs,
+                judgements=options.judge.repeats if options.judge else 0,
             )  # fmt: skip
             written = await run(task, setting, before)
         if table.stopped:
@@ -141,12 +157,19 @@ class _Prepared:
             )
         return written
 
-    async def _setting(self) -> Setting:
+    async def _judge(self) -> ServerPort | None:
+        from scope_ptz.cli.bench_judge import open_judge
+
+        wish = self.options.judge
+        return await open_judge(wish.url, wish.model, wish.key_file, wish.timeout_s, list(wish.options)) if wish else None
+
+    async def _setting(self, judge: ServerPort | None) -> Setting:
         from inspect_ai.model import GenerateConfig, get_model
 
         import scope_ptz.cli.inspect_entry  # noqa: F401 - the models of this project
         from scope_ptz.bench.engine.runs import Setting
         from scope_ptz.cli.bench_cards import run_card
+        from scope_ptz.cli.bench_judging import judge_as_model
 
         options, choice = self.options, self.choice
         card = await run_card(
@@ -168,7 +191,8 @@ class _Prepared:
             )
         url = spec.endpoint.url if spec is not None and spec.endpoint is not None else None
         eyes = get_model(f"scope_ptz/{choice.eyes.name}", base_url=url, config=config, memoize=False)
-        return Setting(options.out, planner, eyes, self.concurrency, self.identity, card)
+        judging = judge_as_model(judge, self.concurrency * 2) if judge is not None else None
+        return Setting(options.out, planner, eyes, judging, self.concurrency, self.identity, card)
 
     def _foretell(self, console: Console, wanted: int, done: tuple[Any, ...], before: Found | None) -> None:
         from scope_ptz.bench.engine.estimate import estimate

@@ -10,6 +10,7 @@ import anyio
 import typer
 
 from scope_ptz.cli import model_options as models
+from scope_ptz.cli.bench_judge import TIMEOUT_S, JudgeKey, JudgeModel, JudgeOption, JudgeTimeout, JudgeUrl
 from scope_ptz.cli.endings import FAILED, ending, put, put_json
 from scope_ptz.errors import InputError
 
@@ -104,6 +105,14 @@ def run(
     price: PriceOption = None,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object at the end.")] = False,
     agent: AgentOption = "scope",
+    judge_url: JudgeUrl = None,
+    judge_model: JudgeModel = None,
+    judge_key_file: JudgeKey = None,
+    judge_timeout: JudgeTimeout = TIMEOUT_S,
+    judge_option: JudgeOption = None,
+    judge_repeats: Annotated[
+        int, typer.Option("--judge-repeats", min=1, help="Judgements of each run.", rich_help_panel="Judge")
+    ] = 1,
     planner: models.PlannerOption = None,
     perception: models.PerceptionOption = None,
     pair: models.PairOption = None,
@@ -126,18 +135,22 @@ def run(
     with ending(as_json=as_json):
         from rich.console import Console
 
-        from scope_ptz.cli.bench_evaluate import RunOptions, evaluate, need_engine
+        from scope_ptz.cli.bench_evaluate import JudgeWish, RunOptions, evaluate, need_engine
         from scope_ptz.cli.bench_live import summary
+        from scope_ptz.settings import load_settings
 
         need_engine()
         wishes = models.wishes_of(
             planner, perception, pair, planner_url, eyes_url, planner_model, eyes_model, planner_key_file, eyes_key_file,
             planner_option, eyes_option, reader, detector, timeout,
         )  # fmt: skip
+        judged = bool(judge_url or judge_model or load_settings().judge_url)
+        judge = JudgeWish(judge_url, judge_model, judge_key_file, judge_timeout, tuple(judge_option or ()), judge_repeats)
         options = RunOptions(
             wishes=wishes, out=out, tasks=split, categories=tuple(category or ()), scenes=tuple(scene or ()), limit=limit,
             epochs=epochs, seed=seed, agent=agent, max_steps=max_steps, time_s=time_budget, concurrency=concurrency,
             latency=latency, pictures=pictures, variant=variant, fresh=fresh, resume=resume, price=price_of(price),
+            judge=judge if judged else None,
         )  # fmt: skip
         console = Console(highlight=False, stderr=as_json)
         evaluation = anyio.run(evaluate, options, console)

@@ -37,11 +37,13 @@ def bench(
     time_s: float | None = None,
     seed: int = 1,
     epochs: int = 1,
+    judgements: int = 0,
 ) -> Task:
     """SCOPE: a camera that is told what to do in plain language.
 
     ``split``: core, another split of the dataset, or a file of tasks; ``category`` and ``scene``: only these, separated by
-    commas; ``agent``: module:Class of another agent; ``pictures``: draw and keep what the camera shows.
+    commas; ``agent``: module:Class of another agent; ``pictures``: draw and keep what the camera shows;
+    ``judgements``: how often the model that plays the role "judge" judges each run.
     """
     lent = EQUIPMENT.get()
     if lent is None:
@@ -49,7 +51,7 @@ def bench(
         EQUIPMENT.set(lent)
     entries = chosen(lent.load_tasks(split), _names(category), _names(scene), limit)
     options: dict[str, Any] = {"agent": agent, "pictures": pictures, "max_steps": max_steps, "time_s": time_s, "seed": seed}
-    return bench_task(entries, split, **options, epochs=epochs)
+    return bench_task(entries, split, **options, epochs=epochs, judgements=judgements)
 
 
 def _names(given: str | list[str] | None) -> list[str]:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from scope_ptz.bench.engine.entries import Entry, OpenScene
 from scope_ptz.bench.episode import Look
+from scope_ptz.bench.judging.judge import Complete
 from scope_ptz.bench.trials import Trial
 from scope_ptz.errors import ConfigError
 from scope_ptz.planner.base import Planner
@@ -47,11 +48,12 @@ class Watcher:
 
 @dataclass(frozen=True, slots=True)
 class Equipment:
-    """``truth``: None where no ground truth can be had."""
+    """``make_judge``: a judge's port for its n-th judgement of a run; ``truth``: None where no ground truth can be had."""
 
     open_scene: OpenScene
     make_planner: Callable[[ModelWish], Awaitable[Planner]]
     make_eyes: Callable[[ModelWish], Awaitable[Eyes]]
+    make_judge: Callable[[ModelWish, int], Awaitable[Complete]]
     load_tasks: LoadTasks
     truth: TruthOf | None = None
     watcher: Watcher = field(default_factory=Watcher)

@@ -11,6 +11,7 @@ from pydantic import ValidationError
 from scope_ptz.bench.trials import Judgement
 from scope_ptz.errors import TraceError
 
+JUDGE = "judge"
 JUDGEMENT = "judgement"
 
 

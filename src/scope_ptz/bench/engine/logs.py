@@ -61,6 +61,11 @@ def read_evaluation(path: Path) -> Evaluation:
     return Evaluation(card=card, trials=tuple(trials), wanted=wanted, log=str(path))
 
 
+def trials_by_sample(path: Path) -> dict[str, Trial]:
+    """The judged runs of a log by name. Raises ``TraceError``."""
+    return {trial.sample: trial for trial in read_evaluation(path).trials}
+
+
 def open_sample(path: Path, sample: str) -> SampleFiles:
     """One run of a log by its name (``Trial.sample``). Raises ``TraceError``."""
     task, _, epoch = sample.rpartition("#")

@@ -27,6 +27,7 @@ from inspect_ai.tool import ToolCall, ToolChoice, ToolInfo
 from scope_ptz.bench.engine.equipment import ModelWish, equipment
 from scope_ptz.bench.engine.messages import call_id, state_of
 from scope_ptz.bench.engine.wire import WIRE
+from scope_ptz.bench.judging.judge import Complete
 from scope_ptz.planner.base import CallTools, Decision, Planner
 from scope_ptz.planner.chat.messages import callable_name
 
@@ -61,6 +62,7 @@ class ScopeModel(ModelAPI):
         self._lock = anyio.Lock()
         self._planner: Planner | None = None
         self._eyes: Eyes | None = None
+        self._judges: dict[int, Complete] = {}
 
     async def planner(self) -> Planner:
         """The planner behind this name, made when it is first wanted."""
@@ -75,6 +77,13 @@ class ScopeModel(ModelAPI):
             if self._eyes is None:
                 self._eyes = await equipment().make_eyes(self.wish)
             return self._eyes
+
+    async def judge(self, repeat: int) -> Complete:
+        """The judge behind this name, as it judges for the ``repeat``-th time; made when it is first wanted."""
+        async with self._lock:
+            if repeat not in self._judges:
+                self._judges[repeat] = await equipment().make_judge(self.wish, repeat)
+            return self._judges[repeat]
 
     async def generate(
         self,

@@ -50,11 +50,12 @@ class Found:
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """How an evaluation is run, beside its task. ``planner``: None for other people's agents."""
+    """How an evaluation is run, beside its task. ``planner``: None for other people's agents; ``judge``: None for checks alone."""
 
     log_dir: Path
     planner: Model | None
     eyes: Model
+    judge: Model | None
     concurrency: int
     identity: str
     card: RunCard
@@ -155,7 +156,8 @@ async def run(task: Task, setting: Setting, before: Found | None) -> Path:
 
 
 def _roles(setting: Setting) -> Mapping[str, Model | list[Model] | str | list[str]]:
-    return {"eyes": setting.eyes} | ({"planner": setting.planner} if setting.planner is not None else {})
+    roles = {"planner": setting.planner, "eyes": setting.eyes, "judge": setting.judge}
+    return {role: model for role, model in roles.items() if model is not None}
 
 
 async def _rescued(before: Found) -> tuple[EvalLog, Path]:

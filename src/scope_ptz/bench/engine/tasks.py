@@ -9,6 +9,7 @@ from inspect_ai import Epochs, Task
 
 from scope_ptz import __version__
 from scope_ptz.bench.engine.entries import Entry, datasets, digest
+from scope_ptz.bench.engine.judging import judge
 from scope_ptz.bench.engine.sampling import dataset_of
 from scope_ptz.bench.engine.scorers import checks
 from scope_ptz.bench.engine.solver import OWN_AGENT, scope_agent
@@ -27,12 +28,14 @@ def bench_task(
     time_s: float | None = None,
     seed: int = 1,
     epochs: int = 1,
+    judgements: int = 0,
 ) -> Task:
-    """Entries to run, the agent as their solver, the checks as their scorer. Broken runs are scored, and counted apart."""
+    """Entries to run, the agent as their solver, checks and so many ``judgements`` as their scorers. Broken runs are scored, and
+    counted apart."""
     return Task(
         dataset=dataset_of(entries, name=f"{datasets(entries)} {split}"),
         solver=scope_agent(agent, pictures, max_steps, time_s, seed),
-        scorer=checks(),
+        scorer=[checks(), *(judge(repeat) for repeat in range(judgements))],
         epochs=Epochs(epochs, "mean"),
         fail_on_error=MOST_BROKEN,
         continue_on_fail=True,

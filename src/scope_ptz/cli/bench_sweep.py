@@ -1,0 +1,160 @@
+"""``scope bench sweep``: many pairs on the same tasks, one log a pair, resumable as a whole."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from typing import TYPE_CHECKING, Annotated
+
+import anyio
+import typer
+
+from scope_ptz.cli import bench_run as options
+from scope_ptz.cli import model_options as models
+from scope_ptz.cli.endings import FAILED, complain, ending, put_json
+from scope_ptz.errors import InputError, ScopeError
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.table import Table
+
+    from scope_ptz.bench.trials import Evaluation
+    from scope_ptz.cli.bench_evaluate import RunOptions
+    from scope_ptz.cli.choosing import Wishes
+
+BUILT_IN = ("grammar", "ground-truth", "noisy")
+
+
+def sweep(
+    pairs: Annotated[
+        str | None, typer.Option("--pairs", help="Pairs PLANNER+EYES, or models that are both, joined by commas.")
+    ] = None,
+    paper: Annotated[bool, typer.Option("--paper", help="The paper's 19 pairs.")] = False,
+    split: options.SplitOption = "core",
+    category: options.CategoryOption = None,
+    scene: options.SceneOption = None,
+    limit: options.LimitOption = None,
+    epochs: options.EpochsOption = 1,
+    concurrency: options.ConcurrencyOption = None,
+    latency: options.LatencyOption = False,
+    seed: options.SeedOption = 1,
+    max_steps: options.StepsOption = 60,
+    time_budget: options.TimeOption = None,
+    out: options.OutOption = options.LOGS,
+    as_json: Annotated[bool, typer.Option("--json", help="One JSON object at the end.")] = False,
+    planner_url: models.PlannerUrlOption = None,
+    eyes_url: models.EyesUrlOption = None,
+    planner_key_file: models.PlannerKeyOption = None,
+    eyes_key_file: models.EyesKeyOption = None,
+    planner_option: models.PlannerOptions = None,
+    eyes_option: models.EyesOptions = None,
+    timeout: models.TimeoutOption = None,
+) -> None:
+    """Run pair after pair. Where servers listen stands in your models file, or is the same for all (--planner-url, --eyes-url).
+
+    The same command goes on where it stopped, skips what is done, and tries again what could not be reached.
+    """
+    with ending(as_json=as_json):
+        from rich.console import Console
+
+        from scope_ptz.cli.bench_evaluate import RunOptions, need_engine
+
+        need_engine()
+        names = named_pairs(pairs, paper=paper)
+        shared = models.wishes_of(
+            None, None, None, planner_url, eyes_url, None, None, planner_key_file, eyes_key_file, planner_option, eyes_option,
+            None, None, timeout,
+        )  # fmt: skip
+        each = RunOptions(
+            wishes=shared, out=out, tasks=split, categories=tuple(category or ()), scenes=tuple(scene or ()), limit=limit,
+            epochs=epochs, seed=seed, max_steps=max_steps, time_s=time_budget, concurrency=concurrency, latency=latency,
+        )  # fmt: skip
+        console = Console(highlight=False, stderr=as_json)
+        done = _run_all(names, each, console)
+        if as_json:
+            put_json({name: options.result(made) if not isinstance(made, str) else {"error": made} for name, made in done.items()})
+        else:
+            console.print(table_of(done))
+        if any(isinstance(made, str) or not complete(made) for made in done.values()):
+            complain("not every pair is complete; the same command goes on with those that are not.")
+            sys.exit(FAILED)
+
+
+def named_pairs(text: str | None, *, paper: bool) -> list[str]:
+    """The pairs to run, each once. Raises ``InputError`` for unknown ones, before anything is run."""
+    from scope_ptz.registry import load_registry
+    from scope_ptz.settings import load_settings
+
+    if (text is None) == (not paper):
+        raise InputError("Say which pairs: --pairs a+b,c+d or --paper.")
+    registry = load_registry(load_settings().models_file())
+    if paper:
+        return [pair.name for pair in registry.pairs.values() if pair.origin == "paper"]
+    names = list(dict.fromkeys(name.strip() for name in (text or "").split(",") if name.strip()))
+    if not names:
+        raise InputError("--pairs names no pair.")
+    for name in names:
+        planner, plus, eyes = name.partition("+")
+        if plus:
+            for model, role in ((planner, "planner"), (eyes, "eyes")):
+                if model not in BUILT_IN:
+                    registry.model(model, "planner" if role == "planner" else "eyes")
+        else:
+            registry.pair(name)
+    return names
+
+
+def _run_all(names: list[str], each: RunOptions, console: Console) -> dict[str, Evaluation | str]:
+    """Of each pair its evaluation, or why there is none."""
+    from scope_ptz.cli.bench_evaluate import evaluate
+
+    done: dict[str, Evaluation | str] = {}
+    for number, name in enumerate(names, 1):
+        console.rule(f"{number} of {len(names)}: {name}")
+        try:
+            done[name] = anyio.run(evaluate, replace(each, wishes=_wishes(each.wishes, name)), console)
+        except ScopeError as error:
+            done[name] = str(error)
+            complain(f"{name}: {error}")
+    return done
+
+
+def _wishes(shared: Wishes, name: str) -> Wishes:
+    """A pair with what is said of all. A server's address is for a model; the built-in planner and eyes have none."""
+    planner, plus, eyes = name.partition("+")
+    wishes = replace(shared, planner=planner, perception=eyes) if plus else replace(shared, pair=name)
+    if plus and planner in BUILT_IN:
+        wishes = replace(wishes, planner_url=None, planner_key_file=None, planner_options=())
+    if plus and eyes in BUILT_IN:
+        wishes = replace(wishes, eyes_url=None, eyes_key_file=None, eyes_options=())
+    return wishes
+
+
+def complete(evaluation: Evaluation) -> bool:
+    """Whether every run is there and none was broken by infrastructure."""
+    return evaluation.finished and not any(trial.headline == "infrastructure" for trial in evaluation.trials)
+
+
+def table_of(done: dict[str, Evaluation | str]) -> Table:
+    """All pairs in one table, best first; categories in columns."""
+    from rich.table import Table
+
+    from scope_ptz.cli.bench_live import CATEGORIES, accuracy, macro
+
+    table = Table("pair", box=None, pad_edge=False, header_style="bold")
+    for column in ("macro", "micro", *(c.replace("_", " ") for c in CATEGORIES), "runs", "broken"):
+        table.add_column(column, justify="right")
+    made = [(name, e) for name, e in done.items() if not isinstance(e, str)]
+    for name, evaluation in sorted(made, key=lambda row: -(macro(row[1].trials) or 0.0)):
+        trials = evaluation.trials
+        shares = [macro(trials), accuracy(trials), *(accuracy([t for t in trials if t.task.category == c]) for c in CATEGORIES)]
+        broken = sum(t.headline == "infrastructure" for t in trials)
+        cells = [f"{100 * share:.1f}" if share is not None else "-" for share in shares]
+        mark = "" if evaluation.card.ranked else " *"
+        table.add_row(name + mark, *cells, f"{len(trials)} of {evaluation.wanted}", str(broken) if broken else "-")
+    for name, why in done.items():
+        if isinstance(why, str):
+            table.add_row(name, "not run", *[""] * (len(CATEGORIES) + 3))
+    if any(not e.card.ranked for _, e in made):
+        table.caption = "* built-in planner or ground-truth eyes: a check of the benchmark, no result of a model"
+    return table
