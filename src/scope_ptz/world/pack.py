@@ -58,7 +58,7 @@ _VARIED = re.compile(r"(?P<scene>.+)-v(?P<number>[1-9]\d{0,8})")
 class Scene:
     """A scene folder: its instance table at once, its viewpoints when asked for. Safe to share between threads and cameras.
 
-    ``held``: what a variation of the scene keeps in one place that else moves.
+    ``variation``: which one this is of the scene, if any; ``held``: what it keeps in one place that else moves.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -67,6 +67,7 @@ class Scene:
         if self.file.name != folder.name:
             raise PackError(f"{folder} holds the scene '{self.file.name}': a scene folder must bear its scene's name. Rename it.")
         self.name = self.file.name
+        self.variation: int | None = None
         self.held: tuple[Held, ...] = ()
         self._viewpoints: dict[str, Viewpoint] = {}
         self._lock = RLock()
@@ -77,6 +78,7 @@ class Scene:
         extents = {place.name: self.viewpoint(place.name).manifest.extents for place in self.file.viewpoints}
         variation = vary(self.file, number, extents)
         other = Scene(self.folder)
+        other.variation = number
         other.name, other.file, other.held = variation_name(self.name, number), variation.file, variation.held
         other._viewpoints, other._lock = self._viewpoints, self._lock
         return other
