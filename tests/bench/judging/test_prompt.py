@@ -80,7 +80,13 @@ def test_an_injected_line_stays_behind_its_bar() -> None:
 
 def test_judges_do_not_learn_who_looked() -> None:
     facts, case = facts_and_case()
-    seen = CaseCall("count_objects", {}, {"count": 5, "source": "ground-truth", "boxes": [[0, 0, 1, 1]] * 9}, None, Pose())
+    seen = CaseCall(
+        "count_objects",
+        {},
+        {"count": 5, "source": "ground-truth", "boxes": [[0, 0, 1, 1]] * 9, "message": "5 (seen by ground-truth)."},
+        None,
+        Pose(),
+    )
     text = render(facts, replace(case, calls=(seen,)), 60_000)
     assert "ground-truth" not in text
     assert "boxes" not in text

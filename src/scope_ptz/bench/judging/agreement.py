@@ -106,7 +106,7 @@ def agreement(raters: Sequence[Rater], seed: int = 1) -> Report:
         repeats.setdefault(rater.group, []).append(rater)
     pairs = [_pair(one, two, seed) for one, two in combinations(leading, 2)]
     pairs += [_pair(one, two, seed) for group in repeats.values() for one, two in combinations(group, 2)]
-    groups = [_group(group, f"repeats of {name}", seed) for name, group in repeats.items() if len(group) > 1]
+    groups = [_group(group, f"repeats of {group[0].name}", seed) for group in repeats.values() if len(group) > 1]
     for kind, what in (("judge", "judges"), ("person", "people")):
         alike = [rater for rater in leading if rater.kind == kind]
         if len(alike) > 1:

@@ -7,6 +7,7 @@ long tool results, then the calls in its middle, of which a count by tool remain
 from __future__ import annotations
 
 import json
+import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -26,6 +27,8 @@ _RESULT_CHARS = (4_000, 1_200, 300)
 _NAME_CHARS, _MOST_PRESETS, _NOTE_CHARS = 60, 40, 300
 _BULK = frozenset({"boxes", "box", "path", "frames", "source"})
 """Parts of results that tell a judge nothing, or who looked, which is none of its business."""
+
+_LOOKER = re.compile(r" ?\(seen by [^()]*\)")
 
 _ENDINGS = {
     "answered": "the agent gave a final answer",
@@ -135,7 +138,10 @@ def _call_text(number: int, call: CaseCall, most: int) -> str:
 
 
 def _kept(result: Mapping[str, Any]) -> dict[str, Any]:
-    return {name: value for name, value in result.items() if name not in _BULK and name != "pose"}
+    kept = {name: value for name, value in result.items() if name not in _BULK and name != "pose"}
+    if isinstance(kept.get("message"), str):
+        kept["message"] = _LOOKER.sub("", kept["message"])
+    return kept
 
 
 def _json(content: Mapping[str, Any]) -> str:

@@ -1,0 +1,170 @@
+"""``scope bench judge-gold`` against servers: resumed, repeated, counted; and how commands get a judge."""
+
+from __future__ import annotations
+
+import json
+import random
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import anyio
+import pytest
+from typer.testing import CliRunner, Result
+
+from scope_ptz.bench.authoring.places import preset_at
+from scope_ptz.bench.episode import Episode
+from scope_ptz.bench.error_modes import ErrorMode
+from scope_ptz.bench.gold import EYES, write_gold
+from scope_ptz.bench.judging.gold import read_verdicts
+from scope_ptz.bench.mutations import Setting, mutate
+from scope_ptz.bench.run_program import Stage
+from scope_ptz.bench.task_files import dump_tasks
+from scope_ptz.bench.tasks import Task
+from scope_ptz.cli.app import app
+from scope_ptz.cli.bench_eyes import equip_with_truth
+from scope_ptz.cli.bench_judge import open_judge
+from scope_ptz.cli.session import open_scene
+from scope_ptz.errors import ConfigError, InputError
+from tests.bench.judging.runs import CORRECT, written
+from tests.bench.judging.test_labels import turn_task
+from tests.support import misbehaving as m
+
+KEY = "sk-judge-0123456789"
+
+
+@pytest.fixture(scope="module")
+def gold(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with two tasks of the shipped scene and their gold runs: turned the wrong way, and not at all."""
+    folder = tmp_path_factory.mktemp("gold")
+    scene = open_scene("highway-works")
+    stage = Stage(scene, equip_with_truth({scene.name: scene}), EYES)
+    setting = Setting({preset.name: preset_at(preset) for preset in scene.file.presets}, EYES)
+    tasks = [turn_task(1, 20), turn_task(2, 30)]
+
+    async def run(task: Task) -> Episode:
+        return await stage.run(task, task.reference, "Done.")
+
+    made = [
+        mutate(task, anyio.run(run, task), mode, setting, random.Random(1))
+        for task in tasks
+        for mode in (ErrorMode.TOOL_ARGS, ErrorMode.LACK_OF_TOOL_CALL)
+    ]
+    dump_tasks(tasks, folder / "tasks.jsonl")
+    write_gold([one for one in made if one is not None], folder / "gold.jsonl.gz")
+    return folder
+
+
+def good_judge(x: m.Exchange) -> Any:
+    """Knows a run of these that is right, and the mode of one that is not, from the calls that it is told."""
+    told = x.request.data["messages"][1]["content"]
+    if "Tool calls: none." in told:
+        return m.say(written({"reason": "No call.", "verdict": "incorrect", "error_mode": "lack_of_tool_call"}))(x)
+    if '"pan_deg": -' in told:
+        return m.say(written({"reason": "Wrong way.", "verdict": "incorrect", "error_mode": "tool_args"}))(x)
+    return m.say(written(CORRECT))(x)
+
+
+def judge_gold(gold: Path, out: Path, url: str, *options: str) -> Result:
+    where = ["--gold", str(gold / "gold.jsonl.gz"), "--tasks", str(gold / "tasks.jsonl"), "--out", str(out)]
+    return CliRunner().invoke(app, ["bench", "judge-gold", *where, "--judge-url", url, "--judge-model", "gpt-oss-120b", *options])
+
+
+def test_a_judge_of_gold_runs_from_the_command_line(gold: Path, tmp_path: Path) -> None:
+    out = tmp_path / "verdicts.jsonl"
+    with m.Misbehaving(then=good_judge) as server:
+        done = judge_gold(gold, out, server.url)
+        assert done.exit_code == 0, done.output
+        assert "gpt-oss-120b (judge-1:" in done.output
+        assert "6 gold runs" in done.output
+        assert "false accepts: 0.0%" in done.output
+        assert "false rejects: 0.0%" in done.output
+        assert len(server.requests) == 6
+        again = judge_gold(gold, out, server.url, "--repeats", "2", "--json")
+        assert len(server.requests) == 12, "what was judged is not asked again"
+    (content,) = json.loads(again.stdout)
+    assert content["runs"] == 12
+    assert content["modes"]["raw"] == 1.0
+    compared = CliRunner().invoke(app, ["bench", "agree", str(out)])
+    assert "the known faults  against  gpt-oss-120b" in compared.output
+    assert "repeats of gpt-oss-120b" in compared.output
+
+
+def test_what_failed_is_asked_again_and_counts_once(gold: Path, tmp_path: Path) -> None:
+    out = tmp_path / "verdicts.jsonl"
+    with m.Misbehaving(then=m.status(401)) as server:
+        failed = judge_gold(gold, out, server.url, "--json")
+    (content,) = json.loads(failed.stdout)
+    assert content["apart"] == {"unparseable": 0, "failed": 6}
+    assert content["false_accept_rate"] is None
+    with m.Misbehaving(then=good_judge) as server:
+        mended = judge_gold(gold, out, server.url, "--json")
+    (content,) = json.loads(mended.stdout)
+    assert content["apart"] == {"unparseable": 0, "failed": 0}
+    assert content["runs"] == 6
+    assert len(read_verdicts(out)) == 12
+
+
+def test_limits_take_modes_in_turn(gold: Path, tmp_path: Path) -> None:
+    out = tmp_path / "verdicts.jsonl"
+    with m.Misbehaving(then=good_judge) as server:
+        judge_gold(gold, out, server.url, "--limit", "2", "--passing", "0")
+    assert {verdict.fault for verdict in read_verdicts(out)} == {ErrorMode.TOOL_ARGS, ErrorMode.LACK_OF_TOOL_CALL}
+
+
+def models(*names: str) -> m.Behaviour:
+    return m.body(json.dumps({"object": "list", "data": [{"id": name} for name in names]}))
+
+
+async def name_of(url: str, model: str | None = None) -> str:
+    port = await open_judge(url, model, None, 30.0)
+    await port.close()
+    return port.client.endpoint.model
+
+
+@pytest.mark.parametrize(
+    ("listing", "name"),
+    [
+        (lambda: models("tiny", "openai/gpt-oss-120b"), "openai/gpt-oss-120b"),
+        (lambda: models("tiny"), "tiny"),
+        (lambda: m.status(404), "gpt-oss-120b"),
+    ],
+)
+def test_the_judge_has_the_name_that_its_server_gives_it(listing: Callable[[], m.Behaviour], name: str) -> None:
+    with m.Misbehaving(then=listing()) as server:
+        assert anyio.run(name_of, server.url) == name
+
+
+def test_several_models_and_no_usual_one_is_a_question(monkeypatch: pytest.MonkeyPatch) -> None:
+    with m.Misbehaving(then=models("a", "b")) as server:
+        with pytest.raises(InputError, match="--judge-model: a, b"):
+            anyio.run(name_of, server.url)
+        assert anyio.run(name_of, server.url, "b") == "b"
+        monkeypatch.setenv("SCOPE_JUDGE_MODEL", "a")
+        assert anyio.run(name_of, server.url) == "a"
+
+
+def test_the_judge_comes_from_the_environment_and_its_key_goes_to_no_other(
+    gold: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with m.Misbehaving(then=m.echo_key()) as server:
+        monkeypatch.setenv("SCOPE_JUDGE_URL", server.url)
+        monkeypatch.setenv("SCOPE_JUDGE_MODEL", "judge")
+        monkeypatch.setenv("SCOPE_JUDGE_KEY", KEY)
+        monkeypatch.setenv("SCOPE_PLANNER_KEY", "sk-planner-0123456789")
+        out = tmp_path / "v.jsonl"
+        where = ["--gold", str(gold / "gold.jsonl.gz"), "--tasks", str(gold / "tasks.jsonl"), "--out", str(out)]
+        done = CliRunner().invoke(app, ["bench", "judge-gold", *where, "--limit", "1", "--passing", "0"])
+        assert done.exit_code == 0, done.output
+        assert {request.headers["authorization"] for request in server.requests} == {f"Bearer {KEY}"}
+    assert KEY not in done.output
+    assert KEY not in out.read_text()
+
+
+def test_no_judge_and_wrong_options_are_told() -> None:
+    with pytest.raises(ConfigError, match="SCOPE_JUDGE_URL"):
+        anyio.run(open_judge, None, None, None, 30.0)
+    with pytest.raises(ConfigError, match="reasoning_effort"):
+        anyio.run(open_judge, "http://127.0.0.1:9/v1", "x", None, 30.0, ["reasoning_effort=huge"])
+    with pytest.raises(ConfigError, match="no address"):
+        anyio.run(open_judge, "file:///etc/passwd", "x", None, 30.0)

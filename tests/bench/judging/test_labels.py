@@ -1,0 +1,160 @@
+"""Labels by hand: what is kept, blind to verdicts, and a sitting from end to end on a real log."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from scope_ptz.bench.error_modes import ErrorMode
+from scope_ptz.bench.expected import ActionOnly
+from scope_ptz.bench.judging.labels import add_label, labels_file, read_labels, with_labels
+from scope_ptz.bench.task_files import dump_tasks
+from scope_ptz.bench.tasks import Behaviour, FinalPose, Forbidden, ProgramCall, Task
+from scope_ptz.bench.trials import Label
+from scope_ptz.cli.app import app
+from scope_ptz.errors import InputError, OutputError
+from tests.bench.judging.test_agreement import evaluation, trial
+
+ANN = Label(by="ann", verdict="incorrect", error_mode=ErrorMode.SCOPE, note="swept nothing\nat all")
+
+
+def test_the_newest_label_of_each_person_counts(tmp_path: Path) -> None:
+    path = labels_file(tmp_path / "a.eval")
+    assert read_labels(path) == ()
+    add_label(path, ANN, "t#1")
+    add_label(path, Label(by="bob", verdict="correct"), "t#1")
+    add_label(path, Label(by="ann", verdict="unclear"), "t#1")
+    assert [(row.by, row.verdict) for row in read_labels(path)] == [("ann", "unclear"), ("bob", "correct")]
+    assert len(path.read_text().splitlines()) == 3, "nothing is rewritten"
+
+
+def test_a_line_cut_off_is_taken_away_by_the_next(tmp_path: Path) -> None:
+    path = tmp_path / "a.labels.jsonl"
+    add_label(path, ANN, "t#1")
+    with path.open("a") as file:
+        file.write('{"sample": "t#2", "by": "an')
+    assert len(read_labels(path)) == 1
+    add_label(path, ANN, "t#3")
+    assert [row.sample for row in read_labels(path)] == ["t#1", "t#3"]
+
+
+def test_damage_is_told_with_its_line(tmp_path: Path) -> None:
+    path = tmp_path / "a.labels.jsonl"
+    add_label(path, ANN, "t#1")
+    with path.open("a") as file:
+        file.write('{"sample": 7}\n')
+    with pytest.raises(InputError, match="line 2 is no label"):
+        read_labels(path)
+    with pytest.raises(OutputError):
+        add_label(tmp_path, ANN, "t#1")
+
+
+def test_labels_find_their_runs(tmp_path: Path) -> None:
+    path = tmp_path / "x.labels.jsonl"
+    add_label(path, ANN, "scope1-test-001#1")
+    add_label(path, ANN, "gone#1")
+    one, two = with_labels(evaluation(trial(1, "correct"), trial(2, "correct")), read_labels(path)).trials
+    assert one.labels == (ANN,)
+    assert two.labels == ()
+
+
+def turn_task(number: int, degrees: float) -> Task:
+    """A task of the shipped scene that the built-in planner solves."""
+    return Task(
+        id=f"scope1-highway-works-single-call-{number:03d}", dataset="scope1", scene="highway-works", preset="overview",
+        instruction=f"Pan right {degrees:g} degrees.", category="single_call", scope="current", difficulty="easy",
+        expected=ActionOnly(),
+        behaviour=Behaviour(
+            final=FinalPose(viewpoint="mast", pan_deg=8 + degrees, tilt_deg=-10, zoom=1.0), forbidden=Forbidden(changes=("zoom",))
+        ),
+        reference=(ProgramCall(tool="adjust_ptz", arguments={"pan_deg": degrees}),), needs=("move",),
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A real log of two runs."""
+    folder = tmp_path_factory.mktemp("log")
+    dump_tasks([turn_task(1, 20), turn_task(2, 30)], folder / "tasks.jsonl")
+    command = [sys.executable, "-m", "scope_ptz.cli", "bench", "run", "--tasks", str(folder / "tasks.jsonl")]
+    subprocess.run([*command, "--out", str(folder / "logs"), "--json"], check=True, capture_output=True, timeout=300)
+    (path,) = (folder / "logs").glob("**/*.eval")
+    return path
+
+
+@pytest.fixture
+def fresh(log: Path) -> Iterator[Path]:
+    yield log
+    labels_file(log).unlink(missing_ok=True)
+
+
+def label(log: Path, said: str, *options: str) -> Result:
+    return CliRunner().invoke(app, ["bench", "label", str(log), *options], input=said)
+
+
+def test_a_sitting_is_blind_keeps_all_and_goes_on(fresh: Path, tmp_path: Path) -> None:
+    first = label(fresh, "?\nc9\nhello\nc fine\n", "--by", "ann", "--pictures", str(tmp_path))
+    assert first.exit_code == 0, first.output
+    assert "| Pan right" in first.output
+    assert "every check passed" not in first.output, "what the checks said is not shown"
+    assert "1 of 2 runs labelled by ann" in first.output
+    for line in first.output.splitlines():
+        if line.startswith("picture: "):
+            assert Path(line.removeprefix("picture: ")).is_file()
+    assert (tmp_path / "001" / "filmstrip.png").is_file()
+    second = label(fresh, "i\ni8 it was late\n", "--by", "ann")
+    assert "Which error mode?" in second.output
+    assert "2 of 2 runs labelled by ann" in second.output
+    rows = read_labels(labels_file(fresh))
+    assert {(row.verdict, row.error_mode, row.note) for row in rows} == {
+        ("correct", None, "fine"),
+        ("incorrect", ErrorMode.REASONING, "it was late"),
+    }
+    assert label(fresh, "", "--by", "ann").output.startswith("2 of 2")
+
+
+def test_back_skip_and_quit(fresh: Path) -> None:
+    done = label(fresh, "b\nu\nb\nc\ns\nq\n", "--by", "bob")
+    assert "This is the first run." in done.output
+    assert [(row.verdict, row.by) for row in read_labels(labels_file(fresh))] == [("correct", "bob")]
+    assert len(labels_file(fresh).read_text().splitlines()) == 2
+
+
+def test_one_person_does_not_see_anothers_progress(fresh: Path) -> None:
+    label(fresh, "c\nc\n", "--by", "ann")
+    assert "0 of 2 runs labelled by bob" in label(fresh, "q\n", "--by", "bob").output
+    assert "0 of 1 runs labelled by bob" in label(fresh, "q\n", "--by", "bob", "--sample", "1").output
+
+
+def test_labels_are_compared_with_the_checks(fresh: Path) -> None:
+    none = label(fresh, "", "--compare")
+    assert none.exit_code == 2
+    assert "Nobody has labelled" in none.output
+    label(fresh, "c\ni3\n", "--by", "ann")
+    done = label(fresh, "", "--compare")
+    assert "the checks  against  ann" in done.output
+    assert "2 runs, agree on 50.0%" in done.output
+    content = json.loads(CliRunner().invoke(app, ["bench", "agree", str(fresh), "--json"]).output)
+    assert content["pairs"][0]["verdicts"]["raw"] == 0.5
+
+
+@pytest.mark.parametrize(
+    ("options", "told"), [((), "--by"), (("--by", "  "), "--by"), (("--compare", "--json"), "Nobody has labelled")]
+)
+def test_wrong_ways_to_label_are_told(fresh: Path, options: tuple[str, ...], told: str) -> None:
+    done = label(fresh, "", *options)
+    assert done.exit_code == 2
+    assert told in done.output
+
+
+def test_no_log(tmp_path: Path) -> None:
+    for command in (["label", "--by", "x"], ["agree"]):
+        done = CliRunner().invoke(app, ["bench", *command, str(tmp_path / "none.eval")])
+        assert done.exit_code == 2
+        assert "There is no log" in done.output
