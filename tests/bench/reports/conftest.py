@@ -1,0 +1,20 @@
+"""One made-up sweep and its report, shared by the tests of a run."""
+
+from __future__ import annotations
+
+import pytest
+
+from scope_ptz.bench.reports.building import Report, build_report
+from scope_ptz.bench.trials import Evaluation
+from scope_ptz.registry import load_registry
+from tests.bench.reports.making import sweep
+
+
+@pytest.fixture(scope="session")
+def evaluations() -> list[Evaluation]:
+    return sweep(6)
+
+
+@pytest.fixture(scope="session")
+def report(evaluations: list[Evaluation]) -> Report:
+    return build_report(evaluations, load_registry())

@@ -1,0 +1,276 @@
+"""The figures of a report, derived again from its trials by other means, and what a report must never claim."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter, defaultdict
+from statistics import fmean, median
+
+import pytest
+
+from scope_ptz.agent.timing import Timings
+from scope_ptz.bench.error_modes import ErrorMode
+from scope_ptz.bench.reports.building import Report, build_report
+from scope_ptz.bench.reports.runs import CATEGORY_TITLES
+from scope_ptz.bench.reports.tables import Marked, Table, Value, bare, in_words
+from scope_ptz.bench.statistics.clustered import Estimate
+from scope_ptz.bench.trials import Evaluation, Trial
+from scope_ptz.errors import InputError
+from scope_ptz.registry import load_registry
+from tests.bench.reports.making import card, evaluation, facts, trial
+
+BEST = "qwen3-30b-a3b + moondream3"
+LOOKS = {ErrorMode.VLM_COUNTING, ErrorMode.VLM_QUERY}
+
+
+def table(report: Report, key: str) -> Table:
+    return next(t for t in report.tables if t.key == key)
+
+
+def row(report: Report, key: str, first: str) -> dict[str, str | int | float | None]:
+    """A row by its first cell, estimates as their value."""
+    found = table(report, key)
+    values = next(r for r in found.rows if bare(r[0]) == first)
+    plain = {}
+    for column, value in zip(found.columns, values, strict=True):
+        cell = bare(value)
+        plain[column.name] = cell.value if isinstance(cell, Estimate) else cell
+    return plain
+
+
+def log(evaluations: list[Evaluation], pair: str, variant: str = "", split: str = "core") -> Evaluation:
+    return next(e for e in evaluations if (e.card.pair, e.card.variant, e.card.split) == (pair, variant, split))
+
+
+def scored(found: Evaluation) -> list[Trial]:
+    return [t for t in found.trials if t.headline != "infrastructure"]
+
+
+def macro(trials: list[Trial], right: dict[str, bool] | None = None) -> float:
+    by_category = defaultdict(list)
+    for t in trials:
+        by_category[t.task.category].append(t.headline == "correct" if right is None else right[t.sample])
+    return fmean(fmean(values) for values in by_category.values())
+
+
+def test_accuracy_is_that_of_the_trials(report: Report, evaluations: list[Evaluation]) -> None:
+    for pair in ("qwen3-4b + moondream2", "qwen3-4b-fp8 + moondream3", BEST):
+        trials = scored(log(evaluations, pair))
+        told = row(report, "accuracy", pair)
+        assert told["micro"] == pytest.approx(fmean(t.headline == "correct" for t in trials))
+        assert told["macro"] == pytest.approx(macro(trials))
+        for category in CATEGORY_TITLES:
+            own = [t.headline == "correct" for t in trials if t.task.category == category]
+            assert told[category] == pytest.approx(fmean(own))
+        assert told["tasks"] == 48
+
+
+def test_bounds_hold_what_could_not_be_scored(report: Report, evaluations: list[Evaluation]) -> None:
+    pair = "qwen3-4b + qwen2.5-vl-7b"
+    found = Counter(t.headline for t in log(evaluations, pair).trials)
+    assert found["unscored"] and found["infrastructure"]
+    told = row(report, "outcomes", pair)
+    total = sum(found.values())
+    assert (told["correct"], told["unscored"], told["infrastructure"]) == (
+        found["correct"], found["unscored"], found["infrastructure"],
+    )  # fmt: skip
+    assert told["share"] == pytest.approx(found["correct"] / (total - found["infrastructure"]))
+    assert told["at_least"] == pytest.approx(found["correct"] / total)
+    assert told["at_most"] == pytest.approx((total - found["incorrect"]) / total)
+
+
+def test_what_is_no_model_pair_is_ranked_nowhere(report: Report) -> None:
+    apart = {"grammar + ground-truth", "qwen3-30b-a3b + ground-truth", "qwen3-30b-a3b + blind, blind"}
+    for key in ("accuracy", "comparisons", "resolution", "design_points", "memory_fits", "quantised", "oracle"):
+        cells = {str(bare(value)) for values in table(report, key).rows for value in values}
+        assert not apart & cells, key
+    for key in ("spread_planner", "spread_eyes", "latency_planner", "latency_eyes", "latency_views", "mixtures"):
+        words = " ".join(str(bare(value)) for values in table(report, key).rows for value in values)
+        assert not any(name in words for name in ("grammar", "ground-truth", "blind")), key
+    others = table(report, "accuracy_not_ranked")
+    assert {bare(values[0]) for values in others.rows} == apart
+    assert not any(isinstance(v, Marked) and (v.best or v.best_of_all) for values in others.rows for v in values)
+    assert any("grammar planner or ground-truth eyes" in warning for warning in report.warnings)
+
+
+def test_the_best_is_marked_among_runs_of_the_same_tasks(report: Report) -> None:
+    rows = {str(bare(values[0])): values for values in table(report, "accuracy").rows}
+    names = [column.name for column in table(report, "accuracy").columns]
+    at = names.index("macro")
+    comparable = [label for label in rows if "lite" not in label and "qwen2.5" not in label]
+    best = max(comparable, key=lambda label: _value(rows[label][at]))
+    assert [label for label, values in rows.items() if isinstance(values[at], Marked) and values[at].best_of_all] == [best]  # type: ignore[union-attr]
+    partial = rows["qwen3-4b + qwen2.5-vl-7b"][at]
+    assert isinstance(partial, Marked) and partial.note == "over 4 of 8 categories" and not partial.best
+    assert any("Not over the same tasks" in warning and "qwen2.5-vl-7b" in warning for warning in report.warnings)
+
+
+def _value(cell: Value) -> float:
+    plain = bare(cell)
+    assert isinstance(plain, Estimate)
+    return plain.value
+
+
+def test_error_modes_are_counted_by_rules_and_by_the_judge(report: Report, evaluations: list[Evaluation]) -> None:
+    trials = scored(log(evaluations, BEST))
+    rules = Counter(t.error_mode for t in trials if t.error_mode)
+    told = row(report, "error_modes", BEST)
+    assert {mode: told[mode.value] for mode in ErrorMode} == {mode: rules[mode] for mode in ErrorMode}
+    assert told["failed"] == sum(t.headline == "incorrect" for t in trials)
+    said = [t.judgements[0] for t in trials]
+    judged = Counter(j.error_mode for j in said if j.verdict == "incorrect")
+    assert row(report, "error_modes_judge", BEST)["reasoning"] == judged[ErrorMode.REASONING]
+    told = row(report, "judge", BEST)
+    assert told["unparseable"] == sum(j.verdict == "unparseable" for j in said)
+    clear = [t for t in trials if t.judgements[0].verdict != "unparseable"]
+    right = {t.sample: t.judgements[0].verdict == "correct" for t in clear}
+    assert told["macro_judge"] == pytest.approx(macro(clear, right))
+    assert told["macro_checks"] == pytest.approx(macro(clear))
+
+
+def test_the_oracle_setting_both_ways(report: Report, evaluations: list[Evaluation]) -> None:
+    trials = scored(log(evaluations, BEST))
+    told = row(report, "oracle", BEST)
+    lifted = {t.sample: t.headline == "correct" or t.error_mode in LOOKS for t in trials}
+    assert told["oracle_rules"] == pytest.approx(macro(trials, lifted))
+    clear = [t for t in trials if t.judgements[0].verdict != "unparseable"]
+    by_judge = {t.sample: t.judgements[0].verdict == "correct" or t.judgements[0].error_mode in LOOKS for t in clear}
+    assert told["oracle_judge"] == pytest.approx(macro(clear, by_judge))
+    failed = [t.judgements[0].error_mode for t in clear if t.judgements[0].verdict == "incorrect"]
+    assert told["perception_judge"] == pytest.approx(fmean(mode in LOOKS for mode in failed))
+    again = log(evaluations, "qwen3-30b-a3b + ground-truth")
+    assert told["macro_rerun"] == pytest.approx(macro(scored(again)))
+    both = {t.task.id: t for t in scored(again)}
+    gains = defaultdict(list)
+    for t in trials:
+        if t.task.id in both:
+            gains[t.task.category].append((both[t.task.id].headline == "correct") - (t.headline == "correct"))
+    assert told["gain_rerun"] == pytest.approx(fmean(fmean(values) for values in gains.values()))
+    assert row(report, "oracle", "qwen3-4b + moondream2")["macro_rerun"] is None
+    pairs = [values for values in table(report, "oracle").rows if str(bare(values[0])).startswith("qwen")]
+    mean = row(report, "oracle", "Mean of the pairs")["oracle_rules"]
+    assert mean == pytest.approx(fmean(_value(values[5]) for values in pairs))
+
+
+def test_spreads_hold_one_side(report: Report) -> None:
+    by_pair = {str(bare(v[0])): _value(v[1]) for v in table(report, "accuracy").rows}
+    values = [by_pair[f"{planner} + moondream2"] for planner in ("qwen3-4b", "qwen3-4b-fp8", "qwen3-30b-a3b")]
+    assert row(report, "spread_planner", "moondream2")["spread"] == pytest.approx(max(values) - min(values))
+    values = [by_pair[f"qwen3-30b-a3b + {eyes}"] for eyes in ("moondream2", "moondream3")]
+    assert row(report, "spread_eyes", "qwen3-30b-a3b")["spread"] == pytest.approx(max(values) - min(values))
+
+
+def test_scope_and_comparisons(report: Report, evaluations: list[Evaluation]) -> None:
+    trials = scored(log(evaluations, BEST))
+    told = row(report, "scope", BEST)
+    current, full = ([t.headline == "correct" for t in trials if t.task.scope == scope] for scope in ("current", "full"))
+    assert told["difference"] == pytest.approx(fmean(current) - fmean(full))
+    other = {t.task.id: t.headline == "correct" for t in scored(log(evaluations, "qwen3-4b-fp8 + moondream3"))}
+    pairs = [(other[t.task.id], t.headline == "correct") for t in trials if t.task.id in other]
+    found = next(v for v in table(report, "comparisons").rows if (v[0], v[1]) == ("qwen3-4b-fp8 + moondream3", BEST))
+    cells = dict(zip((c.name for c in table(report, "comparisons").columns), found, strict=True))
+    assert cells["tasks"] == len(pairs)
+    assert cells["only_first"] == sum(a and not b for a, b in pairs)
+    assert cells["only_second"] == sum(b and not a for a, b in pairs)
+    adjusted = cells["p_mcnemar_holm"]
+    assert isinstance(adjusted, float) and isinstance(cells["p_mcnemar"], float) and adjusted >= cells["p_mcnemar"]
+
+
+def test_latency_comes_from_the_run_without_contention(report: Report, evaluations: list[Evaluation]) -> None:
+    alone = scored(log(evaluations, BEST, split="lite"))
+    assert row(report, "design_points", BEST)["latency_s"] == pytest.approx(median(t.timings.total_s for t in alone))
+    assert row(report, "design_points", BEST)["contended"] == "alone"
+    assert row(report, "latency_stages", BEST)["contended"] == "contended"
+    own = [t.timings.perception_s for t in scored(log(evaluations, BEST))]
+    assert row(report, "latency_stages", BEST)["perception_s_median"] == pytest.approx(median(own))
+    looks = [s for t in alone for s in t.look_s.get("full", ())]
+    told = row(report, "latency_views", "moondream3")
+    assert (told["full_looks"], told["contended"]) == (len(looks), "alone")
+    assert told["full_median"] == pytest.approx(median(looks))
+    assert row(report, "latency_planner", "qwen3-4b-fp8")["contended"] == "contended"
+    assert row(report, "latency_planner", "qwen3-4b-fp8")["calls"] == pytest.approx(2.0)
+
+
+def test_repeats_wordings_and_variants(report: Report, evaluations: list[Evaluation]) -> None:
+    by_task = defaultdict(list)
+    for t in scored(log(evaluations, "qwen3-4b + moondream2")):
+        by_task[t.task.id].append(t.headline == "correct")
+    shares = [math.comb(sum(v), 2) / math.comb(len(v), 2) for v in by_task.values() if len(v) >= 2]
+    assert row(report, "repeats", "qwen3-4b + moondream2")["pass_2"] == pytest.approx(fmean(shares))
+    assert {bare(values[0]) for values in table(report, "repeats").rows} == {"qwen3-4b + moondream2"}
+    groups = defaultdict(list)
+    for t in scored(log(evaluations, BEST, split="paraphrase")):
+        groups[t.task.paraphrase_of].append(t.headline == "correct")
+    originals = {
+        t.task.id: t.headline == "correct" for split in ("lite", "core") for t in scored(log(evaluations, BEST, split=split))
+    }
+    whole = [[*values, originals[origin]] for origin, values in groups.items() if origin in originals]
+    assert row(report, "wording", BEST)["all"] == pytest.approx(fmean(all(v) for v in whole))
+    assert row(report, "prompts", "qwen3-4b + moondream3, prompt short-1")["second"] == "qwen3-4b + moondream3"
+    requests = [t for t in log(evaluations, BEST, split="reaction").trials if t.headline != "infrastructure"]
+    told = row(report, "reactions", f"{BEST}, reaction split")
+    assert told["correct"] == pytest.approx(fmean(t.headline == "correct" for t in requests))
+
+
+def test_costs_conduct_and_audit(report: Report, evaluations: list[Evaluation]) -> None:
+    trials = log(evaluations, BEST).trials
+    told = row(report, "costs", BEST)
+    assert told["cost_usd"] == pytest.approx(sum(t.cost_usd or 0 for t in trials))
+    assert told["input_tokens"] == 3000 * len(trials)
+    kept = [t for t in trials if t.headline != "infrastructure"]
+    assert row(report, "conduct", BEST)["collateral"] == pytest.approx(fmean(t.collateral for t in kept))
+    by_task = defaultdict(list)
+    for pair in ("qwen3-4b + moondream2", "qwen3-4b-fp8 + moondream2", "qwen3-30b-a3b + moondream2", "qwen3-4b + moondream3",
+                 "qwen3-4b-fp8 + moondream3", BEST, "qwen3-4b + qwen2.5-vl-7b"):  # fmt: skip
+        for t in scored(log(evaluations, pair)):
+            by_task[t.task.id].append(t.headline == "correct")
+    low = {task for task, values in by_task.items() if fmean(values) <= 0.25}
+    assert {bare(values[0]) for values in table(report, "audit").rows} == low and low
+
+
+def test_the_papers_figures_stand_apart_and_say_so(report: Report) -> None:
+    panel = report.sections[-1]
+    assert panel.key == "paper" and "not comparable task by task" in panel.text[0]
+    assert len(table(report, "paper_accuracy").rows) == 19
+    assert all(t.title.startswith("The paper: ") for t in panel.tables)
+    assert not any(t.key.startswith("paper") for section in report.sections[:-1] for t in section.tables)
+
+
+def test_what_was_not_measured_is_never_a_number() -> None:
+    tasks = facts(2)
+    trials = tuple(trial(t, timings=Timings(), tool_calls={}, look_s={}) for t in tasks)
+    found = Evaluation(card=card("unknown-planner", "unknown-eyes", sampling={}, seed=None), trials=trials, wanted=len(trials))
+    made = build_report([found], load_registry())
+    label = "unknown-planner + unknown-eyes"
+    told = row(made, "latency_stages", label)
+    assert all(told[name] is None for name in told if name.endswith(("_median", "_p95")))
+    told = row(made, "design_points", label)
+    assert (told["latency_s"], told["memory_gb"], told["front"]) == (None, None, None)
+    told = row(made, "costs", label)
+    assert (told["input_tokens"], told["cost_usd"], told["judge_tokens"]) == (None, None, None)
+    told = row(made, "oracle", label)
+    assert (told["macro_judge"], told["oracle_judge"], told["macro_rerun"], told["perception_rules"]) == (None, None, None, None)
+    assert in_words(None, "share") == in_words(None, "count") == "not measured"
+    words = " ".join(line for section in made.sections for line in section.text)
+    assert "not measured" in words and "Fewer than two model pairs" in words
+
+
+def test_an_unfinished_run_is_told_and_an_empty_one_refused() -> None:
+    whole = evaluation("qwen3-4b", "moondream2", facts(2), 0.6)
+    cut = whole.model_copy(update={"trials": whole.trials[:5]})
+    assert any("5 of 16 trials" in warning for warning in build_report([cut], load_registry()).warnings)
+    with pytest.raises(InputError, match="no finished run"):
+        build_report([whole.model_copy(update={"trials": ()})], load_registry())
+
+
+def test_two_logs_of_one_pair_are_told_apart() -> None:
+    one, two = (evaluation("qwen3-4b", "moondream2", facts(2), 0.6, seed=seed) for seed in (1, 2))
+    made = build_report([one, two], load_registry())
+    assert [run.label for run in made.runs] == ["qwen3-4b + moondream2 #1", "qwen3-4b + moondream2 #2"]
+
+
+def test_one_viewpoint_gives_no_interval() -> None:
+    tasks = [t.model_copy(update={"scene": "a", "viewpoint": "b"}) for t in facts(2)]
+    made = build_report([evaluation("qwen3-4b", "moondream2", tasks, 0.6)], load_registry())
+    cell = bare(table(made, "accuracy").rows[0][1])
+    assert isinstance(cell, Estimate) and cell.low is None and in_words(cell, "share").count("to") == 0

@@ -1,0 +1,38 @@
+"""``scope bench report`` from the command line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from scope_ptz.bench.engine import logs
+from scope_ptz.bench.trials import Evaluation
+from scope_ptz.cli.app import app
+from tests.bench.reports.making import evaluation, facts
+
+
+def test_the_command_writes_everything(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    found = {name: evaluation(name, "moondream2", facts(2), 0.6) for name in ("qwen3-4b", "qwen3-30b-a3b")}
+
+    def read(path: Path) -> Evaluation:
+        return found[path.stem]
+
+    monkeypatch.setattr(logs, "read_evaluation", read)
+    files = [str(tmp_path / f"{name}.eval") for name in found]
+    out = tmp_path / "report"
+    done = CliRunner().invoke(app, ["bench", "report", *files, files[0], "--out", str(out), "--no-pages"])
+    assert done.exit_code == 0, done.output
+    assert "2 runs with 32 trials" in done.stdout and str(out / "index.html") in done.stdout
+    assert (out / "report.md").is_file() and (out / "tables" / "accuracy.csv").is_file()
+    again = CliRunner().invoke(app, ["bench", "report", *files, "--out", str(tmp_path), "--no-pages"])
+    assert again.exit_code == 2 and "no report" in again.stderr
+
+
+def test_a_file_that_is_no_log_is_told(tmp_path: Path) -> None:
+    path = tmp_path / "x.eval"
+    path.write_text("nothing")
+    for log, message in ((path, "damaged"), (tmp_path / "none.eval", "There is no log")):
+        done = CliRunner().invoke(app, ["bench", "report", str(log), "--out", str(tmp_path / "r")])
+        assert done.exit_code == 2 and message in done.stderr, done.output

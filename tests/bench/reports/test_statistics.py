@@ -1,0 +1,205 @@
+"""Statistics against other implementations, enumeration and examples worked out by hand."""
+
+from __future__ import annotations
+
+from itertools import combinations, product
+from math import isclose, sqrt
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from scope_ptz.bench.statistics.choice import undominated
+from scope_ptz.bench.statistics.clustered import (
+    Scores,
+    cluster_variance,
+    detectable,
+    difference,
+    independent_variance,
+    macro_weights,
+    pooled,
+    share,
+    t_quantile,
+    two_sided_p,
+    weighted_mean,
+    wilson,
+)
+from scope_ptz.bench.statistics.paired import cluster_bootstrap, holm, mcnemar_exact
+from scope_ptz.bench.statistics.repeats import mean_pass_all, pass_all
+
+SMALL = Scores(np.array([1.0, 0, 1, 1, 0, 1]), ("a", "a", "a", "a", "b", "b"), ("x", "x", "y", "y", "x", "y"))
+
+
+def some_scores(seed: int, number: int = 120, clusters: int = 9) -> Scores:
+    chance = np.random.default_rng(seed)
+    values = (chance.random(number) < 0.6).astype(float)
+    return Scores(values, tuple(chance.integers(0, 5, number).tolist()), tuple(chance.integers(0, clusters, number).tolist()))
+
+
+def test_a_worked_example() -> None:
+    # Means: a 3/4, b 1/2; macro 5/8. By cluster, residuals times 1/(2 n_k): x: (1/4 - 3/4)/8 - 1/8 = -3/16, y: +3/16.
+    weights = macro_weights(SMALL)
+    assert weighted_mean(SMALL, weights) == pytest.approx(0.625)
+    assert cluster_variance(SMALL, weights) == pytest.approx(2 / 1 * 2 * (3 / 16) ** 2)
+    assert weighted_mean(pooled(SMALL), {"all": 1.0}) == pytest.approx(4 / 6)
+    assert weighted_mean(SMALL, {"a": 1.0, "b": -1.0}) == pytest.approx(0.25)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_micro_variance_is_that_of_a_clustered_regression(seed: int) -> None:
+    import statsmodels.api as sm  # type: ignore[import-untyped]
+
+    scores = some_scores(seed)
+    fitted = sm.OLS(scores.values, np.ones(len(scores.values))).fit(
+        cov_type="cluster", cov_kwds={"groups": np.array(scores.clusters)}, use_t=True
+    )
+    assert cluster_variance(pooled(scores), {"all": 1.0}) == pytest.approx(float(fitted.bse[0]) ** 2)
+    found = difference(scores)
+    assert found is not None
+    if found.se == pytest.approx(float(fitted.bse[0])):
+        assert (found.low, found.high) == pytest.approx(tuple(fitted.conf_int()[0]))
+        assert two_sided_p(found) == pytest.approx(float(fitted.pvalues[0]))
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_macro_variance_is_that_of_a_clustered_regression_on_strata(seed: int) -> None:
+    import statsmodels.api as sm
+
+    scores = some_scores(seed)
+    strata = sorted(set(scores.strata))  # type: ignore[type-var]
+    dummies = np.array([[float(own == stratum) for stratum in strata] for own in scores.strata])
+    covariance = (
+        sm.OLS(scores.values, dummies)
+        .fit(cov_type="cluster", cov_kwds={"groups": np.array(scores.clusters), "use_correction": False})
+        .cov_params()
+    )
+    clusters, share_of = len(set(scores.clusters)), np.full(len(strata), 1 / len(strata))
+    expected = float(share_of @ covariance @ share_of) * clusters / (clusters - 1)
+    assert cluster_variance(scores, macro_weights(scores)) == pytest.approx(expected)
+
+
+def test_intervals_cover_the_truth_although_viewpoints_differ() -> None:
+    chance = np.random.default_rng(3)
+    covered = naive = 0
+    for _ in range(400):
+        level = np.clip(chance.normal(0.65, 0.15, 12), 0.05, 0.95)
+        clusters = np.repeat(np.arange(12), 40)
+        values = (chance.random(480) < level[clusters]).astype(float)
+        found = share(Scores(values, ("all",) * 480, tuple(clusters.tolist())))
+        assert found is not None and found.low is not None and found.high is not None
+        covered += found.low <= 0.65 <= found.high
+        low, high = wilson(found.value, 480, 1.96)
+        naive += low <= 0.65 <= high
+    assert 0.90 <= covered / 400 <= 0.99
+    assert naive / 400 < 0.80
+
+
+@given(st.lists(st.tuples(st.booleans(), st.sampled_from("abc"), st.integers(0, 4)), min_size=1, max_size=60))
+@settings(max_examples=60, deadline=None)
+def test_shares_stay_within_their_intervals_and_these_within_0_and_1(rows: list[tuple[bool, str, int]]) -> None:
+    scores = Scores(np.array([float(right) for right, _, _ in rows]), tuple(s for _, s, _ in rows), tuple(c for _, _, c in rows))
+    for weights in (None, macro_weights(scores)):
+        found = share(scores, weights)
+        assert found is not None
+        if len({c for _, _, c in rows}) < 2:
+            assert found.low is None and found.high is None and found.se is None
+        else:
+            assert found.low is not None and found.high is not None and found.se is not None
+            assert -1e-12 <= found.low <= found.value + 1e-12 and found.value <= found.high + 1e-12 <= 1 + 2e-12
+            assert found.high - found.low > 0
+            assert (
+                found.se**2 >= independent_variance(pooled(scores) if weights is None else scores, weights or {"all": 1.0}) - 1e-12
+            )
+
+
+def test_without_data_there_is_no_estimate() -> None:
+    empty = Scores(np.array([]), (), ())
+    assert share(empty) is None and difference(empty) is None and cluster_bootstrap(empty) is None
+    with pytest.raises(ValueError, match="no outcome in c"):
+        weighted_mean(SMALL, {"c": 1.0})
+    with pytest.raises(ValueError, match="length"):
+        Scores(np.array([1.0]), (), ())
+
+
+@pytest.mark.parametrize(("right", "number"), [(0, 7), (3, 10), (50, 72), (72, 72)])
+def test_wilson(right: int, number: int) -> None:
+    from statsmodels.stats.proportion import proportion_confint  # type: ignore[import-untyped]
+
+    assert wilson(right / number, number, 1.959963984540054) == pytest.approx(proportion_confint(right, number, method="wilson"))
+
+
+def test_quantiles_of_student() -> None:
+    assert t_quantile(12) == pytest.approx(2.200985)
+    assert t_quantile(2) == pytest.approx(12.706205)
+    assert detectable(1.0, 12) == pytest.approx(2.200985 + 0.875530)
+    assert detectable(0.5, 1_000_000) == pytest.approx(0.5 * (1.959964 + 0.841621), rel=1e-5)
+
+
+@pytest.mark.parametrize(("one", "other"), [(0, 0), (1, 0), (5, 5), (12, 3), (40, 61), (0, 9)])
+def test_mcnemar(one: int, other: int) -> None:
+    from statsmodels.stats.contingency_tables import mcnemar  # type: ignore[import-untyped]
+
+    expected = 1.0 if one == other else float(mcnemar([[7, one], [other, 9]], exact=True).pvalue)
+    assert mcnemar_exact(one, other) == pytest.approx(expected)
+    assert mcnemar_exact(one, other) == mcnemar_exact(other, one)
+
+
+@given(st.lists(st.floats(0, 1), min_size=1, max_size=12))
+@settings(max_examples=50, deadline=None)
+def test_holm(p_values: list[float]) -> None:
+    from statsmodels.stats.multitest import multipletests  # type: ignore[import-untyped]
+
+    adjusted = holm(p_values)
+    assert adjusted == pytest.approx(list(multipletests(p_values, method="holm")[1]))
+    assert holm([None, *p_values]) == [None, *adjusted]
+
+
+def test_the_bootstrap_of_two_clusters_is_known() -> None:
+    # Draws: x twice (1/4), one of each (1/2), y twice (1/4): the 2.5% and 97.5% points are the means of x and of y alone.
+    scores = Scores(np.array([-1.0, 0.0, 1.0, 1.0]), ("a",) * 4, ("x", "x", "y", "y"))
+    assert cluster_bootstrap(scores) == pytest.approx((-0.5, 1.0))
+    assert cluster_bootstrap(scores, seed=4) == cluster_bootstrap(scores, seed=4)
+    assert cluster_bootstrap(Scores(np.array([1.0]), ("a",), ("x",))) is None
+
+
+def test_bootstrap_and_linearised_interval_agree_with_many_clusters() -> None:
+    scores = some_scores(8, 3000, 300)
+    found, drawn = difference(scores, macro_weights(scores)), cluster_bootstrap(scores)
+    assert found is not None and drawn is not None
+    assert drawn == pytest.approx((found.low, found.high), abs=0.004)
+
+
+@given(st.lists(st.booleans(), min_size=1, max_size=7), st.integers(1, 7))
+def test_pass_all_is_the_share_of_choices_that_all_pass(runs: list[bool], k: int) -> None:
+    chosen = list(combinations(runs, k))
+    expected = sum(all(choice) for choice in chosen) / len(chosen) if chosen else None
+    found = pass_all(len(runs), sum(runs), k)
+    assert found is None if expected is None else found is not None and isclose(found, expected)
+
+
+def test_pass_all_over_tasks() -> None:
+    value, tasks = mean_pass_all([(4, 2), (2, 2), (1, 1)], 2)
+    assert tasks == 2 and value == pytest.approx((1 / 6 + 1) / 2)
+    assert mean_pass_all([(1, 1)], 2) == (None, 0)
+    with pytest.raises(ValueError, match="between"):
+        pass_all(2, 3, 1)
+
+
+@given(st.lists(st.tuples(st.integers(0, 3), st.integers(0, 3), st.integers(0, 3)), max_size=9))
+def test_the_front(points: list[tuple[int, int, int]]) -> None:
+    on = undominated([tuple(map(float, point)) for point in points])
+    for (index, point), _ in product(enumerate(points), (0,)):
+        beaten = any(other != point and all(a <= b for a, b in zip(other, point, strict=True)) for other in points)
+        assert on[index] is not beaten
+
+
+def test_the_smallest_detectable_difference_is_found_four_times_in_five() -> None:
+    chance = np.random.default_rng(5)
+    clusters, found = 20, 0
+    se = sqrt(1 / clusters)
+    true = detectable(se, clusters)
+    for _ in range(2000):
+        means = chance.normal(true, 1.0, clusters)
+        found += abs(means.mean()) / (means.std(ddof=1) / sqrt(clusters)) > t_quantile(clusters)
+    assert found / 2000 == pytest.approx(0.8, abs=0.03)

@@ -1,0 +1,212 @@
+"""The file for a leaderboard: what is made is valid, and whatever is wrong is found and named with its line."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import jsonschema  # type: ignore[import-untyped]
+import pytest
+from typer.testing import CliRunner
+
+import scope_ptz
+from scope_ptz.bench.checks import run_checks
+from scope_ptz.bench.reports.submission import secrets_in, submission_lines, submission_schema, write_submission
+from scope_ptz.bench.reports.submission_checks import check_submission
+from scope_ptz.bench.task_files import dump_tasks
+from scope_ptz.bench.tasks import Task
+from scope_ptz.bench.trials import Check, Evaluation, TaskFacts, Trial
+from scope_ptz.bench.verdict import judge
+from scope_ptz.cli.app import app
+from scope_ptz.errors import InputError
+from tests.bench.making import samples
+from tests.bench.reports.making import card, trial
+
+PUBLISHED = Path(scope_ptz.__file__).parent / "data" / "submission.schema.json"
+TASKS = tuple(task for task, _ in samples())
+Rows = list[dict[str, Any]]
+
+
+def made(epochs: int = 2) -> Evaluation:
+    """Runs that the checks really passed, one of them spoiled."""
+    trials: list[Trial] = []
+    for task, episode in samples():
+        known = TaskFacts(
+            id=task.id, dataset=task.dataset, stratum=task.stratum, scene=task.scene, viewpoint="v", preset=task.preset,
+            instruction=task.instruction, category=task.category, scope=task.scope, difficulty=task.difficulty, expected="x",
+        )  # fmt: skip
+        checks = tuple(Check(name=c.name, passed=c.passed, reason=c.reason) for c in run_checks(task, episode))
+        assert judge(task, episode).headline == "correct"
+        for epoch in range(1, epochs + 1):
+            trials.append(trial(known, epoch=epoch, checks=checks, answer=episode.text, outcome=episode.outcome))
+    trials.sort(key=lambda t: (t.task.id, t.epoch))
+    first = trials[0]
+    failed = tuple(c.model_copy(update={"passed": False}) if c.name == "coverage" else c for c in first.checks)
+    trials[0] = first.model_copy(update={"headline": "incorrect", "error_mode": "scope", "checks": failed})
+    planner = card("qwen3-4b", "moondream2").planner.model_copy(
+        update={"provider": "http://10.0.0.7:8000/v1", "reported": {"model": "qwen3", "api_key": "abc", "url": "http://10.0.0.7"}}
+    )
+    found = card("qwen3-4b", "moondream2", epochs=epochs, split="/home/somebody/tasks.jsonl", host="secret-host")
+    return Evaluation(card=found.model_copy(update={"planner": planner}), trials=tuple(trials), wanted=len(trials))
+
+
+@pytest.fixture
+def rows(tmp_path: Path) -> Rows:
+    path = tmp_path / "made.jsonl"
+    write_submission(submission_lines(made()), path)
+    return [json.loads(line) for line in path.read_text("utf-8").splitlines()]
+
+
+def faults_of(rows: Rows, tmp_path: Path, tasks: tuple[Task, ...] = TASKS) -> str:
+    path = tmp_path / "changed.jsonl"
+    path.write_text("".join(json.dumps(row) + "\n" for row in rows), "utf-8")
+    return "\n".join(check_submission(path, tasks).faults)
+
+
+def test_what_is_made_is_valid(rows: Rows, tmp_path: Path) -> None:
+    assert faults_of(rows, tmp_path) == ""
+    assert len(rows) == 1 + 2 * len(TASKS)
+    for row in rows:
+        jsonschema.validate(row, submission_schema())
+    text = json.dumps(rows)
+    assert not any(word in text for word in ("secret-host", "10.0.0.7", "somebody", "abc")) and "tasks.jsonl" in text
+
+
+def test_the_published_schema_is_that_of_the_code() -> None:
+    assert json.loads(PUBLISHED.read_text("utf-8")) == submission_schema()
+
+
+def change(number: int, **values: Any) -> Callable[[Rows], None]:
+    return lambda rows: rows[number].update(values)
+
+
+def drop(number: int) -> Callable[[Rows], None]:
+    return lambda rows: rows.__delitem__(number)
+
+
+def put_card(**values: Any) -> Callable[[Rows], None]:
+    return lambda rows: rows[0]["card"].update(values)
+
+
+@pytest.mark.parametrize(
+    ("spoil", "told"),
+    [
+        (drop(3), "is missing (repeats"),
+        (drop(3), "line 1: totals say"),
+        (lambda rows: rows.append(rows[2]), "stands 2 times"),
+        (change(2, task="scope1-made-up-001"), "is no task of the split"),
+        (change(2, epoch=3), "repeat 3 of 2"),
+        (change(2, error_mode="scope"), "error mode scope although the trial is correct"),
+        (change(1, error_mode=None), "an incorrect trial has no error mode"),
+        (change(1, headline="correct", error_mode=None), "correct although not every check passed"),
+        (change(2, headline="incorrect", error_mode="scope"), "incorrect although no check failed"),
+        (change(2, headline="unscored"), "unscored although the checks tell"),
+        (change(2, checks={}), "no check at all"),
+        (change(2, answer="I cannot tell."), "the answer reads as wrong and its check says right"),
+        (change(2, scored_by="judge"), "which no judgement says"),
+        (change(2, category="ocr"), "category ocr where the task's is"),
+        (change(2, outcome="won"), "outcome won is none of"),
+        (change(2, steps=61), "61 steps where 60 are the most"),
+        (change(2, steps=-1), "steps: Input should be greater than or equal to 0"),
+        (change(2, steps=1.5), "line 3: trial.steps"),
+        (change(2, tool_calls={"hack_camera": 1}), "there are no tools hack_camera"),
+        (change(2, cost_usd=-1), "cost_usd"),
+        (change(2, extra=1), "extra"),
+        (change(2, kind="other"), "line 3"),
+        (change(2, times=dict.fromkeys(("perception_s", "camera_s", "render_s"), 0) | {"planner_s": 9, "total_s": 1}), "took 9 s of 1 s"),
+        (change(2, answer="use sk-abcdefghijklmnop1234"), "line 3: answer looks like a secret"),
+        (change(0, canary="none"), "canary"),
+        (change(0, format=2), "format"),
+        (change(0, tasks_digest="0" * 64), "the digest of the tasks is another"),
+        (change(0, tasks=1), "it names 1 tasks"),
+        (change(0, wanted=1), "1 trials were wanted"),
+        (put_card(dataset="scope9"), "dataset scope9 is not that of the tasks"),
+        (put_card(package_version="99.0.0"), "newer than this one"),
+        (put_card(package_version="new"), "no version"),
+        (put_card(epochs=3), "is missing (repeats 3)"),
+        (put_card(sampling={"api_key": "x"}), "card.sampling.api_key looks like a secret"),
+        (drop(0), "begins with its only header"),
+        (lambda rows: rows.insert(2, rows[0]), "this one has 2"),
+    ],
+)  # fmt: skip
+def test_whatever_is_wrong_is_told(spoil: Callable[[Rows], None], told: str, rows: Rows, tmp_path: Path) -> None:
+    spoil(rows)
+    assert told in faults_of(rows, tmp_path)
+
+
+def test_totals_are_counted_again(rows: Rows, tmp_path: Path) -> None:
+    rows[0]["totals"]["headlines"] = {"correct": 2 * len(TASKS)}
+    rows[0]["totals"]["error_modes"] = {"reasoning": 4}
+    found = faults_of(rows, tmp_path)
+    assert "headline correct, counted" in found and "headline incorrect, counted 1" in found
+    assert "4 times error mode reasoning, counted 0" in found and "error mode scope, counted 1" in found
+
+
+def test_lines_that_are_no_json_are_told_and_files_that_are_none_refused(tmp_path: Path) -> None:
+    path = tmp_path / "x.jsonl"
+    path.write_text('{"kind": "trial"\n[1]\n{"a": NaN}\n' + "[" * 100_000 + "\n", "utf-8")
+    found = "\n".join(check_submission(path, TASKS).faults)
+    assert "line 1: no JSON" in found and "line 2" in found and "line 3: no JSON (NaN" in found and "line 4" in found
+    path.write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(InputError, match="no UTF-8"):
+        check_submission(path, TASKS)
+    with pytest.raises(InputError, match="cannot be read"):
+        check_submission(tmp_path / "none.jsonl", TASKS)
+
+
+def test_an_invented_tool_is_counted_and_a_key_in_an_answer_removed(tmp_path: Path) -> None:
+    whole = made(1)
+    changed = whole.trials[1].model_copy(
+        update={"tool_calls": {"take_image": 1, "<script>": 2}, "answer": f"{whole.trials[1].answer} hf_abcdefghijklmnopqrstu"}
+    )
+    found = whole.model_copy(update={"trials": (whole.trials[0], changed, *whole.trials[2:])})
+    _, lines = submission_lines(found)
+    line = next(row for row in lines if "unknown" in row.tool_calls)
+    assert line.tool_calls == {"take_image": 1, "unknown": 2} and "[removed]" in line.answer and "hf_" not in line.answer
+
+
+def test_an_unfinished_run_is_no_submission() -> None:
+    whole = made()
+    with pytest.raises(InputError, match=r"unfinished: 3 of \d+ trials"):
+        submission_lines(whole.model_copy(update={"trials": whole.trials[:3]}))
+
+
+def test_runs_without_models_are_said_to_be_unranked(tmp_path: Path) -> None:
+    whole = made(1)
+    path = tmp_path / "reference.jsonl"
+    unranked = whole.model_copy(update={"card": card("grammar", "ground-truth", split="x.jsonl")})
+    write_submission(submission_lines(unranked), path)
+    found = check_submission(path, TASKS)
+    assert not found.faults and "not ranked" in found.told and found.as_dict()["valid"] is True
+    with pytest.raises(InputError, match="no published split"):
+        check_submission(path)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Bearer abcdefghijklmnop",
+        "https://me:pass@host/",
+        "ghp_abcdefghijklmnopqrstuv",
+        "AKIAABCDEFGHIJKLMNOP",
+        "-----BEGIN PRIVATE KEY",
+    ],
+)
+def test_secrets_are_found(text: str) -> None:
+    assert list(secrets_in({"a": {"b": [f"see {text}"]}})) == ["a.b"]
+    assert not list(secrets_in({"max_tokens": 5, "reason": "The sign reads KEYS CUT HERE", "input_tokens": 7}))
+
+
+def test_the_commands(rows: Rows, tmp_path: Path) -> None:
+    path, tasks = tmp_path / "made.jsonl", tmp_path / "tasks.jsonl"
+    dump_tasks(TASKS, tasks)
+    run = CliRunner().invoke
+    good = run(app, ["bench", "submission", "validate", str(path), "--tasks", str(tasks)])
+    assert good.exit_code == 0 and "valid" in good.stdout
+    lines = path.read_text("utf-8").splitlines(keepends=True)
+    path.write_text("".join(lines[:-1]), "utf-8")
+    bad = run(app, ["bench", "submission", "validate", str(path), "--tasks", str(tasks), "--json"])
+    assert bad.exit_code == 1 and json.loads(bad.stdout)["valid"] is False
+    assert run(app, ["bench", "submission", "validate", str(tmp_path / "no.jsonl")]).exit_code == 2

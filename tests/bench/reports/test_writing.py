@@ -1,0 +1,204 @@
+"""The page on disk: whole, harmless whatever models wrote, and never mistaken for another folder."""
+
+from __future__ import annotations
+
+import io
+import re
+from datetime import UTC, datetime
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import pytest
+from PIL import Image
+
+from scope_ptz.agent.records import Budgets, Called, Decided, Labels, Place, Started
+from scope_ptz.agent.timing import Reply, Timings
+from scope_ptz.agent.trace import Trace
+from scope_ptz.bench.reports.building import Report
+from scope_ptz.bench.reports.task_pages import FrameStore, file_name
+from scope_ptz.bench.reports.writing import html, markdown, write_report
+from scope_ptz.bench.trials import Check, Evaluation, Trial
+from scope_ptz.errors import OutputError, TraceError
+from scope_ptz.planner.base import CallTools, Finish, ToolCall, ToolOutcome
+from scope_ptz.registry import load_registry
+from tests.bench.reports.making import card, facts, trial
+
+EVIL = '<script>alert("x")</script><img src=x onerror=alert(1)>\'"--><!--'
+EVIL_ID = "../../../etc/passwd<script>"
+
+
+class Page(HTMLParser):
+    """What matters of a page: its tags, ids and where it points."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.words: list[str] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_data(self, data: str) -> None:
+        self.words.append(data)
+
+    def of(self, tag: str) -> list[dict[str, str | None]]:
+        return [attrs for name, attrs in self.tags if name == tag]
+
+
+def jpeg(colour: str = "red", size: tuple[int, int] = (1280, 720)) -> bytes:
+    out = io.BytesIO()
+    Image.new("RGB", size, colour).save(out, "JPEG")
+    return out.getvalue()
+
+
+class Sample:
+    """A run's trace and pictures, with things in them that are meant to do harm."""
+
+    def __init__(self) -> None:
+        place = Place(pan_deg=1, tilt_deg=2, zoom=1)
+        call = ToolCall(id="1", name="query_answer", arguments={"question": EVIL, "view": "current"})
+        said = Reply(kind="query", asked=EVIL, result={"text": f"A sign says: {EVIL}"}, frame_time_s=0, wall_s=0.5)
+        self.trace = Trace(
+            folder=Path("/nowhere"),
+            started=Started(
+                version="0", python="3", started=datetime.now(UTC), instruction=EVIL, planner="p", perception="e", camera="c",
+                simulated=True, frame_width=1280, frame_height=720, scene="s", viewpoint="v", scene_time_s=0, pose=place,
+                presets=(), budgets=Budgets(), labels=Labels(), frame="../../start.jpg",
+            ),
+            decisions=(
+                Decided(step=1, decision=CallTools(calls=(call,), thought=EVIL), planner_s=1, view="view.jpg"),
+                Decided(step=2, decision=Finish(kind="answered", text=EVIL), planner_s=1),
+            ),
+            calls=(
+                Called(
+                    step=1, index=0, outcome=ToolOutcome(call=call, result={"message": f"It reads {EVIL}"}), scene_time_s=0,
+                    pose=place, timings=Timings(), replies=(said,), frame="/etc/passwd",
+                ),
+            ),
+            ended=None,
+        )  # fmt: skip
+
+    def picture(self, name: str) -> bytes | None:
+        return {"../../start.jpg": jpeg(), "/etc/passwd": jpeg("blue"), "view.jpg": b"GIF89a<script>"}[name]
+
+
+@pytest.fixture
+def evil() -> Evaluation:
+    tasks = [
+        t.model_copy(update={"id": f"{EVIL_ID}{n}", "instruction": EVIL, "expected": EVIL, "scene": EVIL, "demands": (EVIL,)})
+        for n, t in enumerate(facts(1))
+    ]
+    trials = tuple(
+        trial(
+            t,
+            "incorrect",
+            answer=EVIL,
+            reason=EVIL,
+            outcome=EVIL,
+            sample=EVIL,
+            checks=(Check(name=EVIL, passed=False, reason=EVIL),),
+        )
+        for t in tasks
+    )
+    return Evaluation(
+        card=card(f"planner {EVIL}", EVIL, split=f"../{EVIL}", variant=EVIL, host=EVIL), trials=trials, wanted=len(trials)
+    )
+
+
+def test_what_models_and_logs_say_is_shown_and_never_acts(evil: Evaluation, tmp_path: Path) -> None:
+    out = tmp_path / "report"
+    write_report([evil, evil], load_registry(), out, open_sample=lambda evaluation, trial: Sample())
+    written = [path for path in tmp_path.rglob("*") if path.is_file()]
+    assert all(path.is_relative_to(out) for path in written)
+    pages = [path for path in written if path.suffix == ".html"]
+    assert len(pages) == 1 + len(evil.trials)
+    for path in pages:
+        page = Page(path.read_text("utf-8"))
+        names = {name for name, _ in page.tags}
+        assert not names & {"script", "iframe", "object", "link", "base", "form"}
+        assert not any(key.startswith("on") for _, attrs in page.tags for key in attrs)
+        for image in page.of("img"):
+            assert re.fullmatch(r"\.\./frames/[0-9a-f]{24}\.jpg", image["src"] or "")
+            assert (path.parent / str(image["src"])).is_file()
+        assert any('alert("x")' in words for words in page.words)
+    text = (out / "report.md").read_text("utf-8")
+    assert "<script" not in text and "<img" not in text
+    task = Page(pages[0].read_text("utf-8") if pages[0].name != "index.html" else pages[1].read_text("utf-8"))
+    assert len(task.of("img")) == 2 * 2, "the picture that is none is left out; both logs are shown"
+    assert len(list((out / "frames").iterdir())) == 2, "no picture is kept twice"
+
+
+def test_file_names_are_made_here() -> None:
+    for task in (EVIL_ID, "..", "", "con", "a/b\\c", "\x00", "ü" * 400, "scope1-x-counting-001"):
+        assert re.fullmatch(r"[a-z0-9-]+-[0-9a-f]{10}\.html", file_name(task)) and len(file_name(task)) < 90
+    assert file_name("a.b") != file_name("a-b")
+    assert file_name("scope1-x-counting-001").startswith("scope1-x-counting-001-")
+
+
+def test_a_trace_that_cannot_be_read_is_told(evil: Evaluation, tmp_path: Path) -> None:
+    def fails(evaluation: Evaluation, trial: Trial) -> Sample:
+        raise TraceError("The log holds no such run.")
+
+    write_report([evil], load_registry(), tmp_path / "r", open_sample=fails)
+    page = next((tmp_path / "r" / "tasks").iterdir()).read_text("utf-8")
+    assert "The log holds no such run." in page
+
+
+@pytest.mark.parametrize("content", [None, b"", b"not a picture", jpeg()[:300], b"<svg onload='x'/>"])
+def test_only_pictures_become_files(content: bytes | None, tmp_path: Path) -> None:
+    assert FrameStore(tmp_path / "frames", "frames").keep(content) is None
+    assert not (tmp_path / "frames").exists()
+
+
+def test_pictures_are_made_small(tmp_path: Path) -> None:
+    store = FrameStore(tmp_path / "frames", "frames")
+    kept = store.keep(jpeg(size=(4000, 700)))
+    assert kept is not None
+    with Image.open(tmp_path / kept) as picture:
+        assert picture.width == 1280
+
+
+def test_the_page_stands_alone_and_is_accessible(report: Report) -> None:
+    text = html(report)
+    page = Page(text)
+    assert not page.of("script") and not page.of("link") and not page.of("img")
+    assert not re.search(r"""(?:src|href)=["']?(?:https?:)?//""", text) and "@import" not in text
+    assert [meta["content"] for meta in page.of("meta") if meta.get("http-equiv")] == [
+        "default-src 'none'; style-src 'unsafe-inline'"
+    ]
+    ids = [attrs["id"] for _, attrs in page.tags if "id" in attrs]
+    assert len(ids) == len(set(ids))
+    anchors = {a["href"][1:] for a in page.of("a") if (a["href"] or "").startswith("#")}  # type: ignore[index]
+    assert anchors <= set(ids)
+    assert all(th.get("scope") in ("col", "row", "rowgroup") for th in page.of("th"))
+    assert len(page.of("caption")) == len(page.of("table")) == len(report.tables)
+    charts = [chart for section in report.sections for chart in section.charts]
+    assert len(page.of("svg")) == len(charts) >= 7
+    shown: list[Any] = [div for div in page.of("div") if div.get("role") == "img"]
+    assert [div["aria-label"] for div in shown] == [chart.alt for chart in charts]
+    assert "prefers-color-scheme: dark" in text and "@media print" in text and "#010203" not in text
+
+
+def test_a_report_is_the_same_each_time(report: Report) -> None:
+    assert html(report) == html(report)
+    assert markdown(report).count("## ") >= len(report.sections)
+
+
+def test_an_older_report_is_replaced_and_nothing_else(evil: Evaluation, tmp_path: Path) -> None:
+    out = tmp_path / "report"
+    write_report([evil], load_registry(), out)
+    kept = out / "notes.txt"
+    kept.write_text("mine")
+    fine = evil.model_copy(update={"trials": tuple(trial(t) for t in facts(1))})
+    write_report([fine], load_registry(), out)
+    assert kept.read_text() == "mine" and not list((out / "tasks").iterdir())
+    other = tmp_path / "other"
+    other.mkdir()
+    (other / "index.html").write_text("somebody's page")
+    with pytest.raises(OutputError, match="no report"):
+        write_report([fine], load_registry(), other)
+    with pytest.raises(OutputError, match="is a file"):
+        write_report([fine], load_registry(), kept)
+    assert (other / "index.html").read_text() == "somebody's page"
