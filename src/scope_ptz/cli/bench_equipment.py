@@ -69,22 +69,22 @@ def eyes_for(choice: EyesChoice, scenes: Callable[[str], Scene], seed: int) -> P
 def lend(
     *,
     seed: int,
-    planner: PlannerChoice | None = None,
+    planner: Planner | None = None,
     eyes: EyesChoice | None = None,
-    made: Planner | None = None,
     judge: ServerPort | None = None,
 ) -> Equipment:
     """Equipment for an evaluation. Models that were not chosen yet are made from their names when they are wanted.
 
-    ``made`` and ``judge``: the planner and the judge, where they are there already.
+    ``planner``, ``eyes`` and ``judge``: those that are chosen already; eyes that cannot be made are told of now.
     """
     scenes = lru_cache(maxsize=None)(open_scene)
+    seeing = eyes_for(eyes, scenes, seed) if eyes is not None else None
 
     async def a_planner(wish: ModelWish) -> Planner:
-        return made or planner_for(planner or (await choose(_wishes(wish, "planner"))).planner)
+        return planner or planner_for((await choose(_wishes(wish, "planner"))).planner)
 
     async def some_eyes(wish: ModelWish) -> Perception:
-        return eyes_for(eyes or (await choose(_wishes(wish, "eyes"))).eyes, scenes, seed)
+        return seeing or eyes_for((await choose(_wishes(wish, "eyes"))).eyes, scenes, seed)
 
     async def a_judge(wish: ModelWish, repeat: int) -> Complete:
         return (await _judge(wish)).repeated(repeat)
@@ -102,6 +102,7 @@ def lend(
         make_judge=judge_maker(judge) if judge is not None else a_judge,
         load_tasks=lambda split: tasks_of(split, scenes),
         truth=really,
+        eyes=seeing,
         perception_note=notes.get(eyes.name, "") if eyes else "",
     )
 

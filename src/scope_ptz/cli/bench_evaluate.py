@@ -84,7 +84,11 @@ async def evaluate(options: RunOptions, console: Console) -> Evaluation:
         if before is not None and before.finished:
             complain(f"this evaluation is done: {before.path} (--fresh runs it again)")
             return read_evaluation(before.path)
-        return read_evaluation(await prepared.run(console, before))
+        try:
+            return read_evaluation(await prepared.run(console, before))
+        finally:
+            with anyio.CancelScope(shield=True):
+                await prepared.close()
 
 
 class _Prepared:
@@ -92,12 +96,16 @@ class _Prepared:
 
     def __init__(self, options: RunOptions, choice: Choice) -> None:
         from scope_ptz.bench.engine.entries import chosen, digest
+        from scope_ptz.bench.engine.guests import load_guest
         from scope_ptz.bench.engine.runs import identity_of
         from scope_ptz.cli.bench_equipment import lend, planner_for
 
+        if options.agent != OWN_AGENT:
+            load_guest(options.agent)
         self.options, self.choice = options, choice
+        self.judge: ServerPort | None = None
         self.planner = planner_for(choice.planner) if options.agent == OWN_AGENT else None
-        self.lent = lend(seed=options.seed, planner=choice.planner, eyes=choice.eyes, made=self.planner)
+        self.lent = lend(seed=options.seed, planner=self.planner, eyes=choice.eyes)
         self.entries: tuple[Entry, ...] = chosen(
             self.lent.load_tasks(options.tasks), options.categories, options.scenes, options.limit
         )
@@ -114,6 +122,12 @@ class _Prepared:
             options.pictures, options.latency, options.variant, choice.planner.name, choice.eyes.name, details,
             spec.model_dump(mode="json", exclude={"endpoint"}) if spec else None, _place(choice),
         )  # fmt: skip
+
+    async def close(self) -> None:
+        """Release what models hold."""
+        for held in (self.planner, self.lent.eyes, self.judge):
+            if held is not None:
+                await held.close()
 
     def before(self) -> Found | None:
         """The log to go on with."""
@@ -137,7 +151,7 @@ class _Prepared:
         done = tuple(t for t in read_evaluation(before.path).trials if t.headline != "infrastructure") if before else ()
         wanted = len(self.entries) * self.options.epochs
         self._foretell(console, wanted, done, before)
-        judge = await self._judge()
+        judge = self.judge = await self._judge()
         setting = await self._setting(judge)
         with anyio.CancelScope() as scope, LiveTable(console, wanted, done, setting.card.pair, scope.cancel) as table:
             lent = self.lent if judge is None else replace(self.lent, make_judge=judge_maker(judge))

@@ -48,7 +48,8 @@ class Watcher:
 
 @dataclass(frozen=True, slots=True)
 class Equipment:
-    """``make_judge``: a judge's port for its n-th judgement of a run; ``truth``: None where no ground truth can be had."""
+    """``make_judge``: a judge's port for its n-th judgement of a run; ``truth``: None where no ground truth can be had;
+    ``eyes``: those that are made already."""
 
     open_scene: OpenScene
     make_planner: Callable[[ModelWish], Awaitable[Planner]]
@@ -58,6 +59,7 @@ class Equipment:
     truth: TruthOf | None = None
     watcher: Watcher = field(default_factory=Watcher)
     perception_note: str = ""
+    eyes: Eyes | None = None
 
 
 EQUIPMENT: ContextVar[Equipment | None] = ContextVar("scope_equipment", default=None)

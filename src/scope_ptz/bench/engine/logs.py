@@ -21,7 +21,7 @@ from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.judgements import judgements_in
 from scope_ptz.bench.engine.pictures import jpeg_of
 from scope_ptz.bench.engine.sampling import STORE, Kept, sample_name, trace_of
-from scope_ptz.bench.engine.scorers import CHECKS, TRIAL
+from scope_ptz.bench.engine.scorers import TRIAL
 from scope_ptz.bench.engine.trialing import trial_of
 from scope_ptz.bench.trials import Evaluation, Trial
 from scope_ptz.errors import TraceError
@@ -142,8 +142,7 @@ def trial_in(sample: Mapping[str, Any], path: Path) -> Trial:
     """The judged run of a sample: as its checks were scored last, with every judgement."""
     entry, scores = Entry.of_metadata(sample["metadata"]), sample.get("scores") or {}
     judgements = judgements_in(scores)
-    newest = next((scores[name] for name in reversed(scores) if name.split("-")[0] == CHECKS), None)
-    told = (newest.get("metadata") or {}).get(TRIAL) if newest else None
+    told = next((s["metadata"][TRIAL] for s in reversed(scores.values()) if TRIAL in (s.get("metadata") or {})), None)
     if told is None or entry.task is None:
         kept = kept_in(sample) or Kept("", {}, "")
         return trial_of(entry, kept, sample["epoch"], path, judgements)

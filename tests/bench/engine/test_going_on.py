@@ -1,0 +1,162 @@
+"""An evaluation that is killed and begun again: nothing lost, nothing done twice. Servers that fail: every run is kept and counted."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from scope_ptz.bench.engine.logs import open_sample, read_evaluation
+from scope_ptz.bench.engine.runs import alone
+from scope_ptz.bench.task_files import dump_tasks
+from scope_ptz.errors import InputError
+from tests.bench.engine.making import many
+from tests.cli.conftest import Scope
+from tests.support.misbehaving import Behaviour, Exchange, Misbehaving, Request, Say, body, good, malformed, reset, stalls, status
+
+PATIENCE_S = 240.0
+
+
+def turner(request: Request) -> Say:
+    """A model that turns as it is told, and says so."""
+    if request.data["messages"][-1]["role"] == "tool":
+        return Say("I have turned.")
+    angle = float(asked(request).split()[2])
+    return Say("", tool_calls=(("adjust_ptz", {"pan_deg": angle}),))
+
+
+def asked(request: Request) -> str:
+    return next(str(m["content"]) for m in request.data["messages"] if m["role"] == "user")
+
+
+def slow(behaviour: Behaviour, seconds: float) -> Behaviour:
+    async def behave(exchange: Exchange) -> None:
+        if exchange.request.chat:
+            await asyncio.sleep(seconds)
+        await behaviour(exchange)
+
+    return behave
+
+
+def first_steps(server: Misbehaving) -> Counter[str]:
+    """How often each task was begun."""
+    return Counter(asked(r) for r in server.requests if r.chat and r.data["messages"][-1]["role"] == "user")
+
+
+def wait_for(condition: Callable[[], bool], process: subprocess.Popen[bytes]) -> None:
+    deadline = time.monotonic() + PATIENCE_S
+    while not condition():
+        assert process.poll() is None, "the evaluation ended before it was killed"
+        assert time.monotonic() < deadline, "the evaluation did not get so far in time"
+        time.sleep(0.05)
+
+
+def test_killed_twice_and_nothing_lost_or_done_twice(scenes: Path, tmp_path: Path) -> None:
+    tasks, logs, at_a_time = many(9), tmp_path / "logs", 2
+    dump_tasks(tasks, tmp_path / "tasks.jsonl")
+    # A folder of its own for what the engine keeps outside of logs.
+    environment = {**os.environ, "SCOPE_SCENES_DIR": str(scenes), "XDG_DATA_HOME": str(tmp_path / "data"), "COLUMNS": "200"}
+    with Misbehaving(then=slow(good(turner), 0.4)) as server:
+        command = [
+            sys.executable, "-m", "scope_ptz.cli", "bench", "run", "--tasks", str(tmp_path / "tasks.jsonl"), "--no-pictures",
+            "--out", str(logs), "--concurrency", str(at_a_time), "--planner-url", server.url, "--planner-model", "m",
+        ]  # fmt: skip
+        for begun in (4, 7):
+            process = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+            wait_for(lambda: len(first_steps(server)) >= begun, process)
+            process.send_signal(signal.SIGKILL)
+            process.communicate()
+        last = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=PATIENCE_S)
+        begun_times = first_steps(server)
+    assert last.returncode == 0, last.stderr
+    assert "Going on with" in last.stdout
+    (log,) = logs.glob("*.eval")
+    evaluation = read_evaluation(log)
+    assert [trial.task.id for trial in evaluation.trials] == [task.id for task in tasks]
+    assert {trial.headline for trial in evaluation.trials} == {"correct"}
+    for trial in evaluation.trials:
+        assert open_sample(log, trial.sample).trace.ended is not None
+    # Only what was under way when the program was killed was begun again.
+    assert set(begun_times) == {task.instruction for task in tasks}
+    assert sum(begun_times.values()) - len(tasks) <= 2 * at_a_time
+
+
+def test_the_same_evaluation_does_not_run_twice_at_a_time(tmp_path: Path) -> None:
+    with alone(tmp_path, "one"):
+        with pytest.raises(InputError, match="running already"), alone(tmp_path, "one"):
+            pass
+        with alone(tmp_path, "another"):
+            pass
+    with alone(tmp_path, "one"):
+        pass
+
+
+def run(scope: Scope, server: Misbehaving, tasks: Path, logs: Path, *further: str) -> int:
+    return scope(
+        "bench", "run", "--tasks", str(tasks), "--no-pictures", "--out", str(logs), "--concurrency", "1", "--planner-url", server.url,
+        "--planner-model", "m", "--timeout", "3", *further,
+    ).code  # fmt: skip
+
+
+def test_a_misbehaving_server_loses_no_run(scope: Scope, tmp_path: Path) -> None:
+    tasks = many(6)
+    dump_tasks(tasks, tmp_path / "tasks.jsonl")
+    again = status(429, headers={"Retry-After": "0"})
+    garbage = body('{"choices": [{"message": {"tool_calls": [1]}}]}')
+    refused = [status(401)]
+    script = [good(), *refused, again, again, good(turner), good(turner), malformed(), good(turner), reset(), good(turner), garbage]
+    with Misbehaving(script, then=good(turner)) as server:
+        code = run(scope, server, tmp_path / "tasks.jsonl", tmp_path / "logs")
+        assert code == 1
+        (log,) = (tmp_path / "logs").glob("*.eval")
+        first = read_evaluation(log)
+        # All that was asked for is in the log: what the server broke is counted apart, and in no accuracy.
+        assert len(first.trials) == 6
+        broken = [trial for trial in first.trials if trial.headline == "infrastructure"]
+        assert len(broken) == 1
+        assert "unauthorised" in broken[0].reason
+        events = Counter[str]()
+        for trial in first.trials:
+            events.update(trial.server_events)
+        assert events["rate-limited"] == 2
+        assert events["unauthorised"] == 1
+        assert events["malformed"] >= 1
+        # The same command runs the broken one again, and only that.
+        before = len([r for r in server.requests if r.chat])
+        assert run(scope, server, tmp_path / "tasks.jsonl", tmp_path / "logs") == 0
+        assert len([r for r in server.requests if r.chat]) - before == 2
+    (log,) = (tmp_path / "logs").glob("*.eval")
+    assert {trial.headline for trial in read_evaluation(log).trials} == {"correct"}
+
+
+def test_a_dead_server_stops_the_evaluation(scope: Scope, tmp_path: Path) -> None:
+    dump_tasks(many(30), tmp_path / "tasks.jsonl")
+    with Misbehaving(then=status(401)) as server:
+        done = scope(
+            "bench", "run", "--tasks", str(tmp_path / "tasks.jsonl"), "--no-pictures", "--out", str(tmp_path / "logs"),
+            "--concurrency", "1", "--planner-url", server.url, "--planner-model", "m",
+        )  # fmt: skip
+        assert len([r for r in server.requests if r.chat]) < 20
+    assert done.code == 1
+    assert "Too many runs in a row" in done.err
+    (log,) = (tmp_path / "logs").glob("*.eval")
+    assert {trial.headline for trial in read_evaluation(log).trials} == {"infrastructure"}
+
+
+def test_a_stalling_server_is_an_outcome(scope: Scope, tmp_path: Path) -> None:
+    dump_tasks(many(1), tmp_path / "tasks.jsonl")
+    with Misbehaving([good(turner)], then=stalls()) as server:
+        code = run(scope, server, tmp_path / "tasks.jsonl", tmp_path / "logs", "--timeout", "0.5")
+    assert code == 1
+    (log,) = (tmp_path / "logs").glob("*.eval")
+    (trial,) = read_evaluation(log).trials
+    assert trial.headline == "infrastructure"
+    assert trial.tool_calls == {}

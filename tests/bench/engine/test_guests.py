@@ -1,0 +1,115 @@
+"""Other people's agents: traced and checked as our own."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from scope_ptz.bench.engine.guests import Desk, GuestPlanner, Reply
+from scope_ptz.bench.engine.logs import open_sample, read_evaluation
+from scope_ptz.errors import PlannerError
+from scope_ptz.geometry import Limits, Pose
+from scope_ptz.planner.base import Briefing, CallTools, Exchange, Finish, State, ToolOutcome
+from tests.cli.conftest import Scope
+
+MODULE = """
+import re
+
+class Agent:
+    sees = True
+
+    async def run(self, desk):
+        assert "adjust_ptz" in [tool["function"]["name"] for tool in desk.tools]
+        assert desk.presets == ("yard", "board", "from-the-roof") and desk.limits.max_zoom == 5.0
+        assert desk.view()[:2] == b"\\xff\\xd8"
+        if turn := re.search(r"right (\\d+)", desk.instruction):
+            wrong = await desk.call("adjust_ptz", {"sideways": 1})
+            assert "sideways" in wrong["error"], wrong
+            done = await desk.call("adjust_ptz", {"pan_deg": float(turn[1])})
+            return f"The camera is at {done['pose']['pan_deg']:g} degrees."
+        seen = await desk.call("count_objects", {"description": "balls"})
+        return f"There are {seen['count']} balls."
+"""
+
+
+def test_an_agent_of_somebody_else(scope: Scope, tasks_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "their_loop.py").write_text(MODULE)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    done = scope("bench", "run", "--tasks", str(tasks_file), "--agent", "their_loop:Agent", "--out", "logs", "--json")
+    assert done.code == 0, done.err
+    evaluation = read_evaluation(Path(done.json["log"]))
+    assert evaluation.card.agent == "their_loop:Agent"
+    headlines = {t.task.id.split("yard-")[1]: t.headline for t in evaluation.trials}
+    assert headlines == {
+        "counting-001": "correct", "counting-002": "incorrect", "single-call-001": "correct", "single-call-002": "correct",
+    }  # fmt: skip
+    turned = next(t for t in evaluation.trials if t.task.category == "single_call")
+    assert (turned.bad_calls, turned.tool_calls) == (1, {"adjust_ptz": 2})
+    assert open_sample(Path(done.json["log"]), turned.sample).trace.started.planner == "their_loop:Agent"
+
+
+STATE = State(instruction="look around", briefing=Briefing(presets=("gate",), pose=Pose(), limits=Limits()))
+
+
+def told(state: State, decision: CallTools, *results: dict[str, Any]) -> State:
+    outcomes = tuple(ToolOutcome(call=c, result=r) for c, r in zip(decision.calls, results, strict=True))
+    return state.model_copy(update={"history": (*state.history, Exchange(outcomes=outcomes))})
+
+
+def guest(run: Callable[[Any, Desk], Any]) -> GuestPlanner:
+    return GuestPlanner(type("Agent", (), {"run": run}), "guest")
+
+
+async def test_calls_that_are_awaited_together_are_one_step() -> None:
+    async def run(self: Any, desk: Desk) -> Reply:
+        one, two = await asyncio.gather(desk.call("count_objects", {"description": "a"}), desk.call("take_image"))
+        return Reply(f"{one['count']} {two['file']}", "clarification")
+
+    planner = guest(run)
+    decision = await planner.step(STATE)
+    assert isinstance(decision, CallTools)
+    assert [c.name for c in decision.calls] == ["count_objects", "take_image"]
+    end = await planner.step(told(STATE, decision, {"count": 2}, {"file": "x.jpg"}))
+    assert isinstance(end, Finish)
+    assert (end.kind, end.text) == ("clarification", "2 x.jpg")
+
+
+async def test_an_agent_that_fails_is_the_agents_own_failure() -> None:
+    async def run(self: Any, desk: Desk) -> str:
+        raise ZeroDivisionError("oops")
+
+    with pytest.raises(PlannerError, match="ZeroDivisionError: oops") as failed:
+        await guest(run).step(STATE)
+    assert failed.value.kind is None
+
+
+async def test_an_agent_without_a_word() -> None:
+    async def run(self: Any, desk: Desk) -> str:
+        return " "
+
+    with pytest.raises(PlannerError, match="without a word"):
+        await guest(run).step(STATE)
+
+
+async def test_an_agent_that_is_stopped_ends() -> None:
+    ended = asyncio.Event()
+
+    async def run(self: Any, desk: Desk) -> str:
+        try:
+            await desk.call("take_image")
+        finally:
+            ended.set()
+        return "never"
+
+    planner = guest(run)
+    await planner.step(STATE)
+    await planner.close()
+    assert ended.is_set()
+
+
+pytestmark = pytest.mark.anyio

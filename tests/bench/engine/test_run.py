@@ -1,0 +1,131 @@
+"""`scope bench run` and what it leaves: a log with every call, look and picture, read back as data."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from inspect_ai.log import read_eval_log
+
+from scope_ptz.bench.engine.logs import open_sample, read_evaluation
+from scope_ptz.bench.error_modes import ErrorMode
+from tests.bench.engine.making import SCENE, TASKS
+from tests.cli.conftest import Scope
+
+
+def test_a_log_reads_as_judged_runs(evaluated: Path) -> None:
+    evaluation = read_evaluation(evaluated)
+    assert evaluation.finished
+    assert [trial.task.id for trial in evaluation.trials] == [task.id for task in TASKS]
+    assert [trial.headline for trial in evaluation.trials] == ["correct", "incorrect", "correct", "correct"]
+    counted, miscounted, turned, _ = evaluation.trials
+    assert counted.tool_calls == {"count_objects": 1}
+    assert counted.look_s["current"][0] > 0
+    assert (counted.task.viewpoint, counted.task.category) == ("mast", "counting")
+    # The eyes said what really shows, so it was not they that erred.
+    assert miscounted.error_mode not in (None, ErrorMode.VLM_COUNTING)
+    assert turned.timings.total_s >= turned.timings.planner_s > 0
+    assert {check.name for check in turned.checks} >= {"outcome", "pose"}
+
+
+def test_the_card_says_how_it_was_run(evaluated: Path) -> None:
+    card = read_evaluation(evaluated).card
+    assert (card.pair, card.ranked) == ("grammar + ground-truth", False)
+    assert (card.agent, card.epochs, card.seed, card.max_steps) == ("scope", 1, 1, 60)
+    assert card.engine_version.startswith("inspect-ai 0.3.")
+    assert len(card.dataset_digest) == 16
+    assert card.contended
+
+
+def test_the_log_shows_calls_looks_and_pictures(evaluated: Path) -> None:
+    log = read_eval_log(str(evaluated), resolve_attachments=True)
+    assert log.samples is not None
+    sample = next(s for s in log.samples if "counting-001" in str(s.id))
+    spans = {e.id: e for e in sample.events if e.event == "span_begin"}
+    models = [e for e in sample.events if e.event == "model"]
+    looks = [e for e in models if e.role == "eyes"]
+    assert [e.role for e in models] == ["planner", "eyes", "planner"]
+    # The look is inside the call that wanted it, with the picture that was looked at.
+    assert spans[str(looks[0].span_id)].name == "count_objects"
+    assert any(part.type == "image" for part in looks[0].input[0].content if not isinstance(part, str))
+    (call,) = [e for e in sample.events if e.event == "tool"]
+    assert call.arguments == {"description": "balls", "view": "current"}
+    assert "image" in [part.type for part in call.result if not isinstance(part, str | int | float | bool)]  # type: ignore[union-attr]
+    assert {"planner", "eyes"} == set(log.eval.model_roles or {})
+
+
+def test_trace_and_pictures_of_a_run_can_be_had(evaluated: Path) -> None:
+    files = open_sample(evaluated, f"scope1-{SCENE}-counting-001#1")
+    assert files.trace.ended is not None
+    assert files.trace.ended.outcome == "answered"
+    (called,) = files.trace.calls
+    name = (called.outcome.result or {})["frames"][0]
+    jpeg = files.picture(name)
+    assert jpeg is not None
+    picture = cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR)
+    assert picture.shape == (720, 1280, 3)
+    assert files.picture("frames/999-view.jpg") is None
+
+
+def test_what_is_done_is_not_done_again(scope: Scope, evaluated: Path, tasks_file: Path) -> None:
+    before = evaluated.read_bytes()
+    done = scope("bench", "run", "--tasks", str(tasks_file), "--out", str(evaluated.parent), "--json")
+    assert done.code == 0
+    assert "is done" in done.err
+    assert done.json["headlines"] == {"correct": 3, "incorrect": 1, "unscored": 0, "infrastructure": 0}
+    assert done.json["by_category"] == {"counting": 0.5, "single_call": 1.0}
+    assert (done.json["macro"], done.json["micro"]) == (0.75, 0.75)
+    assert evaluated.read_bytes() == before
+    assert list(evaluated.parent.glob("*.eval")) == [evaluated]
+
+
+def test_epochs_categories_and_no_pictures(scope: Scope, tasks_file: Path, tmp_path: Path) -> None:
+    done = scope(
+        "bench", "run", "--tasks", str(tasks_file), "--category", "single_call", "--limit", "1", "--epochs", "2", "--no-pictures",
+        "--latency", "--out", str(tmp_path), "--json",
+    )  # fmt: skip
+    assert done.code == 0, done.err
+    evaluation = read_evaluation(Path(done.json["log"]))
+    assert [(t.task.category, t.epoch) for t in evaluation.trials] == [("single_call", 1), ("single_call", 2)]
+    assert (evaluation.wanted, evaluation.card.contended, evaluation.card.concurrency) == (2, False, 1)
+    assert not open_sample(Path(done.json["log"]), evaluation.trials[0].sample).references
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--category", "nonsense"], "no category"),
+        (["--scene", "elsewhere"], "no scene"),
+        (["--tasks", "no-such-split"], "no split"),
+        (["--tasks", "missing.jsonl"], "cannot be read"),
+        (["--pair", "nobody+nothing"], "There is no"),
+        (["--agent", "nonsense"], "module:Class"),
+        (["--agent", "json:nothing"], "cannot be imported"),
+        (["--agent", "json:JSONDecoder"], "is no agent"),
+        (["--price", "cheap"], "--price wants two amounts"),
+        (["--resume", "missing.eval"], "There is no log"),
+        (["--perception", "rapidocr", "--no-pictures"], "look at pictures"),
+    ],
+)
+def test_wrong_options_end_in_a_message(scope: Scope, tasks_file: Path, tmp_path: Path, options: list[str], words: str) -> None:
+    given = options if "--tasks" in options else ["--tasks", str(tasks_file), *options]
+    done = scope("bench", "run", "--out", str(tmp_path), *given)
+    assert done.code == 2
+    assert words in done.err
+    assert "Traceback" not in done.err
+    assert not list(tmp_path.glob("*.eval"))
+
+
+def test_resuming_another_evaluation_is_refused(scope: Scope, evaluated: Path, tasks_file: Path, tmp_path: Path) -> None:
+    done = scope("bench", "run", "--tasks", str(tasks_file), "--seed", "2", "--resume", str(evaluated), "--out", str(tmp_path))
+    assert done.code == 2
+    assert "another evaluation" in done.err
+
+
+def test_a_sample_says_which_task_it_is_of(evaluated: Path) -> None:
+    header = read_eval_log(str(evaluated), header_only=True)
+    told = json.dumps(header.eval.metadata)
+    assert "dataset_digest" in told
