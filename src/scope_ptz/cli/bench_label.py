@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import hashlib
 import random
 import re
 import sys
 import tempfile
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -121,7 +123,7 @@ class _Labelling:
         files = open_sample(self.log, trial.sample)
         put(f"\n{'=' * 20} run {number} of {len(self.trials)} {'=' * 20}")
         put(render(trial.task, case_of(files.trace), _CHARS))
-        for path in kept_pictures(files, self.pictures / f"{self.trials.index(trial) + 1:03d}"):
+        for path in kept_pictures(files, self.pictures / folder_name(self.log, trial.sample)):
             put(f"picture: {path}")
 
     def _ask(self, trial: Trial) -> int | None:
@@ -187,27 +189,35 @@ def _put_modes() -> None:
         put(f"  i{line}")
 
 
+def folder_name(log: Path, sample: str) -> str:
+    """A folder of its own for every run of every log, whatever these are called."""
+    words = re.sub(r"[^a-z0-9]+", "-", sample.lower()).strip("-")[:60]
+    digest = hashlib.sha256(f"{log.resolve()} {sample}".encode()).hexdigest()
+    return f"{words}-{digest[:8]}"
+
+
 def kept_pictures(files: SampleFiles, folder: Path) -> list[Path]:
-    """A run's pictures written into a folder, the filmstrip first. Names that no run folder would make are left out."""
+    """A run's pictures written into a folder, the filmstrip first. Names that no run folder would make are left out.
+
+    What was written at an earlier sitting is not written again.
+    """
     from scope_ptz.agent.filmstrip import write_filmstrip
     from scope_ptz.errors import OutputError, ScopeError
 
     written = list[Path]()
     try:
         for name in files.references:
-            data = files.picture(name) if _PICTURE.match(name) else None
+            path = folder / name
+            data = files.picture(name) if _PICTURE.match(name) and not path.is_file() else None
             if data is not None:
-                (folder / name).parent.mkdir(parents=True, exist_ok=True)
-                (folder / name).write_bytes(data)
-                written.append(folder / name)
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_bytes(data)
+            if _PICTURE.match(name) and path.is_file():
+                written.append(path)
     except OSError as error:
-        raise OutputError(
-            f"{folder} cannot be written: {error.strerror}. Choose another folder with --pictures."
-        ) from error
-    if not written:
-        return []
-    try:
-        strip = write_filmstrip(replace(files.trace, folder=folder))
-    except ScopeError:  # A picture that is missing or damaged; the others are there to be looked at.
-        strip = None
-    return [*([strip] if strip else []), *written]
+        raise OutputError(f"{folder} cannot be written: {error.strerror}. Choose another folder with --pictures.") from error
+    strip = folder / "filmstrip.png"
+    if written and not strip.is_file():
+        with suppress(ScopeError):  # A picture that is missing or damaged; the others are there to be looked at.
+            write_filmstrip(replace(files.trace, folder=folder))
+    return [*([strip] if strip.is_file() else []), *written]

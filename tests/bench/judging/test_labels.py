@@ -18,6 +18,7 @@ from scope_ptz.bench.task_files import dump_tasks
 from scope_ptz.bench.tasks import Behaviour, FinalPose, Forbidden, ProgramCall, Task
 from scope_ptz.bench.trials import Label
 from scope_ptz.cli.app import app
+from scope_ptz.cli.bench_label import folder_name, kept_pictures
 from scope_ptz.errors import InputError, OutputError
 from tests.bench.judging.test_agreement import evaluation, trial
 
@@ -95,19 +96,20 @@ def fresh(log: Path) -> Iterator[Path]:
 
 
 def label(log: Path, said: str, *options: str) -> Result:
-    return CliRunner().invoke(app, ["bench", "label", str(log), *options], input=said)
+    """A sitting. Pictures are written once for all of them."""
+    pictures = () if "--pictures" in options else ("--pictures", str(log.parent / "pictures"))
+    return CliRunner().invoke(app, ["bench", "label", str(log), *pictures, *options], input=said)
 
 
-def test_a_sitting_is_blind_keeps_all_and_goes_on(fresh: Path, tmp_path: Path) -> None:
-    first = label(fresh, "?\nc9\nhello\nc fine\n", "--by", "ann", "--pictures", str(tmp_path))
+def test_a_sitting_is_blind_keeps_all_and_goes_on(fresh: Path) -> None:
+    first = label(fresh, "?\nc9\nhello\nc fine\n", "--by", "ann")
     assert first.exit_code == 0, first.output
     assert "| Pan right" in first.output
     assert "every check passed" not in first.output, "what the checks said is not shown"
     assert "1 of 2 runs labelled by ann" in first.output
-    for line in first.output.splitlines():
-        if line.startswith("picture: "):
-            assert Path(line.removeprefix("picture: ")).is_file()
-    assert (tmp_path / "001" / "filmstrip.png").is_file()
+    pictures = [Path(line.removeprefix("picture: ")) for line in first.output.splitlines() if line.startswith("picture: ")]
+    assert [path.name for path in pictures[:2]] == ["filmstrip.png", "001-view.jpg"]
+    assert all(path.stat().st_size > 1000 for path in pictures)
     second = label(fresh, "i\ni8 it was late\n", "--by", "ann")
     assert "Which error mode?" in second.output
     assert "2 of 2 runs labelled by ann" in second.output
@@ -117,6 +119,21 @@ def test_a_sitting_is_blind_keeps_all_and_goes_on(fresh: Path, tmp_path: Path) -
         ("incorrect", ErrorMode.REASONING, "it was late"),
     }
     assert label(fresh, "", "--by", "ann").output.startswith("2 of 2")
+
+
+def test_a_log_writes_nowhere_but_where_it_may(tmp_path: Path) -> None:
+    class Files:
+        references = dict.fromkeys(("../up.jpg", "/x.jpg", "frames/../../up.jpg", "frames/.hidden/x.jpg", "frames/x.sh"), "")
+        trace = None
+
+        def picture(self, name: str) -> bytes:
+            raise AssertionError(name)
+
+    assert kept_pictures(Files(), tmp_path / "deep") == []  # type: ignore[arg-type]
+    name = folder_name(tmp_path / "a.eval", "../../etc/pass wd#1")
+    assert name.startswith("etc-pass-wd-1-")
+    assert "/" not in name
+    assert folder_name(tmp_path / "b.eval", "t#1") != folder_name(tmp_path / "a.eval", "t#1")
 
 
 def test_back_skip_and_quit(fresh: Path) -> None:
