@@ -1,0 +1,149 @@
+"""How the grammar planner does on the tasks, by category: with the ground truth for eyes, noisy eyes, or text read from pixels.
+
+    python benchmarks/bench_numbers.py [--split core --split unseen --split paraphrase] [--eyes truth --eyes noisy --eyes rapidocr]
+
+Runs go through the agent loop, the real tools and the checks, in this process and without pictures where the eyes need none.
+With ``rapidocr`` everything but reading is done by the ground truth, and only tasks of the category ocr are run. Time and memory
+are this process's own. ``scope bench run`` measures the same through the evaluation engine.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import resource
+import sys
+import time
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import anyio
+
+from scope_ptz.agent.loop import Agent
+from scope_ptz.agent.records import Called, Decided, Ended, Started
+from scope_ptz.agent.store import NoImages
+from scope_ptz.agent.trace import Trace
+from scope_ptz.bench.episode import Places, episode_of
+from scope_ptz.bench.run_program import BlankCamera
+from scope_ptz.bench.splits import load_split
+from scope_ptz.bench.tasks import Task
+from scope_ptz.bench.verdict import judge
+from scope_ptz.camera.simulated import SimulatedCamera
+from scope_ptz.cli.bench_eyes import KnownViews
+from scope_ptz.cli.bench_inputs import worlds_of
+from scope_ptz.perception.base import Perception
+from scope_ptz.perception.ground_truth import GroundTruthPerception
+from scope_ptz.perception.noisy import NoisyPerception
+from scope_ptz.planner.grammar import GrammarPlanner
+from scope_ptz.world.clock import SceneClock
+from scope_ptz.world.pack import Scene
+
+WIDTH, HEIGHT = 1280, 720
+NOISE_SEED = 1
+
+
+@dataclass
+class Score:
+    """Runs by category and verdict."""
+
+    right: Counter[str] = field(default_factory=Counter)
+    of: Counter[str] = field(default_factory=Counter)
+    unscored: int = 0
+    failed: list[str] = field(default_factory=list)
+
+    @property
+    def micro(self) -> float:
+        return self.right.total() / max(1, self.of.total())
+
+    @property
+    def macro(self) -> float:
+        """The unweighted mean over the categories, which the paper calls the average."""
+        return sum(self.right[name] / n for name, n in self.of.items()) / max(1, len(self.of))
+
+    def lines(self) -> Iterator[str]:
+        for name, n in self.of.items():
+            yield f"  {name:<22}{self.right[name]:>4} of {n:<4}{self.right[name] / n:>7.1%}"
+        yield f"  micro {self.micro:.1%}, macro {self.macro:.1%}; unscored {self.unscored}"
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--split", action="append", help="split or task file (default: core, unseen, paraphrase)")
+    parser.add_argument("--eyes", action="append", choices=("truth", "noisy", "rapidocr"), help="default: truth and noisy")
+    parser.add_argument("--failures", action="store_true", help="list what failed, and why")
+    parser.add_argument("--json", action="store_true")
+    arguments = parser.parse_args()
+    results = {}
+    for split in arguments.split or ("core", "unseen", "paraphrase"):
+        tasks = load_split(split)
+        for eyes in arguments.eyes or ("truth", "noisy"):
+            rows = [task for task in tasks if eyes != "rapidocr" or task.category == "ocr"]
+            began, cpu_began = time.perf_counter(), time.process_time()
+            score = anyio.run(_score, rows, eyes)
+            took_s, cpu_s = time.perf_counter() - began, time.process_time() - cpu_began
+            peak_mb = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+            results[f"{Path(split).stem} {eyes}"] = {
+                "right": dict(score.right), "of": dict(score.of), "micro": score.micro, "macro": score.macro,
+                "unscored": score.unscored, "seconds": took_s, "cpu_seconds": cpu_s, "peak_mb": peak_mb,
+            }  # fmt: skip
+            if not arguments.json:
+                cost = f"{took_s:.1f} s ({cpu_s:.1f} s of processor), peak memory so far {peak_mb:.0f} MB"
+                print(f"{split}, grammar + {eyes}: {len(rows)} tasks in {cost}")
+                print("\n".join((*score.lines(), *(score.failed if arguments.failures else ()))), flush=True)
+    if arguments.json:
+        json.dump(results, sys.stdout, indent=1)
+    return 0
+
+
+async def _score(tasks: Sequence[Task], eyes: str) -> Score:
+    worlds, score = worlds_of(tasks), Score()
+    perception = _eyes(eyes, worlds)
+    for task in tasks:
+        trace = await _run(task, worlds[task.world], perception, drawn=eyes == "rapidocr")
+        verdict = judge(task, episode_of(trace, Places.of(worlds[task.world].file), keeps_files=False))
+        score.of[task.category] += 1
+        score.right[task.category] += verdict.headline == "correct"
+        score.unscored += verdict.headline == "unscored"
+        if verdict.headline != "correct":
+            text = trace.ended.text if trace.ended else ""
+            score.failed.append(f"    {task.id} {verdict.headline}: {task.instruction!r} -> {text!r}: {verdict.reason}")
+    return score
+
+
+def _eyes(name: str, worlds: Mapping[str, Scene]) -> Perception:
+    truth = GroundTruthPerception(lambda world: worlds[world], KnownViews().look)
+    if name == "noisy":
+        return NoisyPerception(truth, seed=NOISE_SEED)
+    if name == "truth":
+        return truth
+    from scope_ptz.perception.backends import make_eyes
+    from scope_ptz.perception.backends.spec import EyesSpec
+    from scope_ptz.perception.router import RouterPerception
+
+    return RouterPerception(reader=make_eyes(EyesSpec(name="rapidocr", backend="rapidocr")), detector=truth, answerer=truth)
+
+
+async def _run(task: Task, world: Scene, perception: Perception, *, drawn: bool) -> Trace:
+    """A run of the grammar planner, its trace kept in memory. ``drawn``: frames show something."""
+    clock = SceneClock(task.time_s)
+    camera = (SimulatedCamera if drawn else BlankCamera)(world, clock=clock, width=WIDTH, height=HEIGHT)
+    with clock.hold():
+        await camera.go_to_preset(task.preset)
+    records = list[Started | Decided | Called | Ended]()
+    agent = Agent(GrammarPlanner(), camera, perception, NoImages(), snapshots=False)
+    await agent.run(task.instruction, listener=records.append)
+    started, ended = records[0], records[-1]
+    assert isinstance(started, Started)
+    return Trace(
+        folder=Path(),
+        started=started,
+        decisions=tuple(r for r in records if isinstance(r, Decided)),
+        calls=tuple(r for r in records if isinstance(r, Called)),
+        ended=ended if isinstance(ended, Ended) else None,
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(main())
