@@ -122,7 +122,7 @@ def _eyes(name: str, worlds: Mapping[str, Scene]) -> Perception:
     from scope_ptz.perception.backends.spec import EyesSpec
     from scope_ptz.perception.router import RouterPerception
 
-    return RouterPerception(reader=make_eyes(EyesSpec(name="rapidocr", backend="rapidocr")), detector=truth, answerer=truth)
+    return RouterPerception(reader=make_eyes(EyesSpec(name="rapidocr", backend="ocr")), detector=truth, answerer=truth)
 
 
 async def _run(task: Task, world: Scene, perception: Perception, *, drawn: bool) -> Trace:
