@@ -76,7 +76,9 @@ def _steps(order: Any) -> Iterator[tuple[str, Mapping[str, Any]]]:
     elif isinstance(order, dict):
         name = next((order[key] for key in ("tool", "name", "tool_name", "function") if isinstance(order.get(key), str)), None)
         if name is not None:
-            own = next((order[key] for key in ("args", "arguments", "parameters") if isinstance(order.get(key), dict)), {})
+            own: Mapping[str, Any] = next(
+                (order[key] for key in ("args", "arguments", "parameters") if isinstance(order.get(key), dict)), {}
+            )
             yield name, own
         else:
             for key, value in order.items():
