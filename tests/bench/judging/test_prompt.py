@@ -9,6 +9,7 @@ from typing import get_args
 import pytest
 
 from scope_ptz.agent.trace import read_trace
+from scope_ptz.bench.episode import Places
 from scope_ptz.bench.error_modes import ErrorMode
 from scope_ptz.bench.judging.case import CaseCall, case_of
 from scope_ptz.bench.judging.judge import messages
@@ -22,7 +23,7 @@ from scope_ptz.geometry import Pose
 from tests.bench.judging.runs import facts_and_case, long_case
 from tests.bench.making import samples
 
-PUBLISHED = "judge-1:1daf0786fe03"
+PUBLISHED = "judge-1:61b9411003d4"
 
 
 def test_every_category_has_a_rubric_of_its_own_and_all_modes_in_their_order() -> None:
@@ -141,7 +142,23 @@ def test_a_recorded_trace_is_judged_by_what_is_in_it(tmp_path: Path) -> None:
     assert case.outcome == "answered"
     assert case.answer
     assert not case.sees
+    assert {call.viewpoint for call in case.calls} == {"mast"}
     facts, _ = facts_and_case()
     text = messages(facts, case)[1]["content"]
     assert '| adjust_ptz {"pan_deg": 20' in text
     assert "pictures/001.png" in text
+
+
+def test_where_the_camera_stood_is_told_as_far_as_it_is_known(tmp_path: Path) -> None:
+    from typer.testing import CliRunner
+
+    command = ["ask", "go to the lane preset, then take a picture, then go home, then take a picture"]
+    done = CliRunner().invoke(app, [*command, "--runs-dir", str(tmp_path), "--fast"])
+    assert done.exit_code == 0, done.output
+    trace = read_trace(next(tmp_path.iterdir()))
+    assert [call.viewpoint for call in case_of(trace).calls] == [None, None, None, None]
+    told = case_of(trace, Places({"lane": "verge"}, "mast"))
+    assert [call.viewpoint for call in told.calls] == ["verge", "verge", "mast", "mast"]
+    text = render(facts_and_case()[0], told, 60_000)
+    assert 'Camera afterwards: at viewpoint "verge", pan' in text
+    assert 'Final camera pose: at viewpoint "mast", pan' in text

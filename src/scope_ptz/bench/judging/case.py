@@ -7,19 +7,21 @@ from dataclasses import dataclass
 from typing import Any
 
 from scope_ptz.agent.trace import Trace
-from scope_ptz.bench.episode import Episode, Standing
+from scope_ptz.bench.episode import Episode, Places, Standing
 from scope_ptz.geometry import Pose
+from scope_ptz.planner.base import ToolOutcome
 
 
 @dataclass(frozen=True, slots=True)
 class CaseCall:
-    """A tool call. ``error``: why it failed; ``pose``: where the camera looked afterwards."""
+    """A tool call. ``error``: why it failed; ``pose``: where the camera looked afterwards, ``viewpoint``: from where, if known."""
 
     name: str
     arguments: Mapping[str, Any]
     result: Mapping[str, Any] | None
     error: str | None
     pose: Pose
+    viewpoint: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,26 +42,30 @@ class Case:
     sees: bool = False
 
 
-def case_of(trace: Trace) -> Case:
-    """The run of a trace."""
+def case_of(trace: Trace, places: Places | None = None) -> Case:
+    """The run of a trace. ``places``: which viewpoint each preset has; without it, it is known only as long as none is gone to."""
     started, ended = trace.started, trace.ended
-    calls = tuple(
-        CaseCall(
-            name=called.outcome.call.name,
-            arguments=called.outcome.call.arguments,
-            result=called.outcome.result,
-            error=called.outcome.error,
-            pose=called.pose.pose(),
+    at, calls = started.viewpoint, list[CaseCall]()
+    for called in trace.calls:
+        outcome = called.outcome
+        at = _viewpoint_after(outcome, at, places, started.labels.home_viewpoint)
+        calls.append(
+            CaseCall(
+                name=outcome.call.name,
+                arguments=outcome.call.arguments,
+                result=outcome.result,
+                error=outcome.error,
+                pose=called.pose.pose(),
+                viewpoint=at,
+            )
         )
-        for called in trace.calls
-    )
     last = calls[-1].pose if calls else started.pose.pose()
     return Case(
         instruction=started.instruction,
         start=started.pose.pose(),
         viewpoint=started.viewpoint,
         presets=started.presets,
-        calls=calls,
+        calls=tuple(calls),
         final=ended.pose.pose() if ended else last,
         answer=ended.text if ended else "",
         outcome=ended.outcome if ended else None,
@@ -85,4 +91,13 @@ def case_of_episode(episode: Episode, presets: Sequence[str]) -> Case:
 def _call(
     name: str, arguments: Mapping[str, Any], result: Mapping[str, Any] | None, error: str | None, after: Standing
 ) -> CaseCall:
-    return CaseCall(name=name, arguments=arguments, result=result, error=error, pose=after.pose)
+    return CaseCall(name=name, arguments=arguments, result=result, error=error, pose=after.pose, viewpoint=after.viewpoint)
+
+
+def _viewpoint_after(outcome: ToolOutcome, before: str | None, places: Places | None, home: str | None) -> str | None:
+    name = outcome.call.name
+    if outcome.error is not None or name not in ("go_to_preset", "go_home"):
+        return before
+    if name == "go_home":
+        return home or (places.home if places else None)
+    return places.presets.get(str(outcome.call.arguments.get("name"))) if places else None

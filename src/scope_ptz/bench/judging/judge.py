@@ -9,6 +9,7 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict
 
 from scope_ptz.agent.trace import Trace
+from scope_ptz.bench.episode import Places
 from scope_ptz.bench.judging.case import Case, case_of
 from scope_ptz.bench.judging.quoting import cut
 from scope_ptz.bench.judging.rendering import LEAST_CHARS, render
@@ -57,9 +58,12 @@ class Judge:
     def __init__(self, name: str, complete: Complete, *, attempts: int = ATTEMPTS, budget_chars: int = BUDGET_CHARS) -> None:
         self.name, self.complete, self.attempts, self.budget_chars = name, complete, attempts, budget_chars
 
-    async def judge(self, facts: TaskFacts, trace: Trace, *, repeat: int = 0) -> Judgement:
-        """The judgement on a recorded run. Never raises for what a model or server does: see ``Judgement.verdict``."""
-        return await self.judge_case(facts, case_of(trace), repeat=repeat)
+    async def judge(self, facts: TaskFacts, trace: Trace, *, repeat: int = 0, places: Places | None = None) -> Judgement:
+        """The judgement on a recorded run. Never raises for what a model or server does: see ``Judgement.verdict``.
+
+        ``places``: which viewpoint each preset has, so that the judge is told where the camera stood.
+        """
+        return await self.judge_case(facts, case_of(trace, places), repeat=repeat)
 
     async def judge_case(self, facts: TaskFacts, case: Case, *, repeat: int = 0) -> Judgement:
         """The judgement on a run. ``repeat``: number of the judgement, where one judge gives several."""

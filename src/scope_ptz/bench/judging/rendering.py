@@ -77,11 +77,12 @@ def _task_part(facts: TaskFacts, case: Case) -> str:
 
 
 def _end_part(case: Case) -> str:
+    viewpoint = case.calls[-1].viewpoint if case.calls else case.viewpoint
     ending = _ENDINGS.get(case.outcome or "", "the run was cut off before its end")
     return "\n".join(
         (
             f"How the run ended: {ending}.",
-            f"Final camera pose: {in_words(case.final)}.",
+            f"Final camera pose:{_at(viewpoint)} {in_words(case.final)}.",
             "",
             "What the agent said in the end:",
             quoted(cut(case.answer, _ANSWER_CHARS) if case.answer.strip() else "(nothing)"),
@@ -134,7 +135,11 @@ def _call_text(number: int, call: CaseCall, most: int) -> str:
     arguments = cut(_json(call.arguments), most)
     said = f"error: {cut(call.error, most)}" if call.error is not None else f"result: {cut(_json(_kept(call.result or {})), most)}"
     body = quoted(f"{cut(call.name, 80)} {arguments}\n{said}")
-    return f"Call {number}:\n{body}\nCamera afterwards: {in_words(call.pose)}."
+    return f"Call {number}:\n{body}\nCamera afterwards:{_at(call.viewpoint)} {in_words(call.pose)}."
+
+
+def _at(viewpoint: str | None) -> str:
+    return f" at viewpoint {inline(viewpoint, _NAME_CHARS)}," if viewpoint else ""
 
 
 def _kept(result: Mapping[str, Any]) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from scope_ptz.bench.expected import (
     Text,
     YesNo,
 )
-from scope_ptz.bench.tasks import Argument, RequiredCall, Task
+from scope_ptz.bench.tasks import Argument, EvidenceView, RequiredCall, Task
 from scope_ptz.bench.trials import TaskFacts
 
 _OUTCOMES = {"answered": "with an answer", "clarification": "with a question back", "refused": "by declining the request"}
@@ -100,12 +100,16 @@ def demands(task: Task) -> Iterator[str]:
     if behaviour.forbidden.changes:
         yield f"In the end these must be as they were at the start: {', '.join(behaviour.forbidden.changes)}."
     if any(view.must_look for view in task.evidence):
-        where = "; ".join(dict.fromkeys(_view(view.scope, view.aim.viewpoint) for view in task.evidence if view.must_look))
+        where = "; ".join(dict.fromkeys(_view(view) for view in task.evidence if view.must_look))
         yield f"The answer must rest on what tools reported about: {where}."
 
 
-def _view(scope: str, viewpoint: str) -> str:
-    return f"the {'whole scene around' if scope == 'full' else 'part in question of the scene at'} viewpoint {viewpoint}"
+def _view(view: EvidenceView) -> str:
+    aim = view.aim
+    if view.scope == "full":
+        return f"everything around viewpoint {aim.viewpoint}"
+    towards = f"pan {aim.pan_deg:g}, tilt {aim.tilt_deg:g}"
+    return f"what shows from viewpoint {aim.viewpoint} towards {towards} (in any view that holds it)"
 
 
 def call_in_words(call: RequiredCall) -> str:
