@@ -19,10 +19,12 @@ if TYPE_CHECKING:
 
 submission_app = typer.Typer(help="The file for a public leaderboard.", no_args_is_help=True)
 MOST_TOLD = 50
+RESULT = ".json"
+"""Of a person: the evaluation itself, not a log."""
 
 
 def report(
-    logs: Annotated[list[Path], typer.Argument(help="Logs of 'scope bench run', one a pair or more.")],
+    logs: Annotated[list[Path], typer.Argument(help="Logs of 'scope bench run', and results of 'scope bench human' (.json).")],
     out: Annotated[Path, typer.Option("--out", "-o", help="Folder to write; an older report in it is replaced.")],
     tasks: Annotated[
         str | None,
@@ -42,7 +44,10 @@ def report(
 
         def open_trial(evaluation: Evaluation, trial: Trial) -> SampleFiles:
             from scope_ptz.bench.engine.logs import open_sample
+            from scope_ptz.errors import TraceError
 
+            if where[id(evaluation)].suffix == RESULT:
+                raise TraceError("A person's runs stand in folders beside the result.")
             return open_sample(where[id(evaluation)], trial.sample)
 
         made = write_report(
@@ -110,8 +115,13 @@ def _each_once(logs: Sequence[Path]) -> list[Path]:
 
 def _read(path: Path) -> Evaluation:
     """A log with people's labels. Raises ``TraceError`` or ``InputError``."""
-    from scope_ptz.bench.engine.logs import read_evaluation
     from scope_ptz.bench.judging.labels import labels_file, read_labels, with_labels
+
+    if path.suffix == RESULT:
+        from scope_ptz.bench.people import read_result
+
+        return read_result(path)
+    from scope_ptz.bench.engine.logs import read_evaluation
 
     return with_labels(read_evaluation(path), read_labels(labels_file(path)))
 

@@ -36,3 +36,14 @@ def test_a_file_that_is_no_log_is_told(tmp_path: Path) -> None:
     for log, message in ((path, "damaged"), (tmp_path / "none.eval", "There is no log")):
         done = CliRunner().invoke(app, ["bench", "report", str(log), "--out", str(tmp_path / "r")])
         assert done.exit_code == 2 and message in done.stderr, done.output
+
+
+def test_a_persons_result_is_a_baseline(tmp_path: Path) -> None:
+    made = evaluation("ann", "ann", facts(2), 0.9, judged=False)
+    who = made.card.planner.model_copy(update={"provider": "person", "registry": None})
+    card = made.card.model_copy(update={"planner": who, "perception": who})
+    path = tmp_path / "evaluation.json"
+    path.write_text(made.model_copy(update={"card": card}).model_dump_json(), "utf-8")
+    done = CliRunner().invoke(app, ["bench", "report", str(path), "--out", str(tmp_path / "report")])
+    assert done.exit_code == 0 and "nothing is ranked" in done.stdout
+    assert (tmp_path / "report" / "tables" / "baselines.csv").read_text().splitlines()[1].startswith("person ann,a person")

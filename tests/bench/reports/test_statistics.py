@@ -82,7 +82,7 @@ def test_the_macro_variance_is_that_of_a_clustered_regression_on_strata(seed: in
 def test_intervals_cover_the_truth_although_viewpoints_differ() -> None:
     chance = np.random.default_rng(3)
     covered = naive = 0
-    for _ in range(400):
+    for _ in range(150):
         level = np.clip(chance.normal(0.65, 0.15, 12), 0.05, 0.95)
         clusters = np.repeat(np.arange(12), 40)
         values = (chance.random(480) < level[clusters]).astype(float)
@@ -91,12 +91,12 @@ def test_intervals_cover_the_truth_although_viewpoints_differ() -> None:
         covered += found.low <= 0.65 <= found.high
         low, high = wilson(found.value, 480, 1.96)
         naive += low <= 0.65 <= high
-    assert 0.90 <= covered / 400 <= 0.99
-    assert naive / 400 < 0.80
+    assert 0.90 <= covered / 150 <= 0.99
+    assert naive / 150 < 0.80
 
 
 @given(st.lists(st.tuples(st.booleans(), st.sampled_from("abc"), st.integers(0, 4)), min_size=1, max_size=60))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=40, deadline=None)
 def test_shares_stay_within_their_intervals_and_these_within_0_and_1(rows: list[tuple[bool, str, int]]) -> None:
     scores = Scores(np.array([float(right) for right, _, _ in rows]), tuple(s for _, s, _ in rows), tuple(c for _, _, c in rows))
     for weights in (None, macro_weights(scores)):
@@ -146,7 +146,7 @@ def test_mcnemar(one: int, other: int) -> None:
 
 
 @given(st.lists(st.floats(0, 1), min_size=1, max_size=12))
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=20, deadline=None)
 def test_holm(p_values: list[float]) -> None:
     from statsmodels.stats.multitest import multipletests  # type: ignore[import-untyped]
 
@@ -164,13 +164,14 @@ def test_the_bootstrap_of_two_clusters_is_known() -> None:
 
 
 def test_bootstrap_and_linearised_interval_agree_with_many_clusters() -> None:
-    scores = some_scores(8, 3000, 300)
+    scores = some_scores(8, 2000, 100)
     found, drawn = difference(scores, macro_weights(scores)), cluster_bootstrap(scores)
     assert found is not None and drawn is not None
-    assert drawn == pytest.approx((found.low, found.high), abs=0.004)
+    assert drawn == pytest.approx((found.low, found.high), abs=0.006)
 
 
 @given(st.lists(st.booleans(), min_size=1, max_size=7), st.integers(1, 7))
+@settings(max_examples=40, deadline=None)
 def test_pass_all_is_the_share_of_choices_that_all_pass(runs: list[bool], k: int) -> None:
     chosen = list(combinations(runs, k))
     expected = sum(all(choice) for choice in chosen) / len(chosen) if chosen else None
@@ -187,6 +188,7 @@ def test_pass_all_over_tasks() -> None:
 
 
 @given(st.lists(st.tuples(st.integers(0, 3), st.integers(0, 3), st.integers(0, 3)), max_size=9))
+@settings(max_examples=40, deadline=None)
 def test_the_front(points: list[tuple[int, int, int]]) -> None:
     on = undominated([tuple(map(float, point)) for point in points])
     for (index, point), _ in product(enumerate(points), (0,)):
@@ -195,11 +197,8 @@ def test_the_front(points: list[tuple[int, int, int]]) -> None:
 
 
 def test_the_smallest_detectable_difference_is_found_four_times_in_five() -> None:
-    chance = np.random.default_rng(5)
-    clusters, found = 20, 0
-    se = sqrt(1 / clusters)
-    true = detectable(se, clusters)
-    for _ in range(2000):
-        means = chance.normal(true, 1.0, clusters)
-        found += abs(means.mean()) / (means.std(ddof=1) / sqrt(clusters)) > t_quantile(clusters)
-    assert found / 2000 == pytest.approx(0.8, abs=0.03)
+    clusters = 20
+    true = detectable(sqrt(1 / clusters), clusters)
+    means = np.random.default_rng(5).normal(true, 1.0, (4000, clusters))
+    found = np.abs(means.mean(axis=1)) / (means.std(axis=1, ddof=1) / sqrt(clusters)) > t_quantile(clusters)
+    assert found.mean() == pytest.approx(0.8, abs=0.03)

@@ -18,7 +18,8 @@ INTERVAL = Estimate(0.7383, 0.7, 0.8, 0.02, 100, 12)
 @pytest.mark.parametrize(
     ("value", "kind", "words"),
     [
-        (0.7383, "share", "73.8"), (INTERVAL, "share", "73.8 (70.0 to 80.0)"), (-0.0481, "points", "-4.8"), (0.02, "points", "+2.0"),
+        (0.7383, "share", "73.8"), (INTERVAL, "share", "73.8 (70.0 to 80.0)"), (-0.0481, "points", "-4.8"),
+        (0.02, "points", "+2.0"),
         (0.02, "width", "2.0"), (0.0, "count", "0"), (None, "count", "not measured"), (0.0004, "p", "< 0.001"),
         (1.234, "ratio", "1.23x"), (12345, "count", "12,345"), (0.0123, "seconds", "0.0123"), (9.184, "seconds", "9.18"),
         (0.00213, "usd", "0.0021"), ("", "text", ""), (Marked(None), "share", "not measured"),

@@ -19,6 +19,7 @@ from scope_ptz.registry import Model, Registry
 
 Kind = Literal["models", "reference", "blind", "person"]
 """``reference``: the grammar planner or ground-truth eyes took part; ``blind``: nothing was seen; ``person``: a human baseline."""
+PERSON = "person"
 HEADLINE_STRATA = ("core", "imported")
 FULL_PRECISION = ("fp32", "fp16", "bf16")
 CATEGORY_TITLES = {
@@ -45,7 +46,7 @@ class Run:
     @property
     def kind(self) -> Kind:
         card = self.evaluation.card
-        if card.agent == "human":
+        if card.planner.provider == PERSON:
             return "person"
         if "blind" in (card.perception.name, card.variant):
             return "blind"
@@ -130,7 +131,7 @@ def collect(evaluations: Sequence[Evaluation], registry: Registry) -> tuple[Run,
 
 def _label(evaluation: Evaluation) -> str:
     card = evaluation.card
-    parts = [card.pair]
+    parts = [f"person {card.planner.name}" if card.planner.provider == PERSON else card.pair]
     parts += [f"agent {card.agent}"] if card.agent != "scope" else []
     parts += [card.variant] if card.variant else []
     parts += [f"{split_name(card.split)} split"] if card.split != "core" else []
