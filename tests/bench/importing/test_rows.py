@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from scope_ptz.bench.importing import check_calls_of, holds_imported, load_imported
@@ -256,6 +258,30 @@ def test_tasks_on_disk(tmp_path: Path) -> None:
     path.write_text(path.read_text() + '{"imported": 1}\n')
     with pytest.raises(InputError, match="line 3"):
         load_imported(path)
+
+
+ODD = st.sampled_from(
+    [
+        '[{"tool": 5}]', '{"ptz_adjust": 7}', '[[["a"]]]', "[null, 1, 2.5, true]", '{"ptz_adjust": {"pan_deg": {"x": 1}}}',
+        '[{"pan_deg": 1e400}]', "[" * 3000, '{"go_to_preset": {"name": ["a"]}}', "{1: 2}", 'b"x"', '{"count_pointing": []}',
+        '[{"name": "ptz_adjust", "arguments": {"zoom_percent": "NaN"}}]', '[{"duration": "inf", "unit": 5}]', "\u2028", "\x1b[2J",
+        '[{"object_of_interest": "°"}]', '[{"object_of_interest": "the ² of"}]', '{"0": {"object_of_interest": "!!"}}',
+        '["count_pointing"]', '["ptz_adjust", "go_to_preset"]', '["track_object"]', "unordered", "exact", "full", "counting",
+    ]
+) | st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0\r"), max_size=12)  # fmt: skip
+
+
+@given(st.lists(st.fixed_dictionaries({}, optional=dict.fromkeys(COLUMNS, ODD)), min_size=1, max_size=4))
+@settings(deadline=None, max_examples=60)
+def test_no_row_breaks_the_import_and_none_is_lost(tmp_path_factory: pytest.TempPathFactory, rows: list[dict[str, str]]) -> None:
+    folder = tmp_path_factory.mktemp("odd")
+    done = imported(folder, *rows)
+    assert len(done.rows) == len(rows)
+    assert len(done.tasks) + len(done.left_out) == len(rows)
+    assert all(character.isprintable() for line in report_lines(done) for character in line)
+    dump_imported(done.tasks, folder / "tasks.jsonl")
+    assert load_imported(folder / "tasks.jsonl") == done.tasks
+    json.dumps(done.as_dict(), allow_nan=False)
 
 
 # The check of calls

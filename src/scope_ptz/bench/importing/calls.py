@@ -188,7 +188,7 @@ def _text(tool: ToolName, text: str, preset_of: PresetOf, take: Take, made: Expe
     elif tool == "query_answer":
         take("question", text, None)  # Questions may be worded in any way.
     else:
-        words = [word for word in plain_words(text) if word not in _ARTICLES]
+        words = [word for word in plain_words(text) if word not in _ARTICLES and any(c.isalpha() or c.isdecimal() for c in word)]
         head = words[-1:]
         take("description", text, Argument(mentions=tuple(dict.fromkeys((" ".join(words), *head)))) if words else None)
 
