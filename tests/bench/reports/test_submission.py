@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -211,3 +213,9 @@ def test_the_commands(rows: Rows, tmp_path: Path) -> None:
     bad = run(app, ["bench", "submission", "validate", str(path), "--tasks", str(tasks), "--json"])
     assert bad.exit_code == 1 and json.loads(bad.stdout)["valid"] is False
     assert run(app, ["bench", "submission", "validate", str(tmp_path / "no.jsonl")]).exit_code == 2
+
+
+def test_validating_needs_nothing_that_the_extra_brings() -> None:
+    code = "import sys, scope_ptz.bench.reports.submission_checks; print(*sorted({n.split('.')[0] for n in sys.modules}))"
+    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+    assert "scope_ptz" in loaded and not {"inspect_ai", "jinja2", "matplotlib", "pandas", "scipy", "statsmodels"} & set(loaded)

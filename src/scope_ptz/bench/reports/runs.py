@@ -7,11 +7,11 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import PurePath
 from typing import Literal
 
 import numpy as np
 
+from scope_ptz.bench.reports.naming import split_name
 from scope_ptz.bench.statistics.clustered import Estimate, Scores, macro_weights, share
 from scope_ptz.bench.trials import Evaluation, ModelCard, Trial
 from scope_ptz.errors import UnknownNameError
@@ -136,11 +136,6 @@ def _label(evaluation: Evaluation) -> str:
     parts += [card.variant] if card.variant else []
     parts += [f"{split_name(card.split)} split"] if card.split != "core" else []
     return ", ".join(parts)
-
-
-def split_name(split: str) -> str:
-    """A split as reports call it: of a file its name, not where it lay."""
-    return PurePath(split.replace("\\", "/")).name or split
 
 
 def _known(card: ModelCard, registry: Registry) -> Model | None:

@@ -15,7 +15,7 @@ from typing import Annotated, Any, Literal, Protocol, get_args
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
 from scope_ptz.bench.error_modes import ErrorMode
-from scope_ptz.bench.reports.runs import split_name
+from scope_ptz.bench.reports.naming import split_name
 from scope_ptz.bench.tasks import CANARY, Category, ToolName
 from scope_ptz.bench.trials import Check, Count, Evaluation, ModelCard, RunCard, Seconds, Trial
 from scope_ptz.bench.verdict import Headline
