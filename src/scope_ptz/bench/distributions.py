@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
-from scope_ptz.bench.expected import ActionOnly, NoneThere, Number
+from scope_ptz.bench.expected import ActionOnly, NoneThere, Number, Text
 from scope_ptz.bench.phrasing import right_answers
 from scope_ptz.bench.tasks import Task
 
@@ -13,12 +13,13 @@ BAR = 30
 MOST_ANSWERS = 6
 
 Key = Callable[[Task], str]
+_ORDER = {"easy": 1, "medium": 2, "hard": 3}
 
 
 def crossed(tasks: Sequence[Task], rows: Key, columns: Key) -> tuple[list[str], list[list[str | int]]]:
     """A table of counts with sums: its head, and its rows, the last of which is the sum."""
     counts = Counter((rows(task), columns(task)) for task in tasks)
-    across = sorted({column for _, column in counts})
+    across = sorted({column for _, column in counts}, key=lambda name: (_ORDER.get(name, 0), name))
     down = list(dict.fromkeys(rows(task) for task in tasks))
     body: list[list[str | int]] = [[row, *(counts[row, c] for c in across), sum(counts[row, c] for c in across)] for row in down]
     body.append(["all", *(sum(counts[row, c] for row in down) for c in across), len(tasks)])
@@ -46,6 +47,8 @@ def answer(task: Task) -> str:
             return "(there is none)"
         case Number():
             return f"{task.expected.value:g}"
+        case Text():
+            return f"“{task.expected.accepted[0]}”"
     return right_answers(task.expected)[0].strip(".").lower()
 
 

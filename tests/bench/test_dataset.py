@@ -1,0 +1,76 @@
+"""The whole dataset in one command, on the synthetic scene: every file is there, the same each time, and read by every command."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from scope_ptz.bench.splits import load_split, read_manifest
+from scope_ptz.cli.bench_build import _numbers
+from scope_ptz.errors import InputError
+from tests.cli.conftest import Scope, scenes, scope
+
+__all__ = ["scenes", "scope"]
+
+FILES = {
+    "gold.jsonl.gz", "lite.txt", "manifest.json", "paraphrase.jsonl", "proof.json", "reaction.jsonl", "tasks.jsonl", "unseen.jsonl",
+}  # fmt: skip
+
+
+def test_one_command_makes_everything(scope: Scope, tmp_path: Path) -> None:
+    folder, page = tmp_path / "data", tmp_path / "dataset.md"
+    done = scope(
+        "bench", "build", "--all", "--scene", "analytic-yard", "--share", "0.02", "--seeds", "2", "--out", str(folder),
+        "--card", str(page),
+    )  # fmt: skip
+    assert (done.code == 1) == ("too few" in done.err or "NOT SOUND" in done.out), done.err
+    assert {path.name for path in folder.iterdir()} == FILES
+    assert read_manifest(folder)["made_with"]["unseen"] == [2]
+    assert read_manifest(folder)["scenes"]["analytic-yard"]["version"] == "1"
+    unseen = load_split("unseen", folder)
+    assert {task.variation for task in unseen} == {2} and {task.scene for task in unseen} == {"analytic-yard"}
+    assert all("-v2-" in task.id for task in unseen)
+    assert not {task.preset for task in unseen} & {"yard", "board", "from-the-roof"}
+    assert page.read_text() == scope("bench", "card", "--data", str(folder)).out
+
+    checked = scope("bench", "gold", "check", "--gold", str(folder / "gold.jsonl.gz"), "--tasks", str(folder / "tasks.jsonl"))
+    assert checked.code == 0 and "not worse now" in checked.out, checked.out
+    shown = scope("bench", "browse", unseen[0].id, "--tasks", str(folder / "unseen.jsonl"))
+    assert "analytic-yard-v" in shown.out and "verdict    correct" in shown.out
+    listed = scope("bench", "browse", "--category", "single_call", "--tasks", str(folder / "tasks.jsonl"))
+    assert len(listed.out.splitlines()) == sum(task.category == "single_call" for task in load_split("core", folder))
+    one = scope("bench", "browse", "--random", "--seed", "1", "--tasks", str(folder / "tasks.jsonl"))
+    assert one.out == scope("bench", "browse", "--random", "--seed", "1", "--tasks", str(folder / "tasks.jsonl")).out
+
+
+def test_numbers_of_worlds_may_follow_one_another() -> None:
+    assert _numbers([7], [8, 9, 8]) == (7, 8, 9)
+    assert _numbers(None, None) == ()
+    with pytest.raises(InputError, match="belongs to no option"):
+        _numbers(None, [8])
+
+
+def test_what_does_not_go_together_is_told(scope: Scope, tmp_path: Path) -> None:
+    out = str(tmp_path / "tasks.jsonl")
+    assert "follow --seeds" in scope("bench", "build", "--out", out, "7").err
+    assert "--all" in scope("bench", "build", "--out", out, "--card", out).err
+    assert "no whole dataset" in scope("bench", "card", "--data", str(tmp_path)).err
+    assert scope("bench", "build", "--out", out, "--seeds", "0").code == 2
+
+
+def test_an_audit_gives_readers_pictures_and_no_truth(scope: Scope, tmp_path: Path) -> None:
+    tasks = tmp_path / "tasks.jsonl"
+    made = scope("bench", "build", "--scene", "analytic-yard", "--share", "0.02", "--out", str(tasks))
+    assert tasks.is_file(), made.err
+    folder = tmp_path / "audit"
+    done = scope("bench", "audit", "make", "--tasks", str(tasks), "--n", "3", "--seed", "5", "--out", str(folder))
+    assert done.code == 0, done.err
+    written = "".join(path.read_text() for path in folder.iterdir() if path.suffix != ".jpg")
+    assert not [task.id for task in load_split(tasks) if task.id in written]
+    assert "expected" not in written and len(list(folder.glob("q00*.jpg"))) >= 3
+    assert "there already" in scope("bench", "audit", "make", "--tasks", str(tasks), "--out", str(folder)).err
+    (folder / "answers.jsonl").write_text('{"q": "q001", "answer": "I cannot tell."}\n')
+    scored = scope("bench", "audit", "score", str(folder), "--tasks", str(tasks), "--out", str(tmp_path / "audit.json"))
+    assert scored.code == 0 and "0 of 3 answers agree" in scored.out and "nobody said" in scored.out
+    assert (tmp_path / "audit.json").is_file()
