@@ -15,6 +15,8 @@ from scope_ptz.cli.endings import complain
 from scope_ptz.errors import ConfigError, InputError, ScopeError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from rich.console import Console
 
     from scope_ptz.bench.engine.entries import Entry
@@ -80,10 +82,10 @@ async def evaluate(options: RunOptions, console: Console) -> Evaluation:
     choice = await choose(options.wishes)
     prepared = _Prepared(options, choice)
     with alone(options.out, prepared.identity):
-        before = prepared.before()
-        if before is not None and before.finished:
-            complain(f"this evaluation is done: {before.path} (--fresh runs it again)")
-            return read_evaluation(before.path)
+        before = await prepared.before()
+        if before and before[0].finished:
+            complain(f"this evaluation is done: {before[0].path} (--fresh runs it again)")
+            return read_evaluation(before[0].path)
         try:
             return read_evaluation(await prepared.run(console, before))
         finally:
@@ -129,18 +131,18 @@ class _Prepared:
             if held is not None:
                 await held.close()
 
-    def before(self) -> Found | None:
-        """The log to go on with."""
+    async def before(self) -> list[Found]:
+        """The logs to go on with, the one that got furthest first."""
         from scope_ptz.bench.engine.runs import find, found
 
         if self.options.resume is not None:
             log = found(self.options.resume)
             if (log.header.eval.metadata or {}).get("identity") != self.identity:
                 raise InputError(f"{log.path} is of another evaluation: tasks, models or settings differ. Give its own options.")
-            return log
-        return None if self.options.fresh else find(self.options.out, self.identity)
+            return [log]
+        return [] if self.options.fresh else await find(self.options.out, self.identity)
 
-    async def run(self, console: Console, before: Found | None) -> Path:
+    async def run(self, console: Console, before: Sequence[Found]) -> Path:
         from scope_ptz.bench.engine.equipment import EQUIPMENT
         from scope_ptz.bench.engine.logs import read_evaluation
         from scope_ptz.bench.engine.runs import run
@@ -148,12 +150,13 @@ class _Prepared:
         from scope_ptz.cli.bench_live import LiveTable
         from scope_ptz.cli.inspect_entry import bench
 
-        done = tuple(t for t in read_evaluation(before.path).trials if t.headline != "infrastructure") if before else ()
+        done = tuple(t for t in read_evaluation(before[0].path).trials if t.headline != "infrastructure") if before else ()
         wanted = len(self.entries) * self.options.epochs
         self._foretell(console, wanted, done, before)
         judge = self.judge = await self._judge()
         setting = await self._setting(judge)
-        with anyio.CancelScope() as scope, LiveTable(console, wanted, done, setting.card.pair, scope.cancel) as table:
+        group = anyio.create_task_group()
+        with LiveTable(console, wanted, done, setting.card.pair, lambda: group.cancel_scope.cancel()) as table:
             lent = self.lent if judge is None else replace(self.lent, make_judge=judge_maker(judge))
             EQUIPMENT.set(replace(lent, watcher=table, load_tasks=lambda _: self.entries))
             options = self.options
@@ -163,13 +166,25 @@ class _Prepared:
                 time_s=options.time_s, seed=options.seed, epochs=options.epochs,
                 judgements=options.judge.repeats if options.judge else 0,
             )  # fmt: skip
-            written = await run(task, setting, before)
+            came: list[Path | ScopeError] = []
+
+            async def work() -> None:
+                try:
+                    came.append(await run(task, setting, before))
+                except ScopeError as error:
+                    came.append(error)
+
+            # In a task of its own: the engine takes a cancellation for its own affair, and this one stays clean of it.
+            async with group:
+                group.start_soon(work)
         if table.stopped:
             raise ScopeError(
                 "Too many runs in a row were broken by infrastructure, so the evaluation stopped. Look after the servers; "
                 "the same command goes on where it stopped."
             )
-        return written
+        if isinstance(came[0], ScopeError):
+            raise came[0]
+        return came[0]
 
     async def _judge(self) -> ServerPort | None:
         from scope_ptz.cli.bench_judge import open_judge
@@ -208,13 +223,15 @@ class _Prepared:
         judging = judge_as_model(judge, self.concurrency * 2) if judge is not None else None
         return Setting(options.out, planner, eyes, judging, self.concurrency, self.identity, card)
 
-    def _foretell(self, console: Console, wanted: int, done: tuple[Any, ...], before: Found | None) -> None:
+    def _foretell(self, console: Console, wanted: int, done: tuple[Any, ...], before: Sequence[Found]) -> None:
         from scope_ptz.bench.engine.estimate import estimate
         from scope_ptz.bench.engine.runs import earlier
         from scope_ptz.cli.bench_foretelling import lines
 
-        if before is not None:
-            console.print(f"Going on with {before.path}: {len(done)} of {wanted} runs are done.", highlight=False, soft_wrap=True)
+        if before:
+            console.print(
+                f"Going on with {before[0].path}: {len(done)} of {wanted} runs are done.", highlight=False, soft_wrap=True
+            )
         known = earlier(self.options.out, self.choice.planner.name, self.choice.eyes.name)
         told = estimate(self.entries, self.options.epochs, self.concurrency, known, self.options.price)
         for line in lines(told, self.choice, self.concurrency):

@@ -46,7 +46,7 @@ def test_an_agent_of_somebody_else(scope: Scope, tasks_file: Path, tmp_path: Pat
     assert evaluation.card.agent == "their_loop:Agent"
     headlines = {t.task.id.split("yard-")[1]: t.headline for t in evaluation.trials}
     assert headlines == {
-        "counting-001": "correct", "counting-002": "incorrect", "single-call-001": "correct", "single-call-002": "correct",
+        "counting-001": "correct", "counting-002": "unscored", "single-call-001": "correct", "single-call-002": "correct",
     }  # fmt: skip
     turned = next(t for t in evaluation.trials if t.task.category == "single_call")
     assert (turned.bad_calls, turned.tool_calls) == (1, {"adjust_ptz": 2})

@@ -66,6 +66,7 @@ def test_trace_and_pictures_of_a_run_can_be_had(evaluated: Path) -> None:
     jpeg = files.picture(name)
     assert jpeg is not None
     picture = cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR)
+    assert picture is not None
     assert picture.shape == (720, 1280, 3)
     assert files.picture("frames/999-view.jpg") is None
 

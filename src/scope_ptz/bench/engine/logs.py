@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 from zipfile import BadZipFile, ZipFile
 
-import inspect_ai.log  # noqa: F401 - teaches zipfile the compression of logs
-from inspect_ai.log import EvalLog, read_eval_log
+from inspect_ai._util.constants import get_deserializing_context
+from inspect_ai.log import EvalLog  # teaches zipfile the compression of logs, too
 from pydantic import ValidationError
 from pydantic_core import from_json
 
@@ -27,6 +27,8 @@ from scope_ptz.bench.trials import Evaluation, Trial
 from scope_ptz.errors import TraceError
 
 ATTACHMENT = "attachment://"
+HEADER, START = "header.json", "_journal/start.json"
+SUMMARIES, JOURNALED = "summaries.json", "_journal/summaries/"
 _SAMPLES = "samples/"
 
 
@@ -102,12 +104,28 @@ def reading(path: Path) -> Iterator[None]:
 def read_header(path: Path) -> EvalLog:
     """What a log says about itself; of one that was killed, what it said when it began. Raises ``TraceError``."""
     with reading(path):
-        if not path.is_file():
-            raise FileNotFoundError(path)
-        header = read_eval_log(str(path), header_only=True)
+        # Not by the engine's own reader: called where an event loop runs, it changes asyncio for the whole program.
+        with ZipFile(path) as archive:
+            whole = HEADER in archive.namelist()
+            told = from_json(archive.read(HEADER if whole else START))
+        header = EvalLog.model_validate(told if whole else {**told, "status": "started"}, context=get_deserializing_context())
+        header.location = str(path)
         if "scope" not in (header.eval.metadata or {}):
             raise TraceError(f"{path} is the log of another evaluation ({header.eval.task}), not of this benchmark.")
         return header
+
+
+def runs_in(path: Path) -> dict[tuple[str, int], bool]:
+    """The runs that a log holds, by task and epoch, and whether each is to stay: it was not broken. Raises ``TraceError``."""
+    with reading(path), ZipFile(path) as archive:
+        names = archive.namelist()
+        parts = [SUMMARIES] if SUMMARIES in names else sorted((n for n in names if n.startswith(JOURNALED)), key=_number)
+        rows = [row for part in parts for row in from_json(archive.read(part))]
+        return {(str(row["id"]), int(row["epoch"])): not row.get("error") for row in rows}
+
+
+def _number(name: str) -> int:
+    return int(name.rpartition("/")[2].partition(".")[0])
 
 
 def samples(path: Path, name: str | None = None) -> Iterator[dict[str, Any]]:

@@ -10,7 +10,7 @@ import fcntl
 import hashlib
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,13 +18,13 @@ from typing import Any
 from inspect_ai import Task, eval_async
 from inspect_ai._eval.loader import resolve_task_args
 from inspect_ai._eval.task.task import PreviousTask
-from inspect_ai.log import EvalLog, EvalLogInfo, read_eval_log, read_eval_log_sample_summaries
+from inspect_ai.log import EvalLog, EvalLogInfo, read_eval_log_sample_async
 from inspect_ai.log._recover import RecoveryNotAvailable, recover_eval_log_async
 from inspect_ai.model import Model
 from inspect_ai.util._display import init_display_type
 
 from scope_ptz.bench.engine.cards import CARD, card_of
-from scope_ptz.bench.engine.logs import read_evaluation, read_header, reading
+from scope_ptz.bench.engine.logs import read_evaluation, read_header, runs_in
 from scope_ptz.bench.trials import Evaluation, RunCard
 from scope_ptz.errors import InputError, OutputError, TraceError
 
@@ -37,11 +37,15 @@ QUIET = "error"
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """A log of the very evaluation that is wanted. ``done``: runs that need not be made again."""
+    """A log of the very evaluation that is wanted. ``runs``: by task and epoch, whether they need not be made again."""
 
     path: Path
     header: EvalLog
-    done: int
+    runs: Mapping[tuple[str, int], bool]
+
+    @property
+    def done(self) -> int:
+        return sum(self.runs.values())
 
     @property
     def finished(self) -> bool:
@@ -66,22 +70,31 @@ def identity_of(*parts: Any) -> str:
     return hashlib.sha256(json.dumps(parts, sort_keys=True, default=str).encode()).hexdigest()[:16]
 
 
-def find(log_dir: Path, identity: str) -> Found | None:
-    """The log in a folder that got furthest with an evaluation."""
+async def find(log_dir: Path, identity: str) -> list[Found]:
+    """The logs of an evaluation in a folder, the one that got furthest first. What a killed program had finished and not yet
+    written is written now, into a log beside its own."""
+    for log in _logs_of(log_dir, identity):
+        if log.header.status == "started":
+            with suppress(RecoveryNotAvailable):
+                await recover_eval_log_async(str(log.path), cleanup=True)
+    return sorted(_logs_of(log_dir, identity), key=lambda log: (log.finished, log.done), reverse=True)
+
+
+def _logs_of(log_dir: Path, identity: str) -> list[Found]:
     logs = []
     for path in sorted(log_dir.glob("*.eval")):
         try:
-            header = read_header(path)
-            if (header.eval.metadata or {}).get(IDENTITY) == identity:
-                logs.append(Found(path, header, _done(path)))
+            log = found(path)
         except TraceError:
-            continue  # another evaluation's, or nothing that can be gone on with
-    return max(logs, key=lambda f: (f.finished, f.done), default=None)
+            continue  # nothing that can be gone on with
+        if (log.header.eval.metadata or {}).get(IDENTITY) == identity:
+            logs.append(log)
+    return logs
 
 
 def found(path: Path) -> Found:
     """A log to go on with. Raises ``TraceError``."""
-    return Found(path, read_header(path), _done(path))
+    return Found(path, read_header(path), runs_in(path))
 
 
 def earlier(log_dir: Path, planner: str, eyes: str) -> list[Evaluation]:
@@ -95,11 +108,6 @@ def earlier(log_dir: Path, planner: str, eyes: str) -> list[Evaluation]:
         except TraceError:
             continue  # what cannot be read tells nothing
     return told
-
-
-def _done(path: Path) -> int:
-    with reading(path):
-        return sum(not summary.error for summary in read_eval_log_sample_summaries(str(path)))
 
 
 @contextmanager
@@ -118,23 +126,17 @@ def alone(log_dir: Path, identity: str) -> Iterator[None]:
         yield
 
 
-async def run(task: Task, setting: Setting, before: Found | None) -> Path:
-    """Run a task, taking over what ``before`` holds; the path of the log. An evaluation that is cancelled leaves its log behind."""
+async def run(task: Task, setting: Setting, before: Sequence[Found]) -> Path:
+    """Run a task, taking over what the logs ``before`` hold; the path of the log. An evaluation that is cancelled leaves its log
+    behind.
+
+    Raises ``OutputError`` when it was stopped before there was one, ``TraceError`` when it failed as a whole.
+    """
     init_display_type("none")
-    tasks: Task | PreviousTask = task
-    card = setting.card
-    taken: list[Path] = []
-    if before is not None:
-        header, path = await _rescued(before)
-        taken = [before.path, path]
-        told = (header.eval.metadata or {}).get(CARD)
-        card = RunCard.model_validate(told) if told else card
-        tasks = PreviousTask(
-            id=header.eval.task_id, task=task, task_args=resolve_task_args(task), model=None, model_roles=None, sandbox=None,
-            log=header, log_info=_info(path, header),
-        )  # fmt: skip
-    (log,) = await eval_async(
-        tasks,
+    told = (before[0].header.eval.metadata or {}).get(CARD) if before else None
+    card = RunCard.model_validate(told) if told else setting.card
+    logs = await eval_async(
+        await _going_on(task, before) if before else task,
         model=setting.planner or setting.eyes,
         model_roles=_roles(setting),
         metadata={CARD: card.model_dump(mode="json"), IDENTITY: setting.identity},
@@ -147,30 +149,39 @@ async def run(task: Task, setting: Setting, before: Found | None) -> Path:
         score_display=False,
         ctl_server=False,
     )
+    if not logs:  # it was cancelled
+        left = _logs_of(setting.log_dir, setting.identity)
+        if not left:
+            raise OutputError(f"The evaluation was stopped before it had written a log into {setting.log_dir}.")
+        return max(left, key=lambda log: log.done).path
+    (log,) = logs
     if log.error is not None and not (log.results and log.results.completed_samples):
         raise TraceError(f"The evaluation failed: {log.error.message}")
     written = Path(log.location)
     if log.status in ("success", "error"):
-        _put_away([path for path in dict.fromkeys(taken) if path != written])
+        _put_away([old.path for old in before if old.path.name != written.name])
     return written
+
+
+async def _going_on(task: Task, before: Sequence[Found]) -> PreviousTask:
+    """A task with what was done of it. Runs that only a lesser log holds are read into memory with all others."""
+    best, *lesser = before
+    known = {run for run, stays in best.runs.items() if stays}
+    further = [(log, run) for log in lesser for run, stays in log.runs.items() if stays and run not in known]
+    header, info = best.header, _info(best.path, best.header)
+    if further:
+        places = dict([*((run, best) for run in known), *((run, log) for log, run in further)])
+        whole = [await read_eval_log_sample_async(str(log.path), name, epoch) for (name, epoch), log in places.items()]
+        header = header.model_copy(update={"samples": whole})
+    return PreviousTask(
+        id=header.eval.task_id, task=task, task_args=resolve_task_args(task), model=None, model_roles=None, sandbox=None,
+        log=header, log_info=None if further else info,
+    )  # fmt: skip
 
 
 def _roles(setting: Setting) -> Mapping[str, Model | list[Model] | str | list[str]]:
     roles = {"planner": setting.planner, "eyes": setting.eyes, "judge": setting.judge}
     return {role: model for role, model in roles.items() if model is not None}
-
-
-async def _rescued(before: Found) -> tuple[EvalLog, Path]:
-    """The log to go on from: with the runs that a killed program had finished and not yet written."""
-    if before.header.status == "started":
-        try:
-            log = await recover_eval_log_async(str(before.path), cleanup=False)
-        except RecoveryNotAvailable:
-            pass
-        else:
-            path = Path(log.location)
-            return read_eval_log(str(path), header_only=True), path
-    return before.header, before.path
 
 
 def _info(path: Path, header: EvalLog) -> EvalLogInfo:
