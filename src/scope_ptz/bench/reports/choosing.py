@@ -78,8 +78,10 @@ def design_section(ranked: Sequence[Run], every: Sequence[Run]) -> Section:
         "measured. On the front: no other pair is at least as accurate, as fast and as small, and better in one of these.",
     )
     text = (
-        "A pair worth choosing is one that no other beats in accuracy, latency and memory at once. Differences in accuracy that were "
-        "not shown (see the comparisons) are no reason to prefer the larger pair, and latencies compare only where they were measured "
+        "A pair worth choosing is one that no other beats in accuracy, latency and memory at once. Differences in accuracy "
+        "that were "
+        "not shown (see the comparisons) are no reason to prefer the larger pair, and latencies compare only where they were "
+        "measured "
         "alike: all of them alone, on the same machine.",
     )
     charts = (drawing.front_chart(found),) if any(c.complete for c in found) else ()
