@@ -1,0 +1,103 @@
+"""Judges in the engine: during a run, afterwards, twice, and killed in between. Sweeps over pairs."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from scope_ptz.bench.engine.journal import Journal
+from scope_ptz.bench.engine.logs import read_evaluation
+from scope_ptz.bench.task_files import dump_tasks
+from tests.bench.engine.making import TASKS
+from tests.cli.conftest import Scope
+from tests.support.misbehaving import Misbehaving, Say, good
+
+CONDEMNED = {"reason": "It counted wrongly.", "verdict": "incorrect", "error_mode": "vlm_counting"}
+PASSED = {"reason": "All as asked.", "verdict": "correct", "error_mode": None}
+
+
+def verdict(request: object) -> Say:
+    text = json.dumps(request.data["messages"])  # type: ignore[attr-defined]
+    return Say(json.dumps(CONDEMNED if "how many blocks" in text else PASSED))
+
+
+def test_a_log_is_judged_twice_and_keeps_everything(scope: Scope, evaluated: Path) -> None:
+    before = read_evaluation(evaluated)
+    with Misbehaving(then=good(verdict)) as server:
+        options = ("--judge-url", server.url, "--judge-model", "the-judge")
+        first = scope("bench", "rescore", str(evaluated), *options)
+        assert first.code == 0, first.err
+        assert "4 judgements by the-judge" in first.out
+        second = scope("bench", "rescore", str(evaluated), *options)
+        assert second.code == 0, second.err
+    after = read_evaluation(evaluated)
+    assert [t.headline for t in after.trials] == [t.headline for t in before.trials]
+    assert [(j.judge, j.repeat, j.verdict) for j in after.trials[0].judgements] == [
+        ("the-judge", 0, "correct"), ("the-judge", 1, "correct"),
+    ]  # fmt: skip
+    condemned = after.trials[1].judgements[0]
+    assert (condemned.verdict, condemned.error_mode, condemned.reason) == ("incorrect", "vlm_counting", "It counted wrongly.")
+    assert not Journal.beside(evaluated).path.exists()  # type: ignore[union-attr]
+
+
+def test_judgements_made_before_a_break_are_not_made_again(scope: Scope, evaluated: Path) -> None:
+    with Misbehaving(then=good(verdict)) as server:
+        options = ("--judge-url", server.url, "--judge-model", "the-judge")
+        assert scope("bench", "rescore", str(evaluated), *options).code == 0
+        trial = read_evaluation(evaluated).trials[0]
+        # As a rescoring that was killed leaves it: the next judgement of one run stands in the journal.
+        Journal.beside(evaluated).add(trial.sample, trial.judgements[0].model_copy(update={"repeat": 1}))
+        asked = len([r for r in server.requests if r.chat])
+        assert scope("bench", "rescore", str(evaluated), *options).code == 0
+        assert len([r for r in server.requests if r.chat]) - asked == 3
+    assert [len(t.judgements) for t in read_evaluation(evaluated).trials] == [2, 2, 2, 2]
+
+
+def test_a_judge_that_fails_is_counted_apart(scope: Scope, evaluated: Path) -> None:
+    with Misbehaving(then=good(Say("I think it went well."))) as server:
+        assert scope("bench", "rescore", str(evaluated), "--judge-url", server.url, "--judge-model", "j").code == 0
+    assert {j.verdict for t in read_evaluation(evaluated).trials for j in t.judgements} == {"unparseable"}
+
+
+def test_a_sweep_of_pairs_goes_on_and_judges(scope: Scope, tmp_path: Path) -> None:
+    dump_tasks(TASKS[2:], tmp_path / "tasks.jsonl")
+    options = ("--tasks", str(tmp_path / "tasks.jsonl"), "--out", str(tmp_path / "logs"))
+    first = scope("bench", "sweep", "--pairs", "grammar+ground-truth,grammar+noisy", *options)
+    assert first.code == 0, first.err
+    logs = {read_evaluation(path).card.pair: path for path in (tmp_path / "logs").glob("*.eval")}
+    assert set(logs) == {"grammar + ground-truth", "grammar + noisy"}
+    again = scope("bench", "sweep", "--pairs", "grammar+ground-truth,grammar+noisy", *options, "--json")
+    assert again.code == 0
+    assert again.err.count("this evaluation is done") == 2
+    assert {name: row["micro"] for name, row in again.json.items()} == {"grammar+ground-truth": 1.0, "grammar+noisy": 1.0}
+
+
+def test_a_pair_without_a_server_does_not_stop_the_others(scope: Scope, tmp_path: Path) -> None:
+    dump_tasks(TASKS[2:3], tmp_path / "tasks.jsonl")
+    done = scope(
+        "bench", "sweep", "--pairs", "qwen3-4b+ground-truth,grammar+ground-truth", "--tasks", str(tmp_path / "tasks.jsonl"),
+        "--out", str(tmp_path / "logs"),
+    )  # fmt: skip
+    assert done.code == 1
+    assert "runs on a model server" in done.err
+    assert "not run" in done.out
+    assert len(list((tmp_path / "logs").glob("*.eval"))) == 1
+
+
+def test_a_sweep_wants_known_pairs(scope: Scope) -> None:
+    for options, words in (
+        (("--pairs", "nobody+moondream3"), "There is no planner 'nobody'"),
+        ((), "Say which pairs"),
+        (("--pairs", "a+b", "--paper"), "Say which pairs"),
+    ):
+        done = scope("bench", "sweep", *options)
+        assert done.code == 2
+        assert words in done.err
+
+
+def test_the_paper_by_one_word() -> None:
+    from scope_ptz.cli.bench_sweep import named_pairs
+
+    names = named_pairs(None, paper=True)
+    assert len(names) == 19
+    assert "qwen3-next-80b-a3b+qwen2.5-vl-7b" in names
