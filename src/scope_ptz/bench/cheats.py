@@ -11,8 +11,8 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from scope_ptz.bench.expected import ActionOnly
-from scope_ptz.bench.phrasing import right_answers, wrong_answer
+from scope_ptz.bench.expected import ActionOnly, NoneThere
+from scope_ptz.bench.phrasing import first_named, right_answers, wrong_answer
 from scope_ptz.bench.tasks import ProgramCall, Task
 
 LOOKS = frozenset({"count_objects", "query_answer"})
@@ -69,11 +69,12 @@ def twice(program: Sequence[ProgramCall]) -> Iterator[ProgramCall]:
             yield call
 
 
-def common_answers(tasks: Sequence[Task]) -> dict[str, str]:
-    """The most common answer of each category, as a text."""
+def common_answers(tasks: Sequence[Task], *, presences: bool = False) -> dict[str, str]:
+    """The most common answer of each category, as a text. ``presences``: of tasks without a twin, and other than "none"."""
     said: dict[str, Counter[str]] = {}
     for task in tasks:
-        if task.stratum == "core" and not isinstance(task.expected, ActionOnly):
+        passed_over = presences and (task.pair is not None or isinstance(task.expected, NoneThere))
+        if task.stratum == "core" and not isinstance(task.expected, ActionOnly) and not passed_over:
             said.setdefault(task.category, Counter())[right_answers(task.expected)[0]] += 1
     return {category: counts.most_common(1)[0][0] for category, counts in said.items()}
 
@@ -98,6 +99,19 @@ def cheats(task: Task, common: str, sibling: str | None, rng: random.Random) -> 
         aside = ProgramCall(tool="adjust_ptz", arguments={"pan_deg": -13.0, "tilt_deg": 4.0})
         back = ProgramCall(tool="adjust_ptz", arguments={"pan_deg": 6.0, "tilt_deg": -3.0})
         yield Attempt("wrong-pose", (*task.reference, aside, back), right)
+
+
+def guesses(task: Task, common: str) -> Iterator[Attempt]:
+    """Answers given after looking at everything, whatever was seen. Each passes where it happens to be right."""
+    looks = [at for at, call in enumerate(task.reference) if call.tool in LOOKS or call.tool == "zoom_to_object"]
+    if not looks or isinstance(task.expected, ActionOnly):
+        return
+    program = task.reference[: looks[-1] + 1]
+    first = first_named(task.expected, task.instruction)
+    said = {"none": "None.", "0": "0", "yes": "Yes.", "no": "No.", "most common": common, "first named": first}
+    for name, text in said.items():
+        if text is not None:
+            yield Attempt(f"looked-and-guessed: {name}", program, text)
 
 
 def stay(program: Sequence[ProgramCall]) -> Iterator[ProgramCall]:

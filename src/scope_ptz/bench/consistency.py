@@ -12,8 +12,9 @@ import numpy as np
 
 from scope_ptz.bench.authoring.words import noun_of, plain_colour
 from scope_ptz.bench.coverage import box_directions
-from scope_ptz.bench.expected import AnyExpected, Choice, NoneThere, Number, Ordering, Text, YesNo
-from scope_ptz.bench.ground import EYES, TRACE_PX, Kind, Sight, kinds_in, visible
+from scope_ptz.bench.expected import AnyExpected, Choice, NoneThere, Number, Ordering, Relation, Text, YesNo
+from scope_ptz.bench.ground import EYES, TRACE_PX, Sight, visible
+from scope_ptz.bench.kinds import Kind, kinds_in
 from scope_ptz.bench.tasks import EvidenceView, Item, Task
 from scope_ptz.geometry import Equirectangular, Perspective, Pose
 from scope_ptz.world.pack import Scene
@@ -38,7 +39,9 @@ def inconsistencies(task: Task, scene: Scene, look: Look = view_truth) -> list[s
 
 def _value(expected: AnyExpected) -> object:
     match expected:
-        case Number() | Choice() | Ordering():
+        case Number() | Choice() | Ordering() | Relation():
+            return expected.value
+        case YesNo():
             return expected.value
         case NoneThere():
             return 0.0
@@ -67,7 +70,7 @@ def _view(task: Task, view: EvidenceView, scene: Scene, look: Look) -> Iterator[
             if any(kind.fits(s.instance) and s.pixels > TRACE_PX for s in truth.sightings):
                 # In the half of a frame there is none; so there is none in all of it, as these tasks are made.
                 yield f"a {view.shows.subject[0]} shows"
-        case YesNo() if view.shows.value and view.shows.affirms:
+        case YesNo() if view.shows.value and view.shows.affirms and "verification" not in task.tags:
             kind = kinds.get(view.shows.affirms[0], Kind(view.shows.affirms[0]))
             if not any(kind.fits(s.instance) for s in shown):
                 yield f"no {view.shows.affirms[0]} is visible"
@@ -81,12 +84,16 @@ def _worked_out(task: Task) -> object:
     if not numbers or len(numbers) != len(task.evidence):
         return None
     match sort:
-        case "count" | "coloured" | "all-around" | "count-all" | "none" | "count-half":
+        case "count" | "coloured" | "in-state" | "all-around" | "count-all" | "none" | "count-half":
             return numbers[0]
         case "sum" | "together":
             return sum(numbers)
         case "difference" | "excess":
             return numbers[0] - numbers[1]
+    if sort == "whether-more":
+        return numbers[0] > numbers[1]
+    if isinstance(task.expected, Relation):
+        return "same" if numbers[0] == numbers[1] else "forward" if numbers[0] > numbers[1] else "backward"
     if isinstance(task.expected, Choice | Ordering):
         return _compared(task.expected, numbers, fewest=sort.startswith("fewer"))
     return None
@@ -107,6 +114,10 @@ def _facts(task: Task, scene: Scene) -> Iterator[str]:
     for view in task.evidence:
         for item in view.items:
             thing = scene.by_id.get(item.instance)
+            if thing is not None and "verification" in task.tags and isinstance(task.expected, YesNo):
+                so = plain_colour(thing.attributes.get("colour")) == task.expected.affirms[0]
+                if so != task.expected.value:
+                    yield f"{item.instance} is{'' if so else ' not'} {task.expected.affirms[0]}"
             if thing is not None and isinstance(item.value, str) and "attribute" in task.tags:
                 facts = {str(v) for v in thing.attributes.values()} | {plain_colour(v) or "" for v in thing.attributes.values()}
                 if _value(task.expected) not in facts:

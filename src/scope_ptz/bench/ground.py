@@ -6,19 +6,19 @@ under visibility thresholds 30% lower and higher; what does not is not told at a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise, product
 
 import numpy as np
 
 from scope_ptz.bench.coverage import box_directions
 from scope_ptz.bench.episode import Eyes, Standing
+from scope_ptz.bench.kinds import Kind, Thing
 from scope_ptz.bench.tasks import Item
 from scope_ptz.geometry import Equirectangular, Perspective, Pose, pan_tilt_deg
-from scope_ptz.world.actors import appearances, shows
-from scope_ptz.world.models import SceneActor, SceneInstance
+from scope_ptz.world.actors import Appearance, appearances, shows
 from scope_ptz.world.pack import Scene
 from scope_ptz.world.truth import (
     MAX_READING_ANGLE_DEG,
@@ -42,61 +42,11 @@ THRESHOLDS = (0.7, 1.0, 1.3)
 TRACE_PX = 20
 """Less than this shows nothing to a person: a thing is absent when no more of it shows."""
 
+FAINT_PX = 40
+"""What is not visible by definition but shows more than this may be counted by somebody: then nothing of its kind is."""
+
 LATER_S = (3.0, 6.0, 10.0, 15.0, 20.0, 27.0, 35.0, 45.0)
 """Moments after the start at which the poses around are read."""
-
-TWIN_KINDS = (
-    frozenset({"person", "worker", "pedestrian", "passenger", "shopper", "cyclist", "driver", "child", "guard", "busker"}),
-    frozenset({"lorry", "truck", "pickup truck", "articulated lorry", "trailer"}),
-    frozenset({"bicycle", "cargo bike", "motorcycle", "scooter"}),
-    frozenset({"sign", "message sign", "arrow board", "board", "notice", "poster", "banner", "a-board"}),
-    frozenset({"car", "taxi", "police car"}),
-    frozenset({"bus", "coach", "minibus", "tram", "train"}),
-    frozenset({"bin", "litter bin", "wheelie bin"}),
-)
-"""Kinds of which one person says one, and another the other."""
-
-Thing = SceneInstance | SceneActor
-
-
-@dataclass(frozen=True)
-class Kind:
-    """Things of a category, of one colour or with one more attribute where these are given."""
-
-    category: str
-    colour: str | None = None
-    attribute: tuple[str, str] | None = None
-
-    def fits(self, thing: Thing) -> bool:
-        facts = thing.attributes
-        return (
-            thing.category == self.category
-            and (self.colour is None or facts.get("colour") == self.colour)
-            and (self.attribute is None or str(facts.get(self.attribute[0])) == self.attribute[1])
-        )
-
-    def doubtful(self, thing: Thing) -> bool:
-        """Whether somebody could call a thing that does not fit by this kind's name."""
-        if self.fits(thing):
-            return False
-        if thing.category != self.category:
-            words, name = set(self.category.split()), set(f"{thing.category} {thing.name}".lower().split())
-            return words <= name or any({self.category, thing.category} <= group for group in TWIN_KINDS)
-        if self.attribute is not None:
-            return self.attribute[0] not in thing.attributes
-        colour = str(thing.attributes.get("colour", ""))
-        return not colour or bool(set((self.colour or "").split()) & set(colour.split())) or near_colours(self.colour, colour)
-
-
-def near_colours(one: str | None, other: str) -> bool:
-    """Whether people disagree on which of two colours a thing has."""
-    return one is not None and any({one, *other.split()} >= pair for pair in _NEAR_COLOURS)
-
-
-_NEAR_COLOURS = (
-    {"silver", "grey"}, {"silver", "white"}, {"orange", "yellow"}, {"orange", "red"}, {"cream", "white"}, {"buff", "yellow"},
-    {"purple", "pink"}, {"beige", "cream"}, {"beige", "brown"}, {"grey", "black"},
-)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -114,29 +64,30 @@ class Sight:
         return EYES.sweep() if self.pose is None else EYES.view(self.pose)
 
     @cached_property
+    def first(self) -> ViewTruth:
+        """The truth at the pose itself."""
+        return self.look(self.scene, self.viewpoint, self.projection, self.time_s)
+
+    @cached_property
     def samples(self) -> tuple[ViewTruth, ...]:
         """The truth at the pose, then at the corners of the box of poses around it, each at another moment."""
-        first = self.look(self.scene, self.viewpoint, self.projection, self.time_s)
         if self.pose is None:
             moments = LATER_S[1::3]
-            return first, *(self.look(self.scene, self.viewpoint, self.projection, self.time_s + s) for s in moments)
+            return self.first, *(self.look(self.scene, self.viewpoint, self.projection, self.time_s + s) for s in moments)
         corners = product((-1, 1), repeat=3)
         around = [
             Pose(self.pose.pan_deg + a * JITTER_DEG, self.pose.tilt_deg + b * JITTER_DEG, self.pose.zoom * (1 + c * JITTER_ZOOM))
             for a, b, c in corners
         ]
-        return first, *(
+        return self.first, *(
             self.look(self.scene, self.viewpoint, EYES.view(p), self.time_s + s) for p, s in zip(around, LATER_S, strict=True)
         )
 
     @cached_property
     def passing(self) -> frozenset[int]:
         """Numbers of the actors that come into view at one time or another."""
-        here, seen = self.scene.viewpoint(self.viewpoint), set[int]()
-        longest = max((actor.period_s for actor in self.scene.file.actors), default=0.0)
-        for moment in np.arange(0.0, min(longest, 120.0), 0.5):
-            seen |= {a.actor.number for a in appearances(self.scene, here, float(moment)) if shows(a, self.projection)}
-        return frozenset(seen)
+        found = _all_appearances(self.scene, self.viewpoint)
+        return frozenset(number for number, seen in found.items() if any(shows(a, self.projection) for a in seen))
 
     @cached_property
     def _visible(self) -> dict[int, set[bool]]:
@@ -168,7 +119,7 @@ class Sight:
         for sighting in self.samples[0].sightings:
             thing = sighting.instance
             if kind.fits(thing):
-                if self.state(thing.number) is None:
+                if self.state(thing.number) is None or (not self.state(thing.number) and thing.number in self.faint):
                     return None
                 if self.state(thing.number):
                     found.append(sighting)
@@ -187,6 +138,11 @@ class Sight:
         if any(kind.fits(a) or kind.doubtful(a) for a in self.scene.file.actors if a.number in self.passing):
             return False
         return not any(kind.fits(thing) or kind.doubtful(thing) for thing in self.traces)
+
+    @cached_property
+    def faint(self) -> frozenset[int]:
+        """Numbers of the things of which so much shows in some sample that a person with good eyes would count them."""
+        return frozenset(s.instance.number for truth in self.samples for s in truth.sightings if s.pixels > FAINT_PX)
 
     @cached_property
     def traces(self) -> tuple[Thing, ...]:
@@ -261,6 +217,17 @@ class Sight:
         return Item(instance=name, value=value, box_deg=deg, min_px=round(0.7 * float(size.max()), 1), cap_height_deg=cap)
 
 
+@lru_cache(maxsize=16)
+def _all_appearances(scene: Scene, viewpoint: str) -> dict[int, tuple[Appearance, ...]]:
+    """Of each actor every place where it is to be seen in the first two minutes, twice a second, by its number."""
+    here, found = scene.viewpoint(viewpoint), dict[int, list[Appearance]]()
+    longest = max((actor.period_s for actor in scene.file.actors), default=0.0)
+    for moment in np.arange(0.0, min(longest, 120.0), 0.5):
+        for appearance in appearances(scene, here, float(moment)):
+            found.setdefault(appearance.actor.number, []).append(appearance)
+    return {number: tuple(seen) for number, seen in found.items()}
+
+
 def visible(sighting: Sighting, scale: float = 1.0) -> bool:
     """The definition of visible, with both thresholds scaled."""
     return sighting.pixels >= MIN_VISIBLE_PX * scale and sighting.share >= MIN_VISIBLE_SHARE * scale
@@ -275,12 +242,7 @@ def legible(text: TextSighting, scale: float = 1.0) -> bool:
     )
 
 
+@lru_cache(maxsize=600)
 def sight(scene: Scene, at: Standing, time_s: float, *, swept: bool = False) -> Sight:
     """The sight of a standing, or of everything around it."""
     return Sight(scene, at.viewpoint or "", None if swept else at.pose, time_s)
-
-
-def kinds_in(things: Iterable[Thing]) -> list[Kind]:
-    """Every category, and every category with a colour, in a fixed order."""
-    found = {(t.category, c) for t in things for c in (None, t.attributes.get("colour")) if c is None or " and " not in str(c)}
-    return [Kind(category, str(colour) if colour else None) for category, colour in sorted(found, key=str)]

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import random
+import re
 from collections.abc import Sequence
+from itertools import pairwise
 
 from scope_ptz.bench.expected import (
     ActionOnly,
@@ -64,6 +66,25 @@ def right_answers(expected: AnyExpected) -> tuple[str, ...]:
             return "None.", "No.", f"There are no {many}.", f"I don't see any {many}.", f"No {many} are visible."
         case ActionOnly():
             return "Done.", "Ready.", "The camera is there.", "OK.", "I have done that."
+
+
+def first_named(expected: AnyExpected, question: str) -> str | None:
+    """Of several answers that a question offers ("on the left or on the right?") the one named first; None without an offer."""
+    if not isinstance(expected, Choice | NameSet | Ordering):
+        return None
+    found = list[tuple[int, int, str]]()
+    for name, others in expected.options.items():
+        for word in (name, *others):
+            found += [(m.start(), m.end(), name) for m in re.finditer(rf"\b{re.escape(word)}\b", question, re.IGNORECASE)]
+    found.sort(key=lambda at: (at[0], -at[1]))
+    for (_, end, one), (start, _, other) in pairwise(found):
+        if one != other and 0 < start - end <= _OFFER_GAP and not set(question[end:start]) & set(".?!:;"):
+            return one
+    return None
+
+
+_OFFER_GAP = 26
+"""Letters between two things that are offered: "the red car or the"."""
 
 
 def wrong_answer(expected: AnyExpected, rng: random.Random) -> str | None:

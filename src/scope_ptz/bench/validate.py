@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from scope_ptz.bench.cheats import Attempt, cheats, common_answers, honest, right_texts
+from scope_ptz.bench.cheats import Attempt, cheats, common_answers, guesses, honest, right_texts
 from scope_ptz.bench.consistency import Look, inconsistencies
 from scope_ptz.bench.episode import Episode, Eyes
 from scope_ptz.bench.expected import ActionOnly, NoneThere, Number
@@ -20,8 +20,11 @@ from scope_ptz.bench.verdict import judge
 from scope_ptz.world.pack import Scene
 from scope_ptz.world.truth import view_truth
 
-MOST_CHEATED = 0.03
-"""No cheat passes more of all tasks than this; what passes at all is listed."""
+MOST_GUESSED = 0.03
+"""No answer that is given after looking, whatever was seen, is right for more of the core tasks; pairs count when both pass."""
+
+ENOUGH = 300
+"""Of fewer core tasks such a share says nothing."""
 
 EYES = Eyes(1280, 720)
 Say = Callable[[int, int], None]
@@ -41,7 +44,8 @@ class Report:
     """``disagreements``: where the eyes that looked count otherwise than the task expects; they are told, not judged.
 
     ``absences``: core tasks whose answer is that there is none, each with a twin; ``from_start``: core tasks that need neither a
-    move, nor a zoom, nor a sweep.
+    move, nor a zoom, nor a sweep. ``guessed``: the core tasks that an answer passes which is given whatever was seen;
+    ``whole``: how many these are, with pairs of an absence and a presence counting only when both pass.
     """
 
     tasks: int = 0
@@ -51,6 +55,8 @@ class Report:
     tried: Counter[str] = field(default_factory=Counter)
     absences: int = 0
     from_start: int = 0
+    guessed: dict[str, set[str]] = field(default_factory=dict)
+    whole: dict[str, int] = field(default_factory=dict)
     faults: list[Fault] = field(default_factory=list)
     cheated: list[Fault] = field(default_factory=list)
     disagreements: list[Fault] = field(default_factory=list)
@@ -66,6 +72,7 @@ class Report:
         return bool(self.tasks) and not self.faults and not self.cheated
 
     def as_dict(self) -> dict[str, Any]:
+        core = max(1, self.by_stratum["core"])
         return {
             "sound": self.sound,
             "tasks": self.tasks,
@@ -77,6 +84,15 @@ class Report:
             "cheats": {
                 name: {"passed": self.passed[name], "of": self.tried[name], "share_of_all": share}
                 for name, share in self.cheat_shares.items()
+            },
+            "looked_and_guessed": {
+                name: {
+                    "passed": len(ids),
+                    "share": len(ids) / core,
+                    "pairs_whole": self.whole[name],
+                    "share_pairs_whole": self.whole[name] / core,
+                }
+                for name, ids in self.guessed.items()
             },
             "faults": [vars(fault) for fault in self.faults],
             "cheated": [vars(fault) for fault in self.cheated],
@@ -100,7 +116,7 @@ async def validate(
 
     ``look`` reads the truth of a view; one that remembers views saves most of the time.
     """
-    report, common = Report(), common_answers(tasks)
+    report, common, usual = Report(), common_answers(tasks), common_answers(tasks, presences=True)
     siblings = sibling_answers(tasks)
     stages = {name: Stage(scene, equip, EYES) for name, scene in scenes.items()}
     for number, task in enumerate(tasks, 1):
@@ -114,11 +130,27 @@ async def validate(
         report.faults += [Fault(task.id, "truth", reason) for reason in wrong]
         if task.preset not in {preset.name for preset in scenes[task.world].file.presets}:
             continue  # nothing can be run from there
-        await _Proof(report, task, stages[task.world]).run(common.get(task.category, "2"), siblings.get(task.id), seed)
+        proof = _Proof(report, task, stages[task.world])
+        await proof.run(common.get(task.category, "2"), siblings.get(task.id), seed)
+        if task.stratum == "core":
+            await proof.guess(usual.get(task.category, "2"))
         if say is not None:
             say(number, len(tasks))
     report.faults += structure(tasks)
+    _weigh_guesses(report, tasks)
     return report
+
+
+def _weigh_guesses(report: Report, tasks: Sequence[Task]) -> None:
+    """No answer may be right for both tasks of a pair, nor for too many tasks."""
+    twins = {task.id: task.pair for task in tasks}
+    core = report.by_stratum["core"]
+    for name, ids in report.guessed.items():
+        both = sorted(one for one in ids if twins[one] in ids)
+        report.faults += [Fault(one, name, f"passes {twins[one]} as well") for one in both]
+        report.whole[name] = len(both) + sum(twins[one] is None for one in ids)
+        if core >= ENOUGH and report.whole[name] > MOST_GUESSED * core:
+            report.faults.append(Fault("all", name, f"passes {report.whole[name]} of {core} tasks"))
 
 
 class _Proof:
@@ -140,6 +172,13 @@ class _Proof:
             again = attempt.name in tried
             tried.add(attempt.name)
             await self._hold(attempt, attempt.name, passes=False, again=again)
+
+    async def guess(self, usual: str) -> None:
+        """Which answers happen to be right."""
+        for attempt in guesses(self.task, usual):
+            passed = self.report.guessed.setdefault(attempt.name, set())
+            if judge(self.task, await self._episode(attempt)).headline == "correct":
+                passed.add(self.task.id)
 
     async def _episode(self, attempt: Attempt) -> Episode:
         key = str([(call.tool, call.arguments) for call in attempt.program])

@@ -22,6 +22,11 @@ def report_lines(report: Report) -> Iterator[str]:
     yield "cheats"
     for name, row in content["cheats"].items():
         yield f"  {name:<22}{row['passed']:>5} of {row['of']}  ({row['share_of_all']:.1%} of all tasks)"
+    if content["looked_and_guessed"]:
+        yield "right by chance after looking: of the core tasks, and with pairs counting only when both are"
+    for name, row in content["looked_and_guessed"].items():
+        guess = name.removeprefix("looked-and-guessed: ")
+        yield f"  {guess:<22}{row['passed']:>5}  ({row['share']:.1%})  {row['pairs_whole']:>5}  ({row['share_pairs_whole']:.1%})"
     yield from _listed("failed", report.faults)
     yield from _listed("cheated", report.cheated)
     yield from _listed("seen otherwise by the ground-truth perception", report.disagreements)

@@ -126,6 +126,11 @@ class Scene:
                 self._viewpoints[name] = Viewpoint(self.folder / name, self.file, known[name])
             return self._viewpoints[name]
 
+    def release(self) -> None:
+        """Let go of the layers of all viewpoints; they are read again when they are asked for."""
+        with self._lock:
+            self._viewpoints.clear()
+
 
 def _check_references(file: SceneFile, folder: Path) -> None:
     """Every name that one table uses from another must exist, and no number may be given twice."""

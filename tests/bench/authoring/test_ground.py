@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from scope_ptz.bench.ground import EYES, Kind, Sight, kinds_in, legible, visible
+from scope_ptz.bench.ground import EYES, Sight, legible, visible
+from scope_ptz.bench.kinds import Kind, kinds_in
 from scope_ptz.geometry import Perspective, Pose
 from scope_ptz.world.models import SceneInstance
 from scope_ptz.world.pack import Scene
@@ -60,12 +61,23 @@ def test_absent_is_what_nothing_could_be_taken_for(yard: Sight) -> None:
 def test_doubtful_names() -> None:
     assert Kind("drum").doubtful(thing("cable drum", "wooden cable drum"))
     assert Kind("sign").doubtful(thing("message sign", "variable message sign"))
-    assert Kind("person").doubtful(thing("worker", "walking worker"))
+    assert Kind("person").doubtful(thing("cyclist", "cyclist on a red bicycle"))
+    assert Kind("litter bin").doubtful(thing("recycling bin", "blue recycling bin"))
+    assert Kind("vehicle").doubtful(thing("tram", "red and cream tram"))
     assert Kind("car", "blue").doubtful(thing("car", "dark blue saloon", colour="dark blue"))
     assert Kind("car", "grey").doubtful(thing("car", "silver saloon", colour="silver"))
     assert Kind("car", "red").doubtful(thing("car", "estate"))
     assert not Kind("car", "red").doubtful(thing("car", "white van", colour="white"))
+    assert not Kind("worker").doubtful(thing("traffic cone", "traffic cone"))
     assert not Kind("car").doubtful(thing("skip", "yellow skip", colour="yellow"))
+
+
+def test_groups_take_in_their_categories() -> None:
+    assert Kind("person").fits(thing("worker", "walking worker"))
+    assert Kind("vehicle").fits(thing("van", "white van"))
+    assert Kind("person") in kinds_in([thing("worker", "walking worker")])
+    assert Kind("worker", None, ("vest", "orange")) in kinds_in([thing("worker", "worker", vest="orange")])
+    assert not Kind("worker", None, ("vest", "orange")).fits(thing("worker", "worker", vest="yellow"))
 
 
 def test_sides_and_order_agree_with_the_frame(yard: Sight) -> None:

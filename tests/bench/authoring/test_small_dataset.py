@@ -13,7 +13,8 @@ import pytest
 from scope_ptz.bench.authoring.assembly import QUOTAS as PUBLISHED
 from scope_ptz.bench.authoring.assembly import Built, build
 from scope_ptz.bench.authoring.reactions import reactions
-from scope_ptz.bench.expected import NoneThere, Number
+from scope_ptz.bench.expected import Choice, NoneThere, Number
+from scope_ptz.bench.phrasing import first_named
 from scope_ptz.bench.task_files import dump_tasks, load_tasks
 from scope_ptz.bench.tasks import Task
 from scope_ptz.bench.validate import Report, structure, validate
@@ -86,6 +87,22 @@ def test_everything_is_proved(report: Report) -> None:
     assert report.passed["reference"] == report.tasks
     assert all(share == 0 for share in report.cheat_shares.values())
     assert {"nothing", "guess", "blind", "stay", "wrong-answer", "ignored", "wrong-pose"} <= set(report.tried)
+
+
+def test_no_answer_passes_both_tasks_of_a_pair(report: Report, built: Built) -> None:
+    twins = {task.id: task.pair for task in core(built)}
+    assert set(report.guessed) >= {f"looked-and-guessed: {guess}" for guess in ("none", "0", "yes", "no", "most common")}
+    for name, ids in report.guessed.items():
+        assert not any(twins[one] in ids for one in ids), name
+        assert report.whole[name] == sum(twins[one] is None for one in ids)
+    assert report.guessed["looked-and-guessed: none"] and not report.whole["looked-and-guessed: none"]
+
+
+def test_what_a_question_offers_first() -> None:
+    sides = Choice(value="right", options={"left": ("left half",), "right": ("right half",)})
+    assert first_named(sides, "Turn 20 degrees to the right. Is the car in the left or the right half?") == "left"
+    assert first_named(sides, "On which side is the car?") is None
+    assert first_named(Number(value=2), "How many cars or vans are there?") is None
 
 
 def wrong_count(task: Task) -> Task:

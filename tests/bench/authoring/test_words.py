@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from scope_ptz.bench.authoring.words import about, article, listing, noun_of, plain_colour, plural, unit_of
-from scope_ptz.bench.ground import Kind
+from scope_ptz.bench.authoring.words import about, article, listing, many_of, noun_of, plain_colour, plural, unit_of
+from scope_ptz.bench.kinds import Kind
 
 
 @pytest.mark.parametrize(
@@ -42,7 +42,10 @@ def test_lists() -> None:
 
 def test_names_of_kinds() -> None:
     assert noun_of(Kind("traffic cone", "orange")) == "orange traffic cone"
-    assert noun_of(Kind("worker", None, ("vest", "orange"))) == "worker in orange vest"
+    assert noun_of(Kind("worker", None, ("vest", "orange"))) == "worker in an orange vest"
+    assert many_of(Kind("worker", None, ("helmet", "white"))) == "workers in white helmets"
+    assert many_of(Kind("person", None, ("state", "sitting"))) == "people sitting down"
+    assert many_of(Kind("cross")) == "pharmacy crosses"
     assert unit_of(Kind("traffic cone")) == ("traffic cone", "cone")
     assert about(Kind("car", "red")) == ("car",)
 

@@ -9,12 +9,9 @@ from dataclasses import dataclass, field
 
 from scope_ptz.bench.authoring.descriptor import values_of
 from scope_ptz.bench.authoring.desk import Desk
-from scope_ptz.bench.authoring.drafts import Draft, Frames, difficulty
-from scope_ptz.bench.authoring.places import preset_at
+from scope_ptz.bench.authoring.drafts import Draft, difficulty
 from scope_ptz.bench.authoring.reactions import DATASET, reactions
-from scope_ptz.bench.coverage import gap
-from scope_ptz.bench.episode import Look
-from scope_ptz.bench.ground import EYES
+from scope_ptz.bench.authoring.selection import Chosen, Selection, Shared
 from scope_ptz.bench.tasks import Behaviour, Category, Task
 from scope_ptz.world.pack import Scene
 
@@ -24,14 +21,8 @@ QUOTAS: dict[Category, int] = {
 }  # fmt: skip
 """The paper's 536."""
 
-PAIRS: dict[Category, int] = {"counting": 28, "descriptor": 18, "location": 9, "multi_step_reasoning": 9}
-"""How many tasks of a category say that there is none, each beside one of like wording that says that there is."""
-
 REACTIONS = 44
 PARAPHRASED, WORDINGS = 64, 3
-FRAME_SHARE = 0.06
-ANSWER_SHARE, TEXT_SHARE = 0.2, 0.06
-"""No wording, no answer, and no text that is to be read, is more frequent in a category than this."""
 
 Say = Callable[[str], None]
 
@@ -42,16 +33,6 @@ class Built:
 
     tasks: list[Task] = field(default_factory=list)
     short: dict[str, int] = field(default_factory=dict)
-
-
-@dataclass
-class _Chosen:
-    draft: Draft
-    text: str
-    scene: str
-    id: str = ""
-    pair: str | None = None
-    variants: list[str] = field(default_factory=list)
 
 
 class Builder:
@@ -65,14 +46,14 @@ class Builder:
         things = [thing for scene in scenes for thing in scene.things]
         nouns = frozenset({thing.category for thing in things} | {noun for scene in scenes for noun in scene.file.absent})
         self.desks = [Desk(scene, seed, nouns, values_of(things)) for scene in scenes]
-        self.asked: set[str] = set()
-        self.texts: set[str] = set()
+        self.shared = Shared(scale=sum(self.quotas.values()) / sum(QUOTAS.values()))
 
     def build(self) -> Built:
         built = Built()
-        chosen: dict[Category, list[_Chosen]] = {}
+        chosen: dict[Category, list[Chosen]] = {}
+        pools = self._pools()
         for category, quota in self.quotas.items():
-            chosen[category] = _Category(self, category, quota).fill()
+            chosen[category] = Selection(category, quota, self.shared, self.seed).fill(pools[category])
             if (missing := quota - len(chosen[category])) > 0:
                 built.short[category] = missing
             self.say(f"{category}: {len(chosen[category])} of {quota}")
@@ -87,7 +68,19 @@ class Builder:
                 built.short["reaction"] = missing
         return built
 
-    def _number(self, category: Category, rows: list[_Chosen]) -> None:
+    def _pools(self) -> dict[Category, list[Draft]]:
+        """All drafts of all scenes by category. One scene's layers are in memory at a time."""
+        pools: dict[Category, list[Draft]] = {category: [] for category in self.quotas}
+        for desk in self.desks:
+            for category, pool in pools.items():
+                pool += desk.drafts(category)
+            desk.scene.release()
+            self.say(
+                f"{desk.scene.name}: {sum(draft.place.scene is desk.scene for pool in pools.values() for draft in pool)} drafts"
+            )
+        return pools
+
+    def _number(self, category: Category, rows: list[Chosen]) -> None:
         counts: Counter[str] = Counter()
         for row in rows:
             counts[row.scene] += 1
@@ -98,7 +91,7 @@ class Builder:
                 twin = by_draft[id(row.draft.twin)]
                 row.pair, twin.pair = twin.id, row.id
 
-    def _paraphrases(self, chosen: dict[Category, list[_Chosen]]) -> list[Task]:
+    def _paraphrases(self, chosen: dict[Category, list[Chosen]]) -> list[Task]:
         """Further wordings of tasks, categories in turn."""
         wanted = max(1, PARAPHRASED * sum(self.quotas.values()) // sum(QUOTAS.values()))
         rng, found = random.Random(f"{self.seed}:paraphrases"), list[Task]()
@@ -110,117 +103,13 @@ class Builder:
             for rows in able.values():
                 if rows and done < wanted:
                     row, done = rows.pop(), done + 1
-                    texts = [text for text in dict.fromkeys(row.variants) if text not in self.texts][:WORDINGS]
-                    self.texts.update(texts)
+                    texts = [text for text in dict.fromkeys(row.variants) if text not in self.shared.texts][:WORDINGS]
+                    self.shared.texts.update(texts)
                     found += [_task(row, text, n) for n, text in enumerate(texts, 1)]
         return found
 
 
-class _Category:
-    """Fills one category's quota."""
-
-    def __init__(self, builder: Builder, category: Category, quota: int) -> None:
-        self.builder, self.category, self.quota = builder, category, quota
-        self.pairs = round(PAIRS.get(category, 0) * quota / QUOTAS[category])
-        self.rng = random.Random(f"{builder.seed}:{category}")
-        self.frames, self.rows = Frames(), list[_Chosen]()
-        self.frames.texts = builder.texts
-        self.answers: Counter[str] = Counter()
-        self.kinds: Counter[str] = Counter()
-        self.most = max(2, int(quota * FRAME_SHARE))
-
-    def fill(self) -> list[_Chosen]:
-        streams = {desk.scene.name: desk.stream(self.category) for desk in self.builder.desks}
-        seen: dict[str, list[list[Draft]]] = {name: [] for name in streams}
-        for per_place in (2, 4, 8):
-            open_desks = list(streams)
-            at = dict.fromkeys(streams, 0)
-            while open_desks and len(self.rows) < self.quota:
-                # The scene with the fewest tasks so far is next: the quota is shared out evenly.
-                name = min(open_desks, key=lambda n: (self._of(n), list(streams).index(n)))
-                if at[name] == len(seen[name]):
-                    batch = next(streams[name], None)
-                    if batch is None:
-                        open_desks.remove(name)
-                        continue
-                    self.rng.shuffle(batch)
-                    seen[name].append(batch)
-                self._take(seen[name][at[name]], name, per_place)
-                at[name] += 1
-        return self.rows
-
-    def _of(self, scene: str) -> int:
-        return sum(row.scene == scene for row in self.rows)
-
-    def _take(self, drafts: list[Draft], scene: str, most: int) -> None:
-        """The best few drafts of one place: pairs while they are wanted, then the sorts of question least used."""
-        taken = 0
-        pairs = [d for d in drafts if d.twin is not None]
-        if self.pairs > 0 and len(self.rows) + 2 <= self.quota:
-            for draft in pairs:
-                if self._pair(draft, scene):
-                    self.pairs -= 1
-                    taken += 1
-                    break
-        rest = [d for d in drafts if d.twin is None]
-        while taken < most and rest and len(self.rows) < self.quota - 2 * self.pairs:
-            rest.sort(key=lambda d: self.kinds[d.kind])
-            draft = rest.pop(0)
-            taken += self._add(draft, scene) is not None
-
-    def _pair(self, draft: Draft, scene: str) -> bool:
-        twin = draft.twin
-        if twin is None or twin.full_key in self.builder.asked or draft.full_key in self.builder.asked:
-            return False
-        frame = self._add(draft, scene)
-        if frame is None:
-            return False
-        if self._add(twin, scene, like=frame.split("/", 1)[1]) is None:
-            row = self.rows.pop()
-            self.builder.asked.discard(row.draft.full_key)
-            self.builder.texts.discard(row.text)
-            self.kinds[draft.kind] -= 1
-            self.answers[draft.reads] -= 1
-            self.frames.used[frame] -= 1
-            return False
-        return True
-
-    def _add(self, draft: Draft, scene: str, like: str | None = None) -> str | None:
-        """Take a draft, unless it was asked already or its answer is too frequent; the frame of its wording."""
-        free = draft.reads in ("none", "yes") or draft.expected.kind == "action_only"
-        share = TEXT_SHARE if self.category == "ocr" else ANSWER_SHARE
-        if draft.full_key in self.builder.asked or (not free and self.answers[draft.reads] >= max(2, int(self.quota * share))):
-            return None
-        if _seen_from_start(draft):
-            return None
-        worded = self.frames.word(draft, self.rng, like and f"{draft.kind}/{like}")
-        if worded is None or self.frames.used[worded[1]] >= self.most:
-            return None
-        text, frame = worded
-        self.frames.take(text, frame)
-        self.builder.asked.add(draft.full_key)
-        self.kinds[draft.kind] += 1
-        self.answers[draft.reads] += 1
-        others = [self.frames.word(draft, self.rng) for _ in range(5)]
-        self.rows.append(_Chosen(draft, text, scene, variants=[o[0] for o in others if o is not None]))
-        return frame
-
-
-def _seen_from_start(draft: Draft) -> bool:
-    """Whether what is meant to take a move or a sweep could be answered at the start view, and nothing else would tell."""
-    place = draft.place
-    needs = place.needs if draft.needs is None else draft.needs
-    views = [view for view in draft.evidence if view.must_look]
-    preset = next(p for p in place.scene.file.presets if p.name == place.start)
-    start = preset_at(preset)
-    moved = draft.program is None and not draft.looks_closer and place.at != start
-    if not needs or not views or moved or (draft.behaviour is not None and draft.behaviour.final is not None):
-        return False
-    looks = (Look(start.viewpoint, EYES.view(start.pose), place.scene.file.start_s, "query", " ".join(v.about)) for v in views)
-    return all(gap(view, [look]) is None for view, look in zip(views, looks, strict=True))
-
-
-def _task(row: _Chosen, text: str, wording: int = 0) -> Task:
+def _task(row: Chosen, text: str, wording: int = 0) -> Task:
     draft, place = row.draft, row.draft.place
     fixed = draft.program is None and not draft.looks_closer
     behaviour = draft.behaviour or (Behaviour(final=place.final) if fixed else Behaviour())

@@ -1,249 +1,254 @@
-"""Comparisons: more or fewer, nearer or farther, taller, in one view or between two."""
+"""Comparisons: more or fewer, nearer or farther, taller, in one view or between presets."""
 
 from __future__ import annotations
 
 import random
 from collections.abc import Iterator, Sequence
-from itertools import combinations
+from itertools import combinations, pairwise
 
-from scope_ptz.bench.authoring.counting import counted
-from scope_ptz.bench.authoring.drafts import Draft, Question, ask, count, view
-from scope_ptz.bench.authoring.naming import singles
-from scope_ptz.bench.authoring.places import Place, elsewhere, go
-from scope_ptz.bench.authoring.words import about, listing, noun_of, plural, unit_of
-from scope_ptz.bench.expected import Choice, Number, Options, Ordering
-from scope_ptz.bench.ground import Kind
+from scope_ptz.bench.authoring.counting import counted, plain_counts
+from scope_ptz.bench.authoring.drafts import Draft, Question, ask, count, same_form, view
+from scope_ptz.bench.authoring.naming import Named, distinct
+from scope_ptz.bench.authoring.places import Place
+from scope_ptz.bench.authoring.words import about, listing, many_of, unit_of
+from scope_ptz.bench.expected import AnyExpected, Choice, Number, Options, Ordering, Relation, YesNo
+from scope_ptz.bench.kinds import Kind
 from scope_ptz.bench.tasks import EvidenceView
 from scope_ptz.world.models import SceneInstance
 
 SAME = ("the same", "equal", "as many", "equally many")
+_NEARER, _TALLER = 1.35, 1.5
+"""So many times as far, or as tall, is beyond doubt."""
+
+_WORTH_ASKING_M = 1.8
 
 
 def drafts(place: Place, rng: random.Random) -> list[Draft]:
     """Comparisons within one view."""
-    return [*_more(place, rng), *_ranking(place, rng), *_nearer(place), *_taller(place)]
+    return [*_of_two(place, rng), *_of_several(place, rng), *_distances(place, rng), *_heights(place, rng)]
 
 
-def options(names: Sequence[str]) -> Options:
-    return {**dict.fromkeys(names, ()), "same": SAME}
-
-
-def _more(place: Place, rng: random.Random) -> Iterator[Draft]:
+def _of_two(place: Place, rng: random.Random) -> Iterator[Draft]:
     pairs = [
         (a, b)
         for a, b in combinations(counted(place.sight), 2)
-        if (a[0].category != b[0].category or (a[0].colour and b[0].colour)) and a[1] + b[1] >= 3
+        if (a[0].category != b[0].category or (a[0].colour and b[0].colour))
+        and not a[0].attribute
+        and not b[0].attribute
+        and a[1] + b[1] >= 5
     ]
     rng.shuffle(pairs)
-    for (one, n), (two, m) in pairs[:12]:
-        first, second = plural(noun_of(one)), plural(noun_of(two))
-        fewer = rng.random() < 0.4 and n != m
-        word, best = ("fewer", "fewest") if fewer else ("more", "most")
-        winner = "same" if n == m else first if (n > m) != fewer else second
-        expected = Choice(value=winner, options={first: (), second: (), "same": SAME}, picks=(word, best))
-        asked = Question(
-            (
-                (
-                    f"are there {word} {first} or {word} {second}?",
-                    f"whether there are {word} {first} or {word} {second}",
-                ),
-                (
-                    f"which are there {word} of, {first} or {second}?",
-                    f"which there are {word} of, {first} or {second}",
-                ),
-                (f"do you see {word} {first} or {second}?", f"if there are {word} {first} or {second}"),
-            )
-        )
+    for n, pair in enumerate(pairs[:14]):
+        (one, many), (two, few) = rng.sample(pair, 2)
+        first, second = many_of(one), many_of(two)
+        seen = tuple(counted_view(place, kind, number) for kind, number in ((one, many), (two, few)))
+        kind, expected, asked = (_more, _fewer, _compare, _whether)[n % 4](first, second, many, few)
         yield Draft(
             category="comparative",
-            kind=f"{word}-around" if place.swept else word,
+            kind=kind,
             key=f"more:{'/'.join(sorted((first, second)))}",
             place=place,
             expected=expected,
             question=asked,
-            evidence=tuple(_counted_view(place, kind, number) for kind, number in ((one, n), (two, m))),
+            evidence=seen,
             looks=(count(first, place), count(second, place)),
             tags=("counts",),
-            weight=max(n, m),
-            reads=winner,
+            weight=max(many, few),
+            reads=_reads(expected),
         )
 
 
-def _counted_view(place: Place, kind: Kind, number: int) -> EvidenceView:
+_Asked = tuple[str, AnyExpected, Question]
+
+
+def _reads(expected: AnyExpected) -> str:
+    match expected:
+        case YesNo():
+            return "yes" if expected.value else "no"
+        case Choice() | Relation():
+            return expected.value
+        case Ordering():
+            return "/".join(expected.value)
+    return expected.kind
+
+
+def _more(first: str, second: str, n: int, m: int) -> _Asked:
+    winner = "same" if n == m else first if n > m else second
+    expected = Choice(value=winner, options={first: (), second: (), "same": SAME}, picks=("more", "most"))
+    forms = (
+        (f"are there more {first} or more {second}?", f"whether there are more {first} or more {second}"),
+        (f"what do you see more of, {first} or {second}?", f"what you see more of, {first} or {second}"),
+        (f"which are more numerous, the {first} or the {second}?", f"which are more numerous, the {first} or the {second}"),
+    )
+    return "more", expected, Question(forms)
+
+
+def _fewer(first: str, second: str, n: int, m: int) -> _Asked:
+    if n == m:
+        return _compare(first, second, n, m)
+    expected = Choice(
+        value=first if n < m else second, options={first: (), second: (), "same": SAME}, picks=("fewer", "fewest", "less", "least")
+    )
+    forms = (
+        (f"are there fewer {first} or fewer {second}?", f"whether there are fewer {first} or fewer {second}"),
+        (f"which are there fewer of, {first} or {second}?", f"which there are fewer of, {first} or {second}"),
+    )
+    return "fewer", expected, Question(forms)
+
+
+def _compare(first: str, second: str, n: int, m: int) -> _Asked:
+    expected = Relation(
+        value="same" if n == m else "forward" if n > m else "backward", subject=(first,), object=(second,),
+        forward=("more", "greater", "higher"), backward=("fewer", "smaller", "lower", "less"), same=SAME,
+    )  # fmt: skip
+    forms = (
+        (f"how does the number of {first} compare with that of {second}?",
+         f"how the number of {first} compares with that of {second}"),
+        (f"compared with the {second}, are there more, fewer or as many {first}?",
+         f"whether there are more, fewer or as many {first} compared with the {second}"),
+    )  # fmt: skip
+    return "compare", expected, Question(forms)
+
+
+def _whether(first: str, second: str, n: int, m: int) -> _Asked:
+    expected = YesNo(value=n > m)
+    forms = (
+        (f"are there more {first} than {second}?", f"whether there are more {first} than {second}"),
+        (f"do the {first} outnumber the {second}?", f"whether the {first} outnumber the {second}"),
+    )
+    return "whether-more", expected, Question(forms)
+
+
+def counted_view(place: Place, kind: Kind, number: int) -> EvidenceView:
+    """A view as evidence that there are so many of a kind."""
     items = [place.sight.item(t, True) for t in place.sight.of(kind) or ()]
     return view(place, Number(value=number, unit=unit_of(kind)), about(kind), items, whole=True)
 
 
-def _ranking(place: Place, rng: random.Random) -> Iterator[Draft]:
-    plain = [(kind, n) for kind, n in counted(place.sight) if kind.colour is None]
-    threes = [three for three in combinations(plain, 3) if len({n for _, n in three}) == 3]
-    rng.shuffle(threes)
-    for three in threes[:4]:
-        ranked = sorted(three, key=lambda t: -t[1])
-        value = tuple(plural(noun_of(kind)) for kind, _ in ranked)
-        names = [plural(noun_of(kind)) for kind, _ in three]
-        expected = Ordering(value=value, options=dict.fromkeys(value, ()), first=("most",), last=("fewest",))
-        asked = Question(
-            (
-                (
-                    f"how do {listing(names)} rank by number, from most to fewest?",
-                    f"how {listing(names)} rank by number, from most to fewest",
-                ),
-                (
-                    f"what is the order of {listing(names)} by how many there are, the most first?",
-                    f"the order of {listing(names)} by how many there are, the most first",
-                ),
-            )
-        )
-        yield Draft(
-            category="comparative",
-            kind="ranking",
-            key=f"rank:{'/'.join(sorted(value))}",
-            place=place,
-            expected=expected,
-            question=asked,
-            evidence=tuple(_counted_view(place, kind, n) for kind, n in three),
-            looks=tuple(count(name, place) for name in names),
-            tags=("counts",),
-            weight=sum(n for _, n in three),
-            reads=value[0],
-        )
-
-
-def _nearer(place: Place) -> Iterator[Draft]:
-    if place.swept:
-        return
-    for one, two in combinations(singles(place.sight, coloured=True), 2):
-        near, far = sorted((one, two), key=lambda n: n.thing.distance_m)
-        if far.thing.distance_m < near.thing.distance_m * 1.35 or one.kind.category == two.kind.category:
-            continue
-        for word, value in (("closer to", near.name), ("farther from", far.name)):
-            asked = Question(
-                (
-                    (
-                        f"which is {word} the camera, the {one.name} or the {two.name}?",
-                        f"which is {word} the camera, the {one.name} or the {two.name}",
-                    ),
-                    (
-                        f"what stands {word} the camera: the {one.name} or the {two.name}?",
-                        f"what stands {word} the camera, the {one.name} or the {two.name}",
-                    ),
-                )
-            )
-            expected = Choice(
-                value=value,
-                options={one.name: (), two.name: ()},
-                picks=("closer", "nearer") if value == near.name else ("farther", "further"),
-            )
+def _of_several(place: Place, rng: random.Random) -> Iterator[Draft]:
+    """What there is most of among four, and the order of three by number."""
+    plain = plain_counts(place.sight)
+    for size, most in ((3, 4), (4, 4)):
+        groups = [group for group in combinations(plain, size) if _distinct([n for _, n in group], whole=size == 3)]
+        rng.shuffle(groups)
+        for group in groups[:most]:
+            ranked = tuple(many_of(kind) for kind, _ in sorted(group, key=lambda t: -t[1]))
+            shuffled = rng.sample(group, size)
+            names = [many_of(kind) for kind, _ in shuffled]
+            asked, expected = _ranking(names, ranked) if size == 3 else _most(names, ranked[0])
             yield Draft(
                 category="comparative",
-                kind="nearer" if value == near.name else "farther",
-                key=f"distance:{one.thing.instance.id}:{two.thing.instance.id}",
+                kind="ranking" if size == 3 else "most-of",
+                key=f"rank:{'/'.join(sorted(ranked))}",
                 place=place,
                 expected=expected,
                 question=asked,
-                evidence=(
-                    view(
-                        place,
-                        expected,
-                        about(one.kind, two.kind),
-                        [place.sight.item(n.thing, n.thing.distance_m) for n in (one, two)],
-                        whole=False,
-                    ),
-                ),
-                looks=(ask(asked.forms[0][0], place),),
-                tags=("distance",),
-                weight=2,
-                reads=value,
+                evidence=tuple(counted_view(place, kind, n) for kind, n in shuffled),
+                looks=tuple(count(name, place) for name in names),
+                tags=("counts",),
+                weight=sum(n for _, n in group),
+                reads=_reads(expected),
             )
 
 
-def _taller(place: Place) -> Iterator[Draft]:
+def _distinct(numbers: Sequence[int], *, whole: bool) -> bool:
+    """Whether all numbers differ (or the greatest at least stands alone)."""
+    return len(set(numbers)) == len(numbers) if whole else numbers.count(max(numbers)) == 1
+
+
+def _ranking(names: list[str], ranked: tuple[str, ...]) -> tuple[Question, Ordering]:
+    expected = Ordering(value=ranked, options=dict.fromkeys(ranked, ()), first=("most",), last=("fewest",))
+    listed = listing(names)
+    forms = (
+        (f"how do {listed} rank by number, from most to fewest?", f"how {listed} rank by number, from most to fewest"),
+        (f"put {listed} in order of how many there are, the most first.",
+         f"the order of {listed} by how many there are, the most first"),
+    )  # fmt: skip
+    return Question(forms), expected
+
+
+def _most(names: list[str], winner: str) -> tuple[Question, Choice]:
+    listed = listing(names, "or")
+    expected = Choice(value=winner, options=dict.fromkeys(names, ()), picks=("most", "more"))
+    return Question(same_form(f"what is there most of: {listed}?", f"which are the most numerous: {listed}?")), expected
+
+
+def _distances(place: Place, rng: random.Random) -> Iterator[Draft]:
+    """Which of two or three things is nearest or farthest, and three in the order of their distance."""
     if place.swept:
         return
-    for one, two in combinations(singles(place.sight, coloured=True), 2):
-        a, b = one.thing.instance, two.thing.instance
-        if not isinstance(a, SceneInstance) or not isinstance(b, SceneInstance) or a.category == b.category:
+    named = distinct(place.sight)
+    for size in (2, 3):
+        for group in _some(named, size, rng):
+            ranked = sorted(group, key=lambda n: n.thing.distance_m)
+            gaps = [b.thing.distance_m / max(a.thing.distance_m, 0.1) for a, b in pairwise(ranked)]
+            if min(gaps) >= _NEARER:
+                names = [f"the {one.name}" for one in rng.sample(group, size)]
+                yield from _by_distance(place, ranked, names, rng)
+
+
+def _by_distance(place: Place, ranked: list[Named], names: list[str], rng: random.Random) -> Iterator[Draft]:
+    options: Options = {one.name: () for one in ranked}
+    either = listing(names, "or")
+    near = rng.random() < 0.5
+    way, winner = ("closest to", ranked[0]) if near else ("farthest from", ranked[-1])
+    if len(ranked) == 2:
+        way = "closer to" if near else "farther from"
+    picks = ("closest", "closer", "nearest", "nearer") if near else ("farthest", "farther", "furthest", "further")
+    choice = Choice(value=winner.name, options=options, picks=picks)
+    asked = Question(same_form(f"which is {way} the camera, {either}?", f"what stands {way} the camera: {either}?"))
+    yield _seen(place, ("nearer" if near else "farther") if len(ranked) == 2 else "nearest-of", choice, asked, ranked, "distance")
+    if len(ranked) == 3:
+        order = Ordering(
+            value=tuple(one.name for one in ranked), options=options, first=("nearest", "closest"), last=("farthest", "furthest")
+        )
+        listed = listing(names)
+        yield _seen(place, "by-distance", order, Question((
+            (f"put {listed} in order of distance, the nearest first.", f"the order of {listed} by distance, the nearest first"),
+            (f"from nearest to farthest, how are {listed} placed?", f"how {listed} are placed, from nearest to farthest"),
+        )), ranked, "distance")  # fmt: skip
+
+
+def _heights(place: Place, rng: random.Random) -> Iterator[Draft]:
+    if place.swept:
+        return
+    standing = [n for n in distinct(place.sight) if isinstance(n.thing.instance, SceneInstance) and not n.thing.cut]
+    for group in _some([n for n in standing if not n.thing.instance.parent], 3, rng):  # type: ignore[union-attr]
+        ranked = sorted(group, key=_height, reverse=True)
+        if _height(ranked[0]) < max(_TALLER * _height(ranked[1]), _WORTH_ASKING_M):
             continue
-        heights = [t.box_max_m[2] - t.box_min_m[2] for t in (a, b)]
-        if max(heights) < 1.6 * min(heights) or a.parent or b.parent:
-            continue
-        value = (one if heights[0] > heights[1] else two).name
-        asked = Question(
-            (
-                (
-                    f"which is taller in reality, the {one.name} or the {two.name}?",
-                    f"which is taller in reality, the {one.name} or the {two.name}",
-                ),
-                (
-                    f"what is the higher thing, the {one.name} or the {two.name}?",
-                    f"which is the higher thing, the {one.name} or the {two.name}",
-                ),
-            )
-        )
-        expected = Choice(value=value, options={one.name: (), two.name: ()}, picks=("taller", "higher"))
-        yield Draft(
-            category="comparative",
-            kind="taller",
-            key=f"taller:{a.id}:{b.id}",
-            place=place,
-            expected=expected,
-            question=asked,
-            evidence=(
-                view(place, expected, about(one.kind, two.kind), [place.sight.item(n.thing) for n in (one, two)], whole=False),
-            ),
-            looks=(ask(asked.forms[0][0], place),),
-            tags=("size",),
-            weight=2,
-            reads=value,
-        )
+        either = listing([f"the {one.name}" for one in rng.sample(group, 3)], "or")
+        expected = Choice(value=ranked[0].name, options={one.name: () for one in ranked}, picks=("tallest", "taller", "highest"))
+        asked = Question(same_form(f"which is the tallest: {either}?", f"which of these really is the tallest: {either}?"))
+        yield _seen(place, "tallest", expected, asked, ranked, "size")
 
 
-def between(one: Place, two: Place, rng: random.Random) -> list[Draft]:
-    """The same kind at two presets: where are there more?"""
-    p, q = one.preset, two.preset
-    if p is None or q is None or p == q:
-        return []
-    there = dict(counted(two.sight))
-    found = []
-    for kind, n in counted(one.sight):
-        m = there.get(kind)
-        if m is None:
-            continue
-        many = plural(noun_of(kind))
-        value = "same" if n == m else p if n > m else q
-        expected = Choice(
-            value=value,
-            options={p: (p.replace("-", " "),) if "-" in p else (), q: (q.replace("-", " "),) if "-" in q else (), "same": SAME},
-            picks=("more", "most"),
-        )
-        start = elsewhere(one, two)
-        orders = tuple(text.format(many=many, p=p, q=q) for text in _BETWEEN)
-        found.append(
-            Draft(
-                category="comparative",
-                kind="between",
-                key=f"between:{p}:{q}:{many}",
-                place=start,
-                expected=expected,
-                orders=orders,
-                evidence=(_counted_view(one, kind, n), _counted_view(two, kind, m)),
-                program=(go(p), count(many, one), go(q), count(many, two)),
-                needs=("preset",),
-                tags=("two-views",),
-                weight=n + m,
-                reads=value,
-            )
-        )
-    rng.shuffle(found)
-    return found
+def _height(one: Named) -> float:
+    thing = one.thing.instance
+    return thing.box_max_m[2] - thing.box_min_m[2] if isinstance(thing, SceneInstance) else 0.0
 
 
-_BETWEEN = (
-    "Are there more {many} at the {p} preset or at {q}?",
-    "Compare the presets {p} and {q}: which shows more {many}?",
-    "Which view has more {many}, {p} or {q}?",
-    "Look at {p} and then at {q}. Where can you see more {many}?",
-    "Between the {p} and the {q} preset, which one has more {many} in it?",
-    "Go to {p}, then to {q}, and say which shows more {many}.",
-)
+def _some(named: list[Named], size: int, rng: random.Random) -> list[tuple[Named, ...]]:
+    """A few groups of things of different categories."""
+    groups = [g for g in combinations(named[:12], size) if len({one.kind.category for one in g}) == size]
+    rng.shuffle(groups)
+    return groups[:12]
+
+
+def _seen(place: Place, kind: str, expected: Choice | Ordering, asked: Question, things: list[Named], tag: str) -> Draft:
+    """A comparison of things that one look tells."""
+    ids = "/".join(sorted(one.thing.instance.id for one in things))
+    items = [place.sight.item(one.thing, one.thing.distance_m if tag == "distance" else _height(one)) for one in things]
+    return Draft(
+        category="comparative",
+        kind=kind,
+        key=f"{tag}:{ids}",
+        place=place,
+        expected=expected,
+        question=asked,
+        evidence=(view(place, expected, tuple(word for one in things for word in one.words), items, whole=False),),
+        looks=(ask(asked.forms[0][0], place),),
+        tags=(tag,),
+        weight=len(things),
+        reads=_reads(expected),
+    )

@@ -5,15 +5,18 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator, Mapping, Sequence
 
-from scope_ptz.bench.authoring.counting import absent, counted
+from scope_ptz.bench.authoring import descriptor_pairs
+from scope_ptz.bench.authoring.counting import absent, plain_counts
 from scope_ptz.bench.authoring.drafts import Draft, Question, ask, scope_of, view
-from scope_ptz.bench.authoring.naming import Named, ends, singles
+from scope_ptz.bench.authoring.naming import Named, by_name, ends, singles
 from scope_ptz.bench.authoring.places import Place
-from scope_ptz.bench.authoring.words import about, article, colour_options, listing, noun_of, plain_colour, plural, unit_of
-from scope_ptz.bench.expected import Choice, NameSet, NoneThere, Options, YesNo
-from scope_ptz.bench.ground import Kind, Thing
+from scope_ptz.bench.authoring.words import about, article, colour_options, listing, many_of, noun_of, plain_colour
+from scope_ptz.bench.expected import Choice, NameSet, Options
+from scope_ptz.bench.kinds import Thing, own_colour
 
-STATES: tuple[tuple[str, ...], ...] = (("open", "closed"), ("lit", "unlit"), ("full", "empty"))
+STATES: tuple[tuple[str, ...], ...] = (
+    ("open", "closed"), ("lit", "unlit"), ("full", "empty"), ("occupied", "free"), ("occupied", "empty"), ("standing", "sitting"),
+)  # fmt: skip
 _SYNONYMS = {
     "closed": ("shut",),
     "lit": ("on", "switched on", "lit up"),
@@ -27,6 +30,9 @@ _SYNONYMS = {
     "metal cladding": ("metal",),
     "brick": ("bricks",),
     "full": ("filled", "loaded"),
+    "free": ("unoccupied", "empty", "vacant"),
+    "occupied": ("taken", "in use"),
+    "sitting": ("seated",),
 }
 Values = Mapping[tuple[str, str], Sequence[str]]
 """(category, attribute) -> every value that it takes in the scenes."""
@@ -46,16 +52,18 @@ def options(values: Sequence[str]) -> Options:
 
 
 def drafts(place: Place, nouns: frozenset[str], values: Values, rng: random.Random) -> list[Draft]:
-    return [*_attributes(place, values), *_presence(place, nouns, rng), *_lists(place, nouns, rng)]
+    return [
+        *_attributes(place, values), *_lists(place, nouns, rng), *descriptor_pairs.drafts(place, nouns, rng),
+    ]  # fmt: skip
 
 
 def _attributes(place: Place, values: Values) -> Iterator[Draft]:
-    named = [*singles(place.sight, coloured=False, min_pixels=300)]
+    named = [*singles(place.sight, coloured=False, min_pixels=300), *by_name(place.sight, 300)]
     if not place.swept:
         named += list(ends(place.sight, 300))
     for one in named:
         facts = one.thing.instance.attributes
-        colour = plain_colour(facts.get("colour"))
+        colour = plain_colour(own_colour(one.thing.instance))
         if colour is not None and colour not in one.thing.instance.category:
             yield _choice(
                 place,
@@ -90,7 +98,8 @@ def _attributes(place: Place, values: Values) -> Iterator[Draft]:
         state = facts.get("state")
         for pair in STATES:
             if state in pair and one.thing.pixels >= 500:
-                first, second = pair
+                # Not always the same one first, but each time the same.
+                first, second = pair[:: 1 if sum(map(ord, one.thing.instance.id)) % 2 else -1]
                 yield _choice(
                     place,
                     one,
@@ -102,12 +111,17 @@ def _attributes(place: Place, values: Values) -> Iterator[Draft]:
                     ),
                 )
         for key, ask_it in _KINDS.items():
+            if key == "kind" and one.thing.instance.category not in _OF_KINDS:
+                continue
             known = values.get((one.thing.instance.category, key), ())
             value = facts.get(key)
             if isinstance(value, str) and value in known and len(known) >= 2 and one.thing.pixels >= 900 and value not in one.name:
                 forms = _ONLY_ONE if key == "kind" and one.name == one.kind.category else ask_it
                 yield _choice(place, one, key, Choice(value=value, options=options(known)), forms)
 
+
+_OF_KINDS = frozenset({"car", "lorry", "bus", "bicycle", "van", "shop", "container"})
+"""Of these people know kinds apart."""
 
 _ONLY_ONE = (
     ("what kind of {c} can you see?", "what kind of {c} you can see"),
@@ -141,51 +155,16 @@ def _choice(place: Place, one: Named, key: str, expected: Choice, forms: Sequenc
         place=place,
         expected=expected,
         question=asked,
-        evidence=(view(place, expected, about(one.kind), [item], whole=one.place and not place.swept),),
+        evidence=(view(place, expected, one.words, [item], whole=one.place and not place.swept),),
         looks=(ask(asked.forms[0][0], place),),
         tags=("attribute", key, scope_of(place)),
         reads=expected.value,
     )
 
 
-def _presence(place: Place, nouns: frozenset[str], rng: random.Random) -> Iterator[Draft]:
-    present = [kind for kind, _ in counted(place.sight)]
-    missing = list(absent(place.sight, nouns))
-    rng.shuffle(present)
-    rng.shuffle(missing)
-    for here, gone in zip(present, missing, strict=False):
-        yield _there(place, gone, there=False, twin=_there(place, here, there=True))
-
-
-def _there(place: Place, kind: Kind, *, there: bool, twin: Draft | None = None) -> Draft:
-    one, many = noun_of(kind), plural(noun_of(kind))
-    expected = YesNo(value=True, affirms=unit_of(kind)[:2]) if there else NoneThere(subject=unit_of(kind)[:2])
-    things = (place.sight.of(kind) or ())[:1] if there else ()
-    return Draft(
-        category="descriptor",
-        kind="there" if there else "not-there",
-        key=f"there:{one}",
-        place=place,
-        expected=expected,
-        question=Question(
-            (
-                (f"is there {article(one)}?", f"whether there is {article(one)}"),
-                (f"are there any {many}?", f"whether there are any {many}"),
-                (f"can you see {article(one)}?", f"if you can see {article(one)}"),
-                (f"do you see any {many}?", f"whether you see any {many}"),
-            )
-        ),
-        evidence=(view(place, expected, about(kind), [place.sight.item(t, True) for t in things], whole=not there),),
-        looks=(ask(f"are there any {many}?", place),),
-        tags=("presence",) if there else ("none-there",),
-        twin=twin,
-        reads="yes" if there else "none",
-    )
-
-
 def _lists(place: Place, nouns: frozenset[str], rng: random.Random) -> Iterator[Draft]:
     """Which of four are there."""
-    here = [kind for kind, _ in counted(place.sight) if kind.colour is None]
+    here = [kind for kind, _ in plain_counts(place.sight)]
     gone = [kind for kind in absent(place.sight, nouns) if kind.colour is None]
     rng.shuffle(here)
     rng.shuffle(gone)
@@ -212,7 +191,7 @@ def _lists(place: Place, nouns: frozenset[str], rng: random.Random) -> Iterator[
                 )
             ),
             evidence=(view(place, expected, about(*four), items, whole=True),),
-            looks=tuple(ask(f"are there any {plural(noun_of(k))}?", place) for k in four),
+            looks=tuple(ask(f"are there any {many_of(k)}?", place) for k in four),
             tags=("list",),
             weight=4,
             reads="/".join(expected.value),

@@ -1,14 +1,26 @@
-"""What one scene has to offer: for each category a stream of drafts, place by place."""
+"""What one scene has to offer: for each category all drafts."""
 
 from __future__ import annotations
 
 import random
+from collections import Counter
 from collections.abc import Iterator
 from functools import cached_property
+from itertools import combinations, islice
 
 import numpy as np
 
-from scope_ptz.bench.authoring import commands, comparative, counting, descriptor, location, ocr, reasoning, single_call
+from scope_ptz.bench.authoring import (
+    commands,
+    comparative,
+    counting,
+    descriptor,
+    location,
+    ocr,
+    presets_compared,
+    reasoning,
+    single_call,
+)
 from scope_ptz.bench.authoring.descriptor import Values
 from scope_ptz.bench.authoring.drafts import Draft
 from scope_ptz.bench.authoring.places import Place, Places
@@ -17,11 +29,23 @@ from scope_ptz.bench.tasks import Category
 from scope_ptz.geometry import angle_between_deg, pan_tilt_deg
 from scope_ptz.world.pack import Scene
 
-STAY_EVERY = 12
-"""One place in so many is the start view itself: such tasks can be answered without a move."""
+OFF = 26
+"""How many views off the presets a scene is asked about,"""
 
-MOST_OFF = 90
-"""How many views off the presets a scene is searched for."""
+TRIED = 3
+"""... each the one that shows most of so many."""
+
+STAYS = 3
+"""At so many presets something is asked of the start view itself: such tasks can be answered without a move."""
+
+MOST_GROUPS = 40
+"""How many pairs, and threes, of presets are compared."""
+
+MOST_OF_A_SORT = 10
+"""So many drafts of one sort are kept of a view."""
+
+READING = 24
+"""How many views near to a text a scene is asked about."""
 
 
 class Desk:
@@ -31,8 +55,6 @@ class Desk:
         self.scene, self.nouns, self.values = scene, nouns, values
         self._seed = f"{seed}:{scene.name}"
         self.places = Places(scene, self._rng("places"))
-        self._grown: list[Place] = []
-        self._drafts: dict[tuple[str, int], list[Draft]] = {}
 
     def _rng(self, purpose: str) -> random.Random:
         return random.Random(f"{self._seed}:{purpose}")
@@ -48,32 +70,23 @@ class Desk:
         return [self.places.direct(name) for name in names]
 
     @cached_property
+    def views(self) -> list[Place]:
+        """The same places for every category: presets, a sweep from each viewpoint, views off the presets, a few start views."""
+        sweeps = {place.at.viewpoint: place for place in reversed(self.places.around()) if not place.calls}
+        stays = [self.places.stay(str(p.preset)) for p in self.presets]
+        self._rng("stays").shuffle(stays)
+        return [*self.presets, *sweeps.values(), *self._off(), *stays[:STAYS]]
+
     def _off(self) -> Iterator[Place]:
-        return self.places.off()
-
-    def views(self) -> Iterator[Place]:
-        """Presets and sweeps mixed, then views off them; the same places in the same order for every category."""
-        at = 0
-        while True:
-            if at == len(self._grown) and not self._grow():
+        """Views off the presets, each the fullest of a few, all presets and viewpoints in turn."""
+        stream, seen = self.places.off(), set[str]()
+        for _ in range(OFF):
+            tried = [place for place in islice(stream, TRIED) if place.key not in seen]
+            if not tried:
                 return
-            yield self._grown[at]
-            at += 1
-
-    def _grow(self) -> bool:
-        if not self._grown:
-            sweeps, off = self.places.around(), [next(self._off, None) for _ in self.presets]
-            for n, preset in enumerate(self.presets):
-                self._grown += [p for p in (preset, off[n], sweeps[n] if n < 4 and n < len(sweeps) else None) if p is not None]
-            self._grown += [self.places.stay(p.preset or "") for p in self.presets[:: max(1, STAY_EVERY // 3)]]
-            return True
-        if len(self._grown) >= MOST_OFF + 3 * len(self.presets):
-            return False
-        place = next(self._off, None)
-        if place is None:
-            return False
-        self._grown.append(place)
-        return True
+            best = max(tried, key=lambda place: len(place.sight.first.visible))
+            seen.add(best.key)
+            yield best
 
     @cached_property
     def reading_views(self) -> list[Place]:
@@ -99,25 +112,35 @@ class Desk:
                     found[text.parent] = place
         places = list(found.values())
         self._rng("reading").shuffle(places)
-        return places
+        return places[:READING]
 
-    def stream(self, category: Category) -> Iterator[list[Draft]]:
-        """Drafts of a category, all of one place at a time."""
-        if category == "single_call":
-            yield from ([draft] for draft in single_call.drafts(self.places, [*self.presets], self._rng(category)))
-        elif category == "multi_step_command":
-            yield from ([draft] for draft in commands.drafts(self.places, self._rng(category)))
-        elif category in ("multi_step_reasoning", "comparative"):
-            yield from self._mixed(category)
-        else:
-            places = self.views() if category != "ocr" else self._for_reading()
-            for n, place in enumerate(places):
-                yield self._at(category, n, place)
+    def drafts(self, category: Category) -> Iterator[Draft]:
+        """Everything that could be asked in a category."""
+        rng = self._rng(category)
+        match category:
+            case "single_call":
+                yield from single_call.drafts(self.places, self.presets, rng)
+            case "multi_step_command":
+                yield from commands.drafts(self.places, rng)
+            case "ocr":
+                for place in [*self.presets, *self.reading_views, *self.views[len(self.presets) :]]:
+                    yield from ocr.drafts(place)
+            case _:
+                for n, place in enumerate(self.views):
+                    yield from _few(self._at(category, n, place), rng)
+        if category == "comparative":
+            for group in (*self._groups(2), *self._groups(3)):
+                yield from presets_compared.drafts(group, rng)
+        elif category == "multi_step_reasoning":
+            for one, two in self._groups(2):
+                yield from reasoning.drafts(one, two, self.places, self.nouns, rng)
 
-    def _for_reading(self) -> Iterator[Place]:
-        yield from self.presets
-        yield from self.reading_views
-        yield from (place for place in self.views() if place.preset is None)
+    def _groups(self, size: int) -> list[tuple[Place, ...]]:
+        """Presets to be compared, two or three at a time."""
+        rng = self._rng(f"groups:{size}")
+        groups = [tuple(rng.sample(group, size)) for group in combinations(self.presets, size)]
+        rng.shuffle(groups)
+        return groups[:MOST_GROUPS]
 
     def _at(self, category: Category, n: int, place: Place) -> list[Draft]:
         rng = self._rng(f"{category}:{n}")
@@ -128,21 +151,22 @@ class Desk:
                 return descriptor.drafts(place, self.nouns, self.values, rng)
             case "location":
                 return location.drafts(place, self.nouns, rng)
-            case "ocr":
-                return ocr.drafts(place)
             case "comparative":
                 return comparative.drafts(place, rng)
         return reasoning.within(place, rng)
 
-    def _mixed(self, category: Category) -> Iterator[list[Draft]]:
-        """One view, then two presets, in turn."""
-        pairs = [(a, b) for a in self.presets for b in self.presets if a is not b]
-        self._rng(f"{category}:pairs").shuffle(pairs)
-        for n, place in enumerate(self.views()):
-            yield self._at(category, n, place)
-            for one, two in pairs[2 * n : 2 * n + 2]:
-                rng = self._rng(f"{category}:{n}:{one.preset}:{two.preset}")
-                if category == "comparative":
-                    yield comparative.between(one, two, rng)
-                else:
-                    yield reasoning.drafts(one, two, self.places, self.nouns, rng)
+
+def _few(drafts: list[Draft], rng: random.Random) -> Iterator[Draft]:
+    """No more than some drafts of each sort, as different in their answers as there are."""
+    rng.shuffle(drafts)
+    by_kind: dict[str, list[Draft]] = {}
+    for draft in drafts:
+        by_kind.setdefault(draft.kind, []).append(draft)
+    for group in by_kind.values():
+        seen: Counter[str] = Counter()
+        ranks = []
+        for draft in group:
+            ranks.append(seen[draft.reads])
+            seen[draft.reads] += 1
+        order = sorted(range(len(group)), key=ranks.__getitem__)
+        yield from (group[at] for at in order[:MOST_OF_A_SORT])

@@ -7,6 +7,7 @@ import random
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 from scope_ptz.bench.authoring.places import Place
@@ -45,6 +46,11 @@ class Question:
     forms: tuple[tuple[str, str], ...]
 
 
+def same_form(*questions: str) -> tuple[tuple[str, str], ...]:
+    """Questions that read the same inside a sentence ("which is nearer, ...")."""
+    return tuple((question, question.rstrip("?")) for question in questions)
+
+
 @dataclass(frozen=True)
 class Draft:
     """``key``: what is asked, so that nothing is asked twice of a view; ``kind``: the sort of question, for an even mixture.
@@ -80,6 +86,25 @@ class Draft:
         return any(call.tool == "zoom_to_object" for call in self.looks)
 
     @property
+    def calls_move(self) -> bool:
+        """Whether the reference moves the camera or looks all around."""
+        return self.place.swept or any(call.tool not in ("count_objects", "query_answer", "take_image") for call in self.calls)
+
+    @cached_property
+    def traits(self) -> tuple[tuple[str, str], ...]:
+        """What tasks are to be spread over: scene, viewpoints looked at, sort of question, answer, view, start."""
+        place = self.place
+        seen = {view.aim.viewpoint for view in self.evidence} or {str(place.at.viewpoint)}
+        return (
+            ("scene", place.scene.name),
+            *(("viewpoint", f"{place.scene.name}:{name}") for name in sorted(seen)),
+            ("kind", self.kind),
+            ("answer", self.reads),
+            ("place", place.key),
+            ("start", f"{place.scene.name}:{place.start}"),
+        )
+
+    @property
     def full_key(self) -> str:
         return f"{self.place.key}|{self.key}"
 
@@ -87,9 +112,9 @@ class Draft:
 class Frames:
     """Which wordings a category has used, so that none is used more than its share and no text comes twice."""
 
-    def __init__(self) -> None:
+    def __init__(self, texts: set[str]) -> None:
         self.used: Counter[str] = Counter()
-        self.texts: set[str] = set()
+        self.texts = texts
 
     def word(self, draft: Draft, rng: random.Random, like: str | None = None) -> tuple[str, str] | None:
         """An instruction for a draft and the name of its frame; None when every wording is taken. ``like``: the frame to use."""

@@ -6,10 +6,9 @@ import re
 from collections.abc import Iterator
 
 from scope_ptz.bench.authoring.drafts import Draft, Question, ask, view
-from scope_ptz.bench.authoring.naming import Named, ends, singles
+from scope_ptz.bench.authoring.naming import Named, distinct, ends
 from scope_ptz.bench.authoring.places import Place
-from scope_ptz.bench.authoring.targets import framed
-from scope_ptz.bench.authoring.words import about
+from scope_ptz.bench.authoring.targets import SMALLEST_PX, framed
 from scope_ptz.bench.expected import Text
 from scope_ptz.bench.tasks import ProgramCall
 from scope_ptz.world.truth import TextSighting
@@ -21,7 +20,7 @@ LONGEST = 80
 def drafts(place: Place) -> list[Draft]:
     if place.swept:
         return []
-    named = [*singles(place.sight, coloured=True), *ends(place.sight)]
+    named = [*distinct(place.sight, SMALLEST_PX), *ends(place.sight)]
     return [*_in_view(place, named), *_zoomed(place, named)]
 
 
@@ -62,37 +61,53 @@ def wanted(one: Named, texts: tuple[TextSighting, ...] | None) -> Text | None:
     return Text(accepted=(whole,), ocr=True)
 
 
+_Forms = tuple[tuple[str, str], ...]
+_WRITING: tuple[_Forms, _Forms] = (
+    (
+        ("what does the {n} say?", "what the {n} says"),
+        ("what is written on the {n}?", "what is written on the {n}"),
+        ("what text is on the {n}?", "what text is on the {n}"),
+        ("what can be read on the {n}?", "what can be read on the {n}"),
+        ("which words or figures are on the {n}?", "which words or figures are on the {n}"),
+    ),
+    (
+        ("zoom in on the {n}. What does it say?", "what the {n} says when you zoom in on it"),
+        ("what does the {n} say? Zoom in on it.", "what is written on the {n}, zooming in on it to read"),
+        ("what is the writing on the {n} if you zoom in on it?", "the writing on the {n} after zooming in on it"),
+        ("get a close-up of the {n}. What is on it?", "what a close-up of the {n} says"),
+    ),
+)
+_PLATES: tuple[_Forms, _Forms] = (
+    (
+        ("what is the number plate of the {n}?", "the number plate of the {n}"),
+        ("which registration does the {n} have?", "the registration of the {n}"),
+        ("can you read the number plate of the {n}?", "what the number plate of the {n} says"),
+    ),
+    (
+        ("zoom in on the {n} and read its number plate.", "the number plate of the {n}, zooming in on it to read"),
+        ("what is the registration of the {n}? Zoom in on it.", "which registration the {n} has when you zoom in on it"),
+    ),
+)
+
+
 def _draft(
     place: Place, one: Named, expected: Text, texts: tuple[TextSighting, ...], close: Place, zoom: tuple[ProgramCall, ...]
 ) -> Draft:
-    forms: tuple[tuple[str, str], ...] = (
-        (f"what does the {one.name} say?", f"what the {one.name} says"),
-        (f"what is written on the {one.name}?", f"what is written on the {one.name}"),
-        (f"what text is on the {one.name}?", f"what text is on the {one.name}"),
-        (f"what can be read on the {one.name}?", f"what can be read on the {one.name}"),
-        (f"which words or figures are on the {one.name}?", f"which words or figures are on the {one.name}"),
-    )
-    if zoom:
-        forms = (
-            (f"zoom in on the {one.name}. What does it say?", f"what the {one.name} says when you zoom in on it"),
-            (f"what does the {one.name} say? Zoom in on it.", f"what is written on the {one.name}, zooming in on it to read"),
-            (
-                f"what is the writing on the {one.name} if you zoom in on it?",
-                f"the writing on the {one.name} after zooming in on it",
-            ),
-            (f"get a close-up of the {one.name}. What is on it?", f"what a close-up of the {one.name} says"),
-        )
-    question = f"what does the {one.name} say?"
+    plate = str(one.thing.instance.attributes.get("plate", ""))
+    plated = expected.accepted == (plate,)
+    forms = (_PLATES if plated else _WRITING)[bool(zoom)]
+    forms = tuple((direct.format(n=one.name), inside.format(n=one.name)) for direct, inside in forms)
+    question = f"what is the number plate of the {one.name}?" if plated else f"what does the {one.name} say?"
     # Items are measured in the look that reads them, at its own sharpness.
     items = [close.sight.text_item(t) for t in texts]
     return Draft(
         category="ocr",
-        kind="close-up" if zoom else "in-view",
+        kind=("plate-" if plated else "") + ("close-up" if zoom else "in-view"),
         key=f"text:{one.thing.instance.id}",
         place=place,
         expected=expected,
         question=Question(forms),
-        evidence=(view(close, expected, about(one.kind), items, whole=False),),
+        evidence=(view(close, expected, one.words, items, whole=False),),
         looks=(*zoom, ask(question, place)),
         needs=tuple(dict.fromkeys((*place.needs, *(("zoom",) if zoom else ())))),
         tags=("text",),

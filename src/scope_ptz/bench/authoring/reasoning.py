@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import pairwise
 
-from scope_ptz.bench.authoring.counting import absent, counted
+from scope_ptz.bench.authoring.counting import absent, counted, plain_counts
 from scope_ptz.bench.authoring.drafts import Draft, Question, count, view
 from scope_ptz.bench.authoring.places import Place, Places, elsewhere, go, preset_at
-from scope_ptz.bench.authoring.words import about, article, noun_of, plural, unit_of
+from scope_ptz.bench.authoring.words import about, article, many_of, noun_of, unit_of
 from scope_ptz.bench.expected import ActionOnly, NoneThere, Number, YesNo
-from scope_ptz.bench.ground import Kind
+from scope_ptz.bench.kinds import Kind
 from scope_ptz.bench.tasks import Behaviour, EvidenceView
 
 _SUMS = (
@@ -34,6 +35,13 @@ _BRANCHES = (
     "If there are {least} {many} in the {p} view, move the camera to {yes}. If not, move it to {no}.",
     "Depending on the {many} at {p}: {least}, and you go on to {yes}; fewer, and you go on to {no}.",
 )
+_CHECKS = (
+    "Look for {one} at the {p} preset and tell me whether you found one. If so, go on to {yes}; if not, to {no}.",
+    "Is there {one} in the {p} view? Tell me, then switch to {yes} if there is, and to {no} if there is not.",
+    "Check {p} for {many}. If you see any, say so and move to {yes}; if there are none, say that and move to {no}.",
+    "Go to {p}. With {one} in view, finish at the {yes} preset, without one at {no}, and report what you found.",
+    "Please see whether {one} is in the {p} view. If yes, leave the camera at {yes}, else at {no}, and let me know.",
+)
 _WHERE = (
     "Check the presets {p} and {q}: is there {one} in either of them?",
     "Is {one} to be seen from {p} or from {q}?",
@@ -48,7 +56,10 @@ def drafts(one: Place, two: Place, places: Places, nouns: frozenset[str], rng: r
     p, q = one.preset, two.preset
     if p is None or q is None or p == q:
         return []
-    return [*_totals(one, two, p, q), *_branches(one, p, places, rng), *_either(one, two, p, q, nouns, rng)]
+    return [
+        *_totals(one, two, p, q), *_branches(one, p, places, rng), *_either(one, two, p, q, nouns, rng),
+        *_checks(one, p, places, nouns, rng),
+    ]  # fmt: skip
 
 
 def _seen(place: Place, kind: Kind, number: int) -> EvidenceView:
@@ -63,7 +74,7 @@ def _totals(one: Place, two: Place, p: str, q: str) -> Iterator[Draft]:
         m = there.get(kind)
         if m is None:
             continue
-        many = plural(noun_of(kind))
+        many = many_of(kind)
         program = (go(p), count(many, one), go(q), count(many, two))
         seen = (_seen(one, kind, n), _seen(two, kind, m))
         sorts = [("sum", n + m, _SUMS)] + ([("difference", n - m, _GAPS)] if n > m else [])
@@ -87,10 +98,10 @@ def _totals(one: Place, two: Place, p: str, q: str) -> Iterator[Draft]:
 def within(place: Place, rng: random.Random) -> list[Draft]:
     """Sums and differences within one view."""
     found = list[Draft]()
-    plain = [(k, n) for k, n in counted(place.sight) if k.colour is None]
+    plain = list(plain_counts(place.sight))
     rng.shuffle(plain)
     for (one, n), (two, m) in pairwise(plain):
-        first, second = plural(noun_of(one)), plural(noun_of(two))
+        first, second = many_of(one), many_of(two)
         together = Question(
             (
                 (f"how many {first} and {second} are there together?", f"how many {first} and {second} there are together"),
@@ -129,14 +140,14 @@ def _branches(one: Place, p: str, places: Places, rng: random.Random) -> Iterato
     if len(others) < 2:
         return
     start = Place(one.scene, one.start, (), one.at)
-    for kind, n in counted(one.sight):
-        if n < 2 or kind.colour is not None:
+    for kind, n in plain_counts(one.sight):
+        if n < 2:
             continue
         yes, no = rng.sample(others, 2)
         least = n + rng.choice((-1, 0, 2)) if n > 2 else n + rng.choice((0, 1))
         end = yes if n >= least else no
         final = Place(one.scene, one.start, (), preset_at(places.presets[end])).final
-        many = plural(noun_of(kind))
+        many = many_of(kind)
         yield Draft(
             category="multi_step_reasoning",
             kind="condition",
@@ -154,6 +165,52 @@ def _branches(one: Place, p: str, places: Places, rng: random.Random) -> Iterato
         )
 
 
+def _checks(one: Place, p: str, places: Places, nouns: frozenset[str], rng: random.Random) -> Iterator[Draft]:
+    """Whether something is at a preset, and then another preset for either case."""
+    others = [name for name in places.presets if name != p and name != one.start]
+    shown = [kind for kind, _ in plain_counts(one.sight)]
+    gone = [kind for kind in absent(one.sight, nouns) if kind.colour is None]
+    if len(others) < 2:
+        return
+    rng.shuffle(shown)
+    rng.shuffle(gone)
+    for here, missing in zip(shown, gone, strict=False):
+        yes, no = rng.sample(others, 2)
+        things = one.sight.of(here) or ()
+        there = YesNo(value=True, affirms=unit_of(here)[:2])
+        none = NoneThere(subject=unit_of(missing)[:2])
+        seen = view(one, there, about(here), [one.sight.item(things[0], True)], whole=False)
+        twin = _check(one, p, here, there, seen, (yes, no), places)
+        yield replace(
+            _check(one, p, missing, none, view(one, none, about(missing), whole=True), (yes, no), places),
+            kind="check-none",
+            twin=twin,
+        )
+
+
+def _check(
+    one: Place, p: str, kind: Kind, expected: YesNo | NoneThere, seen: EvidenceView, ends: tuple[str, str], places: Places
+) -> Draft:
+    yes, no = ends
+    end = no if isinstance(expected, NoneThere) else yes
+    start = Place(one.scene, one.start, (), one.at)
+    words = {"p": p, "one": article(noun_of(kind)), "many": many_of(kind), "yes": yes, "no": no}
+    return Draft(
+        category="multi_step_reasoning",
+        kind="check",
+        key=f"check:{p}:{noun_of(kind)}",
+        place=start,
+        expected=expected,
+        orders=tuple(text.format(**words) for text in _CHECKS),
+        evidence=(seen,),
+        program=(go(p), count(many_of(kind), one), go(end)),
+        behaviour=Behaviour(final=Place(one.scene, one.start, (), preset_at(places.presets[end])).final),
+        needs=("preset",),
+        tags=("none-there",) if isinstance(expected, NoneThere) else ("presence",),
+        reads=end,
+    )
+
+
 def _either(one: Place, two: Place, p: str, q: str, nouns: frozenset[str], rng: random.Random) -> Iterator[Draft]:
     missing_there = set(absent(two.sight, nouns))
     gone = [kind for kind in absent(one.sight, nouns) if kind in missing_there]
@@ -169,7 +226,7 @@ def _either(one: Place, two: Place, p: str, q: str, nouns: frozenset[str], rng: 
     if start.start == q:
         return  # what is there at the start would be seen without going anywhere
     for kind, (present, place) in zip(gone, shown, strict=False):
-        texts = (plural(noun_of(kind)), plural(noun_of(present)))
+        texts = (many_of(kind), many_of(present))
         yes = YesNo(value=True, affirms=unit_of(present)[:2])
         first = place.sight.of(present) or ()
         twin = Draft(

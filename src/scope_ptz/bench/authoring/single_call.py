@@ -7,12 +7,13 @@ from collections.abc import Iterator
 
 from scope_ptz.bench.authoring.counting import counted
 from scope_ptz.bench.authoring.drafts import Draft, Question, count, view
-from scope_ptz.bench.authoring.naming import singles
+from scope_ptz.bench.authoring.naming import distinct
 from scope_ptz.bench.authoring.places import Place, Places, adjust, go, move, preset_at, say
 from scope_ptz.bench.authoring.targets import framing
-from scope_ptz.bench.authoring.words import about, capital, noun_of, plural, unit_of
+from scope_ptz.bench.authoring.words import about, capital, many_of, noun_of, unit_of
 from scope_ptz.bench.expected import ActionOnly, Number
-from scope_ptz.bench.ground import TRACE_PX, Kind
+from scope_ptz.bench.ground import TRACE_PX
+from scope_ptz.bench.kinds import Kind
 from scope_ptz.bench.tasks import Argument, Behaviour, Category, Need, ProgramCall, RequiredCall
 from scope_ptz.world.models import SceneActor
 
@@ -171,7 +172,7 @@ def _close_ups(pool: list[Place]) -> Iterator[Draft]:
         if not place.stays and place.preset is None:
             continue
         here = Place(place.scene, place.preset or place.start, (), place.at)
-        for one in singles(place.sight, coloured=True, min_pixels=400):
+        for one in distinct(place.sight, 400):
             target = framing(here, one.thing, one.thing.instance)
             if target is None or len(one.thing.instance.attributes) == 0:
                 continue
@@ -240,7 +241,7 @@ def _sweeps(places: Places) -> Iterator[Draft]:
         if place.calls:
             continue
         for kind, number in counted(place.sight)[:40]:
-            many = plural(noun_of(kind))
+            many = many_of(kind)
             expected = Number(value=number, unit=unit_of(kind))
             items = [place.sight.item(t, True) for t in place.sight.of(kind) or ()]
             yield Draft(

@@ -6,13 +6,18 @@ import numpy as np
 
 from scope_ptz.bench.authoring.places import Place
 from scope_ptz.bench.episode import Standing
-from scope_ptz.bench.ground import EYES, Sight, Thing
+from scope_ptz.bench.ground import EYES, Sight
+from scope_ptz.bench.kinds import Thing
 from scope_ptz.bench.tasks import Framing
 from scope_ptz.geometry import Perspective, Pose, direction, pan_tilt_deg
 from scope_ptz.world.truth import Sighting
 
 FILL = 0.75
 """How much of its limiting side a framed target takes up."""
+
+
+SMALLEST_PX = 150
+"""What covers less of the frame is too small to be found for sure."""
 
 
 def close_pose(hull_deg: list[tuple[float, float]], zoom_limits: tuple[float, float]) -> tuple[Pose, float] | None:
@@ -37,7 +42,7 @@ def close_pose(hull_deg: list[tuple[float, float]], zoom_limits: tuple[float, fl
 
 def framed(place: Place, sighting: Sighting, thing: Thing) -> Place | None:
     """The view after zooming in on a thing; None when that cannot be foretold (it is cut or half hidden, or a limit cuts)."""
-    if sighting.cut or sighting.occluded or sighting.pixels < 400:
+    if sighting.cut or sighting.occluded or sighting.pixels < SMALLEST_PX:
         return None
     extent = place.scene.viewpoint(str(place.at.viewpoint)).extents.get(thing.number)
     limits = EYES.limits

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from scope_ptz.bench.expected import Options, Wordings
-from scope_ptz.bench.ground import Kind
+from scope_ptz.bench.kinds import Kind
 
 _IRREGULAR = {
     "person": "people", "man": "men", "woman": "women", "child": "children", "shelf": "shelves", "leaf": "leaves", "mouse": "mice",
@@ -16,6 +16,8 @@ UNCOUNTED = frozenset({
     "fence panel", "wall", "sky", "field", "grass", "plant", "shrub", "kerb", "roof", "platform", "track", "shopfront", "window",
     "railing", "bunting", "cable", "puddle", "produce", "goods", "scaffolding", "gravel pile", "sand pile", "ground", "marker post",
     "warehouse", "church", "station", "canopy", "flower bed", "box of fruit", "crate", "pipe stack", "terrace", "townhouse", "yew",
+    "door", "price card", "drain", "cup", "shop", "tree grate", "plinth", "tram platform", "notice", "poster", "chimney", "gutter",
+    "weighbridge", "rail", "line", "marking", "kerbstone", "steps", "stairs", "parapet", "box", "bag", "shelf", "sill", "river",
 })  # fmt: skip
 """What people do not count alike: where one ends and the next begins, or which of many far ones still counts, is anyone's guess."""
 
@@ -59,24 +61,56 @@ def listing(names: Sequence[str], word: str = "and") -> str:
     return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} {word} {names[-1]}"
 
 
+def called(category: str) -> str:
+    """What people say for a category, where they say something else."""
+    return _CALLED.get(category, category)
+
+
+_CALLED = {
+    "cross": "pharmacy cross", "drum": "traffic drum", "cabinet": "roadside cabinet", "roller": "road roller",
+    "suv": "SUV", "tv": "TV", "cctv camera": "CCTV camera", "a-board": "A-board",
+}  # fmt: skip
+
+
 def noun_of(kind: Kind) -> str:
     """What one thing of a kind is called, attributes in their usual order."""
+    noun = called(kind.category)
     if kind.attribute is not None:
-        return _WITH.get(kind.attribute[0], "{value} {noun}").format(value=kind.attribute[1], noun=kind.category)
-    return f"{kind.colour} {kind.category}" if kind.colour else kind.category
+        key, value = kind.attribute
+        key = "posture" if kind.category == "person" and key == "state" else key
+        return _WITH.get(key, ("{value} {noun}", ""))[0].format(value=value, noun=noun, a=article(value))
+    return f"{kind.colour} {noun}" if kind.colour else noun
 
 
-_WITH = {"vest": "{noun} in {value} vest", "helmet": "{noun} with {value} helmet"}
+def many_of(kind: Kind) -> str:
+    """What several things of a kind are called."""
+    key = kind.attribute[0] if kind.attribute is not None else ""
+    key = "posture" if kind.category == "person" and key == "state" else key
+    if kind.attribute is not None and key in _WITH:
+        return _WITH[key][1].format(value=kind.attribute[1], many=plural(called(kind.category)))
+    return plural(noun_of(kind))
+
+
+_WITH = {
+    "vest": ("{noun} in {a} vest", "{many} in {value} vests"),
+    "helmet": ("{noun} in {a} helmet", "{many} in {value} helmets"),
+    "posture": ("{noun} {value} down", "{many} {value} down"),
+    "light": ("{noun} with its roof sign {value}", "{many} with their roof signs {value}"),
+}
 
 
 def unit_of(kind: Kind) -> Wordings:
     """The words for what is counted: the whole name, the category, its last word."""
-    return tuple(dict.fromkeys((noun_of(kind), kind.category, kind.category.split()[-1])))
+    return tuple(dict.fromkeys((noun_of(kind), called(kind.category), kind.category, kind.category.split()[-1])))
 
 
 def about(*kinds: Kind) -> Wordings:
     """The words that a look at things of these kinds mentions."""
-    return tuple(dict.fromkeys(word for kind in kinds for word in (kind.category, kind.category.split()[-1])))
+    words = (word for kind in kinds for word in (kind.category, kind.category.split()[-1], *_ALSO.get(kind.category, ())))
+    return tuple(dict.fromkeys(words))
+
+
+_ALSO = {"person": ("anyone", "people"), "lorry": ("truck",)}
 
 
 def plain_colour(colour: object) -> str | None:
