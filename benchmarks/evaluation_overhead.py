@@ -1,5 +1,7 @@
 """What the evaluation engine costs: the same tasks through the bare agent loop and through Inspect AI, without any model.
 
+Processor time is compared, so that other work of the machine does not count.
+
 python benchmarks/evaluation_overhead.py tasks.jsonl [--pictures]
 """
 
@@ -27,9 +29,9 @@ from scope_ptz.world.clock import SceneClock
 
 
 async def bare(entries: tuple[Entry, ...], lent: Equipment, folder: Path, *, pictures: bool) -> float:
-    """Seconds for all runs, one after the other, without any engine."""
+    """Processor seconds for all runs, one after the other, without any engine."""
     planner, eyes = planner_for(PlannerChoice("grammar")), await lent.make_eyes(ModelWish("ground-truth"))
-    began = time.perf_counter()
+    began = time.process_time()
     for entry in entries:
         clock, scene = SceneClock(entry.time_s), lent.open_scene(entry.world)
         camera = (SimulatedCamera if pictures else BlankCamera)(scene, clock=clock, width=1280, height=720)
@@ -37,7 +39,7 @@ async def bare(entries: tuple[Entry, ...], lent: Equipment, folder: Path, *, pic
             await camera.go_to_preset(entry.facts.preset)
         images = RunFolder.create(folder, entry.facts.instruction) if pictures else NoImages()
         await Agent(planner, camera, eyes, images, snapshots=pictures).run(entry.facts.instruction)
-    return time.perf_counter() - began
+    return time.process_time() - began
 
 
 async def main(tasks: Path, *, pictures: bool) -> None:
@@ -50,9 +52,9 @@ async def main(tasks: Path, *, pictures: bool) -> None:
         options = RunOptions(wishes=Wishes(), out=folder / "logs", tasks=str(tasks), pictures=pictures, concurrency=1)
         console = Console(quiet=True)
         await evaluate(replace(options, limit=3), console)  # the engine imported
-        began = time.perf_counter()
+        began = time.process_time()
         made = await evaluate(options, console)
-        engine = time.perf_counter() - began
+        engine = time.process_time() - began
         size = (await anyio.Path(made.log).stat()).st_size / 1e6
     number = len(entries)
     print(f"{number} runs   bare loop {alone:.1f} s ({1000 * alone / number:.0f} ms a run)")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
 from typing import Any
 
 from inspect_ai.model import (
@@ -122,13 +123,24 @@ def _shown(names: Iterable[str | None], pictures: Mapping[str, str]) -> list[Con
     return [ContentImage(image=pictures[name]) for name in names if name is not None and name in pictures]
 
 
-def tool_infos() -> list[ToolInfo]:
-    """The nine tools as the engine hands them to a model."""
-    functions = (tool["function"] for tool in plain_schemas(schemas()))
-    return [
+@cache
+def _schemas() -> tuple[dict[str, Any], ...]:
+    """They are the same for every camera, and making them takes as long as a run of a small program."""
+    return tuple(schemas())
+
+
+@cache
+def _tool_infos() -> tuple[ToolInfo, ...]:
+    functions = (tool["function"] for tool in plain_schemas(_schemas()))
+    return tuple(
         ToolInfo(name=f["name"], description=f["description"], parameters=ToolParams.model_validate(f["parameters"]))
         for f in functions
-    ]
+    )
+
+
+def tool_infos() -> list[ToolInfo]:
+    """The nine tools as the engine hands them to a model."""
+    return list(_tool_infos())
 
 
 def state_of(messages: Sequence[ChatMessage]) -> State:
@@ -144,7 +156,7 @@ def state_of(messages: Sequence[ChatMessage]) -> State:
         raise PlannerError("There is no instruction among the messages.")
     newest = messages[-1]
     view = _view(newest) if isinstance(newest, ChatMessageUser) and newest is not asked else None
-    return State(instruction=asked.text, briefing=briefing, history=tuple(_history(messages)), tools=tuple(schemas()), view=view)
+    return State(instruction=asked.text, briefing=briefing, history=tuple(_history(messages)), tools=_schemas(), view=view)
 
 
 def _history(messages: Sequence[ChatMessage]) -> list[Exchange]:
