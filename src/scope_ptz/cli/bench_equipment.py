@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from anyio import to_thread
 
-from scope_ptz.bench.engine.entries import Entry, entries_of
+from scope_ptz.bench.engine.entries import Entry, entries_of, imported_entries
 from scope_ptz.bench.engine.equipment import Equipment, ModelWish
 from scope_ptz.bench.episode import Look
 from scope_ptz.camera.base import Frame, FrameOrigin
@@ -154,6 +154,9 @@ async def _count(truth: Perception, scene: str, look: Look) -> int | None:
 
 def tasks_of(split: str, scenes: Callable[[str], Scene]) -> tuple[Entry, ...]:
     """The tasks of a split by name, or of a file."""
+    from scope_ptz.bench.importing.tasks import holds_imported, load_imported
     from scope_ptz.bench.splits import load_split
 
+    if holds_imported(Path(split)):
+        return imported_entries(load_imported(Path(split)))
     return entries_of(load_split(split), scenes)

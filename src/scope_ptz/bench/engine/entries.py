@@ -13,6 +13,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from scope_ptz.bench.importing.tasks import ImportedTask
 from scope_ptz.bench.judging.wording import facts_of
 from scope_ptz.bench.tasks import Task
 from scope_ptz.bench.trials import TaskFacts
@@ -25,7 +26,7 @@ DIGEST_CHARS = 16
 
 class Entry(BaseModel):
     """``world``: the name under which its scene, or the variation of it, is opened; ``time_s``: scene time at the start; ``task``:
-    None where nothing but a judge can tell right from wrong."""
+    None where nothing but a judge can tell right from wrong; ``imported``: what another file expects of the calls then."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -33,6 +34,7 @@ class Entry(BaseModel):
     world: str
     time_s: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
     task: Task | None = None
+    imported: ImportedTask | None = None
 
     def metadata(self) -> dict[str, Any]:
         """The entry as a log keeps it: facts by name, so that metrics and the viewer can group by them."""
@@ -43,6 +45,7 @@ class Entry(BaseModel):
             "world": self.world,
             "time_s": self.time_s,
             "task": self.task.model_dump(mode="json", exclude_defaults=True) if self.task else None,
+            "imported": self.imported.model_dump(mode="json") if self.imported else None,
         }
 
     @classmethod
@@ -50,7 +53,9 @@ class Entry(BaseModel):
         """The entry that a log keeps. Raises ``TraceError`` when it is none."""
         try:
             facts = {name: metadata[name] for name in TaskFacts.model_fields if name in metadata}
-            return cls.model_validate({"facts": facts, **{name: metadata[name] for name in ("world", "time_s", "task")}})
+            return cls.model_validate(
+                {"facts": facts, **{name: metadata[name] for name in ("world", "time_s", "task", "imported")}}
+            )
         except (KeyError, ValidationError) as error:
             raise TraceError("A sample of this log does not say which task it is of: it is no log of this benchmark.") from error
 
@@ -66,6 +71,11 @@ def entry_of(task: Task, scene: Scene) -> Entry:
 def entries_of(tasks: Iterable[Task], open_scene: OpenScene) -> tuple[Entry, ...]:
     """Benchmark tasks to run."""
     return tuple(entry_of(task, open_scene(task.world)) for task in tasks)
+
+
+def imported_entries(tasks: Iterable[ImportedTask]) -> tuple[Entry, ...]:
+    """Tasks of another file's format: a judge says whether they were done, and their expected calls are the one check."""
+    return tuple(Entry(facts=t.facts, world=t.facts.scene, time_s=t.start_s, imported=t) for t in tasks)
 
 
 def chosen(

@@ -13,6 +13,7 @@ from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.sampling import Kept, sample_name, trace_of
 from scope_ptz.bench.episode import Episode, Look
 from scope_ptz.bench.error_modes import ErrorMode, error_mode
+from scope_ptz.bench.importing.checking import check_calls_of
 from scope_ptz.bench.trials import Check, Judgement, Trial
 from scope_ptz.bench.verdict import AGENTS_OWN_FAILURES, Headline, judge
 
@@ -31,6 +32,8 @@ def trial_of(entry: Entry, kept: Kept, epoch: int, where: Path, judgements: tupl
             judgements=judgements,
         )  # fmt: skip
     verdict = _by_checks(entry, kept, trace) if entry.task else _by_judge(trace, judgements)
+    if entry.imported is not None:
+        verdict["checks"] = (check_calls_of(entry.imported, kept.episode(trace)),)
     return Trial.model_validate(
         {"task": entry.facts, "epoch": epoch, "sample": name, "judgements": judgements} | verdict | _run(trace)
     )
