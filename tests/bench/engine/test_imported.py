@@ -16,7 +16,8 @@ from tests.support.misbehaving import Misbehaving, Say, good
 
 def test_imported_tasks_run_and_are_judged(scope: Scope, tmp_path: Path) -> None:
     facts = TaskFacts(
-        id="q-1", dataset="theirs", stratum="imported", scene=SCENE, viewpoint="mast", preset="yard", instruction="pan right 20 degrees",
+        id="q-1", dataset="theirs", stratum="imported", scene=SCENE, viewpoint="mast", preset="yard",
+        instruction="pan right 20 degrees",
         category="single_call", scope="current", difficulty="easy", expected="The camera has turned.",
     )  # fmt: skip
     task = ImportedTask(facts=facts, line=2, raw={}, calls=(RequiredCall(tool="adjust_ptz"),))
