@@ -38,6 +38,7 @@ _TWINS: tuple[frozenset[str], ...] = (
         "departures board", "street name sign", "bus stop", "bus stop flag", "hanging sign", "information board", "warning sign",
         "notice board", "advertising column", "billboard", "bus stop sign", "wayfinding sign", "safety sign", "gantry", "plate",
         "traffic sign", "road sign", "street sign", "parking sign", "estate agent board", "for sale board", "label", "placard",
+        "speed sign", "dock number", "bay number",
     }),
     frozenset({"car", "taxi", "police car"}),
     frozenset({"bus", "coach", "minibus"}),
@@ -128,12 +129,15 @@ class Kind:
 def own_colour(thing: Thing) -> str | None:
     """The colour of a thing itself: not that of somebody's clothes, nor of what it holds ("planter with red flowers")."""
     colour = thing.attributes.get("colour")
-    if not isinstance(colour, str) or thing.category in GROUPS["person"] | {"cyclist", "driver"}:
+    if not isinstance(colour, str) or thing.category in GROUPS["person"] | _COLOURLESS:
         return None
     words = thing.name.lower().split()
     behind = next((words[at + 1 :] for at, word in enumerate(words) if word in _JOINS), [])
     return None if set(colour.split()) & set(behind) else colour
 
+
+_COLOURLESS = frozenset({"cyclist", "driver", "clock", "statue", "fox", "bay number", "dock number", "tram", "headline board"})
+"""Of these nobody would say that they have one colour, or that colour."""
 
 _JOINS = frozenset({"of", "with", "in", "on", "for"})
 
@@ -151,7 +155,8 @@ COUNTED_STATES: tuple[tuple[str, str, str], ...] = (
     ("worker", "helmet", "white"), ("worker", "helmet", "yellow"), ("worker", "helmet", "blue"), ("taxi", "light", "lit"),
     ("skip", "state", "full"), ("skip", "state", "empty"), ("door", "state", "open"), ("dock door", "state", "open"),
     ("dock door", "state", "closed"), ("roller door", "state", "open"), ("roller door", "state", "closed"),
-    ("lamp post", "state", "lit"), ("umbrella", "state", "open"), ("container", "state", "open"),
+    ("lamp post", "state", "lit"), ("parking space", "state", "empty"), ("parking space", "state", "occupied"),
+    ("umbrella", "state", "open"), ("container", "state", "open"),
 )  # fmt: skip
 """(category, attribute, value) that can be told at a glance, and so be counted."""
 

@@ -32,9 +32,9 @@ def _of_two(place: Place, rng: random.Random) -> Iterator[Draft]:
     pairs = [
         (a, b)
         for a, b in combinations(counted(place.sight), 2)
-        if (a[0].category != b[0].category or (a[0].colour and b[0].colour))
-        and not a[0].attribute
+        if not a[0].attribute
         and not b[0].attribute
+        and bool(a[0].colour) == bool(b[0].colour) == (a[0].category == b[0].category)
         and a[1] + b[1] >= 5
     ]
     rng.shuffle(pairs)

@@ -64,7 +64,7 @@ def _attributes(place: Place, values: Values) -> Iterator[Draft]:
     for one in named:
         facts = one.thing.instance.attributes
         colour = plain_colour(own_colour(one.thing.instance))
-        if colour is not None and colour not in one.thing.instance.category:
+        if colour is not None and not {colour, str(facts.get("colour"))} & set(one.name.split()):
             yield _choice(
                 place,
                 one,
@@ -92,7 +92,7 @@ def _attributes(place: Place, values: Values) -> Iterator[Draft]:
                     Choice(value=worn, options=colour_options()),
                     (
                         (f"what colour is the {garment} of the {{n}}?", f"what colour the {garment} of the {{n}} is"),
-                        (f"which colour is the {{n}}'s {garment}?", f"which colour the {{n}}'s {garment} is"),
+                        (f"the {garment} of the {{n}}: which colour is it?", f"which colour the {garment} of the {{n}} has"),
                     ),
                 )
         state = facts.get("state")
@@ -115,7 +115,13 @@ def _attributes(place: Place, values: Values) -> Iterator[Draft]:
                 continue
             known = values.get((one.thing.instance.category, key), ())
             value = facts.get(key)
-            if isinstance(value, str) and value in known and len(known) >= 2 and one.thing.pixels >= 900 and value not in one.name:
+            if (
+                isinstance(value, str)
+                and value in known
+                and len(known) >= 2
+                and one.thing.pixels >= 900
+                and value not in one.name.lower()
+            ):
                 forms = _ONLY_ONE if key == "kind" and one.name == one.kind.category else ask_it
                 yield _choice(place, one, key, Choice(value=value, options=options(known)), forms)
 

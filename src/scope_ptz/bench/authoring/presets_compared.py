@@ -29,6 +29,10 @@ _OF_THREE = (
 )
 
 
+_FEWEST = 3
+"""With fewer in all there is nothing to compare."""
+
+
 def drafts(places: Sequence[Place], rng: random.Random) -> list[Draft]:
     """``places``: two or three presets, come to one after the other."""
     found = list(_compared(places))
@@ -45,7 +49,7 @@ def _compared(places: Sequence[Place]) -> Iterator[Draft]:
     for kind in known[0]:
         numbers = [counts.get(kind) for counts in known]
         found = [number for number in numbers if number is not None]
-        if len(found) < len(places) or (len(places) == 3 and found.count(max(found)) > 1):
+        if len(found) < len(places) or sum(found) < _FEWEST or (len(places) == 3 and found.count(max(found)) > 1):
             continue
         many = many_of(kind)
         best = "same" if len(set(found)) == 1 else names[found.index(max(found))]

@@ -80,6 +80,7 @@ class Selection:
         self.frames = Frames(shared.texts)
         self.rows: list[Chosen] = []
         self.used: defaultdict[str, Counter[Hashable]] = defaultdict(Counter)
+        self.slack = 1
         self.most_frame = max(2, int(quota * FRAME_SHARE))
 
     def fill(self, drafts: Sequence[Draft]) -> list[Chosen]:
@@ -90,12 +91,11 @@ class Selection:
         wanted = min(self.shared.most(PAIRS.get(self.category, 0)), self.quota // 2) if self.category in PAIRS else 0
         for _ in range(wanted):
             self._best(pairs, self._pair)
-        singles = [draft for draft in pool if draft.twin is None]
-        for tight in (True, False):
-            take = self._within_limits if tight else self._any
-            while len(self.rows) < self.quota and self._best(singles, take):
+        for slack in (1, 2, 4, 1000):
+            # What the scenes do not yield within the limits is taken beyond them, as little beyond as possible.
+            self.slack, singles = slack, [draft for draft in pool if draft.twin is None]
+            while len(self.rows) < self.quota and self._best(singles, self._single):
                 pass
-            singles = [draft for draft in pool if draft.twin is None]
         return self.rows
 
     def _best(self, pool: list[Draft], take: _Take) -> bool:
@@ -111,21 +111,18 @@ class Selection:
         twin = () if draft.twin is None else (("answer", draft.twin.reads),)
         return sum(_WEIGHTS[name] * self.used[name][value] for name, value in (*draft.traits, *twin))
 
-    def _within_limits(self, draft: Draft) -> bool:
-        return not self._too_often(draft) and self._any(draft)
-
-    def _any(self, draft: Draft) -> bool:
-        return self._add(draft) is not None
+    def _single(self, draft: Draft) -> bool:
+        return not self._too_often(draft) and self._add(draft) is not None
 
     def _too_often(self, draft: Draft) -> bool:
         if draft.expected.kind == "yes_no":
-            return self.shared.answers[draft.reads] >= self.shared.most(POLAR)
+            return self.shared.answers[draft.reads] >= self.slack * self.shared.most(POLAR)
         if draft.expected.kind == "action_only":
             return False
-        limit = self.shared.most(ANSWERS.get(self.category, self.quota))
+        limit = self.slack * self.shared.most(ANSWERS.get(self.category, self.quota))
         if self.used["alone"][draft.reads] >= limit:
             return True
-        return first_is_right(draft) and self.shared.answers["first"] >= self.shared.most(FIRST_NAMED)
+        return first_is_right(draft) and self.shared.answers["first"] >= self.slack * self.shared.most(FIRST_NAMED)
 
     def _pair(self, draft: Draft) -> bool:
         twin, limit = draft.twin, PAIRS_OF_KIND.get(draft.kind)

@@ -18,6 +18,7 @@ UNCOUNTED = frozenset({
     "warehouse", "church", "station", "canopy", "flower bed", "box of fruit", "crate", "pipe stack", "terrace", "townhouse", "yew",
     "door", "price card", "drain", "cup", "shop", "tree grate", "plinth", "tram platform", "notice", "poster", "chimney", "gutter",
     "weighbridge", "rail", "line", "marking", "kerbstone", "steps", "stairs", "parapet", "box", "bag", "shelf", "sill", "river",
+    "bay number", "hatched zone", "road marking", "dock leveller", "dock shelter", "silo", "dock number", "kerb ramp",
 })  # fmt: skip
 """What people do not count alike: where one ends and the next begins, or which of many far ones still counts, is anyone's guess."""
 
@@ -67,8 +68,8 @@ def called(category: str) -> str:
 
 
 _CALLED = {
-    "cross": "pharmacy cross", "drum": "traffic drum", "cabinet": "roadside cabinet", "roller": "road roller",
-    "suv": "SUV", "tv": "TV", "cctv camera": "CCTV camera", "a-board": "A-board",
+    "cross": "pharmacy cross", "roller": "road roller", "suv": "SUV", "tv": "TV", "cctv camera": "CCTV camera",
+    "a-board": "A-board",
 }  # fmt: skip
 
 
