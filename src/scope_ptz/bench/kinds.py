@@ -51,7 +51,7 @@ _TWINS: tuple[frozenset[str], ...] = (
                "lighting mast", "flagpole", "signpost", "traffic light", "floodlight mast", "light", "lighting tower",
                "bollard light", "wall lamp", "camera mast"}),
     frozenset({"bollard", "marker post", "post", "traffic post"}),
-    frozenset({"kiosk", "market stall", "stall", "stand", "gazebo", "tent", "ticket kiosk"}),
+    frozenset({"kiosk", "market stall", "portable toilet", "stall", "stand", "gazebo", "tent", "ticket kiosk"}),
     frozenset({"crate", "box", "carton", "case", "parcel", "cardboard box", "pallet box", "package", "chest", "stillage"}),
     frozenset({"bench", "chair", "seat", "stool"}),
     frozenset({"awning", "parasol", "umbrella", "canopy", "sunshade"}),

@@ -33,6 +33,7 @@ _TRAILERS = re.compile(
 )
 _NEXT_SENTENCE = re.compile(r"[.!]\s+(?=(?:It|This|That|The|There|I|They|In|On|At|Source)\b)")
 _MOST_ALONE = 8
+_MOST_IN_CAPITALS = 16
 
 
 def same_text(one: str, other: str, *, ocr: bool) -> bool:
@@ -64,7 +65,10 @@ def read_text(expected: Text, script: Script, answer: str) -> Reading:
     candidate = _NEXT_SENTENCE.split(candidate)[0]
     candidate = _TRAILERS.sub("", candidate.strip().strip(".!,")).strip()
     candidate = _LEADS.sub("", re.sub(r"\s*\n\s*", APART, candidate))
-    words = candidate.split()
+    words = [word for word in candidate.split() if word != APART.strip()]
+    if candidate.isupper():
+        # Nobody writes prose in capitals: this is the lettering itself.
+        most = max(most, _MOST_IN_CAPITALS)
     if re.match(r"there (?:is|are)\b|done\b", candidate, re.IGNORECASE):
         return Unreadable("no text is quoted")
     if len(words) > most:

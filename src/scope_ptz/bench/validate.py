@@ -119,7 +119,12 @@ async def validate(
     report, common, usual = Report(), common_answers(tasks), common_answers(tasks, presences=True)
     siblings = sibling_answers(tasks)
     stages = {name: Stage(scene, equip, EYES) for name, scene in scenes.items()}
-    for number, task in enumerate(tasks, 1):
+    world = ""
+    # World by world, whose layers are let go of after it: all of them together are large.
+    for number, task in enumerate(sorted(tasks, key=lambda task: task.world), 1):
+        if world and world != task.world:
+            scenes[world].release()
+        world = task.world
         report.tasks += 1
         report.by_stratum[task.stratum] += 1
         if task.stratum == "core":

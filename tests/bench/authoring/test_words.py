@@ -44,7 +44,7 @@ def test_names_of_kinds() -> None:
     assert noun_of(Kind("traffic cone", "orange")) == "orange traffic cone"
     assert noun_of(Kind("worker", None, ("vest", "orange"))) == "worker in an orange vest"
     assert many_of(Kind("worker", None, ("helmet", "white"))) == "workers in white helmets"
-    assert many_of(Kind("person", None, ("state", "sitting"))) == "people sitting down"
+    assert many_of(Kind("person", None, ("state", "sitting"))) == "people who are sitting"
     assert many_of(Kind("cross")) == "pharmacy crosses"
     assert unit_of(Kind("traffic cone")) == ("traffic cone", "cone")
     assert about(Kind("car", "red")) == ("car",)

@@ -95,7 +95,7 @@ def many_of(kind: Kind) -> str:
 _WITH = {
     "vest": ("{noun} in {a} vest", "{many} in {value} vests"),
     "helmet": ("{noun} in {a} helmet", "{many} in {value} helmets"),
-    "posture": ("{noun} {value} down", "{many} {value} down"),
+    "posture": ("{noun} who is {value}", "{many} who are {value}"),
     "light": ("{noun} with its roof sign {value}", "{many} with their roof signs {value}"),
 }
 
