@@ -10,8 +10,9 @@ from typing import Any
 import anyio
 
 from scope_ptz import __version__
-from scope_ptz.bench.engine.cards import DETERMINISTIC, engine_version
+from scope_ptz.bench.engine.cards import DETERMINISTIC, PRICE, engine_version
 from scope_ptz.bench.engine.entries import Entry, datasets, digest
+from scope_ptz.bench.engine.estimate import Price
 from scope_ptz.bench.trials import ModelCard, RunCard
 from scope_ptz.cli.choosing import Choice, EyesChoice, PlannerChoice
 from scope_ptz.endpoints.endpoint import Endpoint
@@ -30,12 +31,15 @@ async def run_card(
     concurrency: int,
     contended: bool,
     variant: str,
+    price: Price | None,
     **facts: Any,
 ) -> RunCard:
     """The card. ``planner``: for its exact prompt and sampling; None for other agents; ``facts``: split, seed, epochs, ..."""
     details = planner.details if planner is not None else {}
     spec = choice.eyes.spec
     sampling: dict[str, Any] = {"planner": details}
+    if price is not None:
+        sampling[PRICE] = {"input": price.input_usd, "output": price.output_usd}
     if spec is not None:
         sampling["perception"] = {"backend": spec.backend, "coordinates": spec.coordinates, **_plain(spec.options)}
     return RunCard(

@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import anyio
 
-from scope_ptz.bench.trials import Evaluation
+from scope_ptz.bench.trials import Evaluation, Trial
 from scope_ptz.cli.choosing import Choice, Wishes, choose
 from scope_ptz.cli.endings import complain
 from scope_ptz.errors import ConfigError, InputError, ScopeError
@@ -121,7 +121,8 @@ class _Prepared:
         spec = choice.eyes.spec
         self.identity = identity_of(
             digest(self.entries), options.epochs, options.seed, options.agent, options.max_steps, options.time_s,
-            options.pictures, options.latency, options.variant, choice.planner.name, choice.eyes.name, details,
+            options.pictures, options.latency, options.variant, choice.planner.name, choice.eyes.name,
+            {name: value for name, value in details.items() if name != "url"},
             spec.model_dump(mode="json", exclude={"endpoint"}) if spec else None, _place(choice),
         )  # fmt: skip
 
@@ -203,8 +204,8 @@ class _Prepared:
         options, choice = self.options, self.choice
         card = await run_card(
             choice, self.planner, self.entries, agent=options.agent, concurrency=self.concurrency,
-            contended=not options.latency, variant=options.variant, split=options.tasks, seed=options.seed,
-            max_steps=options.max_steps, epochs=options.epochs,
+            contended=not options.latency, variant=options.variant, split=Path(options.tasks).name, seed=options.seed,
+            max_steps=options.max_steps, epochs=options.epochs, price=options.price,
         )  # fmt: skip
         # Looks of one step are made at the same time, as many as the loop allows.
         config = GenerateConfig(max_connections=self.concurrency * 8)
@@ -223,7 +224,7 @@ class _Prepared:
         judging = judge_as_model(judge, self.concurrency * 2) if judge is not None else None
         return Setting(options.out, planner, eyes, judging, self.concurrency, self.identity, card)
 
-    def _foretell(self, console: Console, wanted: int, done: tuple[Any, ...], before: Sequence[Found]) -> None:
+    def _foretell(self, console: Console, wanted: int, done: Sequence[Trial], before: Sequence[Found]) -> None:
         from scope_ptz.bench.engine.estimate import estimate
         from scope_ptz.bench.engine.runs import earlier
         from scope_ptz.cli.bench_foretelling import lines
@@ -233,7 +234,9 @@ class _Prepared:
                 f"Going on with {before[0].path}: {len(done)} of {wanted} runs are done.", highlight=False, soft_wrap=True
             )
         known = earlier(self.options.out, self.choice.planner.name, self.choice.eyes.name)
-        told = estimate(self.entries, self.options.epochs, self.concurrency, known, self.options.price)
+        kept = {trial.task.id for trial in done} if self.options.epochs == 1 else set()
+        left = [entry for entry in self.entries if entry.facts.id not in kept]
+        told = estimate(left, self.options.epochs, self.concurrency, known, self.options.price)
         for line in lines(told, self.choice, self.concurrency):
             console.print(line, highlight=False, soft_wrap=True)
 

@@ -62,9 +62,7 @@ PicturesOption = Annotated[
 OutOption = Annotated[Path, typer.Option("--out", help="Folder of the logs.", rich_help_panel=RUN_PANEL)]
 PriceOption = Annotated[
     str | None,
-    typer.Option(
-        "--price", metavar="IN,OUT", help="US dollars per million planner tokens, for the estimate.", rich_help_panel=RUN_PANEL
-    ),
+    typer.Option("--price", metavar="IN,OUT", help="US dollars per million planner tokens.", rich_help_panel=RUN_PANEL),
 ]
 AgentOption = Annotated[
     str,

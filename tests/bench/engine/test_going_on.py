@@ -119,22 +119,24 @@ def run(scope: Scope, server: Misbehaving, tasks: Path, logs: Path, *further: st
 
 
 def test_a_misbehaving_server_loses_no_run(scope: Scope, tmp_path: Path) -> None:
-    tasks = many(6)
+    tasks = many(11)  # of which one is broken: less than fails a log as a whole
     dump_tasks(tasks, tmp_path / "tasks.jsonl")
     again = status(429, headers={"Retry-After": "0"})
     garbage = body('{"choices": [{"message": {"tool_calls": [1]}}]}')
     well = good(turner)
     script = [status(401), again, again, well, well, malformed(), well, reset(), well, garbage]
     with Misbehaving(then=in_turn(script, well)) as server:
-        code = run(scope, server, tmp_path / "tasks.jsonl", tmp_path / "logs")
+        code = run(scope, server, tmp_path / "tasks.jsonl", tmp_path / "logs", "--price", "1,2")
         assert code == 1
         (log,) = (tmp_path / "logs").glob("*.eval")
         first = read_evaluation(log)
         # All that was asked for is in the log: what the server broke is counted apart, and in no accuracy.
-        assert len(first.trials) == 6
+        assert len(first.trials) == 11
         broken = [trial for trial in first.trials if trial.headline == "infrastructure"]
         assert len(broken) == 1
         assert "unauthorised" in broken[0].reason
+        priced = next(trial for trial in first.trials if trial.headline == "correct")
+        assert priced.cost_usd == pytest.approx((priced.input_tokens + 2 * priced.output_tokens) / 1e6)
         events = Counter[str]()
         for trial in first.trials:
             events.update(trial.server_events)

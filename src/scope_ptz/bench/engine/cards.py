@@ -16,6 +16,7 @@ from scope_ptz.errors import TraceError
 ENGINE = "inspect-ai"
 CARD = "card"
 SCOPE = "scope"
+PRICE = "price_usd_per_million_tokens"
 DETERMINISTIC = ("grammar", "ground-truth", "noisy")
 
 
@@ -36,6 +37,12 @@ def card_of(header: EvalLog, trace: Trace | None) -> RunCard:
         return _told(header, metadata[SCOPE], trace.started.planner_details if trace is not None else {})
     except (ValidationError, KeyError) as error:
         raise TraceError(f"The run card of {header.location} is damaged: {error}.") from error
+
+
+def cost_usd(card: RunCard, input_tokens: int, output_tokens: int) -> float | None:
+    """What the planner's tokens of a run cost, where prices were given."""
+    price = card.sampling.get(PRICE)
+    return (input_tokens * price["input"] + output_tokens * price["output"]) / 1e6 if price else None
 
 
 def _told(header: EvalLog, facts: Mapping[str, Any], planner: Mapping[str, str]) -> RunCard:

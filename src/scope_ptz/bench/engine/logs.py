@@ -16,7 +16,7 @@ from pydantic import ValidationError
 from pydantic_core import from_json
 
 from scope_ptz.agent.trace import Trace
-from scope_ptz.bench.engine.cards import card_of
+from scope_ptz.bench.engine.cards import card_of, cost_usd
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.judgements import judgements_in
 from scope_ptz.bench.engine.pictures import jpeg_of
@@ -60,7 +60,8 @@ def read_evaluation(path: Path) -> Evaluation:
         card = card_of(header, trace_of(first.trace, path) if first is not None else None)
     order = {str(name): at for at, name in enumerate(header.eval.dataset.sample_ids or ())}
     trials.sort(key=lambda trial: (order.get(trial.task.id, len(order)), trial.task.id, trial.epoch))
-    return Evaluation(card=card, trials=tuple(trials), wanted=wanted, log=str(path))
+    priced = (t.model_copy(update={"cost_usd": cost_usd(card, t.input_tokens, t.output_tokens)}) for t in trials)
+    return Evaluation(card=card, trials=tuple(priced), wanted=wanted, log=str(path))
 
 
 def trials_by_sample(path: Path) -> dict[str, Trial]:

@@ -49,7 +49,8 @@ class Found:
 
     @property
     def finished(self) -> bool:
-        return self.header.status == "success"
+        """Whether nothing is left to do: a few broken runs do not fail a log, and are to be made again all the same."""
+        return self.header.status == "success" and all(self.runs.values())
 
 
 @dataclass(frozen=True, slots=True)

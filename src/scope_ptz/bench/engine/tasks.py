@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 from inspect_ai import Epochs, Task
@@ -33,7 +34,7 @@ def bench_task(
     """Entries to run, the agent as their solver, checks and so many ``judgements`` as their scorers. Broken runs are scored, and
     counted apart."""
     return Task(
-        dataset=dataset_of(entries, name=f"{datasets(entries)} {split}"),
+        dataset=dataset_of(entries, name=f"{datasets(entries)} {Path(split).name}"),
         solver=scope_agent(agent, pictures, max_steps, time_s, seed),
         scorer=[checks(), *(judge(repeat) for repeat in range(judgements))],
         epochs=Epochs(epochs, "mean"),
@@ -52,7 +53,7 @@ def facts(entries: Sequence[Entry], split: str, *, agent: str, max_steps: int, s
             "package_version": __version__,
             "dataset": datasets(entries),
             "dataset_digest": digest(entries),
-            "split": split,
+            "split": Path(split).name,
             "agent": agent,
             "max_steps": max_steps,
             "seed": seed,
