@@ -61,7 +61,8 @@ def main() -> int:
 
 def _poses(viewpoint: Viewpoint) -> dict[str, Pose]:
     poses = {"panorama only": Pose(0.0, -5.0, 1.0), "nadir": Pose(0.0, -60.0, 1.0), "seam": Pose(179.0, -20.0, 1.0)}
-    if tiles := viewpoint.manifest.tiles:
+    closest = Perspective(0.0, 0.0, AXIS_M5075_G.hfov_deg(5.0), WIDTH, HEIGHT)
+    if tiles := [tile for tile in viewpoint.manifest.tiles if tile.suits(closest)]:
         middle = tiles[len(tiles) // 2]
         poses |= {f"tiles {zoom:g}x": Pose(middle.pan_deg, middle.tilt_deg, zoom) for zoom in (2.0, 3.0, 5.0)}
     return poses

@@ -8,7 +8,7 @@ import pytest
 from scope_ptz.blender.band import Panorama, reachable_band
 from scope_ptz.blender.keyframes import MAX_SIDE_PX, keyframes
 from scope_ptz.blender.panorama import joined, smoothed
-from scope_ptz.blender.tiles import Cell, Target, cover, covers, in_rows, most_useful, targets
+from scope_ptz.blender.tiles import Cell, Target, busiest, cover, covers, in_rows, most_useful, targets
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, direction, pan_tilt_deg
 from scope_ptz.world.models import Band, SceneActor, SceneFile, ScenePreset, SceneText, SceneViewpoint
 
@@ -170,3 +170,19 @@ def test_every_leg_of_a_path_has_pictures_of_its_own_up_to_its_corners() -> None
 
 def test_what_passes_out_of_the_band_is_left_out() -> None:
     assert keyframes(actor(), None, HERE, Band(top_tilt_deg=59, bottom_tilt_deg=30), None, 40) == []
+
+
+def test_wider_tiles_go_where_most_outlines_are() -> None:
+    panorama = Panorama.of(1440, BAND)
+    ids = np.zeros((panorama.height, 1440), dtype=np.uint16)
+    row = round((59.0 + 12.0) / 149.0 * panorama.height)  # tilt -12
+    for column in range(1300, 1440, 8):  # pan 145 to 180: posts, and
+        ids[row - 20 : row + 20, column : column + 4] = 1 + column
+    ids[row - 20 : row + 20, 0:300] = 9  # pan -180 to -105: one long wall
+    (cell,) = busiest(ids, panorama.projection, 1)
+    assert abs(cell.pan_deg - 162.0) < 12.0 and abs(cell.tilt_deg + 12.0) < 6.0
+    cells = busiest(ids, panorama.projection, 14)
+    assert len(cells) < 14, "nothing is spent on cells without outlines"
+    views = [c.view(34.0) for c in cells]
+    posts = Target("posts", np.stack([np.linspace(146.0, 178.0, 20), np.full(20, -12.0)], axis=-1))
+    assert covers(views, posts)

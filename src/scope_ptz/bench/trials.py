@@ -25,8 +25,8 @@ class _Record(BaseModel):
 class TaskFacts(_Record):
     """What reports group runs by. ``viewpoint``: where the run starts; ``expected``: the expected answer in words.
 
-    ``stratum`` "imported": a task of another file, without executable checks of its answer. ``demands``: what the run must have done,
-    in sentences for a judge; only what the instruction fixes.
+    ``stratum`` "imported": a task of another file, without executable checks of its answer. ``demands``: what the run must have
+    done, in sentences for a judge; only what the instruction fixes.
     """
 
     id: str

@@ -18,11 +18,11 @@ from scope_ptz.blender.extents import extents
 from scope_ptz.blender.keyframes import Keyframe, keyframes
 from scope_ptz.blender.packing import Rendered, RenderedActor, RenderedTile, weight_bytes, write_pack
 from scope_ptz.blender.panorama import render_base
-from scope_ptz.blender.quality import DEPTH_STEP, FAR_M, NEAR_M, PACK_BYTES, Quality
+from scope_ptz.blender.quality import DEPTH_STEP, FAR_M, NEAR_M, PACK_BYTES, WIDER_DENSITY_PX_PER_DEG, Quality
 from scope_ptz.blender.requests import panorama_request, perspective_request
 from scope_ptz.blender.sheets import make_sheet
 from scope_ptz.blender.sources import scene_key
-from scope_ptz.blender.tiles import cover, covers, in_rows, most_useful, targets
+from scope_ptz.blender.tiles import busiest, cover, covers, in_rows, most_useful, targets
 from scope_ptz.blender.verify import PoseReport, draw_poses, verify
 from scope_ptz.blender.workshop import Progress, Workshop
 from scope_ptz.errors import BlenderError, UnknownNameError
@@ -131,7 +131,10 @@ class _Baker:
         base = render_base(self._worker, self._shop, name, panorama, q.base_samples)
         wanted = targets(self._scene, viewpoint, ids, wide.projection)
         views = [cell.view(q.tile_density_px_per_deg) for cell in in_rows(most_useful(cover(wanted), wanted, q.max_cells))]
-        tiles = self._tiles(name, views)
+        tiles = self._tiles(name, "tiles", views)
+        if q.wider_tiles:
+            busy = busiest(ids, wide.projection, q.wider_tiles)
+            tiles += self._tiles(name, "wider tiles", [cell.view(WIDER_DENSITY_PX_PER_DEG) for cell in busy])
         actors = [a for actor in self._scene.actors if (a := self._actor(viewpoint, actor)) is not None]
         rendered = Rendered(panorama, base, ids, encode_depth(metres, NEAR_M, FAR_M, DEPTH_STEP), tiles, actors, silhouettes)
         manifest = write_pack(folder, self._scene, viewpoint, rendered, q, PACK_BYTES, self._shop.steps(f"{name}/pack", 3))
@@ -169,8 +172,8 @@ class _Baker:
         done = self._shop.part(f"{viewpoint.name}/extents", ".json", place, measure)
         return [Extent.model_validate(e) for e in json.loads(done.read_text())]
 
-    def _tiles(self, viewpoint: str, views: list[Perspective]) -> list[RenderedTile]:
-        step = self._shop.steps(f"{viewpoint}/tiles", len(views))
+    def _tiles(self, viewpoint: str, part: str, views: list[Perspective]) -> list[RenderedTile]:
+        step = self._shop.steps(f"{viewpoint}/{part}", len(views))
         tiles = []
         for view in views:
             colour = self._colour(viewpoint, f"{viewpoint}/tile", view, self._quality.tile_samples)

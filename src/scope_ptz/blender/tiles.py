@@ -13,6 +13,9 @@ from scope_ptz.geometry import Equirectangular, Perspective, direction, pan_tilt
 from scope_ptz.world.models import SceneFile, SceneText, SceneViewpoint
 
 CELL_PAN_DEG, CELL_TILT_DEG = 6.0, 4.0
+WIDER_PAN_DEG, WIDER_TILT_DEG = 30.0, 20.0
+"""Cells of the wider tiles."""
+
 OVERLAP_DEG = 0.15
 """A tile reaches this far beyond its cell, so that neighbours leave no seam."""
 
@@ -125,11 +128,22 @@ def cover(wanted: Sequence[Target]) -> list[Cell]:
     if not wanted:
         return []
     needed = _needed(wanted)
+    shifts = np.arange(0.0, CELL_TILT_DEG, GRID_DEG)
+    return min((_cells(needed, float(shift), CELL_PAN_DEG, CELL_TILT_DEG) for shift in shifts), key=len)
+
+
+def busiest(ids: NDArray[np.uint16], projection: Equirectangular, most: int) -> list[Cell]:
+    """The ``most`` wide cells of a grid that hold the most outlines of things. ``ids`` is the panorama's id layer."""
+    outlines = _outlines(ids, projection)
+    everywhere = np.ones_like(outlines, dtype=bool)
     best: list[Cell] = []
-    for shift in np.arange(0.0, CELL_TILT_DEG, GRID_DEG):
-        cells = _cells(needed, float(shift))
-        if not best or len(cells) < len(best):
-            best = cells
+    held = -1.0
+    for shift in np.arange(0.0, WIDER_TILT_DEG, 1.0):
+        cells = _cells(everywhere, float(shift), WIDER_PAN_DEG, WIDER_TILT_DEG)
+        found = [(_held(outlines, cell), k) for k, cell in enumerate(cells)]
+        chosen = sorted(found, reverse=True)[:most]
+        if (total := sum(share for share, _ in chosen)) > held:
+            best, held = [cells[k] for k in sorted(k for share, k in chosen if share > 0)], total
     return best
 
 
@@ -182,18 +196,38 @@ def _needed(wanted: Sequence[Target]) -> Mask:
     return grid
 
 
-def _cells(needed: Mask, shift_deg: float) -> list[Cell]:
+def _outlines(ids: NDArray[np.uint16], projection: Equirectangular) -> NDArray[np.float64]:
+    """(720, 1440) like ``_needed``: how long the outlines are that the panorama, which goes all the way round, shows there."""
+    edge = np.zeros(ids.shape, dtype=bool)
+    edge[:, 1:] = ids[:, 1:] != ids[:, :-1]
+    edge[1:] |= ids[1:] != ids[:-1]
+    rows, columns = np.nonzero(edge)
+    tilts = projection.top_tilt_deg - (rows + 0.5) / projection.height * (projection.top_tilt_deg - projection.bottom_tilt_deg)
+    pans = (columns + 0.5) / projection.width * 360.0
+    bins = [round(180 / GRID_DEG), round(360 / GRID_DEG)]
+    weights = np.cos(np.radians(tilts))  # near the poles a pixel is less wide
+    return np.histogram2d(tilts, pans, bins=bins, range=[[-90.0, 90.0], [0.0, 360.0]], weights=weights)[0]
+
+
+def _held(outlines: NDArray[np.float64], cell: Cell) -> float:
+    tilts, pans = (np.arange(-span / 2, span / 2, GRID_DEG) for span in (cell.span_tilt_deg, cell.span_pan_deg))
+    rows = ((cell.tilt_deg + tilts + 90.0) / GRID_DEG).astype(int)
+    columns = ((cell.pan_deg + pans + 180.0) / GRID_DEG).astype(int) % outlines.shape[1]
+    return float(outlines[rows[(rows >= 0) & (rows < outlines.shape[0])]][:, columns].sum())
+
+
+def _cells(needed: Mask, shift_deg: float, span_pan_deg: float, span_tilt_deg: float) -> list[Cell]:
     cells: list[Cell] = []
     low = -90.0 - shift_deg
     while low < 90.0:
-        high = low + CELL_TILT_DEG
+        high = low + span_tilt_deg
         rows = slice(max(0, round((low + 90) / GRID_DEG)), max(0, round((high + 90) / GRID_DEG)))
         columns = np.asarray(needed[rows].any(axis=0))
         if columns.any():
             nearest = 0.0 if low < 0 < high else min(abs(low), abs(high))
-            count = max(3, round(360 * math.cos(math.radians(min(nearest, 85.0))) / CELL_PAN_DEG))
+            count = max(3, round(360 * math.cos(math.radians(min(nearest, 85.0))) / span_pan_deg))
             starts = _best_starts(columns, 360.0 / count)
-            cells += [Cell((s + 180.0 / count) % 360.0 - 180.0, (low + high) / 2, 360.0 / count, CELL_TILT_DEG) for s in starts]
+            cells += [Cell((s + 180.0 / count) % 360.0 - 180.0, (low + high) / 2, 360.0 / count, span_tilt_deg) for s in starts]
         low = high
     return cells
 

@@ -36,8 +36,8 @@ FOLIAGE = ("tree", "bush", "hedge", "planter", "flower bed", "hanging basket")
 class PoseReport:
     """One pose: how alike the pictures are, how sharp the pack's is against the live one, the mean IoU of boxes (None: no boxes).
 
-    ``tile_share`` is the part of the view that lies in tiles; where it is above 0 and the zoom above 1, similarity and sharpness
-    are those of that part.
+    ``tile_share`` is the part of the view that lies in tiles dense enough for it; where it is above 0 and the zoom above 1,
+    similarity and sharpness are those of that part.
     """
 
     viewpoint: str
@@ -66,7 +66,8 @@ def draw_poses(scene: Scene, seed: int, wide: int, zoomed: int, viewpoints: Sequ
         poses.append((name, limits.clamp(Pose(limits.aim_pan_deg(pan), tilt, 1.0))[0]))
     for k in range(zoomed):
         name = names[k % len(names)]
-        tiles = scene.viewpoint(name).manifest.tiles
+        closest = Perspective(0.0, 0.0, AXIS_M5075_G.hfov_deg(limits.max_zoom), 1280, 720)
+        tiles = [t for t in scene.viewpoint(name).manifest.tiles if t.suits(closest)]
         if tiles:
             tile = rng.choice(tiles)
             if hard := _hard(scene, name, k // len(names), rng, limits):
@@ -157,12 +158,13 @@ def _live(
 
 
 def _in_tiles(tiles: Sequence[Tile], view: Perspective) -> NDArray[np.bool_]:
-    """(H, W): which pixels of a view lie in any tile."""
+    """(H, W): which pixels of a view lie in a tile that is dense enough for it."""
     x, y = np.meshgrid((np.arange(view.width) + 0.5) / view.width, (np.arange(view.height) + 0.5) / view.height)
     directions = view.directions(np.stack([x, y], axis=-1))
     inside = np.zeros((view.height, view.width), dtype=bool)
     for tile in tiles:
-        shape = Perspective(tile.pan_deg, tile.tilt_deg, tile.hfov_deg, tile.colour.width, tile.colour.height)
-        points = np.nan_to_num(shape.points(directions), nan=-1.0)
+        if not tile.suits(view):
+            continue
+        points = np.nan_to_num(tile.view.points(directions), nan=-1.0)
         inside |= np.all((points >= 0) & (points <= 1), axis=-1)
     return inside

@@ -19,6 +19,8 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from scope_ptz.geometry import Perspective
+
 FORMAT_VERSION = 1
 """Raised when an older program could misread a pack."""
 
@@ -141,6 +143,10 @@ class Depth(Layer):
     far_m: Number = Field(gt=0)
 
 
+SUITABLE = 0.9
+"""A tile suits a view from this share of its density on."""
+
+
 class Tile(Model):
     """A sharper perspective picture and its instance numbers (same size), aimed at pan/tilt without roll."""
 
@@ -149,6 +155,15 @@ class Tile(Model):
     hfov_deg: Number = Field(gt=0, lt=120)
     colour: Layer
     ids: Layer
+
+    @property
+    def view(self) -> Perspective:
+        """What it shows."""
+        return Perspective(self.pan_deg, self.tilt_deg, self.hfov_deg, self.colour.width, self.colour.height)
+
+    def suits(self, view: Perspective) -> bool:
+        """Whether it is about as dense as a view, or denser."""
+        return self.view.focal_px >= SUITABLE * view.focal_px
 
 
 class Extent(Model):

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ValidationError
 
 from scope_ptz.errors import PackError
-from scope_ptz.geometry import Perspective
 from scope_ptz.world import layers
 from scope_ptz.world.atlas import Atlas, Scale
 from scope_ptz.world.models import FORMAT_VERSION, ActorSheet, Extent, Layer, Manifest, SceneFile, SceneViewpoint
@@ -55,7 +54,7 @@ class Viewpoint:
             )
 
         tiles = manifest.tiles
-        self.tiles = Tiles([Perspective(t.pan_deg, t.tilt_deg, t.hfov_deg, t.colour.width, t.colour.height) for t in tiles])
+        self.tiles = Tiles([tile.view for tile in tiles])
         colours, ids = [manifest.base, *(t.colour for t in tiles)], [manifest.ids, *(t.ids for t in tiles)]
         self.colour_atlas = Atlas([_size(c) for c in colours], lambda i: self.colour(colours[i]), np.uint8, 3, COLOUR_SCALES)
         self.id_atlas = Atlas([_size(n) for n in ids], lambda i: self.ids(ids[i]), np.uint16, 1)
