@@ -6,7 +6,6 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import anyio
 import typer
 
 from scope_ptz.cli import model_options as models
@@ -131,6 +130,7 @@ def run(
     Without options: the built-in planner and ground-truth eyes on the published tasks, here, without any key.
     """
     with ending(as_json=as_json):
+        import anyio
         from rich.console import Console
 
         from scope_ptz.cli.bench_evaluate import JudgeWish, RunOptions, evaluate, need_engine

@@ -6,7 +6,6 @@ import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated
 
-import anyio
 import typer
 
 from scope_ptz.cli import bench_run as options
@@ -106,6 +105,8 @@ def named_pairs(text: str | None, *, paper: bool) -> list[str]:
 
 def _run_all(names: list[str], each: RunOptions, console: Console) -> dict[str, Evaluation | str]:
     """Of each pair its evaluation, or why there is none."""
+    import anyio
+
     from scope_ptz.cli.bench_evaluate import evaluate
 
     done: dict[str, Evaluation | str] = {}
