@@ -55,6 +55,13 @@ def test_a_note_of_the_source_changes_nothing(note: str) -> None:
     assert changed == []
 
 
+def test_lettering_in_capitals_is_an_answer_however_long() -> None:
+    board = Text(accepted=("ALDERMERE POST / TRAM FARES / TO RISE / IN MAY",), ocr=True)
+    assert verdict(board, board.accepted[0]) == "right"
+    assert verdict(board, board.accepted[0].replace("MAY", "JUNE")) == "wrong"
+    assert verdict(board, "it is a board of a newspaper with several lines about trams") == "unscored"
+
+
 def test_the_answers_are_many_and_of_every_kind() -> None:
     assert len(ANSWERS) >= 300
     kinds = Counter(EXPECTATIONS[c["expected"]].kind for c in ANSWERS)

@@ -183,7 +183,7 @@ class Sight:
 
     def texts_on(self, thing: Thing) -> tuple[TextSighting, ...] | None:
         """All texts that show on a thing and its parts; None when one of them can be read only by some."""
-        family = {self.scene.by_number[n].id for n in self.scene.families[thing.id]}
+        family = with_parts(self.scene, thing.id)
         legible_ids = {t.text.id for t in self.legible}
         shown = [t for t in self.samples[0].texts if t.text.parent in family and t.unhidden_share > 0.3]
         if any(t.text.id not in legible_ids and t.cap_height_px >= MIN_CAP_HEIGHT_PX * 0.35 for t in shown):
@@ -226,6 +226,15 @@ def _all_appearances(scene: Scene, viewpoint: str) -> dict[int, tuple[Appearance
         for appearance in appearances(scene, here, float(moment)):
             found.setdefault(appearance.actor.number, []).append(appearance)
     return {number: tuple(seen) for number, seen in found.items()}
+
+
+@lru_cache(maxsize=4096)
+def with_parts(scene: Scene, whole: str) -> frozenset[str]:
+    """Ids of a thing, its parts, and theirs."""
+    found = {whole}
+    while grown := {part.id for part in scene.file.instances if part.parent in found} - found:
+        found |= grown
+    return frozenset(found)
 
 
 def visible(sighting: Sighting, scale: float = 1.0) -> bool:

@@ -62,7 +62,7 @@ def absent(sight: Sight, nouns: frozenset[str]) -> tuple[Kind, ...]:
 _ODD = frozenset({
     "cross", "price card", "plinth", "cow", "swimming pool", "tree grate", "stallholder", "cup", "notice", "ball", "tram platform",
     "manhole cover", "drain", "clock", "timetable", "planter", "plate compactor", "marker post", "camera pole", "sign", "person",
-    "liquid container", "parking space", "driver", "security guard", "beacon", "gas cage", "lane signal", "spill kit",
+    "liquid container", "parking space", "driver", "security guard", "beacon", "gas cage", "lane signal", "spill kit", "wheel stop",
 })  # fmt: skip
 """What nobody would ask after, or nobody could be sure that there is none of."""
 

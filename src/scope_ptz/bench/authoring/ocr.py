@@ -10,6 +10,7 @@ from scope_ptz.bench.authoring.naming import Named, distinct, ends
 from scope_ptz.bench.authoring.places import Place
 from scope_ptz.bench.authoring.targets import SMALLEST_PX, framed
 from scope_ptz.bench.expected import Text
+from scope_ptz.bench.ground import with_parts
 from scope_ptz.bench.tasks import ProgramCall
 from scope_ptz.world.truth import TextSighting
 
@@ -35,8 +36,8 @@ def _in_view(place: Place, named: list[Named]) -> Iterator[Draft]:
 def _zoomed(place: Place, named: list[Named]) -> Iterator[Draft]:
     """What cannot be read from here, but can once the camera has zoomed in on it."""
     for one in named:
-        family = place.scene.families[one.thing.instance.id]
-        lettered = any(place.scene.by_id[text.parent].number in family for text in place.scene.file.texts)
+        family = with_parts(place.scene, one.thing.instance.id)
+        lettered = any(text.parent in family for text in place.scene.file.texts)
         if one.place or not lettered or place.sight.texts_on(one.thing.instance):
             continue
         close = framed(place, one.thing, one.thing.instance)

@@ -29,7 +29,7 @@ _OF_THREE = (
 )
 
 
-_FEWEST = 3
+_FEWEST = 4
 """With fewer in all there is nothing to compare."""
 
 

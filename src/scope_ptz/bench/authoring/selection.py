@@ -26,8 +26,8 @@ ANSWERS: dict[Category, int] = {
 }  # fmt: skip
 """How often one and the same answer is right in a category, tasks of pairs aside."""
 
-POLAR = 5
-"""How often "yes" is right, and how often "no", in all categories together, pairs aside."""
+POLAR = 2
+"""How often "yes" is right, and how often "no", for each sort of question, pairs aside."""
 
 FIRST_NAMED = 14
 """How often the right answer may be the first of those that the question names, pairs aside."""
@@ -63,7 +63,7 @@ class Shared:
 
     asked: set[str] = field(default_factory=set)
     texts: set[str] = field(default_factory=set)
-    answers: Counter[str] = field(default_factory=Counter)
+    first_right: int = 0
     scale: float = 1.0
     """Of the published numbers what share is made; the limits shrink with it."""
 
@@ -116,13 +116,13 @@ class Selection:
 
     def _too_often(self, draft: Draft) -> bool:
         if draft.expected.kind == "yes_no":
-            return self.shared.answers[draft.reads] >= self.slack * self.shared.most(POLAR)
+            return self.used["polar"][draft.kind, draft.reads] >= self.shared.most(POLAR)
         if draft.expected.kind == "action_only":
             return False
         limit = self.slack * self.shared.most(ANSWERS.get(self.category, self.quota))
         if self.used["alone"][draft.reads] >= limit:
             return True
-        return first_is_right(draft) and self.shared.answers["first"] >= self.slack * self.shared.most(FIRST_NAMED)
+        return first_is_right(draft) and self.shared.first_right >= self.slack * self.shared.most(FIRST_NAMED)
 
     def _pair(self, draft: Draft) -> bool:
         twin, limit = draft.twin, PAIRS_OF_KIND.get(draft.kind)
@@ -164,9 +164,8 @@ class Selection:
         if paired:
             return
         self.used["alone"][row.draft.reads] += step
-        if row.draft.expected.kind == "yes_no":
-            self.shared.answers[row.draft.reads] += step
-        self.shared.answers["first"] += step * first_is_right(row.draft)
+        self.used["polar"][row.draft.kind, row.draft.reads] += step
+        self.shared.first_right += step * first_is_right(row.draft)
 
     def _drop(self, row: Chosen) -> None:
         self.rows.remove(row)

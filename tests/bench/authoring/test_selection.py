@@ -1,0 +1,71 @@
+"""Choosing drafts: evenly, within limits, pairs together, and the same again."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import pytest
+
+from scope_ptz.bench.authoring.drafts import Draft, Question
+from scope_ptz.bench.authoring.places import Place, go, preset_at
+from scope_ptz.bench.authoring.selection import POLAR, Selection, Shared, first_is_right
+from scope_ptz.bench.expected import AnyExpected, Choice, NoneThere, Number, YesNo
+from scope_ptz.world.pack import Scene
+
+
+@pytest.fixture
+def place(analytic_scene: Scene) -> Place:
+    first, second, *_ = analytic_scene.file.presets
+    return Place(analytic_scene, first.name, (go(second.name),), preset_at(second))
+
+
+def draft(place: Place, name: str, expected: AnyExpected, reads: str, kind: str = "count", twin: Draft | None = None) -> Draft:
+    question = Question(((f"how many {name} are there?", f"how many {name} there are"),))
+    return Draft("counting", kind, name, place, expected, question, reads=reads, twin=twin)
+
+
+def chosen(drafts: list[Draft], quota: int, shared: Shared | None = None) -> list[Draft]:
+    return [row.draft for row in Selection("counting", quota, shared or Shared(), 1).fill(drafts)]
+
+
+def test_answers_are_spread(place: Place) -> None:
+    ones = [draft(place, f"single {n}", Number(value=1), "1") for n in range(30)]
+    others = [draft(place, f"several {n}", Number(value=n), str(n)) for n in range(2, 8)]
+    taken = chosen([*ones, *others], 12)
+    assert Counter(d.reads for d in taken)["1"] <= 7
+    assert {d.reads for d in taken} >= {str(n) for n in range(2, 8)}
+
+
+def test_limits_give_way_when_there_is_nothing_else(place: Place) -> None:
+    assert len(chosen([draft(place, f"single {n}", Number(value=1), "1") for n in range(30)], 12)) == 12
+
+
+def test_yes_and_no_are_as_frequent(place: Place) -> None:
+    drafts = [
+        draft(place, f"{said} {n}", YesNo(value=said), "yes" if said else "no", "is") for said in (True, False) for n in range(9)
+    ]
+    assert Counter(d.reads for d in chosen(drafts, 8)) == {"yes": POLAR, "no": POLAR}
+
+
+def test_both_of_a_pair_or_neither(place: Place) -> None:
+    there = [draft(place, f"thing {n}", Number(value=n), str(n)) for n in range(1, 6)]
+    gone = [draft(place, f"ghost {n}", NoneThere(subject=("ghost",)), "none", "none", there[n]) for n in range(5)]
+    shared = Shared(asked={there[0].full_key})
+    taken = chosen([*there, *gone], 9, shared)
+    assert gone[0] not in taken
+    for absence in (d for d in taken if d.twin is not None):
+        assert absence.twin in taken
+
+
+def test_nothing_is_taken_twice_and_the_same_comes_again(place: Place) -> None:
+    drafts = [draft(place, f"thing {n}", Number(value=n % 5), str(n % 5)) for n in range(20)]
+    once = chosen([*drafts, *drafts], 10)
+    assert len({d.key for d in once}) == len(once) == 10
+    assert chosen([*drafts, *drafts], 10) == once
+
+
+def test_the_first_of_an_offer(place: Place) -> None:
+    question = Question((("are there more cars or more vans?", "whether there are more cars or more vans"),))
+    for value, first in (("cars", True), ("vans", False)):
+        offer = Choice(value=value, options={"cars": (), "vans": ()})
+        assert first_is_right(Draft("comparative", "more", "x", place, offer, question)) is first
