@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from time import perf_counter
 from typing import Any
 
 import anyio
@@ -82,11 +81,8 @@ def test_only_neighbours_that_look_at_the_view_of_now_go_together() -> None:
 
 def test_looks_run_together_at_one_frame_and_come_back_in_order() -> None:
     eyes, camera = SlowEyes(), ScriptedCamera()
-    began = perf_counter()
     done, records = run(calls(CONES, CARS, COLOUR), answer(), eyes=eyes, camera=camera)
-    took = perf_counter() - began
     assert eyes.most_at_once == 3
-    assert took < 2.2 * PAUSE_S
     assert len({id(frame) for frame in eyes.frames}) == 1
     made = [r for r in records if isinstance(r, Called)]
     assert [r.outcome.call.name for r in made] == ["count_objects", "count_objects", "query_answer"]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 
 import pytest
@@ -72,14 +71,6 @@ def test_nonsense_is_answered_without_guessing() -> None:
         assert answer(VIEW, parse_question(question)).known is False
     for description in ("???", "a " * 200, "the wug"):
         assert find(VIEW, parse_description(description)) == []
-
-
-def test_a_question_takes_milliseconds() -> None:
-    parse_question("is there a car?")
-    began = time.perf_counter()
-    for n in range(20):
-        parse_question(f"how many cars are there next to the van with {n} doors?")
-    assert (time.perf_counter() - began) / 20 < 0.2
 
 
 @pytest.mark.parametrize(
