@@ -94,6 +94,7 @@ def gold_cases(gold: Path | None, tasks: str, passing: int, limit: int | None) -
     """Gold runs and, among them, runs of the same tasks that pass, made by their reference programs."""
     import anyio
 
+    from scope_ptz.bench.episode import Places
     from scope_ptz.bench.gold import EYES, read_gold
     from scope_ptz.bench.judging.gold import gold_case, in_turn, passing_case
     from scope_ptz.bench.phrasing import right_answers
@@ -106,16 +107,16 @@ def gold_cases(gold: Path | None, tasks: str, passing: int, limit: int | None) -
     _, runs = read_gold(gold or published_folder() / "gold.jsonl.gz", load_split(tasks))
     runs = in_turn(runs)[:limit]
     worlds = worlds_of(run.task for run in runs)
-    presets = {name: tuple(preset.name for preset in world.file.presets) for name, world in worlds.items()}
+    places = {name: Places.of(world.file) for name, world in worlds.items()}
     equip = equip_with_truth(worlds)
-    cases = [gold_case(run, presets[run.task.world]) for run in runs]
+    cases = [gold_case(run, places[run.task.world]) for run in runs]
 
     async def add_passing() -> None:
         for task in list({run.task.id: run.task for run in runs}.values())[:passing]:
             answer, outcome = right_answers(task.expected)[0], task.behaviour.outcomes[0]
             episode = await Stage(worlds[task.world], equip, EYES).run(task, task.reference, answer, outcome)
             if judge(task, episode).headline == "correct":
-                cases.append(passing_case(task, episode, presets[task.world]))
+                cases.append(passing_case(task, episode, places[task.world]))
 
     anyio.run(add_passing)
     return cases

@@ -122,7 +122,7 @@ class _Labelling:
         number = sum(other.sample in self.done for other in self.trials) + 1
         files = open_sample(self.log, trial.sample)
         put(f"\n{'=' * 20} run {number} of {len(self.trials)} {'=' * 20}")
-        put(render(trial.task, case_of(files.trace), _CHARS))
+        put(render(trial.task, case_of(files.trace, files.places), _CHARS))
         for path in kept_pictures(files, self.pictures / folder_name(self.log, trial.sample)):
             put(f"picture: {path}")
 

@@ -30,6 +30,9 @@ def test_a_log_is_judged_twice_and_keeps_everything(scope: Scope, evaluated: Pat
         assert "4 judgements by the-judge" in first.out
         second = scope("bench", "rescore", str(evaluated), *options)
         assert second.code == 0, second.err
+    told = next(r.data["messages"][-1]["content"] for r in server.requests if r.chat)
+    assert 'Presets of the camera: "yard" (viewpoint "mast")' in told
+    assert 'Camera afterwards: at viewpoint "mast", pan' in told
     after = read_evaluation(evaluated)
     assert [t.headline for t in after.trials] == [t.headline for t in before.trials]
     assert [(j.judge, j.repeat, j.verdict) for j in after.trials[0].judgements] == [

@@ -6,7 +6,7 @@ import json
 from dataclasses import replace
 from typing import Any
 
-from scope_ptz.bench.episode import Episode
+from scope_ptz.bench.episode import Episode, Places
 from scope_ptz.bench.judging.case import Case, CaseCall, case_of_episode
 from scope_ptz.bench.judging.wording import facts_of
 from scope_ptz.bench.tasks import Task
@@ -14,6 +14,7 @@ from scope_ptz.bench.trials import TaskFacts
 from scope_ptz.geometry import Pose
 from tests.bench.making import PRESETS, samples
 
+PLACES = Places({name: standing.viewpoint or "" for name, standing in PRESETS.items()}, "mast")
 CORRECT = {"reason": "The count is right.", "verdict": "correct", "error_mode": "none"}
 MISCOUNTED = {"reason": "The tool counted 4, expected 5.", "verdict": "incorrect", "error_mode": "vlm_counting"}
 
@@ -25,7 +26,7 @@ def sample(category: str = "counting") -> tuple[Task, Episode]:
 
 def facts_and_case(category: str = "counting") -> tuple[TaskFacts, Case]:
     task, episode = sample(category)
-    return facts_of(task, "mast"), case_of_episode(episode, tuple(PRESETS))
+    return facts_of(task, "mast"), case_of_episode(episode, PLACES)
 
 
 def long_case(calls: int, said: int) -> Case:

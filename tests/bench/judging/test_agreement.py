@@ -32,6 +32,7 @@ from scope_ptz.bench.trials import Evaluation, Judgement, Label, ModelCard, RunC
 from scope_ptz.cli.bench_agree import agreement_lines
 from scope_ptz.cli.bench_judge_gold import gold_lines
 from scope_ptz.errors import InputError
+from tests.bench.judging.runs import PLACES
 from tests.bench.making import EYES, PRESETS, samples
 
 CARD = RunCard(
@@ -135,8 +136,8 @@ def gold_runs() -> list[Gold]:
 
 
 def all_cases() -> list[GoldCase]:
-    cases = [gold_case(gold, tuple(PRESETS)) for gold in in_turn(gold_runs())]
-    return [*cases, *(passing_case(task, episode, tuple(PRESETS)) for task, episode in samples())]
+    cases = [gold_case(gold, PLACES) for gold in in_turn(gold_runs())]
+    return [*cases, *(passing_case(task, episode, PLACES) for task, episode in samples())]
 
 
 class Oracle:

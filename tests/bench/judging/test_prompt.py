@@ -47,7 +47,8 @@ def test_a_run_is_told_whole() -> None:
     text = render(facts, case, 60_000)
     for part in (
         "| Go to highway and count the cones.", "| 5 (cone)", "Category: counting", 'preset "gate" at viewpoint "mast"',
-        '"gate", "highway", "bridge"', '| go_to_preset {"name": "highway"}', '"count": 5', "| There are 5 cones.",
+        '"gate" (viewpoint "mast"), "highway" (viewpoint "mast"), "bridge" (viewpoint "bridge")',
+        '| go_to_preset {"name": "highway"}', '"count": 5', "| There are 5 cones.",
         "go_to_preset(name=highway)", "pan -40.0, tilt -14.0 degrees, zoom 1.20x", "gave a final answer",
     ):  # fmt: skip
         assert part in text.replace("do it", "Go to highway and count the cones."), part

@@ -43,7 +43,8 @@ def judge(repeat: int = 0) -> Scorer:
     async def score(state: TaskState, target: Target) -> Score:  # noqa: ARG001 - the engine's signature
         left = state.store.get(STORE)
         entry = Entry.of_metadata(state.metadata)
-        trace = trace_of(Kept.of_store(left).trace, Path(entry.facts.scene)) if left else None
+        kept = Kept.of_store(left) if left else Kept("", {}, "")
+        trace = trace_of(kept.trace, Path(entry.facts.scene))
         broken = broken_by(trace.ended) if trace is not None else "the run did not begin"
         if trace is None or broken is not None:
             return Score.unscored(reason="infrastructure", explanation=broken)
@@ -52,7 +53,7 @@ def judge(repeat: int = 0) -> Scorer:
         journal = JOURNAL.get() or Journal()
         made = journal.find(name, model.name, repeat)
         if made is None:
-            made = await Judge(model.name, LoggedJudge(model, repeat)).judge(entry.facts, trace, repeat=repeat)
+            made = await Judge(model.name, LoggedJudge(model, repeat)).judge(entry.facts, trace, repeat=repeat, places=kept.places)
             journal.add(name, made)
         return score_of_judgement(made)
 

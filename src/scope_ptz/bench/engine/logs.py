@@ -23,6 +23,7 @@ from scope_ptz.bench.engine.pictures import jpeg_of
 from scope_ptz.bench.engine.sampling import STORE, Kept, sample_name, trace_of
 from scope_ptz.bench.engine.scorers import TRIAL
 from scope_ptz.bench.engine.trialing import trial_of
+from scope_ptz.bench.episode import Places
 from scope_ptz.bench.trials import Evaluation, Trial
 from scope_ptz.errors import TraceError
 
@@ -34,9 +35,10 @@ _SAMPLES = "samples/"
 
 @dataclass(frozen=True, slots=True)
 class SampleFiles:
-    """One run of a log: its trace, and its pictures by the names that the trace gives them."""
+    """One run of a log: its trace, the viewpoints of presets, and its pictures by the names that the trace gives them."""
 
     trace: Trace
+    places: Places
     references: Mapping[str, str]
     attachments: Mapping[str, str]
 
@@ -82,7 +84,7 @@ def open_sample(path: Path, sample: str) -> SampleFiles:
         trace = trace_of(kept.trace, path) if kept is not None else None
         if kept is None or trace is None:
             raise TraceError(f"The run {sample} of {path} never began: there is nothing to see.")
-        return SampleFiles(trace, kept.pictures, found.get("attachments", {}))
+        return SampleFiles(trace, kept.places, kept.pictures, found.get("attachments", {}))
 
 
 @contextmanager

@@ -57,9 +57,14 @@ class Kept:
         except (KeyError, TypeError) as error:
             raise TraceError("A sample of this log holds no run of this benchmark.") from error
 
+    @property
+    def places(self) -> Places:
+        """Which viewpoint each preset and home have."""
+        return Places(self.presets, self.home)
+
     def episode(self, trace: Trace) -> Episode:
         """The run as checks see it."""
-        return episode_of(trace, Places(self.presets, self.home), planner_sees=self.sees, keeps_files=False)
+        return episode_of(trace, self.places, planner_sees=self.sees, keeps_files=False)
 
 
 def trace_of(text: str, where: Path) -> Trace | None:

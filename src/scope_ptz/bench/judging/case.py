@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -28,7 +28,7 @@ class CaseCall:
 class Case:
     """``outcome``: how the run ended, None when it was cut off. ``viewpoint``: the optical centre that it started from, if known.
 
-    ``sees``: the agent was shown pictures itself, and may answer from them.
+    ``sees``: the agent was shown pictures itself, and may answer from them. ``places``: the viewpoints of presets, if known.
     """
 
     instruction: str
@@ -40,6 +40,7 @@ class Case:
     answer: str
     outcome: str | None
     sees: bool = False
+    places: Places | None = None
 
 
 def case_of(trace: Trace, places: Places | None = None) -> Case:
@@ -70,21 +71,23 @@ def case_of(trace: Trace, places: Places | None = None) -> Case:
         answer=ended.text if ended else "",
         outcome=ended.outcome if ended else None,
         sees=any(decided.view is not None for decided in trace.decisions),
+        places=places,
     )
 
 
-def case_of_episode(episode: Episode, presets: Sequence[str]) -> Case:
-    """A run that was made without a trace, such as a gold run."""
+def case_of_episode(episode: Episode, places: Places) -> Case:
+    """A run that was made without a trace, such as a gold run. ``places``: of its scene."""
     return Case(
         instruction=episode.instruction,
         start=episode.start.pose,
         viewpoint=episode.start.viewpoint,
-        presets=tuple(presets),
+        presets=tuple(places.presets),
         calls=tuple(_call(call.name, call.arguments, call.result, call.error, call.after) for call in episode.calls),
         final=episode.final.pose,
         answer=episode.text,
         outcome=episode.outcome,
         sees=bool(episode.seen),
+        places=places,
     )
 
 

@@ -12,7 +12,7 @@ from typing import Any
 import anyio
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from scope_ptz.bench.episode import Episode
+from scope_ptz.bench.episode import Episode, Places
 from scope_ptz.bench.error_modes import ErrorMode
 from scope_ptz.bench.judging.agreement import Item, Rater, numbered, rate
 from scope_ptz.bench.judging.case import Case, case_of_episode
@@ -56,19 +56,19 @@ class GoldVerdict(BaseModel):
     judgement: Judgement
 
 
-def gold_case(gold: Gold, presets: Sequence[str]) -> GoldCase:
-    """A faulty run for a judge. ``presets``: of its scene."""
-    return _case(gold.task, gold.episode, presets, gold.mode, gold.fault)
+def gold_case(gold: Gold, places: Places) -> GoldCase:
+    """A faulty run for a judge. ``places``: of its scene."""
+    return _case(gold.task, gold.episode, places, gold.mode, gold.fault)
 
 
-def passing_case(task: Task, episode: Episode, presets: Sequence[str]) -> GoldCase:
+def passing_case(task: Task, episode: Episode, places: Places) -> GoldCase:
     """A run that passes all checks, for a judge."""
-    return _case(task, episode, presets, None, "reference")
+    return _case(task, episode, places, None, "reference")
 
 
-def _case(task: Task, episode: Episode, presets: Sequence[str], fault: ErrorMode | None, how: str) -> GoldCase:
+def _case(task: Task, episode: Episode, places: Places, fault: ErrorMode | None, how: str) -> GoldCase:
     facts = facts_of(task, episode.start.viewpoint or "")
-    case = case_of_episode(episode, presets)
+    case = case_of_episode(episode, places)
     return GoldCase(facts=facts, case=case, fault=fault, how=how)
 
 

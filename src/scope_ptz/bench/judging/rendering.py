@@ -50,7 +50,7 @@ def render(facts: TaskFacts, case: Case, budget: int) -> str:
 
 
 def _task_part(facts: TaskFacts, case: Case) -> str:
-    names = [inline(name, _NAME_CHARS) for name in case.presets[:_MOST_PRESETS]]
+    names = [_preset(name, case) for name in case.presets[:_MOST_PRESETS]]
     more = len(case.presets) - len(names)
     presets = ", ".join(names) + (f" and {more} more" if more > 0 else "") if names else "none"
     where = f" at viewpoint {inline(case.viewpoint, _NAME_CHARS)}" if case.viewpoint else ""
@@ -74,6 +74,12 @@ def _task_part(facts: TaskFacts, case: Case) -> str:
     if case.sees:
         lines.append("The agent was shown the camera's picture before its steps and may answer from what it saw there.")
     return "\n".join(lines)
+
+
+def _preset(name: str, case: Case) -> str:
+    """A preset with the viewpoint that it is at, where that is known."""
+    at = case.places.presets.get(name) if case.places is not None else None
+    return inline(name, _NAME_CHARS) + (f" (viewpoint {inline(at, _NAME_CHARS)})" if at else "")
 
 
 def _end_part(case: Case) -> str:
