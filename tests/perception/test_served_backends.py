@@ -30,8 +30,12 @@ BACKENDS = ("moondream", "openai_vision")
 KEY = "very-secret-key-0123456789"
 
 
-def spec(url: str, backend: str, **more: Any) -> EyesSpec:
-    timeouts = Timeouts(connect_s=0.5, first_byte_s=0.4, total_s=1.5)
+# Patience that a busy machine never wears out, and its lack for the servers that never answer.
+PATIENT = Timeouts(connect_s=20.0, first_byte_s=20.0, total_s=40.0)
+HASTY = Timeouts(connect_s=20.0, first_byte_s=0.4, total_s=1.5)
+
+
+def spec(url: str, backend: str, timeouts: Timeouts = PATIENT, **more: Any) -> EyesSpec:
     endpoint = Endpoint(url=url, model="a-model", key=KEY, timeouts=timeouts, retries=0)  # type: ignore[arg-type]
     return EyesSpec(name="eyes", backend=backend, endpoint=endpoint, **more)
 
@@ -367,8 +371,9 @@ FAILURES: dict[str, tuple[Behaviour, str]] = {
 @pytest.mark.parametrize("skill", ["query", "detect"])
 async def test_every_failure_is_a_perception_error(backend: str, case: str, skill: str) -> None:
     behaviour, kinds = FAILURES[case]
+    timeouts = HASTY if "timeout" in kinds else PATIENT
     with Misbehaving(then=behaviour) as server:
-        async with opened(server.url, backend) as eyes:
+        async with opened(server.url, backend, timeouts=timeouts) as eyes:
             with pytest.raises(PerceptionError) as caught:
                 await getattr(eyes, skill)(pictures.frame(), "a cone?")
     error = caught.value
