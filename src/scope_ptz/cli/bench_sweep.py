@@ -14,6 +14,8 @@ from scope_ptz.cli.endings import FAILED, complain, ending, put_json
 from scope_ptz.errors import InputError, ScopeError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
     from rich.console import Console
     from rich.table import Table
 
@@ -22,6 +24,10 @@ if TYPE_CHECKING:
     from scope_ptz.cli.choosing import Wishes
 
 BUILT_IN = ("grammar", "ground-truth", "noisy")
+WIDE = 160
+"""Characters of a window that has room for a column a category."""
+PAIR_WIDTH = 36
+"""Of the longest names of pairs."""
 
 
 def sweep(
@@ -73,7 +79,8 @@ def sweep(
         if as_json:
             put_json({name: options.result(made) if not isinstance(made, str) else {"error": made} for name, made in done.items()})
         else:
-            console.print(table_of(done))
+            for table in tables_of(done, console.width):
+                console.print(table, "")
         if any(isinstance(made, str) or not complete(made) for made in done.values()):
             complain("not every pair is complete; the same command goes on with those that are not.")
             sys.exit(FAILED)
@@ -136,26 +143,43 @@ def complete(evaluation: Evaluation) -> bool:
     return evaluation.finished and not any(trial.headline == "infrastructure" for trial in evaluation.trials)
 
 
-def table_of(done: dict[str, Evaluation | str]) -> Table:
-    """All pairs in one table, best first; categories in columns."""
-    from rich.table import Table
+def tables_of(done: dict[str, Evaluation | str], width: int) -> Iterator[Table]:
+    """Pairs of models best first, then what is no result of a model, then what was not run; categories where ``width``, in
+    characters, has room for them."""
+    made = [(name, e) for name, e in done.items() if not isinstance(e, str)]
+    ranked, others = [row for row in made if row[1].card.ranked], [row for row in made if not row[1].card.ranked]
+    if ranked:
+        yield _pairs_table("Pairs of models, best first", ranked, width)
+    if others:
+        yield _pairs_table("Built-in planner or ground-truth eyes: a check of the benchmark, no result of a model", others, width)
+    missing = [(name, why) for name, why in done.items() if isinstance(why, str)]
+    if missing:
+        table = _table("Not run")
+        table.add_column("why", overflow="fold")
+        for row in missing:
+            table.add_row(*row)
+        yield table
 
+
+def _pairs_table(title: str, rows: Sequence[tuple[str, Evaluation]], width: int) -> Table:
     from scope_ptz.cli.bench_live import CATEGORIES, accuracy, macro
 
-    table = Table("pair", box=None, pad_edge=False, header_style="bold")
-    for column in ("macro", "micro", *(c.replace("_", " ") for c in CATEGORIES), "runs", "broken"):
-        table.add_column(column, justify="right")
-    made = [(name, e) for name, e in done.items() if not isinstance(e, str)]
-    for name, evaluation in sorted(made, key=lambda row: -(macro(row[1].trials) or 0.0)):
+    shown = CATEGORIES if width >= WIDE else ()
+    table = _table(title)
+    for column in ("macro", "micro", *(c.replace("_", " ") for c in shown), "runs", "broken"):
+        table.add_column(column, justify="right", no_wrap=column in ("macro", "micro", "runs", "broken"))
+    for name, evaluation in sorted(rows, key=lambda row: -(macro(row[1].trials) or 0.0)):
         trials = evaluation.trials
-        shares = [macro(trials), accuracy(trials), *(accuracy([t for t in trials if t.task.category == c]) for c in CATEGORIES)]
+        shares = [macro(trials), accuracy(trials), *(accuracy([t for t in trials if t.task.category == c]) for c in shown)]
         broken = sum(t.headline == "infrastructure" for t in trials)
         cells = [f"{100 * share:.1f}" if share is not None else "-" for share in shares]
-        mark = "" if evaluation.card.ranked else " *"
-        table.add_row(name + mark, *cells, f"{len(trials)} of {evaluation.wanted}", str(broken) if broken else "-")
-    for name, why in done.items():
-        if isinstance(why, str):
-            table.add_row(name, "not run", *[""] * (len(CATEGORIES) + 3))
-    if any(not e.card.ranked for _, e in made):
-        table.caption = "* built-in planner or ground-truth eyes: a check of the benchmark, no result of a model"
+        table.add_row(name, *cells, f"{len(trials)} of {evaluation.wanted}", str(broken) if broken else "-")
+    return table
+
+
+def _table(title: str) -> Table:
+    from rich.table import Table
+
+    table = Table(title=title, title_justify="left", title_style="", box=None, pad_edge=False, header_style="bold")
+    table.add_column("pair", overflow="fold", min_width=PAIR_WIDTH)
     return table

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import io
 import json
 from pathlib import Path
+
+from rich.console import Console
 
 from scope_ptz.bench.engine.journal import Journal
 from scope_ptz.bench.engine.logs import read_evaluation
 from scope_ptz.bench.task_files import dump_tasks
+from scope_ptz.bench.trials import ModelCard
+from scope_ptz.cli.bench_sweep import tables_of
 from tests.bench.engine.making import TASKS
 from tests.cli.conftest import Scope
 from tests.support.misbehaving import Misbehaving, Say, good
@@ -83,7 +88,7 @@ def test_a_pair_without_a_server_does_not_stop_the_others(scope: Scope, tmp_path
     )  # fmt: skip
     assert done.code == 1
     assert "runs on a model server" in done.err
-    assert "not run" in done.out
+    assert "Not run" in done.out
     assert len(list((tmp_path / "logs").glob("*.eval"))) == 1
 
 
@@ -96,6 +101,32 @@ def test_a_sweep_wants_known_pairs(scope: Scope) -> None:
         done = scope("bench", "sweep", *options)
         assert done.code == 2
         assert words in done.err
+
+
+def test_a_sweep_keeps_exact_planners_and_eyes_off_the_ranking(evaluated: Path) -> None:
+    def drawn(width: int) -> list[str]:
+        console = Console(width=width, file=io.StringIO(), record=True)
+        for table in tables_of({"small+moondream2": small, "grammar+ground-truth": exact, "big+moondream2": "No server."}, width):
+            console.print(table)
+        return console.export_text().splitlines()
+
+    exact = read_evaluation(evaluated)
+    model = ModelCard(name="small", provider="http")
+    small = exact.model_copy(update={"card": exact.card.model_copy(update={"planner": model, "perception": model})})
+    narrow, wide = drawn(80), drawn(200)
+
+    def first(words: str) -> int:
+        return next(number for number, line in enumerate(narrow) if words in line)
+
+    places = [
+        next(n for n, line in enumerate(narrow) if words in line) for words in ("best first", "small+", "no result of a model")
+    ]
+    places += [
+        next(n for n, line in enumerate(narrow) if words in line) for words in ("grammar+ground-truth", "Not run", "No server.")
+    ]
+    assert places == sorted(places)
+    assert not any("counting" in line for line in narrow)
+    assert sum("counting" in line for line in wide) == 2
 
 
 def test_the_paper_by_one_word() -> None:
