@@ -11,7 +11,7 @@ import pytest
 from scope_ptz.agent.timing import Timings
 from scope_ptz.bench.error_modes import ErrorMode
 from scope_ptz.bench.reports.building import Report, build_report
-from scope_ptz.bench.reports.runs import CATEGORY_TITLES
+from scope_ptz.bench.reports.runs import CATEGORY_TITLES, collect, timed
 from scope_ptz.bench.reports.tables import Marked, Table, Value, bare, in_words
 from scope_ptz.bench.statistics.clustered import Estimate
 from scope_ptz.bench.trials import Evaluation, Trial
@@ -267,6 +267,20 @@ def test_two_logs_of_one_pair_are_told_apart() -> None:
     one, two = (evaluation("qwen3-4b", "moondream2", facts(2), 0.6, seed=seed) for seed in (1, 2))
     made = build_report([one, two], load_registry())
     assert [run.label for run in made.runs] == ["qwen3-4b + moondream2 #1", "qwen3-4b + moondream2 #2"]
+
+
+def test_labels_say_what_tells_runs_apart_and_no_more() -> None:
+    tasks = facts(1)
+    shared = evaluation("qwen3-4b", "moondream2", tasks, 0.6, split="lite", latency_s=(9.0, 9.0))
+    alone = evaluation("qwen3-4b", "moondream2", tasks, 0.6, split="lite", contended=False, latency_s=(1.0, 1.0))
+    runs = collect([shared, alone], load_registry())
+    assert {run.label for run in runs} == {"qwen3-4b + moondream2", "qwen3-4b + moondream2, timed alone"}
+    assert timed(runs[0], runs).evaluation is alone
+    # A latency run that was broken off tells nothing yet: what it holds are other tasks.
+    cut = collect([shared, alone.model_copy(update={"trials": alone.trials[:3]})], load_registry())
+    assert timed(cut[0], cut).evaluation is shared
+    several = collect([shared, evaluation("qwen3-4b", "moondream2", tasks, 0.6)], load_registry())
+    assert {run.label for run in several} == {"qwen3-4b + moondream2", "qwen3-4b + moondream2, lite split"}
 
 
 def test_one_viewpoint_gives_no_interval() -> None:

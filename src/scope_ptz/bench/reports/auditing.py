@@ -6,7 +6,8 @@ from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
 from statistics import fmean
 
-from scope_ptz.bench.reports.runs import Run
+from scope_ptz.bench.reports.failures import MODE_TITLES
+from scope_ptz.bench.reports.runs import CATEGORY_TITLES, Run
 from scope_ptz.bench.reports.sections import Section
 from scope_ptz.bench.reports.tables import Column, Marked, Table, Value
 from scope_ptz.bench.trials import Trial
@@ -34,8 +35,8 @@ def audit_section(ranked: Sequence[Run], reference: Sequence[Run], pages: Mappin
         Column("task", "Task"),
         Column("category", "Category"),
         Column("scope", "Scope"),
-        Column("instruction", "Instruction"),
-        Column("expected", "Expected"),
+        Column("instruction", "Instruction", "prose"),
+        Column("expected", "Expected", "prose"),
         Column("success", "Success (%)", "share"),
         Column("trials", "Trials", "count"),
         Column("passed_by", "Passed by"),
@@ -62,12 +63,12 @@ def _audit_row(
 ) -> tuple[Value, ...]:
     facts = own[0][1].task
     passed = list(dict.fromkeys(run.label for run, trial in own if trial.headline == "correct"))
-    modes = Counter(trial.error_mode.value for _, trial in own if trial.error_mode)
-    named = ", ".join(f"{mode} {number}" for mode, number in modes.most_common())
+    modes = Counter(trial.error_mode for _, trial in own if trial.error_mode)
+    named = ", ".join(f"{MODE_TITLES[mode]} {number}" for mode, number in modes.most_common())
     reference = fmean(trial.headline == "correct" for _, trial in exact) if exact else None
     return (
         Marked(task, link=pages.get(task, "")),
-        facts.category,
+        CATEGORY_TITLES[facts.category],
         facts.scope,
         facts.instruction,
         facts.expected,

@@ -14,7 +14,7 @@ from scope_ptz.bench.reports.comparing import compare, comparison_section, compa
 from scope_ptz.bench.reports.failures import MODE_TITLES, by_rules, error_section, oracle_section
 from scope_ptz.bench.reports.latency import latency_section
 from scope_ptz.bench.reports.paper import paper_section
-from scope_ptz.bench.reports.runs import Run, collect, main_task_set, on_the_same_tasks, pairs_of
+from scope_ptz.bench.reports.runs import CATEGORY_TITLES, Run, collect, main_task_set, on_the_same_tasks, pairs_of
 from scope_ptz.bench.reports.sections import Section
 from scope_ptz.bench.reports.sensitivity import baseline_section, reaction_section, repeats_section, sensitivity_section
 from scope_ptz.bench.reports.tables import Column, Marked, Table, Value
@@ -220,8 +220,8 @@ def _failed_tasks(runs: Sequence[Run], pages: Mapping[str, str]) -> Section:
     columns = (
         Column("task", "Task"),
         Column("category", "Category"),
-        Column("instruction", "Instruction"),
-        Column("expected", "Expected"),
+        Column("instruction", "Instruction", "prose"),
+        Column("expected", "Expected", "prose"),
         Column("failed", "Failed trials", "count"),
         Column("trials", "of", "count"),
         Column("failed_by", "Failed by"),
@@ -239,7 +239,7 @@ def _failed_tasks(runs: Sequence[Run], pages: Mapping[str, str]) -> Section:
             rows.append(
                 (
                     Marked(task, link=pages.get(task, "")),
-                    facts.category,
+                    CATEGORY_TITLES[facts.category],
                     facts.instruction,
                     facts.expected,
                     len(failed),

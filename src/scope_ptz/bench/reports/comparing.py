@@ -65,7 +65,7 @@ def compare_scores(first: str, second: str, one: TaskMeans, other: TaskMeans) ->
     if found is None:
         return None
     better, worse = int(np.sum(values > 0)), int(np.sum(values < 0))
-    least = None if found.se is None else detectable(found.se, found.clusters)
+    least = None if not found.se else detectable(found.se, found.clusters)
     drawn = cluster_bootstrap(scores, seed=SEED)
     p_mcnemar, p_clustered = mcnemar_exact(better, worse), two_sided_p(found)
     return Comparison(first, second, len(shared), found, drawn, better, worse, p_mcnemar, p_clustered, least)
@@ -149,7 +149,7 @@ def _resolution(runs: Sequence[Run]) -> Table:
         found = run.macro
         se = found.se if found else None
         clusters = found.clusters if found else 0
-        rows.append((run.label, se, clusters, None if se is None else detectable(sqrt(2) * se, clusters)))
+        rows.append((run.label, se, clusters, None if not se else detectable(sqrt(2) * se, clusters)))
     notes = (
         "The difference to another run of the same precision over other tasks that would be found with 80% power. Pairing by task "
         "usually sees smaller ones.",

@@ -117,7 +117,13 @@ def viewpoint(trial: Trial) -> str:
 
 def collect(evaluations: Sequence[Evaluation], registry: Registry) -> tuple[Run, ...]:
     """Runs in the order of the paper's table: by eyes, then by the planner's size; other splits and reference runs last."""
-    wanted = [_label(e) for e in evaluations]
+    splits = {split_name(e.card.split) for e in evaluations}
+    wanted = [_label(e, with_split=len(splits) > 1) for e in evaluations]
+    shared = {label for label, number in Counter(wanted).items() if number > 1}
+    wanted = [
+        f"{label}, timed alone" if label in shared and not e.card.contended else label
+        for label, e in zip(wanted, evaluations, strict=True)
+    ]
     times, seen = Counter(wanted), Counter[str]()
     runs = []
     for evaluation, label in zip(evaluations, wanted, strict=True):
@@ -129,12 +135,12 @@ def collect(evaluations: Sequence[Evaluation], registry: Registry) -> tuple[Run,
     return tuple(Run(n, run.evaluation, run.label, run.planner, run.eyes) for n, run in enumerate(ordered, 1))
 
 
-def _label(evaluation: Evaluation) -> str:
+def _label(evaluation: Evaluation, *, with_split: bool) -> str:
     card = evaluation.card
     parts = [f"person {card.planner.name}" if card.planner.provider == PERSON else card.pair]
     parts += [f"agent {card.agent}"] if card.agent != "scope" else []
     parts += [card.variant] if card.variant else []
-    parts += [f"{split_name(card.split)} split"] if card.split != "core" else []
+    parts += [f"{split_name(card.split)} split"] if with_split and card.split != "core" else []
     return ", ".join(parts)
 
 
@@ -187,8 +193,9 @@ def on_the_same_tasks(ranked: Sequence[Run]) -> tuple[Run, ...]:
 
 
 def timed(run: Run, runs: Sequence[Run]) -> Run:
-    """The run from which a system's latency is taken: one without contention if there is any, of these the longest."""
-    alone = [other for other in runs if other.system == run.system and not other.evaluation.card.contended and other.headline]
+    """The run from which a system's latency is taken: a finished one without contention if there is any, of these the longest."""
+    same = [other for other in runs if other.system == run.system and other.headline]
+    alone = [other for other in same if not other.evaluation.card.contended and other.evaluation.finished]
     return max(alone, key=lambda other: len(other.headline)) if alone else run
 
 

@@ -10,8 +10,9 @@ from typing import Literal
 from scope_ptz.bench.statistics.clustered import Estimate
 
 MISSING = "not measured"
-Kind = Literal["text", "count", "share", "points", "width", "seconds", "number", "gb", "usd", "p", "ratio"]
-"""``share``: 0..1, shown in percent; ``points``: a difference, in percentage points; ``width``: that without a sign."""
+Kind = Literal["text", "prose", "count", "share", "points", "width", "seconds", "number", "gb", "usd", "p", "ratio"]
+"""``prose``: text of a sentence or more;
+``share``: 0..1, shown in percent; ``points``: a difference, in percentage points; ``width``: that without a sign."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +36,11 @@ class Column:
     name: str
     title: str
     kind: Kind = "text"
+
+    @property
+    def worded(self) -> bool:
+        """Whether it holds words, not figures."""
+        return self.kind in ("text", "prose")
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +87,7 @@ def _number(value: float, kind: Kind) -> str:
         case "points":
             return f"{100 * value + 0.0:+.1f}"
         case "seconds":
-            return f"{value:.2f}" if value >= 0.1 or value == 0 else f"{value:.3g}"
+            return f"{value:.2f}" if value >= 0.01 or value == 0 else "< 0.01"
         case "gb":
             return f"{value:.1f}"
         case "usd":
@@ -130,7 +136,7 @@ def as_markdown(table: Table) -> str:
     """A pipe table with its heading and notes. Text is escaped, so that it is shown and never acts."""
     lines = [f"### {escape(table.title)}", ""]
     lines += ["| " + " | ".join(escape(column.title) for column in table.columns) + " |"]
-    lines += ["|" + "|".join("---" if column.kind == "text" else "---:" for column in table.columns) + "|"]
+    lines += ["|" + "|".join("---" if column.worded else "---:" for column in table.columns) + "|"]
     for number, row in enumerate(table.rows):
         if number in table.groups:
             lines.append(f"| **{escape(table.groups[number])}** |" + " |" * (len(table.columns) - 1))

@@ -118,6 +118,6 @@ def cell(value: Value, column: Column) -> dict[str, Any]:
         plain = plain.value
     words = in_words(plain, column.kind)
     return {
-        "words": words, "interval": interval, "missing": words == MISSING, "text": column.kind == "text",
+        "words": words, "interval": interval, "missing": words == MISSING, "text": column.worded, "prose": column.kind == "prose",
         "best": marks.best, "best_of_all": marks.best_of_all, "link": marks.link, "note": marks.note,
     }  # fmt: skip

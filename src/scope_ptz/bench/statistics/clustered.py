@@ -106,13 +106,16 @@ def share(scores: Scores, weights: Mapping[Any, float] | None = None) -> Estimat
 
 
 def difference(scores: Scores, weights: Mapping[Any, float] | None = None) -> Estimate | None:
-    """A mean difference or contrast with the interval value +- t se; None without data."""
+    """A mean difference or contrast of shares with the interval value +- t se, cut at -1 and 1; None without data.
+
+    There is no interval where every outcome is alike: a variance of 0 would feign that the difference is known.
+    """
     if not len(scores.values):
         return None
     scores, weights = (pooled(scores), {"all": 1.0}) if weights is None else (scores, weights)
     value, se, clusters = weighted_mean(scores, weights), standard_error(scores, weights), len(set(scores.clusters))
-    half = None if se is None else se * t_quantile(clusters)
-    low, high = (None, None) if half is None else (value - half, value + half)
+    half = se * t_quantile(clusters) if se else None
+    low, high = (None, None) if half is None else (max(-1.0, value - half), min(1.0, value + half))
     return Estimate(value, low, high, se, len(scores.values), clusters)
 
 
