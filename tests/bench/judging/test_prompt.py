@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 from typing import get_args
 
 import pytest
 
-from scope_ptz.agent.trace import read_trace
+from scope_ptz.agent.trace import Trace, read_trace
 from scope_ptz.bench.episode import Places
 from scope_ptz.bench.error_modes import ErrorMode
 from scope_ptz.bench.judging.case import CaseCall, case_of
@@ -120,46 +119,35 @@ def test_short_runs_are_not_cut() -> None:
     assert "left out" not in render(facts, long_case(5, 500), 60_000)
 
 
-def test_a_recorded_trace_is_judged_by_what_is_in_it(tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory: pytest.TempPathFactory) -> Trace:
+    """A run by the very command that people type: it turns, goes to another viewpoint, and home again."""
     from typer.testing import CliRunner
 
-    done = CliRunner().invoke(
-        app,
-        [
-            "ask",
-            "pan right 20 degrees, then take a picture",
-            "--scene",
-            "highway-works",
-            "--runs-dir",
-            str(tmp_path),
-            "--fast",
-        ],
-    )
+    folder = tmp_path_factory.mktemp("runs")
+    asked = "pan right 20 degrees, then take a picture, then go to the lane preset, then take a picture, then go home"
+    done = CliRunner().invoke(app, ["ask", asked, "--scene", "highway-works", "--runs-dir", str(folder), "--fast"])
     assert done.exit_code == 0, done.output
-    case = case_of(read_trace(next(tmp_path.iterdir())))
-    assert [call.name for call in case.calls] == ["adjust_ptz", "take_image"]
+    return read_trace(next(folder.iterdir()))
+
+
+def test_a_recorded_trace_is_judged_by_what_is_in_it(recorded: Trace) -> None:
+    case = case_of(recorded)
+    assert [call.name for call in case.calls] == ["adjust_ptz", "take_image", "go_to_preset", "take_image", "go_home"]
     assert case.calls[0].pose.pan_deg - case.start.pan_deg == pytest.approx(20)
-    assert case.final == case.calls[-1].pose
+    assert case.final == case.calls[-1].pose == case.start
     assert case.outcome == "answered"
     assert case.answer
     assert not case.sees
-    assert {call.viewpoint for call in case.calls} == {"mast"}
-    facts, _ = facts_and_case()
-    text = messages(facts, case)[1]["content"]
+    text = messages(facts_and_case()[0], case)[1]["content"]
     assert '| adjust_ptz {"pan_deg": 20' in text
     assert "pictures/001.png" in text
 
 
-def test_where_the_camera_stood_is_told_as_far_as_it_is_known(tmp_path: Path) -> None:
-    from typer.testing import CliRunner
-
-    command = ["ask", "go to the lane preset, then take a picture, then go home, then take a picture"]
-    done = CliRunner().invoke(app, [*command, "--runs-dir", str(tmp_path), "--fast"])
-    assert done.exit_code == 0, done.output
-    trace = read_trace(next(tmp_path.iterdir()))
-    assert [call.viewpoint for call in case_of(trace).calls] == [None, None, None, None]
-    told = case_of(trace, Places({"lane": "verge"}, "mast"))
-    assert [call.viewpoint for call in told.calls] == ["verge", "verge", "mast", "mast"]
+def test_where_the_camera_stood_is_told_as_far_as_it_is_known(recorded: Trace) -> None:
+    assert [call.viewpoint for call in case_of(recorded).calls] == ["mast", "mast", None, None, None]
+    told = case_of(recorded, Places({"lane": "verge"}, "mast"))
+    assert [call.viewpoint for call in told.calls] == ["mast", "mast", "verge", "verge", "mast"]
     text = render(facts_and_case()[0], told, 60_000)
     assert 'Camera afterwards: at viewpoint "verge", pan' in text
     assert 'Final camera pose: at viewpoint "mast", pan' in text
