@@ -68,8 +68,11 @@ def _model(header: EvalLog, role: str) -> ModelCard:
     if bound is None:
         return ModelCard(name="none")
     provider, _, name = bound.model.partition("/")
+    own = provider == SCOPE + "_ptz"
+    deterministic = own and name in DETERMINISTIC
     return ModelCard(
         name=name or provider,
+        registry=name if own and not deterministic else None,
         provider=bound.base_url or provider,
-        deterministic=provider == SCOPE + "_ptz" and name in DETERMINISTIC,
+        deterministic=deterministic,
     )

@@ -29,6 +29,9 @@ from scope_ptz.bench.engine.scorers import METRICS
 from scope_ptz.bench.engine.trialing import broken_by
 from scope_ptz.bench.judging.judge import Judge, Message, NoReplyError, Reply
 
+FIRST_SEED = 1
+"""Of a judge of another provider; each further judgement has the next one."""
+
 _ROLES: dict[str, Callable[..., ChatMessage]] = {
     "system": ChatMessageSystem,
     "user": ChatMessageUser,
@@ -83,14 +86,17 @@ class LoggedJudge:
     async def _foreign(self, told: list[ChatMessage], schema: dict[str, Any]) -> Reply:
         """A model of somebody else's provider."""
         shape = ResponseSchema(name="verdict", json_schema=JSONSchema.model_validate(schema))
+        config = GenerateConfig(response_schema=shape, temperature=0.0, seed=FIRST_SEED + self._repeat)
         try:
-            output = await self._model.generate(told, config=GenerateConfig(response_schema=shape, temperature=0.0))
+            output = await self._model.generate(told, config=config)
         except Exception as error:  # whatever a provider raises: the judge's server gave no reply
             raise NoReplyError(f"The judge {self._model} failed: {error}") from error
+        if output.stop_reason == "model_length":
+            raise NoReplyError(f"The run is too long for the judge {self._model}.", overflow=True)
         used = output.usage
         return Reply(
             text=output.completion,
-            input_tokens=used.input_tokens if used else 0,
+            input_tokens=used.input_tokens + (used.input_tokens_cache_read or 0) if used else 0,
             output_tokens=used.output_tokens if used else 0,
             cut_off=output.stop_reason == "max_tokens",
         )

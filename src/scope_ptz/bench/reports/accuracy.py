@@ -21,8 +21,8 @@ KIND_WORDS = {
     "person": "person",
 }
 INTERVALS = (
-    "With each share stands its 95% interval, clustered by viewpoint (linearised variance by cluster, Student's t with one "
-    "degree of freedom fewer than there are viewpoints, Wilson's form at the effective sample size). With a single viewpoint there is none."
+    "With each share stands its 95% interval, clustered by viewpoint (linearised variance by cluster, Student's t with one degree "
+    "of freedom fewer than there are viewpoints, Wilson's form at the effective sample size). With one viewpoint there is none."
 )
 
 
