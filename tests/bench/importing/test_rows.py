@@ -111,6 +111,7 @@ def test_tools_and_arguments(
         ("ptz_adjust", {"speed": 3}),
         ("ptz_adjust", {"zoom_percent": -100}),
         ("ptz_adjust", {"zoom_factor": 2, "zoom_full": "in"}),
+        ("ptz_adjust", {"zoom_factor": 2, "zoom_percent": 50}),
         ("go_to_preset", {"name": "moon"}),
         ("count_pointing", {"object_of_interest": "cars", "view_type": "sideways"}),
         ("track_object", {"object_of_interest": "van", "duration": 3, "unit": "fortnights"}),

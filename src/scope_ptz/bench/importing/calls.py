@@ -155,6 +155,8 @@ def _moves(given: Mapping[str, Any], take: Take, used: set[str], made: Expectati
                 made.note("wrong-arguments", f"adjust_ptz: {name} is {given[name]!r}")
             else:
                 take(name, degrees, Argument(equals=degrees, within=DEGREES_WITHIN))
+    if "zoom_factor" in given and "zoom_percent" in given:
+        made.note("wrong-arguments", "adjust_ptz takes zoom_factor or zoom_percent, not both; the latter was read")
     for name in ("zoom_factor", "zoom_percent"):
         if name in given:
             used.add(name)

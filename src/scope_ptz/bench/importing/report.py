@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, get_args
@@ -24,6 +23,8 @@ PAPER_COUNTS: dict[Category, int] = {
 """As the paper states them, for comparison."""
 
 _MOST_LISTED = 12
+_NAMING_LINES: frozenset[Kind] = frozenset({"duplicate", "contradiction", "same-at-every-preset", "id-repeated"})
+"""Findings whose detail names the lines itself."""
 
 
 @dataclass(frozen=True)
@@ -135,11 +136,21 @@ def _kind_lines(imported: Imported, kind: Kind) -> Iterator[str]:
     if not lines:
         return
     yield f"  {len(lines):>5}  {kind}: {MEANINGS[kind]}"
-    details = Counter(finding.detail for line in lines for finding in imported.findings[line] if finding.kind == kind)
-    told = [f"{detail} ({number} x)" if number > 1 else detail for detail, number in details.most_common(_MOST_LISTED) if detail]
+    details: dict[str, list[int]] = {}
+    for line in lines:
+        for finding in imported.findings[line]:
+            if finding.kind == kind:
+                details.setdefault(finding.detail, []).append(line)
+    often = sorted(details, key=lambda detail: -len(details[detail]))[:_MOST_LISTED]
+    told = [detail if kind in _NAMING_LINES else f"{detail} ({_lines(details[detail])})" for detail in often if detail]
     yield from (f"         {''.join(c if c.isprintable() else ' ' for c in one)}" for one in told)
     if not told:
-        listed = ", ".join(map(str, lines[:_MOST_LISTED]))
-        yield f"         lines {listed}{' ...' if len(lines) > _MOST_LISTED else ''}"
+        yield f"         {_lines(lines)}"
     elif len(details) > _MOST_LISTED:
         yield f"         ... and {len(details) - _MOST_LISTED} more, in the report file"
+
+
+def _lines(lines: Sequence[int]) -> str:
+    """Line 7, or lines 2, 3, 5."""
+    listed = ", ".join(map(str, lines[:_MOST_LISTED]))
+    return f"line{'s' if len(lines) > 1 else ''} {listed}{' ...' if len(lines) > _MOST_LISTED else ''}"
