@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from scope_ptz.bench.expected import ActionOnly, NoneThere
+from scope_ptz.bench.expected import ActionOnly, AnyExpected, NoneThere, Number
 from scope_ptz.bench.phrasing import first_named, right_answers, wrong_answer
 from scope_ptz.bench.tasks import ProgramCall, Task
 
@@ -75,8 +75,13 @@ def common_answers(tasks: Sequence[Task], *, presences: bool = False) -> dict[st
     for task in tasks:
         passed_over = presences and (task.pair is not None or isinstance(task.expected, NoneThere))
         if task.stratum == "core" and not isinstance(task.expected, ActionOnly) and not passed_over:
-            said.setdefault(task.category, Counter())[right_answers(task.expected)[0]] += 1
+            said.setdefault(task.category, Counter())[_bare(task.expected)] += 1
     return {category: counts.most_common(1)[0][0] for category, counts in said.items()}
+
+
+def _bare(expected: AnyExpected) -> str:
+    """A right answer without the words of its question, so that it is an answer to others as well."""
+    return f"{expected.value:g}" if isinstance(expected, Number) else right_answers(expected)[0]
 
 
 def cheats(task: Task, common: str, sibling: str | None, rng: random.Random) -> Iterator[Attempt]:

@@ -15,6 +15,7 @@ from scope_ptz.bench.coverage import box_directions
 from scope_ptz.bench.expected import AnyExpected, Choice, NoneThere, Number, Ordering, Relation, Text, YesNo
 from scope_ptz.bench.ground import EYES, TRACE_PX, Sight, visible
 from scope_ptz.bench.kinds import Kind, kinds_in
+from scope_ptz.bench.reader_strings import same_text
 from scope_ptz.bench.tasks import EvidenceView, Item, Task
 from scope_ptz.geometry import Equirectangular, Perspective, Pose
 from scope_ptz.world.pack import Scene
@@ -127,9 +128,9 @@ def _facts(task: Task, scene: Scene) -> Iterator[str]:
                 yield f"{item.instance} is not {_value(task.expected)}"
     if isinstance(task.expected, Text):
         words = {text.id: text.text.strip() for text in scene.file.texts}
-        said = list(dict.fromkeys(words.get(item.instance, "") for view in task.evidence for item in view.items))
-        if " / ".join(said) not in task.expected.accepted:
-            yield f"the evidence says {' / '.join(said)!r}"
+        said = " ".join(dict.fromkeys(words.get(item.instance, "") for view in task.evidence for item in view.items))
+        if not any(same_text(said, accepted, ocr=False) for accepted in task.expected.accepted):
+            yield f"the evidence says {said!r}"
 
 
 def _places(view: EvidenceView, item: Item) -> set[str]:

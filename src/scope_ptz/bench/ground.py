@@ -119,6 +119,8 @@ class Sight:
         for sighting in self.samples[0].sightings:
             thing = sighting.instance
             if kind.fits(thing):
+                if thing.attributes.get("behind") == "glass" and self.state(thing.number) is not False:
+                    return None  # whether what is inside a window counts, people do not agree on
                 if self.state(thing.number) is None or (not self.state(thing.number) and thing.number in self.faint):
                     return None
                 if self.state(thing.number):
@@ -150,11 +152,26 @@ class Sight:
         numbers = {s.instance.number for truth in self.samples for s in truth.sightings if s.pixels > TRACE_PX}
         return tuple(self.scene.by_number[number] for number in sorted(numbers))
 
+    @cached_property
+    def _met(self) -> tuple[Thing, ...]:
+        """Everything of which more than a trace shows in any sample, and what comes by."""
+        passing = tuple(actor for actor in self.scene.file.actors if actor.number in self.passing)
+        return tuple(thing for thing in self.traces if thing not in passing) + passing
+
+    def others(self, sighting: Sighting) -> tuple[Thing, ...]:
+        """Everything else that could be taken for a thing, now or later."""
+        return tuple(thing for thing in self._met if thing.number != sighting.instance.number)
+
     def spot(self, sighting: Sighting) -> list[tuple[float, float]]:
         """The middle of a thing in the frame (x, y in 0..1), at the pose and around it."""
         number = sighting.instance.number
         boxes = [s.box for truth in self.samples for s in truth.sightings if s.instance.number == number]
         return [((b[0] + b[2]) / 2, (b[1] + b[3]) / 2) for b in boxes]
+
+    def areas(self, sighting: Sighting) -> list[float]:
+        """How many pixels a thing covers, at the pose and around it."""
+        number = sighting.instance.number
+        return [float(s.pixels) for truth in self.samples for s in truth.sightings if s.instance.number == number]
 
     def side(self, sighting: Sighting, axis: int, margin: float = 0.06) -> int | None:
         """0 or 1: the left or right (axis 0), upper or lower (axis 1) half that holds a thing, well clear of the middle line."""

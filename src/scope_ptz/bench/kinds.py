@@ -23,6 +23,16 @@ GROUPS: dict[str, frozenset[str]] = {
 }  # fmt: skip
 """Words for many categories at once, and what surely is one."""
 
+SIGNS = frozenset({
+    "sign", "message sign", "arrow board", "board", "notice", "poster", "banner", "a-board", "shop sign", "no entry sign",
+    "tram stop sign", "taxi sign", "menu board", "headline board", "map board", "timetable", "signpost", "price card",
+    "departures board", "street name sign", "bus stop", "bus stop flag", "hanging sign", "information board", "warning sign",
+    "notice board", "advertising column", "billboard", "bus stop sign", "wayfinding sign", "safety sign", "gantry", "plate",
+    "traffic sign", "road sign", "street sign", "parking sign", "estate agent board", "for sale board", "label", "placard",
+    "speed sign", "dock number", "bay number", "pavement board", "wall sign", "window notice", "door sign", "company board",
+})  # fmt: skip
+"""Whatever bears a notice."""
+
 _TWINS: tuple[frozenset[str], ...] = (
     GROUPS["person"] | {"cyclist", "driver", "mannequin", "statue"},
     GROUPS["vehicle"] | {
@@ -32,14 +42,7 @@ _TWINS: tuple[frozenset[str], ...] = (
     },
     frozenset({"lorry", "truck", "pickup truck", "articulated lorry", "trailer", "van", "terminal tractor", "container lorry"}),
     frozenset({"bicycle", "cargo bike", "motorcycle", "scooter", "cyclist"}),
-    frozenset({
-        "sign", "message sign", "arrow board", "board", "notice", "poster", "banner", "a-board", "shop sign", "no entry sign",
-        "tram stop sign", "taxi sign", "menu board", "headline board", "map board", "timetable", "signpost", "price card",
-        "departures board", "street name sign", "bus stop", "bus stop flag", "hanging sign", "information board", "warning sign",
-        "notice board", "advertising column", "billboard", "bus stop sign", "wayfinding sign", "safety sign", "gantry", "plate",
-        "traffic sign", "road sign", "street sign", "parking sign", "estate agent board", "for sale board", "label", "placard",
-        "speed sign", "dock number", "bay number",
-    }),
+    SIGNS,
     frozenset({"car", "taxi", "police car"}),
     frozenset({"bus", "coach", "minibus"}),
     frozenset({"tram", "train", "locomotive", "wagon", "railway wagon"}),
@@ -54,11 +57,12 @@ _TWINS: tuple[frozenset[str], ...] = (
     frozenset({"kiosk", "market stall", "portable toilet", "stall", "stand", "gazebo", "tent", "ticket kiosk"}),
     frozenset({"crate", "box", "carton", "case", "parcel", "cardboard box", "pallet box", "package", "chest", "stillage"}),
     frozenset({"bench", "chair", "seat", "stool"}),
-    frozenset({"awning", "parasol", "umbrella", "canopy", "sunshade"}),
+    frozenset({"awning", "canopy", "sunshade"}),
+    frozenset({"parasol", "umbrella", "sunshade"}),
     frozenset({"hand cart", "luggage trolley", "trolley", "cart", "sack truck", "pallet truck", "roll cage", "pram", "pushchair",
                "shopping trolley", "wheelbarrow", "hand truck"}),
     frozenset({"barrier", "guardrail", "fence panel", "railing", "crash barrier", "concrete block", "fence", "gate", "boom gate",
-               "barrier gate", "boom barrier", "pedestrian barrier"}),
+               "barrier gate", "boom barrier", "pedestrian barrier", "barrier arm"}),
     frozenset({"traffic cone", "cone", "bollard"}),
     frozenset({"drum", "barrel", "oil drum", "keg", "cask", "cable drum", "tank"}),
     frozenset({"cabinet", "utility box", "electricity box", "junction box", "control box", "electrical cabinet", "green box"}),
@@ -78,7 +82,10 @@ _TWINS: tuple[frozenset[str], ...] = (
     frozenset({"cup", "mug", "glass"}),
     frozenset({"box of fruit", "crate", "produce", "tray"}),
     frozenset({"ladder", "step ladder", "scaffolding"}),
-    frozenset({"shelter", "tram shelter", "bus shelter"}),
+    frozenset({"loaf", "cake", "ham", "produce"}),
+    frozenset({"bus stop", "shelter", "bus shelter", "tram shelter", "cycle shelter", "smoking shelter"}),
+    frozenset({"traffic light", "beacon", "belisha beacon", "lane signal", "dock light"}),
+    frozenset({"manhole", "manhole cover", "drain"}),
     frozenset({"fire hydrant", "fire extinguisher", "fire point"}),
     frozenset({"phone", "phone box", "emergency phone"}),
 )  # fmt: skip
@@ -90,8 +97,18 @@ _NEAR_COLOURS = (
     {"ochre", "yellow"}, {"ochre", "orange"}, {"ochre", "brown"}, {"golden", "yellow"}, {"golden", "brown"}, {"tan", "brown"},
     {"tan", "beige"}, {"turquoise", "blue"}, {"turquoise", "green"}, {"teal", "blue"}, {"teal", "green"}, {"maroon", "red"},
     {"burgundy", "red"}, {"maroon", "brown"}, {"rust", "orange"}, {"rust", "brown"}, {"beige", "white"}, {"amber", "orange"},
-    {"amber", "yellow"}, {"rust", "red"}, {"lilac", "purple"}, {"lilac", "pink"}, {"khaki", "green"}, {"khaki", "brown"},
+    {"amber", "yellow"}, {"rust", "red"}, {"lilac", "purple"}, {"lilac", "pink"},
+    {"cream", "grey"}, {"light", "grey", "white"}, {"khaki", "green"}, {"khaki", "brown"},
 )  # fmt: skip
+
+_OTHERWISE = {"car": frozenset({"taxi", "cab"}), "bus": frozenset({"coach", "minibus"})}
+"""Words in the name of a thing by which some would call it rather than by its category."""
+
+COLOUR_WORDS = frozenset({
+    "white", "black", "grey", "silver", "red", "blue", "navy", "green", "yellow", "orange", "brown", "beige", "cream", "buff",
+    "pink", "purple", "lilac", "turquoise", "teal", "gold", "golden", "amber", "maroon", "burgundy", "rust", "ochre", "tan",
+    "khaki", "bronze",
+})  # fmt: skip
 
 Thing = SceneInstance | SceneActor
 
@@ -107,15 +124,24 @@ class Kind:
     def fits(self, thing: Thing) -> bool:
         facts = thing.attributes
         return (
-            thing.category in GROUPS.get(self.category, {self.category})
+            not self._goes_by_another(thing)
+            and thing.category in GROUPS.get(self.category, {self.category})
             and (self.colour is None or own_colour(thing) == self.colour)
             and (self.attribute is None or str(facts.get(self.attribute[0])) == self.attribute[1])
+        )
+
+    def _goes_by_another(self, thing: Thing) -> bool:
+        """A taxi is a car to some, and a coach a bus."""
+        return thing.category == self.category and bool(
+            _OTHERWISE.get(self.category, frozenset()) & set(thing.name.lower().split())
         )
 
     def doubtful(self, thing: Thing) -> bool:
         """Whether somebody could call a thing that does not fit by this kind's name."""
         if self.fits(thing):
             return False
+        if self._goes_by_another(thing):
+            return True
         if thing.category not in GROUPS.get(self.category, {self.category}):
             words, name = set(self.category.split()), set(f"{thing.category} {thing.name}".lower().split())
             alike = any({self.category, thing.category} <= group for group in _TWINS)
@@ -136,7 +162,9 @@ def own_colour(thing: Thing) -> str | None:
     return None if set(colour.split()) & set(behind) else colour
 
 
-_COLOURLESS = frozenset({"cyclist", "driver", "clock", "statue", "fox", "bay number", "dock number", "tram", "headline board"})
+_COLOURLESS = frozenset(
+    {"cyclist", "driver", "clock", "statue", "fox", "bay number", "dock number", "tram", "headline board", "gantry"}
+)
 """Of these nobody would say that they have one colour, or that colour."""
 
 _JOINS = frozenset({"of", "with", "in", "on", "for"})

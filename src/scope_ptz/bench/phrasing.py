@@ -125,8 +125,13 @@ def wrong_answer(expected: AnyExpected, rng: random.Random) -> str | None:
 
 def plural(words: str) -> str:
     """The plural of a noun, as far as one rule goes."""
+    noun = re.split(r" (?:in|who|with|of|on|for|carrying) ", words)[0]
+    if noun != words:
+        return plural(noun) + words[len(noun) :].replace(" who is ", " who are ")
     if words.endswith("person"):
         return words[:-6] + "people"
+    if words.endswith("f") and words.endswith(("loaf", "leaf", "shelf")):
+        return words[:-1] + "ves"
     if words.endswith("y") and words[-2:-1] not in "aeiou":
         return words[:-1] + "ies"
     return words + ("es" if words.endswith(("s", "x", "ch", "sh")) else "" if words.endswith("people") else "s")

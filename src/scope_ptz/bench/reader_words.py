@@ -13,7 +13,10 @@ _SPELLINGS = {
     "sidewalk": "pavement", "license": "licence", "story": "storey", "aluminum": "aluminium", "colored": "coloured",
 }  # fmt: skip
 _MEASURES = {"°": "degree", "deg": "degree", "%": "percent", "m": "metre", "km": "kilometre", "s": "second", "sec": "second"}
-_IRREGULAR = {"people": "person", "men": "man", "women": "woman", "children": "child", "persons": "person"}
+_IRREGULAR = {
+    "people": "person", "men": "man", "women": "woman", "children": "child", "persons": "person",
+    "loaves": "loaf", "shelves": "shelf", "leaves": "leaf", "knives": "knife",
+}  # fmt: skip
 _IDIOMS = (
     "without a doubt", "without doubt", "no doubt", "no problem", "of course", "for sure", "not only", "no wonder",
     "needless to say", "as you can see", "not surprisingly",

@@ -53,6 +53,14 @@ def test_what_moves_through_the_view_is_neither_counted_nor_absent(yard: Sight) 
     assert not yard.lacks(Kind("roller"))
 
 
+def test_a_taxi_among_cars_and_a_coach_among_buses_leave_their_number_open() -> None:
+    taxi, saloon = thing("car", "black taxi"), thing("car", "black saloon")
+    assert Kind("car").doubtful(taxi) and not Kind("car").fits(taxi)
+    assert Kind("car").fits(saloon) and not Kind("car").doubtful(saloon)
+    assert Kind("vehicle").fits(taxi)
+    assert Kind("bus").doubtful(thing("bus", "white coach"))
+
+
 def test_absent_is_what_nothing_could_be_taken_for(yard: Sight) -> None:
     assert yard.lacks(Kind("zebra"))
     assert not yard.lacks(Kind("ball"))

@@ -65,7 +65,7 @@ def test_nothing_is_taken_twice_and_the_same_comes_again(place: Place) -> None:
 
 
 def test_the_first_of_an_offer(place: Place) -> None:
-    question = Question((("are there more cars or more vans?", "whether there are more cars or more vans"),))
     for value, first in (("cars", True), ("vans", False)):
-        offer = Choice(value=value, options={"cars": (), "vans": ()})
-        assert first_is_right(Draft("comparative", "more", "x", place, offer, question)) is first
+        offered = Draft("comparative", "more", "x", place, Choice(value=value, options={"cars": (), "vans": ()}))
+        assert first_is_right(offered, "Are there more cars or more vans?") is first
+        assert first_is_right(offered, "Are there more vans or more cars?") is not first

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import random
+import subprocess
+import sys
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
@@ -11,7 +14,7 @@ import anyio
 import pytest
 
 from scope_ptz.bench.authoring.assembly import QUOTAS as PUBLISHED
-from scope_ptz.bench.authoring.assembly import Built, build
+from scope_ptz.bench.authoring.assembly import Built
 from scope_ptz.bench.authoring.reactions import reactions
 from scope_ptz.bench.expected import Choice, NoneThere, Number
 from scope_ptz.bench.phrasing import first_named
@@ -43,11 +46,25 @@ def test_quotas_are_filled_or_what_is_short_is_told(built: Built) -> None:
     assert counts["counting"] == QUOTAS["counting"]
 
 
+_BUILD = """
+import sys
+from pathlib import Path
+from scope_ptz.bench.authoring.assembly import build
+from scope_ptz.bench.task_files import dump_tasks
+from scope_ptz.world.pack import Scene
+from tests.bench.authoring.conftest import QUOTAS
+folder, seed, out = sys.argv[1:]
+dump_tasks(build([Scene(Path(folder))], int(seed), QUOTAS).tasks, Path(out))
+"""
+
+
 def test_the_same_seed_makes_the_same_bytes_and_another_seed_does_not(built: Built, analytic_folder: Path, tmp_path: Path) -> None:
-    again, other = (build([Scene(analytic_folder)], seed, QUOTAS) for seed in (1, 2))
+    """In a process of its own, where strings and sets hash otherwise."""
     files = [tmp_path / f"{n}.jsonl" for n in range(3)]
-    for file, dataset in zip(files, (built, again, other), strict=True):
-        dump_tasks(dataset.tasks, file)
+    dump_tasks(built.tasks, files[0])
+    for seed, hashes, file in ((1, "4711", files[1]), (2, "0", files[2])):
+        environment = {**os.environ, "PYTHONHASHSEED": hashes}
+        subprocess.run([sys.executable, "-c", _BUILD, str(analytic_folder), str(seed), str(file)], env=environment, check=True)
     one, same, another = (file.read_bytes() for file in files)
     assert one == same != another
     assert load_tasks(files[0]) == tuple(built.tasks)
@@ -69,6 +86,13 @@ def test_absences_stand_beside_presences_of_like_wording(built: Built) -> None:
         assert twin.pair == task.id
         assert not isinstance(twin.expected, NoneThere)
         assert task.preset == twin.preset or task.evidence[0].aim.viewpoint == twin.evidence[0].aim.viewpoint
+
+
+def test_a_sum_over_two_views_counts_nothing_twice(built: Built) -> None:
+    for task in core(built):
+        if len(task.evidence) > 1 and isinstance(task.expected, Number) and not {"sort:difference", "sort:excess"} & set(task.tags):
+            things = [item.instance for view in task.evidence for item in view.items]
+            assert len(things) == len(set(things)) == task.expected.value
 
 
 def test_paraphrases_expect_what_their_task_expects(built: Built) -> None:

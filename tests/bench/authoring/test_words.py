@@ -15,6 +15,7 @@ from scope_ptz.bench.kinds import Kind
         ("person", "people"), ("woman", "women"), ("banksman", "banksmen"), ("toolbox", "toolboxes"), ("tram", "trams"),
         ("child", "children"), ("pile of sand", "piles of sand"), ("emergency phone", "emergency phones"), ("shelf", "shelves"),
         ("traffic cone", "traffic cones"), ("gantry", "gantries"), ("tray", "trays"), ("pallet of bags", "pallets of bags"),
+        ("loaf", "loaves"), ("stack of tyres", "stacks of tyres"), ("hanging basket", "hanging baskets"),
     ],
 )  # fmt: skip
 def test_plurals(one: str, many: str) -> None:
@@ -29,6 +30,8 @@ def test_plurals(one: str, many: str) -> None:
         ("umbrella", "an umbrella"),
         ("used car", "a used car"),
         ("excavator", "an excavator"),
+        ("SUV", "an SUV"),
+        ("estate agent board", "an estate agent board"),
     ],
 )
 def test_articles(noun: str, said: str) -> None:
@@ -46,6 +49,7 @@ def test_names_of_kinds() -> None:
     assert many_of(Kind("worker", None, ("helmet", "white"))) == "workers in white helmets"
     assert many_of(Kind("person", None, ("state", "sitting"))) == "people who are sitting"
     assert many_of(Kind("cross")) == "pharmacy crosses"
+    assert many_of(Kind("tyre stack")) == "stacks of tyres"
     assert unit_of(Kind("traffic cone")) == ("traffic cone", "cone")
     assert about(Kind("car", "red")) == ("car",)
 

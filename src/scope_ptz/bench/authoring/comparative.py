@@ -1,4 +1,4 @@
-"""Comparisons: more or fewer, nearer or farther, taller, in one view or between presets."""
+"""Comparisons: more or fewer, nearer or farther, larger in the picture, in one view or between presets."""
 
 from __future__ import annotations
 
@@ -6,26 +6,23 @@ import random
 from collections.abc import Iterator, Sequence
 from itertools import combinations, pairwise
 
-from scope_ptz.bench.authoring.counting import counted, plain_counts
+from scope_ptz.bench.authoring.counting import apart, counted, plain_counts
 from scope_ptz.bench.authoring.drafts import Draft, Question, ask, count, same_form, view
 from scope_ptz.bench.authoring.naming import Named, distinct
 from scope_ptz.bench.authoring.places import Place
 from scope_ptz.bench.authoring.words import about, listing, many_of, unit_of
 from scope_ptz.bench.expected import AnyExpected, Choice, Number, Options, Ordering, Relation, YesNo
-from scope_ptz.bench.kinds import Kind
+from scope_ptz.bench.kinds import GROUPS, Kind
 from scope_ptz.bench.tasks import EvidenceView
-from scope_ptz.world.models import SceneInstance
 
 SAME = ("the same", "equal", "as many", "equally many")
-_NEARER, _TALLER = 1.35, 1.5
-"""So many times as far, or as tall, is beyond doubt."""
-
-_WORTH_ASKING_M = 1.8
+_NEARER, _LARGER = 1.5, 2.5
+"""So many times as far, or as large in the picture, is beyond doubt."""
 
 
 def drafts(place: Place, rng: random.Random) -> list[Draft]:
     """Comparisons within one view."""
-    return [*_of_two(place, rng), *_of_several(place, rng), *_distances(place, rng), *_heights(place, rng)]
+    return [*_of_two(place, rng), *_of_several(place, rng), *_distances(place, rng), *_sizes(place, rng)]
 
 
 def _of_two(place: Place, rng: random.Random) -> Iterator[Draft]:
@@ -35,7 +32,9 @@ def _of_two(place: Place, rng: random.Random) -> Iterator[Draft]:
         if not a[0].attribute
         and not b[0].attribute
         and bool(a[0].colour) == bool(b[0].colour) == (a[0].category == b[0].category)
+        and min(a[1], b[1]) >= 2
         and a[1] + b[1] >= 5
+        and apart(place.sight, (a[0], b[0]))
     ]
     rng.shuffle(pairs)
     for n, pair in enumerate(pairs[:14]):
@@ -104,8 +103,8 @@ def _compare(first: str, second: str, n: int, m: int) -> _Asked:
     forms = (
         (f"how does the number of {first} compare with that of {second}?",
          f"how the number of {first} compares with that of {second}"),
-        (f"compared with the {second}, are there more, fewer or as many {first}?",
-         f"whether there are more, fewer or as many {first} compared with the {second}"),
+        (f"are there more {first} than {second}, fewer, or just as many?",
+         f"whether there are more {first} than {second}, fewer, or just as many"),
     )  # fmt: skip
     return "compare", expected, Question(forms)
 
@@ -127,9 +126,13 @@ def counted_view(place: Place, kind: Kind, number: int) -> EvidenceView:
 
 def _of_several(place: Place, rng: random.Random) -> Iterator[Draft]:
     """What there is most of among four, and the order of three by number."""
-    plain = plain_counts(place.sight)
+    plain = [(kind, n) for kind, n in plain_counts(place.sight) if kind.category not in GROUPS]
     for size, most in ((3, 4), (4, 4)):
-        groups = [group for group in combinations(plain, size) if _distinct([n for _, n in group], whole=size == 3)]
+        groups = [
+            group
+            for group in combinations(plain, size)
+            if _distinct([n for _, n in group], whole=size == 3) and apart(place.sight, [kind for kind, _ in group])
+        ]
         rng.shuffle(groups)
         for group in groups[:most]:
             ranked = tuple(many_of(kind) for kind, _ in sorted(group, key=lambda t: -t[1]))
@@ -183,7 +186,7 @@ def _distances(place: Place, rng: random.Random) -> Iterator[Draft]:
             ranked = sorted(group, key=lambda n: n.thing.distance_m)
             gaps = [b.thing.distance_m / max(a.thing.distance_m, 0.1) for a, b in pairwise(ranked)]
             if min(gaps) >= _NEARER:
-                names = [f"the {one.name}" for one in rng.sample(group, size)]
+                names = [one.the for one in rng.sample(group, size)]
                 yield from _by_distance(place, ranked, names, rng)
 
 
@@ -209,23 +212,25 @@ def _by_distance(place: Place, ranked: list[Named], names: list[str], rng: rando
         )), ranked, "distance")  # fmt: skip
 
 
-def _heights(place: Place, rng: random.Random) -> Iterator[Draft]:
+def _sizes(place: Place, rng: random.Random) -> Iterator[Draft]:
+    """Which of three takes up most of the picture: what shows decides, not what the things really measure."""
     if place.swept:
         return
-    standing = [n for n in distinct(place.sight) if isinstance(n.thing.instance, SceneInstance) and not n.thing.cut]
-    for group in _some([n for n in standing if not n.thing.instance.parent], 3, rng):  # type: ignore[union-attr]
-        ranked = sorted(group, key=_height, reverse=True)
-        if _height(ranked[0]) < max(_TALLER * _height(ranked[1]), _WORTH_ASKING_M):
+    for group in _some(distinct(place.sight), 3, rng):
+        areas = {one.name: place.sight.areas(one.thing) for one in group}
+        ranked = sorted(group, key=lambda one: areas[one.name][0], reverse=True)
+        if min(areas[ranked[0].name]) < _LARGER * max(max(areas[one.name]) for one in ranked[1:]):
             continue
-        either = listing([f"the {one.name}" for one in rng.sample(group, 3)], "or")
-        expected = Choice(value=ranked[0].name, options={one.name: () for one in ranked}, picks=("tallest", "taller", "highest"))
-        asked = Question(same_form(f"which is the tallest: {either}?", f"which of these really is the tallest: {either}?"))
-        yield _seen(place, "tallest", expected, asked, ranked, "size")
-
-
-def _height(one: Named) -> float:
-    thing = one.thing.instance
-    return thing.box_max_m[2] - thing.box_min_m[2] if isinstance(thing, SceneInstance) else 0.0
+        either = listing([one.the for one in rng.sample(group, 3)], "or")
+        expected = Choice(value=ranked[0].name, options={one.name: () for one in ranked}, picks=("largest", "biggest", "most"))
+        asked = Question(
+            same_form(
+                f"which looks largest in the picture: {either}?",
+                f"which takes up most of the picture: {either}?",
+                f"which appears biggest in the frame: {either}?",
+            )
+        )
+        yield _seen(place, "largest", expected, asked, ranked, "size")
 
 
 def _some(named: list[Named], size: int, rng: random.Random) -> list[tuple[Named, ...]]:
@@ -238,7 +243,8 @@ def _some(named: list[Named], size: int, rng: random.Random) -> list[tuple[Named
 def _seen(place: Place, kind: str, expected: Choice | Ordering, asked: Question, things: list[Named], tag: str) -> Draft:
     """A comparison of things that one look tells."""
     ids = "/".join(sorted(one.thing.instance.id for one in things))
-    items = [place.sight.item(one.thing, one.thing.distance_m if tag == "distance" else _height(one)) for one in things]
+    measures = [one.thing.distance_m if tag == "distance" else float(one.thing.pixels) for one in things]
+    items = [place.sight.item(one.thing, measure) for one, measure in zip(things, measures, strict=True)]
     return Draft(
         category="comparative",
         kind=kind,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from collections.abc import Sequence
 from functools import lru_cache
 
 from scope_ptz.bench.authoring.drafts import Draft, Question, count, scope_of, view
@@ -45,6 +46,11 @@ def counted(sight: Sight) -> tuple[tuple[Kind, int], ...]:
     return tuple(found)
 
 
+def apart(sight: Sight, kinds: Sequence[Kind]) -> bool:
+    """Whether nothing in view is of two of these kinds, nor could be called so ("people" and "workers")."""
+    return not any(sum(kind.fits(thing) or kind.doubtful(thing) for kind in kinds) > 1 for thing in sight.traces)
+
+
 def plain_counts(sight: Sight) -> list[tuple[Kind, int]]:
     """Those of them that are a whole category."""
     return [(kind, n) for kind, n in counted(sight) if kind.colour is None and kind.attribute is None]
@@ -52,17 +58,23 @@ def plain_counts(sight: Sight) -> list[tuple[Kind, int]]:
 
 @lru_cache(maxsize=512)
 def absent(sight: Sight, nouns: frozenset[str]) -> tuple[Kind, ...]:
-    """Kinds of which nothing at all shows, though they could be expected: other categories of scenes, and other colours."""
+    """Kinds of which nothing at all shows: other categories of the scenes, and colours that a category comes in here."""
     kinds = [Kind(noun) for noun in sorted(nouns - _ODD)]
     categories = sorted({s.instance.category for s in sight.clear if own_colour(s.instance) is not None} - UNCOUNTED)
-    kinds += [Kind(category, colour) for category in categories for colour in ("red", "blue", "green", "yellow", "black", "pink")]
+    colours = {(t.category, own_colour(t)) for t in sight.scene.things if t.category in categories}
+    kinds += [Kind(category, colour) for category, colour in sorted(colours, key=str) if colour in _ABSENT_COLOURS]
     return tuple(kind for kind in kinds if kind.category not in UNCOUNTED and sight.lacks(kind))
 
 
+_ABSENT_COLOURS = frozenset({"red", "blue", "green", "yellow", "black", "white", "orange", "purple"})
+
 _ODD = frozenset({
-    "cross", "price card", "plinth", "cow", "swimming pool", "tree grate", "stallholder", "cup", "notice", "ball", "tram platform",
-    "manhole cover", "drain", "clock", "timetable", "planter", "plate compactor", "marker post", "camera pole", "sign", "person",
-    "liquid container", "parking space", "driver", "security guard", "beacon", "gas cage", "lane signal", "spill kit", "wheel stop",
+    "cross", "price card", "plinth", "cow", "swimming pool", "tree grate", "stallholder", "cup", "notice", "ball",
+    "tram platform", "manhole cover", "drain", "clock", "timetable", "planter", "plate compactor", "marker post", "camera pole",
+    "sign", "person", "liquid container", "parking space", "driver", "security guard", "beacon", "gas cage", "lane signal",
+    "spill kit", "wheel stop", "hose reel", "loaf", "ham", "cake", "book", "bottle", "teapot", "table lamp", "mannequin",
+    "door sign", "window notice", "wall sign", "manhole", "belisha beacon", "dock light", "barrier arm", "plate", "hanging sign",
+    "street name sign", "gantry",
 })  # fmt: skip
 """What nobody would ask after, or nobody could be sure that there is none of."""
 

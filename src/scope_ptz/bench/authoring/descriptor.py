@@ -12,7 +12,7 @@ from scope_ptz.bench.authoring.naming import Named, by_name, ends, singles
 from scope_ptz.bench.authoring.places import Place
 from scope_ptz.bench.authoring.words import about, article, colour_options, listing, many_of, noun_of, plain_colour
 from scope_ptz.bench.expected import Choice, NameSet, Options
-from scope_ptz.bench.kinds import Thing, own_colour
+from scope_ptz.bench.kinds import COLOUR_WORDS, Thing, own_colour
 
 STATES: tuple[tuple[str, ...], ...] = (
     ("open", "closed"), ("lit", "unlit"), ("full", "empty"), ("occupied", "free"), ("occupied", "empty"), ("standing", "sitting"),
@@ -71,18 +71,17 @@ def _attributes(place: Place, values: Values) -> Iterator[Draft]:
                 "colour",
                 Choice(value=colour, options=colour_options()),
                 (
-                    ("what colour is the {n}?", "what colour the {n} is"),
-                    ("what is the colour of the {n}?", "the colour of the {n}"),
-                    ("which colour does the {n} have?", "which colour the {n} has"),
-                    ("the {n}: what colour is it?", "what colour the {n} is"),
+                    ("what colour is {n}?", "what colour {n} is"),
+                    ("what is the colour of {n}?", "the colour of {n}"),
+                    ("which colour does {n} have?", "which colour {n} has"),
                 ),
             )
-        for key, garment in (
-            ("vest", "hi-vis vest"),
-            ("helmet", "helmet"),
-            ("coat", "coat"),
-            ("jacket", "jacket"),
-            ("umbrella", "umbrella"),
+        for key, garment, verb in (
+            ("vest", "hi-vis vest", "wearing"),
+            ("helmet", "helmet", "wearing"),
+            ("coat", "coat", "wearing"),
+            ("jacket", "jacket", "wearing"),
+            ("umbrella", "umbrella", "holding"),
         ):
             if (worn := plain_colour(facts.get(key))) is not None and one.thing.pixels >= 500:
                 yield _choice(
@@ -91,13 +90,19 @@ def _attributes(place: Place, values: Values) -> Iterator[Draft]:
                     key,
                     Choice(value=worn, options=colour_options()),
                     (
-                        (f"what colour is the {garment} of the {{n}}?", f"what colour the {garment} of the {{n}} is"),
-                        (f"the {garment} of the {{n}}: which colour is it?", f"which colour the {garment} of the {{n}} has"),
+                        (f"what colour {garment} is {{n}} {verb}?", f"what colour {garment} {{n}} is {verb}"),
+                        (
+                            f"what is the colour of the {garment} that {{n}} is {verb}?",
+                            f"the colour of the {garment} that {{n}} is {verb}",
+                        ),
                     ),
                 )
         state = facts.get("state")
         for pair in STATES:
-            if state in pair and one.thing.pixels >= 500:
+            told = {word for value in pair for word in (value, *_SYNONYMS.get(value, ()))} & set(one.name.split())
+            if {"lit", "unlit"} & set(pair) and "light" in facts and set(one.name.split()) & COLOUR_WORDS:
+                continue  # "the green charging point" is one that is lit
+            if state in pair and not told and one.thing.pixels >= 500:
                 # Not always the same one first, but each time the same.
                 first, second = pair[:: 1 if sum(map(ord, one.thing.instance.id)) % 2 else -1]
                 yield _choice(
@@ -106,8 +111,8 @@ def _attributes(place: Place, values: Values) -> Iterator[Draft]:
                     "state",
                     Choice(value=str(state), options=options(pair)),
                     (
-                        (f"is the {{n}} {first} or {second}?", f"whether the {{n}} is {first} or {second}"),
-                        (f"what state is the {{n}} in, {first} or {second}?", f"if the {{n}} is {first} or {second}"),
+                        (f"is {{n}} {first} or {second}?", f"whether {{n}} is {first} or {second}"),
+                        (f"what state is {{n}} in, {first} or {second}?", f"if {{n}} is {first} or {second}"),
                     ),
                 )
         for key, ask_it in _KINDS.items():
@@ -135,23 +140,23 @@ _ONLY_ONE = (
 )
 _KINDS: dict[str, tuple[tuple[str, str], ...]] = {
     "kind": (
-        ("what kind of {c} is the {n}?", "what kind of {c} the {n} is"),
-        ("which type of {c} is the {n}?", "which type of {c} the {n} is"),
+        ("what kind of {c} is {n}?", "what kind of {c} {n} is"),
+        ("which type of {c} is {n}?", "which type of {c} {n} is"),
     ),
     "material": (
-        ("what is the {n} made of?", "what the {n} is made of"),
-        ("which material is the {n}?", "which material the {n} is made of"),
+        ("what is {n} made of?", "what {n} is made of"),
+        ("which material is {n}?", "which material {n} is made of"),
     ),
     "carrying": (
-        ("what is the {n} carrying?", "what the {n} is carrying"),
-        ("what does the {n} have in their hands?", "what the {n} is holding"),
+        ("what is {n} carrying?", "what {n} is carrying"),
+        ("what does {n} have in their hands?", "what {n} is holding"),
     ),
-    "load": (("what is on the {n}?", "what is on the {n}"), ("what does the {n} hold?", "what the {n} holds")),
+    "load": (("what is on {n}?", "what is on {n}"), ("what does {n} hold?", "what {n} holds")),
 }
 
 
 def _choice(place: Place, one: Named, key: str, expected: Choice, forms: Sequence[tuple[str, str]]) -> Draft:
-    words = {"n": one.name, "c": one.kind.category}
+    words = {"n": one.the, "c": one.kind.category}
     asked = Question(tuple((d.format(**words), i.format(**words)) for d, i in forms))
     item = place.sight.item(one.thing, expected.value)
     return Draft(

@@ -10,7 +10,7 @@ from scope_ptz.bench.authoring.counting import absent, counted
 from scope_ptz.bench.authoring.drafts import Draft, Question, ask, count, view
 from scope_ptz.bench.authoring.naming import singles
 from scope_ptz.bench.authoring.places import Place
-from scope_ptz.bench.authoring.words import about, article, colour_options, many_of, noun_of, plain_colour, plural, unit_of
+from scope_ptz.bench.authoring.words import about, article, colour_options, many_of, noun_of, plain_colour, plural, the, unit_of
 from scope_ptz.bench.expected import Choice, NoneThere, YesNo
 from scope_ptz.bench.kinds import Kind, near_colours, own_colour
 from scope_ptz.bench.tasks import EvidenceView
@@ -74,12 +74,12 @@ def _coloured_or_not(place: Place, rng: random.Random) -> Iterator[Draft]:
                 expected=expected,
                 question=Question(
                     (
-                        (f"is the {one.name} {said}?", f"whether the {one.name} is {said}"),
-                        (f"is it true that the {one.name} is {said}?", f"if it is true that the {one.name} is {said}"),
+                        (f"is {one.the} {said}?", f"whether {one.the} is {said}"),
+                        (f"is it true that {one.the} is {said}?", f"if it is true that {one.the} is {said}"),
                     )
                 ),
                 evidence=(view(place, expected, one.words, [place.sight.item(one.thing, colour)], whole=False),),
-                looks=(ask(f"what colour is the {one.name}?", place),),
+                looks=(ask(f"what colour is {one.the}?", place),),
                 tags=("verification",),
                 reads="yes" if expected.value else "no",
             )
@@ -114,13 +114,13 @@ def _if_there(place: Place, name: str, expected: Choice | NoneThere, evidence: E
         expected=expected,
         question=Question(
             (
-                (f"what colour is the {name}, if there is one?", f"what colour the {name} is, if there is one"),
-                (f"if there is {one}, what colour is it?", f"what colour the {name} is, if you can see one"),
+                (f"what colour is {the(name)}, if there is one?", f"what colour {the(name)} is, if there is one"),
+                (f"if there is {one}, what colour is it?", f"what colour {the(name)} is, if you can see one"),
                 (f"can you see {one}, and what colour is it?", f"whether you can see {one}, and what colour it is"),
             )
         ),
         evidence=(evidence,),
-        looks=(count(f"{plural(name)}", place),) if reads == "none" else (ask(f"what colour is the {name}?", place),),
+        looks=(count(f"{plural(name)}", place),) if reads == "none" else (ask(f"what colour is {the(name)}?", place),),
         tags=("none-there",) if reads == "none" else ("attribute", "colour"),
         reads=reads,
     )

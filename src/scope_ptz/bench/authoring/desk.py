@@ -44,7 +44,7 @@ MOST_GROUPS = 40
 MOST_OF_A_SORT = 10
 """So many drafts of one sort are kept of a view."""
 
-READING = 24
+READING = 36
 """How many views near to a text a scene is asked about."""
 
 
@@ -92,9 +92,11 @@ class Desk:
     def reading_views(self) -> list[Place]:
         """Views that are near enough to read a text, one for each thing that bears some."""
         found: dict[str, Place] = {}
-        for viewpoint in self.scene.file.viewpoints:
-            here = self.scene.viewpoint(viewpoint.name)
-            for text in self.scene.file.texts:
+        texts = list(self.scene.file.texts)
+        self._rng("reading").shuffle(texts)
+        for text in texts:
+            for viewpoint in self.scene.file.viewpoints:
+                here = self.scene.viewpoint(viewpoint.name)
                 centre = np.array(text.centre_m, dtype=np.float64)
                 towards = here.position_m - centre
                 angle = float(angle_between_deg(np.cross(np.array(text.right), np.array(text.up)), towards))
@@ -108,11 +110,11 @@ class Desk:
                 pan, tilt = pan_tilt_deg(here.offset(centre))
                 zoom = EYES.optics.zoom_for_hfov(min(hfov, EYES.optics.hfov_deg(1.0)))
                 place = self.places.towards(viewpoint.name, float(pan), float(tilt), zoom)
-                if place is not None:
+                if place is not None and any(t.text.id == text.id and t.legible for t in place.sight.first.texts):
                     found[text.parent] = place
-        places = list(found.values())
-        self._rng("reading").shuffle(places)
-        return places[:READING]
+                if len(found) == READING:
+                    return list(found.values())
+        return list(found.values())
 
     def drafts(self, category: Category) -> Iterator[Draft]:
         """Everything that could be asked in a category."""

@@ -18,11 +18,11 @@ from scope_ptz.bench.tasks import Behaviour, Category, EvidenceView, Item, Need,
 from scope_ptz.tools.arguments import View
 
 _WRAPPERS = (
-    "{M}. {D}", "{M} and tell me {i}.", "{M}, then tell me {i}.", "Please {m} and let me know {i}.", "{M}: {d}",
-    "Could you {m} and report {i}?", "I'd like you to {m}. {D}", "{M} and find out {i}.", "First {m}. {D}",
-    "I need to know {i}. {M} to see.", "{M} and have a look: {d}", "Tell me {i}. You will have to {m} for that.",
-    "Can you {m}? {D}", "{M} and answer this: {d}", "For the log, {m} and note {i}.", "{D} To find out, {m}.",
-    "Would you {m} and say {i}?", "Let me know {i}: {m} and look.",
+    "{M}. {D}", "{L} and tell me {i}.", "{L}, then tell me {i}.", "Please {l} and let me know {i}.", "{M}: {d}",
+    "Could you {l} and report {i}?", "I'd like you to {m}. {D}", "{L} and find out {i}.", "First {m}. {D}",
+    "I need to know {i}. {M} to see.", "{L} and have a look: {d}", "Tell me {i}. You will have to {m} for that.",
+    "Can you {m}? {D}", "{L} and answer this: {d}", "For the log, {l} and note {i}.", "{D} To find out, {m}.",
+    "Would you {l} and say {i}?", "Let me know {i}: {l} and look.",
 )  # fmt: skip
 _AT_PRESET = (
     "At the {p} preset, {d}", "From the {p} preset, {d}", "{D} Use the {p} preset.", "Check the {p} view: {d}",
@@ -92,7 +92,7 @@ class Draft:
 
     @cached_property
     def traits(self) -> tuple[tuple[str, str], ...]:
-        """What tasks are to be spread over: scene, viewpoints looked at, sort of question, answer, view, start."""
+        """What tasks are to be spread over: scene, viewpoints looked at, sort of question, answer, subject, view, start."""
         place = self.place
         seen = {view.aim.viewpoint for view in self.evidence} or {str(place.at.viewpoint)}
         return (
@@ -100,6 +100,7 @@ class Draft:
             *(("viewpoint", f"{place.scene.name}:{name}") for name in sorted(seen)),
             ("kind", self.kind),
             ("answer", self.reads),
+            *(("subject", name) for name in sorted({view.about[0] for view in self.evidence if view.about})),
             ("place", place.key),
             ("start", f"{place.scene.name}:{place.start}"),
         )
@@ -144,8 +145,9 @@ class Frames:
             if place.swept and not place.calls:
                 options += [(w.format(**words), f"{name}/around{k}") for k, w in enumerate(_AROUND)]
             for k, wrapper in enumerate(_WRAPPERS):
-                moves = place.said(rng)
-                options.append((wrapper.format(m=moves, M=capital(moves), **words), f"{name}/{k}"))
+                moves, before_and = place.said(rng)
+                said = wrapper.format(m=moves, M=capital(moves), l=before_and, L=capital(before_and), **words)
+                options.append((said, f"{name}/{k}"))
         return options
 
 

@@ -12,7 +12,7 @@ from scope_ptz.bench.authoring.drafts import Draft, Question, ask, count, view
 from scope_ptz.bench.authoring.location_pairs import corner_options
 from scope_ptz.bench.authoring.naming import Named, distinct
 from scope_ptz.bench.authoring.places import Place
-from scope_ptz.bench.authoring.words import about, listing, many_of, noun_of, unit_of
+from scope_ptz.bench.authoring.words import about, listing, many_of, noun_of, the, unit_of
 from scope_ptz.bench.expected import Choice, Number, Options, Ordering, Relation, YesNo
 
 _SIDES: tuple[tuple[str, str], ...] = (("left", "right"), ("upper", "lower"))
@@ -48,23 +48,23 @@ def _halves(place: Place, named: list[Named]) -> Iterator[Draft]:
                 one,
                 f"half-{axis}",
                 expected,
-                _half_forms(one.name, axis),
+                _half_forms(one.the, axis),
             )
 
 
-def _half_forms(name: str, axis: int) -> tuple[tuple[str, str], ...]:
+def _half_forms(the: str, axis: int) -> tuple[tuple[str, str], ...]:
     first, second = _SIDES[axis]
     if axis == 0:
         return (
-            (f"on which side of the picture is the {name}?", f"on which side of the picture the {name} is"),
-            (f"in which half of the frame is the {name}, {second} or {first}?", f"in which half of the frame the {name} is"),
-            (f"is the {name} in the {first} or the {second} half of the picture?",
-             f"whether the {name} is in the {first} or the {second} half of the picture"),
+            (f"on which side of the picture is {the}?", f"on which side of the picture {the} is"),
+            (f"in which half of the frame is {the}, {second} or {first}?", f"in which half of the frame {the} is"),
+            (f"is {the} in the {first} or the {second} half of the picture?",
+             f"whether {the} is in the {first} or the {second} half of the picture"),
         )  # fmt: skip
     return (
-        (f"is the {name} in the {first} or the {second} half of the picture?",
-         f"whether the {name} is in the {first} or the {second} half of the picture"),
-        (f"is the {name} above or below the middle of the frame?", f"whether the {name} is above or below the middle of the frame"),
+        (f"is {the} in the {first} or the {second} half of the picture?",
+         f"whether {the} is in the {first} or the {second} half of the picture"),
+        (f"is {the} above or below the middle of the frame?", f"whether {the} is above or below the middle of the frame"),
     )  # fmt: skip
 
 
@@ -80,10 +80,10 @@ def _corners(place: Place, named: list[Named]) -> Iterator[Draft]:
             "quarter",
             expected,
             (
-                (f"in which quarter of the picture is the {one.name}?", f"in which quarter of the picture the {one.name} is"),
+                (f"in which quarter of the picture is {one.the}?", f"in which quarter of the picture {one.the} is"),
                 (
-                    f"where in the frame is the {one.name}: top left, top right, bottom left or bottom right?",
-                    f"which quarter of the frame holds the {one.name}",
+                    f"where in the frame is {one.the}: top left, top right, bottom left or bottom right?",
+                    f"which quarter of the frame holds {one.the}",
                 ),
             ),
         )
@@ -109,9 +109,9 @@ def _relations(place: Place, named: list[Named], rng: random.Random) -> Iterator
             )
             asked = Question(
                 (
-                    (f"on which side of the {two.name} is the {one.name}?", f"on which side of the {two.name} the {one.name} is"),
-                    (f"is the {one.name} to the left or to the right of the {two.name}?",
-                     f"whether the {one.name} is to the left or to the right of the {two.name}"),
+                    (f"on which side of {two.the} is {one.the}?", f"on which side of {two.the} {one.the} is"),
+                    (f"is {one.the} to the left or to the right of {two.the}?",
+                     f"whether {one.the} is to the left or to the right of {two.the}"),
                 )
             )  # fmt: skip
         else:
@@ -119,10 +119,10 @@ def _relations(place: Place, named: list[Named], rng: random.Random) -> Iterator
             expected = YesNo(value=(side == "left") == left)
             asked = Question(
                 (
-                    (f"is the {one.name} to the {side} of the {two.name}?",
-                     f"whether the {one.name} is to the {side} of the {two.name}"),
-                    (f"do you see the {one.name} on the {side} of the {two.name}?",
-                     f"whether the {one.name} is on the {side} of the {two.name}"),
+                    (f"is {one.the} to the {side} of {two.the}?",
+                     f"whether {one.the} is to the {side} of {two.the}"),
+                    (f"does {one.the} appear to the {side} of {two.the}?",
+                     f"whether {one.the} appears to the {side} of {two.the}"),
                 )
             )  # fmt: skip
         items = [place.sight.item(n.thing) for n in (one, two)]
@@ -136,7 +136,7 @@ def _relations(place: Place, named: list[Named], rng: random.Random) -> Iterator
             evidence=(view(place, expected, (*one.words, *two.words), items, whole=False),),
             looks=(ask(asked.forms[0][0], place),),
             tags=("relation",),
-            reads=("yes" if expected.value else "no") if isinstance(expected, YesNo) else expected.value,
+            reads=("yes" if expected.value else "no") if isinstance(expected, YesNo) else "left" if left else "right",
         )
 
 
@@ -150,7 +150,7 @@ def _order(place: Place, named: list[Named], rng: random.Random) -> Iterator[Dra
         value = tuple(names[s.instance.id] for s in order)
         shuffled = list(value)
         rng.shuffle(shuffled)
-        listed = listing([f"the {name}" for name in shuffled])
+        listed = listing([the(name) for name in shuffled])
         items = [place.sight.item(n.thing) for n in three]
         sets: list[tuple[str, Ordering | Choice, Question]] = [
             (
@@ -199,7 +199,7 @@ def _order(place: Place, named: list[Named], rng: random.Random) -> Iterator[Dra
 def _in_half(place: Place) -> Iterator[Draft]:
     for kind, total in counted(place.sight):
         sides = [place.sight.side(t, 0, 0.03) for t in place.sight.of(kind) or ()]
-        if total < 2 or None in sides or len(set(sides)) == 1:
+        if total < 2 or kind.attribute or None in sides or len(set(sides)) == 1:
             continue
         for side, name in enumerate(_SIDES[0]):
             many, number = many_of(kind), sides.count(side)

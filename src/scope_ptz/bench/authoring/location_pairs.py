@@ -10,7 +10,7 @@ from scope_ptz.bench.authoring.counting import absent, counted
 from scope_ptz.bench.authoring.drafts import Draft, Question, ask, view
 from scope_ptz.bench.authoring.naming import Named
 from scope_ptz.bench.authoring.places import Place
-from scope_ptz.bench.authoring.words import about, article, many_of, noun_of, plural, unit_of
+from scope_ptz.bench.authoring.words import about, article, many_of, noun_of, plural, the, unit_of
 from scope_ptz.bench.expected import Choice, NoneThere, Options, YesNo
 from scope_ptz.bench.kinds import Kind
 from scope_ptz.bench.tasks import EvidenceView
@@ -76,7 +76,7 @@ def _where_if_there(place: Place, named: list[Named], nouns: frozenset[str], rng
     """In which quarter something is that is not there at all, beside something that is."""
     missing = [kind for kind in absent(place.sight, nouns) if kind.colour is None]
     rng.shuffle(missing)
-    placed = [(n, place.sight.side(n.thing, 0), place.sight.side(n.thing, 1)) for n in named]
+    placed = [(n, place.sight.side(n.thing, 0), place.sight.side(n.thing, 1)) for n in named if n.name[-1].isalpha()]
     for (one, side, level), gone in zip([p for p in placed if None not in p[1:]], missing, strict=False):
         value = Choice(value=f"{('top', 'bottom')[level or 0]} {('left', 'right')[side or 0]}", options=corner_options())
         none = NoneThere(subject=unit_of(gone)[:2])
@@ -90,14 +90,14 @@ def _where_if_there(place: Place, named: list[Named], nouns: frozenset[str], rng
 def _where_if(place: Place, name: str, expected: Choice | NoneThere, seen: EvidenceView, reads: str) -> Draft:
     one = article(name)
     forms = (
-        (f"in which quarter of the picture is the {name}, if there is one?",
-         f"in which quarter of the picture the {name} is, if there is one"),
+        (f"in which quarter of the picture is {the(name)}, if there is one?",
+         f"in which quarter of the picture {the(name)} is, if there is one"),
         (f"if you can see {one}, is it top left, top right, bottom left or bottom right?",
-         f"where in the frame the {name} is (top left, top right, bottom left or bottom right), if you can see one"),
-        (f"can you find {one}, and in which quarter of the frame?",
-         f"whether you can find {one}, and in which quarter of the frame"),
+         f"where in the frame {the(name)} is (top left, top right, bottom left or bottom right), if you can see one"),
+        (f"can you find {one}, and in which quarter of the frame is it?",
+         f"whether you can find {one}, and in which quarter of the frame it is"),
     )  # fmt: skip
-    look = f"are there any {plural(name)}?" if reads == "none" else f"where in the frame is the {name}?"
+    look = f"are there any {plural(name)}?" if reads == "none" else f"where in the frame is {the(name)}?"
     return Draft(
         category="location",
         kind="where-if",

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
-from scope_ptz.bench.authoring.words import UNCOUNTED, about, called, noun_of
+from scope_ptz.bench.authoring.words import UNCOUNTED, about, called, noun_of, the
 from scope_ptz.bench.expected import Wordings
-from scope_ptz.bench.ground import Sight
-from scope_ptz.bench.kinds import Kind, own_colour
+from scope_ptz.bench.ground import Sight, with_parts
+from scope_ptz.bench.kinds import COLOUR_WORDS, GROUPS, SIGNS, Kind, Thing, near_colours, own_colour
 from scope_ptz.world.truth import Sighting
+
+MADE_OUT_PX = 8.0
+"""Capitals of this height are made out by whoever knows what to look for."""
 
 
 @dataclass(frozen=True)
@@ -21,6 +25,11 @@ class Named:
     name: str
     kind: Kind
     place: bool = False
+
+    @property
+    def the(self) -> str:
+        """The name with its article."""
+        return the(self.name)
 
     @property
     def words(self) -> Wordings:
@@ -51,40 +60,101 @@ def singles(sight: Sight, *, coloured: bool, min_pixels: int = 250) -> tuple[Nam
 
 def unrivalled(sight: Sight, kind: Kind, thing: Sighting) -> bool:
     """Whether nothing else shows, however small, that could be meant."""
-    others = (other for other in sight.traces if other.number != thing.instance.number)
-    return not any(kind.fits(other) or kind.doubtful(other) for other in others)
+    return not any(kind.fits(other) or kind.doubtful(other) for other in sight.others(thing))
 
 
 @lru_cache(maxsize=2048)
-def by_name(sight: Sight, min_pixels: int = 250) -> tuple[Named, ...]:
+def by_name(sight: Sight, min_pixels: int = 250, made_out_px: float = MADE_OUT_PX) -> tuple[Named, ...]:
     """Things that the scene gives a name of their own ("bakery sign", "red hatchback"), which nothing else in view could bear."""
     found = []
     for sighting in sight.clear:
-        thing = sighting.instance
-        words = set(thing.name.lower().split())
-        rivals = (other for other in sight.traces if other.number != thing.number)
-        if sighting.pixels < min_pixels or thing.category in _VAGUE or len(words) > _LONGEST_NAME or len(words) < 2:
+        thing, name = sighting.instance, spoken(sighting.instance.name)
+        words = name.lower().split()
+        least = max(min_pixels, _PERSON_PX) if thing.category in GROUPS["person"] else min_pixels
+        if sighting.pixels < least or thing.category in _VAGUE or not 2 <= len(words) <= _LONGEST_NAME:
             continue
-        if any(words <= set(f"{other.name} {other.category}".lower().split()) for other in rivals):
+        if (
+            set(words) & _MISLEADING
+            or not recognised(sight, sighting, name, made_out_px)
+            or any(bears(other, name, thing) for other in sight.others(sighting))
+        ):
             continue
-        if " and " not in thing.name:
-            found.append(Named(sighting, thing.name, Kind(thing.category)))
+        found.append(Named(sighting, name, Kind(thing.category)))
     return tuple(found)
 
+
+def recognised(sight: Sight, sighting: Sighting, name: str, made_out_px: float) -> bool:
+    """Whether a person knows a thing by its name from its looks, or can make out in this view what is written on it: a sign that
+    is told from others by its words, a bay by its number."""
+    thing = sighting.instance
+    own = _letters(name) - _LITTLE - _WEAK - _letters(thing.category) - _letters(_head(name))
+    by_number, by_words = name[-1].isdigit(), thing.category in SIGNS and not own <= COLOUR_WORDS
+    if not by_number and not by_words:
+        return True
+    family = with_parts(sight.scene, thing.id)
+    near = [t for t in sight.first.texts if t.text.parent in family and t.cap_height_px >= made_out_px and t.unhidden_share > 0.9]
+    said = {word for t in near for word in _letters(t.text.text)}
+    return bool(said) and (not by_number or name.split()[-1] in said)
+
+
+_PERSON_PX = 700
+"""What somebody wears or holds is seen on no fewer pixels."""
+
+
+def _head(name: str) -> str:
+    """The noun of a name, empty for a number."""
+    head = re.split(r" (?:of|with|in|on|by|for|at) ", name)[0].split()[-1]
+    return head if head.isalpha() else ""
+
+
+def spoken(name: str) -> str:
+    """The name of a thing as it is said after "the"."""
+    name = re.sub(r"^(\w+) (standing|walking|waiting|sitting)$", r"\2 \1", name)
+    return name.removeprefix("The ").replace("price of ", "price card for ").replace("belisha", "Belisha")
+
+
+def bears(other: Thing, name: str, thing: Thing) -> bool:
+    """Whether a person could take something else for the thing that is named: its own name, category and attributes say the same,
+    but for words that tell little ("tall") or not enough ("saloon"), and colours that are nearly alike."""
+    told = _letters(name) - _LITTLE
+    facts = (f"{key} {value}" for key, value in other.attributes.items() if isinstance(value, str))
+    borne = _letters(" ".join((other.name, other.category, *facts)))
+    if told <= borne:
+        return True
+    if other.category != thing.category and not Kind(thing.category).doubtful(other):
+        return False
+    own = told - _WEAK - _letters(thing.category) - _letters(_head(name))
+    return all(word in borne or any(near_colours(word, colour) for colour in borne) for word in own)
+
+
+def _letters(text: str) -> set[str]:
+    return set(re.findall(r"[^\W_]+", text.lower()))
+
+
+_LITTLE = frozenset({"a", "an", "the", "of", "in", "on", "with", "by", "for", "at", "to", "who", "his", "her", "their", "its"})
+_WEAK = frozenset({
+    "standing", "walking", "waiting", "tall", "small", "large", "wide", "light", "dark", "saloon", "hatchback", "suv", "estate",
+    "town", "site", "delivery", "roadside", "lit", "unlit", "round", "worker", "person", "man", "woman", "pedestrian", "customer",
+})  # fmt: skip
+"""Words by which nobody tells one thing from another for sure."""
+
+_MISLEADING = frozenset({"and", "area", "end", "without", "behind", "before", "painted", "name"})
+"""Words that make a name one of two things, of a place, or of what is not there."""
 
 _LONGEST_NAME = 5
 _VAGUE = frozenset({
     "tree", "bush", "hedge", "hill", "road", "pavement", "surface", "field", "grass", "plant", "shrub", "kerb", "track", "ground",
-    "yew", "flower bed", "puddle", "marking", "sky", "fence panel", "guardrail", "pylon", "building", "house",
-    "terrace", "townhouse",
+    "yew", "flower bed", "puddle", "marking", "sky", "fence panel", "guardrail", "pylon", "building", "house", "terrace",
+    "townhouse", "gantry", "parking space", "bay number", "dock number", "walkway", "hatched zone", "road marking", "wheel stop",
+    "wheel guide", "window", "door sign", "window notice", "fence", "silo", "chimney", "dock leveller", "dock shelter",
 })  # fmt: skip
 """Of these nobody knows one from another by its name."""
 
 
-def distinct(sight: Sight, min_pixels: int = 250) -> list[Named]:
+def distinct(sight: Sight, min_pixels: int = 500, made_out_px: float = MADE_OUT_PX) -> list[Named]:
     """Each thing that has a name which nothing else in view could bear, under its shortest."""
-    found = {n.thing.instance.id: n for n in (*by_name(sight, min_pixels), *singles(sight, coloured=True, min_pixels=min_pixels))}
-    return list(found.values())
+    named = (*by_name(sight, min_pixels, made_out_px), *singles(sight, coloured=True, min_pixels=min_pixels))
+    return list({one.thing.instance.id: one for one in named}.values())
 
 
 def ends(sight: Sight, min_pixels: int = 250) -> Iterator[Named]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from itertools import pairwise
 
 from scope_ptz.bench.authoring.drafts import Draft, Question, ask, view
 from scope_ptz.bench.authoring.naming import Named, distinct, ends
@@ -18,16 +19,20 @@ LONGEST = 80
 """Longer texts are not asked for: nobody would dictate them."""
 
 
+_GUESSED_PX = 5.0
+"""Whoever may zoom in knows what to zoom in on when its capitals are this high."""
+
+
 def drafts(place: Place) -> list[Draft]:
     if place.swept:
         return []
-    named = [*distinct(place.sight, SMALLEST_PX), *ends(place.sight)]
+    named = [*distinct(place.sight, SMALLEST_PX, _GUESSED_PX), *ends(place.sight)]
     return [*_in_view(place, named), *_zoomed(place, named)]
 
 
 def _in_view(place: Place, named: list[Named]) -> Iterator[Draft]:
     for one in named:
-        texts = place.sight.texts_on(one.thing.instance)
+        texts = asked_for(one, place)
         expected = wanted(one, texts)
         if texts and expected is not None:
             yield _draft(place, one, expected, texts, place, ())
@@ -35,6 +40,8 @@ def _in_view(place: Place, named: list[Named]) -> Iterator[Draft]:
 
 def _zoomed(place: Place, named: list[Named]) -> Iterator[Draft]:
     """What cannot be read from here, but can once the camera has zoomed in on it."""
+    if any("zoom_factor" in call.arguments for call in place.calls):
+        return  # nobody zooms in twice
     for one in named:
         family = with_parts(place.scene, one.thing.instance.id)
         lettered = any(text.parent in family for text in place.scene.file.texts)
@@ -43,50 +50,95 @@ def _zoomed(place: Place, named: list[Named]) -> Iterator[Draft]:
         close = framed(place, one.thing, one.thing.instance)
         if close is None:
             continue
-        texts = close.sight.texts_on(one.thing.instance)
+        texts = asked_for(one, close)
         expected = wanted(one, texts)
         if texts and expected is not None:
             call = ProgramCall(tool="zoom_to_object", arguments={"description": one.name})
             yield _draft(place, one, expected, texts, close, (call,))
 
 
+def lines(texts: tuple[TextSighting, ...] | None) -> tuple[TextSighting, ...] | None:
+    """Texts from top to bottom, where they are the lines of one piece of writing; None where they stand apart."""
+    if not texts:
+        return None
+    found = {t.text.text.strip(): t for t in texts}
+    order = sorted(found.values(), key=lambda t: t.box[1] + t.box[3])
+    for upper, lower in pairwise(order):
+        height = min(upper.box[3] - upper.box[1], lower.box[3] - lower.box[1])
+        shared = min(upper.box[2], lower.box[2]) - max(upper.box[0], lower.box[0])
+        beside = upper.box[3] - lower.box[1] > height / 2
+        narrow = shared < 0.5 * min(upper.box[2] - upper.box[0], lower.box[2] - lower.box[0])
+        if beside or narrow or lower.box[1] - upper.box[3] > _LINE_GAP * height:
+            return None
+    return tuple(order)
+
+
+_LINE_GAP = 3.0
+"""Lines of one piece of writing are no farther apart than so many times their height."""
+
+
+def priced(texts: tuple[TextSighting, ...]) -> tuple[TextSighting, ...]:
+    """Of what a price card says the price: its name holds the rest."""
+    return tuple(t for t in texts if re.fullmatch(r"\d+\.\d\d", t.text.text.strip()))
+
+
 def wanted(one: Named, texts: tuple[TextSighting, ...] | None) -> Text | None:
-    """What the thing says in all; None when that is nothing, too much, or already in its name."""
+    """What the thing says in all; None when that is nothing, too much, or mostly in its name."""
     if not texts:
         return None
     said = list(dict.fromkeys(t.text.text.strip() for t in texts))
-    whole = " / ".join(said)
-    name = set(re.findall(r"\w+", one.name.lower()))
-    if len(whole) > LONGEST or len(said) > 4 or set(re.findall(r"\w+", whole.lower())) <= name or not re.search(r"\w", whole):
+    whole = " ".join(said)
+    name, words = (re.findall(r"\w+", text.lower()) for text in (one.name, whole))
+    if len(whole) > LONGEST or len(said) > 4 or 2 * sum(word in name for word in words) > len(words) or not words:
         return None
     return Text(accepted=(whole,), ocr=True)
+
+
+def asked_for(one: Named, place: Place) -> tuple[TextSighting, ...] | None:
+    """What is read on a thing at a place: all its lines, of a price card the price; None where the writing stands apart."""
+    found = lines(place.sight.texts_on(one.thing.instance))
+    return priced(found) if found and one.kind.category == "price card" else found
 
 
 _Forms = tuple[tuple[str, str], ...]
 _WRITING: tuple[_Forms, _Forms] = (
     (
-        ("what does the {n} say?", "what the {n} says"),
-        ("what is written on the {n}?", "what is written on the {n}"),
-        ("what text is on the {n}?", "what text is on the {n}"),
-        ("what can be read on the {n}?", "what can be read on the {n}"),
-        ("which words or figures are on the {n}?", "which words or figures are on the {n}"),
+        ("what does {n} say?", "what {n} says"),
+        ("what is written on {n}?", "what is written on {n}"),
+        ("what text is on {n}?", "what text is on {n}"),
+        ("what can be read on {n}?", "what can be read on {n}"),
+        ("which words or figures are on {n}?", "which words or figures are on {n}"),
     ),
     (
-        ("zoom in on the {n}. What does it say?", "what the {n} says when you zoom in on it"),
-        ("what does the {n} say? Zoom in on it.", "what is written on the {n}, zooming in on it to read"),
-        ("what is the writing on the {n} if you zoom in on it?", "the writing on the {n} after zooming in on it"),
-        ("get a close-up of the {n}. What is on it?", "what a close-up of the {n} says"),
+        ("what does {n} say when you zoom in on it?", "what {n} says when you zoom in on it"),
+        ("what can you read on {n} after zooming in on it?", "what you can read on {n} after zooming in on it"),
+        ("what is written on {n}, if you zoom in on it to read?", "what is written on {n}, zooming in on it to read"),
+        ("what does a close-up of {n} say?", "what a close-up of {n} says"),
     ),
 )
 _PLATES: tuple[_Forms, _Forms] = (
     (
-        ("what is the number plate of the {n}?", "the number plate of the {n}"),
-        ("which registration does the {n} have?", "the registration of the {n}"),
-        ("can you read the number plate of the {n}?", "what the number plate of the {n} says"),
+        ("what is the number plate of {n}?", "the number plate of {n}"),
+        ("which registration does {n} have?", "the registration of {n}"),
+        ("can you read the number plate of {n}?", "what the number plate of {n} says"),
     ),
     (
-        ("zoom in on the {n} and read its number plate.", "the number plate of the {n}, zooming in on it to read"),
-        ("what is the registration of the {n}? Zoom in on it.", "which registration the {n} has when you zoom in on it"),
+        ("what is the number plate of {n}, if you zoom in on it to read?", "the number plate of {n}, zooming in on it to read"),
+        ("which registration does a close-up of {n} show?", "which registration a close-up of {n} shows"),
+    ),
+)
+
+
+_PRICES: tuple[_Forms, _Forms] = (
+    (
+        ("what price is on {n}?", "what price is on {n}"),
+        ("which price does {n} show?", "which price {n} shows"),
+        ("can you read the price on {n}?", "the price on {n}"),
+    ),
+    (
+        ("what price is on {n}, if you zoom in on it to read?", "the price on {n}, zooming in on it to read"),
+        ("what price does {n} show when you zoom in on it?", "which price {n} shows when you zoom in on it"),
+        ("which price does a close-up of {n} show?", "the price that a close-up of {n} shows"),
     ),
 )
 
@@ -95,15 +147,15 @@ def _draft(
     place: Place, one: Named, expected: Text, texts: tuple[TextSighting, ...], close: Place, zoom: tuple[ProgramCall, ...]
 ) -> Draft:
     plate = str(one.thing.instance.attributes.get("plate", ""))
-    plated = expected.accepted == (plate,)
-    forms = (_PLATES if plated else _WRITING)[bool(zoom)]
-    forms = tuple((direct.format(n=one.name), inside.format(n=one.name)) for direct, inside in forms)
-    question = f"what is the number plate of the {one.name}?" if plated else f"what does the {one.name} say?"
+    plated, price = expected.accepted == (plate,), one.kind.category == "price card"
+    forms = (_PLATES if plated else _PRICES if price else _WRITING)[bool(zoom)]
+    forms = tuple((direct.format(n=one.the), inside.format(n=one.the)) for direct, inside in forms)
+    question = f"what is the number plate of {one.the}?" if plated else f"what does {one.the} say?"
     # Items are measured in the look that reads them, at its own sharpness.
     items = [close.sight.text_item(t) for t in texts]
     return Draft(
         category="ocr",
-        kind=("plate-" if plated else "") + ("close-up" if zoom else "in-view"),
+        kind=("plate-" if plated else "price-" if price else "") + ("close-up" if zoom else "in-view"),
         key=f"text:{one.thing.instance.id}",
         place=place,
         expected=expected,

@@ -31,6 +31,9 @@ _SWEEP = (
 )  # fmt: skip
 
 
+_HARDLY_DEG = 2.5
+
+
 @dataclass(frozen=True)
 class Place:
     """A start preset and the calls that lead to a view. ``swept``: everything around from there is meant."""
@@ -92,12 +95,13 @@ class Place:
                 found.append("zoom")
         return tuple(dict.fromkeys([*found, *(["sweep"] if self.swept else [])]))  # type: ignore[list-item]
 
-    def said(self, rng: random.Random) -> str:
-        """The moves as an order, without capital or full stop."""
+    def said(self, rng: random.Random) -> tuple[str, str]:
+        """The moves as an order, without capital or full stop: closed ("turn left and zoom in 2x"), and such that "and ..." may
+        follow ("turn left, zoom in 2x")."""
         parts = [phrase for call in self.calls for phrase in say(call, rng)]
         if self.swept:
             parts.append(rng.choice(_SWEEP))
-        return joined(parts, rng)
+        return joined(parts, rng), ", ".join(parts)
 
 
 def joined(parts: list[str], rng: random.Random) -> str:
@@ -221,11 +225,13 @@ class Places:
             return None
         preset = min(near, key=lambda p: abs((pan_deg - p.pan_deg + 180) % 360 - 180))
         at = preset_at(preset)
-        pan = round((pan_deg - at.pose.pan_deg + 180) % 360 - 180)
+        pan, tilt = (pan_deg - at.pose.pan_deg + 180) % 360 - 180, tilt_deg - at.pose.tilt_deg
         factor = next((f for f in (1.5, 2.0, 2.5, 3.0, 4.0) if at.pose.zoom * f >= zoom), None)
         if factor is None or at.pose.zoom * factor > EYES.limits.max_zoom:
             return None
-        call = adjust(pan, round(tilt_deg - at.pose.tilt_deg), factor)
+        # Nobody turns a camera by a degree or two for what is in view anyway.
+        pan, tilt = (round(angle) if abs(angle) > _HARDLY_DEG else 0 for angle in (pan, tilt))
+        call = adjust(pan, tilt, factor)
         there = move(at, call)
         if there is None:
             return None

@@ -13,19 +13,19 @@ from scope_ptz.bench.authoring.words import many_of
 from scope_ptz.bench.expected import Choice, Options, Wordings
 
 _OF_TWO = (
-    "Are there more {many} at the {p} preset or at {q}?",
+    "Are there more {many} at the {p} preset or at the {q} preset?",
     "Compare the presets {p} and {q}: which shows more {many}?",
     "Which view has more {many}, {p} or {q}?",
-    "Look at {p} and then at {q}. Where can you see more {many}?",
+    "Look at the {p} view and then at {q}. Where can you see more {many}?",
     "Between the {p} and the {q} preset, which one has more {many} in it?",
-    "Go to {p}, then to {q}, and say which shows more {many}.",
+    "Go to the {p} preset, then to {q}, and say which shows more {many}.",
 )
 _OF_THREE = (
     "Which of the presets {p}, {q} and {r} shows the most {many}?",
-    "Go through {p}, {q} and {r}, and tell me which of them has the most {many} in view.",
+    "Go through the presets {p}, {q} and {r}, and tell me which of them has the most {many} in view.",
     "Compare the {p}, {q} and {r} views. Where are the most {many}?",
     "I want the preset with the most {many}: {p}, {q} or {r}?",
-    "Check {p}, then {q}, then {r}. Which one has the largest number of {many}?",
+    "Check the {p} preset, then {q}, then {r}. Which one has the largest number of {many}?",
 )
 
 

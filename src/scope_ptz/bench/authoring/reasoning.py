@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
 
-from scope_ptz.bench.authoring.counting import absent, counted, plain_counts
+from scope_ptz.bench.authoring.counting import absent, apart, counted, plain_counts
 from scope_ptz.bench.authoring.drafts import Draft, Question, count, view
 from scope_ptz.bench.authoring.places import Place, Places, elsewhere, go, preset_at
 from scope_ptz.bench.authoring.words import about, article, many_of, noun_of, unit_of
@@ -16,38 +16,38 @@ from scope_ptz.bench.kinds import Kind
 from scope_ptz.bench.tasks import Behaviour, EvidenceView
 
 _SUMS = (
-    "How many {many} do the {p} and {q} presets show in total?",
-    "Add up the {many} at {p} and those at {q}. What is the total?",
-    "Count the {many} at the {p} preset, then at {q}, and give me the sum.",
-    "What do you get when you add the {many} in view at {q} to those at {p}?",
-    "Taking the views {p} and {q} together, how many {many} are in them?",
-    "I want one figure: the {many} seen from {p} plus those seen from {q}.",
+    "The {p} and {q} presets have no {many} in common. How many do they show in total?",
+    "Add up the {many} in the {p} view and those in the {q} view, which are different ones. What is the total?",
+    "Count the {many} at the {p} preset, then the other ones at the {q} preset, and give me the sum.",
+    "None of the {many} is both in the {q} and in the {p} view. How many are there in the two views together?",
+    "The {p} and {q} views show different {many}. How many are in them altogether?",
+    "I want one figure: the {many} seen from the {p} preset plus the other ones seen from the {q} preset.",
 )
 _GAPS = (
-    "How many more {many} are there at {p} than at {q}?",
-    "By how many does the number of {many} at the {p} preset exceed that at {q}?",
-    "Look at {p} and at {q}: what is the difference in the number of {many}?",
-    "Count the {many} at {q} and at {p}. How many more has {p}?",
+    "How many more {many} are there in the {p} view than in the {q} view?",
+    "By how many does the number of {many} at the {p} preset exceed that at the {q} preset?",
+    "Look at the presets {p} and {q}: how many more {many} does the first one show?",
+    "Count the {many} at the {q} preset and at the {p} preset. How many more does {p} have?",
 )
 _BRANCHES = (
-    "Check the {p} preset. If you can see {least} {many} there, go to {yes}; otherwise go to {no}.",
-    "Go to {p} and count the {many}. With {least} of them, switch to the {yes} preset, and with fewer to {no}.",
-    "If there are {least} {many} in the {p} view, move the camera to {yes}. If not, move it to {no}.",
-    "Depending on the {many} at {p}: {least}, and you go on to {yes}; fewer, and you go on to {no}.",
+    "Check the {p} preset. If you can see {least} {many} there, go to the {yes} preset; otherwise go to {no}.",
+    "Go to the {p} preset and count the {many}. With {least} of them, switch to the {yes} preset, and with fewer to {no}.",
+    "If there are {least} {many} in the {p} view, move the camera to the preset {yes}. If not, move it to {no}.",
+    "Count the {many} in the {p} view: if there are {least}, bring up the {yes} view, and if there are fewer, the {no} view.",
 )
 _CHECKS = (
-    "Look for {one} at the {p} preset and tell me whether you found one. If so, go on to {yes}; if not, to {no}.",
-    "Is there {one} in the {p} view? Tell me, then switch to {yes} if there is, and to {no} if there is not.",
-    "Check {p} for {many}. If you see any, say so and move to {yes}; if there are none, say that and move to {no}.",
-    "Go to {p}. With {one} in view, finish at the {yes} preset, without one at {no}, and report what you found.",
-    "Please see whether {one} is in the {p} view. If yes, leave the camera at {yes}, else at {no}, and let me know.",
+    "Look for {one} at the {p} preset and tell me whether you found one. If so, go on to the {yes} preset; if not, to {no}.",
+    "Is there {one} in the {p} view? Tell me, then switch to the {yes} view if there is, and to {no} if there is not.",
+    "Check the {p} preset for {many}. If you see any, say so and move to the {yes} preset; if not, say that and move to {no}.",
+    "Go to the {p} preset. With {one} in view, finish at the {yes} preset, without one at {no}, and report what you found.",
+    "Please see whether {one} is in the {p} view. If yes, leave the camera at the {yes} preset, else at {no}, and let me know.",
 )
 _WHERE = (
     "Check the presets {p} and {q}: is there {one} in either of them?",
-    "Is {one} to be seen from {p} or from {q}?",
-    "Look from {p}, then from {q}, and tell me whether {one} is there in one of them.",
-    "Do the {p} and {q} views show {one} between them?",
-    "Have a look at {p} and {q}. Can you find {one}?",
+    "Is {one} to be seen from the {p} preset or from {q}?",
+    "Look from the {p} preset, then from {q}, and tell me whether {one} is there in one of the views.",
+    "Is there {one} in the {p} view or in the {q} view?",
+    "Have a look at the presets {p} and {q}. Can you find {one}?",
 )
 
 
@@ -77,7 +77,9 @@ def _totals(one: Place, two: Place, p: str, q: str) -> Iterator[Draft]:
         many = many_of(kind)
         program = (go(p), count(many, one), go(q), count(many, two))
         seen = (_seen(one, kind, n), _seen(two, kind, m))
-        sorts = [("sum", n + m, _SUMS)] + ([("difference", n - m, _GAPS)] if n > m else [])
+        # What shows in both views would be counted twice in their sum.
+        same = {t.number for t in one.sight.traces if kind.fits(t)} & {t.number for t in two.sight.traces}
+        sorts = [*([("sum", n + m, _SUMS)] if not same else []), *([("difference", n - m, _GAPS)] if n > m else [])]
         for sort, value, texts in sorts:
             yield Draft(
                 category="multi_step_reasoning",
@@ -101,6 +103,8 @@ def within(place: Place, rng: random.Random) -> list[Draft]:
     plain = list(plain_counts(place.sight))
     rng.shuffle(plain)
     for (one, n), (two, m) in pairwise(plain):
+        if min(n, m) < 2 or not apart(place.sight, (one, two)):
+            continue
         first, second = many_of(one), many_of(two)
         together = Question(
             (
@@ -108,13 +112,13 @@ def within(place: Place, rng: random.Random) -> list[Draft]:
                 (f"what is the total of {first} and {second}?", f"the total of {first} and {second}"),
             )
         )
-        apart = Question(
+        difference = Question(
             (
                 (f"how many more {first} than {second} are there?", f"how many more {first} than {second} there are"),
                 (f"by how many do the {first} outnumber the {second}?", f"by how many the {first} outnumber the {second}"),
             )
         )
-        sorts = ([("together", n + m, together)] if n + m > 3 else []) + ([("excess", n - m, apart)] if n > m + 1 else [])
+        sorts = ([("together", n + m, together)] if n + m > 3 else []) + ([("excess", n - m, difference)] if n > m else [])
         for sort, value, asked in sorts:
             # No unit: a sum of two kinds has none, and their own numbers must not be taken for it.
             found.append(

@@ -15,19 +15,22 @@ from scope_ptz.bench.ground import EYES
 from scope_ptz.bench.phrasing import first_named
 from scope_ptz.bench.tasks import Category
 
-PAIRS: dict[Category, int] = {"counting": 18, "descriptor": 16, "location": 12, "multi_step_reasoning": 16}
+PAIRS: dict[Category, int] = {"counting": 24, "descriptor": 16, "location": 12, "multi_step_reasoning": 16}
 """How many tasks of a category say that there is none, each beside one of like wording that says that there is."""
 
 PAIRS_OF_KIND = {"not-there": 4, "half-none": 3, "neither": 4}
 """Of these sorts of pair no more: whoever looks and then says "yes" gets the presences right."""
 
 ANSWERS: dict[Category, int] = {
-    "counting": 7, "descriptor": 3, "location": 3, "ocr": 2, "single_call": 2, "multi_step_reasoning": 3, "comparative": 3,
+    "counting": 6, "descriptor": 2, "location": 2, "ocr": 1, "single_call": 1, "multi_step_reasoning": 2, "comparative": 1,
 }  # fmt: skip
-"""How often one and the same answer is right in a category, tasks of pairs aside."""
+"""How often one and the same answer is right in a category, tasks of pairs aside: together no more than 3% of all tasks."""
 
-POLAR = 2
+POLAR = 1
 """How often "yes" is right, and how often "no", for each sort of question, pairs aside."""
+
+SAME = 2
+"""How often the same is asked of several views with the same answer."""
 
 FIRST_NAMED = 14
 """How often the right answer may be the first of those that the question names, pairs aside."""
@@ -36,7 +39,7 @@ FRAME_SHARE = 0.06
 FROM_START = 3
 """No wording is more frequent than this share of a category; so many tasks of a category can be done from the start view."""
 
-_WEIGHTS = {"scene": 3.0, "viewpoint": 1.5, "kind": 2.0, "answer": 4.0, "place": 1.0, "start": 0.3}
+_WEIGHTS = {"scene": 3.0, "viewpoint": 1.5, "kind": 2.0, "answer": 4.0, "subject": 1.5, "place": 1.0, "start": 0.3}
 
 _Take = Callable[[Draft], bool]
 
@@ -80,7 +83,7 @@ class Selection:
         self.frames = Frames(shared.texts)
         self.rows: list[Chosen] = []
         self.used: defaultdict[str, Counter[Hashable]] = defaultdict(Counter)
-        self.slack = 1
+        self.slack = 1.0
         self.most_frame = max(2, int(quota * FRAME_SHARE))
 
     def fill(self, drafts: Sequence[Draft]) -> list[Chosen]:
@@ -91,7 +94,7 @@ class Selection:
         wanted = min(self.shared.most(PAIRS.get(self.category, 0)), self.quota // 2) if self.category in PAIRS else 0
         for _ in range(wanted):
             self._best(pairs, self._pair)
-        for slack in (1, 2, 4, 1000):
+        for slack in (1.0, 1.25, 1.5, 2.0, 3.0, 1000.0):
             # What the scenes do not yield within the limits is taken beyond them, as little beyond as possible.
             self.slack, singles = slack, [draft for draft in pool if draft.twin is None]
             while len(self.rows) < self.quota and self._best(singles, self._single):
@@ -119,10 +122,10 @@ class Selection:
             return self.used["polar"][draft.kind, draft.reads] >= self.shared.most(POLAR)
         if draft.expected.kind == "action_only":
             return False
-        limit = self.slack * self.shared.most(ANSWERS.get(self.category, self.quota))
-        if self.used["alone"][draft.reads] >= limit:
+        if self.used["same"][draft.place.scene.name, draft.key, draft.reads] >= self.slack * SAME:
             return True
-        return first_is_right(draft) and self.shared.first_right >= self.slack * self.shared.most(FIRST_NAMED)
+        limit = self.slack * self.shared.most(ANSWERS.get(self.category, self.quota))
+        return self.used["alone"][draft.reads] >= limit
 
     def _pair(self, draft: Draft) -> bool:
         twin, limit = draft.twin, PAIRS_OF_KIND.get(draft.kind)
@@ -149,23 +152,27 @@ class Selection:
         worded = self.frames.word(draft, self.rng, like and f"{draft.kind}/{like}")
         if worded is None or self.frames.used[worded[1]] >= self.most_frame:
             return None
+        alone, most_first = like is None and draft.twin is None, self.slack * self.shared.most(FIRST_NAMED)
+        if alone and first_is_right(draft, worded[0]) and self.shared.first_right >= most_first:
+            return None
         self.frames.take(*worded)
         self.shared.asked.add(draft.full_key)
         others = [self.frames.word(draft, self.rng) for _ in range(5)]
         row = Chosen(draft, *worded, variants=[o[0] for o in others if o is not None])
         self.rows.append(row)
-        self._note(row, 1, paired=like is not None or draft.twin is not None)
+        self._note(row, 1, paired=not alone)
         self.used["stays"][True] += stays
         return row
 
     def _note(self, row: Chosen, step: int, *, paired: bool) -> None:
         for name, value in row.draft.traits:
             self.used[name][value] += step
+        self.used["same"][row.scene, row.draft.key, row.draft.reads] += step
         if paired:
             return
         self.used["alone"][row.draft.reads] += step
         self.used["polar"][row.draft.kind, row.draft.reads] += step
-        self.shared.first_right += step * first_is_right(row.draft)
+        self.shared.first_right += step * first_is_right(row.draft, row.text)
 
     def _drop(self, row: Chosen) -> None:
         self.rows.remove(row)
@@ -175,9 +182,8 @@ class Selection:
         self.frames.used[row.frame] -= 1
 
 
-def first_is_right(draft: Draft) -> bool:
-    """Whether the right answer is the first of several that the question names."""
-    text = draft.question.forms[0][0] if draft.question is not None else next(iter(draft.orders), "")
+def first_is_right(draft: Draft, text: str) -> bool:
+    """Whether the right answer is the first of several that a wording names."""
     first = first_named(draft.expected, text)
     return first is not None and first == getattr(draft.expected, "value", None)
 

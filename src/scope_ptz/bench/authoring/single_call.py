@@ -179,10 +179,10 @@ def _close_ups(pool: list[Place]) -> Iterator[Draft]:
             orders = tuple(
                 t
                 for w in (
-                    f"zoom in on the {one.name}",
-                    f"get a close-up of the {one.name}",
-                    f"frame the {one.name}",
-                    f"centre the {one.name} and zoom in on it",
+                    f"zoom in on {one.the}",
+                    f"get a close-up of {one.the}",
+                    f"frame {one.the}",
+                    f"centre {one.the} and zoom in on it",
                 )
                 for t in polite(w)
             )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from scope_ptz.bench.expected import Options, Wordings
@@ -10,15 +11,18 @@ from scope_ptz.bench.kinds import Kind
 _IRREGULAR = {
     "person": "people", "man": "men", "woman": "women", "child": "children", "shelf": "shelves", "leaf": "leaves", "mouse": "mice",
     "goose": "geese", "sheep": "sheep", "deer": "deer", "banksman": "banksmen", "aircraft": "aircraft", "knife": "knives",
+    "loaf": "loaves",
 }  # fmt: skip
 UNCOUNTED = frozenset({
     "tree", "bush", "hedge", "building", "house", "pylon", "guardrail", "bridge", "hill", "road", "pavement", "surface", "fence",
     "fence panel", "wall", "sky", "field", "grass", "plant", "shrub", "kerb", "roof", "platform", "track", "shopfront", "window",
     "railing", "bunting", "cable", "puddle", "produce", "goods", "scaffolding", "gravel pile", "sand pile", "ground", "marker post",
-    "warehouse", "church", "station", "canopy", "flower bed", "box of fruit", "crate", "pipe stack", "terrace", "townhouse", "yew",
+    "warehouse", "church", "station", "flower bed", "box of fruit", "crate", "pipe stack", "terrace", "townhouse", "yew",
     "door", "price card", "drain", "cup", "shop", "tree grate", "plinth", "tram platform", "notice", "poster", "chimney", "gutter",
     "weighbridge", "rail", "line", "marking", "kerbstone", "steps", "stairs", "parapet", "box", "bag", "shelf", "sill", "river",
-    "bay number", "hatched zone", "road marking", "dock leveller", "dock shelter", "silo", "dock number", "kerb ramp",
+    "bay number", "hatched zone", "road marking", "dock leveller", "dock shelter", "silo", "dock number", "kerb ramp", "canopy",
+    "pedestrian", "door sign", "window notice", "wall sign", "loaf", "ham", "cake", "book", "bottle", "teapot", "table lamp",
+    "wheel stop", "wheel guide", "walkway", "cycle shelter", "clock tower", "sign", "gantry", "parking space",
 })  # fmt: skip
 """What people do not count alike: where one ends and the next begins, or which of many far ones still counts, is anyone's guess."""
 
@@ -55,7 +59,16 @@ def article(noun: str) -> str:
     """The noun with "a" or "an"."""
     first = noun.lower()
     vowel = first[0] in "aeio" or (first[0] == "u" and not first.startswith(("uni", "use", "uti")))
-    return f"{'an' if vowel else 'a'} {noun}"
+    return f"{'an' if vowel or noun.startswith(_SPELT) else 'a'} {noun}"
+
+
+_SPELT = ("SUV", "8", "11 ", "18 ")
+"""Said with a vowel first."""
+
+
+def the(name: str) -> str:
+    """A name with its article; what is numbered ("dock door 5") has none."""
+    return name if re.search(r"\d$", name) else f"the {name.removeprefix('The ')}"
 
 
 def listing(names: Sequence[str], word: str = "and") -> str:
@@ -69,7 +82,8 @@ def called(category: str) -> str:
 
 _CALLED = {
     "cross": "pharmacy cross", "roller": "road roller", "suv": "SUV", "tv": "TV", "cctv camera": "CCTV camera",
-    "a-board": "A-board",
+    "a-board": "A-board", "belisha beacon": "Belisha beacon", "tyre stack": "stack of tyres", "pipe stack": "stack of pipes",
+    "pallet stack": "stack of pallets", "gravel pile": "pile of gravel", "sand pile": "pile of sand",
 }  # fmt: skip
 
 
