@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from scope_ptz.bench.engine.estimate import Price
     from scope_ptz.bench.engine.runs import Found, Setting
     from scope_ptz.bench.judging.server import ServerPort
+    from scope_ptz.planner.base import Planner
 
 OWN_AGENT = "scope"
 WITH_MODELS = 8
@@ -236,9 +238,20 @@ class _Prepared:
         known = earlier(self.options.out, self.choice.planner.name, self.choice.eyes.name)
         kept = {trial.task.id for trial in done} if self.options.epochs == 1 else set()
         left = [entry for entry in self.entries if entry.facts.id not in kept]
-        told = estimate(left, self.options.epochs, self.concurrency, known, self.options.price)
+        told = estimate(left, self.options.epochs, self.concurrency, known, self.options.price, opening_chars(self.planner))
         for line in lines(told, self.choice, self.concurrency):
             console.print(line, highlight=False, soft_wrap=True)
+
+
+def opening_chars(planner: Planner | None) -> int | None:
+    """How long prompt and tools of a model are; None for a planner without a prompt, or one whose pictures would weigh more."""
+    from scope_ptz.planner.chat.prompts import Prompt
+    from scope_ptz.tools.registry import schemas
+
+    prompt = getattr(planner, "prompt", None)
+    if planner is None or planner.sees or not isinstance(prompt, Prompt):
+        return None
+    return len(prompt.text) + len(json.dumps(list(schemas())))
 
 
 def _place(choice: Choice) -> list[str]:

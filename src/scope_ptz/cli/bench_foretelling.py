@@ -23,10 +23,18 @@ def lines(told: Estimate, choice: Choice, concurrency: int) -> Iterator[str]:
     elif told.input_tokens is None or told.output_tokens is None:
         yield "cost    unknown: tokens are known after a first run of this pair (--limit 10), prices by --price IN,OUT"
     else:
-        tokens = f"about {told.input_tokens / 1e6:.2f} million tokens in and {told.output_tokens / 1e6:.2f} million out"
+        how = " (guessed from the length of the prompt)" if told.guessed else ""
+        tokens = f"about {amount(told.input_tokens)} tokens in and {amount(told.output_tokens)} out for the planner{how}"
         price = (
             f", {told.cost_usd:.2f} US dollars"
             if told.cost_usd is not None
             else "; give prices by --price IN,OUT (dollars per million)"
         )
-        yield f"cost    {tokens} for the planner{price}; what the eyes cost is not known"
+        yield f"cost    {tokens}{price}; what the eyes cost is not known"
+
+
+def amount(tokens: int) -> str:
+    """A number of tokens as people say it: 340, 12 thousand, 3.4 million."""
+    if tokens < 1000:
+        return str(tokens)
+    return f"{tokens / 1e3:.0f} thousand" if tokens < 999_500 else f"{tokens / 1e6:.1f} million"

@@ -65,5 +65,6 @@ def lines(found: Gate, now: Evaluation) -> Iterator[str]:
 def _row(row: Comparison, alpha: float) -> str:
     name = row.group.replace("_", " ")
     mark = "  regression" if row.regressed(alpha) else ""
+    p = f"{row.p:.4f}" if row.p >= 0.0001 else "<0.0001"
     counts = f"{len(row.worse):>7}{len(row.better):>8}"
-    return f"{name:<22}{row.tasks:>6}{100 * row.before:>8.1f} %{100 * row.now:>8.1f} %{counts}{row.p:>9.4f}{mark}"
+    return f"{name:<22}{row.tasks:>6}{100 * row.before:>8.1f} %{100 * row.now:>8.1f} %{counts}{p:>9}{mark}"

@@ -12,6 +12,8 @@ from scope_ptz.bench.trials import Evaluation
 _LOOKERS = frozenset({"count_objects", "query_answer", "zoom_to_object", "track_object"})
 TYPICAL_CALLS = 2.0
 """Of a task that has no reference program."""
+CHARS_A_TOKEN, STEP_TOKENS, SAID_TOKENS = 4.0, 100, 40
+"""For a guess where nothing was measured: English text and JSON; a call with its result in the history; what a planner says."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +30,8 @@ class Price:
 @dataclass(frozen=True, slots=True)
 class Estimate:
     """``decisions`` and ``looks``: calls of planner and eyes in all, as the reference programs need them. What nobody has measured
-    is None: ``seconds`` (with the concurrency asked for), tokens, ``cost_usd``."""
+    is None: ``seconds`` (with the concurrency asked for), tokens, ``cost_usd``. ``guessed``: tokens are, by the length of the
+    prompt."""
 
     runs: int
     decisions: int
@@ -38,18 +41,31 @@ class Estimate:
     output_tokens: int | None = None
     cost_usd: float | None = None
     measured_on: int = 0
+    guessed: bool = False
 
 
 def estimate(
-    entries: Sequence[Entry], epochs: int, concurrency: int, earlier: Sequence[Evaluation], price: Price | None = None
+    entries: Sequence[Entry],
+    epochs: int,
+    concurrency: int,
+    earlier: Sequence[Evaluation],
+    price: Price | None = None,
+    opening_chars: int | None = None,
 ) -> Estimate:
-    """Calls by the reference programs; time and tokens by runs of the same pair, scaled by how many calls tasks need."""
+    """Calls by the reference programs; time and tokens by runs of the same pair, scaled by how many calls tasks need.
+
+    ``opening_chars``: what each request to the planner begins with, prompt and tools; None where tokens cannot be guessed from it.
+    """
     calls = [_calls(entry) for entry in entries]
     runs, decisions = len(entries) * epochs, round(sum(calls) + len(calls)) * epochs
     looks = round(sum(_looks(entry) for entry in entries)) * epochs
     trials = [trial for evaluation in earlier for trial in evaluation.trials if trial.headline != "infrastructure"]
     if not trials:
-        return Estimate(runs, decisions, looks)
+        if opening_chars is None:
+            return Estimate(runs, decisions, looks)
+        read, said = _guess(calls, opening_chars)
+        tokens = round(read * epochs), round(said * epochs)
+        return Estimate(runs, decisions, looks, None, *tokens, price.of(*tokens) if price is not None else None, guessed=True)
     steps = sum(trial.steps for trial in trials) or 1
     each = decisions / steps
     tokens_in, tokens_out = (round(each * sum(getattr(t, n) for t in trials)) for n in ("input_tokens", "output_tokens"))
@@ -60,6 +76,13 @@ def estimate(
         runs, decisions, looks, seconds, tokens_in, tokens_out,
         price.of(tokens_in, tokens_out) if price is not None else None, len(trials),
     )  # fmt: skip
+
+
+def _guess(calls: Sequence[float], opening_chars: int) -> tuple[float, float]:
+    """Tokens in and out of runs of so many calls: each step reads the prompt, the tools and all steps before it."""
+    steps = [count + 1 for count in calls]
+    read = sum(s * opening_chars / CHARS_A_TOKEN + STEP_TOKENS * s * (s - 1) / 2 for s in steps)
+    return read, SAID_TOKENS * sum(steps)
 
 
 def _calls(entry: Entry) -> float:

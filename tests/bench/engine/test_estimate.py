@@ -1,0 +1,61 @@
+"""What is foretold before an evaluation: guessed, or measured on earlier runs, and said to be which."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from scope_ptz.bench.engine.entries import Entry
+from scope_ptz.bench.engine.estimate import Price, estimate
+from scope_ptz.bench.engine.logs import read_evaluation
+from scope_ptz.bench.judging.wording import facts_of
+from scope_ptz.cli.bench_evaluate import opening_chars
+from scope_ptz.cli.bench_foretelling import amount, lines
+from scope_ptz.cli.choosing import Choice, EyesChoice, PlannerChoice
+from scope_ptz.endpoints.endpoint import Endpoint
+from scope_ptz.planner.chat import ChatPlanner
+from tests.bench.engine.making import TASKS
+
+ENTRIES = tuple(Entry(facts=facts_of(task, "mast"), world=task.world, task=task) for task in TASKS)
+ENDPOINT = Endpoint(url="http://127.0.0.1:1/v1", model="m")
+CHOICE = Choice(PlannerChoice("m", ENDPOINT), EyesChoice("moondream2"))
+
+
+def test_what_was_never_run_is_guessed_and_says_so() -> None:
+    # Four tasks of one call each: two steps, each with the prompt, the second with a call in the history.
+    told = estimate(ENTRIES, 2, 4, (), Price(1.0, 2.0), opening_chars=4000)
+    assert (told.runs, told.decisions, told.looks, told.seconds) == (8, 16, 4, None)
+    assert (told.input_tokens, told.output_tokens) == (16 * 1000 + 8 * 100, 16 * 40)
+    assert told.cost_usd == pytest.approx((16_800 + 2 * 640) / 1e6)
+    text = "\n".join(lines(told, CHOICE, 4))
+    assert (
+        "about 17 thousand tokens in and 640 out for the planner (guessed from the length of the prompt), 0.02 US" in text
+    )
+    assert "time    unknown" in text
+
+
+async def test_only_a_prompt_can_be_guessed_from() -> None:
+    planner = ChatPlanner(ENDPOINT)
+    assert 4_000 < (opening_chars(planner) or 0) < 20_000
+    await planner.close()
+    assert opening_chars(None) is None
+    assert "cost    unknown" in "\n".join(lines(estimate(ENTRIES, 1, 1, ()), CHOICE, 1))
+
+
+def test_what_was_run_before_is_measured(a_log: Path) -> None:
+    earlier = read_evaluation(a_log)
+    trials = tuple(t.model_copy(update={"input_tokens": 1000, "output_tokens": 100}) for t in earlier.trials)
+    told = estimate(ENTRIES, 1, 1, [earlier.model_copy(update={"trials": trials})], opening_chars=4000)
+    assert (told.measured_on, told.guessed) == (4, False)
+    share = told.decisions / sum(t.steps for t in trials)
+    assert told.input_tokens == round(4000 * share)
+    assert "by 4 earlier runs of this pair" in "\n".join(lines(told, CHOICE, 1))
+
+
+@pytest.mark.parametrize(("tokens", "words"), [(340, "340"), (16_800, "17 thousand"), (3_400_000, "3.4 million")])
+def test_amounts(tokens: int, words: str) -> None:
+    assert amount(tokens) == words
+
+
+pytestmark = pytest.mark.anyio
