@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+from collections import Counter
 from pathlib import Path
 
 from rich.console import Console
@@ -15,7 +16,7 @@ from scope_ptz.bench.trials import ModelCard
 from scope_ptz.cli.bench_sweep import tables_of
 from tests.bench.engine.making import TASKS
 from tests.cli.conftest import Scope
-from tests.support.misbehaving import Misbehaving, Say, good
+from tests.support.misbehaving import Exchange, Misbehaving, Say, good, status
 
 CONDEMNED = {"reason": "It counted wrongly.", "verdict": "incorrect", "error_mode": "vlm_counting"}
 PASSED = {"reason": "All as asked.", "verdict": "correct", "error_mode": None}
@@ -65,6 +66,21 @@ def test_a_judge_that_fails_is_counted_apart(scope: Scope, evaluated: Path) -> N
     with Misbehaving(then=good(Say("I think it went well."))) as server:
         assert scope("bench", "rescore", str(evaluated), "--judge-url", server.url, "--judge-model", "j").code == 0
     assert {j.verdict for t in read_evaluation(evaluated).trials for j in t.judgements} == {"unparseable"}
+
+
+def test_what_a_judge_failed_on_is_asked_again_and_nothing_else(scope: Scope, evaluated: Path) -> None:
+    async def half(exchange: Exchange) -> None:
+        behaviour = status(401) if "how many" in str(exchange.request.data) else good(verdict)
+        await behaviour(exchange)
+
+    for then, verdicts, asks in ((half, {"correct": 2, "failed": 2}, 4), (good(verdict), {"correct": 3, "incorrect": 1}, 2)):
+        with Misbehaving(then=then) as server:
+            done = scope("bench", "rescore", str(evaluated), "--judge-url", server.url, "--judge-model", "j")
+            assert done.code == 0, done.err
+            assert len([r for r in server.requests if r.chat]) == asks
+        trials = read_evaluation(evaluated).trials
+        assert Counter(j.verdict for t in trials for j in t.judgements) == verdicts
+    assert {j.repeat for t in trials for j in t.judgements} == {0}
 
 
 def test_a_sweep_of_pairs_goes_on_and_judges(scope: Scope, tmp_path: Path) -> None:

@@ -39,6 +39,10 @@ class Journal:
         made = self._known.get((sample, judge, repeat))
         return made if made is not None and made.prompt == prompt_version() and made.verdict != "failed" else None
 
+    def know(self, sample: str, judgement: Judgement) -> None:
+        """A judgement that the log has already."""
+        self._known.setdefault((sample, judgement.judge, judgement.repeat), judgement)
+
     def add(self, sample: str, judgement: Judgement) -> None:
         """Keep a judgement."""
         self._known[(sample, judgement.judge, judgement.repeat)] = judgement

@@ -25,9 +25,11 @@ def score_of_judgement(judgement: Judgement) -> Score:
 
 
 def judgements_in(scores: Mapping[str, Any]) -> tuple[Judgement, ...]:
-    """The judgements among the scores of a sample, in the order in which they were made. Raises ``TraceError``."""
+    """The judgements among the scores of a sample, in the order in which they were made; of two with one number, which a failed
+    one has that was asked for again, the newer. Raises ``TraceError``."""
     told = (score["metadata"][JUDGEMENT] for score in scores.values() if JUDGEMENT in (score.get("metadata") or {}))
     try:
-        return tuple(Judgement.model_validate(row) for row in told)
+        made = [Judgement.model_validate(row) for row in told]
+        return tuple({(j.judge, j.prompt, j.repeat): j for j in made}.values())
     except ValidationError as error:
         raise TraceError(f"A judgement in the log is damaged: {error.errors(include_url=False)[0]['msg']}.") from error

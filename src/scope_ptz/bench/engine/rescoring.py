@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncGenerator, Callable, Sequence
+from collections.abc import AsyncGenerator, Callable, Mapping, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
 
@@ -19,6 +19,7 @@ from scope_ptz.bench.engine.judging import judge
 from scope_ptz.bench.engine.logs import kept_in, read_header, reading, trials_by_sample
 from scope_ptz.bench.engine.sampling import STORE
 from scope_ptz.bench.engine.scorers import checks
+from scope_ptz.bench.judging.rubrics import prompt_version
 from scope_ptz.bench.trials import Trial
 from scope_ptz.errors import InputError, OutputError
 
@@ -43,6 +44,9 @@ async def rescore(
     journal = Journal.beside(log)
     if judge_model is not None:
         before = trials_by_sample(log)
+        for sample, trial in before.items():
+            for made in trial.judgements:
+                journal.know(sample, made)
         scorers += [judge(repeat) for repeat in _further(before, judge_model.name, repeats)]
     JOURNAL.set(journal)
     init_display_type("none")
@@ -60,10 +64,12 @@ async def rescore(
     return journal.made
 
 
-def _further(before: dict[str, Trial], judge_name: str, repeats: int) -> range:
-    """Numbers of the judgements to make: after those that this judge has given already."""
-    made = [j.repeat for trial in before.values() for j in trial.judgements if j.judge == judge_name and j.verdict != "failed"]
-    first = max(made) + 1 if made else 0
+def _further(before: Mapping[str, Trial], judge_name: str, repeats: int) -> range:
+    """Numbers of the judgements to make: after those that this judge has given by today's prompt. One that failed somewhere is
+    made good first."""
+    own = [j for t in before.values() for j in t.judgements if (j.judge, j.prompt) == (judge_name, prompt_version())]
+    failed = [j.repeat for j in own if j.verdict == "failed"]
+    first = min(failed) if failed else max((j.repeat + 1 for j in own), default=0)
     return range(first, first + repeats)
 
 
