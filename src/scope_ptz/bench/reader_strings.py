@@ -21,9 +21,10 @@ _CUES = (
     (re.compile(r"\b(?:reads?|says?|states?|displays?|spells?)\b\s*:?\s*", re.IGNORECASE), 14),
     (re.compile(r":\s+"), 14),
     (re.compile(r"\b(?:shows?|called|named)\b\s*", re.IGNORECASE), 14),
-    (re.compile(r"\b(?:(?<!there )is|(?<!there )are)\b\s*", re.IGNORECASE), 6),
+    (re.compile(r"\b(?:(?<!there )is|(?<!there )are)\b\s*"), 6),
 )
-"""What comes before a text, the surest first, and how many words may follow; of the last sort the last one counts."""
+"""What comes before a text, the surest first, and how many words may follow; of the last sort the last one counts.
+An "IS" in capitals is lettering."""
 _LEADS = re.compile(r"^(?:the )?(?:text|words?|letters|lettering)\s+(?:that reads?\s+)?", re.IGNORECASE)
 _TRAILERS = re.compile(
     r",?\s+(?:in|on|above|below|with|at|written|painted|printed|near|beside)\s+(?:(?:the|a|an|its|big|large|small|bold|capital|white|black|red|"

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 
 import pytest
 
 from scope_ptz.bench.authoring.drafts import Draft, Question
 from scope_ptz.bench.authoring.places import Place, go, preset_at
-from scope_ptz.bench.authoring.selection import POLAR, Selection, Shared, first_is_right
+from scope_ptz.bench.authoring.selection import POLAR, SAME, Selection, Shared, first_is_right
+from scope_ptz.bench.episode import Standing
 from scope_ptz.bench.expected import AnyExpected, Choice, NoneThere, Number, YesNo
+from scope_ptz.geometry import Pose
 from scope_ptz.world.pack import Scene
 
 
@@ -34,6 +37,13 @@ def test_answers_are_spread(place: Place) -> None:
     taken = chosen([*ones, *others], 12)
     assert Counter(d.reads for d in taken)["1"] <= 7
     assert {d.reads for d in taken} >= {str(n) for n in range(2, 8)}
+
+
+def test_what_shows_in_many_views_is_asked_of_few(place: Place) -> None:
+    views = [replace(place, at=Standing(place.at.viewpoint, Pose(float(pan), -10.0, 1.0))) for pan in range(0, 90, 15)]
+    same = [draft(view, "cars", Number(value=3), "3") for view in views]
+    others = [draft(place, f"thing {n}", Number(value=n % 5), str(n % 5)) for n in range(10)]
+    assert sum(d.key == "cars" for d in chosen([*same, *others], 10)) <= SAME
 
 
 def test_limits_give_way_when_there_is_nothing_else(place: Place) -> None:

@@ -16,6 +16,7 @@ import pytest
 from scope_ptz.bench.authoring.assembly import QUOTAS as PUBLISHED
 from scope_ptz.bench.authoring.assembly import Built
 from scope_ptz.bench.authoring.reactions import reactions
+from scope_ptz.bench.cheats import common_answers
 from scope_ptz.bench.expected import Choice, NoneThere, Number
 from scope_ptz.bench.phrasing import first_named
 from scope_ptz.bench.task_files import dump_tasks, load_tasks
@@ -127,6 +128,12 @@ def test_what_a_question_offers_first() -> None:
     assert first_named(sides, "Turn 20 degrees to the right. Is the car in the left or the right half?") == "left"
     assert first_named(sides, "On which side is the car?") is None
     assert first_named(Number(value=2), "How many cars or vans are there?") is None
+
+
+def test_the_most_common_answer_stands_without_the_words_of_its_question(built: Built) -> None:
+    counts = [task.expected for task in core(built) if task.category == "counting" and task.pair is None]
+    common = Counter(f"{e.value:g}" for e in counts if isinstance(e, Number)).most_common(1)[0][0]
+    assert common_answers(built.tasks, presences=True)["counting"] == common
 
 
 def wrong_count(task: Task) -> Task:

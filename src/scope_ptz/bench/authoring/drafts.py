@@ -34,7 +34,7 @@ _AROUND = (
     "Looking in every direction, {d}",
 )  # fmt: skip
 _STAYING = (
-    "{D}", "In the current view, {d}", "Tell me {i} in this view.", "Looking straight at what the camera shows now, {d}",
+    "{D}", "In the current view, {d}", "In this view, tell me {i}.", "Looking straight at what the camera shows now, {d}",
     "Without moving the camera, {d}", "Right here in this view, {d}",
 )  # fmt: skip
 

@@ -112,7 +112,7 @@ _WRITING: tuple[_Forms, _Forms] = (
     (
         ("what does {n} say when you zoom in on it?", "what {n} says when you zoom in on it"),
         ("what can you read on {n} after zooming in on it?", "what you can read on {n} after zooming in on it"),
-        ("what is written on {n}, if you zoom in on it to read?", "what is written on {n}, zooming in on it to read"),
+        ("what is written on {n}, if you zoom in on it to read?", "what is written on {n}, seen from close up"),
         ("what does a close-up of {n} say?", "what a close-up of {n} says"),
     ),
 )
@@ -123,7 +123,7 @@ _PLATES: tuple[_Forms, _Forms] = (
         ("can you read the number plate of {n}?", "what the number plate of {n} says"),
     ),
     (
-        ("what is the number plate of {n}, if you zoom in on it to read?", "the number plate of {n}, zooming in on it to read"),
+        ("what is the number plate of {n}, if you zoom in on it to read?", "the number plate of {n}, seen from close up"),
         ("which registration does a close-up of {n} show?", "which registration a close-up of {n} shows"),
     ),
 )
@@ -136,7 +136,7 @@ _PRICES: tuple[_Forms, _Forms] = (
         ("can you read the price on {n}?", "the price on {n}"),
     ),
     (
-        ("what price is on {n}, if you zoom in on it to read?", "the price on {n}, zooming in on it to read"),
+        ("what price is on {n}, if you zoom in on it to read?", "the price on {n}, seen from close up"),
         ("what price does {n} show when you zoom in on it?", "which price {n} shows when you zoom in on it"),
         ("which price does a close-up of {n} show?", "the price that a close-up of {n} shows"),
     ),

@@ -22,7 +22,7 @@ PAIRS_OF_KIND = {"not-there": 4, "half-none": 3, "neither": 4}
 """Of these sorts of pair no more: whoever looks and then says "yes" gets the presences right."""
 
 ANSWERS: dict[Category, int] = {
-    "counting": 6, "descriptor": 2, "location": 2, "ocr": 1, "single_call": 1, "multi_step_reasoning": 2, "comparative": 1,
+    "counting": 6, "descriptor": 2, "location": 1, "ocr": 1, "single_call": 1, "multi_step_reasoning": 2, "comparative": 1,
 }  # fmt: skip
 """How often one and the same answer is right in a category, tasks of pairs aside: together no more than 3% of all tasks."""
 
@@ -34,6 +34,8 @@ SAME = 2
 
 FIRST_NAMED = 14
 """How often the right answer may be the first of those that the question names, pairs aside."""
+
+_NO_LIMIT = 1000.0
 
 FRAME_SHARE = 0.06
 FROM_START = 3
@@ -94,7 +96,7 @@ class Selection:
         wanted = min(self.shared.most(PAIRS.get(self.category, 0)), self.quota // 2) if self.category in PAIRS else 0
         for _ in range(wanted):
             self._best(pairs, self._pair)
-        for slack in (1.0, 1.25, 1.5, 2.0, 3.0, 1000.0):
+        for slack in (1.0, 1.2, 1.4, 1.6, 2.0, 3.0, _NO_LIMIT):
             # What the scenes do not yield within the limits is taken beyond them, as little beyond as possible.
             self.slack, singles = slack, [draft for draft in pool if draft.twin is None]
             while len(self.rows) < self.quota and self._best(singles, self._single):
@@ -122,10 +124,10 @@ class Selection:
             return self.used["polar"][draft.kind, draft.reads] >= self.shared.most(POLAR)
         if draft.expected.kind == "action_only":
             return False
-        if self.used["same"][draft.place.scene.name, draft.key, draft.reads] >= self.slack * SAME:
+        if self.used["same"][draft.place.scene.name, draft.key, draft.reads] >= int(self.slack * SAME):
             return True
-        limit = self.slack * self.shared.most(ANSWERS.get(self.category, self.quota))
-        return self.used["alone"][draft.reads] >= limit
+        limit = self.shared.most(ANSWERS.get(self.category, self.quota))
+        return self.used["alone"][draft.reads] >= int(self.slack * limit)
 
     def _pair(self, draft: Draft) -> bool:
         twin, limit = draft.twin, PAIRS_OF_KIND.get(draft.kind)
@@ -152,8 +154,8 @@ class Selection:
         worded = self.frames.word(draft, self.rng, like and f"{draft.kind}/{like}")
         if worded is None or self.frames.used[worded[1]] >= self.most_frame:
             return None
-        alone, most_first = like is None and draft.twin is None, self.slack * self.shared.most(FIRST_NAMED)
-        if alone and first_is_right(draft, worded[0]) and self.shared.first_right >= most_first:
+        alone, offered = like is None and draft.twin is None, self.slack < _NO_LIMIT and first_is_right(draft, worded[0])
+        if alone and offered and self.shared.first_right >= self.shared.most(FIRST_NAMED):
             return None
         self.frames.take(*worded)
         self.shared.asked.add(draft.full_key)
