@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from typing import get_args
 
 import pytest
@@ -21,6 +22,9 @@ from scope_ptz.cli.app import app
 from scope_ptz.geometry import Pose
 from tests.bench.judging.runs import facts_and_case, long_case
 from tests.bench.making import samples
+from tests.cli.conftest import SCENE, scenes
+
+__all__ = ["scenes"]
 
 PUBLISHED = "judge-1:61b9411003d4"
 
@@ -120,13 +124,14 @@ def test_short_runs_are_not_cut() -> None:
 
 
 @pytest.fixture(scope="module")
-def recorded(tmp_path_factory: pytest.TempPathFactory) -> Trace:
+def recorded(scenes: Path, tmp_path_factory: pytest.TempPathFactory) -> Trace:
     """A run by the very command that people type: it turns, goes to another viewpoint, and home again."""
     from typer.testing import CliRunner
 
     folder = tmp_path_factory.mktemp("runs")
-    asked = "pan right 20 degrees, then take a picture, then go to the lane preset, then take a picture, then go home"
-    done = CliRunner().invoke(app, ["ask", asked, "--scene", "highway-works", "--runs-dir", str(folder), "--fast"])
+    asked = "pan right 20 degrees, then take a picture, then go to the board preset, then take a picture, then go home"
+    options = ["--scene", SCENE, "--runs-dir", str(folder), "--fast"]
+    done = CliRunner().invoke(app, ["ask", asked, *options], env={"SCOPE_SCENES_DIR": str(scenes)})
     assert done.exit_code == 0, done.output
     return read_trace(next(folder.iterdir()))
 
@@ -146,7 +151,7 @@ def test_a_recorded_trace_is_judged_by_what_is_in_it(recorded: Trace) -> None:
 
 def test_where_the_camera_stood_is_told_as_far_as_it_is_known(recorded: Trace) -> None:
     assert [call.viewpoint for call in case_of(recorded).calls] == ["mast", "mast", None, None, None]
-    told = case_of(recorded, Places({"lane": "verge"}, "mast"))
+    told = case_of(recorded, Places({"board": "verge"}, "mast"))
     assert [call.viewpoint for call in told.calls] == ["mast", "mast", "verge", "verge", "mast"]
     text = render(facts_and_case()[0], told, 60_000)
     assert 'Camera afterwards: at viewpoint "verge", pan' in text
