@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from scope_ptz.errors import UnknownNameError
 
-PACK_BYTES = 6_200_000
+PACK_BYTES = 6_600_000
 """All layers of one viewpoint together."""
 
 NEAR_M, FAR_M = 0.3, 20000.0
