@@ -102,7 +102,8 @@ def _attributes(place: Place, values: Values) -> Iterator[Draft]:
             told = {word for value in pair for word in (value, *_SYNONYMS.get(value, ()))} & set(one.name.split())
             if {"lit", "unlit"} & set(pair) and "light" in facts and set(one.name.split()) & COLOUR_WORDS:
                 continue  # "the green charging point" is one that is lit
-            if state in pair and not told and one.thing.pixels >= 500:
+            least = _INSIDE_PX if {"full", "empty"} & set(pair) else _STATE_PX
+            if state in pair and not told and one.thing.pixels >= least:
                 # Not always the same one first, but each time the same.
                 first, second = pair[:: 1 if sum(map(ord, one.thing.instance.id)) % 2 else -1]
                 yield _choice(
@@ -124,12 +125,15 @@ def _attributes(place: Place, values: Values) -> Iterator[Draft]:
                 isinstance(value, str)
                 and value in known
                 and len(known) >= 2
-                and one.thing.pixels >= 900
+                and one.thing.pixels >= (_INSIDE_PX if key == "load" else _STATE_PX)
                 and value not in one.name.lower()
             ):
                 forms = _ONLY_ONE if key == "kind" and one.name == one.kind.category else ask_it
                 yield _choice(place, one, key, Choice(value=value, options=options(known)), forms)
 
+
+_STATE_PX, _INSIDE_PX = 1200, 2500
+"""What a thing does or is made of is seen on no fewer pixels, nor what is in it."""
 
 _OF_KINDS = frozenset({"car", "lorry", "bus", "bicycle", "van", "shop", "container"})
 """Of these people know kinds apart."""
