@@ -124,6 +124,8 @@ class Sight:
                 if self.state(thing.number) is None or (not self.state(thing.number) and thing.number in self.faint):
                     return None
                 if self.state(thing.number):
+                    if self.parted(sighting):
+                        return None
                     found.append(sighting)
             elif kind.doubtful(thing) and self.state(thing.number) is not False:
                 return None
@@ -134,6 +136,10 @@ class Sight:
         if any(kind.fits(s.instance) and self.state(s.instance.number) is not False for s in others):
             return None
         return tuple(found)
+
+    def parted(self, sighting: Sighting) -> bool:
+        """Whether a thing lies across the two ends of a sweep, so that it has no one place in it."""
+        return self.pose is None and sighting.box[2] - sighting.box[0] > 0.5
 
     def lacks(self, kind: Kind) -> bool:
         """Whether nothing of a kind, nor anything that could be taken for it, shows at all, now or later."""

@@ -61,6 +61,14 @@ def test_a_taxi_among_cars_and_a_coach_among_buses_leave_their_number_open() -> 
     assert Kind("bus").doubtful(thing("bus", "white coach"))
 
 
+def test_what_lies_across_the_ends_of_a_sweep_has_no_place_in_it(yard: Sight, analytic_scene: Scene) -> None:
+    around = Sight(analytic_scene, "mast", None, 0.0)
+    sighting = around.clear[0]
+    across = replace(sighting, box=(0.0, 0.4, 1.0, 0.6))
+    assert around.parted(across) and not around.parted(replace(sighting, box=(0.1, 0.4, 0.3, 0.6)))
+    assert not yard.parted(across)
+
+
 def test_absent_is_what_nothing_could_be_taken_for(yard: Sight) -> None:
     assert yard.lacks(Kind("zebra"))
     assert not yard.lacks(Kind("ball"))

@@ -71,7 +71,7 @@ def by_name(sight: Sight, min_pixels: int = 250, made_out_px: float = MADE_OUT_P
         thing, name = sighting.instance, spoken(sighting.instance.name)
         words = name.lower().split()
         least = max(min_pixels, _PERSON_PX) if thing.category in GROUPS["person"] else min_pixels
-        if sighting.pixels < least or thing.category in _VAGUE or not 2 <= len(words) <= _LONGEST_NAME:
+        if sighting.pixels < least or sight.parted(sighting) or thing.category in _VAGUE or not 2 <= len(words) <= _LONGEST_NAME:
             continue
         if (
             set(words) & _MISLEADING
