@@ -58,7 +58,11 @@ BASE_WIDTH = {"mast": 2304, "roof": 1152}
 """The mast is as fine as a real pack; the roof is there to be a second place."""
 
 TILE_SIZE = 600, 338
-TILES = {"mast": [(-16.0, 1.0, 16.0), (-4.0, -2.0, 16.0), (10.0, -6.0, 16.0), (18.5, -3.0, 15.0)], "roof": [(-36.0, -5.0, 16.0)]}
+TILES = {
+    "mast": [(-16.0, 1.0, 16.0), (-4.0, -2.0, 16.0), (10.0, -6.0, 16.0), (18.5, -3.0, 15.0), (14.0, -4.0, 44.0)],
+    "roof": [(-36.0, -5.0, 16.0)],
+}
+"""Pan, tilt and width of sharper pictures; the last of the mast is a wider one around sharp ones."""
 
 TEXT = SceneText(
     id="board-text",

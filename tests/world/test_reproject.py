@@ -91,6 +91,7 @@ def test_depth_is_what_a_perfect_camera_measures(analytic_scene: Scene, pose: tu
 
 
 def test_a_tile_makes_a_distant_thing_sharp(analytic_scene: Scene) -> None:
+    """Also where a wider tile fills the whole view: the sharper one lies over it."""
     view = _view(18.5, -3.0, 5.0)
     viewpoint = analytic_scene.viewpoint("mast")
     perfect, _, _ = perfect_view("mast", view, smooth=4)

@@ -89,17 +89,20 @@ def atlas_map(viewpoint: Viewpoint, atlas: Atlas, projection: Projection) -> Map
     needed = projection.density
     step = step_px(projection)
     patches: list[tuple[Place, Map, NDArray[np.uint8]]] = []
+    behind: Map | None = None
     if needed > TILE_GAIN * atlas.slots[0][0].width / (2 * math.pi) and len(atlas.slots) > 1:
         for showing in viewpoint.tiles.in_view(projection):
             where, inside, filled = _tile_map(viewpoint.tiles, showing, atlas, Grid(projection, step, showing.place))
-            if filled:
-                return where
+            if filled:  # sharper ones that came before it still lie over it
+                behind = where
+                break
             patches.append((showing.place, where, inside))
-    slot = _slot(atlas, 0, atlas.slots[0][0].width / (2 * math.pi), needed)
-    everywhere = _base_map(viewpoint.manifest.band, slot, Grid(projection, step))
+    if behind is None:
+        slot = _slot(atlas, 0, atlas.slots[0][0].width / (2 * math.pi), needed)
+        behind = _base_map(viewpoint.manifest.band, slot, Grid(projection, step))
     for place, where, inside in reversed(patches):
-        cv2.copyTo(where, inside, everywhere[place])
-    return everywhere
+        cv2.copyTo(where, inside, behind[place])
+    return behind
 
 
 class Grid:
