@@ -12,13 +12,15 @@ from functools import cached_property, lru_cache
 from itertools import pairwise, product
 
 import numpy as np
+from numpy.typing import NDArray
 
 from scope_ptz.bench.coverage import box_directions
 from scope_ptz.bench.episode import Eyes, Standing
-from scope_ptz.bench.kinds import Kind, Thing
+from scope_ptz.bench.kinds import FACELESS, KNOWN_BY_THEIR_FACE, Kind, Thing
 from scope_ptz.bench.tasks import Item
 from scope_ptz.geometry import Equirectangular, Perspective, Pose, pan_tilt_deg
 from scope_ptz.world.actors import Appearance, appearances, shows
+from scope_ptz.world.models import SceneText
 from scope_ptz.world.pack import Scene
 from scope_ptz.world.truth import (
     MAX_READING_ANGLE_DEG,
@@ -44,6 +46,9 @@ TRACE_PX = 20
 
 FAINT_PX = 40
 """What is not visible by definition but shows more than this may be counted by somebody: then nothing of its kind is."""
+
+_EDGE = 0.2
+"""Cosine of the angle to a surface's normal below which one looks along it rather than at it."""
 
 LATER_S = (3.0, 6.0, 10.0, 15.0, 20.0, 27.0, 35.0, 45.0)
 """Moments after the start at which the poses around are read."""
@@ -110,15 +115,28 @@ class Sight:
 
     @cached_property
     def clear(self) -> tuple[Sighting, ...]:
-        """What is surely visible, nearest first."""
-        return tuple(s for s in self.samples[0].sightings if self.state(s.instance.number))
+        """What is surely visible and can be told to be what it is, nearest first."""
+        return tuple(s for s in self.samples[0].sightings if self.state(s.instance.number) and self.telling(s.instance))
+
+    def telling(self, thing: Thing) -> bool:
+        """Whether a picture from here shows what a thing is: its lettered side, where only that tells it."""
+        if thing.category in FACELESS:
+            return False
+        if thing.category not in KNOWN_BY_THEIR_FACE:
+            return True
+        from_here = np.array(self.scene.viewpoint(self.viewpoint).manifest.position_m)
+        return any(_faces(text, from_here) for text in lettering(self.scene, thing.id)) or not lettering(self.scene, thing.id)
 
     def of(self, kind: Kind) -> tuple[Sighting, ...] | None:
         """All things of a kind that are visible; None when that is not sure, or somebody could see it differently."""
         found = []
+        if kind.category in FACELESS:
+            return None
         for sighting in self.samples[0].sightings:
             thing = sighting.instance
             if kind.fits(thing):
+                if self.state(thing.number) is not False and not self.telling(thing):
+                    return None
                 if thing.attributes.get("behind") == "glass" and self.state(thing.number) is not False:
                     return None  # whether what is inside a window counts, people do not agree on
                 if self.state(thing.number) is None or (not self.state(thing.number) and thing.number in self.faint):
@@ -143,7 +161,9 @@ class Sight:
 
     def lacks(self, kind: Kind) -> bool:
         """Whether nothing of a kind, nor anything that could be taken for it, shows at all, now or later."""
-        if any(kind.fits(a) or kind.doubtful(a) for a in self.scene.file.actors if a.number in self.passing):
+        if kind.category in FACELESS or any(
+            kind.fits(a) or kind.doubtful(a) for a in self.scene.file.actors if a.number in self.passing
+        ):
             return False
         return not any(kind.fits(thing) or kind.doubtful(thing) for thing in self.traces)
 
@@ -258,6 +278,20 @@ def with_parts(scene: Scene, whole: str) -> frozenset[str]:
     while grown := {part.id for part in scene.file.instances if part.parent in found} - found:
         found |= grown
     return frozenset(found)
+
+
+@lru_cache(maxsize=4096)
+def lettering(scene: Scene, whole: str) -> tuple[SceneText, ...]:
+    """What is written on a thing and its parts."""
+    family = with_parts(scene, whole)
+    return tuple(text for text in scene.file.texts if text.parent in family)
+
+
+def _faces(text: SceneText, eye: NDArray[np.float64]) -> bool:
+    """Whether a text turns its written side to a point, and not merely its edge."""
+    ahead = np.cross(text.right, text.up)
+    towards = eye - np.array(text.centre_m)
+    return float(ahead @ towards) > _EDGE * float(np.linalg.norm(towards))
 
 
 def visible(sighting: Sighting, scale: float = 1.0) -> bool:

@@ -33,6 +33,12 @@ SIGNS = frozenset({
 })  # fmt: skip
 """Whatever bears a notice."""
 
+KNOWN_BY_THEIR_FACE = SIGNS | {"vending machine", "ticket machine", "dock number", "bay number"}
+"""What nobody can tell from behind: of these only the side that bears the lettering says what they are."""
+
+FACELESS = frozenset({"cabinet", "generator", "liquid container"})
+"""Plain boxes at a camera's distance, beside others that look the same and bear no name: nothing is asked of them."""
+
 _TWINS: tuple[frozenset[str], ...] = (
     GROUPS["person"] | {"cyclist", "driver", "mannequin", "statue"},
     GROUPS["vehicle"] | {

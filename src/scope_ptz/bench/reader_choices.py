@@ -46,6 +46,8 @@ def read_yes_no(expected: YesNo, script: Script) -> Reading:
         said.add((mention.name == "yes") != (mention.denied or mention.aside))
     if not said and says_none(script):
         said = {False}
+    if re.search(r"\bthere (is|are) (none|not any)\b", script.text()):
+        said.add(False)
     if len(said) == 1:
         return Value(said.pop())
     return Unreadable("both yes and no" if said else "neither yes nor no")
@@ -116,6 +118,8 @@ def _denies_all(script: Script) -> bool:
 
 def read_none_there(expected: NoneThere, script: Script) -> Reading:
     """True when the answer says that there is none, False when it says that there is one."""
+    if re.search(r"\b(none|no|nothing|zero|0) or (one|two|some|several|a few|1|2)\b", script.text()):
+        return Unreadable("an alternative")
     mentions = script.mentions({"subject": expected.subject})
     said = {not v for v in verdict_words(script)}
     said |= {m.denied for m in mentions if not m.aside}

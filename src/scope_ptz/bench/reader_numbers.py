@@ -26,7 +26,7 @@ _BARE_AFTER = frozenset({
     "are", "is", "were", "was", "in", "on", "at", "of", "and", "or", "here", "there", "visible", "altogether", "overall",
     "by", "near", "to", "from", "out", "all", "now", "currently", "seen", "found", "present", "so", "then", "as", "but",
     "around", "within", "along", "across", "each", "per", "that", "which", "when", "after", "before", "total", "with",
-    "right", "behind", "under", "i", "we",
+    "right", "behind", "under", "i", "we", "together",
 })  # fmt: skip
 _BEFORE_ONE = frozenset({
     "is", "are", "was", "were", "be", "see", "sees", "seeing", "count", "counted", "counts", "find", "found", "shows",
@@ -36,7 +36,9 @@ _BEFORE_ONE = frozenset({
 _BOUNDS = re.compile(
     r"(at least|at most|more than|fewer than|less than|over|under|up to|no more than|no fewer than|a minimum of|a maximum of)$"
 )
-_TOTALS = re.compile(r"\b(total|altogether|overall|in all|combined|sum|makes|making|therefore|thus|hence|so|final|finally)\b")
+_TOTALS = re.compile(
+    r"\b(total|altogether|together|overall|in all|combined|sum|makes|making|therefore|thus|hence|so|final|finally)\b"
+)
 _NONE = re.compile(
     r"^(no|nope|none|nothing|nobody|no one|zero)$|^(none|nothing|nobody|no one)\b(?! (of (?!them|these|those)|but))"
     r"|\bthere (is|are|were) (none|nothing)\b"
@@ -75,6 +77,8 @@ def read_number(script: Script, unit: Sequence[str], *, part: bool = False) -> f
     quantities = [q for q in quantities if q not in wholes]
     if _is_range(script, quantities):
         return "a range"
+    if _is_broken_down(script, quantities):
+        return quantities[0].value
     definite = [q for q in quantities if not q.bound and not q.other]
     denied = any(m.denied for m in script.mentions({"own": unit})) if unit else False
     if totals := {q.value for q in definite if q.total}:
@@ -212,6 +216,15 @@ def _wholes(script: Script, quantities: Sequence[Quantity]) -> list[Quantity]:
     links = (["of", "the"], ["of"], ["out", "of"], ["out", "of", "the"], ["of", "these"], ["of", "those"])
     pairs = pairwise(quantities)
     return [two for one, two in pairs if [w.text for w in script.words[one.end : two.start]] in links]
+
+
+def _is_broken_down(script: Script, quantities: Sequence[Quantity]) -> bool:
+    """ "There are 7: 5 bollards and 2 vending machines": after a colon or a bracket come the parts of the first number."""
+    if len(quantities) < 3 or any(q.bound for q in quantities):
+        return False
+    whole, *parts = quantities
+    gaps = "".join(word.gap for word in script.words[whole.end : parts[0].start + 1])
+    return bool(re.search(r"[:(]", gaps)) and sum(q.value for q in parts) == whole.value
 
 
 def _is_range(script: Script, quantities: Sequence[Quantity]) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from scope_ptz.bench.expected import Ordering, Relation
@@ -25,7 +26,7 @@ _TURNED = {"forward": "backward", "backward": "forward"}
 def read_ordering(expected: Ordering, script: Script) -> Reading:
     """The options in the order that the answer gives them, turned round where it begins at the other end."""
     names = {name: wordings_of(name, further) for name, further in expected.options.items()}
-    mentions = [m for m in script.mentions(names) if not m.denied]
+    mentions = [m for m in script.mentions(names) if not m.denied or _is_counted(script, m)]
     order = list(dict.fromkeys(m.name for m in mentions))
     if set(order) != set(expected.options):
         return Unreadable("not all of them are named" if order else "none of them is named")
@@ -47,6 +48,12 @@ def read_ordering(expected: Ordering, script: Script) -> Reading:
     elif placed.get("first") not in (None, order[0]) or placed.get("last") not in (None, order[-1]):
         return Unreadable("the order is told in two ways")
     return Value(tuple(order))
+
+
+def _is_counted(script: Script, mention: Mention) -> bool:
+    """Whether a number of none stands beside a thing: "cabinets (none)" has a place in an order, and denies nothing."""
+    after = script.words[mention.end] if mention.end < len(script.words) else None
+    return after is not None and after.text in ("none", "0", "zero") and re.search(r"[(:=]", after.gap) is not None
 
 
 def _placed(script: Script, mentions: Sequence[Mention], ends: Sequence[Mention]) -> dict[str, str | None]:

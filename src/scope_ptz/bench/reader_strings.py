@@ -25,6 +25,11 @@ _CUES = (
 )
 """What comes before a text, the surest first, and how many words may follow; of the last sort the last one counts.
 An "IS" in capitals is lettering."""
+_WRITTEN = re.compile(
+    r"^\W*(?!it\b|what\b|the (?:text|words?)\b)(.{1,80}?)\s+(?:is|are)\s+(?:written|painted|printed|displayed)\b", re.IGNORECASE
+)
+"""A sentence that begins with what is written."""
+
 _LEADS = re.compile(r"^(?:the )?(?:text|words?|letters|lettering)\s+(?:that reads?\s+)?", re.IGNORECASE)
 _TRAILERS = re.compile(
     r",?\s+(?:in|on|above|below|with|at|written|painted|printed|near|beside)\s+(?:(?:the|a|an|its|big|large|small|bold|capital|white|black|red|"
@@ -62,7 +67,8 @@ def read_text(expected: Text, script: Script, answer: str) -> Reading:
         return _from_quotes(quoted, text)
     if re.search(r"\b(?:no (?:text|letters|writing)|blank|nothing (?:is )?written)\b", text, re.IGNORECASE):
         return Value("")
-    candidate, most = _after_cue(text)
+    begins = _WRITTEN.match(text)
+    candidate, most = (begins.group(1), _MOST_ALONE) if begins else _after_cue(text)
     candidate = _NEXT_SENTENCE.split(candidate)[0]
     candidate = _TRAILERS.sub("", candidate.strip().strip(".!,")).strip()
     candidate = _LEADS.sub("", re.sub(r"\s*\n\s*", APART, candidate))

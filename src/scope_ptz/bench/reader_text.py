@@ -19,7 +19,7 @@ _ASIDE = (
 _ARTICLES = frozenset({"a", "an", "the", "one", "two", "three", "some", "its", "his", "their"})
 _STOPS = frozenset({"but", "just", "only", "however", "although", "though", "yet", "while", "whereas", "instead"})
 _HEDGES = re.compile(
-    r"\b(maybe|perhaps|possibly|might|may|conceivably|i guess|just a guess|at a guess|or so|could (be|have)"
+    r"\b((yes|no) if|maybe|perhaps|possibly|might|may|conceivably|i guess|just a guess|at a guess|or so|could (be|have)"
     r"(?! (found|seen|detected|made|spotted|identified|located)))\b"
 )
 _DECLINES = re.compile(

@@ -29,9 +29,7 @@ def test_what_was_never_run_is_guessed_and_says_so() -> None:
     assert (told.input_tokens, told.output_tokens) == (16 * 1000 + 8 * 100, 16 * 40)
     assert told.cost_usd == pytest.approx((16_800 + 2 * 640) / 1e6)
     text = "\n".join(lines(told, CHOICE, 4))
-    assert (
-        "about 17 thousand tokens in and 640 out for the planner (guessed from the length of the prompt), 0.02 US" in text
-    )
+    assert "about 17 thousand tokens in and 640 out for the planner (guessed from the length of the prompt), 0.02 US" in text
     assert "time    unknown" in text
 
 

@@ -33,6 +33,10 @@ _SYNONYMS = {
     "free": ("unoccupied", "empty", "vacant"),
     "occupied": ("taken", "in use"),
     "sitting": ("seated",),
+    "cartons": ("carton", "cardboard boxes", "boxes"),
+    "pallet of cartons": ("cartons", "cardboard boxes", "boxes"),
+    "phone": ("mobile", "mobile phone"),
+    "broom": ("brush",),
 }
 Values = Mapping[tuple[str, str], Sequence[str]]
 """(category, attribute) -> every value that it takes in the scenes."""
@@ -48,7 +52,8 @@ def values_of(things: Sequence[Thing]) -> Values:
 
 
 def options(values: Sequence[str]) -> Options:
-    return {value: _SYNONYMS.get(value, ()) for value in values}
+    """Each value with further words for it that are not those of another one."""
+    return {value: tuple(word for word in _SYNONYMS.get(value, ()) if word not in values) for value in values}
 
 
 def drafts(place: Place, nouns: frozenset[str], values: Values, rng: random.Random) -> list[Draft]:
