@@ -161,15 +161,16 @@ def head_of(name: str) -> str:
 
 
 def concepts_of(instance: SceneInstance | SceneActor) -> frozenset[str]:
-    """Every concept that the instance falls under: by category, by kind, by the noun at the end of its name."""
+    """Every concept that the instance falls under: by category, by a kind of that, by the noun at the end of its name."""
     table = lexicon()
     found: set[str] = set()
-    for phrase in (
-        instance.category.lower(),
-        str(instance.attributes.get("kind", "")).lower(),
-        str(instance.attributes.get("type", "")).lower(),
-    ):
-        if phrase and (concept := table.concept(phrase)):
+    if instance.category and (concept := table.concept(instance.category.lower())):
+        found |= table.kinds(concept)
+    for key in ("kind", "type"):
+        said = str(instance.attributes.get(key, "")).lower()
+        concept = table.concept(said) if said else None
+        # A barrier of the kind "pedestrian" is for pedestrians, and is none.
+        if concept and (not found or (table.kinds(concept) & found) - {"thing"}):
             found |= table.kinds(concept)
     name = head_of(instance.name).split()
     for start in range(len(name)):

@@ -11,6 +11,7 @@ from lark import Token
 from lark.lexer import Lexer
 
 from scope_ptz.perception.language import words as w
+from scope_ptz.perception.language.lexicon import lexicon
 
 _FRAME_WORDS = frozenset(
     [
@@ -92,6 +93,10 @@ def tokenise(text: str) -> list[Token]:
     tokens: list[Token] = []
     i = 0
     while i < len(words):
+        if size := _noun(words, i, table):
+            tokens += [Token("W", word) for word in words[i : i + size]]
+            i += size
+            continue
         for size in range(min(longest, len(words) - i), 0, -1):
             found = table.get(tuple(words[i : i + size]))
             if found and (tokens or found[0] != "THAT"):
@@ -118,6 +123,18 @@ def tokenise(text: str) -> list[Token]:
     while tokens and tokens[0].type == "COMMA":
         tokens.pop(0)
     return tokens
+
+
+def _noun(words: list[str], start: int, table: dict[tuple[str, ...], tuple[str, str]]) -> int:
+    """How many words from here on are a known noun that holds a word of the closed classes ("charging points"); else 0."""
+    for size in range(min(_LONGEST_NOUN, len(words) - start), 1, -1):
+        phrase = words[start : start + size]
+        if any((word,) in table for word in phrase[1:]) and (phrase[0],) not in table and lexicon().concept(" ".join(phrase)):
+            return size
+    return 0
+
+
+_LONGEST_NOUN = 4
 
 
 def _open(word: str) -> Token:
