@@ -77,12 +77,14 @@ def read_number(script: Script, unit: Sequence[str], *, part: bool = False) -> f
     quantities = [q for q in quantities if q not in wholes]
     if _is_range(script, quantities):
         return "a range"
-    if _is_broken_down(script, quantities):
-        return quantities[0].value
+    if (parts := _breakdown(script, quantities)) is not None:
+        return quantities[0].value if parts else "numbers that do not fit together"
     definite = [q for q in quantities if not q.bound and not q.other]
     denied = any(m.denied for m in script.mentions({"own": unit})) if unit else False
     if totals := {q.value for q in definite if q.total}:
-        return totals.pop() if len(totals) == 1 else "several totals"
+        own = {q.value for q in definite if q.total and q.own}
+        sole = own if len(own) == 1 else totals
+        return sole.pop() if len(sole) == 1 else "several totals"
     values = {q.value for q in definite} | ({0.0} if denied and not any(q.own and not q.bound for q in definite) else set())
     if len(values) == 1:
         return values.pop()
@@ -218,13 +220,19 @@ def _wholes(script: Script, quantities: Sequence[Quantity]) -> list[Quantity]:
     return [two for one, two in pairs if [w.text for w in script.words[one.end : two.start]] in links]
 
 
-def _is_broken_down(script: Script, quantities: Sequence[Quantity]) -> bool:
-    """ "There are 7: 5 bollards and 2 vending machines": after a colon or a bracket come the parts of the first number."""
+def _breakdown(script: Script, quantities: Sequence[Quantity]) -> bool | None:
+    """Whether what follows the first number after a colon or in brackets makes it up: "7: 5 bollards, 2 cones", "4 more (7 to 3)".
+
+    None where nothing like that follows.
+    """
     if len(quantities) < 3 or any(q.bound for q in quantities):
-        return False
+        return None
     whole, *parts = quantities
     gaps = "".join(word.gap for word in script.words[whole.end : parts[0].start + 1])
-    return bool(re.search(r"[:(]", gaps)) and sum(q.value for q in parts) == whole.value
+    if not re.search(r"[:(]", gaps):
+        return None
+    apart = abs(parts[0].value - parts[1].value) if len(parts) == 2 and "(" in gaps else None
+    return whole.value in (sum(q.value for q in parts), apart)
 
 
 def _is_range(script: Script, quantities: Sequence[Quantity]) -> bool:
