@@ -12,9 +12,9 @@ from scope_ptz.bench.authoring.assembly import QUOTAS
 from scope_ptz.bench.expected import NoneThere
 from scope_ptz.bench.splits import load_split, published_folder, read_manifest
 from scope_ptz.cli.bench_inputs import scenes_named
-from tests.cli.conftest import Scope, scope
+from tests.cli.conftest import Scope, scenes, scope
 
-__all__ = ["scope"]
+__all__ = ["scenes", "scope"]
 
 FOLDER = published_folder()
 CORE = load_split("core")
@@ -23,7 +23,9 @@ EVERYTHING = load_split("all")
 
 def test_every_file_is_what_was_published() -> None:
     files = read_manifest(FOLDER)["files"]
-    assert {"tasks.jsonl", "paraphrase.jsonl", "reaction.jsonl", "unseen.jsonl", "lite.txt", "gold.jsonl.gz", "proof.json"} <= set(files)
+    assert {"tasks.jsonl", "paraphrase.jsonl", "reaction.jsonl", "unseen.jsonl", "lite.txt", "gold.jsonl.gz", "proof.json"} <= set(
+        files
+    )
     assert {name: hashlib.sha256((FOLDER / name).read_bytes()).hexdigest() for name in files} == files
 
 
@@ -56,9 +58,11 @@ def test_no_task_and_no_wording_comes_twice() -> None:
 
 
 def test_every_scene_and_viewpoint_is_used() -> None:
-    scenes = scenes_named(list(read_manifest(FOLDER)["scenes"]))
-    used = {(task.scene, preset.viewpoint) for task in CORE for preset in scenes[task.scene].file.presets if preset.name == task.preset}
-    assert used == {(name, viewpoint.name) for name, scene in scenes.items() for viewpoint in scene.file.viewpoints}
+    here = scenes_named(list(read_manifest(FOLDER)["scenes"]))
+    used = {
+        (task.scene, preset.viewpoint) for task in CORE for preset in here[task.scene].file.presets if preset.name == task.preset
+    }
+    assert used == {(name, viewpoint.name) for name, scene in here.items() for viewpoint in scene.file.viewpoints}
 
 
 def test_it_was_proved_and_by_these_very_tasks() -> None:

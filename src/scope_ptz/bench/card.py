@@ -85,11 +85,12 @@ def _what(data: Dataset) -> Iterator[str]:
         "The instructions, the scenes and the programs are the project's own. No language model takes part, no expected value is "
         "typed by hand: a program reads the ground truth of views of the scenes, drafts what can be asked of them, and keeps what "
         "is so beyond doubt, at poses 0.5 degrees and 3% of zoom around and with visibility thresholds 30% lower and higher. "
-        "[The benchmark](benchmark.md) has the rules. The same scenes and seed give the same bytes:"
+        "[The benchmark](benchmark.md) has the rules. The same scenes in the same order, and the same seed, give the same bytes:"
     )
     made = data.manifest["made_with"]
     unseen = " ".join(map(str, made["unseen"]))
-    yield f"```sh\nscope bench build --all --seed {made['seed']} --seeds {unseen} --out DIR --card dataset.md\n```"
+    scenes = " ".join(f"--scene {name}" for name in data.manifest["scenes"])
+    yield f"```sh\nscope bench build --all {scenes} --seed {made['seed']} --seeds {unseen} \\\n  --out DIR --card dataset.md\n```"
     yield (
         "The unseen tasks are set in varied worlds: the same baked scenes at other scene times, with moving things that come at "
         "other times, stand still somewhere or are gone, and with other presets under other names. Picture and truth come from "
