@@ -100,7 +100,12 @@ def main() -> int:
 async def _score(tasks: Sequence[Task], eyes: str) -> Score:
     worlds, score = worlds_of(tasks), Score()
     perception = _eyes(eyes, worlds)
-    for task in tasks:
+    last = ""
+    for task in sorted(tasks, key=lambda t: (t.scene, t.world)):
+        if last and last != task.scene:  # the pictures of one scene at a time take less memory
+            for world in worlds.values():
+                world.release()
+        last = task.scene
         trace = await _run(task, worlds[task.world], perception, drawn=eyes == "rapidocr")
         verdict = judge(task, episode_of(trace, Places.of(worlds[task.world].file), keeps_files=False))
         score.of[task.category] += 1

@@ -46,7 +46,8 @@ def read_yes_no(expected: YesNo, script: Script) -> Reading:
         said.add((mention.name == "yes") != (mention.denied or mention.aside))
     if not said and says_none(script):
         said = {False}
-    if re.search(r"\bthere (is|are) (none|not any)\b", script.text()):
+    clauses = (" ".join(script.words[i].text for i in group) for group in script.clauses())
+    if any(re.search(r"\bthere (is|are) (none|not any)( here| there| visible| in view)?$", clause) for clause in clauses):
         said.add(False)
     if len(said) == 1:
         return Value(said.pop())

@@ -141,7 +141,7 @@ def _grouped(labels: Sequence[int]) -> list[list[int]]:
 
 def script(text: str) -> Script:
     """Make a text ready for reading. Questions are left out: they claim nothing."""
-    cleaned = clean(text)
+    cleaned = re.sub(r"\s*\(with [^()]*\)", "", clean(text))  # "white (with black letters)" is white
     words = words_of(re.sub(r"[^.!?\n]*\?", "", cleaned))
     kept, declined, hedged = list[Word](), False, False
     for positions in _grouped([w.clause for w in words]):
