@@ -177,9 +177,9 @@ def test_a_pack_is_written_that_the_world_can_read(tmp_path: Path) -> None:
     (folder.parent / "scene.json").write_text(SCENE.model_dump_json())
     here = Scene(folder.parent).viewpoint("mast")
     assert here.manifest == manifest
-    assert here.colour(manifest.base).shape == (149, 360, 3)
-    assert here.ids(manifest.tiles[1].ids).min() == 1
-    assert here.colour(manifest.actors[0].colour).shape[2] == 4
+    assert here.pictures.colour(manifest.base).shape == (149, 360, 3)
+    assert here.pictures.numbers(manifest.tiles[1].ids).min() == 1
+    assert here.pictures.colour(manifest.actors[0].colour).shape[2] == 4
     assert not list(folder.parent.glob(".*"))
 
 

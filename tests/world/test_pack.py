@@ -189,7 +189,7 @@ def test_threads_share_one_scene(analytic_folder: Path) -> None:
 
 def test_layers_are_read_only(analytic_scene: Scene) -> None:
     viewpoint = analytic_scene.viewpoint("mast")
-    layer = viewpoint.colour(viewpoint.manifest.base)
+    layer = viewpoint.pictures.colour(viewpoint.manifest.base)
     with pytest.raises(ValueError, match="read-only"):
         layer[0, 0] = 0
 

@@ -43,14 +43,14 @@ def test_packs_are_lean_and_undamaged(scene: Scene) -> None:
         viewpoint = scene.viewpoint(place.name)
         assert sum(f.stat().st_size for f in viewpoint.folder.rglob("*") if f.is_file()) <= PACK_BYTES
         manifest = viewpoint.manifest
-        viewpoint.colour(manifest.base)
-        viewpoint.ids(manifest.ids)
-        viewpoint.depth(manifest.depth)
+        viewpoint.pictures.colour(manifest.base)
+        viewpoint.pictures.numbers(manifest.ids)
+        viewpoint.pictures.numbers(manifest.depth)
         for tile in manifest.tiles:
-            viewpoint.colour(tile.colour)
-            viewpoint.ids(tile.ids)
+            viewpoint.pictures.colour(tile.colour)
+            viewpoint.pictures.numbers(tile.ids)
         for sheet in manifest.actors:
-            viewpoint.sprites(sheet)
+            viewpoint.sprite_colours(sheet)
 
 
 def test_presets_are_within_the_cameras_reach(scene: Scene) -> None:
@@ -64,7 +64,7 @@ def test_texts_and_small_things_lie_in_tiles(scene: Scene) -> None:
         viewpoint = scene.viewpoint(place.name)
         layer, band = viewpoint.manifest.ids, viewpoint.manifest.band
         whole = Equirectangular(-180.0, 360.0, band.top_tilt_deg, band.bottom_tilt_deg, layer.width, layer.height)
-        wanted = targets(scene.file, place, viewpoint.ids(layer), whole)
+        wanted = targets(scene.file, place, viewpoint.pictures.numbers(layer), whole)
         closest = Perspective(0.0, 0.0, AXIS_M5075_G.hfov_deg(Limits().max_zoom), 1280, 720)
         views = [tile.view for tile in viewpoint.manifest.tiles if tile.suits(closest)]
         assert [t.name for t in wanted if not covers(views, t)] == []

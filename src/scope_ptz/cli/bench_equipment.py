@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable, Mapping
-from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,10 +14,12 @@ from scope_ptz.bench.engine.equipment import Equipment, ModelWish
 from scope_ptz.bench.episode import Look
 from scope_ptz.camera.base import Frame, FrameOrigin
 from scope_ptz.cli.choosing import EyesChoice, PlannerChoice, Wishes, choose
-from scope_ptz.cli.session import GROUND_TRUTH_NOTE, NOISY_NOTE, make_planner, open_scene
+from scope_ptz.cli.session import GROUND_TRUTH_NOTE, NOISY_NOTE, make_planner, scene_search
 from scope_ptz.errors import PerceptionError
 from scope_ptz.geometry import Equirectangular, Pose
 from scope_ptz.planner.base import Decision, Planner, State
+from scope_ptz.settings import load_settings
+from scope_ptz.world.library import Library
 from scope_ptz.world.pack import Scene
 
 if TYPE_CHECKING:
@@ -77,7 +78,7 @@ def lend(
 
     ``planner``, ``eyes`` and ``judge``: those that are chosen already; eyes that cannot be made are told of now.
     """
-    scenes = lru_cache(maxsize=None)(open_scene)
+    scenes = Library(scene_search(load_settings()))
     seeing = eyes_for(eyes, scenes, seed) if eyes is not None else None
 
     async def a_planner(wish: ModelWish) -> Planner:

@@ -119,7 +119,7 @@ def _appearance(viewpoint: Viewpoint, actor: SceneActor, sheet: ActorSheet, here
 
 def extent(viewpoint: Viewpoint, appearance: Appearance) -> Extent:
     """The whole silhouette of an actor now, hidden parts included."""
-    own = _crop(appearance.sprite, viewpoint.sprites(appearance.sheet)[1]) > 0
+    own = _crop(appearance.sprite, viewpoint.sprite_distances(appearance.sheet)) > 0
     measures = measure(own.astype(np.uint16), appearance.view)
     if not len(measures.numbers):
         return Extent(number=appearance.actor.number, solid_angle_sr=0.0, hull=[], distance_m=appearance.distance_m)
@@ -171,7 +171,7 @@ def draw(
 
 def _sample(viewpoint: Viewpoint, appearance: Appearance, where: NDArray[np.float32], projection: Projection) -> NDArray[np.uint8]:
     """(H, W, 4) premultiplied colour of the sprite at the places of a map; shrunk first when it is denser than the view."""
-    colour = _crop(appearance.sprite, viewpoint.sprites(appearance.sheet)[0])
+    colour = _crop(appearance.sprite, viewpoint.sprite_colours(appearance.sheet))
     shrink = projection.density / appearance.view.focal_px
     if shrink < 0.75:
         size = max(1, round(colour.shape[1] * shrink)), max(1, round(colour.shape[0] * shrink))
@@ -190,7 +190,7 @@ def _blend(picture: NDArray[np.uint8], premultiplied: NDArray[np.uint8], shows: 
 
 def _distances(viewpoint: Viewpoint, appearance: Appearance) -> NDArray[np.float32]:
     """(h, w) metres to the actor's own pixels of its sprite, as far as it is now; 0 where the sprite shows no actor."""
-    codes = _crop(appearance.sprite, viewpoint.sprites(appearance.sheet)[1])
+    codes = _crop(appearance.sprite, viewpoint.sprite_distances(appearance.sheet))
     return np.where(codes > 0, viewpoint.depth_metres[codes] / np.float32(appearance.scale), np.float32(0.0))
 
 

@@ -44,8 +44,10 @@ def read_ids(path: Path) -> NDArray[np.uint16]:
     with image:
         if path.suffix == ".png":
             return np.array(image).astype(np.uint16)
-        high, low = (np.asarray(image.getchannel(c), dtype=np.uint16) for c in ("R", "G"))
-    return (high << np.uint16(8)) | low
+        numbers = np.asarray(image.getchannel("R"), dtype=np.uint16)
+        numbers <<= 8
+        numbers |= np.asarray(image.getchannel("G"))
+        return numbers
 
 
 def write_ids(path: Path, numbers: NDArray[np.uint16]) -> None:

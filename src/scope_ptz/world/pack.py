@@ -11,6 +11,7 @@ from threading import RLock
 
 from scope_ptz.errors import PackError, UnknownNameError
 from scope_ptz.world.models import SceneActor, SceneFile, SceneInstance
+from scope_ptz.world.recent import Recent
 from scope_ptz.world.variation import Held, vary
 from scope_ptz.world.viewpoint import Viewpoint, read_json
 
@@ -31,8 +32,8 @@ def list_scenes(search: Iterable[Path] = ()) -> list[str]:
     return sorted(find_scenes(search))
 
 
-def load_scene(name: str, search: Iterable[Path] = ()) -> Scene:
-    """Open a scene by name, ``highway-works``, or a variation of one, ``highway-works-v7``.
+def load_scene(name: str, search: Iterable[Path] = (), recent: Recent | None = None) -> Scene:
+    """Open a scene by name, ``highway-works``, or a variation of one, ``highway-works-v7``. ``recent``: see ``Scene``.
 
     Raises:
         UnknownNameError: there is no such scene.
@@ -40,16 +41,22 @@ def load_scene(name: str, search: Iterable[Path] = ()) -> Scene:
     """
     folders = find_scenes(search)
     if name in folders:
-        return Scene(folders[name])
-    varied = _VARIED.fullmatch(name)
-    if varied is None or varied["scene"] not in folders:
+        return Scene(folders[name], recent)
+    scene, number = variation_of(name)
+    if number is None or scene not in folders:
         raise UnknownNameError("scene", name, folders)
-    return Scene(folders[varied["scene"]]).varied(int(varied["number"]))
+    return Scene(folders[scene], recent).varied(number)
 
 
 def variation_name(scene: str, number: int) -> str:
     """The name under which variation ``number`` of a scene is opened."""
     return f"{scene}-v{number}"
+
+
+def variation_of(name: str) -> tuple[str, int | None]:
+    """The scene and the number that the name of a variation holds; the name and None when it is none."""
+    varied = _VARIED.fullmatch(name)
+    return (name, None) if varied is None else (varied["scene"], int(varied["number"]))
 
 
 _VARIED = re.compile(r"(?P<scene>.+)-v(?P<number>[1-9]\d{0,8})")
@@ -58,10 +65,11 @@ _VARIED = re.compile(r"(?P<scene>.+)-v(?P<number>[1-9]\d{0,8})")
 class Scene:
     """A scene folder: its instance table at once, its viewpoints when asked for. Safe to share between threads and cameras.
 
-    ``variation``: which one this is of the scene, if any; ``held``: what it keeps in one place that else moves.
+    ``variation``: which one this is of the scene, if any; ``held``: what it keeps in one place that else moves. ``recent``: who
+    lets go of viewpoints when many scenes are open; without it all that were asked for stay.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, recent: Recent | None = None) -> None:
         self.folder = folder
         self.file = read_json(folder / "scene.json", SceneFile)
         if self.file.name != folder.name:
@@ -70,6 +78,7 @@ class Scene:
         self.variation: int | None = None
         self.held: tuple[Held, ...] = ()
         self._viewpoints: dict[str, Viewpoint] = {}
+        self._recent = recent
         self._lock = RLock()
         _check_references(self.file, folder)
 
@@ -77,7 +86,7 @@ class Scene:
         """A variation of this scene; it shares the layers of its viewpoints."""
         extents = {place.name: self.viewpoint(place.name).manifest.extents for place in self.file.viewpoints}
         variation = vary(self.file, number, extents)
-        other = Scene(self.folder)
+        other = Scene(self.folder, self._recent)
         other.variation = number
         other.name, other.file, other.held = variation_name(self.name, number), variation.file, variation.held
         other._viewpoints, other._lock = self._viewpoints, self._lock
@@ -124,7 +133,10 @@ class Scene:
         with self._lock:
             if name not in self._viewpoints:
                 self._viewpoints[name] = Viewpoint(self.folder / name, self.file, known[name])
-            return self._viewpoints[name]
+            viewpoint = self._viewpoints[name]
+            if self._recent is not None:
+                self._recent.used(self._viewpoints, name)
+            return viewpoint
 
     def release(self) -> None:
         """Let go of the layers of all viewpoints; they are read again when they are asked for."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Iterator
 from functools import cached_property
@@ -19,6 +18,7 @@ from scope_ptz.errors import PackError
 from scope_ptz.world import layers
 from scope_ptz.world.atlas import Atlas, Scale
 from scope_ptz.world.models import FORMAT_VERSION, ActorSheet, Extent, Layer, Manifest, SceneFile, SceneViewpoint
+from scope_ptz.world.pictures import Pictures
 from scope_ptz.world.tiles import Tiles
 
 COLOUR_SCALES = (
@@ -42,10 +42,11 @@ class Viewpoint:
     """A viewpoint folder. Layers are read on demand; each read is checked against the manifest."""
 
     def __init__(self, folder: Path, scene: SceneFile, place: SceneViewpoint) -> None:
-        self.folder = folder
+        self.folder, self.pictures = folder, Pictures(folder)
         self.manifest = manifest = read_json(folder / "manifest.json", Manifest)
         self.name = place.name
-        self._sheets: dict[int, tuple[NDArray[np.uint8], NDArray[np.uint16]]] = {}
+        self._sprite_colours: dict[int, NDArray[np.uint8]] = {}
+        self._sprite_distances: dict[int, NDArray[np.uint16]] = {}
         self._lock = RLock()
         if (manifest.scene, manifest.viewpoint, manifest.scene_version) != (scene.name, place.name, scene.version):
             raise PackError(
@@ -56,10 +57,12 @@ class Viewpoint:
         tiles = manifest.tiles
         self.tiles = Tiles([tile.view for tile in tiles])
         colours, ids = [manifest.base, *(t.colour for t in tiles)], [manifest.ids, *(t.ids for t in tiles)]
-        self.colour_atlas = Atlas([_size(c) for c in colours], lambda i: self.colour(colours[i]), np.uint8, 3, COLOUR_SCALES)
-        self.id_atlas = Atlas([_size(n) for n in ids], lambda i: self.ids(ids[i]), np.uint16, 1)
-        self.depth_atlas = Atlas([_size(manifest.depth)], lambda _: self.depth(manifest.depth), np.uint16, 1)
-        self.owner_atlas = Atlas([_size(manifest.depth)], lambda _: self._owners(), np.uint16, 1)
+        # The sheets know the files and not this object: without a cycle, all goes as soon as nobody holds a viewpoint any more.
+        read, depth = self.pictures, manifest.depth
+        self.colour_atlas = Atlas([_size(c) for c in colours], lambda i: read.colour(colours[i]), np.uint8, 3, COLOUR_SCALES)
+        self.id_atlas = id_atlas = Atlas([_size(n) for n in ids], lambda i: read.numbers(ids[i]), np.uint16, 1)
+        self.depth_atlas = Atlas([_size(depth)], lambda _: read.numbers(depth), np.uint16, 1)
+        self.owner_atlas = Atlas([_size(depth)], lambda _: _owners(id_atlas, depth), np.uint16, 1)
 
     @cached_property
     def position_m(self) -> NDArray[np.float64]:
@@ -93,19 +96,7 @@ class Viewpoint:
 
     def check_files(self) -> int:
         """Hold every file against its checksum; the number of files. Raises ``PackError`` for the first that is not as baked."""
-        return len([self._verified(layer) for layer in self.files()])
-
-    def colour(self, layer: Layer) -> NDArray[np.uint8]:
-        """(H, W, 3) RGB, or (H, W, 4) for the sheets of actors."""
-        return self._sized(layer, layers.read_colour(self._verified(layer)))
-
-    def ids(self, layer: Layer) -> NDArray[np.uint16]:
-        """(H, W) instance numbers, 0 = nothing annotated."""
-        return self._sized(layer, layers.read_ids(self._verified(layer)))
-
-    def depth(self, layer: Layer) -> NDArray[np.uint16]:
-        """(H, W) distance codes; see ``depth_metres``."""
-        return self._sized(layer, layers.read_ids(self._verified(layer)))
+        return len([self.pictures.checked(layer) for layer in self.files()])
 
     @cached_property
     def depth_metres(self) -> NDArray[np.float32]:
@@ -113,44 +104,30 @@ class Viewpoint:
         depth = self.manifest.depth
         return layers.decode_depth(np.arange(65536).astype(np.uint16), depth.near_m, depth.far_m)
 
-    def sprites(self, sheet: ActorSheet) -> tuple[NDArray[np.uint8], NDArray[np.uint16]]:
-        """An actor's sheet: (H, W, 4) colour premultiplied by alpha, and (H, W) distance codes. Read once and shared."""
+    def sprite_distances(self, sheet: ActorSheet) -> NDArray[np.uint16]:
+        """An actor's sheet as (H, W) distance codes, 0 where it shows no actor. Read once and shared."""
         with self._lock:
-            if sheet.number not in self._sheets:
-                colour = self.colour(sheet.colour)
+            if sheet.number not in self._sprite_distances:
+                self._sprite_distances[sheet.number] = self.pictures.numbers(sheet.depth)
+            return self._sprite_distances[sheet.number]
+
+    def sprite_colours(self, sheet: ActorSheet) -> NDArray[np.uint8]:
+        """An actor's sheet as (H, W, 4) colour premultiplied by alpha. Read once and shared; the ground truth never needs it."""
+        with self._lock:
+            if sheet.number not in self._sprite_colours:
+                colour = self.pictures.colour(sheet.colour)
                 if colour.shape[2] != 4:
                     raise PackError(f"{self.folder / sheet.colour.file} has no transparency: no sheet of sprites. Bake it again.")
-                codes = self.depth(sheet.depth)
-                self._sheets[sheet.number] = _premultiplied(colour, codes > 0), codes
-            return self._sheets[sheet.number]
+                self._sprite_colours[sheet.number] = _premultiplied(colour, self.sprite_distances(sheet) > 0)
+            return self._sprite_colours[sheet.number]
 
-    def _owners(self) -> NDArray[np.uint16]:
-        """As large as the depth layer: the instance on which each of its distances was measured."""
-        slot, depth = self.id_atlas.need(0), self.manifest.depth
-        rows = slot.y + ((np.arange(depth.height) + 0.5) / depth.height * slot.height).astype(int)
-        columns = slot.x + ((np.arange(depth.width) + 0.5) / depth.width * slot.width).astype(int)
-        return np.ascontiguousarray(self.id_atlas.sheet[rows[:, None], columns])
 
-    def _verified(self, layer: Layer) -> Path:
-        path = (self.folder / layer.file).resolve()
-        if not path.is_relative_to(self.folder.resolve()):
-            raise PackError(f"{self.folder / 'manifest.json'} names a file outside its folder: {layer.file}. Do not use this pack.")
-        try:
-            digest = hashlib.sha256(path.read_bytes()).hexdigest()
-        except OSError as error:
-            raise PackError(f"{path} is missing or cannot be read ({error.strerror}). Restore it or bake again.") from error
-        if digest != layer.sha256:
-            raise PackError(f"{path} is damaged: its checksum differs from the manifest. Restore the pack or bake it again.")
-        return path
-
-    def _sized(self, layer: Layer, image: NDArray[np.generic]) -> NDArray:  # type: ignore[type-arg]
-        if image.shape[:2] != (layer.height, layer.width):
-            raise PackError(
-                f"{self.folder / layer.file} is {image.shape[1]}x{image.shape[0]} pixels, its manifest says "
-                f"{layer.width}x{layer.height}. Bake it again."
-            )
-        image.flags.writeable = False
-        return image
+def _owners(ids: Atlas, depth: Layer) -> NDArray[np.uint16]:
+    """As large as the depth layer: the instance on which each of its distances was measured."""
+    slot = ids.need(0)
+    rows = slot.y + ((np.arange(depth.height) + 0.5) / depth.height * slot.height).astype(int)
+    columns = slot.x + ((np.arange(depth.width) + 0.5) / depth.width * slot.width).astype(int)
+    return np.ascontiguousarray(ids.sheet[rows[:, None], columns])
 
 
 def _premultiplied(colour: NDArray[np.uint8], own: NDArray[np.bool_]) -> NDArray[np.uint8]:

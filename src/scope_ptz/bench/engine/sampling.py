@@ -21,7 +21,8 @@ STORE = "scope"
 
 
 def dataset_of(entries: Iterable[Entry], name: str) -> MemoryDataset:
-    """The entries as a dataset of the engine."""
+    """The entries as a dataset of the engine, those of one viewpoint one after the other: its layers are read once."""
+    entries = sorted(entries, key=lambda e: (e.facts.scene, e.facts.viewpoint))
     samples = [Sample(id=e.facts.id, input=e.facts.instruction, target=e.facts.expected, metadata=e.metadata()) for e in entries]
     return MemoryDataset(samples, name=name)
 
