@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from pathlib import Path
 
 import cv2
@@ -11,13 +12,13 @@ import pytest
 
 from scope_ptz.agent.trace import read_trace
 from scope_ptz.bench.expected import ActionOnly, Number
-from scope_ptz.bench.people import read_result
+from scope_ptz.bench.people import open_run, read_result
 from scope_ptz.bench.task_files import dump_tasks
 from scope_ptz.bench.tasks import Aim, Behaviour, EvidenceView, FinalPose, Task
 from scope_ptz.camera.base import Frame
 from scope_ptz.cli.human_agent import Left, parse
 from scope_ptz.cli.human_pictures import Viewer, escape
-from scope_ptz.errors import InputError
+from scope_ptz.errors import InputError, TraceError
 from scope_ptz.geometry import AXIS_M5075_G, Perspective, Pose
 from scope_ptz.planner.base import Finish, ToolCall
 from tests.cli.conftest import Scope, scenes, scope
@@ -79,6 +80,25 @@ def test_a_person_is_judged_by_the_checks_and_can_go_on_later(
     assert trace.ended is not None and trace.ended.outcome == "answered" and trace.started.perception == "ann"
     shown = sorted((out / "scope1-analytic-yard-counting-002" / "shown").iterdir())
     assert len(shown) == 4 and np.asarray(cv2.imread(str(shown[0]))).shape == (720, 1280, 3)
+
+
+def test_a_report_shows_what_the_person_saw_in_a_failed_task(
+    scope: Scope, tasks: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out, report = tmp_path / "human", tmp_path / "report"
+    type_in(monkeypatch, "answer Done.", "preset board", "answer There are 5 drums.", "quit")
+    scope("bench", "human", "--split", str(tasks), "--out", str(out))
+    done = scope("bench", "report", str(out / "evaluation.json"), "--tasks", str(tasks), "--out", str(report))
+    assert done.code == 0, done.err
+    (page,) = ((path.read_text("utf-8")) for path in (report / "tasks").glob("scope1-analytic-yard-counting-002*.html"))
+    frames = re.findall(r'src="\.\./(frames/[^"]+)"', page)
+    assert frames and all((report / frame).is_file() for frame in frames)
+
+
+@pytest.mark.parametrize("name", ["../other", "/etc", "a/b", ".."])
+def test_a_result_names_no_run_outside_its_folder(tmp_path: Path, name: str) -> None:
+    with pytest.raises(TraceError, match="outside"):
+        open_run(tmp_path / "evaluation.json", name)
 
 
 def test_the_end_of_the_input_loses_nothing(scope: Scope, tasks: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from pydantic import ValidationError
 
 from scope_ptz import __version__
 from scope_ptz.agent.timing import Timings
-from scope_ptz.agent.trace import Trace
+from scope_ptz.agent.trace import Trace, read_trace
 from scope_ptz.bench.audit import digest_of
 from scope_ptz.bench.episode import Places, episode_of
 from scope_ptz.bench.error_modes import error_mode
@@ -18,7 +19,7 @@ from scope_ptz.bench.judging.wording import facts_of
 from scope_ptz.bench.tasks import Task
 from scope_ptz.bench.trials import Check, Evaluation, ModelCard, RunCard, Trial
 from scope_ptz.bench.verdict import judge
-from scope_ptz.errors import InputError, OutputError
+from scope_ptz.errors import InputError, OutputError, TraceError
 from scope_ptz.world.models import SceneFile
 
 RESULT = "evaluation.json"
@@ -64,6 +65,32 @@ def trial(task: Task, scene: SceneFile, trace: Trace, sample: str) -> Trial:
         perception_failures=sum(call.fault == "perception" for call in trace.calls),
         timings=ended.timings if ended else Timings(),
     )
+
+
+@dataclass(frozen=True, slots=True)
+class KeptRun:
+    """A person's run as reports show it: its trace, and the pictures in its folder."""
+
+    trace: Trace
+
+    def picture(self, name: str) -> bytes | None:
+        """A picture by its name in the trace; None when it is not there. Raises ``TraceError`` for one outside the folder."""
+        folder = self.trace.folder.resolve()
+        path = (folder / name).resolve()
+        if not path.is_relative_to(folder):
+            raise TraceError(f"The trace in {folder} names a picture outside its own folder: {name}.")
+        try:
+            return path.read_bytes()
+        except OSError:
+            return None
+
+
+def open_run(result: Path, sample: str) -> KeptRun:
+    """A run of a result by its name (``Trial.sample``), from its folder beside the result. Raises ``TraceError``."""
+    folder = result.parent / sample
+    if sample in {"", ".", ".."} or Path(sample).name != sample:
+        raise TraceError(f"{result} names a run outside its own folder: {sample}.")
+    return KeptRun(read_trace(folder))
 
 
 def write_result(evaluation: Evaluation, folder: Path) -> Path:

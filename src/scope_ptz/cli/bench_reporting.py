@@ -44,11 +44,10 @@ def report(
 
         def open_trial(evaluation: Evaluation, trial: Trial) -> SampleFiles:
             from scope_ptz.bench.engine.logs import open_sample
-            from scope_ptz.errors import TraceError
+            from scope_ptz.bench.people import open_run
 
-            if where[id(evaluation)].suffix == RESULT:
-                raise TraceError("A person's runs stand in folders beside the result.")
-            return open_sample(where[id(evaluation)], trial.sample)
+            path = where[id(evaluation)]
+            return open_run(path, trial.sample) if path.suffix == RESULT else open_sample(path, trial.sample)
 
         made = write_report(
             evaluations,

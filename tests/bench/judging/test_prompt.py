@@ -26,7 +26,7 @@ from tests.cli.conftest import SCENE, scenes
 
 __all__ = ["scenes"]
 
-PUBLISHED = "judge-1:61b9411003d4"
+PUBLISHED = "judge-1:785f10e2b635"
 
 
 def test_every_category_has_a_rubric_of_its_own_and_all_modes_in_their_order() -> None:

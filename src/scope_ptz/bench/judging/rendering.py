@@ -10,8 +10,10 @@ import json
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
+from scope_ptz.bench.episode import Places
 from scope_ptz.bench.judging.case import Case, CaseCall
 from scope_ptz.bench.judging.quoting import cut, inline, quoted
 from scope_ptz.bench.trials import TaskFacts
@@ -162,3 +164,16 @@ def _json(content: Mapping[str, Any]) -> str:
 def in_words(pose: Pose) -> str:
     """A pose as a person reads it."""
     return f"pan {pose.pan_deg:.1f}, tilt {pose.tilt_deg:.1f} degrees, zoom {pose.zoom:.2f}x"
+
+
+def specimen() -> str:
+    """A made-up run in the words of this module, each of its parts once: what changes when the layout does."""
+    pose = Pose(10.0, -5.0, 2.0)
+    facts = TaskFacts(
+        id="id", dataset="dataset", stratum="core", scene="scene", viewpoint="mast", preset="gate", instruction="Look.",
+        category="counting", scope="current", difficulty="easy", expected="5", demands=("go_home()",),
+    )  # fmt: skip
+    calls = [CaseCall("tool", {"a": 1}, {"message": "Done.", "box": [0]}, None, pose, "mast")]
+    calls += [CaseCall("tool", {}, None, "It failed.", pose)] * LEAST_CHARS
+    case = Case("Look.", pose, "mast", ("gate",), tuple(calls), pose, "Five.", "answered", True, Places({"gate": "mast"}, "mast"))
+    return "\n\n".join(render(facts, shown, LEAST_CHARS) for shown in (case, replace(case, calls=(), outcome=None, answer="")))

@@ -11,6 +11,7 @@ import re
 from functools import cache
 from importlib.resources import files
 
+from scope_ptz.bench.judging.rendering import specimen
 from scope_ptz.bench.judging.replies import REPLY_SCHEMA
 from scope_ptz.bench.tasks import Category
 
@@ -31,9 +32,10 @@ def mode_lines() -> list[str]:
     return [line for line in _sections()["error modes"].splitlines() if line[:1].isdigit()]
 
 
+@cache
 def prompt_version() -> str:
-    """The name of the prompt and a digest of what it really says, as it stands in judgements."""
-    text = _text() + json.dumps(REPLY_SCHEMA)
+    """The name of the prompt and a digest of what it really says, the layout of runs included, as it stands in judgements."""
+    text = _text() + json.dumps(REPLY_SCHEMA) + specimen()
     return f"{PROMPT}:{hashlib.sha256(text.encode()).hexdigest()[:12]}"
 
 
