@@ -83,6 +83,20 @@ async def test_a_whole_run(stream: bool) -> None:
 
 
 @pytest.mark.parametrize("stream", [True, False])
+async def test_replies_of_no_use_cost_tokens_too(stream: bool) -> None:
+    with Misbehaving([good(Say(text=""))], then=good(Say("Done."))) as server:
+        mended = await ask(server.url, stream=stream)
+    with Misbehaving(then=good(Say(text=""))) as server:
+        in_vain = await ask(server.url, stream=stream)
+    with Misbehaving(then=good(Say(text="<think>so</think>"))) as server:
+        thought = await ask(server.url, stream=stream)
+    assert (mended.ended.outcome, in_vain.ended.outcome, thought.ended.outcome) == ("answered", "planner_error", "planner_error")
+    # 11 tokens in and 7 out a reply; an empty one is asked for again once, one that only thinks is not.
+    for run, replies in ((mended, 2), (in_vain, 2), (thought, 1)):
+        assert (run.ended.usage.input_tokens, run.ended.usage.output_tokens) == (11 * replies, 7 * replies)
+
+
+@pytest.mark.parametrize("stream", [True, False])
 @pytest.mark.parametrize(
     "text",
     [

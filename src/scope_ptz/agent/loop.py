@@ -16,7 +16,7 @@ from scope_ptz import __version__
 from scope_ptz.agent.calls import Calls, End, RunTool, in_words
 from scope_ptz.agent.records import Budgets, Decided, Ended, Labels, Listener, Place, Run, Started
 from scope_ptz.agent.seeing import newest_view
-from scope_ptz.agent.timing import Stopwatch, server_events
+from scope_ptz.agent.timing import Stopwatch, server_events, wasted
 from scope_ptz.camera.base import Camera
 from scope_ptz.endpoints.failures import count_failures
 from scope_ptz.errors import CameraError, InputError, OutputError, PackError, PlannerError
@@ -159,6 +159,7 @@ class _Episode:
                 return End("camera_error", str(error))
             except PlannerError as error:
                 self.calls.events.update(server_events(error))
+                self.usage += wasted(error.attempts)
                 return End("planner_error", str(error), kind=error.kind)
             except Exception as error:  # The episode's border: a planner's fault is an outcome, not a crash
                 return End("planner_error", f"The planner failed: {in_words(error)}", traceback.format_exc())
@@ -186,6 +187,7 @@ class _Episode:
         self.usage += decision.usage
         if decision.served is not None:
             self.calls.events.update(count_failures(decision.served.attempts))
+            self.usage += wasted(decision.served.attempts)
             self.watch.waited_for_first_token(decision.served.first_token_s or 0.0)
         self.emit(Decided(step=self.steps, decision=decision, planner_s=(self.watch.read() - before).planner_s, view=shown))
         return decision

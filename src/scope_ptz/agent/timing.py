@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable, Iterator
+from collections.abc import Awaitable, Callable, Iterable, Iterator
 from contextlib import contextmanager
 from time import perf_counter
 from typing import Any, Literal, TypeVar
@@ -14,6 +14,7 @@ from scope_ptz.endpoints.failures import Attempt, count_failures
 from scope_ptz.errors import PerceptionError, PlannerError, TraceError
 from scope_ptz.geometry import Pose
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
+from scope_ptz.planner.base import Usage
 
 Part = Literal["planner", "perception", "camera", "render"]
 Question = Literal["caption", "query", "detect", "point"]
@@ -198,6 +199,12 @@ class TimedPerception(Perception):
                     )
                 )
         return seen
+
+
+def wasted(attempts: Iterable[object]) -> Usage:
+    """The tokens of replies that were of no use."""
+    spent = [a for a in attempts if isinstance(a, Attempt)]
+    return Usage(input_tokens=sum(a.input_tokens for a in spent), output_tokens=sum(a.output_tokens for a in spent))
 
 
 def server_events(error: PerceptionError | PlannerError) -> dict[str, int]:

@@ -105,7 +105,17 @@ class Caller:
         finally:
             if not reported:
                 self.breaker.abandoned()
-        tried.append(Attempt(kind=failure.kind, status=failure.status, seconds=perf_counter() - began, waited_s=waited_s))
+        tokens_in, tokens_out = failure.tokens
+        tried.append(
+            Attempt(
+                kind=failure.kind,
+                status=failure.status,
+                seconds=perf_counter() - began,
+                waited_s=waited_s,
+                input_tokens=tokens_in,
+                output_tokens=tokens_out,
+            )
+        )
         return failure
 
     def _pause_s(self, failure: ServerFailure, attempts: int) -> float | None:

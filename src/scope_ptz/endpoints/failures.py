@@ -66,7 +66,10 @@ _WORDS: dict[FailureKind, tuple[str, str]] = {
 
 
 class Attempt(BaseModel):
-    """One request of a call. ``kind`` is None when it worked; ``waited_s``: the pause before it."""
+    """One request of a call. ``kind`` is None when it worked; ``waited_s``: the pause before it.
+
+    ``input_tokens`` and ``output_tokens``: what a reply cost that was of no use; a good one says so itself.
+    """
 
     model_config = ConfigDict(frozen=True)
 
@@ -74,10 +77,13 @@ class Attempt(BaseModel):
     status: int | None = None
     seconds: float = 0.0
     waited_s: float = 0.0
+    input_tokens: int = 0
+    output_tokens: int = 0
 
 
 class ServerFailure(ScopeError):  # noqa: N818 - what it is, as the room calls it
-    """A model server did not give a usable reply. ``detail`` is what it said, cut and without keys; ``where`` its address."""
+    """A model server did not give a usable reply. ``detail`` is what it said, cut and without keys; ``where`` its address;
+    ``tokens``: input and output of a reply that holds nothing."""
 
     def __init__(
         self,
@@ -88,9 +94,10 @@ class ServerFailure(ScopeError):  # noqa: N818 - what it is, as the room calls i
         retry_after_s: float | None = None,
         detail: str = "",
         history: tuple[Attempt, ...] = (),
+        tokens: tuple[int, int] = (0, 0),
     ) -> None:
         self.kind, self.where, self.status, self.retry_after_s, self.detail = kind, where, status, retry_after_s, detail
-        self.history = history
+        self.history, self.tokens = history, tokens
         what, remedy = _WORDS[kind]
         facts = [f"HTTP {status}"] if status is not None and status != 200 else []
         facts += [f"{len(history)} attempts"] if len(history) > 1 else []
@@ -112,6 +119,7 @@ class ServerFailure(ScopeError):  # noqa: N818 - what it is, as the room calls i
             retry_after_s=self.retry_after_s,
             detail=self.detail,
             history=tuple(history),
+            tokens=self.tokens,
         )
 
 

@@ -132,9 +132,10 @@ class Gathering:
             ServerFailure: there is nothing in it.
         """
         text, reasoning = self._clean("".join(self._text)), self._clean("".join(self._reasoning))
+        read, written = (_count_of(self._usage.get(name)) for name in ("prompt_tokens", "completion_tokens"))
         if not (text.strip() or reasoning.strip() or self._calls):
             detail = "a message without content" if self.has_choice else "no choices"
-            raise ServerFailure(K.EMPTY, where=self.endpoint.url, status=200, detail=detail)
+            raise ServerFailure(K.EMPTY, where=self.endpoint.url, status=200, detail=detail, tokens=(read, written))
         calls = tuple(
             RawToolCall(id=call["id"], name=self._clean(call["name"]), arguments_text=self._clean(call["arguments"]))
             for call in self._calls
@@ -144,8 +145,8 @@ class Gathering:
             reasoning=reasoning,
             tool_calls=calls,
             finish_reason=self.finish_reason,
-            input_tokens=_count_of(self._usage.get("prompt_tokens")),
-            output_tokens=_count_of(self._usage.get("completion_tokens")),
+            input_tokens=read,
+            output_tokens=written,
             cached_tokens=_count_of((_object_of(self._usage.get("prompt_tokens_details")) or {}).get("cached_tokens")),
             model=self._clean(self.model),
         )

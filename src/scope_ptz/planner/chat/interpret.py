@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 
-from scope_ptz.endpoints.failures import FailureKind
+from scope_ptz.endpoints.failures import Attempt, FailureKind
 from scope_ptz.endpoints.replies import ChatReply
 from scope_ptz.errors import PlannerError
 from scope_ptz.planner.base import CallTools, Decision, Finish, Served, State, ToolCall, Usage
@@ -55,9 +55,15 @@ def decide(reply: ChatReply, state: State, *, context_tokens: int | None = None)
         raise _cut_off(reply, context_tokens)
     if not text:
         what = "only reasoning and no answer" if parted.reasoning else "nothing"
-        raise PlannerError(f"The planner's reply holds {what}.", kind=FailureKind.EMPTY.value, attempts=reply.attempts)
+        raise PlannerError(f"The planner's reply holds {what}.", kind=FailureKind.EMPTY.value, attempts=_useless(reply))
     kind, text = _ending(text, called=any(exchange.outcomes for exchange in state.history))
     return Finish.model_validate({"kind": kind, "text": text, "usage": usage, "reasoning": parted.reasoning, "served": served})
+
+
+def _useless(reply: ChatReply) -> tuple[Attempt, ...]:
+    """What was tried for a reply of which nothing can be made, with what it cost."""
+    cost = {"input_tokens": reply.input_tokens, "output_tokens": reply.output_tokens}
+    return (*reply.attempts[:-1], *(last.model_copy(update=cost) for last in reply.attempts[-1:]))
 
 
 def _native(reply: ChatReply, text: str) -> Found | None:
@@ -115,9 +121,9 @@ def _cut_off(reply: ChatReply, context_tokens: int | None) -> PlannerError:
     """A full window when that is certain; else one of two reasons that a server does not tell apart."""
     if context_tokens is not None and reply.input_tokens + reply.output_tokens >= context_tokens * _FULL:
         words = "The planner's reply was cut off because the model's context is full. Serve the model with a longer context."
-        return PlannerError(words, kind=FailureKind.CONTEXT_OVERFLOW.value, attempts=reply.attempts)
+        return PlannerError(words, kind=FailureKind.CONTEXT_OVERFLOW.value, attempts=_useless(reply))
     words = (
         f"The planner's reply was cut off at a limit of tokens ({reply.output_tokens} were written). "
         "Allow longer replies, or serve the model with a longer context."
     )
-    return PlannerError(words, kind=FailureKind.CUT_OFF.value, attempts=reply.attempts)
+    return PlannerError(words, kind=FailureKind.CUT_OFF.value, attempts=_useless(reply))
