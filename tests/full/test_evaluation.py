@@ -12,10 +12,11 @@ import pytest
 
 from scope_ptz.bench.engine.logs import read_evaluation
 from scope_ptz.bench.expected import ActionOnly
+from scope_ptz.bench.splits import load_split
 from scope_ptz.bench.task_files import dump_tasks
 from scope_ptz.bench.tasks import Behaviour, FinalPose, ProgramCall, Task
 from scope_ptz.planner.chat.conformance import TURN
-from tests.bench.engine.making import SCENE, counting, task
+from tests.bench.engine.making import SCENE, task
 from tests.cli.conftest import Scope
 from tests.full.test_served_models import Served, eyes_server, planner_server
 
@@ -53,7 +54,7 @@ def test_a_sweep_on_checkpoints_is_killed_goes_on_is_judged_and_reported(
 ) -> None:
     mine, tasks, logs = tmp_path / "models.yaml", tmp_path / "tasks.jsonl", tmp_path / "logs"
     mine.write_text(MINE.format(planner=planner_server, eyes=eyes_server))
-    dump_tasks((turning(), counting(1, "ball", 3), counting(2, "block", 2)), tasks)
+    dump_tasks((turning(), *load_split("lite")), tasks)
     monkeypatch.setenv("SCOPE_MODELS", str(mine))
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
     sweep = ("bench", "sweep", "--pairs", PAIRS, "--tasks", str(tasks), "--out", str(logs), "--concurrency", "1")
@@ -73,14 +74,14 @@ def test_a_sweep_on_checkpoints_is_killed_goes_on_is_judged_and_reported(
     for path in found.values():
         evaluation = read_evaluation(path)
         assert evaluation.finished
-        assert len(evaluation.trials) == 3
+        assert len(evaluation.trials) == 1 + len(load_split("lite"))
         headlines = {trial.task.instruction: trial.headline for trial in evaluation.trials}
         assert headlines[TURN] == "correct"
         assert "infrastructure" not in headlines.values()
         assert evaluation.card.planner.reported
         assert all(trial.input_tokens > 0 for trial in evaluation.trials)
 
-    judge = ("--judge-url", planner_server.url, "--judge-model", planner_server.model, "--judge-option", "max_tokens=64")
+    judge = ("--judge-url", planner_server.url, "--judge-model", planner_server.model, "--judge-option", "max_tokens=8")
     for _ in range(2):
         judged = scope("bench", "rescore", *map(str, found.values()), *judge)
         assert judged.code == 0, judged.err

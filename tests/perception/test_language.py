@@ -9,7 +9,8 @@ import pytest
 from scope_ptz.perception.answers import answer
 from scope_ptz.perception.language import parse_description, parse_question, words
 from scope_ptz.perception.matching import find
-from scope_ptz.perception.view import read_view
+from scope_ptz.perception.view import concepts_of, read_view
+from scope_ptz.world.models import SceneInstance
 from tests.perception import yard
 
 VIEW = read_view(yard.truth(), yard.SCENE, 5.0)
@@ -88,3 +89,12 @@ def test_plurals(many: str, one: str) -> None:
 @pytest.mark.parametrize(("word", "value"), [("7", 7), ("twelve", 12), ("twenty-five", 25), ("zero", 0), ("fivety", None)])
 def test_numbers(word: str, value: int | None) -> None:
     assert words.number(word) == value
+
+
+def test_the_short_form_of_a_category_means_nothing_else() -> None:
+    """A "lit cream lamp" in a shop window is a table lamp, and no lamp post, which a lamp in a street mostly is."""
+    lamp = SceneInstance(
+        id="x", number=1, category="table lamp", name="lit cream lamp", attributes={}, box_min_m=(0, 0, 0), box_max_m=(1, 1, 1)
+    )
+    assert "table lamp" in concepts_of(lamp) and "lamp post" not in concepts_of(lamp)
+    assert "lamp post" in concepts_of(lamp.model_copy(update={"category": "lamp post", "name": "street lamp"}))

@@ -53,9 +53,10 @@ def report(
             evaluations,
             load_registry(load_settings().models_file()),
             out,
-            open_sample=open_trial if pages else None,
+            open_sample=open_trial,
             tasks={task.id: task for task in _tasks(tasks)} if pages else {},
-            progress=_progress if pages and sys.stderr.isatty() else None,
+            progress=_progress if sys.stderr.isatty() else None,
+            pages=pages,
         )
         for line in (*made.summary, *made.warnings):
             put(line)

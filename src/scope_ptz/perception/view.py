@@ -174,7 +174,10 @@ def concepts_of(instance: SceneInstance | SceneActor) -> frozenset[str]:
             found |= table.kinds(concept)
     name = head_of(instance.name).split()
     for start in range(len(name)):
-        if concept := table.concept(" ".join(name[start:])):
+        noun = " ".join(name[start:])
+        if found and instance.category.lower().endswith(f" {noun}"):
+            break  # "lamp" is short for what the category says, a table lamp, and no lamp post
+        if concept := table.concept(noun):
             found |= table.kinds(concept)
             break
     return frozenset(found or {"thing"})

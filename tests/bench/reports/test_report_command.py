@@ -26,6 +26,7 @@ def test_the_command_writes_everything(tmp_path: Path, monkeypatch: pytest.Monke
     assert done.exit_code == 0, done.output
     assert "2 runs with 32 trials" in done.stdout and str(out / "index.html") in done.stdout
     assert (out / "report.md").is_file() and (out / "tables" / "accuracy.csv").is_file()
+    assert not list((out / "tasks").iterdir()) and "Each has a page" not in (out / "report.md").read_text("utf-8")
     again = CliRunner().invoke(app, ["bench", "report", *files, "--out", str(tmp_path), "--no-pages"])
     assert again.exit_code == 2 and "no report" in again.stderr
 

@@ -31,26 +31,27 @@ def write_report(
     open_sample: OpenSample | None = None,
     tasks: Mapping[str, Task] | None = None,
     progress: Callable[[int, int], None] | None = None,
+    pages: bool = True,
 ) -> Report:
     """Write ``index.html``, ``report.md``, ``tables/*.csv``, ``tasks/*.html`` and ``frames/*.jpg`` into ``out``.
 
     ``tasks``: the tasks themselves by id, for the evidence on their pages. ``progress`` is told how many pages are done, and of how
-    many. Raises ``OutputError`` when the folder holds something else or cannot be written, ``InputError`` without any run.
+    many. Without ``pages`` failed tasks have none. Raises ``OutputError`` when the folder holds something else or cannot be written, ``InputError`` without any run.
     """
-    files = page_files(evaluations)
+    files = page_files(evaluations) if pages else {}
     report = build_report(evaluations, registry, files)
     try:
         _clear(out)
         (out / "tables").mkdir(parents=True, exist_ok=True)
         (out / "tasks").mkdir(exist_ok=True)
-        pages = task_pages(report.runs, files, open_sample, FrameStore(out / "frames", "../frames"), tasks or {})
+        made_later = task_pages(report.runs, files, open_sample, FrameStore(out / "frames", "../frames"), tasks or {})
         environment = _environment()
         template = environment.get_template("task.html.j2")
-        for number, page in enumerate(pages, 1):
+        for number, page in enumerate(made_later, 1):
             made = page()
             (out / made.file).write_text(template.render(page=made, version=__version__), "utf-8")
             if progress is not None:
-                progress(number, len(pages))
+                progress(number, len(made_later))
         for table in report.tables:
             (out / "tables" / f"{table.key}.csv").write_text(as_csv(table), "utf-8", newline="")
         (out / "report.md").write_text(markdown(report), "utf-8")
