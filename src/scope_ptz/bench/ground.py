@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from scope_ptz.bench.coverage import box_directions
 from scope_ptz.bench.episode import Eyes, Standing
-from scope_ptz.bench.kinds import FACELESS, KNOWN_BY_THEIR_FACE, Kind, Thing
+from scope_ptz.bench.kinds import BACKDROP, FACELESS, KNOWN_BY_THEIR_FACE, Kind, Thing
 from scope_ptz.bench.tasks import Item
 from scope_ptz.geometry import Equirectangular, Perspective, Pose, pan_tilt_deg
 from scope_ptz.world.actors import Appearance, appearances, shows
@@ -120,17 +120,21 @@ class Sight:
 
     def telling(self, thing: Thing) -> bool:
         """Whether a picture from here shows what a thing is: its lettered side, where only that tells it."""
-        if thing.category in FACELESS:
+        if self.untold(thing.category):
             return False
         if thing.category not in KNOWN_BY_THEIR_FACE:
             return True
         from_here = np.array(self.scene.viewpoint(self.viewpoint).manifest.position_m)
         return any(_faces(text, from_here) for text in lettering(self.scene, thing.id)) or not lettering(self.scene, thing.id)
 
+    def untold(self, category: str) -> bool:
+        """Whether a picture of this scene does not tell what is of a category, or shows more of it than the ground truth holds."""
+        return category in FACELESS or category in BACKDROP.get(self.scene.name, ())
+
     def of(self, kind: Kind) -> tuple[Sighting, ...] | None:
         """All things of a kind that are visible; None when that is not sure, or somebody could see it differently."""
         found = []
-        if kind.category in FACELESS:
+        if self.untold(kind.category):
             return None
         for sighting in self.samples[0].sightings:
             thing = sighting.instance
@@ -161,7 +165,7 @@ class Sight:
 
     def lacks(self, kind: Kind) -> bool:
         """Whether nothing of a kind, nor anything that could be taken for it, shows at all, now or later."""
-        if kind.category in FACELESS or any(
+        if self.untold(kind.category) or any(
             kind.fits(a) or kind.doubtful(a) for a in self.scene.file.actors if a.number in self.passing
         ):
             return False

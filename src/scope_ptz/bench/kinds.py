@@ -6,7 +6,7 @@ that no expected number rests on taste.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from scope_ptz.world.models import SceneActor, SceneInstance
@@ -36,8 +36,14 @@ SIGNS = frozenset({
 KNOWN_BY_THEIR_FACE = SIGNS | {"vending machine", "ticket machine", "dock number", "bay number"}
 """What nobody can tell from behind: of these only the side that bears the lettering says what they are."""
 
-FACELESS = frozenset({"cabinet", "generator", "liquid container"})
-"""Plain boxes at a camera's distance, beside others that look the same and bear no name: nothing is asked of them."""
+FACELESS = frozenset({"cabinet", "generator", "liquid container", "bike stand", "gas cage", "lane signal"})
+"""Plain boxes and frames at a camera's distance, beside others that look the same and bear no name: nothing is asked of them."""
+
+BACKDROP: Mapping[str, frozenset[str]] = {
+    "highway-works": frozenset({"roller door", "door", "dock door", "window"}),
+    "station-square": frozenset({"awning"}),
+}
+"""By scene: what shows in its backdrop, or as part of something larger, without being a thing of its ground truth."""
 
 _TWINS: tuple[frozenset[str], ...] = (
     GROUPS["person"] | {"cyclist", "driver", "mannequin", "statue"},
@@ -161,16 +167,22 @@ class Kind:
 def own_colour(thing: Thing) -> str | None:
     """The colour of a thing itself: not that of somebody's clothes, nor of what it holds ("planter with red flowers")."""
     colour = thing.attributes.get("colour")
-    if not isinstance(colour, str) or thing.category in GROUPS["person"] | _COLOURLESS:
+    if not isinstance(colour, str) or thing.category in GROUPS["person"] or not has_colour(thing):
         return None
     words = thing.name.lower().split()
     behind = next((words[at + 1 :] for at, word in enumerate(words) if word in _JOINS), [])
     return None if set(colour.split()) & set(behind) else colour
 
 
-_COLOURLESS = frozenset(
-    {"cyclist", "driver", "clock", "statue", "fox", "bay number", "dock number", "tram", "headline board", "gantry"}
-)
+def has_colour(thing: Thing) -> bool:
+    """Whether people would say of such a thing that it has one colour."""
+    return thing.category not in _COLOURLESS
+
+
+_COLOURLESS = (SIGNS - {"shop sign", "pavement board", "hanging sign"}) | {
+    "cyclist", "driver", "clock", "statue", "fox", "tram", "lorry", "articulated lorry", "charging point", "traffic light",
+    "plate compactor",
+}  # fmt: skip
 """Of these nobody would say that they have one colour, or that colour."""
 
 _JOINS = frozenset({"of", "with", "in", "on", "for"})

@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import pytest
 
+from scope_ptz.bench import ground
 from scope_ptz.bench.ground import EYES, Sight, legible, visible
-from scope_ptz.bench.kinds import Kind, kinds_in
+from scope_ptz.bench.kinds import Kind, kinds_in, own_colour
 from scope_ptz.geometry import Perspective, Pose
 from scope_ptz.world.models import SceneInstance
 from scope_ptz.world.pack import Scene
@@ -72,6 +73,22 @@ def test_what_lies_across_the_ends_of_a_sweep_has_no_place_in_it(yard: Sight, an
 def test_absent_is_what_nothing_could_be_taken_for(yard: Sight) -> None:
     assert yard.lacks(Kind("zebra"))
     assert not yard.lacks(Kind("ball"))
+
+
+def test_nothing_is_said_of_what_a_backdrop_shows_without_being_annotated(
+    yard: Sight, analytic_scene: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert yard.of(Kind("block")) and yard.lacks(Kind("zebra"))
+    monkeypatch.setattr(ground, "BACKDROP", {analytic_scene.name: frozenset({"block", "zebra"})})
+    sight = Sight(analytic_scene, "mast", YARD, 0.0)
+    assert sight.of(Kind("block")) is None and not sight.lacks(Kind("zebra"))
+    assert not any(s.instance.category == "block" for s in sight.clear)
+
+
+def test_a_sign_has_no_colour_but_a_shops_board_has() -> None:
+    assert own_colour(thing("sign", "no parking sign", colour="yellow")) is None
+    assert own_colour(thing("lorry", "green box lorry", colour="green")) is None
+    assert own_colour(thing("shop sign", "bakery sign", colour="blue")) == "blue"
 
 
 def test_doubtful_names() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from scope_ptz.bench.authoring.naming import bears, spoken
+from scope_ptz.bench.authoring.naming import alike, bears, spoken
 from scope_ptz.bench.authoring.words import the
 from scope_ptz.world.models import SceneInstance
 
@@ -56,3 +56,12 @@ def test_articles_before_names() -> None:
     assert the(spoken("The Copper Kettle sign")) == "the Copper Kettle sign"
     assert spoken("price of apples") == "price card for apples"
     assert spoken("pedestrian waiting") == "waiting pedestrian"
+
+
+@pytest.mark.parametrize(("one", "other"), [("navy", "blue"), ("dark red", "red"), ("grey", "silver"), ("black", None)])
+def test_boards_of_colours_like_these_are_not_told_apart(one: str, other: str | None) -> None:
+    assert alike(one, other)
+
+
+def test_boards_of_different_colours_are() -> None:
+    assert not alike("navy", "dark red") and not alike("green", "brown")

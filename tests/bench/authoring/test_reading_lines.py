@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from scope_ptz.bench.authoring.ocr import lines, priced
+from scope_ptz.bench.authoring.ocr import lines, on_it, priced
 from scope_ptz.world.models import SceneText
 from scope_ptz.world.truth import BoxTuple, TextSighting
 
@@ -45,3 +45,10 @@ def test_the_same_twice_is_one() -> None:
 def test_of_a_price_card_the_price() -> None:
     price = written("5.00", (0.4, 0.46, 0.6, 0.5))
     assert priced((written("ROSES", (0.4, 0.4, 0.6, 0.44)), price)) == (price,)
+
+
+def test_a_plate_beside_a_thing_is_no_writing_on_it() -> None:
+    box = (0.4, 0.45, 0.6, 0.9)
+    assert on_it(box, AHEAD)
+    assert not on_it(box, ROAD)
+    assert not on_it(None, AHEAD)

@@ -79,3 +79,18 @@ def test_the_first_of_an_offer(place: Place) -> None:
         offered = Draft("comparative", "more", "x", place, Choice(value=value, options={"cars": (), "vans": ()}))
         assert first_is_right(offered, "Are there more cars or more vans?") is first
         assert first_is_right(offered, "Are there more vans or more cars?") is not first
+
+
+def test_the_order_of_drafts_does_not_matter(place: Place) -> None:
+    drafts = [draft(place, f"thing {n}", Number(value=n % 5), str(n % 5)) for n in range(30)]
+    forward = Selection("counting", 10, Shared(), 1).fill(drafts)
+    backward = Selection("counting", 10, Shared(), 1).fill(drafts[::-1])
+    assert [(row.draft, row.text) for row in forward] == [(row.draft, row.text) for row in backward]
+
+
+def test_one_draft_less_leaves_most_of_the_others(place: Place) -> None:
+    drafts = [draft(place, f"thing {n}", Number(value=n), str(n)) for n in range(60)]
+    taken = chosen(drafts, 20)
+    for gone in taken[:3]:
+        again = chosen([d for d in drafts if d is not gone], 20)
+        assert sum(d in again for d in taken) == 19

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import random
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -41,7 +40,7 @@ class Builder:
     def __init__(
         self, scenes: Sequence[Scene], seed: int, quotas: dict[Category, int] | None = None, say: Say | None = None
     ) -> None:
-        self.scenes, self.seed, self.quotas = list(scenes), seed, quotas or QUOTAS
+        self.scenes, self.seed, self.quotas = sorted(scenes, key=lambda scene: scene.name), seed, quotas or QUOTAS
         self.say: Say = say or (lambda _: None)
         things = [thing for scene in scenes for thing in scene.things]
         nouns = frozenset({thing.category for thing in things} | {noun for scene in scenes for noun in scene.file.absent})
@@ -94,10 +93,10 @@ class Builder:
     def _paraphrases(self, chosen: dict[Category, list[Chosen]]) -> list[Task]:
         """Further wordings of tasks, categories in turn."""
         wanted = max(1, PARAPHRASED * sum(self.quotas.values()) // sum(QUOTAS.values()))
-        rng, found = random.Random(f"{self.seed}:paraphrases"), list[Task]()
+        found = list[Task]()
         able = {c: [row for row in rows if len(row.variants) >= WORDINGS] for c, rows in chosen.items()}
         for rows in able.values():
-            rng.shuffle(rows)
+            rows.sort(key=lambda row: row.draft.digest(f"{self.seed}:paraphrases"))
         done = 0
         while done < wanted and any(able.values()):
             for rows in able.values():

@@ -226,7 +226,7 @@ def _sizes(place: Place, rng: random.Random) -> Iterator[Draft]:
         asked = Question(
             same_form(
                 f"which looks largest in the picture: {either}?",
-                f"which takes up most of the picture: {either}?",
+                f"which takes up the most room in the picture: {either}?",
                 f"which appears biggest in the frame: {either}?",
             )
         )

@@ -74,7 +74,9 @@ _ODD = frozenset({
     "sign", "person", "liquid container", "parking space", "driver", "security guard", "beacon", "gas cage", "lane signal",
     "spill kit", "wheel stop", "hose reel", "loaf", "ham", "cake", "book", "bottle", "teapot", "table lamp", "mannequin",
     "door sign", "window notice", "wall sign", "manhole", "belisha beacon", "dock light", "barrier arm", "plate", "hanging sign",
-    "street name sign", "gantry",
+    "street name sign", "gantry", "flower bucket", "headline board", "tram shelter", "tram stop sign", "tram pole", "map board",
+    "taxi sign", "departures board", "gatehouse", "charging point", "wall lamp", "pavement board", "shop sign", "luggage trolley",
+    "estate agent board", "hanging basket",
 })  # fmt: skip
 """What nobody would ask after, or nobody could be sure that there is none of."""
 

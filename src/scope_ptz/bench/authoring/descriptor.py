@@ -88,7 +88,8 @@ def _attributes(place: Place, values: Values) -> Iterator[Draft]:
             ("jacket", "jacket", "wearing"),
             ("umbrella", "umbrella", "holding"),
         ):
-            if (worn := plain_colour(facts.get(key))) is not None and one.thing.pixels >= 500:
+            worn = plain_colour(facts.get(key))
+            if worn is not None and one.thing.pixels >= 500 and not {worn, str(facts.get(key))} & set(one.name.split()):
                 yield _choice(
                     place,
                     one,
@@ -108,7 +109,7 @@ def _attributes(place: Place, values: Values) -> Iterator[Draft]:
             if {"lit", "unlit"} & set(pair) and "light" in facts and set(one.name.split()) & COLOUR_WORDS:
                 continue  # "the green charging point" is one that is lit
             least = _INSIDE_PX if {"full", "empty"} & set(pair) else _STATE_PX
-            if state in pair and not told and one.thing.pixels >= least:
+            if state in pair and not told and one.thing.pixels >= least and one.thing.instance.category not in _STATE_HARDLY_SHOWS:
                 # Not always the same one first, but each time the same.
                 first, second = pair[:: 1 if sum(map(ord, one.thing.instance.id)) % 2 else -1]
                 yield _choice(
@@ -122,7 +123,8 @@ def _attributes(place: Place, values: Values) -> Iterator[Draft]:
                     ),
                 )
         for key, ask_it in _KINDS.items():
-            if key == "kind" and one.thing.instance.category not in _OF_KINDS:
+            category = one.thing.instance.category
+            if (key == "kind" and category not in _OF_KINDS) or (key == "material" and category in _MATERIAL_HARDLY_SHOWS):
                 continue
             known = values.get((one.thing.instance.category, key), ())
             value = facts.get(key)
@@ -132,6 +134,7 @@ def _attributes(place: Place, values: Values) -> Iterator[Draft]:
                 and len(known) >= 2
                 and one.thing.pixels >= (_INSIDE_PX if key == "load" else _STATE_PX)
                 and value not in one.name.lower()
+                and value not in _HELD_AT_THE_FACE
             ):
                 forms = _ONLY_ONE if key == "kind" and one.name == one.kind.category else ask_it
                 yield _choice(place, one, key, Choice(value=value, options=options(known)), forms)
@@ -139,6 +142,15 @@ def _attributes(place: Place, values: Values) -> Iterator[Draft]:
 
 _STATE_PX, _INSIDE_PX = 1200, 2500
 """What a thing does or is made of is seen on no fewer pixels, nor what is in it."""
+
+_STATE_HARDLY_SHOWS = frozenset({"gate", "shop", "kiosk", "charging point", "dock light", "taxi sign", "chimney", "gatehouse"})
+"""Of these a notice or a small lamp says how they are, or which part of them would have to move is hard to see."""
+
+_HELD_AT_THE_FACE = frozenset({"phone"})
+"""The hand hides it."""
+
+_MATERIAL_HARDLY_SHOWS = frozenset({"door", "barrier"})
+"""Painted or coloured all over."""
 
 _OF_KINDS = frozenset({"car", "lorry", "bus", "bicycle", "van", "shop", "container"})
 """Of these people know kinds apart."""

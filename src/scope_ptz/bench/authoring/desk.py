@@ -128,8 +128,8 @@ class Desk:
                 for place in [*self.presets, *self.reading_views, *self.views[len(self.presets) :]]:
                     yield from ocr.drafts(place)
             case _:
-                for n, place in enumerate(self.views):
-                    yield from _few(self._at(category, n, place), rng)
+                for place in self.views:
+                    yield from _few(self._at(category, place), self._seed)
         if category == "comparative":
             for group in (*self._groups(2), *self._groups(3)):
                 yield from presets_compared.drafts(group, rng)
@@ -144,8 +144,8 @@ class Desk:
         rng.shuffle(groups)
         return groups[:MOST_GROUPS]
 
-    def _at(self, category: Category, n: int, place: Place) -> list[Draft]:
-        rng = self._rng(f"{category}:{n}")
+    def _at(self, category: Category, place: Place) -> list[Draft]:
+        rng = self._rng(f"{category}:{place.start}:{place.key}")
         match category:
             case "counting":
                 return counting.drafts(place, self.nouns, rng)
@@ -158,11 +158,10 @@ class Desk:
         return reasoning.within(place, rng)
 
 
-def _few(drafts: list[Draft], rng: random.Random) -> Iterator[Draft]:
+def _few(drafts: list[Draft], seed: str) -> Iterator[Draft]:
     """No more than some drafts of each sort, as different in their answers as there are."""
-    rng.shuffle(drafts)
     by_kind: dict[str, list[Draft]] = {}
-    for draft in drafts:
+    for draft in sorted(drafts, key=lambda draft: draft.digest(seed)):
         by_kind.setdefault(draft.kind, []).append(draft)
     for group in by_kind.values():
         seen: Counter[str] = Counter()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 import random
 from collections import Counter
@@ -108,6 +109,11 @@ class Draft:
     @property
     def full_key(self) -> str:
         return f"{self.place.key}|{self.key}"
+
+    def digest(self, seed: int | str) -> str:
+        """A number of its own, as good as drawn by lot, that no other draft has a say in."""
+        said = f"{seed}|{self.category}|{self.kind}|{self.full_key}|{self.reads}|{self.place.start}"
+        return hashlib.blake2b(said.encode(), digest_size=8).hexdigest()
 
 
 class Frames:

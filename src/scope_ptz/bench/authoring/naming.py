@@ -7,10 +7,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
-from scope_ptz.bench.authoring.words import UNCOUNTED, about, called, noun_of, the
+from scope_ptz.bench.authoring.words import UNCOUNTED, about, called, noun_of, plain_colour, the
 from scope_ptz.bench.expected import Wordings
 from scope_ptz.bench.ground import Sight, with_parts
-from scope_ptz.bench.kinds import COLOUR_WORDS, GROUPS, SIGNS, Kind, Thing, near_colours, own_colour
+from scope_ptz.bench.kinds import COLOUR_WORDS, GROUPS, SIGNS, Kind, Thing, has_colour, near_colours, own_colour
 from scope_ptz.world.truth import Sighting
 
 MADE_OUT_PX = 8.0
@@ -75,6 +75,7 @@ def by_name(sight: Sight, min_pixels: int = 250, made_out_px: float = MADE_OUT_P
             continue
         if (
             set(words) & _MISLEADING
+            or (set(words) & COLOUR_WORDS and not has_colour(thing))
             or not recognised(sight, sighting, name, made_out_px)
             or any(bears(other, name, thing) for other in sight.others(sighting))
         ):
@@ -88,14 +89,22 @@ def recognised(sight: Sight, sighting: Sighting, name: str, made_out_px: float) 
     is told from others by its words, a bay by its number."""
     thing = sighting.instance
     own = _letters(name) - _LITTLE - _WEAK - _letters(thing.category) - _letters(_head(name))
-    by_number, by_words = name[-1].isdigit(), thing.category in SIGNS and not own <= COLOUR_WORDS
+    by_number, by_words = name[-1].isdigit(), thing.category in _BY_WORDS and not own <= COLOUR_WORDS
     if not by_number and not by_words:
         return True
     family = with_parts(sight.scene, thing.id)
     near = [t for t in sight.first.texts if t.text.parent in family and t.cap_height_px >= made_out_px and t.unhidden_share > 0.9]
     said = {word for t in near for word in _letters(t.text.text)}
-    return bool(said) and (not by_number or name.split()[-1] in said)
+    if by_number:
+        return name.split()[-1] in said
+    return any(a[:_STEM] == b[:_STEM] for a in own for b in said)
 
+
+_STEM = 4
+"""Words that begin alike by so many letters are forms of one ("optician", "opticians")."""
+
+_BY_WORDS = SIGNS | {"shop", "kiosk", "market stall", "door"}
+"""What is told from others of its kind by what is written on it."""
 
 _PERSON_PX = 700
 """What somebody wears or holds is seen on no fewer pixels."""
@@ -138,8 +147,11 @@ _WEAK = frozenset({
 })  # fmt: skip
 """Words by which nobody tells one thing from another for sure."""
 
-_MISLEADING = frozenset({"and", "area", "end", "without", "behind", "before", "painted", "name"})
-"""Words that make a name one of two things, of a place, or of what is not there."""
+_MISLEADING = frozenset({
+    "and", "area", "end", "without", "behind", "before", "painted", "name", "by", "under", "at", "near", "beside", "middle", "left",
+    "right",
+})  # fmt: skip
+"""Words that make a name one of two things, of a place that several may be at, or of what is not there."""
 
 _LONGEST_NAME = 5
 _VAGUE = frozenset({
@@ -147,6 +159,7 @@ _VAGUE = frozenset({
     "yew", "flower bed", "puddle", "marking", "sky", "fence panel", "guardrail", "pylon", "building", "house", "terrace",
     "townhouse", "gantry", "parking space", "bay number", "dock number", "walkway", "hatched zone", "road marking", "wheel stop",
     "wheel guide", "window", "door sign", "window notice", "fence", "silo", "chimney", "dock leveller", "dock shelter",
+    "tram platform", "lane signal", "gate",
 })  # fmt: skip
 """Of these nobody knows one from another by its name."""
 
@@ -171,6 +184,32 @@ def ends(sight: Sight, min_pixels: int = 250) -> Iterator[Named]:
         near = sorted(things, key=lambda s: s.distance_m)
         if near[1].distance_m > near[0].distance_m * 1.2 and near[0].pixels >= min_pixels:
             yield Named(near[0], f"nearest {called(category)}", kind, place=True)
+
+
+def boards(sight: Sight, min_pixels: int = 250) -> Iterator[Named]:
+    """Boards with lettering, told from others of their own sort by their colour ("navy shop sign")."""
+    for sighting in sight.clear:
+        thing = sighting.instance
+        colour = own_colour(thing)
+        if thing.category not in _COLOURED_BOARDS or colour is None or sighting.pixels < min_pixels or sight.parted(sighting):
+            continue
+        rivals = (other for other in sight.others(sighting) if other.category == thing.category)
+        if not any(alike(colour, own_colour(rival)) for rival in rivals):
+            kind = Kind(thing.category, colour)
+            yield Named(sighting, noun_of(kind), kind)
+
+
+_COLOURED_BOARDS = frozenset({"shop sign", "hanging sign", "pavement board"})
+
+
+def alike(one: str, other: str | None) -> bool:
+    """Whether two colours could be called the same: by a word, by their family, or because people disagree on them."""
+    return (
+        other is None
+        or bool({*one.split()} & {*other.split()})
+        or plain_colour(one) == plain_colour(other)
+        or near_colours(one, other)
+    )
 
 
 def whole_group(sight: Sight, kind: Kind) -> bool:

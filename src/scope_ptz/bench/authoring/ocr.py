@@ -7,13 +7,13 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 from scope_ptz.bench.authoring.drafts import Draft, Question, ask, view
-from scope_ptz.bench.authoring.naming import Named, distinct, ends
+from scope_ptz.bench.authoring.naming import Named, boards, distinct, ends
 from scope_ptz.bench.authoring.places import Place
 from scope_ptz.bench.authoring.targets import SMALLEST_PX, framed
 from scope_ptz.bench.expected import Text
 from scope_ptz.bench.ground import with_parts
 from scope_ptz.bench.tasks import ProgramCall
-from scope_ptz.world.truth import TextSighting
+from scope_ptz.world.truth import BoxTuple, TextSighting
 
 LONGEST = 80
 """Longer texts are not asked for: nobody would dictate them."""
@@ -26,7 +26,7 @@ _GUESSED_PX = 5.0
 def drafts(place: Place) -> list[Draft]:
     if place.swept:
         return []
-    named = [*distinct(place.sight, SMALLEST_PX, _GUESSED_PX), *ends(place.sight)]
+    named = [*distinct(place.sight, SMALLEST_PX, _GUESSED_PX), *boards(place.sight, SMALLEST_PX), *ends(place.sight)]
     return [*_in_view(place, named), *_zoomed(place, named)]
 
 
@@ -97,7 +97,17 @@ def wanted(one: Named, texts: tuple[TextSighting, ...] | None) -> Text | None:
 def asked_for(one: Named, place: Place) -> tuple[TextSighting, ...] | None:
     """What is read on a thing at a place: all its lines, of a price card the price; None where the writing stands apart."""
     found = lines(place.sight.texts_on(one.thing.instance))
+    here = place.sight.first.sightings
+    box = next((s.box for s in here if s.instance.number == one.thing.instance.number), None)
+    if found and not all(on_it(box, text) for text in found):
+        return None
     return priced(found) if found and one.kind.category == "price card" else found
+
+
+def on_it(box: BoxTuple | None, text: TextSighting) -> bool:
+    """Whether a text lies within the box of a thing, and not on a plate beside it: that this is its number does not show."""
+    x, y = (text.box[0] + text.box[2]) / 2, (text.box[1] + text.box[3]) / 2
+    return box is not None and box[0] <= x <= box[2] and box[1] <= y <= box[3]
 
 
 _Forms = tuple[tuple[str, str], ...]

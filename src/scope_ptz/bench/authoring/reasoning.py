@@ -12,15 +12,15 @@ from scope_ptz.bench.authoring.drafts import Draft, Question, count, view
 from scope_ptz.bench.authoring.places import Place, Places, elsewhere, go, preset_at
 from scope_ptz.bench.authoring.words import about, article, many_of, noun_of, unit_of
 from scope_ptz.bench.expected import ActionOnly, NoneThere, Number, YesNo
-from scope_ptz.bench.kinds import Kind
+from scope_ptz.bench.kinds import GROUPS, Kind
 from scope_ptz.bench.tasks import Behaviour, EvidenceView
 
 _SUMS = (
-    "The {p} and {q} presets have no {many} in common. How many do they show in total?",
+    "How many {many} do the presets {p} and {q} show in total? Those in the one view are not those in the other.",
     "Add up the {many} in the {p} view and those in the {q} view, which are different ones. What is the total?",
     "Count the {many} at the {p} preset, then the other ones at the {q} preset, and give me the sum.",
     "None of the {many} is both in the {q} and in the {p} view. How many are there in the two views together?",
-    "The {p} and {q} views show different {many}. How many are in them altogether?",
+    "Taking the {p} view and the {q} view together, how many {many} are there? None of them is in both.",
     "I want one figure: the {many} seen from the {p} preset plus the other ones seen from the {q} preset.",
 )
 _GAPS = (
@@ -39,7 +39,7 @@ _CHECKS = (
     "Look for {one} at the {p} preset and tell me whether you found one. If so, go on to the {yes} preset; if not, to {no}.",
     "Is there {one} in the {p} view? Tell me, then switch to the {yes} view if there is, and to {no} if there is not.",
     "Check the {p} preset for {many}. If you see any, say so and move to the {yes} preset; if not, say that and move to {no}.",
-    "Go to the {p} preset. With {one} in view, finish at the {yes} preset, without one at {no}, and report what you found.",
+    "Go to the {p} preset and look for {one}. Found one? Then finish at the {yes} preset. If not, finish at {no}. Report back.",
     "Please see whether {one} is in the {p} view. If yes, leave the camera at the {yes} preset, else at {no}, and let me know.",
 )
 _WHERE = (
@@ -106,6 +106,8 @@ def within(place: Place, rng: random.Random) -> list[Draft]:
         if min(n, m) < 2 or not apart(place.sight, (one, two)):
             continue
         first, second = many_of(one), many_of(two)
+        if _unlike(one, two):
+            continue
         together = Question(
             (
                 (f"how many {first} and {second} are there together?", f"how many {first} and {second} there are together"),
@@ -137,6 +139,14 @@ def within(place: Place, rng: random.Random) -> list[Draft]:
                 )
             )
     return found
+
+
+def _unlike(one: Kind, two: Kind) -> bool:
+    """Whether nobody would add up things of two kinds: people (or animals) and what is none."""
+    return (one.category in _ALIVE) != (two.category in _ALIVE)
+
+
+_ALIVE = GROUPS["person"] | {"dog", "pigeon", "cyclist"}
 
 
 def _branches(one: Place, p: str, places: Places, rng: random.Random) -> Iterator[Draft]:

@@ -81,7 +81,7 @@ class Selection:
 
     def __init__(self, category: Category, quota: int, shared: Shared, seed: int) -> None:
         self.category, self.quota, self.shared = category, quota, shared
-        self.rng = random.Random(f"{seed}:{category}")
+        self.seed = seed
         self.frames = Frames(shared.texts)
         self.rows: list[Chosen] = []
         self.used: defaultdict[str, Counter[Hashable]] = defaultdict(Counter)
@@ -90,8 +90,8 @@ class Selection:
 
     def fill(self, drafts: Sequence[Draft]) -> list[Chosen]:
         """The drafts taken, pairs first. Fewer than the quota when there are not enough."""
-        pool = list(drafts)
-        self.rng.shuffle(pool)
+        # By lot, but so that drafts more or fewer, or scenes in another order, leave the order of the others as it is.
+        pool = sorted(drafts, key=lambda draft: draft.digest(self.seed))
         pairs = [draft for draft in pool if draft.twin is not None]
         wanted = min(self.shared.most(PAIRS.get(self.category, 0)), self.quota // 2) if self.category in PAIRS else 0
         for _ in range(wanted):
@@ -151,7 +151,8 @@ class Selection:
         stays = draft.place.stays and not draft.calls_move
         if stays and self.category != "single_call" and self.used["stays"][True] >= self.shared.most(FROM_START):
             return None
-        worded = self.frames.word(draft, self.rng, like and f"{draft.kind}/{like}")
+        rng = random.Random(draft.digest(self.seed))
+        worded = self.frames.word(draft, rng, like and f"{draft.kind}/{like}")
         if worded is None or self.frames.used[worded[1]] >= self.most_frame:
             return None
         alone, offered = like is None and draft.twin is None, self.slack < _NO_LIMIT and first_is_right(draft, worded[0])
@@ -159,7 +160,7 @@ class Selection:
             return None
         self.frames.take(*worded)
         self.shared.asked.add(draft.full_key)
-        others = [self.frames.word(draft, self.rng) for _ in range(5)]
+        others = [self.frames.word(draft, rng) for _ in range(5)]
         row = Chosen(draft, *worded, variants=[o[0] for o in others if o is not None])
         self.rows.append(row)
         self._note(row, 1, paired=not alone)

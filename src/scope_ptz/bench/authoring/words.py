@@ -22,7 +22,7 @@ UNCOUNTED = frozenset({
     "weighbridge", "rail", "line", "marking", "kerbstone", "steps", "stairs", "parapet", "box", "bag", "shelf", "sill", "river",
     "bay number", "hatched zone", "road marking", "dock leveller", "dock shelter", "silo", "dock number", "kerb ramp", "canopy",
     "pedestrian", "door sign", "window notice", "wall sign", "loaf", "ham", "cake", "book", "bottle", "teapot", "table lamp",
-    "wheel stop", "wheel guide", "walkway", "cycle shelter", "clock tower", "sign", "gantry", "parking space",
+    "lane signal", "wheel stop", "wheel guide", "walkway", "cycle shelter", "clock tower", "sign", "gantry", "parking space",
 })  # fmt: skip
 """What people do not count alike: where one ends and the next begins, or which of many far ones still counts, is anyone's guess."""
 

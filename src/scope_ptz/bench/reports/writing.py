@@ -36,7 +36,8 @@ def write_report(
     """Write ``index.html``, ``report.md``, ``tables/*.csv``, ``tasks/*.html`` and ``frames/*.jpg`` into ``out``.
 
     ``tasks``: the tasks themselves by id, for the evidence on their pages. ``progress`` is told how many pages are done, and of how
-    many. Without ``pages`` failed tasks have none. Raises ``OutputError`` when the folder holds something else or cannot be written, ``InputError`` without any run.
+    many. Without ``pages`` failed tasks have none. Raises ``OutputError`` when the folder holds something else or cannot be
+    written, ``InputError`` without any run.
     """
     files = page_files(evaluations) if pages else {}
     report = build_report(evaluations, registry, files)
