@@ -36,14 +36,15 @@ SIGNS = frozenset({
 KNOWN_BY_THEIR_FACE = SIGNS | {"vending machine", "ticket machine", "dock number", "bay number"}
 """What nobody can tell from behind: of these only the side that bears the lettering says what they are."""
 
-FACELESS = frozenset({"cabinet", "generator", "liquid container", "bike stand", "gas cage", "lane signal"})
+FACELESS = frozenset({"cabinet", "generator", "liquid container", "bike stand", "gas cage", "lane signal", "parking meter"})
 """Plain boxes and frames at a camera's distance, beside others that look the same and bear no name: nothing is asked of them."""
 
 BACKDROP: Mapping[str, frozenset[str]] = {
-    "highway-works": frozenset({"roller door", "door", "dock door", "window"}),
+    "highway-works": frozenset({"roller door", "door", "dock door", "window", "pallet"}),
     "station-square": frozenset({"awning"}),
 }
-"""By scene: what shows in its backdrop, or as part of something larger, without being a thing of its ground truth."""
+"""By scene: what shows in its backdrop, or as part of something larger, without being a thing of its ground truth; and what is so
+hidden under something else that people do not count it alike."""
 
 _TWINS: tuple[frozenset[str], ...] = (
     GROUPS["person"] | {"cyclist", "driver", "mannequin", "statue"},
@@ -177,6 +178,11 @@ def own_colour(thing: Thing) -> str | None:
 def has_colour(thing: Thing) -> bool:
     """Whether people would say of such a thing that it has one colour."""
     return thing.category not in _COLOURLESS
+
+
+def colour_shows(thing: Thing) -> bool:
+    """Whether a thing is all of its colour: not a board, which has letters of another, nor a door that is rolled up."""
+    return thing.category not in SIGNS and not ("door" in thing.category and thing.attributes.get("state") not in (None, "closed"))
 
 
 _COLOURLESS = (SIGNS - {"shop sign", "pavement board", "hanging sign"}) | {

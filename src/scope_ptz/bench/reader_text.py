@@ -16,6 +16,9 @@ _ASIDE = (
     ("rather", "than"), ("instead", "of"), ("other", "than"), ("apart", "from"), ("as", "opposed", "to"), ("unlike",),
     ("except",), ("except", "for"), ("besides",), ("excluding",),
 )  # fmt: skip
+_A_OR_THE = frozenset({"a", "an", "the"})
+"""In the middle of a name one is as good as the other."""
+
 _ARTICLES = frozenset({"a", "an", "the", "one", "two", "three", "some", "its", "his", "their"})
 _STOPS = frozenset({"but", "just", "only", "however", "although", "though", "yet", "while", "whereas", "instead"})
 _HEDGES = re.compile(
@@ -70,7 +73,7 @@ class Script:
         return (
             len(words) == len(phrase)
             and words[0].clause == words[-1].clause
-            and all(same_word(w.text, p) for w, p in zip(words, phrase, strict=True))
+            and all(same_word(w.text, p) or {w.text, p} <= _A_OR_THE for w, p in zip(words, phrase, strict=True))
         )
 
     def _aside(self, start: int) -> bool:

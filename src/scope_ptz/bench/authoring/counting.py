@@ -13,8 +13,11 @@ from scope_ptz.bench.expected import NoneThere, Number
 from scope_ptz.bench.ground import Sight
 from scope_ptz.bench.kinds import Kind, kinds_in, own_colour
 
-MOST = 15
-"""More than this nobody counts alike."""
+MOST, MOST_AROUND = 15, 8
+"""More than this nobody counts alike, in one view and all around."""
+
+_COUNTED_SHARE = 0.45
+"""Of what more is hidden or cut off, people disagree whether it was there to be counted."""
 
 
 def question(kind: Kind) -> Question:
@@ -38,7 +41,8 @@ def counted(sight: Sight) -> tuple[tuple[Kind, int], ...]:
         if kind.category in UNCOUNTED:
             continue
         things = sight.of(kind)
-        if things and len(things) <= MOST and min(t.pixels for t in things) >= 160:
+        most = MOST if sight.pose is not None else MOST_AROUND
+        if things and len(things) <= most and all(t.pixels >= 160 and t.share >= _COUNTED_SHARE for t in things):
             special = kind.colour is not None or kind.attribute is not None
             alone = special and len(things) == len(sight.of(Kind(kind.category)) or ())
             if not alone:  # "red cars" among red cars only is the same question as "cars"

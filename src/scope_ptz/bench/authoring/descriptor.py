@@ -12,7 +12,7 @@ from scope_ptz.bench.authoring.naming import Named, by_name, ends, singles
 from scope_ptz.bench.authoring.places import Place
 from scope_ptz.bench.authoring.words import about, article, colour_options, listing, many_of, noun_of, plain_colour
 from scope_ptz.bench.expected import Choice, NameSet, Options
-from scope_ptz.bench.kinds import COLOUR_WORDS, Thing, own_colour
+from scope_ptz.bench.kinds import COLOUR_WORDS, Thing, colour_shows, own_colour
 
 STATES: tuple[tuple[str, ...], ...] = (
     ("open", "closed"), ("lit", "unlit"), ("full", "empty"), ("occupied", "free"), ("occupied", "empty"), ("standing", "sitting"),
@@ -69,7 +69,11 @@ def _attributes(place: Place, values: Values) -> Iterator[Draft]:
     for one in named:
         facts = one.thing.instance.attributes
         colour = plain_colour(own_colour(one.thing.instance))
-        if colour is not None and not {colour, str(facts.get("colour"))} & set(one.name.split()):
+        if (
+            colour is not None
+            and colour_shows(one.thing.instance)
+            and not {colour, str(facts.get("colour"))} & set(one.name.split())
+        ):
             yield _choice(
                 place,
                 one,

@@ -12,7 +12,7 @@ from scope_ptz.bench.authoring.naming import singles
 from scope_ptz.bench.authoring.places import Place
 from scope_ptz.bench.authoring.words import about, article, colour_options, many_of, noun_of, plain_colour, plural, the, unit_of
 from scope_ptz.bench.expected import Choice, NoneThere, YesNo
-from scope_ptz.bench.kinds import Kind, near_colours, own_colour
+from scope_ptz.bench.kinds import Kind, colour_shows, near_colours, own_colour
 from scope_ptz.bench.tasks import EvidenceView
 
 
@@ -61,7 +61,7 @@ def _coloured_or_not(place: Place, rng: random.Random) -> Iterator[Draft]:
     """Whether one thing has a colour: its own, or one that nobody would take for it."""
     for one in singles(place.sight, coloured=False, min_pixels=400):
         colour = plain_colour(own_colour(one.thing.instance))
-        if colour is None or colour in one.name:
+        if colour is None or colour in one.name or not colour_shows(one.thing.instance):
             continue
         strangers = [c for c in ("red", "blue", "green", "yellow", "white", "black") if c != colour and not near_colours(c, colour)]
         for said in (colour, rng.choice(strangers)):
@@ -93,7 +93,7 @@ def _colour_if_there(place: Place, nouns: frozenset[str], rng: random.Random) ->
     rng.shuffle(shown)
     for one, gone in zip(shown, missing, strict=False):
         colour = plain_colour(own_colour(one.thing.instance))
-        if colour is None or colour in one.name:
+        if colour is None or colour in one.name or not colour_shows(one.thing.instance):
             continue
         value = Choice(value=colour, options=colour_options())
         none = NoneThere(subject=unit_of(gone)[:2])

@@ -76,6 +76,7 @@ def by_name(sight: Sight, min_pixels: int = 250, made_out_px: float = MADE_OUT_P
         if (
             set(words) & _MISLEADING
             or (set(words) & COLOUR_WORDS and not has_colour(thing))
+            or ("phone" in words and thing.category in GROUPS["person"])
             or not recognised(sight, sighting, name, made_out_px)
             or any(bears(other, name, thing) for other in sight.others(sighting))
         ):

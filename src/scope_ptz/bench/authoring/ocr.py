@@ -89,7 +89,7 @@ def wanted(one: Named, texts: tuple[TextSighting, ...] | None) -> Text | None:
     said = list(dict.fromkeys(t.text.text.strip() for t in texts))
     whole = " ".join(said)
     name, words = (re.findall(r"\w+", text.lower()) for text in (one.name, whole))
-    if len(whole) > LONGEST or len(said) > 4 or 2 * sum(word in name for word in words) > len(words) or not words:
+    if len(whole) > LONGEST or len(said) > 4 or 2 * sum(word in name for word in words) >= len(words) or not words:
         return None
     return Text(accepted=(whole,), ocr=True)
 
