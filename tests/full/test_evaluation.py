@@ -81,7 +81,7 @@ def test_a_sweep_on_checkpoints_is_killed_goes_on_is_judged_and_reported(
         assert evaluation.card.planner.reported
         assert all(trial.input_tokens > 0 for trial in evaluation.trials)
 
-    judge = ("--judge-url", planner_server.url, "--judge-model", planner_server.model, "--judge-option", "max_tokens=8")
+    judge = ("--judge-url", planner_server.url, "--judge-model", planner_server.model, "--judge-option", "max_tokens=64")
     for _ in range(2):
         judged = scope("bench", "rescore", *map(str, found.values()), *judge)
         assert judged.code == 0, judged.err

@@ -151,3 +151,14 @@ def test_text_on_the_far_side_is_none(analytic_scene: Scene) -> None:
     scene = Scene(analytic_scene.folder)
     scene.file = scene.file.model_copy(update={"texts": [text]})
     assert view_truth(scene, "mast", _view(-16.5, -3.0, 3.0), OUT_OF_SCENE_S).texts == ()
+
+
+def test_a_text_behind_the_thing_that_bears_it_cannot_be_read(analytic_scene: Scene) -> None:
+    # Like the name on a door behind the awning of the same shop: what hides it hangs together with it.
+    eye, centre = np.array(VIEWPOINTS["mast"][0]), np.array(TEXT.centre_m)
+    behind = TEXT.model_copy(update={"centre_m": tuple(eye + 1.15 * (centre - eye))})
+    scene = Scene(analytic_scene.folder)
+    scene.file = scene.file.model_copy(update={"texts": [behind]})
+    (sighting,) = view_truth(scene, "mast", _view(-16.5, -3.0, 3.0), OUT_OF_SCENE_S).texts
+    assert sighting.unhidden_share < 0.1
+    assert not sighting.legible

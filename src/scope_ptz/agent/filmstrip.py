@@ -24,7 +24,7 @@ from scope_ptz.agent.drawing import (
     wrap,
 )
 from scope_ptz.agent.panels import Panel, panels_of
-from scope_ptz.agent.trace import Trace
+from scope_ptz.agent.trace import Trace, picture_of
 from scope_ptz.errors import OutputError, TraceError
 
 WIDTH = 1600
@@ -113,9 +113,7 @@ class _Banner:
 
 
 def _open(folder: Path, panel: Panel) -> Image.Image:
-    path = (folder / (panel.file or "")).resolve()
-    if not path.is_relative_to(folder.resolve()):
-        raise TraceError(f"The trace in {folder} names a picture outside its own folder: {panel.file}.")
+    path = picture_of(folder, panel.file or "")
     try:
         with Image.open(path) as image:
             return image.convert("RGB")

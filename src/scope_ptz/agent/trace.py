@@ -54,6 +54,14 @@ class Trace:
     ended: Ended | None
 
 
+def picture_of(folder: Path, name: str) -> Path:
+    """Where a picture lies that a trace in a run's folder names. Raises ``TraceError`` when that is outside the folder."""
+    path = (folder / name).resolve()
+    if not path.is_relative_to(folder.resolve()):
+        raise TraceError(f"The trace in {folder} names a picture outside its own folder: {name}.")
+    return path
+
+
 def read_trace(run: Path) -> Trace:
     """Read the trace of a run folder (or the file itself). A last line that was cut off is left out; other damage is an error."""
     path = run / FILE_NAME if run.is_dir() else run

@@ -80,8 +80,8 @@ class Audit(_Row):
     rows: tuple[Held, ...]
 
     def share(self, rows: Iterable[Held] | None = None) -> tuple[int, int]:
-        """How many answers agree, of how many."""
-        counted = list(self.rows if rows is None else rows)
+        """How many answers agree, of how many. What nobody answered is neither for a task nor against it."""
+        counted = [row for row in (self.rows if rows is None else rows) if row.outcome != "not answered"]
         return sum(row.outcome == "agrees" for row in counted), len(counted)
 
     def as_dict(self) -> dict[str, Any]:

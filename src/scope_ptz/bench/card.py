@@ -186,7 +186,7 @@ def _audit(data: Dataset) -> Iterator[str]:
     yield (
         f"Readers saw the frames that an answer rests on and the words of the task, nothing else; tasks were drawn by category, "
         f"scene and difficulty (`scope bench audit make --n {audit.draw.number} --seed {audit.draw.seed}`). {right} of {of} "
-        f"answers agree with the expected value ({right / of:.1%})."
+        f"answers agree with the expected value ({right / of:.1%}); {len(audit.rows) - of} of the tasks drawn got no answer."
         if of
         else "Nothing was answered."
     )

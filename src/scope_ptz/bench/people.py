@@ -11,7 +11,7 @@ from pydantic import ValidationError
 
 from scope_ptz import __version__
 from scope_ptz.agent.timing import Timings
-from scope_ptz.agent.trace import Trace, read_trace
+from scope_ptz.agent.trace import Trace, picture_of, read_trace
 from scope_ptz.bench.audit import digest_of
 from scope_ptz.bench.episode import Places, episode_of
 from scope_ptz.bench.error_modes import error_mode
@@ -75,10 +75,7 @@ class KeptRun:
 
     def picture(self, name: str) -> bytes | None:
         """A picture by its name in the trace; None when it is not there. Raises ``TraceError`` for one outside the folder."""
-        folder = self.trace.folder.resolve()
-        path = (folder / name).resolve()
-        if not path.is_relative_to(folder):
-            raise TraceError(f"The trace in {folder} names a picture outside its own folder: {name}.")
+        path = picture_of(self.trace.folder, name)
         try:
             return path.read_bytes()
         except OSError:

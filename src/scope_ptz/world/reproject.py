@@ -55,6 +55,19 @@ def depth_view(viewpoint: Viewpoint, projection: Projection) -> NDArray[np.float
     return np.take(viewpoint.depth_metres, codes)
 
 
+def distances_m(viewpoint: Viewpoint, directions: Floats) -> tuple[NDArray[np.float32], NDArray[np.uint16]]:
+    """How far the still world is along directions (n, 3) in the camera's own frame, infinite for the sky, and which instance each
+    of these distances was measured on: those of the nearest texel of the depth layer."""
+    viewpoint.owner_atlas.need(0)
+    slot, band = viewpoint.depth_atlas.need(0), viewpoint.manifest.band
+    pan_deg, tilt_deg = pan_tilt_deg(directions)
+    down = (band.top_tilt_deg - tilt_deg) / (band.top_tilt_deg - band.bottom_tilt_deg)
+    columns = slot.x + np.floor((pan_deg + 180.0) / 360.0 * slot.width).astype(int) % slot.width
+    rows = slot.y + np.clip(np.floor(down * slot.height).astype(int), 0, slot.height - 1)
+    metres = np.take(viewpoint.depth_metres, viewpoint.depth_atlas.sheet[rows, columns])
+    return metres, viewpoint.owner_atlas.sheet[rows, columns]
+
+
 def outlined_depth_view(viewpoint: Viewpoint, projection: Projection, numbers: NDArray[np.uint16]) -> NDArray[np.float32]:
     """Like ``depth_view``, with the edges of instances where the finer ``numbers`` (H, W) of the same view have them.
 

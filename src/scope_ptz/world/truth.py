@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 
 from scope_ptz.errors import PackError
 from scope_ptz.geometry import Equirectangular, Projection, angle_between_deg, direction, pan_tilt_deg
-from scope_ptz.world.actors import composited, extent
+from scope_ptz.world.actors import TOLERANCE_M, TOLERANCE_SHARE, composited, extent
 from scope_ptz.world.models import Extent, SceneActor, SceneInstance, SceneText
 from scope_ptz.world.pack import Scene
+from scope_ptz.world.reproject import distances_m
 from scope_ptz.world.runs import measure
 from scope_ptz.world.viewpoint import Viewpoint
 from scope_ptz.world.views import instance_numbers
@@ -192,13 +193,15 @@ def _text(
     # One look-up per cell of a grid over the letters; the corners for the box.
     across, along = np.meshgrid((np.arange(24) + 0.5) / 24 - 0.5, (np.arange(8) + 0.5) / 8 - 0.5)
     cells = centre + across[..., None] * text.width_m * right + along[..., None] * text.height_m * up
-    points = projection.points(viewpoint.offset(cells.reshape(-1, 3)))
+    rays = viewpoint.offset(cells.reshape(-1, 3))
+    points = projection.points(rays)
     inside = np.all((points >= 0) & (points < 1), axis=-1)
     if not inside.any():
         return None
     height, width = numbers.shape
     pixels = (points[inside] * (width, height)).astype(int)
-    own = np.isin(numbers[pixels[:, 1], pixels[:, 0]], list(family))
+    shown = numbers[pixels[:, 1], pixels[:, 0]]
+    own = np.isin(shown, list(family)) & ~_behind_its_own(viewpoint, rays[inside], shown)
     cap = projection.points(viewpoint.offset(centre + np.array([[-0.5], [0.5]]) * text.cap_height_m * up))
     cap_height_px = float(np.linalg.norm((cap[1] - cap[0]) * (width, height)))
     low, high = points[inside].min(axis=0), points[inside].max(axis=0)
@@ -209,6 +212,16 @@ def _text(
         angle_deg=angle_deg,
         unhidden_share=float(own.sum() / len(points)),
     )
+
+
+def _behind_its_own(viewpoint: Viewpoint, rays: NDArray[np.float64], shown: NDArray[np.uint16]) -> NDArray[np.bool_]:
+    """Which points of a text, as vectors (n, 3) from the optical centre, lie behind what their pixels show.
+
+    Numbers tell what else hides a text, distances that something of the same thing does: the awning of a shop the name on its door.
+    """
+    still_m, owners = distances_m(viewpoint, rays)
+    away_m = np.linalg.norm(rays, axis=-1)
+    return (owners == shown) & (still_m * (1 + TOLERANCE_SHARE) + TOLERANCE_M < away_m)
 
 
 def _box(box: NDArray[np.float64]) -> BoxTuple:
