@@ -1,10 +1,13 @@
 """How many of the texts that are legible by definition an OCR engine (rapidocr) reads, in views drawn by seed.
 
     python benchmarks/reading.py [--scene NAME ...] [--views 24] [--seed 1] [--misses]
+    python benchmarks/reading.py --tasks core
 
 Every view aims near a text, from a viewpoint that can read it, at a zoom that makes it legible. All legible texts of the view
 count. A text is read when the engine's words where it stands are the same but for one character in six, case and spaces left aside.
-Needs the extra ``ocr``.
+
+With ``--tasks`` (a split or a task file) the views are those in which the reference programs of the OCR tasks read, and the
+benchmark's own check says whether the engine's words where the answer stands are the answer. Needs the extra ``ocr``.
 """
 
 from __future__ import annotations
@@ -21,6 +24,11 @@ import numpy as np
 from numpy.typing import NDArray
 from rapidocr import RapidOCR
 
+from scope_ptz.bench.phrasing import right_answers
+from scope_ptz.bench.reader import agrees, read
+from scope_ptz.bench.splits import load_split
+from scope_ptz.bench.tasks import Task
+from scope_ptz.cli.bench_inputs import worlds_of
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose, pan_tilt_deg
 from scope_ptz.world.pack import Scene, find_scenes
 from scope_ptz.world.truth import MIN_CAP_HEIGHT_PX, TextSighting, view_truth
@@ -39,7 +47,11 @@ def main() -> int:
     parser.add_argument("--views", type=int, default=24, help="views a scene")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--misses", action="store_true", help="list what was not read")
+    parser.add_argument("--tasks", help="split or task file: read what its OCR tasks ask for")
     arguments = parser.parse_args()
+    if arguments.tasks:
+        _measure_tasks([task for task in load_split(arguments.tasks) if task.category == "ocr"], RapidOCR(), arguments.misses)
+        return 0
     folders = find_scenes(arguments.search)
     engine = RapidOCR()
     for name in arguments.scene or list(folders):
@@ -69,6 +81,26 @@ def _measure(scene: Scene, engine: RapidOCR, views: int, seed: int) -> tuple[int
                 size = f"capitals {text.cap_height_px:.0f} px, {text.angle_deg:.0f} deg"
                 missed.append(f"{text.text.text!r} as {found!r}, {size}, {place}")
     return read, missed
+
+
+def _measure_tasks(tasks: Sequence[Task], engine: RapidOCR, misses: bool) -> None:
+    worlds, right, missed = worlds_of(tasks), 0, []
+    for task in tasks:
+        scene, found = worlds[task.world], []
+        for evidence in task.evidence:
+            aim = evidence.aim
+            view, asked = _perspective(Pose(aim.pan_deg, aim.tilt_deg, aim.zoom)), [item.instance for item in evidence.items]
+            words = _words(engine, picture(scene, aim.viewpoint, view, task.time_s))
+            texts = {t.text.id: t for t in view_truth(scene, aim.viewpoint, view, task.time_s).texts}
+            found += [_at(texts[name], words) for name in asked if name in texts]
+        said = " ".join(found)
+        if agrees(task.expected, read(task.expected, f'It reads "{said}".')):
+            right += 1
+        else:
+            missed.append(f"{task.id} {right_answers(task.expected)[0]!r} as {said!r}: {task.instruction}")
+    print(f"{right} of {len(tasks)} OCR tasks: their texts read from pixels ({right / max(1, len(tasks)):.1%})")
+    if misses:
+        print("\n".join(f"  {line}" for line in missed))
 
 
 def _views(scene: Scene, count: int, rng: random.Random) -> Iterator[tuple[str, Pose, list[TextSighting]]]:

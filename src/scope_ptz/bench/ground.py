@@ -120,8 +120,8 @@ class Sight:
 
     def telling(self, thing: Thing) -> bool:
         """Whether a picture from here shows what a thing is: its lettered side, where only that tells it."""
-        if self.untold(thing.category):
-            return False
+        if self.untold(thing.category) or thing.attributes.get("canopy") == "rolled up":
+            return False  # a bare frame is hardly a stall
         if thing.category not in KNOWN_BY_THEIR_FACE:
             return True
         from_here = np.array(self.scene.viewpoint(self.viewpoint).manifest.position_m)

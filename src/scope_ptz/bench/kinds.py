@@ -42,6 +42,7 @@ FACELESS = frozenset({"cabinet", "generator", "liquid container", "bike stand", 
 BACKDROP: Mapping[str, frozenset[str]] = {
     "highway-works": frozenset({"roller door", "door", "dock door", "window", "pallet"}),
     "station-square": frozenset({"awning"}),
+    "freight-yard": frozenset({"roller door"}),
 }
 """By scene: what shows in its backdrop, or as part of something larger, without being a thing of its ground truth; and what is so
 hidden under something else that people do not count it alike."""
@@ -181,13 +182,17 @@ def has_colour(thing: Thing) -> bool:
 
 
 def colour_shows(thing: Thing) -> bool:
-    """Whether a thing is all of its colour: not a board, which has letters of another, nor a door that is rolled up."""
-    return thing.category not in SIGNS and not ("door" in thing.category and thing.attributes.get("state") not in (None, "closed"))
+    """Whether a thing is all of its colour: not a board, which has letters of another, nor what is striped, nor a door that is
+    rolled up."""
+    facts = thing.attributes
+    striped = facts.get("pattern", "plain") != "plain"
+    rolled_up = "door" in thing.category and facts.get("state", "closed") != "closed"
+    return thing.category not in SIGNS and not striped and not rolled_up
 
 
 _COLOURLESS = (SIGNS - {"shop sign", "pavement board", "hanging sign"}) | {
     "cyclist", "driver", "clock", "statue", "fox", "tram", "lorry", "articulated lorry", "charging point", "traffic light",
-    "plate compactor",
+    "plate compactor", "belisha beacon",
 }  # fmt: skip
 """Of these nobody would say that they have one colour, or that colour."""
 

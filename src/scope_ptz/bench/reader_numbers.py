@@ -221,7 +221,8 @@ def _wholes(script: Script, quantities: Sequence[Quantity]) -> list[Quantity]:
 
 
 def _breakdown(script: Script, quantities: Sequence[Quantity]) -> bool | None:
-    """Whether what follows the first number after a colon or in brackets makes it up: "7: 5 bollards, 2 cones", "4 more (7 to 3)".
+    """Whether what follows the first number after a colon or in brackets makes it up: "7: 5 bollards, 2 cones", "4 more (7 to 3)",
+    "by 4: 7 cones against 3".
 
     None where nothing like that follows.
     """
@@ -231,7 +232,8 @@ def _breakdown(script: Script, quantities: Sequence[Quantity]) -> bool | None:
     gaps = "".join(word.gap for word in script.words[whole.end : parts[0].start + 1])
     if not re.search(r"[:(]", gaps):
         return None
-    apart = abs(parts[0].value - parts[1].value) if len(parts) == 2 and "(" in gaps else None
+    difference = "(" in gaps or (whole.start > 0 and script.words[whole.start - 1].text == "by")
+    apart = abs(parts[0].value - parts[1].value) if len(parts) == 2 and difference else None
     return whole.value in (sum(q.value for q in parts), apart)
 
 

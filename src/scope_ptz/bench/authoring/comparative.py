@@ -199,7 +199,7 @@ def _by_distance(place: Place, ranked: list[Named], names: list[str], rng: rando
         way = "closer to" if near else "farther from"
     picks = ("closest", "closer", "nearest", "nearer") if near else ("farthest", "farther", "furthest", "further")
     choice = Choice(value=winner.name, options=options, picks=picks)
-    asked = Question(same_form(f"which is {way} the camera, {either}?", f"what stands {way} the camera: {either}?"))
+    asked = Question(same_form(f"which is {way} the camera, {either}?", f"what is {way} the camera: {either}?"))
     yield _seen(place, ("nearer" if near else "farther") if len(ranked) == 2 else "nearest-of", choice, asked, ranked, "distance")
     if len(ranked) == 3:
         order = Ordering(

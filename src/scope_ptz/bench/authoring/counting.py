@@ -16,8 +16,11 @@ from scope_ptz.bench.kinds import Kind, kinds_in, own_colour
 MOST, MOST_AROUND = 15, 8
 """More than this nobody counts alike, in one view and all around."""
 
-_COUNTED_SHARE = 0.45
+_COUNTED_SHARE = 0.5
 """Of what more is hidden or cut off, people disagree whether it was there to be counted."""
+
+_COUNTED_PX, _COUNTED_PX_AROUND = 220, 450
+"""What covers less of one view, or of all around, is passed over by careful people too."""
 
 
 def question(kind: Kind) -> Question:
@@ -41,8 +44,8 @@ def counted(sight: Sight) -> tuple[tuple[Kind, int], ...]:
         if kind.category in UNCOUNTED:
             continue
         things = sight.of(kind)
-        most = MOST if sight.pose is not None else MOST_AROUND
-        if things and len(things) <= most and all(t.pixels >= 160 and t.share >= _COUNTED_SHARE for t in things):
+        most, least = (MOST_AROUND, _COUNTED_PX_AROUND) if sight.pose is None else (MOST, _COUNTED_PX)
+        if things and len(things) <= most and all(t.pixels >= least and t.share >= _COUNTED_SHARE for t in things):
             special = kind.colour is not None or kind.attribute is not None
             alone = special and len(things) == len(sight.of(Kind(kind.category)) or ())
             if not alone:  # "red cars" among red cars only is the same question as "cars"

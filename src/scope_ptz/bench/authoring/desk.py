@@ -29,10 +29,10 @@ from scope_ptz.bench.tasks import Category
 from scope_ptz.geometry import angle_between_deg, pan_tilt_deg
 from scope_ptz.world.pack import Scene
 
-OFF = 26
+OFF = 64
 """How many views off the presets a scene is asked about,"""
 
-TRIED = 3
+TRIED = 2
 """... each the one that shows most of so many."""
 
 STAYS = 3

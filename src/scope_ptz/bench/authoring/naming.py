@@ -38,7 +38,7 @@ class Named:
 
 
 @lru_cache(maxsize=2048)
-def singles(sight: Sight, *, coloured: bool, min_pixels: int = 250) -> tuple[Named, ...]:
+def singles(sight: Sight, *, coloured: bool, min_pixels: int = 350) -> tuple[Named, ...]:
     """Things that are the only ones of their kind in view. ``coloured``: the name may hold the colour."""
     found = []
     categories = sorted({s.instance.category for s in sight.clear})
@@ -64,7 +64,7 @@ def unrivalled(sight: Sight, kind: Kind, thing: Sighting) -> bool:
 
 
 @lru_cache(maxsize=2048)
-def by_name(sight: Sight, min_pixels: int = 250, made_out_px: float = MADE_OUT_PX) -> tuple[Named, ...]:
+def by_name(sight: Sight, min_pixels: int = 350, made_out_px: float = MADE_OUT_PX) -> tuple[Named, ...]:
     """Things that the scene gives a name of their own ("bakery sign", "red hatchback"), which nothing else in view could bear."""
     found = []
     for sighting in sight.clear:
@@ -149,8 +149,8 @@ _WEAK = frozenset({
 """Words by which nobody tells one thing from another for sure."""
 
 _MISLEADING = frozenset({
-    "and", "area", "end", "without", "behind", "before", "painted", "name", "by", "under", "at", "near", "beside", "middle", "left",
-    "right",
+    "no", "and", "area", "end", "without", "behind", "before", "painted", "name", "by", "under", "at", "near", "beside", "middle",
+    "left", "right",
 })  # fmt: skip
 """Words that make a name one of two things, of a place that several may be at, or of what is not there."""
 
@@ -171,7 +171,7 @@ def distinct(sight: Sight, min_pixels: int = 500, made_out_px: float = MADE_OUT_
     return list({one.thing.instance.id: one for one in named}.values())
 
 
-def ends(sight: Sight, min_pixels: int = 250) -> Iterator[Named]:
+def ends(sight: Sight, min_pixels: int = 350) -> Iterator[Named]:
     """The leftmost, rightmost and nearest of several of a kind, where that is beyond doubt."""
     for category in sorted({s.instance.category for s in sight.clear} - UNCOUNTED):
         kind = Kind(category)
@@ -187,7 +187,7 @@ def ends(sight: Sight, min_pixels: int = 250) -> Iterator[Named]:
             yield Named(near[0], f"nearest {called(category)}", kind, place=True)
 
 
-def boards(sight: Sight, min_pixels: int = 250) -> Iterator[Named]:
+def boards(sight: Sight, min_pixels: int = 350) -> Iterator[Named]:
     """Boards with lettering, told from others of their own sort by their colour ("navy shop sign")."""
     for sighting in sight.clear:
         thing = sighting.instance
