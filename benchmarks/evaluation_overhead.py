@@ -53,7 +53,7 @@ async def main(tasks: Path, *, pictures: bool) -> None:
         console = Console(quiet=True)
         await evaluate(replace(options, limit=3), console)  # the engine imported
         began = time.process_time()
-        made = await evaluate(options, console)
+        made = (await evaluate(options, console)).evaluation
         engine = time.process_time() - began
         size = (await anyio.Path(made.log).stat()).st_size / 1e6
     number = len(entries)

@@ -144,3 +144,9 @@ def test_a_box_across_the_back_is_as_wide_as_any_other(left: float, bottom: floa
 def test_reference_directions_lie_in_the_reference_frame(pose: Pose) -> None:
     assert inside(look(pose), reference_directions(evidence(pose))).all()
     assert not inside(look(pose), direction([pose.pan_deg + 180.0], [-pose.tilt_deg])).any()
+
+
+def test_a_look_that_brought_no_answer_covers_nothing() -> None:
+    pose = Pose(10.0, -10.0, 1.0)
+    assert gap(evidence(pose), [look(pose, how="query", known=True)]) is None
+    assert gap(evidence(pose), [look(pose, how="query", known=False)]) is not None

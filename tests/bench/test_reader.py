@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import random
 from collections import Counter
-from itertools import permutations
+from itertools import permutations, product
 from pathlib import Path
 
 import pytest
@@ -14,7 +14,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import TypeAdapter
 
-from scope_ptz.bench.expected import ActionOnly, AnyExpected, Choice, Expected, NameSet, Number, Ordering, Text, YesNo
+from scope_ptz.bench.expected import (
+    ActionOnly,
+    AnyExpected,
+    Choice,
+    Expected,
+    NameSet,
+    NoneThere,
+    Number,
+    Ordering,
+    Text,
+    YesNo,
+)
 from scope_ptz.bench.phrasing import right_answers, wrong_answer
 from scope_ptz.bench.reader import agrees, read
 from scope_ptz.bench.reading import Declined, Unreadable, Value
@@ -196,3 +207,69 @@ def test_naming_everything_is_no_answer(joint: str) -> None:
         assert verdict(EXPECTATIONS["machines"], joint.join(names)) != "right"
     assert verdict(EXPECTATIONS["bikes"], joint.join(["none", "one bicycle"])) != "right"
     assert verdict(EXPECTATIONS["more"], joint.join(["the gate has more", "the highway has more"])) != "right"
+
+
+KITE = ("kite",)
+COLOURS: dict[str, tuple[str, ...]] = {"green": (), "red": ()}
+QUARTERS: dict[str, tuple[str, ...]] = {"top left": ("upper left",), "bottom right": ()}
+NO_KITE = NoneThere(subject=KITE, claims=(*COLOURS, *QUARTERS, "upper left"))
+TWINS: tuple[AnyExpected, ...] = (
+    *(Number(value=value, unit=KITE) for value in (1, 2, 3)),
+    *(Choice(value=name, options=COLOURS, subject=KITE) for name in COLOURS),
+    *(Choice(value=name, options=QUARTERS, subject=KITE) for name in QUARTERS),
+    YesNo(value=True, affirms=KITE),
+    YesNo(value=True),
+)
+DENIALS = (
+    "There are no kites", "There is no kite", "No", "None", "Nothing", "0", "0 kites", "Kites: 0", "kites are absent", "Not one",
+    "There is none", "Kites: none", "neither kites nor vans", "There is no other kite", "no kites at the gate", "none at the gate",
+    "There are no red kites", "3 kites are missing", "no kite in the top left", "The answer is no", "not 2 kites",
+)  # fmt: skip
+CLAIMS = (
+    "3", "three", "In total 3", "3 kites", "total: 3", "so 3", "= 3", "3 altogether", "the count is 3", "3 of them",
+    "a pair of kites",
+    "a kite", "one", "more than 2", "2 + 1", "correction: 3", "perhaps 3", "5 of the 7", "3 at the works", "other than kites 3",
+    "not 2", "(3)", "3 others", "Red", "It is green", "so red", "Top left", "it is in the upper left", "the green one",
+    "a green kite",
+    "its colour is green", "I mean green", "red rather than green", "The kite is green", "yes", "the answer is yes", "not no",
+)  # fmt: skip
+JOINTS = (
+    ". ",
+    ", ",
+    ": ",
+    "; ",
+    " - ",
+    " but ",
+    " and ",
+    "? ",
+    " or ",
+    " (",
+    " ",
+    "/",
+    "\n",
+    " so ",
+    ", and ",
+    " except ",
+    " that is ",
+)
+
+
+@pytest.mark.parametrize("denial", DENIALS)
+def test_no_text_is_right_both_where_there_is_none_and_where_there_is_one(denial: str) -> None:
+    texts = [f"{one}{joint}{two}." for claim, joint in product(CLAIMS, JOINTS) for one, two in ((denial, claim), (claim, denial))]
+    for text in texts:
+        if verdict(NO_KITE, text) == "right":
+            assert [twin for twin in TWINS if verdict(twin, text) == "right"] == [], text
+
+
+@settings(deadline=None, max_examples=400)
+@given(st.lists(st.tuples(st.sampled_from(DENIALS + CLAIMS), st.sampled_from(JOINTS)), min_size=2, max_size=4))
+def test_nor_is_any_longer_one(pieces: list[tuple[str, str]]) -> None:
+    text = "".join(piece + joint for piece, joint in pieces)
+    assert not (verdict(NO_KITE, text) == "right" and any(verdict(twin, text) == "right" for twin in TWINS)), text
+
+
+def test_denials_alone_and_claims_alone_are_read() -> None:
+    """What the texts above are made of is readable by itself: they do not pass the test by being gibberish."""
+    assert sum(verdict(NO_KITE, denial) == "right" for denial in DENIALS) >= 14
+    assert sum(any(verdict(twin, claim) == "right" for twin in TWINS) for claim in CLAIMS) >= 26

@@ -106,8 +106,7 @@ def test_users_models_and_their_addresses(scope: Scope, tmp_path: Path, monkeypa
             f"models: {{mine: {{repo: {MODEL}, roles: [planner], size_b: 1, active_b: 1, precision: bf16, context: 4096,"
             f" licence: MIT, url: '{server.url}', key_file: '{key}'}}}}"
         )
-        done = ask(scope, "--pair", "mine+ground-truth")
-        assert done.code == 2
+        assert ask(scope, "--pair", "mine+ground-truth").code == 0
         done = ask(scope, "--planner", "mine")
         assert (done.code, done.err) == (0, "")
         assert done.json["tool_calls"][0]["result"]["count"] == 3
@@ -181,6 +180,8 @@ WRONG = {
     "pair and planner": ("--pair", "qwen3-4b+moondream2", "--planner", "grammar"),
     "no address": ("--planner", "qwen3-4b"),
     "no address of the eyes": ("--perception", "moondream2"),
+    "eyes in the planner's place": ("--pair", "ground-truth+grammar"),
+    "a built-in and an unknown one": ("--pair", "grammar+moondream9"),
     "an unknown pair": ("--pair", "qwen3-4b+moondream9", "--planner-url", "http://127.0.0.1:9/v1"),
     "a planner that cannot plan": ("--planner", "moondream2", "--planner-url", "http://127.0.0.1:9/v1"),
     "an address with a password": ("--planner-url", "http://me:secret@127.0.0.1/v1"),

@@ -72,3 +72,26 @@ def test_ctrl_c_ends_a_run_cleanly(scenes: Path, tmp_path: Path) -> None:
     assert json.loads(out)["outcome"] == "cancelled"
     records = [json.loads(line) for line in next(tmp_path.glob("*/trace.jsonl")).read_text().splitlines()]
     assert (records[-1]["event"], records[-1]["outcome"]) == ("end", "cancelled")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="pipes of POSIX")
+@pytest.mark.parametrize(
+    ("command", "code"),
+    [
+        (["tools"], 0),
+        (["scene", "list"], 0),
+        (["bench", "submission", "validate", "spoiled.jsonl"], 1),  # a few words
+        (["bench", "submission", "validate", "spoiled.jsonl", "--json"], 1),  # more than a buffer holds
+        (["bench", "submission", "validate", "missing.jsonl", "--json"], 2),
+    ],
+)
+def test_a_reader_that_goes_away_changes_no_exit_code(command: list[str], code: int, tmp_path: Path) -> None:
+    (tmp_path / "spoiled.jsonl").write_text("no JSON\n" * 2000)
+    reader, writer = os.pipe()
+    os.close(reader)
+    try:
+        done = subprocess.run([*SCOPE, *command], stdout=writer, stderr=subprocess.PIPE, text=True, cwd=tmp_path, check=False)
+    finally:
+        os.close(writer)
+    assert done.returncode == code
+    assert "Traceback" not in done.stderr and "BrokenPipe" not in done.stderr

@@ -75,21 +75,21 @@ def _lessons(folder: Path, scenes: Path) -> Sequence[Any]:
     import subprocess
     import sys
 
-    from tests.full.tiny_models import Lesson
-
     environment = {**os.environ, "SCOPE_SCENES_DIR": str(scenes), "SCOPE_RUNS_DIR": str(folder / "runs")}
     with Misbehaving(then=good(teacher)) as server:
         runs = [["ask", asked, "--scene", SCENE] for asked in (COUNT, SQUARE)]
         for arguments in ([*command, "--planner-url", server.url] for command in (["doctor"], *runs)):
             subprocess.run([sys.executable, "-m", "scope_ptz.cli", *arguments], env=environment, check=True, capture_output=True)
         asked = [r for r in server.requests if r.chat]
-    lessons = {}
-    for request in asked:
-        said = teacher(request)
-        calls = (f"<tool_call>\n{json.dumps({'name': n, 'arguments': a})}\n</tool_call>" for n, a in said.tool_calls)
-        lesson = Lesson(request.data["messages"], request.data.get("tools", ()), said.text or "\n".join(calls))
-        lessons[json.dumps([lesson.messages, lesson.reply])] = lesson
-    return list(lessons.values())
+    return [lesson_of(request, teacher(request)) for request in asked]
+
+
+def lesson_of(request: Request, said: Say) -> Any:
+    """A request of a rehearsal and what a model shall learn to answer."""
+    from tests.full.tiny_models import Lesson
+
+    calls = (f"<tool_call>\n{json.dumps({'name': n, 'arguments': a})}\n</tool_call>" for n, a in said.tool_calls)
+    return Lesson(request.data["messages"], request.data.get("tools", ()), said.text or "\n".join(calls))
 
 
 @pytest.mark.parametrize("stream", ["true", "false"])

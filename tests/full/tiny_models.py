@@ -1,4 +1,4 @@
-"""Tiny checkpoints, made on the spot: a planner over-fitted to a few lessons, and a detector with random weights.
+"""Tiny checkpoints, made on the spot: planners and a judge, over-fitted to a few lessons.
 
 They are loaded and served by the code that loads and serves real ones; only their size is a toy's.
 """
@@ -40,10 +40,43 @@ Tools:{% for tool in tools or [] %} {{ tool.function.name }}{% endfor %}<|im_end
 <|im_start|>assistant
 {% endif -%}
 """.strip()
+# For lessons that differ in their instructions alone, and there by how they begin.
+BRIEF_TEMPLATE = """
+{%- for message in messages if message.role != 'system' -%}
+{%- if message.role == 'tool' -%}
+<|im_start|>user
+<tool_response>{{ message.content[:20] }}</tool_response><|im_end|>
+{% else -%}
+<|im_start|>{{ message.role }}
+{{ (message.content or '')[:48] }}
+{%- for call in message.tool_calls or [] -%}
+<tool_call>{{ call.function.name }}</tool_call>
+{%- endfor -%}
+<|im_end|>
+{% endif -%}
+{%- endfor -%}
+{%- if add_generation_prompt -%}
+<|im_start|>assistant
+{% endif -%}
+""".strip()
+# Of what a judge is told, the category stands first and what the agent said in the end last.
+JUDGE_TEMPLATE = """
+{%- for message in messages if message.role != 'system' -%}
+<|im_start|>{{ message.role }}
+{{ message.content[:40] }} ... {{ message.content[-80:] }}<|im_end|>
+{% endfor -%}
+{%- if add_generation_prompt -%}
+<|im_start|>assistant
+{% endif -%}
+""".strip()
 
 
 _MOST_STEPS, _IN_A_ROW, _SURE = 600, 4, 0.02
 """Steps; how many of them one after the other, and below which loss, show that all lessons are known by heart."""
+
+
+_TOGETHER = 16
+"""Lessons of like length that are read as one batch."""
 
 
 _STIRRED = 0.15
@@ -60,13 +93,24 @@ class Lesson:
     reply: str
 
 
-def tiny_planner(folder: Path, lessons: Sequence[Lesson], seed: int = 0) -> Path:
+def tiny_planner(folder: Path, lessons: Sequence[Lesson], seed: int = 0, template: str = CHAT_TEMPLATE) -> Path:
     """A Qwen3 of a few hundred thousand parameters that answers each lesson's prompt with its reply, saved in ``folder``."""
+    return _taught(folder, lessons, template, seed)
+
+
+def tiny_judge(folder: Path, lessons: Sequence[Lesson], seed: int = 0) -> Path:
+    """The same for a judge. It reads so little of a run that many runs are one lesson to it."""
+    return _taught(folder, lessons, JUDGE_TEMPLATE, seed)
+
+
+def _taught(folder: Path, lessons: Sequence[Lesson], template: str, seed: int) -> Path:
     torch.manual_seed(seed)
-    torch.set_num_threads(2)
+    torch.set_num_threads(1)
     rng = random.Random(seed)
-    tokenizer = _tokenizer(lessons)
-    prompts = [_rendered(tokenizer, lesson) for lesson in lessons]
+    tokenizer = _tokenizer(lessons, template)
+    replies = {_rendered(tokenizer, lesson): lesson.reply for lesson in lessons}
+    rows = sorted(replies.items(), key=lambda row: len(row[0]) + len(row[1]))
+    batches = [rows[start : start + _TOGETHER] for start in range(0, len(rows), _TOGETHER)]
     model = Qwen3ForCausalLM(
         Qwen3Config(
             vocab_size=len(tokenizer), hidden_size=128, intermediate_size=256, num_hidden_layers=2, num_attention_heads=4,
@@ -79,38 +123,41 @@ def tiny_planner(folder: Path, lessons: Sequence[Lesson], seed: int = 0) -> Path
     optimiser = torch.optim.AdamW(model.parameters(), lr=3e-3, weight_decay=0.0)
     sure = 0
     for step in range(_MOST_STEPS):
-        asked = prompts if step % 2 else [_shaken(prompt, rng) for prompt in prompts]
-        losses = _losses(model, tokenizer, asked, [lesson.reply for lesson in lessons])
-        losses.mean().backward()
+        worst = 0.0
+        for batch in batches:
+            asked = [prompt if step % 2 else _shaken(prompt, rng) for prompt, _ in batch]
+            losses = _losses(model, tokenizer, asked, [reply for _, reply in batch])
+            (losses.sum() / len(rows)).backward()
+            worst = max(worst, float(losses.detach().max()))
         torch.nn.utils.clip_grad_norm_(model.parameters(), 1.0)
         optimiser.step()
         optimiser.zero_grad()
-        sure = sure + 1 if float(losses.detach().max()) < _SURE else 0
+        sure = sure + 1 if worst < _SURE else 0
         if sure == _IN_A_ROW:
             break
     else:
-        raise AssertionError("the tiny planner did not learn its lessons")
+        raise AssertionError("the tiny model did not learn its lessons")
     model.eval()
     model.save_pretrained(folder)
     tokenizer.save_pretrained(folder)
     return folder
 
 
-def _tokenizer(lessons: Sequence[Lesson]) -> PreTrainedTokenizerFast:
+def _tokenizer(lessons: Sequence[Lesson], template: str) -> PreTrainedTokenizerFast:
     core = Tokenizer(models.BPE())
     core.pre_tokenizer = pre_tokenizers.ByteLevel(add_prefix_space=False)
     core.decoder = decoders.ByteLevel()
     trainer = trainers.BpeTrainer(
         vocab_size=1500, special_tokens=MARKS, initial_alphabet=pre_tokenizers.ByteLevel.alphabet(), show_progress=False
     )
-    plain = _wrapped(core)
+    plain = _wrapped(core, template)
     core.train_from_iterator([text for lesson in lessons for text in (_rendered(plain, lesson), lesson.reply)], trainer)
-    return _wrapped(core)
+    return _wrapped(core, template)
 
 
-def _wrapped(core: Tokenizer) -> PreTrainedTokenizerFast:
+def _wrapped(core: Tokenizer, template: str) -> PreTrainedTokenizerFast:
     made = PreTrainedTokenizerFast(tokenizer_object=core, eos_token=MARKS[2], pad_token=MARKS[0])
-    made.chat_template = CHAT_TEMPLATE
+    made.chat_template = template
     return made
 
 

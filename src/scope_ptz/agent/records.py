@@ -115,6 +115,11 @@ class Called(_Record):
     replies: tuple[Reply, ...] = ()
     frame: str | None = None
 
+    @property
+    def eyes_s(self) -> float:
+        """Wall seconds that perception took for what this call asked it; what other calls asked meanwhile is not in it."""
+        return sum(reply.wall_s for reply in self.replies)
+
 
 class Ended(_Record):
     """How it ended. ``text``: the answer, question or reason; ``detail``: for whoever has to find a fault.

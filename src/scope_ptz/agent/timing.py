@@ -38,6 +38,21 @@ class Timings(BaseModel):
     total_s: float = 0.0
     first_token_s: float = 0.0
 
+    @property
+    def capture_s(self) -> float:
+        """The camera's part: moves and frames, those of a simulated one included. Which views were asked for decides it."""
+        return self.camera_s + self.render_s
+
+    @property
+    def own_s(self) -> float:
+        """What is left without the camera: planner, perception, and the loop's and tools' own work."""
+        return max(self.planner_s + self.perception_s, self.total_s - self.capture_s)
+
+    @property
+    def tools_s(self) -> float:
+        """The loop's and tools' own work, such as stitching a panorama and writing pictures."""
+        return self.own_s - self.planner_s - self.perception_s
+
     def __sub__(self, earlier: Timings) -> Timings:
         return Timings(**{name: round(getattr(self, name) - getattr(earlier, name), 6) for name in Timings.model_fields})
 

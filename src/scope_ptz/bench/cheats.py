@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from scope_ptz.bench.expected import ActionOnly, AnyExpected, NoneThere, Number
-from scope_ptz.bench.phrasing import first_named, right_answers, wrong_answer
+from scope_ptz.bench.phrasing import offered, right_answers, wrong_answer
 from scope_ptz.bench.tasks import ProgramCall, Task
 
 LOOKS = frozenset({"count_objects", "query_answer"})
@@ -112,8 +112,10 @@ def guesses(task: Task, common: str) -> Iterator[Attempt]:
     if not looks or isinstance(task.expected, ActionOnly):
         return
     program = task.reference[: looks[-1] + 1]
-    first = first_named(task.expected, task.instruction)
-    said = {"none": "None.", "0": "0", "yes": "Yes.", "no": "No.", "most common": common, "first named": first}
+    names = offered(task.expected, task.instruction)
+    said: dict[str, str | None] = {"none": "None.", "0": "0", "yes": "Yes.", "no": "No.", "most common": common}
+    said |= {f"{place} offered": name for place, name in zip(("first", "second", "third"), names, strict=False)}
+    said |= {"last offered": names[-1]} if names else {}
     for name, text in said.items():
         if text is not None:
             yield Attempt(f"looked-and-guessed: {name}", program, text)

@@ -26,7 +26,7 @@ Floats = NDArray[np.float64]
 
 def gap(view: EvidenceView, looks: Sequence[Look]) -> str | None:
     """What of a view the looks leave uncovered, in words; None when they cover it all."""
-    here = [look for look in looks if counts_for(view, look)]
+    here = [look for look in looks if look.known and counts_for(view, look)]
     if not here:
         return f"nothing looked from {view.aim.viewpoint}{' at what was asked' if view.about else ''}"
     if view.whole:

@@ -31,13 +31,17 @@ class Standing:
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """One successful look of perception (or of a planner that sees): from where, at what, when, and what it was asked."""
+    """One successful look of perception (or of a planner that sees): from where, at what, when, and what it was asked.
+
+    ``known``: what was asked could be told; a look that brought no answer covers nothing.
+    """
 
     viewpoint: str | None
     projection: Perspective | Equirectangular
     time_s: float
     how: How
     asked: str = ""
+    known: bool = True
 
     @property
     def swept(self) -> bool:
@@ -192,7 +196,8 @@ def looks_of(call: Call, eyes: Eyes) -> tuple[Look, ...]:
             Look(place, eyes.view(Pose(**point["pose"])), call.time_s + float(point["time_s"]), how, asked) for point in path
         )
     swept = how in ("count", "query") and call.arguments.get("view", "current") == "full"
-    return (Look(place, eyes.sweep() if swept else eyes.view(call.before.pose), call.time_s, how, asked),)
+    known = how != "query" or result.get("known") is not False
+    return (Look(place, eyes.sweep() if swept else eyes.view(call.before.pose), call.time_s, how, asked, known),)
 
 
 def _views(
@@ -200,6 +205,8 @@ def _views(
 ) -> Iterator[Look]:
     """What a seeing planner was shown before each of its decisions."""
     for decided in decisions:
+        if decided.decision.opened is False:
+            continue
         step = max(s for s in stands if s < decided.step)
         times = [c.scene_time_s for c in calls if c.step <= step]
         stand = stands[step]

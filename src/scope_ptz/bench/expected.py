@@ -53,13 +53,15 @@ class YesNo(_Expected):
 class Choice(_Expected):
     """One of several. Give every option that an answer could sensibly name, so that a wrong one is read as wrong.
 
-    ``picks``: words that tell which is chosen ("most") where an answer names several.
+    ``picks``: words that tell which is chosen ("most") where an answer names several. ``subject``: what the question asks after,
+    where there might be none: an answer that says so names no option, whatever else it says.
     """
 
     kind: Literal["choice"] = "choice"
     value: Wording
     options: Options
     picks: Wordings = ()
+    subject: Wordings = ()
 
     @model_validator(mode="after")
     def _known(self) -> Choice:
@@ -132,10 +134,12 @@ class Description(_Expected):
 
 
 class NoneThere(_Expected):
-    """That there is none. ``subject``: the words for what is not there."""
+    """That there is none. ``subject``: the words for what is not there. ``claims``: what could only be said of one that is there
+    (colours, quarters): an answer that says so as well does not say that there is none."""
 
     kind: Literal["none_there"] = "none_there"
     subject: Annotated[Wordings, Field(min_length=1)]
+    claims: Wordings = ()
 
 
 class ActionOnly(_Expected):

@@ -50,6 +50,9 @@ FAINT_PX = 40
 _EDGE = 0.2
 """Cosine of the angle to a surface's normal below which one looks along it rather than at it."""
 
+SOON_S = (0.5, 1.0, 1.5, 2.0, 4.5)
+"""Moments at which texts are read too, where somebody may walk by."""
+
 LATER_S = (3.0, 6.0, 10.0, 15.0, 20.0, 27.0, 35.0, 45.0)
 """Moments after the start at which the poses around are read."""
 
@@ -151,7 +154,7 @@ class Sight:
                     found.append(sighting)
             elif kind.doubtful(thing) and self.state(thing.number) is not False:
                 return None
-        if any(kind.fits(a) for a in self.scene.file.actors if a.number in self.passing):
+        if any(kind.fits(a) or kind.rides_on(a) for a in self.scene.file.actors if a.number in self.passing):
             return None
         shown = {s.instance.number for s in self.samples[0].sightings}
         others = (s for truth in self.samples[1:] for s in truth.sightings if s.instance.number not in shown)
@@ -226,6 +229,9 @@ class Sight:
         """Texts that can surely be read, top to bottom and left to right."""
         sure = [{t.text.id for t in truth.texts if all(legible(t, scale) for scale in THRESHOLDS)} for truth in self.samples]
         ids = frozenset.intersection(*(frozenset(names) for names in sure))
+        for later_s in SOON_S if ids and self.passing else ():
+            soon = self.look(self.scene, self.viewpoint, self.projection, self.time_s + later_s)
+            ids &= {text.text.id for text in soon.legible}
         return tuple(sorted((t for t in self.samples[0].texts if t.text.id in ids), key=lambda t: (round(t.box[1], 2), t.box[0])))
 
     def texts_on(self, thing: Thing) -> tuple[TextSighting, ...] | None:

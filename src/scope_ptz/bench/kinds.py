@@ -36,8 +36,12 @@ SIGNS = frozenset({
 KNOWN_BY_THEIR_FACE = SIGNS | {"vending machine", "ticket machine", "dock number", "bay number"}
 """What nobody can tell from behind: of these only the side that bears the lettering says what they are."""
 
-FACELESS = frozenset({"cabinet", "generator", "liquid container", "bike stand", "gas cage", "lane signal", "parking meter"})
-"""Plain boxes and frames at a camera's distance, beside others that look the same and bear no name: nothing is asked of them."""
+FACELESS = frozenset({
+    "cabinet", "generator", "liquid container", "bike stand", "gas cage", "lane signal", "parking meter", "dock light",
+    "camera pole",
+})  # fmt: skip
+"""Plain boxes, poles and lamps at a camera's distance, beside others that look the same and bear no name: nothing is asked of
+them."""
 
 BACKDROP: Mapping[str, frozenset[str]] = {
     "highway-works": frozenset({"roller door", "door", "dock door", "window", "pallet"}),
@@ -115,6 +119,9 @@ _NEAR_COLOURS = (
     {"cream", "grey"}, {"light", "grey", "white"}, {"khaki", "green"}, {"khaki", "brown"},
 )  # fmt: skip
 
+_RIDDEN = frozenset({"forklift", "reach truck", "tug", "terminal tractor", "roller", "motorcycle", "scooter", "bicycle", "cyclist"})
+"""Things whose driver one sees."""
+
 _OTHERWISE = {"car": frozenset({"taxi", "cab"}), "bus": frozenset({"coach", "minibus"})}
 """Words in the name of a thing by which some would call it rather than by its category."""
 
@@ -150,6 +157,10 @@ class Kind:
             _OTHERWISE.get(self.category, frozenset()) & set(thing.name.lower().split())
         )
 
+    def rides_on(self, thing: Thing) -> bool:
+        """Whether somebody of this kind may sit on a moving thing in plain view, who is no thing of the ground truth."""
+        return self.category in GROUPS["person"] and thing.category in _RIDDEN
+
     def doubtful(self, thing: Thing) -> bool:
         """Whether somebody could call a thing that does not fit by this kind's name."""
         if self.fits(thing):
@@ -182,12 +193,17 @@ def has_colour(thing: Thing) -> bool:
 
 
 def colour_shows(thing: Thing) -> bool:
-    """Whether a thing is all of its colour: not a board, which has letters of another, nor what is striped, nor a door that is
-    rolled up."""
+    """Whether a thing is all of its colour, and its name keeps it: not a board, which has letters of another, nor what is striped,
+    nor a door that is rolled up."""
     facts = thing.attributes
     striped = facts.get("pattern", "plain") != "plain"
     rolled_up = "door" in thing.category and facts.get("state", "closed") != "closed"
-    return thing.category not in SIGNS and not striped and not rolled_up
+    told = not _OF_A_COLOUR.isdisjoint(thing.name.lower().split())
+    return thing.category not in SIGNS and not striped and not rolled_up and not told
+
+
+_OF_A_COLOUR = frozenset({"concrete", "aluminium", "steel", "galvanised", "timber", "wooden", "brick"})
+"""Words in a name that tell the colour."""
 
 
 _COLOURLESS = (SIGNS - {"shop sign", "pavement board", "hanging sign"}) | {

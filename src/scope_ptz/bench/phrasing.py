@@ -68,19 +68,22 @@ def right_answers(expected: AnyExpected) -> tuple[str, ...]:
             return "Done.", "Ready.", "The camera is there.", "OK.", "I have done that."
 
 
-def first_named(expected: AnyExpected, question: str) -> str | None:
-    """Of several answers that a question offers ("on the left or on the right?") the one named first; None without an offer."""
+def offered(expected: AnyExpected, question: str) -> tuple[str, ...]:
+    """The answers that a question offers ("on the left or on the right?") in its order; none without an offer."""
     if not isinstance(expected, Choice | NameSet | Ordering):
-        return None
+        return ()
     found = list[tuple[int, int, str]]()
     for name, others in expected.options.items():
         for word in (name, *others):
             found += [(m.start(), m.end(), name) for m in re.finditer(rf"\b{re.escape(word)}\b", question, re.IGNORECASE)]
     found.sort(key=lambda at: (at[0], -at[1]))
+    names = list[str]()
     for (_, end, one), (start, _, other) in pairwise(found):
         if one != other and 0 < start - end <= _OFFER_GAP and not set(question[end:start]) & set(".?!:;"):
-            return one
-    return None
+            names += [other] if names else [one, other]
+        elif len(names) > 1 and start >= end:
+            break
+    return tuple(dict.fromkeys(names))
 
 
 _OFFER_GAP = 26

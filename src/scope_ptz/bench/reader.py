@@ -15,9 +15,10 @@ from scope_ptz.bench.expected import (
     Text,
     YesNo,
 )
-from scope_ptz.bench.reader_choices import read_choice, read_description, read_name_set, read_none_there, read_yes_no
-from scope_ptz.bench.reader_numbers import read_number
+from scope_ptz.bench.reader_choices import read_choice, read_description, read_name_set
+from scope_ptz.bench.reader_counts import read_number
 from scope_ptz.bench.reader_orders import read_ordering, read_relation
+from scope_ptz.bench.reader_presence import read_none_there, read_yes_no
 from scope_ptz.bench.reader_strings import read_text, same_text
 from scope_ptz.bench.reader_text import Script, script
 from scope_ptz.bench.reading import Declined, Reading, Unreadable, Value

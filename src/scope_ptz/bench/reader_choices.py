@@ -1,4 +1,4 @@
-"""Reading answers that name things: yes or no, one of several, all that fit, none at all, facts of a description."""
+"""Reading answers that name things: one of several, all that fit, facts of a description."""
 
 from __future__ import annotations
 
@@ -6,8 +6,9 @@ import re
 from collections.abc import Sequence
 from itertools import pairwise
 
-from scope_ptz.bench.expected import Choice, Description, Fact, NameSet, NoneThere, YesNo
-from scope_ptz.bench.reader_numbers import find_quantities, says_none
+from scope_ptz.bench.expected import Choice, Description, Fact, NameSet
+from scope_ptz.bench.reader_denials import says_none, says_yes
+from scope_ptz.bench.reader_presence import says_that_none
 from scope_ptz.bench.reader_text import Mention, Script, wordings_of
 from scope_ptz.bench.reading import Reading, Unreadable, Value
 
@@ -17,54 +18,32 @@ SAME = (
 )  # fmt: skip
 """How one says that two are alike; also the wordings of a choice that is called "same"."""
 
-_YES = frozenset({"yes", "yeah", "yep", "yup", "correct", "affirmative", "true", "indeed"})
-_NO = frozenset({"no", "nope", "nah", "negative", "false", "incorrect"})
 _CONCLUDES = frozenset({"so", "therefore", "thus", "hence", "answer", "overall", "conclusion"})
+_MARKED_NONE = ("none", "0", "zero")
 _ALL = re.compile(r"\b(all|everything|both|each|every)\b")
-
-
-def verdict_words(script: Script) -> set[bool]:
-    """The yes and no that stand by themselves: at the beginning before a comma, or as a whole clause."""
-    said = set[bool]()
-    for group in script.segments():
-        words = [script.words[i].text for i in group]
-        alone = len(words) == 1 or (group[0] == 0 and words[0] in ("yes", "yeah", "yep", "indeed"))
-        if alone and words[0] in _YES:
-            said.add(True)
-        if len(words) == 1 and words[0] in _NO:
-            said.add(False)
-    said |= {word == "yes" for word in re.findall(r"\b(?:answer|verdict) is (?:a clear )?(yes|no)\b", script.text())}
-    if re.match(r"(yes|no) (and |or )?(yes|no)\b", script.text()):
-        return {True, False}
-    return said
-
-
-def read_yes_no(expected: YesNo, script: Script) -> Reading:
-    """A bare yes or no, and what is stated about the thing; they must not contradict each other."""
-    said = verdict_words(script)
-    for mention in script.mentions({"yes": expected.affirms, "no": expected.denies}):
-        said.add((mention.name == "yes") != (mention.denied or mention.aside))
-    if not said and says_none(script):
-        said = {False}
-    clauses = (" ".join(script.words[i].text for i in group) for group in script.clauses())
-    if any(re.search(r"\bthere (is|are) (none|not any)( here| there| visible| in view)?$", clause) for clause in clauses):
-        said.add(False)
-    if len(said) == 1:
-        return Value(said.pop())
-    return Unreadable("both yes and no" if said else "neither yes nor no")
 
 
 def read_choice(expected: Choice, script: Script) -> Reading:
     """The one option that is named and not denied; where several are, the one that is concluded on."""
+    if expected.subject and True in says_that_none(script, expected.subject):
+        return Unreadable("it says that there is none")
     names = {name: wordings_of(name, further) for name, further in expected.options.items()}
     if "same" in names:
         names["same"] = (*names["same"], *SAME)
     mentions = [m for m in script.mentions(names) if not m.denied and not m.aside and not after_than(script, m)]
-    if any(m.name == "same" for m in mentions):
+    alike = [m for m in mentions if m.name == "same"]
+    rest = [m for m in mentions if m.name != "same" and alike and m.start > alike[-1].start]
+    only_both = all(script.words[m.start].text == "both" for m in alike)
+    if alike and only_both and len({m.name for m in rest}) == 1:
+        # "I looked at both presets. The gate has more."
+        mentions = [m for m in mentions if m.name != "same"] if _picked(expected, script, rest) else mentions
+    elif alike:
         return Value("same")
     named = {m.name for m in mentions}
     if len(named) > 1 and expected.picks:
         named = _picked(expected, script, mentions) or named
+    if len(named) > 1:
+        named = {m.name for m in mentions if m not in _of_parts(script, mentions)} or named
     if len(named) > 1:
         last = max((i for i, w in enumerate(script.words) if w.text in _CONCLUDES), default=len(script.words))
         named = {m.name for m in mentions if m.start > last} or named
@@ -87,6 +66,24 @@ def _picked(expected: Choice, script: Script, mentions: Sequence[Mention]) -> se
     return picked
 
 
+def _of_parts(script: Script, mentions: Sequence[Mention]) -> list[Mention]:
+    """Those said of a part, or of what something stands on: the yellow of "blue, with a yellow top"."""
+    found = list[Mention]()
+    for at, mention in enumerate(mentions):
+        after = script.words[mention.end : mention.end + 1]
+        goes_on = bool(after) and after[0].clause == script.words[mention.start].clause and after[0].text not in _JOINS
+        more = bool(after) and after[0].text == "and"
+        before = " ".join(word.text for word in script.words[max(0, mention.start - 2) : mention.start])
+        listed = at > 0 and found[-1:] == [mentions[at - 1]] and before.endswith("and")
+        if (_ATTACHED.search(before) and (goes_on or more)) or (listed and goes_on):
+            found.append(mention)
+    return found
+
+
+_ATTACHED = re.compile(r"\b(with( an?| the| its)?|on an?)$")
+_JOINS = frozenset({"and", "or", "with", "on", "in", "at", "is", "are", "but"})
+
+
 def after_than(script: Script, mention: Mention) -> bool:
     """Whether something is named only to be compared with."""
     clause = script.words[mention.start].clause
@@ -97,7 +94,7 @@ def after_than(script: Script, mention: Mention) -> bool:
 def read_name_set(expected: NameSet, script: Script) -> Reading:
     """All that are named and not denied."""
     names = {name: wordings_of(name, further) for name, further in expected.options.items()}
-    mentions = [m for m in script.mentions(names) if not m.denied and not m.aside]
+    mentions = [m for m in script.mentions(names) if not m.denied and not m.aside and not script.is_marked(m.end, _MARKED_NONE)]
     named = frozenset(m.name for m in mentions)
     for one, two in pairwise(mentions):
         if any(w.text == "or" for w in script.words[one.end : two.start]):
@@ -106,32 +103,20 @@ def read_name_set(expected: NameSet, script: Script) -> Reading:
         return Value(named)
     if _ALL.search(script.text()):
         return Unreadable("it does not say which")
-    if says_none(script) or any(m.denied for m in script.mentions(names)) or _denies_all(script):
+    if (not says_yes(script) and (says_none(script) or _denies_all(script))) or any(
+        m.denied or script.is_marked(m.end, _MARKED_NONE) for m in script.mentions(names)
+    ):
         return Value(frozenset[str]())
     return Unreadable("nothing is named")
 
 
 def _denies_all(script: Script) -> bool:
     return (
-        re.search(r"^no \w+|\bthere (is|are) (no|not any)\b|\b(found|see|saw|find|sees) (no|nothing)\b", script.text()) is not None
-    )
-
-
-def read_none_there(expected: NoneThere, script: Script) -> Reading:
-    """True when the answer says that there is none, False when it says that there is one."""
-    if re.search(r"\b(none|no|nothing|zero|0) or (one|two|some|several|a few|1|2)\b", script.text()):
-        return Unreadable("an alternative")
-    mentions = script.mentions({"subject": expected.subject})
-    said = {not v for v in verdict_words(script)}
-    said |= {m.denied for m in mentions if not m.aside}
-    if not mentions:
-        said |= {q.value == 0 for q in find_quantities(script, expected.subject) if not (q.other or q.bound or q.denied)}
-        if says_none(script):
-            said.add(True)
-    if len(said) == 1:
-        return Value(said.pop())
-    return Unreadable(
-        "both that there is one and that there is none" if said else "neither that there is one nor that there is none"
+        re.search(
+            r"^no \w+\b(?! (is|are) (missing|absent))|\bthere (is|are) (no|not any)\b|\b(found|see|saw|find|sees) (no|nothing)\b",
+            script.text(),
+        )
+        is not None
     )
 
 

@@ -19,7 +19,7 @@ _IRREGULAR = {
 }  # fmt: skip
 _IDIOMS = (
     "without a doubt", "without doubt", "no doubt", "no problem", "of course", "for sure", "not only", "no wonder",
-    "needless to say", "as you can see", "not surprisingly",
+    "needless to say", "as you can see", "not surprisingly", "no question", "no mistake", "even so", "even though",
 )  # fmt: skip
 _CONTRACTIONS = (
     (re.compile(r"\bcan'?t\b|\bcannot\b"), "can not"),
@@ -27,8 +27,11 @@ _CONTRACTIONS = (
     (re.compile(r"n't\b"), " not"),
     (re.compile(r"\b(it|there|that|he|she|what|here|one|everything|who|let)'s\b"), r"\1 is"),
     (re.compile(r"\b(i|we|you|they)'(m|re|ve|d|ll)\b"), r"\1"),
+    (re.compile(r"(?<=\d)\+(?!\s*\d|\w)"), " or more"),
 )
 _WORD = re.compile(r"\d+(?:,\d{3})+(?:\.\d+)?|\d+(?:\.\d+)?|[^\W\d_]+(?:'[^\W\d_]+)*|[°%]")
+_TAGS = re.compile(r"</?(?:b|i|u|em|strong|p|br|code|answer)\s*/?>", re.IGNORECASE)
+_LIST_NUMBER = re.compile(r"^\s*(\d{1,3})[.)]\s+", re.MULTILINE)
 _HARD = re.compile(r"[!?;\n]|\.(?!\d)|\s[—–-]\s|—")
 
 
@@ -45,11 +48,27 @@ class Word:
 
 def clean(text: str) -> str:
     """Without markup and notes of the source; quotation marks, dashes and spaces of one sort; capitals kept."""
-    text = unicodedata.normalize("NFKC", text)
+    text = unicodedata.normalize("NFKC", "".join(_plain_letter(letter) for letter in text))
     text = re.sub(r"\s*\((?:source:|seen by)[^)]*\)", "", text, flags=re.IGNORECASE)
     text = re.sub(r"[‘’´`]", "'", re.sub(r"[“”„«»]", '"', text)).replace("−", "-")
-    text = re.sub(r"\*\*|__|^#+\s*|^>\s*|(?<!\w)\*(?=\w)|(?<=\w)\*(?!\w)", "", text, flags=re.MULTILINE)
-    return re.sub(r"^\s*(?:[-*•]|\d+[.)])\s+", "", text, flags=re.MULTILINE).strip()
+    text = re.sub(r"\*\*|__|^#+\s*|^>\s+(?![\s\d])|(?<!\w)\*(?=\w)|(?<=\w)\*(?!\w)", "", text, flags=re.MULTILINE)
+    text = re.sub(_TAGS, "", text)
+    text = re.sub(r"^\s*[-*•]\s+", "", text, flags=re.MULTILINE)
+    numbers = [int(number) for number in _LIST_NUMBER.findall(text)]
+    is_list = len(numbers) > 1 and numbers == list(range(1, len(numbers) + 1))
+    return (_LIST_NUMBER.sub("", text) if is_list else text).strip()
+
+
+def _plain_letter(letter: str) -> str:
+    """Without what cannot be seen; digits of any script as 0 to 9; what stands raised or is a fraction set apart."""
+    kind = unicodedata.category(letter)
+    if kind == "Cf":
+        return ""
+    if kind == "Nd":
+        return str(unicodedata.decimal(letter))
+    if kind == "No" and "⁄" in unicodedata.normalize("NFKC", letter):
+        return f" {letter}"
+    return f"^{letter}" if kind == "No" and unicodedata.decomposition(letter).startswith("<su") else letter
 
 
 def plain_words(text: str) -> list[str]:

@@ -81,11 +81,21 @@ class Label(_Record):
     note: str = ""
 
 
+class LookTime(_Record):
+    """Where the wall seconds of one look went. ``eyes_s``: what perception took; ``capture_s``: camera moves and frames,
+    simulated ones included. Looks made at the same time share a frame, and with it its capture."""
+
+    view: Literal["current", "full"]
+    eyes_s: Seconds
+    capture_s: Seconds
+
+
 class Trial(_Record):
     """One run of one task, judged. ``epoch``: 1 for its first run; ``sample``: where the log keeps it, with trace and pictures.
 
     ``scored_by`` says whose verdict ``headline`` is: the checks', or the judge's where a task has no check of its answer.
     ``error_mode`` is None unless the headline is "incorrect". ``tool_calls``: calls made, by tool, failed ones included.
+    ``look_s``: whole wall seconds of the calls that looked, camera included; ``looks``: their parts, empty where not known.
     """
 
     task: TaskFacts
@@ -109,6 +119,7 @@ class Trial(_Record):
     cost_usd: Annotated[float, Field(ge=0, allow_inf_nan=False)] | None = None
     timings: Timings = Timings()
     look_s: dict[Literal["current", "full"], tuple[Seconds, ...]] = {}
+    looks: tuple[LookTime, ...] = ()
     judgements: tuple[Judgement, ...] = ()
     labels: tuple[Label, ...] = ()
 

@@ -5,18 +5,23 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from scope_ptz.bench.authoring.assembly import QUOTAS, Built, Say, build
+from scope_ptz.bench.authoring.selection import Answered
 from scope_ptz.bench.tasks import Category, Task
 from scope_ptz.world.pack import Scene
 
 
 def build_unseen(
-    scenes: Sequence[Scene], numbers: Sequence[int], quotas: dict[Category, int] | None = None, say: Say | None = None
+    scenes: Sequence[Scene],
+    numbers: Sequence[int],
+    quotas: dict[Category, int] | None = None,
+    say: Say | None = None,
+    answered: Answered | None = None,
 ) -> Built:
     """Core tasks of variations ``numbers`` of every scene, shared out over them. What is missing is told in ``short``."""
     worlds = [(scene, number, scene.varied(number)) for scene in scenes for number in dict.fromkeys(numbers)]
     # A seed that no core dataset would be made with, so that wordings and targets are others too.
     seed = 1_000_000 + sum(number * 31**k for k, number in enumerate(numbers))
-    made = build([world for _, _, world in worlds], seed, dict(quotas or QUOTAS), say)
+    made = build([world for _, _, world in worlds], seed, dict(quotas or QUOTAS), say, answered)
     origins = {world.name: (scene, number) for scene, number, world in worlds}
     tasks = [_of_scene(task, *origins[task.scene]) for task in made.tasks if task.stratum == "core"]
     return Built(tasks, made.short)

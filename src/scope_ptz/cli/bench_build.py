@@ -46,9 +46,12 @@ def build(
         from scope_ptz.bench.authoring.assembly import build as make
         from scope_ptz.bench.task_files import dump_tasks
         from scope_ptz.bench.unseen import build_unseen
+        from scope_ptz.cli.bench_eyes import answered
 
         scenes = list(scenes_named(scene).values())
-        made = build_unseen(scenes, numbers, quotas, complain) if numbers else make(scenes, seed, quotas, complain)
+        made = (
+            build_unseen(scenes, numbers, quotas, complain, answered) if numbers else make(scenes, seed, quotas, complain, answered)
+        )
         out.parent.mkdir(parents=True, exist_ok=True)
         dump_tasks(made.tasks, out)
         put(f"{len(made.tasks)} tasks in {out}")

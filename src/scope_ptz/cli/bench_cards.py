@@ -10,7 +10,7 @@ from typing import Any
 import anyio
 
 from scope_ptz import __version__
-from scope_ptz.bench.engine.cards import DETERMINISTIC, PRICE, engine_version
+from scope_ptz.bench.engine.cards import AGENT_SOURCE, DETERMINISTIC, PRICE, engine_version
 from scope_ptz.bench.engine.entries import Entry, datasets, digest
 from scope_ptz.bench.engine.estimate import Price
 from scope_ptz.bench.trials import ModelCard, RunCard
@@ -28,16 +28,20 @@ async def run_card(
     entries: tuple[Entry, ...],
     *,
     agent: str,
+    agent_source: str,
     concurrency: int,
     contended: bool,
     variant: str,
     price: Price | None,
     **facts: Any,
 ) -> RunCard:
-    """The card. ``planner``: for its exact prompt and sampling; None for other agents; ``facts``: split, seed, epochs, ..."""
+    """The card. ``planner``: for its exact prompt and sampling; None for other agents, which have ``agent_source``, the digest of
+    their code; ``facts``: split, seed, epochs, ..."""
     details = planner.details if planner is not None else {}
     spec = choice.eyes.spec
     sampling: dict[str, Any] = {"planner": details}
+    if agent_source:
+        sampling[AGENT_SOURCE] = agent_source
     if price is not None:
         sampling[PRICE] = {"input": price.input_usd, "output": price.output_usd}
     if spec is not None:

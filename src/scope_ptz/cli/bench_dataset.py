@@ -15,6 +15,7 @@ from scope_ptz.bench.gold import write_gold
 from scope_ptz.bench.splits import write_manifest, write_splits
 from scope_ptz.bench.unseen import build_unseen
 from scope_ptz.cli.bench_build import tell_short
+from scope_ptz.cli.bench_eyes import answered
 from scope_ptz.cli.bench_gold import made_gold, matrix_lines
 from scope_ptz.cli.bench_proof import prove
 from scope_ptz.cli.endings import complain, put
@@ -30,8 +31,8 @@ def build_dataset(
     scenes: Mapping[str, Scene], out: Path, seed: int, numbers: Sequence[int], quotas: dict[Category, int] | None
 ) -> bool:
     """Write everything into a folder; whether all of it is as it should be. The same scenes and numbers give the same bytes."""
-    core = build(list(scenes.values()), seed, quotas, complain)
-    unseen = build_unseen(list(scenes.values()), numbers, quotas, lambda said: complain(f"unseen {said}"))
+    core = build(list(scenes.values()), seed, quotas, complain, answered)
+    unseen = build_unseen(list(scenes.values()), numbers, quotas, lambda said: complain(f"unseen {said}"), answered)
     short = [tell_short(core), tell_short(unseen, " unseen")]
     written = write_splits(core.tasks, unseen.tasks, out, seed=seed)
     put(f"{len(core.tasks)} tasks and {len(unseen.tasks)} unseen ones in {out}")

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 import anyio
 
-from scope_ptz.bench.trials import Evaluation, Trial
+from scope_ptz.bench.trials import Trial
+from scope_ptz.cli.bench_judged import Ended, JudgeWish, judged, open_wished
 from scope_ptz.cli.choosing import Choice, Wishes, choose
 from scope_ptz.cli.endings import complain
 from scope_ptz.errors import ConfigError, InputError, ScopeError
@@ -29,18 +30,6 @@ if TYPE_CHECKING:
 OWN_AGENT = "scope"
 WITH_MODELS = 8
 """Runs at a time when a model server answers."""
-
-
-@dataclass(frozen=True, slots=True)
-class JudgeWish:
-    """A judge's server, and how often it judges each run."""
-
-    url: str | None
-    model: str | None
-    key_file: Path | None
-    timeout_s: float
-    options: tuple[str, ...] = ()
-    repeats: int = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,20 +65,19 @@ def need_engine() -> None:
         raise ConfigError("Evaluations need Inspect AI. Install it with: pip install 'scope-ptz[bench]'")
 
 
-async def evaluate(options: RunOptions, console: Console) -> Evaluation:
-    """Run an evaluation, or go on with it, or just read it when it is done."""
-    from scope_ptz.bench.engine.logs import read_evaluation
+async def evaluate(options: RunOptions, console: Console) -> Ended:
+    """Run an evaluation, or go on with it, or just read it when it is done; judge what was not judged yet."""
     from scope_ptz.bench.engine.runs import alone
 
     choice = await choose(options.wishes)
     prepared = _Prepared(options, choice)
     with alone(options.out, prepared.identity):
         before = await prepared.before()
-        if before and before[0].finished:
-            complain(f"this evaluation is done: {before[0].path} (--fresh runs it again)")
-            return read_evaluation(before[0].path)
         try:
-            return read_evaluation(await prepared.run(console, before))
+            if before and before[0].finished:
+                complain(f"this evaluation is done: {before[0].path} (--fresh runs it again)")
+                return await prepared.judged(before[0].path, again=True)
+            return await prepared.judged(await prepared.run(console, before), again=False)
         finally:
             with anyio.CancelScope(shield=True):
                 await prepared.close()
@@ -100,13 +88,12 @@ class _Prepared:
 
     def __init__(self, options: RunOptions, choice: Choice) -> None:
         from scope_ptz.bench.engine.entries import chosen, digest
-        from scope_ptz.bench.engine.guests import load_guest
+        from scope_ptz.bench.engine.guests import source_digest
         from scope_ptz.bench.engine.runs import identity_of
         from scope_ptz.cli.bench_equipment import lend, planner_for
 
-        if options.agent != OWN_AGENT:
-            load_guest(options.agent)
         self.options, self.choice = options, choice
+        self.agent_source = source_digest(options.agent) if options.agent != OWN_AGENT else ""
         self.judge: ServerPort | None = None
         self.planner = planner_for(choice.planner) if options.agent == OWN_AGENT else None
         self.lent = lend(seed=options.seed, planner=self.planner, eyes=choice.eyes)
@@ -125,7 +112,7 @@ class _Prepared:
             digest(self.entries), options.epochs, options.seed, options.agent, options.max_steps, options.time_s,
             options.pictures, options.latency, options.variant, choice.planner.name, choice.eyes.name,
             {name: value for name, value in details.items() if name != "url"},
-            spec.model_dump(mode="json", exclude={"endpoint"}) if spec else None, _place(choice),
+            spec.model_dump(mode="json", exclude={"endpoint"}) if spec else None, _place(choice), self.agent_source,
         )  # fmt: skip
 
     async def close(self) -> None:
@@ -156,7 +143,7 @@ class _Prepared:
         done = tuple(t for t in read_evaluation(before[0].path).trials if t.headline != "infrastructure") if before else ()
         wanted = len(self.entries) * self.options.epochs
         self._foretell(console, wanted, done, before)
-        judge = self.judge = await self._judge()
+        judge = self.judge = await open_wished(self.options.judge) if self.options.judge is not None else None
         setting = await self._setting(judge)
         group = anyio.create_task_group()
         with LiveTable(console, wanted, done, setting.card.pair, lambda: group.cancel_scope.cancel()) as table:
@@ -189,11 +176,19 @@ class _Prepared:
             raise came[0]
         return came[0]
 
-    async def _judge(self) -> ServerPort | None:
-        from scope_ptz.cli.bench_judge import open_judge
+    async def judged(self, log: Path, *, again: bool) -> Ended:
+        """The log as it stands, when it was judged as wished; ``again``: also where the judge's server had failed."""
+        from scope_ptz.bench.engine.logs import read_evaluation
 
         wish = self.options.judge
-        return await open_judge(wish.url, wish.model, wish.key_file, wish.timeout_s, list(wish.options)) if wish else None
+        if wish is None:
+            return Ended(read_evaluation(log))
+
+        async def opened() -> ServerPort:
+            self.judge = self.judge or await open_wished(wish)
+            return self.judge
+
+        return await judged(log, wish, opened, self.lent, again=again)
 
     async def _setting(self, judge: ServerPort | None) -> Setting:
         from inspect_ai.model import GenerateConfig, get_model
@@ -205,9 +200,9 @@ class _Prepared:
 
         options, choice = self.options, self.choice
         card = await run_card(
-            choice, self.planner, self.entries, agent=options.agent, concurrency=self.concurrency,
-            contended=not options.latency, variant=options.variant, split=Path(options.tasks).name, seed=options.seed,
-            max_steps=options.max_steps, epochs=options.epochs, price=options.price,
+            choice, self.planner, self.entries, agent=options.agent, agent_source=self.agent_source,
+            concurrency=self.concurrency, contended=not options.latency, variant=options.variant, price=options.price,
+            split=Path(options.tasks).name, seed=options.seed, max_steps=options.max_steps, epochs=options.epochs,
         )  # fmt: skip
         # Looks of one step are made at the same time, as many as the loop allows.
         config = GenerateConfig(max_connections=self.concurrency * 8)
@@ -226,20 +221,32 @@ class _Prepared:
         judging = judge_as_model(judge, self.concurrency * 2) if judge is not None else None
         return Setting(options.out, planner, eyes, judging, self.concurrency, self.identity, card)
 
+    def _of_other_source(self, agent: str) -> Path | None:
+        from scope_ptz.bench.engine.entries import digest
+        from scope_ptz.bench.engine.runs import of_other_source
+
+        return of_other_source(self.options.out, agent, self.agent_source, digest(self.entries))
+
     def _foretell(self, console: Console, wanted: int, done: Sequence[Trial], before: Sequence[Found]) -> None:
         from scope_ptz.bench.engine.estimate import estimate
         from scope_ptz.bench.engine.runs import earlier
         from scope_ptz.cli.bench_foretelling import lines
 
+        agent = self.options.agent if self.options.agent != OWN_AGENT else None
+
         if before:
             console.print(
                 f"Going on with {before[0].path}: {len(done)} of {wanted} runs are done.", highlight=False, soft_wrap=True
             )
-        known = earlier(self.options.out, self.choice.planner.name, self.choice.eyes.name)
+        elif agent and (other := self._of_other_source(agent)) is not None:
+            console.print(
+                f"The source of {agent} is not that of {other}: this is a new evaluation.", highlight=False, soft_wrap=True
+            )
+        known = earlier(self.options.out, agent or self.choice.planner.name, self.choice.eyes.name)
         kept = {trial.task.id for trial in done} if self.options.epochs == 1 else set()
         left = [entry for entry in self.entries if entry.facts.id not in kept]
         told = estimate(left, self.options.epochs, self.concurrency, known, self.options.price, opening_chars(self.planner))
-        for line in lines(told, self.choice, self.concurrency):
+        for line in lines(told, self.choice, self.concurrency, agent):
             console.print(line, highlight=False, soft_wrap=True)
 
 

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from scope_ptz.bench.authoring.drafts import Draft
 from scope_ptz.bench.run_program import Equip
 from scope_ptz.camera.base import Frame
 from scope_ptz.geometry import Projection
+from scope_ptz.perception.answers import answer
 from scope_ptz.perception.ground_truth import GroundTruthPerception
+from scope_ptz.perception.language import parse_question
+from scope_ptz.perception.view import read_view
 from scope_ptz.tools.context import ToolContext
 from scope_ptz.world.actors import appearances, shows
 from scope_ptz.world.pack import Scene
@@ -46,6 +50,17 @@ class KnownViews:
                 self._known.pop(next(iter(self._known)))
             self._known[key] = view_truth(scene, viewpoint, projection, time_s)
         return self._known[key]
+
+
+def answered(draft: Draft) -> bool:
+    """Whether the ground-truth perception can answer what the reference program asks of a view; what is asked of a close-up is left
+    to the proof."""
+    sight = draft.place.sight
+    asked = [str(call.arguments["question"]) for call in draft.looks if call.tool == "query_answer"]
+    if draft.looks_closer or not asked:
+        return True
+    view = read_view(sight.first, sight.scene.file, sight.time_s)
+    return all(answer(view, parse_question(question)).known for question in asked)
 
 
 def equip_with_truth(scenes: Mapping[str, Scene], views: KnownViews | None = None) -> Equip:

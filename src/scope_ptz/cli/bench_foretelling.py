@@ -9,16 +9,22 @@ from scope_ptz.cli.bench_live import clock
 from scope_ptz.cli.choosing import Choice
 
 
-def lines(told: Estimate, choice: Choice, concurrency: int) -> Iterator[str]:
-    """Runs, calls, time and cost, one a line."""
-    runs = f"{told.runs} run{'s' if told.runs != 1 else ''}"
-    yield f"{runs} of {choice.planner.name} + {choice.eyes.name}, {concurrency} at a time"
-    yield f"calls   about {told.decisions} of the planner and {told.looks} of the eyes, as the reference programs need them"
-    if told.seconds is None:
-        yield "time    unknown: this pair has no log here yet; the table tells how long is left after the first runs"
+def lines(told: Estimate, choice: Choice, concurrency: int, agent: str | None = None) -> Iterator[str]:
+    """Runs, calls, time and cost, one a line. ``agent``: the name of another one, which plans in place of the planner."""
+    runs, who = f"{told.runs} run{'s' if told.runs != 1 else ''}", "this agent" if agent else "this pair"
+    yield f"{runs} of {agent or choice.planner.name} + {choice.eyes.name}, {concurrency} at a time"
+    if agent:
+        yield f"calls   about {told.looks} of the eyes, as the reference programs need them; the agent plans by means of its own"
     else:
-        yield f"time    about {clock(told.seconds)}, by {told.measured_on} earlier runs of this pair"
-    if choice.planner.endpoint is None:
+        yield f"calls   about {told.decisions} of the planner and {told.looks} of the eyes, as the reference programs need them"
+    if told.seconds is None:
+        yield f"time    unknown: {who} has no log here yet; the table tells how long is left after the first runs"
+    else:
+        measured = f"{told.measured_on} earlier run{'s' if told.measured_on != 1 else ''}"
+        yield f"time    about {clock(told.seconds)}, by {measured} of {who}"
+    if agent:
+        yield "cost    unknown: what the agent asks of models of its own is not known here"
+    elif choice.planner.endpoint is None:
         yield "cost    nothing is asked of a paid server for planning"
     elif told.input_tokens is None or told.output_tokens is None:
         yield "cost    unknown: tokens are known after a first run of this pair (--limit 10), prices by --price IN,OUT"

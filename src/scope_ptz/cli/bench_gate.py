@@ -57,7 +57,8 @@ def lines(found: Gate, now: Evaluation) -> Iterator[str]:
     if len(found.overall.worse) > MOST_TOLD:
         yield f"       and {len(found.overall.worse) - MOST_TOLD} more"
     if found.left_out:
-        yield f"{len(found.left_out)} tasks are left out, because infrastructure broke them in one of the logs."
+        why = "because infrastructure broke them in one of the logs, or no judge gave a verdict there"
+        yield f"{len(found.left_out)} tasks are left out, {why}."
     where = ", ".join("over all" if c.group == "all" else c.group.replace("_", " ") for c in found.regressions)
     yield f"REGRESSION: {where} (alpha {found.alpha:g})" if where else f"no significant regression (alpha {found.alpha:g})"
 

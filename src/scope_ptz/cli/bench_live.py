@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterable, Sequence
 from typing import get_args
@@ -14,6 +15,7 @@ from rich.text import Text
 
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.equipment import Watcher
+from scope_ptz.bench.judging.tally import not_judged, without_verdict
 from scope_ptz.bench.tasks import Category
 from scope_ptz.bench.trials import Evaluation, Trial
 
@@ -80,7 +82,9 @@ class LiveTable(Watcher):
         right = sum(t.headline == "correct" for t in self._trials.values())
         broken = sum(t.headline == "infrastructure" for t in self._trials.values())
         when = f", about {clock(left)} left" if left is not None else ""
-        return f"{len(self._trials)} of {self._wanted} runs: {right} correct, {broken} broken by infrastructure{when}"
+        open_ = sum(without_verdict(t) for t in self._trials.values())
+        judged = f", {open_} not judged yet" if open_ else ""
+        return f"{len(self._trials)} of {self._wanted} runs: {right} correct{judged}, {broken} broken by infrastructure{when}"
 
     def _drawn(self) -> RenderableType:
         rows = list(self._trials.values())
@@ -97,7 +101,7 @@ class LiveTable(Watcher):
 
 
 def category_table(trials: Iterable[Trial]) -> Table:
-    """Accuracy by category, macro and micro: correct among the runs that infrastructure did not break."""
+    """Accuracy by category, macro and micro: correct among the runs that infrastructure did not break and that are scored."""
     rows = list(trials)
     table = Table("category", box=None, pad_edge=False, header_style="bold")
     for name in ("runs", "correct", "wrong", "unscored", "broken", "accuracy"):
@@ -119,8 +123,8 @@ def category_table(trials: Iterable[Trial]) -> Table:
 
 
 def accuracy(trials: Sequence[Trial]) -> float | None:
-    """Correct among the runs that infrastructure did not break; None when it broke all."""
-    ran = [t for t in trials if t.headline != "infrastructure"]
+    """Correct among the runs that infrastructure did not break and that do not wait for a judge; None when none is left."""
+    ran = [t for t in trials if t.headline != "infrastructure" and not without_verdict(t)]
     return sum(t.headline == "correct" for t in ran) / len(ran) if ran else None
 
 
@@ -140,6 +144,13 @@ def _percent(share: float | None) -> str:
     return f"{100 * share:.1f} %" if share is not None else "-"
 
 
+def waiting(trials: Sequence[Trial]) -> list[str]:
+    """What is said of runs that only a judge can score and that have no verdict: they are in no share."""
+    fresh, mute = sum(not_judged(t) for t in trials), sum(without_verdict(t) and not not_judged(t) for t in trials)
+    lines = [f"not scored {fresh} not judged yet: scope bench rescore LOG --judge-url ..."] if fresh else []
+    return lines + ([f"not scored {mute} without a verdict: the judge's replies were unparseable"] if mute else [])
+
+
 def summary(evaluation: Evaluation) -> RenderableType:
     """The table at the end of an evaluation, with why runs failed and what they took."""
     trials, card = evaluation.trials, evaluation.card
@@ -147,11 +158,12 @@ def summary(evaluation: Evaluation) -> RenderableType:
     modes = sorted(
         ((m, sum(t.error_mode == m for t in trials)) for m in {t.error_mode for t in trials if t.error_mode}), key=lambda x: -x[1]
     )
+    parts += [Text(line) for line in waiting(trials)]
     if modes:
         parts.append(Text("failed by  " + ", ".join(f"{mode.value.replace('_', ' ')} {count}" for mode, count in modes)))
     timed = sorted(t.timings.total_s for t in trials if t.headline != "infrastructure")
     if timed:
-        middle, most = timed[len(timed) // 2], timed[int(0.95 * (len(timed) - 1))]
+        middle, most = timed[len(timed) // 2], timed[math.ceil(0.95 * len(timed)) - 1]
         alone = " (runs shared the machine: measure latency with --latency)" if card.contended else ""
         parts.append(Text(f"a run      median {clock(middle)}, 95% within {clock(most)}{alone}", style="dim"))
     if not card.ranked:

@@ -9,16 +9,20 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from scope_ptz.cli.endings import FAILED, complain, ending, put, put_json
+from scope_ptz.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from scope_ptz.bench.reports.submission import Header, TrialLine
     from scope_ptz.bench.reports.task_pages import SampleFiles
     from scope_ptz.bench.tasks import Task
     from scope_ptz.bench.trials import Evaluation, Trial
 
 submission_app = typer.Typer(help="The file for a public leaderboard.", no_args_is_help=True)
 MOST_TOLD = 50
+FIRST_TOLD = 3
+"""Of many faults of one kind, on one line."""
 RESULT = ".json"
 """Of a person: the evaluation itself, not a log."""
 
@@ -67,15 +71,33 @@ def report(
 def submission_make(
     log: Annotated[Path, typer.Argument(help="The log of a finished run.")],
     out: Annotated[Path, typer.Option("--out", "-o", help="File to write (JSON lines).")],
+    tasks: Annotated[
+        str | None, typer.Option("--tasks", help="Split or task file that it has to cover (default: the split that was run).")
+    ] = None,
+    partial: Annotated[
+        bool, typer.Option("--partial", help="Write it although it does not cover the split: `validate` will refuse it.")
+    ] = False,
 ) -> None:
-    """Write a log's run card and the verdict, answer, calls and times of every task for a public leaderboard."""
+    """Write a log's run card and the verdict, answer, calls and times of every task for a public leaderboard.
+
+    A log that does not cover its split is refused.
+    """
     with ending():
         _need_extra()
         from scope_ptz.bench.reports.submission import submission_lines, write_submission
 
         evaluation = _read(log)
-        write_submission(submission_lines(evaluation), out)
+        header, lines = submission_lines(evaluation)
+        lacking = [] if partial and tasks is None and not _is_published(header.card.split) else _lacking(header, lines, tasks)
+        if lacking and not partial:
+            raise InputError(
+                f"{log} does not cover {tasks or header.card.split}: {_some(lacking)}. A submission is of a whole split: run the "
+                "rest, without --limit, --category and --scene, or write what there is with --partial."
+            )
+        write_submission((header, lines), out)
         put(f"{out}: {len(evaluation.trials)} trials of {evaluation.card.pair}")
+        if lacking:
+            complain(f"{out} is partial and no valid submission: {_some(lacking)}.")
 
 
 @submission_app.command("validate")
@@ -101,6 +123,23 @@ def submission_validate(
             put(found.told)
         if found.faults:
             sys.exit(FAILED)
+
+
+def _lacking(header: Header, lines: Sequence[TrialLine], tasks: str | None) -> list[str]:
+    from scope_ptz.bench.reports.submission_checks import coverage
+
+    return coverage(header, lines, _expected(tasks))
+
+
+def _is_published(split: str) -> bool:
+    from scope_ptz.bench.splits import SPLITS
+
+    return split in SPLITS
+
+
+def _some(faults: Sequence[str]) -> str:
+    more = len(faults) - FIRST_TOLD
+    return "; ".join(faults[:FIRST_TOLD]) + (f"; and {more} more such faults" if more > 0 else "")
 
 
 def _need_extra() -> None:

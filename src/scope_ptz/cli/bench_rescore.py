@@ -2,24 +2,31 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from scope_ptz.cli.bench_judge import TIMEOUT_S, JudgeKey, JudgeModel, JudgeOption, JudgeTimeout, JudgeUrl, open_judge
-from scope_ptz.cli.endings import complain, ending, put
+from scope_ptz.cli.endings import FAILED, complain, ending, put
 from scope_ptz.errors import InputError
 
 if TYPE_CHECKING:
+    from scope_ptz.bench.engine.equipment import Equipment
     from scope_ptz.bench.judging.server import ServerPort
+    from scope_ptz.bench.judging.tally import Tally
+
+
+AT_A_TIME = 8
+"""Runs that are judged at the same time."""
 
 
 def rescore(
     logs: Annotated[list[Path], typer.Argument(help="Logs of finished evaluations. Scores are added to them; none is lost.")],
     checks: Annotated[bool, typer.Option("--checks", help="Run the executable checks of this version again.")] = False,
     repeats: Annotated[int, typer.Option("--judge-repeats", min=1, help="Judgements of each run, beside those there are.")] = 1,
-    concurrency: Annotated[int, typer.Option("--concurrency", min=1, max=256, help="Runs judged at a time.")] = 8,
+    concurrency: Annotated[int, typer.Option("--concurrency", min=1, max=256, help="Runs judged at a time.")] = AT_A_TIME,
     judge_url: JudgeUrl = None,
     judge_model: JudgeModel = None,
     judge_key_file: JudgeKey = None,
@@ -28,11 +35,14 @@ def rescore(
 ) -> None:
     """Add a judge's verdicts to logs (--judge-url), or those of today's checks (--checks). The agent is not run again.
 
-    Judgements that were made before a break are kept: the same command asks only for the rest.
+    Judgements that were made before a break are kept: the same command asks only for the rest. Exit code 1 when the judge's server
+    failed on any; the same command asks for those again.
     """
     with ending():
         import anyio
 
+        from scope_ptz.bench.judging.tally import Tally
+        from scope_ptz.cli.bench_equipment import lend
         from scope_ptz.cli.bench_evaluate import need_engine
         from scope_ptz.settings import load_settings
 
@@ -41,34 +51,57 @@ def rescore(
         if not checks and not wants_judge:
             raise InputError("Say what to score by: a judge (--judge-url), the checks (--checks), or both.")
 
-        async def work() -> None:
+        async def work() -> Tally:
+            all_made = Tally()
             judge = await open_judge(judge_url, judge_model, judge_key_file, judge_timeout, judge_option) if wants_judge else None
             try:
                 for log in logs:
-                    made = await _one(log, judge, repeats=repeats, checks=checks, at_a_time=concurrency)
-                    put(f"{log}: {'checked again' if checks else ''}{', ' if checks and judge else ''}{_told(judge, made)}")
+                    lent = lend(seed=1, judge=judge)
+                    made = await score_again(log, judge, lent, repeats=repeats, checks=checks, at_a_time=concurrency)
+                    all_made += made
+                    put(f"{log}: {'checked again' if checks else ''}{', ' if checks and judge else ''}{told(judge, made)}")
             finally:
                 if judge is not None:
                     await judge.close()
+            return all_made
 
-        anyio.run(work)
+        all_made = anyio.run(work)
+        if all_made.failed:
+            complain(f"{judge_failed(all_made)} Nothing is lost; the same command asks for {_them(all_made)} again.")
+            sys.exit(FAILED)
 
 
-def _told(judge: ServerPort | None, made: int) -> str:
-    return f"{made} judgements by {judge.client.endpoint.model}" if judge is not None else ""
+def told(judge: ServerPort | None, made: Tally) -> str:
+    """What came of a log's judgements."""
+    if judge is None:
+        return ""
+    return f"{made.made} judgement{'' if made.made == 1 else 's'} by {judge.client.endpoint.model}: {made.told}"
 
 
-async def _one(log: Path, judge: ServerPort | None, *, repeats: int, checks: bool, at_a_time: int) -> int:
+def judge_failed(made: Tally) -> str:
+    """The sentence about judgements that a judge's server failed on."""
+    first = f", the first with: {made.failure}" if made.failure else ""
+    first = first if first.endswith((".", "!", "?")) else f"{first}."
+    return f"{made.failed} of {made.made} judgements failed because the judge's server gave no usable reply{first}"
+
+
+def _them(made: Tally) -> str:
+    return "it" if made.failed == 1 else "them"
+
+
+async def score_again(
+    log: Path, judge: ServerPort | None, lent: Equipment, *, repeats: int, more: bool = True, checks: bool = False, at_a_time: int
+) -> Tally:
+    """Add scores to a log; what came of the judgements. ``more``: beside those there are, not in place of what is missing."""
     from scope_ptz.bench.engine.equipment import EQUIPMENT
     from scope_ptz.bench.engine.rescoring import rescore as again
-    from scope_ptz.cli.bench_equipment import lend
     from scope_ptz.cli.bench_judging import judge_as_model
 
-    EQUIPMENT.set(lend(seed=1, judge=judge))
+    EQUIPMENT.set(lent)
 
     def say(done: int, of: int) -> None:
         if done % 25 == 0 or done == of:
             complain(f"{log.name}: {done} of {of}")
 
     model = judge_as_model(judge, at_a_time) if judge is not None else None
-    return await again(log, judge_model=model, repeats=repeats, with_checks=checks, at_a_time=at_a_time, say=say)
+    return await again(log, judge_model=model, repeats=repeats, more=more, with_checks=checks, at_a_time=at_a_time, say=say)

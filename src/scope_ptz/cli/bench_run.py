@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -16,6 +17,7 @@ from scope_ptz.errors import InputError
 if TYPE_CHECKING:
     from scope_ptz.bench.engine.estimate import Price
     from scope_ptz.bench.trials import Evaluation
+    from scope_ptz.cli.bench_judged import Ended
 
 TASKS_PANEL, RUN_PANEL = "Tasks", "Running"
 LOGS = Path("evaluations")
@@ -133,7 +135,8 @@ def run(
         import anyio
         from rich.console import Console
 
-        from scope_ptz.cli.bench_evaluate import JudgeWish, RunOptions, evaluate, need_engine
+        from scope_ptz.cli.bench_evaluate import RunOptions, evaluate, need_engine
+        from scope_ptz.cli.bench_judged import JudgeWish
         from scope_ptz.cli.bench_live import summary
         from scope_ptz.settings import load_settings
 
@@ -142,37 +145,51 @@ def run(
             planner, perception, pair, planner_url, eyes_url, planner_model, eyes_model, planner_key_file, eyes_key_file,
             planner_option, eyes_option, reader, detector, timeout,
         )  # fmt: skip
-        judged = bool(judge_url or judge_model or load_settings().judge_url)
+        with_judge = bool(judge_url or judge_model or load_settings().judge_url)
         judge = JudgeWish(judge_url, judge_model, judge_key_file, judge_timeout, tuple(judge_option or ()), judge_repeats)
         options = RunOptions(
             wishes=wishes, out=out, tasks=split, categories=tuple(category or ()), scenes=tuple(scene or ()), limit=limit,
             epochs=epochs, seed=seed, agent=agent, max_steps=max_steps, time_s=time_budget, concurrency=concurrency,
             latency=latency, pictures=pictures, variant=variant, fresh=fresh, resume=resume, price=price_of(price),
-            judge=judge if judged else None,
+            judge=judge if with_judge else None,
         )  # fmt: skip
         console = Console(highlight=False, stderr=as_json)
-        evaluation = anyio.run(evaluate, options, console)
+        ended = anyio.run(evaluate, options, console)
+        evaluation, judged = ended.evaluation, ended.judged
         if as_json:
-            put_json(result(evaluation))
+            asked = {"judge": ended.judge, "judgements": asdict(judged)} if judged is not None else {}
+            put_json(result(evaluation) | asked)
         else:
             console.print(summary(evaluation))
+            if judged is not None:
+                put(f"judge      {ended.judge}: {judged.told}")
             put(f"log        {evaluation.log}")
-        finish(evaluation)
+        finish(ended)
 
 
-def finish(evaluation: Evaluation) -> None:
-    """Exit code 1 when runs are missing or broken: they say nothing about the agent, and the same command tries them again."""
+def finish(ended: Ended) -> None:
+    """Exit code 1 when runs are missing or broken, or the judge's server failed: such runs say nothing about the agent, and the
+    same command tries again."""
+    from scope_ptz.cli.bench_rescore import judge_failed
     from scope_ptz.cli.endings import complain
 
+    evaluation, judged = ended.evaluation, ended.judged
     broken = sum(trial.headline == "infrastructure" for trial in evaluation.trials)
     missing = max(evaluation.wanted - len(evaluation.trials), 0)
     if broken or missing:
         complain(f"{broken} runs were broken by infrastructure and {missing} are missing; the same command runs them again.")
+    if judged is not None and judged.failed:
+        complain(
+            f"{judge_failed(judged)} No run is lost; the same command asks the judge again, and so does "
+            f"`scope bench rescore {evaluation.log} --judge-url ...`."
+        )
+    if broken or missing or (judged is not None and judged.failed):
         sys.exit(FAILED)
 
 
 def result(evaluation: Evaluation) -> dict[str, object]:
-    """What ``--json`` prints."""
+    """What ``--json`` prints. Runs without a judge's verdict, where only a judge can score, are in no share."""
+    from scope_ptz.bench.judging.tally import not_judged
     from scope_ptz.cli.bench_live import CATEGORIES, accuracy, macro
 
     trials = evaluation.trials
@@ -189,6 +206,7 @@ def result(evaluation: Evaluation) -> dict[str, object]:
         "headlines": {
             name: sum(t.headline == name for t in trials) for name in ("correct", "incorrect", "unscored", "infrastructure")
         },
+        "not_judged": sum(not_judged(t) for t in trials),
     }
 
 

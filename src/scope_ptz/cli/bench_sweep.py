@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from scope_ptz.cli.bench_evaluate import RunOptions
     from scope_ptz.cli.choosing import Wishes
 
-BUILT_IN = ("grammar", "ground-truth", "noisy")
 WIDE = 160
 """Characters of a window that has room for a column a category."""
 PAIR_WIDTH = 36
@@ -88,6 +87,7 @@ def sweep(
 
 def named_pairs(text: str | None, *, paper: bool) -> list[str]:
     """The pairs to run, each once. Raises ``InputError`` for unknown ones, before anything is run."""
+    from scope_ptz.cli.choosing import read_pair
     from scope_ptz.registry import load_registry
     from scope_ptz.settings import load_settings
 
@@ -100,13 +100,7 @@ def named_pairs(text: str | None, *, paper: bool) -> list[str]:
     if not names:
         raise InputError("--pairs names no pair.")
     for name in names:
-        planner, plus, eyes = name.partition("+")
-        if plus:
-            for model, role in ((planner, "planner"), (eyes, "eyes")):
-                if model not in BUILT_IN:
-                    registry.model(model, "planner" if role == "planner" else "eyes")
-        else:
-            registry.pair(name)
+        read_pair(registry, name)
     return names
 
 
@@ -120,7 +114,7 @@ def _run_all(names: list[str], each: RunOptions, console: Console) -> dict[str, 
     for number, name in enumerate(names, 1):
         console.rule(f"{number} of {len(names)}: {name}")
         try:
-            done[name] = anyio.run(evaluate, replace(each, wishes=_wishes(each.wishes, name)), console)
+            done[name] = anyio.run(evaluate, replace(each, wishes=_wishes(each.wishes, name)), console).evaluation
         except ScopeError as error:
             done[name] = str(error)
             complain(f"{name}: {error}")
@@ -129,11 +123,13 @@ def _run_all(names: list[str], each: RunOptions, console: Console) -> dict[str, 
 
 def _wishes(shared: Wishes, name: str) -> Wishes:
     """A pair with what is said of all. A server's address is for a model; the built-in planner and eyes have none."""
-    planner, plus, eyes = name.partition("+")
-    wishes = replace(shared, planner=planner, perception=eyes) if plus else replace(shared, pair=name)
-    if plus and planner in BUILT_IN:
+    from scope_ptz.cli.choosing import BUILT_IN_EYES, GRAMMAR
+
+    planner, _, eyes = name.partition("+")
+    wishes = replace(shared, pair=name)
+    if planner == GRAMMAR:
         wishes = replace(wishes, planner_url=None, planner_key_file=None, planner_options=())
-    if plus and eyes in BUILT_IN:
+    if eyes in BUILT_IN_EYES:
         wishes = replace(wishes, eyes_url=None, eyes_key_file=None, eyes_options=())
     return wishes
 

@@ -102,8 +102,7 @@ class _Chooser:
         if w.pair is not None:
             if planner is not None or eyes is not None:
                 raise InputError("Give --pair, or --planner and --perception, not both.")
-            pair = self.registry.pair(w.pair)
-            planner, eyes = pair.planner, pair.eyes
+            planner, eyes = read_pair(self.registry, w.pair)
         planner = planner or (CHAT if w.planner_url or w.planner_model else GRAMMAR)
         eyes = eyes or (CHATTING_EYES if w.eyes_url or w.eyes_model else BUILT_IN_EYES[0])
         both = planner == eyes
@@ -243,6 +242,28 @@ class _Chooser:
         own = model.key_file if model is not None and model.url == url else None
         chosen = file or own
         return key_from_file(chosen) if chosen else from_environment
+
+
+def read_pair(registry: Registry, text: str) -> tuple[str, str]:
+    """Planner and eyes of a pair by name, ``PLANNER+EYES``, or one model that is both; built-in ones may be in it.
+
+    Raises ``UnknownNameError`` or ``ConfigError``.
+    """
+    planner, plus, eyes = text.partition("+")
+    if text in registry.pairs or not plus or (planner != GRAMMAR and eyes not in BUILT_IN_EYES):
+        pair = registry.pair(text)
+        return pair.planner, pair.eyes
+    return (
+        planner if planner == GRAMMAR else _in(registry, planner, "planner", (GRAMMAR,)),
+        eyes if eyes in BUILT_IN_EYES else _in(registry, eyes, "eyes", BUILT_IN_EYES),
+    )
+
+
+def _in(registry: Registry, name: str, role: Role, built_in: Iterable[str]) -> str:
+    try:
+        return registry.model(name, role).name
+    except UnknownNameError as error:
+        raise UnknownNameError(role, name, [*built_in, *registry.named(role)]) from error
 
 
 def parse_options(pairs: Iterable[str], option: str) -> dict[str, Any]:

@@ -12,8 +12,8 @@ import json
 import os
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
-from typing import Any
+from contextlib import contextmanager, redirect_stdout
+from typing import Any, TextIO, cast
 
 from scope_ptz.errors import InputError, PackError, ScopeError, ToolCallError, TraceError
 
@@ -25,6 +25,36 @@ _BY_OUTCOME = {"answered": 0, "clarification": 0, "refused": 0, "cancelled": CAN
 def exit_code(outcome: str) -> int:
     """Exit code of a run's outcome."""
     return _BY_OUTCOME.get(outcome, FAILED)
+
+
+class _Patient:
+    """Stdout that does not mind when its reader has seen enough (`scope tools | head`): the command goes on to its end, because
+    what it finds out decides the exit code."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+
+    def write(self, text: str) -> int:
+        try:
+            return self._stream.write(text)
+        except BrokenPipeError:
+            self._turn_away()
+            return len(text)
+
+    def flush(self) -> None:
+        try:
+            self._stream.flush()
+        except BrokenPipeError:
+            self._turn_away()
+
+    def _turn_away(self) -> None:
+        """Whatever follows, and what is still held back, goes nowhere."""
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, self._stream.fileno())
+        os.close(nowhere)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
 
 
 def put(text: str) -> None:
@@ -44,10 +74,20 @@ def complain(message: str) -> None:
 
 @contextmanager
 def ending(*, as_json: bool = False) -> Iterator[None]:
-    """Turn SCOPE's own errors, Ctrl-C and a closed pipe into the end of the program."""
+    """Turn SCOPE's own errors and Ctrl-C into the end of the program. A closed pipe changes nothing about it."""
+    patient = _Patient(sys.stdout)
+    with redirect_stdout(cast(TextIO, patient)):
+        try:
+            with _told_as_code(as_json=as_json):
+                yield
+        finally:
+            patient.flush()
+
+
+@contextmanager
+def _told_as_code(*, as_json: bool) -> Iterator[None]:
     try:
         yield
-        sys.stdout.flush()
     except ScopeError as error:
         bad_input = isinstance(error, InputError | PackError | TraceError | ToolCallError)
         complain(str(error))
@@ -57,7 +97,3 @@ def ending(*, as_json: bool = False) -> Iterator[None]:
     except KeyboardInterrupt:
         complain("cancelled.")
         sys.exit(CANCELLED)
-    except BrokenPipeError:
-        # Whoever read the output has seen enough (`scope tools | head`); stdout must not complain again at exit.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(0)

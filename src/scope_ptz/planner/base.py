@@ -107,7 +107,10 @@ class Served(_Model):
 
 
 class CallTools(_Model):
-    """``thought``: what the planner says beside its calls; ``reasoning``: what it thought, for traces only."""
+    """``thought``: what the planner says beside its calls; ``reasoning``: what it thought, for traces only.
+
+    ``opened``: whether it took the picture that it was offered (None: whoever sees is given it).
+    """
 
     kind: Literal["call"] = "call"
     calls: tuple[ToolCall, ...] = Field(min_length=1)
@@ -115,16 +118,18 @@ class CallTools(_Model):
     usage: Usage = Usage()
     reasoning: str = ""
     served: Served | None = None
+    opened: bool | None = None
 
 
 class Finish(_Model):
-    """The end of a run. ``text`` is the answer, the clarifying question, or the reason for refusing."""
+    """The end of a run. ``text`` is the answer, the clarifying question, or the reason for refusing. ``opened`` as above."""
 
     kind: Literal["answered", "clarification", "refused"]
     text: str = Field(min_length=1)
     usage: Usage = Usage()
     reasoning: str = ""
     served: Served | None = None
+    opened: bool | None = None
 
 
 Decision = CallTools | Finish

@@ -221,7 +221,7 @@ def _behind_its_own(viewpoint: Viewpoint, rays: NDArray[np.float64], shown: NDAr
     """
     still_m, owners = distances_m(viewpoint, rays)
     away_m = np.linalg.norm(rays, axis=-1)
-    return (owners == shown) & (still_m * (1 + TOLERANCE_SHARE) + TOLERANCE_M < away_m)
+    return np.asarray((owners == shown) & (still_m * (1 + TOLERANCE_SHARE) + TOLERANCE_M < away_m))
 
 
 def _box(box: NDArray[np.float64]) -> BoxTuple:

@@ -9,7 +9,7 @@ import pytest
 
 from scope_ptz.bench.authoring.drafts import Draft, Question
 from scope_ptz.bench.authoring.places import Place, go, preset_at
-from scope_ptz.bench.authoring.selection import POLAR, SAME, Selection, Shared, first_is_right
+from scope_ptz.bench.authoring.selection import AT_ONE_PLACE, POLAR, SAME, Selection, Shared, right_at
 from scope_ptz.bench.episode import Standing
 from scope_ptz.bench.expected import AnyExpected, Choice, NoneThere, Number, YesNo
 from scope_ptz.geometry import Pose
@@ -74,11 +74,35 @@ def test_nothing_is_taken_twice_and_the_same_comes_again(place: Place) -> None:
     assert chosen([*drafts, *drafts], 10) == once
 
 
-def test_the_first_of_an_offer(place: Place) -> None:
-    for value, first in (("cars", True), ("vans", False)):
-        offered = Draft("comparative", "more", "x", place, Choice(value=value, options={"cars": (), "vans": ()}))
-        assert first_is_right(offered, "Are there more cars or more vans?") is first
-        assert first_is_right(offered, "Are there more vans or more cars?") is not first
+def test_where_in_an_offer_the_right_answer_stands(place: Place) -> None:
+    options = Choice(value="cars", options={"cars": (), "vans": (), "buses": ()})
+    offer = Draft("comparative", "more", "x", place, options)
+    assert right_at(offer, "Are there more cars or more vans?") == ["0"]
+    assert right_at(offer, "Are there more vans or more cars?") == ["1", "last"]
+    assert right_at(offer, "What is there most of: vans, cars or buses?") == ["1"]
+    assert right_at(offer, "What is there most of?") == []
+
+
+def test_no_place_in_an_offer_is_right_too_often(place: Place) -> None:
+    def offer(n: int, value: str) -> Draft:
+        expected = Choice(value=value, options={f"cars {n}": (), f"vans {n}": ()})
+        return Draft(
+            "comparative",
+            "more",
+            f"{n}",
+            place,
+            expected,
+            Question(((f"are there more cars {n} or more vans {n}?",) * 2,)),
+            reads=value,
+        )
+
+    last = [offer(n, f"vans {n}") for n in range(40)]
+    first = [offer(n, f"cars {n}") for n in range(40, 60)]
+    rows = Selection("comparative", 12, Shared(), 1).fill([*last, *first])
+    assert Counter(at for row in rows for at in right_at(row.draft, row.text) if at != "1") == {
+        "0": 5,
+        "last": AT_ONE_PLACE["comparative"],
+    }
 
 
 def test_the_order_of_drafts_does_not_matter(place: Place) -> None:

@@ -18,7 +18,7 @@ from scope_ptz.bench.authoring.assembly import Built
 from scope_ptz.bench.authoring.reactions import reactions
 from scope_ptz.bench.cheats import common_answers
 from scope_ptz.bench.expected import Choice, NoneThere, Number, YesNo
-from scope_ptz.bench.phrasing import first_named
+from scope_ptz.bench.phrasing import offered
 from scope_ptz.bench.task_files import dump_tasks, load_tasks
 from scope_ptz.bench.tasks import Task
 from scope_ptz.bench.validate import Report, structure, validate
@@ -126,11 +126,13 @@ def test_no_answer_passes_both_tasks_of_a_pair(report: Report, built: Built) -> 
     assert none and {one for one in none if twins[one] is None} <= denied
 
 
-def test_what_a_question_offers_first() -> None:
+def test_what_a_question_offers() -> None:
     sides = Choice(value="right", options={"left": ("left half",), "right": ("right half",)})
-    assert first_named(sides, "Turn 20 degrees to the right. Is the car in the left or the right half?") == "left"
-    assert first_named(sides, "On which side is the car?") is None
-    assert first_named(Number(value=2), "How many cars or vans are there?") is None
+    assert offered(sides, "Turn 20 degrees to the right. Is the car in the left or the right half?") == ("left", "right")
+    assert offered(sides, "On which side is the car?") == ()
+    assert offered(Number(value=2), "How many cars or vans are there?") == ()
+    three = Choice(value="bus", options={"red car": (), "van": (), "bus": (), "same": ()})
+    assert offered(three, "Which is nearest: the van, the red car or the bus?") == ("van", "red car", "bus")
 
 
 def test_the_most_common_answer_stands_without_the_words_of_its_question(built: Built) -> None:

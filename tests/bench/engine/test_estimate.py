@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -9,6 +10,7 @@ import pytest
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.estimate import Price, estimate
 from scope_ptz.bench.engine.logs import read_evaluation
+from scope_ptz.bench.engine.runs import earlier
 from scope_ptz.bench.judging.wording import facts_of
 from scope_ptz.cli.bench_evaluate import opening_chars
 from scope_ptz.cli.bench_foretelling import amount, lines
@@ -49,6 +51,13 @@ def test_what_was_run_before_is_measured(a_log: Path) -> None:
     share = told.decisions / sum(t.steps for t in trials)
     assert told.input_tokens == round(4000 * share)
     assert "by 4 earlier runs of this pair" in "\n".join(lines(told, CHOICE, 1))
+
+
+def test_a_run_that_stands_in_several_logs_counts_once(evaluated: Path) -> None:
+    shutil.copy2(evaluated, evaluated.with_name(f"{evaluated.stem}-recovered.eval"))
+    known = earlier(evaluated.parent, "grammar", "ground-truth")
+    assert estimate(ENTRIES, 1, 1, known).measured_on == 4
+    assert not earlier(evaluated.parent, "their:Agent", "ground-truth")
 
 
 @pytest.mark.parametrize(("tokens", "words"), [(340, "340"), (16_800, "17 thousand"), (3_400_000, "3.4 million")])

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import asyncio
+import importlib
+import re
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from scope_ptz.bench.engine.guests import Desk, GuestPlanner, Reply
+from scope_ptz.bench.engine.guests import Desk, GuestPlanner, Reply, source_digest
 from scope_ptz.bench.engine.logs import open_sample, read_evaluation
 from scope_ptz.errors import PlannerError
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import Briefing, CallTools, Exchange, Finish, State, ToolOutcome
-from tests.cli.conftest import Scope
+from tests.cli.conftest import Done, Scope
 
 MODULE = """
 import re
@@ -51,6 +54,84 @@ def test_an_agent_of_somebody_else(scope: Scope, tasks_file: Path, tmp_path: Pat
     turned = next(t for t in evaluation.trials if t.task.category == "single_call")
     assert (turned.bad_calls, turned.tool_calls) == (1, {"adjust_ptz": 2})
     assert open_sample(Path(done.json["log"]), turned.sample).trace.started.planner == "their_loop:Agent"
+
+
+SEEING = """
+class Agent:
+    sees = True
+
+    async def run(self, desk):
+        {looks}
+        return "There are 3 balls."
+"""
+
+
+@pytest.mark.parametrize(("looks", "headline"), [("desk.view()", "correct"), ("pass", "incorrect")])
+def test_only_a_picture_that_was_opened_was_looked_at(
+    looks: str, headline: str, scope: Scope, tasks_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    module = f"seeing_loop_{looks[:4]}"
+    (tmp_path / f"{module}.py").write_text(SEEING.format(looks=looks))
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    options = ("--category", "counting", "--limit", "1", "--out", "logs", "--json")
+    done = scope("bench", "run", "--tasks", str(tasks_file), "--agent", f"{module}:Agent", *options)
+    assert done.code == 0, done.err
+    (trial,) = read_evaluation(Path(done.json["log"])).trials
+    assert trial.headline == headline
+
+
+QUICK = """
+class Agent:
+    async def run(self, desk):
+        return {answer!r}
+"""
+
+
+def test_other_source_is_another_evaluation(
+    scope: Scope, tasks_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    options = ("--tasks", str(tasks_file), "--agent", "quick_loop:Agent", "--no-pictures", "--limit", "2", "--out", "logs")
+
+    def run_as(answer: str) -> Done:
+        (tmp_path / "quick_loop.py").write_text(QUICK.format(answer=answer))
+        importlib.invalidate_caches()
+        monkeypatch.delitem(sys.modules, "quick_loop", raising=False)
+        return scope("bench", "run", *options)
+
+    first = run_as("x")
+    assert first.code == 0, first.err
+    assert "2 runs of quick_loop:Agent + ground-truth" in first.out
+    # Somebody else's loop plans: nothing is said of a planner of ours, and nothing is promised of costs.
+    assert "grammar" not in first.out and "of the planner" not in first.out and "paid server" not in first.out
+    assert "cost    unknown: what the agent asks of models of its own is not known here" in first.out
+    assert "is done" in run_as("x").err
+    changed = run_as("a longer answer")
+    assert "is done" not in changed.err
+    assert re.search(r"The source of quick_loop:Agent is not that of logs/\S+\.eval: this is a new evaluation\.", changed.out)
+    assert "by 2 earlier runs of this agent" in changed.out
+    # Names of logs begun in the same second do not tell which was the first.
+    evaluations = sorted(map(read_evaluation, Path("logs").glob("*.eval")), key=lambda e: len(e.trials[0].answer))
+    assert [{t.answer for t in e.trials} for e in evaluations] == [{"x"}, {"a longer answer"}]
+    digests = [e.card.sampling["agent_source"] for e in evaluations]
+    assert [len(digest) for digest in digests] == [16, 16] and digests[0] != digests[1]
+    assert digests[1] == source_digest("quick_loop:Agent")
+
+
+def test_the_source_of_a_package_is_all_of_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    (tmp_path / "their_package" / "parts").mkdir(parents=True)
+    for name, text in (("__init__.py", ""), ("loop.py", QUICK.format(answer="x")), ("parts/words.py", "WORD = 1\n")):
+        (tmp_path / "their_package" / name).write_text(text)
+    before = source_digest("their_package.loop:Agent")
+    (tmp_path / "elsewhere.py").write_text("no part of it")
+    assert source_digest("their_package.loop:Agent") == before
+    (tmp_path / "their_package" / "parts" / "words.py").write_text("WORD = 2\n")
+    assert source_digest("their_package.loop:Agent") != before
+    assert source_digest("their_package.loop:Agent") != ""
 
 
 STATE = State(instruction="look around", briefing=Briefing(presets=("gate",), pose=Pose(), limits=Limits()))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from pathlib import Path
 
 import cv2
@@ -10,8 +11,11 @@ import numpy as np
 import pytest
 from inspect_ai.log import read_eval_log
 
+from scope_ptz.bench.engine.entries import Entry, chosen
 from scope_ptz.bench.engine.logs import open_sample, read_evaluation
 from scope_ptz.bench.error_modes import ErrorMode
+from scope_ptz.bench.judging.wording import facts_of
+from scope_ptz.bench.trials import Trial
 from tests.bench.engine.making import SCENE, TASKS
 from tests.cli.conftest import Scope
 
@@ -24,11 +28,26 @@ def test_a_log_reads_as_judged_runs(evaluated: Path) -> None:
     counted, miscounted, turned, _ = evaluation.trials
     assert counted.tool_calls == {"count_objects": 1}
     assert counted.look_s["current"][0] > 0
+    # The camera's time is no part of the eyes': together they are no longer than the whole call.
+    (look,) = counted.looks
+    assert look.view == "current" and look.capture_s > 0 and look.eyes_s > 0
+    assert look.eyes_s + look.capture_s <= counted.look_s["current"][0]
+    assert look.eyes_s <= counted.timings.perception_s + 1e-3
     assert (counted.task.viewpoint, counted.task.category) == ("mast", "counting")
     # The eyes said what really shows, so it was not they that erred.
     assert miscounted.error_mode not in (None, ErrorMode.VLM_COUNTING)
     assert turned.timings.total_s >= turned.timings.planner_s > 0
     assert {check.name for check in turned.checks} >= {"outcome", "pose"}
+
+
+def test_parts_of_looks_are_had_from_the_trace_where_a_log_does_not_hold_them(
+    evaluated: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told = read_evaluation(evaluated).trials
+    real = Trial.model_validate
+    monkeypatch.setattr(Trial, "model_validate", lambda row: real({k: v for k, v in row.items() if k != "looks"}))
+    assert [trial.looks for trial in read_evaluation(evaluated).trials] == [trial.looks for trial in told]
+    assert any(trial.looks for trial in told)
 
 
 def test_the_card_says_how_it_was_run(evaluated: Path) -> None:
@@ -95,6 +114,42 @@ def test_epochs_categories_and_no_pictures(scope: Scope, tasks_file: Path, tmp_p
     assert not open_sample(Path(done.json["log"]), evaluation.trials[0].sample).references
 
 
+def test_a_limit_spreads_over_categories_scenes_and_scopes() -> None:
+    rows = [
+        (category, scene, "full" if category == "counting" and number == 0 else "current", number)
+        for scene in ("north", "south", "west")
+        for category in ("ocr", "counting", "location")
+        for number in range(10)
+    ]
+    facts = facts_of(TASKS[0], "mast")
+    entries = tuple(
+        Entry(
+            facts=facts.model_copy(update={"id": f"{scene}-{category}-{n}", "category": category, "scene": scene, "scope": scope}),
+            world=scene,
+        )
+        for category, scene, scope, n in rows
+    )
+    for limit in (3, 8, 30, 89):
+        some = chosen(entries, limit=limit)
+        assert len({e.facts.id for e in some}) == limit
+        assert some == chosen(entries, limit=limit), "the same ones each time"
+        assert [e for e in entries if e in some] == list(some), "in their order"
+        for name in ("category", "scene"):
+            counts = Counter(getattr(e.facts, name) for e in some)
+            assert len(counts) == 3 and max(counts.values()) - min(counts.values()) <= 2
+        # Three of ninety tasks ask for the whole scene: one is among a few, and not all are.
+        full = sum(e.facts.scope == "full" for e in some)
+        assert 1 <= full <= max(1, round(limit / 30) + 1)
+    assert chosen(entries, limit=90) == chosen(entries) == entries
+
+
+def test_built_in_ones_may_be_in_a_pair(scope: Scope, tasks_file: Path, tmp_path: Path) -> None:
+    pairs = ("grammar+ground-truth", "grammar+noisy")
+    options = ("--tasks", str(tasks_file), "--category", "single_call", "--no-pictures", "--json")
+    logs = [Path(scope("bench", "run", *options, "--pair", name, "--out", str(tmp_path)).json["log"]) for name in pairs]
+    assert [read_evaluation(log).card.pair for log in logs] == ["grammar + ground-truth", "grammar + noisy"]
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [
@@ -103,6 +158,9 @@ def test_epochs_categories_and_no_pictures(scope: Scope, tasks_file: Path, tmp_p
         (["--tasks", "no-such-split"], "no split"),
         (["--tasks", "missing.jsonl"], "cannot be read"),
         (["--pair", "nobody+nothing"], "There is no"),
+        (["--pair", "qwen3-4b+ground-truth"], "'qwen3-4b' runs on a model server"),
+        (["--pair", "nobody+ground-truth"], "There is no planner 'nobody'"),
+        (["--pair", "ground-truth+grammar"], "There is no planner 'ground-truth'"),
         (["--agent", "nonsense"], "module:Class"),
         (["--agent", "json:nothing"], "cannot be imported"),
         (["--agent", "json:JSONDecoder"], "is no agent"),

@@ -188,6 +188,15 @@ def test_what_is_wrong_is_found_in_every_row_that_it_is_about(tmp_path: Path, ki
     assert len(done.as_dict()["each"]) == len(rows), "no row is dropped"
 
 
+def test_an_unknown_category_is_told_where_another_column_stands_in(tmp_path: Path) -> None:
+    done = imported(tmp_path, {"eval_category": "Telepathy", "question_type": "location"}, {"question_type": "location"})
+    (task, usual) = done.tasks
+    assert (task.facts.category, usual.facts.category) == ("location", "counting")
+    (finding,) = [f for f in done.findings[done.rows[0].line] if f.kind == "unknown-value"]
+    assert finding.detail == "eval_category: Telepathy; read as location, by question_type: location"
+    assert "unknown-value" not in kinds(done, 1)
+
+
 CLEAN = {"answer_view": "full"}
 
 

@@ -9,7 +9,7 @@ from typing import Any
 from scope_ptz.agent.timing import Timings
 from scope_ptz.bench.error_modes import ErrorMode
 from scope_ptz.bench.tasks import Category
-from scope_ptz.bench.trials import Check, Evaluation, Judgement, ModelCard, RunCard, TaskFacts, Trial
+from scope_ptz.bench.trials import Check, Evaluation, Judgement, LookTime, ModelCard, RunCard, TaskFacts, Trial
 
 CATEGORIES: tuple[Category, ...] = (
     "counting", "descriptor", "location", "ocr", "single_call", "multi_step_command", "multi_step_reasoning", "comparative"
@@ -120,10 +120,11 @@ def _chanced(
         error_mode=(mode or ErrorMode.REASONING) if verdict == "incorrect" else None,
         reason="The count is wrong." if mode else "", input_tokens=2000, output_tokens=150,
     )  # fmt: skip
+    look_s = eyes_s if task.scope == "current" else eyes_s * 1.25
     return trial(
         task, headline, epoch=epoch, sample=f"{task.id}/{epoch}", error_mode=mode, judgements=(judgement,) if judged else (),
         timings=Timings(planner_s=planner_s, perception_s=eyes_s, camera_s=0.2, render_s=0.1, total_s=planner_s + eyes_s + 0.35),
-        look_s={"current": (eyes_s,)} if task.scope == "current" else {"full": (eyes_s * 1.25,)}, input_tokens=3000,
+        look_s={task.scope: (look_s + 0.3,)}, looks=(LookTime(view=task.scope, eyes_s=look_s, capture_s=0.25),), input_tokens=3000,
         output_tokens=200, cost_usd=0.002, collateral=chance.random() < 0.03, steps=chance.randint(2, 6),
     )  # fmt: skip
 

@@ -20,6 +20,7 @@ from scope_ptz.bench.statistics.clustered import (
     macro_weights,
     pooled,
     share,
+    strata_without_spread,
     t_quantile,
     two_sided_p,
     weighted_mean,
@@ -44,6 +45,40 @@ def test_a_worked_example() -> None:
     assert cluster_variance(SMALL, weights) == pytest.approx(2 / 1 * 2 * (3 / 16) ** 2)
     assert weighted_mean(pooled(SMALL), {"all": 1.0}) == pytest.approx(4 / 6)
     assert weighted_mean(SMALL, {"a": 1.0, "b": -1.0}) == pytest.approx(0.25)
+
+
+def test_as_if_independent_worked_out_by_hand() -> None:
+    # Residuals times 1/(2 n_k), each an outcome of its own. a: 1/4, -3/4, 1/4, 1/4 over 8; b: -1/2, 1/2 over 4.
+    squares = (3 * (1 / 32) ** 2 + (3 / 32) ** 2) + 2 * (1 / 8) ** 2
+    assert squares == pytest.approx(11 / 256)
+    assert independent_variance(SMALL, macro_weights(SMALL)) == pytest.approx(6 / 5 * 11 / 256)
+    # One stratum: s^2/n with s^2 = sum (x - mean)^2 / (n - 1), for 4 of 6: (4 (1/3)^2 + 2 (2/3)^2) / 5 / 6.
+    assert independent_variance(pooled(SMALL), {"all": 1.0}) == pytest.approx((4 / 9 + 8 / 9) / 5 / 6)
+    assert independent_variance(Scores(np.array([1.0]), ("a",), ("x",)), {"a": 1.0}) is None
+
+
+def test_clusters_that_agree_by_chance_do_not_lower_the_standard_error() -> None:
+    # Both clusters have half right, so that they tell nothing of a variance: 0 between them, the floor of four outcomes stays.
+    scores = Scores(np.array([1.0, 0, 1, 0]), ("a",) * 4, ("x", "x", "y", "y"))
+    assert cluster_variance(scores, {"a": 1.0}) == 0
+    found = share(scores)
+    assert found is not None and found.se == pytest.approx(sqrt(4 * 0.25 / 3 / 4))
+
+
+def test_strata_of_one_cluster_are_named_and_give_no_interval_of_their_own() -> None:
+    # c is one outcome, b two of one viewpoint: neither tells how it varies between viewpoints.
+    values, strata = np.array([1.0, 0, 1, 1, 0, 1, 1]), ("a", "a", "a", "a", "b", "b", "c")
+    scores = Scores(values, strata, ("x", "x", "y", "y", "x", "x", "y"))
+    assert strata_without_spread(scores, macro_weights(scores)) == ("b", "c")
+    assert strata_without_spread(scores, {"a": 1.0}) == ()
+    for estimate in (share(scores, macro_weights(scores)), difference(scores, macro_weights(scores))):
+        assert estimate is not None and estimate.without == ("b", "c") and estimate.low is not None
+    alone = Scores(values[:2], ("b", "c"), ("x", "y"))
+    for estimate in (share(alone, macro_weights(alone)), difference(alone, macro_weights(alone))):
+        assert estimate is not None and (estimate.value, estimate.low, estimate.high, estimate.se) == (0.5, None, None, None)
+        assert two_sided_p(estimate) is None
+    whole = share(SMALL, macro_weights(SMALL))
+    assert whole is not None and whole.without == ()
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -102,15 +137,16 @@ def test_shares_stay_within_their_intervals_and_these_within_0_and_1(rows: list[
     for weights in (None, macro_weights(scores)):
         found = share(scores, weights)
         assert found is not None
-        if len({c for _, _, c in rows}) < 2:
+        groups = ["all"] * len(rows) if weights is None else [s for _, s, _ in rows]
+        viewpoints = [len({c for own, (_, _, c) in zip(groups, rows, strict=True) if own == group}) for group in set(groups)]
+        if max(viewpoints) < 2:
             assert found.low is None and found.high is None and found.se is None
         else:
             assert found.low is not None and found.high is not None and found.se is not None
             assert -1e-12 <= found.low <= found.value + 1e-12 and found.value <= found.high + 1e-12 <= 1 + 2e-12
             assert found.high - found.low > 0
-            assert (
-                found.se**2 >= independent_variance(pooled(scores) if weights is None else scores, weights or {"all": 1.0}) - 1e-12
-            )
+            floor = independent_variance(pooled(scores) if weights is None else scores, weights or {"all": 1.0})
+            assert floor is not None and found.se**2 >= floor - 1e-12
 
 
 def test_without_data_there_is_no_estimate() -> None:

@@ -11,7 +11,7 @@ from typing import Any
 
 import jsonschema  # type: ignore[import-untyped]
 import pytest
-from typer.testing import CliRunner
+from typer.testing import CliRunner, Result
 
 import scope_ptz
 from scope_ptz.bench.checks import run_checks
@@ -213,6 +213,43 @@ def test_the_commands(rows: Rows, tmp_path: Path) -> None:
     bad = run(app, ["bench", "submission", "validate", str(path), "--tasks", str(tasks), "--json"])
     assert bad.exit_code == 1 and json.loads(bad.stdout)["valid"] is False
     assert run(app, ["bench", "submission", "validate", str(tmp_path / "no.jsonl")]).exit_code == 2
+
+
+def test_only_a_whole_split_is_made_into_a_submission(tmp_path: Path) -> None:
+    whole, tasks, out = made(2), tmp_path / "tasks.jsonl", tmp_path / "out.jsonl"
+    dump_tasks(TASKS, tasks)
+
+    def make(evaluation: Evaluation, *options: str) -> Result:
+        log = tmp_path / "log.json"
+        log.write_text(evaluation.model_dump_json(warnings=False), "utf-8")
+        out.unlink(missing_ok=True)
+        return CliRunner().invoke(app, ["bench", "submission", "make", str(log), "--out", str(out), *options])
+
+    named = ("--tasks", str(tasks))
+    done = make(whole, *named)
+    assert done.exit_code == 0 and not check_submission(out, TASKS).faults
+    unknown = make(whole)
+    assert (unknown.exit_code, out.exists()) == (2, False) and "Give its tasks with --tasks" in unknown.stderr
+    # Of a run with --limit the log is finished and the split is not covered.
+    first = whole.trials[0].task.id
+    some = tuple(t for t in whole.trials if t.task.id != first)
+    limited = whole.model_copy(update={"trials": some, "wanted": len(some)})
+    refused = make(limited, *named)
+    assert (refused.exit_code, out.exists()) == (2, False)
+    assert f"{first} is missing (repeats 1, 2)" in refused.stderr and "--partial" in refused.stderr
+    partial = make(limited, *named, "--partial")
+    assert partial.exit_code == 0 and "is partial and no valid submission" in partial.stderr
+    assert any(f"{first} is missing" in fault for fault in check_submission(out, TASKS).faults)
+    core = limited.model_copy(update={"card": limited.card.model_copy(update={"split": "core"})})
+    refused = make(core)
+    assert refused.exit_code == 2 and "does not cover core" in refused.stderr and "more such faults" in refused.stderr
+    # Other words of the same tasks are other tasks.
+    reworded = whole.trials[0].model_copy(
+        update={"task": whole.trials[0].task.model_copy(update={"instruction": "Something else."})}
+    )
+    trials = (reworded, reworded.model_copy(update={"epoch": 2}), *whole.trials[2:])
+    other = make(whole.model_copy(update={"trials": trials}), *named)
+    assert other.exit_code == 2 and "the digest of the tasks is another" in other.stderr
 
 
 def test_validating_needs_nothing_that_the_extra_brings() -> None:

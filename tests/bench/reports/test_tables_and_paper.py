@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+from dataclasses import replace
 
 import pytest
 
@@ -24,7 +25,8 @@ INTERVAL = Estimate(0.7383, 0.7, 0.8, 0.02, 100, 12)
         (1.234, "ratio", "1.23x"), (12345, "count", "12,345"), (0.0123, "seconds", "0.01"), (0.0012, "seconds", "< 0.01"),
             (9.184, "seconds", "9.18"),
         (0.00213, "usd", "0.0021"), ("", "text", ""), (Marked(None), "share", "not measured"),
-        (Estimate(0.5, None, None, None, 2, 1), "share", "50.0"),
+        (Estimate(0.5, None, None, None, 2, 1), "share", "50.0 (interval not known)"),
+        (replace(INTERVAL, without=("single_call", "ocr")), "share", "73.8 (70.0 to 80.0, without single call, ocr)"),
     ],
 )  # fmt: skip
 def test_cells_in_words(value: object, kind: object, words: str) -> None:
@@ -42,6 +44,14 @@ def test_csv_has_full_figures_and_empty_fields_for_what_is_missing() -> None:
     rows = list(csv.DictReader(io.StringIO(as_csv(small()))))
     assert rows[0] == {"group": "group", "run": "a", "macro": "0.7383", "macro_low": "0.7", "macro_high": "0.8", "cost": ""}
     assert rows[1] == {"group": "group", "run": "b", "macro": "0.5", "macro_low": "", "macro_high": "", "cost": "1.5"}
+
+
+def test_an_interval_that_lacks_strata_names_them_in_csv_too() -> None:
+    columns = (Column("run", "Run"), Column("macro", "Macro (%)", "share"))
+    narrow = replace(INTERVAL, without=("single_call", "ocr"))
+    rows = list(csv.DictReader(io.StringIO(as_csv(Table("key", "T", columns, (("a", narrow), ("b", INTERVAL), ("c", None)))))))
+    assert [row["macro_without"] for row in rows] == ["single_call ocr", "", ""]
+    assert (rows[0]["macro"], rows[0]["macro_low"], rows[2]["macro_high"]) == ("0.7383", "0.7", "")
 
 
 @pytest.mark.parametrize("text", ["=HYPERLINK(1)", "+1", "-1+cmd", "@SUM(A1)", "\t=1"])

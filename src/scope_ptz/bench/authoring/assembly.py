@@ -10,7 +10,7 @@ from scope_ptz.bench.authoring.descriptor import values_of
 from scope_ptz.bench.authoring.desk import Desk
 from scope_ptz.bench.authoring.drafts import Draft, difficulty
 from scope_ptz.bench.authoring.reactions import DATASET, reactions
-from scope_ptz.bench.authoring.selection import Chosen, Selection, Shared
+from scope_ptz.bench.authoring.selection import Answered, Chosen, Selection, Shared
 from scope_ptz.bench.tasks import Behaviour, Category, Task
 from scope_ptz.world.pack import Scene
 
@@ -38,14 +38,19 @@ class Builder:
     """Chooses from the desks of all scenes in turn, so that scenes, viewpoints and sorts of question are evenly used."""
 
     def __init__(
-        self, scenes: Sequence[Scene], seed: int, quotas: dict[Category, int] | None = None, say: Say | None = None
+        self,
+        scenes: Sequence[Scene],
+        seed: int,
+        quotas: dict[Category, int] | None = None,
+        say: Say | None = None,
+        answered: Answered | None = None,
     ) -> None:
         self.scenes, self.seed, self.quotas = sorted(scenes, key=lambda scene: scene.name), seed, quotas or QUOTAS
         self.say: Say = say or (lambda _: None)
         things = [thing for scene in scenes for thing in scene.things]
         nouns = frozenset({thing.category for thing in things} | {noun for scene in scenes for noun in scene.file.absent})
         self.desks = [Desk(scene, seed, nouns, values_of(things)) for scene in scenes]
-        self.shared = Shared(scale=sum(self.quotas.values()) / sum(QUOTAS.values()))
+        self.shared = Shared(scale=sum(self.quotas.values()) / sum(QUOTAS.values()), answered=answered)
 
     def build(self) -> Built:
         built = Built()
@@ -134,6 +139,13 @@ def _task(row: Chosen, text: str, wording: int = 0) -> Task:
     )
 
 
-def build(scenes: Sequence[Scene], seed: int = 1, quotas: dict[Category, int] | None = None, say: Say | None = None) -> Built:
-    """The dataset of these scenes; what they do not yield is told in ``short``."""
-    return Builder(scenes, seed, quotas, say).build()
+def build(
+    scenes: Sequence[Scene],
+    seed: int = 1,
+    quotas: dict[Category, int] | None = None,
+    say: Say | None = None,
+    answered: Answered | None = None,
+) -> Built:
+    """The dataset of these scenes; what they do not yield is told in ``short``. ``answered``: whether eyes that see all can answer
+    what the reference program of a draft asks them (None: taken for granted)."""
+    return Builder(scenes, seed, quotas, say, answered).build()

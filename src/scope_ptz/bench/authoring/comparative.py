@@ -41,7 +41,7 @@ def _of_two(place: Place, rng: random.Random) -> Iterator[Draft]:
         (one, many), (two, few) = rng.sample(pair, 2)
         first, second = many_of(one), many_of(two)
         seen = tuple(counted_view(place, kind, number) for kind, number in ((one, many), (two, few)))
-        kind, expected, asked = (_more, _fewer, _compare, _whether)[n % 4](first, second, many, few)
+        kind, expected, asked = (_excess, _more, _fewer, _compare, _whether)[n % 5](first, second, many, few)
         yield Draft(
             category="comparative",
             kind=kind,
@@ -68,6 +68,8 @@ def _reads(expected: AnyExpected) -> str:
             return expected.value
         case Ordering():
             return "/".join(expected.value)
+        case Number():
+            return f"{expected.value:g}"
     return expected.kind
 
 
@@ -93,6 +95,17 @@ def _fewer(first: str, second: str, n: int, m: int) -> _Asked:
         (f"which are there fewer of, {first} or {second}?", f"which there are fewer of, {first} or {second}"),
     )
     return "fewer", expected, Question(forms)
+
+
+def _excess(first: str, second: str, n: int, m: int) -> _Asked:
+    if n <= m:
+        return _compare(first, second, n, m)
+    forms = (
+        (f"how many more {first} than {second} are there?", f"how many more {first} than {second} there are"),
+        (f"by how many do the {first} outnumber the {second}?", f"by how many the {first} outnumber the {second}"),
+    )
+    # No unit: the numbers of the two kinds must not be taken for what lies between them.
+    return "excess", Number(value=n - m), Question(forms)
 
 
 def _compare(first: str, second: str, n: int, m: int) -> _Asked:
@@ -177,15 +190,15 @@ def _most(names: list[str], winner: str) -> tuple[Question, Choice]:
 
 
 def _distances(place: Place, rng: random.Random) -> Iterator[Draft]:
-    """Which of two or three things is nearest or farthest, and three in the order of their distance."""
+    """Which of two to four things is nearest or farthest, and three in the order of their distance."""
     if place.swept:
         return
     named = distinct(place.sight)
-    for size in (2, 3):
+    for size in (2, 3, 4):
         for group in _some(named, size, rng):
             ranked = sorted(group, key=lambda n: n.thing.distance_m)
             gaps = [b.thing.distance_m / max(a.thing.distance_m, 0.1) for a, b in pairwise(ranked)]
-            if min(gaps) >= _NEARER:
+            if min(gaps if size < 4 else (gaps[0], gaps[-1])) >= _NEARER:
                 names = [one.the for one in rng.sample(group, size)]
                 yield from _by_distance(place, ranked, names, rng)
 
@@ -213,15 +226,16 @@ def _by_distance(place: Place, ranked: list[Named], names: list[str], rng: rando
 
 
 def _sizes(place: Place, rng: random.Random) -> Iterator[Draft]:
-    """Which of three takes up most of the picture: what shows decides, not what the things really measure."""
+    """Which of three or four takes up most of the picture: what shows decides, not what the things really measure."""
     if place.swept:
         return
-    for group in _some(distinct(place.sight), 3, rng):
+    named = distinct(place.sight)
+    for group in (*_some(named, 3, rng), *_some(named, 4, rng)):
         areas = {one.name: place.sight.areas(one.thing) for one in group}
         ranked = sorted(group, key=lambda one: areas[one.name][0], reverse=True)
         if min(areas[ranked[0].name]) < _LARGER * max(max(areas[one.name]) for one in ranked[1:]):
             continue
-        either = listing([one.the for one in rng.sample(group, 3)], "or")
+        either = listing([one.the for one in rng.sample(group, len(group))], "or")
         expected = Choice(value=ranked[0].name, options={one.name: () for one in ranked}, picks=("largest", "biggest", "most"))
         asked = Question(
             same_form(
@@ -245,6 +259,7 @@ def _seen(place: Place, kind: str, expected: Choice | Ordering, asked: Question,
     ids = "/".join(sorted(one.thing.instance.id for one in things))
     measures = [one.thing.distance_m if tag == "distance" else float(one.thing.pixels) for one in things]
     items = [place.sight.item(one.thing, measure) for one, measure in zip(things, measures, strict=True)]
+    wanted = "how far away is" if tag == "distance" else "where is"
     return Draft(
         category="comparative",
         kind=kind,
@@ -253,7 +268,7 @@ def _seen(place: Place, kind: str, expected: Choice | Ordering, asked: Question,
         expected=expected,
         question=asked,
         evidence=(view(place, expected, tuple(word for one in things for word in one.words), items, whole=False),),
-        looks=(ask(asked.forms[0][0], place),),
+        looks=tuple(ask(f"{wanted} {one.the}?", place) for one in things),
         tags=(tag,),
         weight=len(things),
         reads=_reads(expected),

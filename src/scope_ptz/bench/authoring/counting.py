@@ -73,6 +73,13 @@ def absent(sight: Sight, nouns: frozenset[str]) -> tuple[Kind, ...]:
     return tuple(kind for kind in kinds if kind.category not in UNCOUNTED and sight.lacks(kind))
 
 
+def likely_first(place: Place, kinds: Sequence[Kind], rng: random.Random) -> list[Kind]:
+    """Kinds by lot, those that the scene has elsewhere first: that a noun is asked about must not tell that there is none."""
+    elsewhere = {thing.category for thing in place.scene.things}
+    drawn = rng.sample(kinds, len(kinds))
+    return sorted(drawn, key=lambda kind: kind.category not in elsewhere)
+
+
 _ABSENT_COLOURS = frozenset({"red", "blue", "green", "yellow", "black", "white", "orange", "purple"})
 
 _ODD = frozenset({
@@ -94,8 +101,7 @@ def drafts(place: Place, nouns: frozenset[str], rng: random.Random) -> list[Draf
     present = [_number(place, kind, n) for kind, n in counted(sight)]
     twins = list(present)
     rng.shuffle(twins)
-    missing = list(absent(sight, nouns))
-    rng.shuffle(missing)
+    missing = likely_first(place, absent(sight, nouns), rng)
     none = [
         Draft(
             category="counting",

@@ -6,7 +6,7 @@ import random
 from collections.abc import Iterator, Mapping, Sequence
 
 from scope_ptz.bench.authoring import descriptor_pairs
-from scope_ptz.bench.authoring.counting import absent, plain_counts
+from scope_ptz.bench.authoring.counting import absent, likely_first, plain_counts
 from scope_ptz.bench.authoring.drafts import Draft, Question, ask, scope_of, view
 from scope_ptz.bench.authoring.naming import Named, by_name, ends, singles
 from scope_ptz.bench.authoring.places import Place
@@ -113,7 +113,8 @@ def _attributes(place: Place, values: Values) -> Iterator[Draft]:
             if {"lit", "unlit"} & set(pair) and "light" in facts and set(one.name.split()) & COLOUR_WORDS:
                 continue  # "the green charging point" is one that is lit
             least = _INSIDE_PX if {"full", "empty"} & set(pair) else _STATE_PX
-            if state in pair and not told and one.thing.pixels >= least and one.thing.instance.category not in _STATE_HARDLY_SHOWS:
+            shows = not one.thing.cut and one.thing.pixels >= least and one.thing.instance.category not in _STATE_HARDLY_SHOWS
+            if state in pair and not told and shows:
                 # Not always the same one first, but each time the same.
                 first, second = pair[:: 1 if sum(map(ord, one.thing.instance.id)) % 2 else -1]
                 yield _choice(
@@ -156,8 +157,8 @@ _HELD_AT_THE_FACE = frozenset({"phone"})
 _MATERIAL_HARDLY_SHOWS = frozenset({"door", "barrier"})
 """Painted or coloured all over."""
 
-_OF_KINDS = frozenset({"car", "lorry", "bus", "bicycle", "van", "shop", "container"})
-"""Of these people know kinds apart."""
+_OF_KINDS = frozenset({"lorry", "bus", "bicycle", "van", "shop", "container"})
+"""Of these people know kinds apart, from whatever side: not an estate from an off-roader."""
 
 _ONLY_ONE = (
     ("what kind of {c} can you see?", "what kind of {c} you can see"),
@@ -170,7 +171,7 @@ _KINDS: dict[str, tuple[tuple[str, str], ...]] = {
     ),
     "material": (
         ("what is {n} made of?", "what {n} is made of"),
-        ("which material is {n}?", "which material {n} is made of"),
+        ("what material is {n} made of?", "what material {n} is made of"),
     ),
     "carrying": (
         ("what is {n} carrying?", "what {n} is carrying"),
@@ -203,7 +204,7 @@ def _lists(place: Place, nouns: frozenset[str], rng: random.Random) -> Iterator[
     here = [kind for kind, _ in plain_counts(place.sight)]
     gone = [kind for kind in absent(place.sight, nouns) if kind.colour is None]
     rng.shuffle(here)
-    rng.shuffle(gone)
+    gone = likely_first(place, gone, rng)
     for number in (2, 3, 1):
         if len(here) < number or len(gone) < 4 - number:
             continue

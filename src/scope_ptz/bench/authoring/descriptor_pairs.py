@@ -6,11 +6,22 @@ import random
 from collections.abc import Iterator
 from dataclasses import replace
 
-from scope_ptz.bench.authoring.counting import absent, counted
+from scope_ptz.bench.authoring.counting import absent, counted, likely_first
 from scope_ptz.bench.authoring.drafts import Draft, Question, ask, count, view
 from scope_ptz.bench.authoring.naming import singles
 from scope_ptz.bench.authoring.places import Place
-from scope_ptz.bench.authoring.words import about, article, colour_options, many_of, noun_of, plain_colour, plural, the, unit_of
+from scope_ptz.bench.authoring.words import (
+    about,
+    article,
+    colour_options,
+    many_of,
+    noun_of,
+    plain_colour,
+    plural,
+    the,
+    unit_of,
+    wordings,
+)
 from scope_ptz.bench.expected import Choice, NoneThere, YesNo
 from scope_ptz.bench.kinds import Kind, colour_shows, near_colours, own_colour
 from scope_ptz.bench.tasks import EvidenceView
@@ -24,9 +35,8 @@ def drafts(place: Place, nouns: frozenset[str], rng: random.Random) -> Iterator[
 
 def _presence(place: Place, nouns: frozenset[str], rng: random.Random) -> Iterator[Draft]:
     present = [kind for kind, _ in counted(place.sight)]
-    missing = list(absent(place.sight, nouns))
     rng.shuffle(present)
-    rng.shuffle(missing)
+    missing = likely_first(place, absent(place.sight, nouns), rng)
     for here, gone in zip(present, missing, strict=False):
         yield _there(place, gone, there=False, twin=_there(place, here, there=True))
 
@@ -87,16 +97,15 @@ def _coloured_or_not(place: Place, rng: random.Random) -> Iterator[Draft]:
 
 def _colour_if_there(place: Place, nouns: frozenset[str], rng: random.Random) -> Iterator[Draft]:
     """The colour of something that is not there, beside that of something that is."""
-    missing = [kind for kind in absent(place.sight, nouns) if kind.colour is None]
-    rng.shuffle(missing)
+    missing = likely_first(place, [kind for kind in absent(place.sight, nouns) if kind.colour is None], rng)
     shown = [one for one in singles(place.sight, coloured=False, min_pixels=300) if own_colour(one.thing.instance)]
     rng.shuffle(shown)
     for one, gone in zip(shown, missing, strict=False):
         colour = plain_colour(own_colour(one.thing.instance))
         if colour is None or colour in one.name or not colour_shows(one.thing.instance):
             continue
-        value = Choice(value=colour, options=colour_options())
-        none = NoneThere(subject=unit_of(gone)[:2])
+        value = Choice(value=colour, options=colour_options(), subject=unit_of(one.kind)[:2])
+        none = NoneThere(subject=unit_of(gone)[:2], claims=wordings(colour_options()))
         item = place.sight.item(one.thing, colour)
         twin = _if_there(place, one.name, value, view(place, value, one.words, [item], whole=False), colour)
         yield replace(

@@ -189,7 +189,7 @@ def _order(place: Place, named: list[Named], rng: random.Random) -> Iterator[Dra
                 expected=expected,
                 question=asked,
                 evidence=(view(place, expected, tuple(w for n in three for w in n.words), items, whole=False),),
-                looks=(ask(asked.forms[0][0], place),),
+                looks=tuple(ask(f"where is {n.the}?", place) for n in three),
                 tags=("order",),
                 weight=3,
                 reads="/".join(value) if kind == "row" else value[0],

@@ -6,11 +6,11 @@ import random
 from collections.abc import Iterator
 from dataclasses import replace
 
-from scope_ptz.bench.authoring.counting import absent, counted
+from scope_ptz.bench.authoring.counting import absent, counted, likely_first
 from scope_ptz.bench.authoring.drafts import Draft, Question, ask, view
 from scope_ptz.bench.authoring.naming import Named
 from scope_ptz.bench.authoring.places import Place
-from scope_ptz.bench.authoring.words import about, article, many_of, noun_of, plural, the, unit_of
+from scope_ptz.bench.authoring.words import about, article, many_of, noun_of, plural, the, unit_of, wordings
 from scope_ptz.bench.expected import Choice, NoneThere, Options, YesNo
 from scope_ptz.bench.kinds import Kind
 from scope_ptz.bench.tasks import EvidenceView
@@ -35,8 +35,7 @@ def _in_half_pairs(place: Place, nouns: frozenset[str], rng: random.Random) -> I
         for k, _ in counted(place.sight)
         if len(s := {place.sight.side(t, 0) for t in place.sight.of(k) or ()}) == 1 and None not in s
     ]
-    gone = list(absent(place.sight, nouns))
-    rng.shuffle(gone)
+    gone = likely_first(place, absent(place.sight, nouns), rng)
     for (kind, sides), missing in zip(here, gone, strict=False):
         side = ("left", "right")[next(iter(sides)) or 0]
         yield _half_pair(place, missing, side, there=False, twin=_half_pair(place, kind, side, there=True))
@@ -74,12 +73,15 @@ def _half_pair(place: Place, kind: Kind, side: str, *, there: bool, twin: Draft 
 
 def _where_if_there(place: Place, named: list[Named], nouns: frozenset[str], rng: random.Random) -> Iterator[Draft]:
     """In which quarter something is that is not there at all, beside something that is."""
-    missing = [kind for kind in absent(place.sight, nouns) if kind.colour is None]
-    rng.shuffle(missing)
+    missing = likely_first(place, [kind for kind in absent(place.sight, nouns) if kind.colour is None], rng)
     placed = [(n, place.sight.side(n.thing, 0), place.sight.side(n.thing, 1)) for n in named if n.name[-1].isalpha()]
     for (one, side, level), gone in zip([p for p in placed if None not in p[1:]], missing, strict=False):
-        value = Choice(value=f"{('top', 'bottom')[level or 0]} {('left', 'right')[side or 0]}", options=corner_options())
-        none = NoneThere(subject=unit_of(gone)[:2])
+        value = Choice(
+            value=f"{('top', 'bottom')[level or 0]} {('left', 'right')[side or 0]}",
+            options=corner_options(),
+            subject=unit_of(one.kind)[:2],
+        )
+        none = NoneThere(subject=unit_of(gone)[:2], claims=wordings(corner_options()))
         seen = view(place, value, one.words, [place.sight.item(one.thing, value.value)], whole=False)
         twin = _where_if(place, one.name, value, seen, value.value)
         yield replace(

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
 
-from scope_ptz.bench.authoring.counting import absent, apart, counted, plain_counts
+from scope_ptz.bench.authoring.counting import absent, apart, counted, likely_first, plain_counts
 from scope_ptz.bench.authoring.drafts import Draft, Question, count, view
 from scope_ptz.bench.authoring.places import Place, Places, elsewhere, go, preset_at
 from scope_ptz.bench.authoring.words import about, article, many_of, noun_of, unit_of
@@ -187,7 +187,7 @@ def _checks(one: Place, p: str, places: Places, nouns: frozenset[str], rng: rand
     if len(others) < 2:
         return
     rng.shuffle(shown)
-    rng.shuffle(gone)
+    gone = likely_first(one, gone, rng)
     for here, missing in zip(shown, gone, strict=False):
         yes, no = rng.sample(others, 2)
         things = one.sight.of(here) or ()
@@ -234,7 +234,7 @@ def _either(one: Place, two: Place, p: str, q: str, nouns: frozenset[str], rng: 
         for kind, _ in counted(place.sight)
         if other.sight.of(kind) is not None
     ]
-    rng.shuffle(gone)
+    gone = likely_first(one, gone, rng)
     rng.shuffle(shown)
     start = elsewhere(one, two)
     if start.start == q:

@@ -12,10 +12,10 @@ from scope_ptz.bench.authoring.places import preset_at
 from scope_ptz.bench.coverage import gap
 from scope_ptz.bench.episode import Look
 from scope_ptz.bench.ground import EYES
-from scope_ptz.bench.phrasing import first_named
+from scope_ptz.bench.phrasing import offered
 from scope_ptz.bench.tasks import Category
 
-PAIRS: dict[Category, int] = {"counting": 28, "descriptor": 16, "location": 12, "multi_step_reasoning": 16}
+PAIRS: dict[Category, int] = {"counting": 31, "descriptor": 16, "location": 12, "multi_step_reasoning": 16}
 """How many tasks of a category say that there is none, each beside one of like wording that says that there is."""
 
 PAIRS_OF_KIND = {"not-there": 4, "half-none": 3, "neither": 4}
@@ -32,8 +32,9 @@ POLAR = 1
 SAME = 2
 """How often the same is asked of several views with the same answer."""
 
-FIRST_NAMED = 12
-"""How often the right answer may be the first of those that the question names, pairs aside."""
+AT_ONE_PLACE: dict[Category, int] = {"descriptor": 3, "location": 3, "comparative": 5}
+"""How often the right answer may be the first of those that the question offers, and the second, and the last, pairs aside:
+together no more than 3% of all tasks."""
 
 _NO_LIMIT = 1000.0
 
@@ -42,6 +43,9 @@ FROM_START = 3
 """No wording is more frequent than this share of a category; so many tasks of a category can be done from the start view."""
 
 _WEIGHTS = {"scene": 3.0, "viewpoint": 1.5, "kind": 2.0, "answer": 4.0, "subject": 1.5, "place": 1.0, "start": 0.3}
+
+Answered = Callable[[Draft], bool]
+"""Whether eyes that see all can answer what the reference program of a draft asks them."""
 
 _Take = Callable[[Draft], bool]
 
@@ -68,8 +72,8 @@ class Shared:
 
     asked: set[str] = field(default_factory=set)
     texts: set[str] = field(default_factory=set)
-    first_right: int = 0
     scale: float = 1.0
+    answered: Answered | None = None
     """Of the published numbers what share is made; the limits shrink with it."""
 
     def most(self, limit: int) -> int:
@@ -148,6 +152,8 @@ class Selection:
         """Take a draft, unless it was asked already, the start view answers it, or its wordings are used up."""
         if draft.full_key in self.shared.asked or seen_from_start(draft):
             return None
+        if self.shared.answered is not None and not self.shared.answered(draft):
+            return None
         stays = draft.place.stays and not draft.calls_move
         if stays and self.category != "single_call" and self.used["stays"][True] >= self.shared.most(FROM_START):
             return None
@@ -155,8 +161,9 @@ class Selection:
         worded = self.frames.word(draft, rng, like and f"{draft.kind}/{like}")
         if worded is None or self.frames.used[worded[1]] >= self.most_frame:
             return None
-        alone, offered = like is None and draft.twin is None, self.slack < _NO_LIMIT and first_is_right(draft, worded[0])
-        if alone and offered and self.shared.first_right >= self.shared.most(FIRST_NAMED):
+        alone, limited = like is None and draft.twin is None, self.slack < _NO_LIMIT
+        most = self.shared.most(AT_ONE_PLACE.get(self.category, self.quota))
+        if alone and limited and any(self.used["right at"][at] >= most for at in right_at(draft, worded[0])):
             return None
         self.frames.take(*worded)
         self.shared.asked.add(draft.full_key)
@@ -175,7 +182,8 @@ class Selection:
             return
         self.used["alone"][row.draft.reads] += step
         self.used["polar"][row.draft.kind, row.draft.reads] += step
-        self.shared.first_right += step * first_is_right(row.draft, row.text)
+        for at in right_at(row.draft, row.text):
+            self.used["right at"][at] += step
 
     def _drop(self, row: Chosen) -> None:
         self.rows.remove(row)
@@ -185,10 +193,13 @@ class Selection:
         self.frames.used[row.frame] -= 1
 
 
-def first_is_right(draft: Draft, text: str) -> bool:
-    """Whether the right answer is the first of several that a wording names."""
-    first = first_named(draft.expected, text)
-    return first is not None and first == getattr(draft.expected, "value", None)
+def right_at(draft: Draft, text: str) -> list[str]:
+    """Where among several that a wording offers the right answer stands; nothing where it offers none, or not the right one."""
+    names, value = offered(draft.expected, text), getattr(draft.expected, "value", None)
+    if isinstance(value, tuple) and len(value) == 1:
+        (value,) = value  # all of those that are there: the only one
+    at = names.index(value) if value in names else -1
+    return [] if at < 0 else [str(at), *(["last"] if at == len(names) - 1 else [])]
 
 
 def seen_from_start(draft: Draft) -> bool:

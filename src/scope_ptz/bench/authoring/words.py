@@ -133,6 +133,11 @@ def plain_colour(colour: object) -> str | None:
     return _FAMILY.get(str(colour))
 
 
+def wordings(options: Options) -> Wordings:
+    """All words in which any of the options may come."""
+    return tuple(word for name, others in options.items() for word in (name, *others))
+
+
 def colour_options() -> Options:
     return dict(_FAMILIES)
 

@@ -17,6 +17,8 @@ ENGINE = "inspect-ai"
 CARD = "card"
 SCOPE = "scope"
 PRICE = "price_usd_per_million_tokens"
+AGENT_SOURCE = "agent_source"
+"""Of another agent: the digest of its code, among the settings of a run."""
 DETERMINISTIC = ("grammar", "ground-truth", "noisy")
 
 
@@ -47,6 +49,8 @@ def cost_usd(card: RunCard, input_tokens: int, output_tokens: int) -> float | No
 
 def _told(header: EvalLog, facts: Mapping[str, Any], planner: Mapping[str, str]) -> RunCard:
     config = header.eval.config
+    known = {name: value for name, value in facts.items() if name != AGENT_SOURCE}
+    source = {AGENT_SOURCE: facts[AGENT_SOURCE]} if AGENT_SOURCE in facts else {}
     return RunCard(
         run_id=header.eval.run_id,
         started=str(header.eval.created),
@@ -55,10 +59,10 @@ def _told(header: EvalLog, facts: Mapping[str, Any], planner: Mapping[str, str])
         perception=_model(header, "eyes"),
         epochs=config.epochs or 1,
         prompt_digest=planner.get("prompt_sha256", ""),
-        sampling=dict(planner),
+        sampling={**planner, **source},
         concurrency=config.max_samples or 1,
         contended=(config.max_samples or 0) != 1,
-        **facts,
+        **known,
     )
 
 

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
+from fractions import Fraction
 from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
@@ -81,9 +83,8 @@ def imported_entries(tasks: Iterable[ImportedTask]) -> tuple[Entry, ...]:
 def chosen(
     entries: Sequence[Entry], categories: Sequence[str] = (), scenes: Sequence[str] = (), limit: int | None = None
 ) -> tuple[Entry, ...]:
-    """Those of some categories and scenes, no more than ``limit``, spread evenly over what is left so that all sorts are in it.
-
-    Raises ``InputError`` when nothing is left.
+    """Those of some categories and scenes, no more than ``limit``, spread evenly over the categories, scenes and scopes that are
+    left: always the same ones. Raises ``InputError`` when nothing is left.
     """
     for kind, names, have in (
         ("category", categories, {entry.facts.category for entry in entries}),
@@ -97,7 +98,25 @@ def chosen(
         raise InputError("No task is left to run. Ask for other categories or scenes.")
     if limit is None or limit >= len(kept):
         return tuple(kept)
-    return tuple(kept[round(at * len(kept) / limit)] for at in range(limit))
+    return _spread(kept, limit)
+
+
+def _spread(entries: Sequence[Entry], limit: int) -> tuple[Entry, ...]:
+    """So many entries in their order. One after the other is taken of the sort whose category, scene and scope are, measured by how
+    many there are of them, taken least; of one sort they are taken evenly over it."""
+    sorts: dict[tuple[str, str, str], list[Entry]] = {}
+    for entry in entries:
+        sorts.setdefault((entry.facts.category, entry.facts.scene, entry.facts.scope), []).append(entry)
+    there = Counter((place, name) for sort, own in sorts.items() for place, name in enumerate(sort) for _ in own)
+    taken, used = Counter[tuple[int, str]](), Counter[tuple[str, str, str]]()
+    for _ in range(limit):
+        open_ = [sort for sort, own in sorts.items() if used[sort] < len(own)]
+        # Among equals the sort with most entries left: small ones are not used up by ties alone.
+        least = min(open_, key=lambda s: (sum(Fraction(taken[f], there[f]) for f in enumerate(s)), used[s] - len(sorts[s])))
+        used[least] += 1
+        taken.update(enumerate(least))
+    chosen_ones = {id(own[at * len(own) // used[sort]]) for sort, own in sorts.items() for at in range(used[sort])}
+    return tuple(entry for entry in entries if id(entry) in chosen_ones)
 
 
 def digest(entries: Iterable[Entry]) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from statistics import fmean
 
+from scope_ptz.bench.judging.tally import without_verdict
 from scope_ptz.bench.statistics.paired import holm, mcnemar_exact
 from scope_ptz.bench.trials import Evaluation, Trial
 from scope_ptz.errors import InputError
@@ -32,7 +33,7 @@ class Comparison:
 
 @dataclass(frozen=True, slots=True)
 class Gate:
-    """``left_out``: tasks that infrastructure broke on either side, which say nothing."""
+    """``left_out``: tasks that infrastructure broke, or no judge gave a verdict on, on either side: they say nothing."""
 
     overall: Comparison
     categories: tuple[Comparison, ...]
@@ -61,7 +62,9 @@ def gate(evaluation: Evaluation, baseline: Evaluation, alpha: float = 0.05) -> G
     before, now = _shares(baseline.trials), _shares(evaluation.trials)
     both = sorted(before.keys() & now.keys())
     if not both:
-        raise InputError("Infrastructure broke every task in one of the logs: there is nothing to compare.")
+        raise InputError(
+            "Infrastructure broke every task in one of the logs, or no judge gave a verdict on them: there is nothing to compare."
+        )
     categories = {trial.task.id: trial.task.category for trial in baseline.trials}
     groups = {name: [task for task in both if categories[task] == name] for name in dict.fromkeys(categories.values())}
     singles = [_compare(name, tasks, before, now) for name, tasks in groups.items() if tasks]
@@ -80,10 +83,10 @@ def _tasks(evaluation: Evaluation) -> str:
 
 
 def _shares(trials: Sequence[Trial]) -> dict[str, float]:
-    """Of each task the share of its runs that were right, those left out that infrastructure broke."""
+    """Of each task the share of its runs that were right, those left out that infrastructure broke or that wait for a judge."""
     runs: dict[str, list[bool]] = {}
     for trial in trials:
-        if trial.headline != "infrastructure":
+        if trial.headline != "infrastructure" and not without_verdict(trial):
             runs.setdefault(trial.task.id, []).append(trial.headline == "correct")
     return {task: fmean(right) for task, right in runs.items()}
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import asyncio
 import base64
+import hashlib
 import importlib
 import sys
 from collections.abc import Callable
@@ -21,6 +22,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, Protocol
 
+from scope_ptz.bench.engine.entries import DIGEST_CHARS
 from scope_ptz.errors import ConfigError, PlannerError
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import CallTools, Decision, Finish, Planner, State, ToolCall, ToolOutcome
@@ -85,6 +87,24 @@ def load_guest(name: str) -> Callable[[], Guest]:
     return guest
 
 
+def source_digest(name: str) -> str:
+    """Names the source of ``module:Class``: of its module, or of all Python files of its package where it is in one. Empty for
+    what has no source to read. Raises ``ConfigError``."""
+    load_guest(name)
+    module = sys.modules[name.partition(":")[0]]
+    package = sys.modules.get(module.__name__.partition(".")[0])
+    own = [Path(module.__file__)] if module.__file__ else []
+    folders = [Path(folder) for folder in getattr(package, "__path__", ())]
+    files = sorted((path.relative_to(folder).as_posix(), path) for folder in folders for path in folder.rglob("*.py"))
+    said = hashlib.sha256()
+    for place, path in files or [(path.name, path) for path in own]:
+        try:
+            said.update(f"{place}\0{hashlib.sha256(path.read_bytes()).hexdigest()}\n".encode())
+        except OSError as error:
+            raise ConfigError(f"The source of the agent {name} cannot be read: {path}: {error.strerror}.") from error
+    return said.hexdigest()[:DIGEST_CHARS] if files or own else ""
+
+
 class GuestPlanner(Planner):
     """Another agent's loop, turned inside out: what it calls becomes this planner's decisions, what comes back its results.
 
@@ -98,14 +118,16 @@ class GuestPlanner(Planner):
         self._given: list[asyncio.Future[dict[str, Any]]] = []
         self._stirred = asyncio.Event()
         self._newest: bytes | None = None
+        self._opened = False
         self._asked = 0
         self._task: asyncio.Task[str | Reply] | None = None
 
     async def step(self, state: State) -> Decision:
+        self._opened = False
         if state.view is not None:
             self._newest = base64.b64decode(state.view.data_url.partition(",")[2])
         if self._task is None:
-            self._task = asyncio.ensure_future(self._make().run(Desk(state, self._call, lambda: self._newest)))
+            self._task = asyncio.ensure_future(self._make().run(Desk(state, self._call, self._view)))
             self._task.add_done_callback(lambda _: self._stirred.set())
         elif state.history:
             self._hand_over(state.history[-1].outcomes)
@@ -116,8 +138,13 @@ class GuestPlanner(Planner):
         if self._wanted:
             calls, self._given = tuple(c for c, _ in self._wanted), [f for _, f in self._wanted]
             self._wanted = []
-            return CallTools(calls=calls)
-        return _ending(self._task)
+            return CallTools(calls=calls, opened=self._opened)
+        return _ending(self._task, opened=self._opened)
+
+    def _view(self) -> bytes | None:
+        """Only a picture that the other loop asked for was looked at."""
+        self._opened = self._newest is not None
+        return self._newest
 
     async def _call(self, name: str, arguments: dict[str, Any]) -> dict[str, Any]:
         self._asked += 1
@@ -141,7 +168,7 @@ class GuestPlanner(Planner):
             await asyncio.wait([self._task])
 
 
-def _ending(task: asyncio.Task[str | Reply]) -> Finish:
+def _ending(task: asyncio.Task[str | Reply], *, opened: bool) -> Finish:
     if task.cancelled():
         raise PlannerError("The agent ended its own task.")
     error = task.exception()
@@ -151,4 +178,4 @@ def _ending(task: asyncio.Task[str | Reply]) -> Finish:
     reply = said if isinstance(said, Reply) else Reply(str(said) if said is not None else "")
     if not reply.text.strip():
         raise PlannerError("The agent ended without a word.", kind="empty")
-    return Finish(kind=reply.kind, text=reply.text)
+    return Finish(kind=reply.kind, text=reply.text, opened=opened)

@@ -15,17 +15,19 @@ from scope_ptz.errors import TraceError
 
 
 class Journal:
-    """Judgements by run, judge and number; ``made``: how many were added. Without a path none are known before."""
+    """Judgements by run, judge and number; ``made``: those that were added. Without a path none are known before."""
 
     def __init__(self, path: Path | None = None) -> None:
         self.path = path
-        self.made = 0
+        self.made: list[Judgement] = []
         self._known: dict[tuple[str, str, int], Judgement] = {}
+        self._waiting: dict[tuple[str, str, int], Judgement] = {}
         for number, line in whole_lines(path) if path is not None else ():
             try:
                 row = json.loads(line)
                 made = Judgement.model_validate(row["judgement"])
                 self._known[(row["sample"], made.judge, made.repeat)] = made
+                self._waiting[(row["sample"], made.judge, made.repeat)] = made
             except (ValueError, KeyError, TypeError, ValidationError) as error:
                 raise TraceError(f"{path}, line {number} is no judgement: remove the line, or the file. ({error})") from error
 
@@ -37,24 +39,42 @@ class Journal:
     def find(self, sample: str, judge: str, repeat: int) -> Judgement | None:
         """A judgement by today's prompt that reached a verdict; one that failed is to be made again."""
         made = self._known.get((sample, judge, repeat))
-        return made if made is not None and made.prompt == prompt_version() and made.verdict != "failed" else None
+        if made is None or made.prompt != prompt_version() or made.verdict == "failed":
+            return None
+        self._waiting.pop((sample, judge, repeat), None)
+        return made
 
     def know(self, sample: str, judgement: Judgement) -> None:
         """A judgement that the log has already."""
-        self._known.setdefault((sample, judgement.judge, judgement.repeat), judgement)
+        key = (sample, judgement.judge, judgement.repeat)
+        self._known.setdefault(key, judgement)
+        if self._waiting.get(key) == judgement:
+            del self._waiting[key]
 
     def add(self, sample: str, judgement: Judgement) -> None:
         """Keep a judgement."""
-        self._known[(sample, judgement.judge, judgement.repeat)] = judgement
-        self.made += 1
+        key = (sample, judgement.judge, judgement.repeat)
+        self._known[key] = judgement
+        self._waiting.pop(key, None)
+        self.made.append(judgement)
         if self.path is not None:
-            row = {"sample": sample, "judgement": judgement.model_dump(mode="json")}
-            append_line(self.path, json.dumps(row, ensure_ascii=False))
+            append_line(self.path, _line(sample, judgement))
 
     def done(self) -> None:
-        """The log has all of it."""
-        if self.path is not None:
+        """The log has all that was asked for now. What a rescoring by another judge left here when it was killed stays."""
+        if self.path is None:
+            return
+        left = [_line(sample, made) for (sample, _, _), made in self._waiting.items() if made.verdict != "failed"]
+        if left:
+            scratch = self.path.with_name(f"{self.path.name}.new")
+            scratch.write_text("".join(line + "\n" for line in left), "utf-8")
+            scratch.replace(self.path)
+        else:
             self.path.unlink(missing_ok=True)
+
+
+def _line(sample: str, judgement: Judgement) -> str:
+    return json.dumps({"sample": sample, "judgement": judgement.model_dump(mode="json")}, ensure_ascii=False)
 
 
 JOURNAL: ContextVar[Journal | None] = ContextVar("scope_journal", default=None)

@@ -22,9 +22,9 @@ from scope_ptz.bench.engine.judgements import judgements_in
 from scope_ptz.bench.engine.pictures import jpeg_of
 from scope_ptz.bench.engine.sampling import STORE, Kept, sample_name, trace_of
 from scope_ptz.bench.engine.scorers import TRIAL
-from scope_ptz.bench.engine.trialing import trial_of
+from scope_ptz.bench.engine.trialing import look_times, trial_of
 from scope_ptz.bench.episode import Places
-from scope_ptz.bench.trials import Evaluation, Trial
+from scope_ptz.bench.trials import Evaluation, LookTime, Trial
 from scope_ptz.errors import TraceError
 
 ATTACHMENT = "attachment://"
@@ -120,11 +120,21 @@ def read_header(path: Path) -> EvalLog:
 
 def runs_in(path: Path) -> dict[tuple[str, int], bool]:
     """The runs that a log holds, by task and epoch, and whether each is to stay: it was not broken. Raises ``TraceError``."""
+    return {run: not row.get("error") for run, row in _summaries(path).items()}
+
+
+def uuids_in(path: Path) -> dict[tuple[str, int], str | None]:
+    """The runs that a log holds, by task and epoch, and what tells each from all others in whatever log it is. Raises
+    ``TraceError``."""
+    return {run: row.get("uuid") for run, row in _summaries(path).items()}
+
+
+def _summaries(path: Path) -> dict[tuple[str, int], dict[str, Any]]:
     with reading(path), ZipFile(path) as archive:
         names = archive.namelist()
         parts = [SUMMARIES] if SUMMARIES in names else sorted((n for n in names if n.startswith(JOURNALED)), key=_number)
         rows = [row for part in parts for row in from_json(archive.read(part))]
-        return {(str(row["id"]), int(row["epoch"])): not row.get("error") for row in rows}
+        return {(str(row["id"]), int(row["epoch"])): row for row in rows}
 
 
 def _number(name: str) -> int:
@@ -167,4 +177,12 @@ def trial_in(sample: Mapping[str, Any], path: Path) -> Trial:
     if told is None or entry.task is None:
         kept = kept_in(sample) or Kept("", {}, "")
         return trial_of(entry, kept, sample["epoch"], path, judgements)
-    return Trial.model_validate({**told, "task": entry.facts, "judgements": judgements})
+    trial = Trial.model_validate({**told, "task": entry.facts, "judgements": judgements})
+    return trial if trial.looks or not trial.look_s else trial.model_copy(update={"looks": _looks_of(sample, path)})
+
+
+def _looks_of(sample: Mapping[str, Any], path: Path) -> tuple[LookTime, ...]:
+    """The parts of a run's looks, of a log that was written before trials held them."""
+    kept = kept_in(sample)
+    trace = trace_of(kept.trace, path) if kept is not None else None
+    return look_times(trace) if trace is not None else ()

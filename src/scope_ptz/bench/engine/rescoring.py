@@ -20,6 +20,7 @@ from scope_ptz.bench.engine.logs import kept_in, read_header, reading, trials_by
 from scope_ptz.bench.engine.sampling import STORE
 from scope_ptz.bench.engine.scorers import checks
 from scope_ptz.bench.judging.rubrics import prompt_version
+from scope_ptz.bench.judging.tally import Tally
 from scope_ptz.bench.trials import Trial
 from scope_ptz.errors import InputError, OutputError
 
@@ -31,11 +32,19 @@ Say = Callable[[int, int], None]
 
 
 async def rescore(
-    log: Path, *, judge_model: Model | None, repeats: int = 1, with_checks: bool = False, at_a_time: int = AT_A_TIME, say: Say
-) -> int:
-    """Append scores to a log; how many judgements were made now. The log is replaced when all is done, and not before.
+    log: Path,
+    *,
+    judge_model: Model | None,
+    repeats: int = 1,
+    more: bool = True,
+    with_checks: bool = False,
+    at_a_time: int = AT_A_TIME,
+    say: Say,
+) -> Tally:
+    """Append scores to a log; what came of the judgements that were made now. The log is replaced when all is done, and not before.
 
-    Raises ``TraceError`` for what is no log, ``InputError`` for one that is still being written or cannot be.
+    ``more``: so many judgements beside those there are; without, what is missing of the first ``repeats``. Raises ``TraceError``
+    for what is no log, ``InputError`` for one that is still being written or cannot be.
     """
     header = read_header(log)
     if header.status == "started":
@@ -47,7 +56,7 @@ async def rescore(
         for sample, trial in before.items():
             for made in trial.judgements:
                 journal.know(sample, made)
-        scorers += [judge(repeat) for repeat in _further(before, judge_model.name, repeats)]
+        scorers += [judge(repeat) for repeat in (_further(before, judge_model.name, repeats) if more else range(repeats))]
     JOURNAL.set(journal)
     init_display_type("none")
     scratch = log.with_name(f".{log.stem}.rescored.eval")
@@ -61,7 +70,7 @@ async def rescore(
     finally:
         scratch.unlink(missing_ok=True)
     journal.done()
-    return journal.made
+    return Tally.of(journal.made)
 
 
 def _further(before: Mapping[str, Trial], judge_name: str, repeats: int) -> range:

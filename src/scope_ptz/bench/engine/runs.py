@@ -23,8 +23,9 @@ from inspect_ai.log._recover import RecoveryNotAvailable, recover_eval_log_async
 from inspect_ai.model import Model
 from inspect_ai.util._display import init_display_type
 
-from scope_ptz.bench.engine.cards import CARD, card_of
-from scope_ptz.bench.engine.logs import read_evaluation, read_header, runs_in
+from scope_ptz.bench.engine.cards import AGENT_SOURCE, CARD, card_of
+from scope_ptz.bench.engine.logs import read_evaluation, read_header, runs_in, uuids_in
+from scope_ptz.bench.engine.sampling import sample_name
 from scope_ptz.bench.trials import Evaluation, RunCard
 from scope_ptz.errors import InputError, OutputError, TraceError
 
@@ -99,16 +100,35 @@ def found(path: Path) -> Found:
 
 
 def earlier(log_dir: Path, planner: str, eyes: str) -> list[Evaluation]:
-    """Evaluations of a pair of which there are logs in a folder."""
-    told = []
+    """Evaluations of a pair of which there are logs in a folder. A run that stands in several, because it was taken over, is in
+    the first of them only."""
+    told, seen = [], set[str]()
     for path in sorted(log_dir.glob("*.eval")):
         try:
             card = card_of(read_header(path), None)
-            if (card.planner.name, card.perception.name) == (planner, eyes):
-                told.append(read_evaluation(path))
+            if (card.planner.name, card.perception.name) != (planner, eyes):
+                continue
+            names = {sample_name(*run): uuid for run, uuid in uuids_in(path).items()}
+            evaluation = read_evaluation(path)
         except TraceError:
             continue  # what cannot be read tells nothing
+        new = tuple(t for t in evaluation.trials if names.get(t.sample) is None or names[t.sample] not in seen)
+        seen |= {uuid for uuid in names.values() if uuid is not None}
+        if new:
+            told.append(evaluation.model_copy(update={"trials": new}))
     return told
+
+
+def of_other_source(log_dir: Path, agent: str, source: str, tasks: str) -> Path | None:
+    """The newest log of these ``tasks`` (their digest) by an agent of this name with code of another digest; None without any."""
+    for path in sorted(log_dir.glob("*.eval"), reverse=True):
+        try:
+            card = card_of(read_header(path), None)
+        except TraceError:
+            continue  # what cannot be read tells nothing
+        if (card.agent, card.dataset_digest) == (agent, tasks) and card.sampling.get(AGENT_SOURCE) != source:
+            return path
+    return None
 
 
 @contextmanager

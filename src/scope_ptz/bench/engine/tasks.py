@@ -9,7 +9,9 @@ from typing import Any
 from inspect_ai import Epochs, Task
 
 from scope_ptz import __version__
+from scope_ptz.bench.engine.cards import AGENT_SOURCE
 from scope_ptz.bench.engine.entries import Entry, datasets, digest
+from scope_ptz.bench.engine.guests import source_digest
 from scope_ptz.bench.engine.judging import judge
 from scope_ptz.bench.engine.sampling import dataset_of
 from scope_ptz.bench.engine.scorers import checks
@@ -57,5 +59,6 @@ def facts(entries: Sequence[Entry], split: str, *, agent: str, max_steps: int, s
             "agent": agent,
             "max_steps": max_steps,
             "seed": seed,
+            **({AGENT_SOURCE: source_digest(agent)} if agent != OWN_AGENT else {}),
         }
     }

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Literal
 
-from scope_ptz.agent.records import Ended
+from scope_ptz.agent.records import Called, Ended
 from scope_ptz.agent.trace import Trace
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.sampling import Kept, sample_name, trace_of
 from scope_ptz.bench.episode import Episode, Look
 from scope_ptz.bench.error_modes import ErrorMode, error_mode
 from scope_ptz.bench.importing.checking import check_calls_of
-from scope_ptz.bench.trials import Check, Judgement, Trial
+from scope_ptz.bench.trials import Check, Judgement, LookTime, Trial
 from scope_ptz.bench.verdict import AGENTS_OWN_FAILURES, Headline, judge
 
 View = Literal["current", "full"]
@@ -68,7 +68,8 @@ class _Truths:
 
 def _by_judge(trace: Trace, judgements: tuple[Judgement, ...]) -> dict[str, Any]:
     broken = broken_by(trace.ended)
-    last = judgements[-1] if judgements else None
+    # A judge whose server failed takes nothing back of what another one has said.
+    last = next((j for j in reversed(judgements) if j.verdict != "failed"), judgements[-1] if judgements else None)
     headline: Headline
     mode: ErrorMode | None = None
     if broken is not None:
@@ -94,14 +95,25 @@ def broken_by(ended: Ended | None) -> str | None:
     return None
 
 
-def _run(trace: Trace) -> dict[str, Any]:
-    """What the trace tells of how it went."""
-    ended, looks = trace.ended, dict[View, list[float]]()
+def look_times(trace: Trace) -> tuple[LookTime, ...]:
+    """What the eyes took for each look, and what the camera took before it."""
+    return tuple(
+        LookTime(view=view, eyes_s=called.eyes_s, capture_s=max(called.timings.capture_s, 0.0)) for view, called in _looks(trace)
+    )
+
+
+def _looks(trace: Trace) -> Iterator[tuple[View, Called]]:
     for called in trace.calls:
         call = called.outcome.call
         if call.name in _LOOKERS and called.outcome.error is None:
-            view: View = "full" if call.arguments.get("view") == "full" else "current"
-            looks.setdefault(view, []).append(max(called.timings.total_s, 0.0))
+            yield "full" if call.arguments.get("view") == "full" else "current", called
+
+
+def _run(trace: Trace) -> dict[str, Any]:
+    """What the trace tells of how it went."""
+    ended, looks = trace.ended, dict[View, list[float]]()
+    for view, called in _looks(trace):
+        looks.setdefault(view, []).append(max(called.timings.total_s, 0.0))
     return {
         "outcome": ended.outcome if ended else None,
         "answer": ended.text if ended else "",
@@ -114,4 +126,5 @@ def _run(trace: Trace) -> dict[str, Any]:
         "output_tokens": ended.usage.output_tokens if ended else 0,
         "timings": ended.timings if ended else {},
         "look_s": looks,
+        "looks": look_times(trace),
     }

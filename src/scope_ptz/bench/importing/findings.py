@@ -49,7 +49,7 @@ MEANINGS: dict[Kind, str] = {
     "wrong-arguments": "expects arguments that its tool does not take",
     "unchecked-argument": "an expected argument that cannot be compared",
     "unreadable-cell": "a cell that cannot be read as what it should be",
-    "unknown-value": "a value that is not known and read as the usual one",
+    "unknown-value": "a value that is not known: the usual one was read, or that of another column",
     "ragged-row": "more or fewer cells than the header has",
     "id-repeated": "an id that another row has too",
 }

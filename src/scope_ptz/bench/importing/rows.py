@@ -155,11 +155,16 @@ def _slug(text: str) -> str:
 
 def _category(cells: Mapping[str, str], note: Note) -> Category | None:
     columns = ("eval_category", "category", "question_type")
-    given = [cells[column] for column in columns if cells.get(column)]
-    found = next((category for text in given if (category := category_of(text)) is not None), None)
+    given = {column: cells[column] for column in columns if cells.get(column)}
+    found = next(((column, category) for column, text in given.items() if (category := category_of(text)) is not None), None)
     if found is None:
-        note("unknown-category", given[0] if given else "")
-    return found
+        note("unknown-category", next(iter(given.values()), ""))
+        return None
+    by, category = found
+    first = next(iter(given))
+    if by != first:
+        note("unknown-value", f"{first}: {given[first]}; read as {category}, by {by}: {given[by]}")
+    return category
 
 
 def _place(cells: Mapping[str, str], places: Places, note: Note) -> tuple[str | None, str | None]:

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from scope_ptz.bench.reports import drawing
 from scope_ptz.bench.reports.judged import judge_name, verdicts
-from scope_ptz.bench.reports.runs import CATEGORY_TITLES, Run, macro, main_task_set, scores_of
+from scope_ptz.bench.reports.runs import CATEGORY_TITLES, Run, macro, of_main_set, scores_of
 from scope_ptz.bench.reports.sections import Section
 from scope_ptz.bench.reports.tables import Column, Marked, Table, Value, bare
 from scope_ptz.bench.statistics.clustered import Estimate, share
@@ -22,7 +22,8 @@ KIND_WORDS = {
 }
 INTERVALS = (
     "With each share stands its 95% interval, clustered by viewpoint (linearised variance by cluster, Student's t with one degree "
-    "of freedom fewer than there are viewpoints, Wilson's form at the effective sample size). With one viewpoint there is none."
+    "of freedom fewer than there are viewpoints, Wilson's form at the effective sample size). With one viewpoint it is not known. "
+    "“Without”: categories with one viewpoint, which are in the macro average but add nothing to its interval: it is too narrow."
 )
 
 
@@ -46,6 +47,11 @@ def accuracy_section(runs: Sequence[Run]) -> Section:
         text.append(
             "Not all runs did the same tasks: the best values are marked among runs of exactly the same tasks, and the chart "
             "shows the main task set."
+            + (
+                " Runs over other tasks of it are hollow and stand below; their labels say how many tasks they share with the rest."
+                if any(run.elsewhere for run in having)
+                else ""
+            )
         )
     if others:
         text.append(
@@ -53,7 +59,7 @@ def accuracy_section(runs: Sequence[Run]) -> Section:
             "blind baselines "
             "and people stand in a table of their own and take no part in any ranking."
         )
-    main = [run for run in having if run.task_set == main_task_set(runs)]
+    main = of_main_set(runs)
     charts = (drawing.accuracy_chart(main),) if main else ()
     return Section("accuracy", "Accuracy", tuple(text), charts, tuple(tables))
 
@@ -67,7 +73,7 @@ def category_table(key: str, title: str, runs: Sequence[Run], *, rank: bool) -> 
     rows, groups = [], {}
     previous = None
     for number, (run, values) in enumerate(raw):
-        group = f"{run.evaluation.card.perception.name} ({' '.join(run.task_set)})"
+        group = f"{run.eyes_name} ({' '.join(run.task_set)})"
         if group != previous:
             groups[number], previous = group, group
         cells = [_marked(value, index, run, raw) if rank else value for index, value in enumerate(values)]
@@ -85,7 +91,7 @@ def _marked(value: Estimate | None, index: int, run: Run, raw: Sequence[tuple[Ru
     if value is None:
         return None
     same_tasks = [(r, v[index]) for r, v in raw if r.task_set == run.task_set and r.tasks == run.tasks]
-    alike = [v.value for r, v in same_tasks if v and r.evaluation.card.perception.name == run.evaluation.card.perception.name]
+    alike = [v.value for r, v in same_tasks if v and r.eyes_name == run.eyes_name]
     every = [v.value for _, v in same_tasks if v]
     return Marked(value, len(alike) > 1 and value.value >= max(alike), len(every) > 1 and value.value >= max(every))
 

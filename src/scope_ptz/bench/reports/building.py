@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from scope_ptz.bench.error_modes import ErrorMode
 from scope_ptz.bench.reports.accuracy import KIND_WORDS, accuracy_section
 from scope_ptz.bench.reports.auditing import audit_section, conduct_section, costs_section
 from scope_ptz.bench.reports.choosing import architecture_section, design_section, scope_section, spread_section
 from scope_ptz.bench.reports.comparing import compare, comparison_section, comparison_table
 from scope_ptz.bench.reports.failures import MODE_TITLES, by_rules, error_section, oracle_section
 from scope_ptz.bench.reports.latency import latency_section
+from scope_ptz.bench.reports.naming import served_instead
 from scope_ptz.bench.reports.paper import paper_section
-from scope_ptz.bench.reports.runs import CATEGORY_TITLES, Run, collect, main_task_set, on_the_same_tasks, pairs_of
+from scope_ptz.bench.reports.runs import CATEGORY_TITLES, Run, collect, main_task_set, of_main_set, on_the_same_tasks, pairs_of
 from scope_ptz.bench.reports.sections import Section
 from scope_ptz.bench.reports.sensitivity import baseline_section, reaction_section, repeats_section, sensitivity_section
-from scope_ptz.bench.reports.tables import Column, Marked, Table, Value
+from scope_ptz.bench.reports.tables import Column, Marked, Table, Value, interval
 from scope_ptz.bench.trials import Evaluation
 from scope_ptz.errors import InputError
 from scope_ptz.registry import Registry
@@ -42,7 +44,7 @@ def build_report(evaluations: Sequence[Evaluation], registry: Registry, pages: M
     runs = collect(evaluations, registry)
     if not any(run.evaluation.trials for run in runs):
         raise InputError("These logs hold no finished run of a task. Finish one with 'scope bench run' first.")
-    main = [run for run in runs if run.task_set == main_task_set(runs) and run.scored]
+    main = of_main_set(runs)
     ranked = pairs_of(main)
     alike = on_the_same_tasks(ranked)
     exact = [run for run in main if run.kind == "reference"]
@@ -167,6 +169,12 @@ def _warnings(runs: Sequence[Run], ranked: Sequence[Run], alike: Sequence[Run]) 
             "of the oracle "
             "setting, spreads and the choice of a pair; paired comparisons use shared tasks."
         )
+    if further := [run.label for run in runs if run.elsewhere and run not in ranked]:
+        told.append(
+            f"Reference runs, variants and baselines over other tasks than the pairs': {'; '.join(further)}. Their labels say so "
+            "wherever they stand; their means are not comparable with the pairs'."
+        )
+    told += _served_otherwise(runs)
     if len({run.task_set for run in runs if run.headline}) > 1:
         chosen = main_task_set(runs)
         told.append(
@@ -181,11 +189,30 @@ def _warnings(runs: Sequence[Run], ranked: Sequence[Run], alike: Sequence[Run]) 
     return tuple(told)
 
 
+def _served_otherwise(runs: Sequence[Run]) -> list[str]:
+    """Models in whose place a server named another one."""
+    found: dict[str, str] = {}
+    for run in runs:
+        card = run.evaluation.card
+        for model, known in ((card.planner, run.planner), (card.perception, run.eyes)):
+            served = served_instead(model, known)
+            if served is not None:
+                found[f"{model.name} (served: {served})"] = model.name
+    if not found:
+        return []
+    return [
+        f"Servers named another model than the one that was wanted: {'; '.join(found)}. Rows say so wherever these stand. What is "
+        "told of size, precision and memory is the registry's word on the model that was wanted."
+    ]
+
+
 def _summary(runs: Sequence[Run], ranked: Sequence[Run], alike: Sequence[Run]) -> tuple[str, ...]:
     trials = sum(len(run.evaluation.trials) for run in runs)
     told = [
         f"{_number(len(runs), 'run')} with {_number(trials, 'trial')} (a trial is one run of one task); "
-        f"{_number(len(ranked), 'pair')} of models on the main task set."
+        f"{_number(len(alike), 'pair')} of models on the main task set"
+        + (f" ({_number(len(alike[0].tasks), 'task')})" if alike else "")
+        + (f"; {_number(len(ranked) - len(alike), 'more pair')} over other tasks." if len(ranked) > len(alike) else ".")
     ]
     order = sorted((r for r in alike if r.macro), key=lambda r: -(r.macro.value if r.macro else 0.0))
     if order and order[0].macro:
@@ -196,7 +223,7 @@ def _summary(runs: Sequence[Run], ranked: Sequence[Run], alike: Sequence[Run]) -
         told.append(f"The next is {order[1].label}, {_percent(order[1])}; between these two alone, {shown}.")
     if not ranked:
         told.append("No pair of models is among these runs: nothing is ranked.")
-    failed = sum((by_rules(run) for run in ranked), start=by_rules(ranked[0]).__class__()) if ranked else None
+    failed = sum((by_rules(run) for run in alike), start=Counter[ErrorMode]())
     if failed:
         mode, number = failed.most_common(1)[0]
         told.append(f"Most frequent error mode of model pairs: {MODE_TITLES[mode]}, {number} of {failed.total()} failed trials.")
@@ -207,8 +234,9 @@ def _percent(run: Run) -> str:
     found = run.macro
     if found is None:
         return "not measured"
-    interval = "" if found.low is None or found.high is None else f" (95% interval {100 * found.low:.1f} to {100 * found.high:.1f})"
-    return f"{100 * found.value:.1f}%{interval}"
+    bounds, limits = interval(found, "share")
+    told = ", ".join(filter(None, (f"95% interval {bounds}" if bounds else "", limits)))
+    return f"{100 * found.value:.1f}% ({told})"
 
 
 def _number(count: int, one: str, many: str = "") -> str:

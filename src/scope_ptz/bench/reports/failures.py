@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from statistics import fmean
 
 from scope_ptz.bench.error_modes import ErrorMode
@@ -12,7 +13,7 @@ from scope_ptz.bench.reports.comparing import Comparison, compare
 from scope_ptz.bench.reports.judged import judge_name, verdicts
 from scope_ptz.bench.reports.runs import Run, macro, scores_of
 from scope_ptz.bench.reports.sections import Section
-from scope_ptz.bench.reports.tables import Column, Table, Value
+from scope_ptz.bench.reports.tables import Column, Marked, Table, Value, bare
 from scope_ptz.bench.statistics.clustered import Estimate
 from scope_ptz.bench.trials import Judgement, Trial
 
@@ -48,6 +49,7 @@ def error_section(runs: Sequence[Run]) -> Section:
             rules,
             {run.label: len(run.scored) for run in runs},
             MODE_TITLES,
+            runs,
         )
     ]
     judge = judge_name(runs)
@@ -58,7 +60,7 @@ def error_section(runs: Sequence[Run]) -> Section:
         tables.append(_mode_table("error_modes_judge", title, said))
         charts.append(
             drawing.mode_chart(
-                "error_modes_judge", title, judged, said, {run.label: len(_clear(run, judge)) for run in judged}, MODE_TITLES
+                "error_modes_judge", title, judged, said, {run.label: len(_clear(run, judge)) for run in judged}, MODE_TITLES, runs
             )
         )
     text = (
@@ -87,10 +89,6 @@ def _mode_table(key: str, title: str, counted: Mapping[str, Counter[ErrorMode]])
 def oracle_section(ranked: Sequence[Run], every: Sequence[Run]) -> Section:
     """The oracle setting in both ways. ``every``: all runs, among which those with ground-truth eyes are looked for."""
     judge = judge_name(ranked)
-    rows = [(run, _by_rules_oracle(run), _judge_oracle(run, judge), _rerun(run, every)) for run in ranked]
-    table_rows: list[tuple[Value, ...]] = [_oracle_row(run, rules, judged, again) for run, rules, judged, again in rows]
-    if len(table_rows) > 1:
-        table_rows.append(_means(table_rows))
     columns = (
         Column("run", "Run"), Column("macro_judge", "Macro by judge (%)", "share"),
         Column("oracle_judge", "Judge's VLM failures as right (%)", "share"),
@@ -108,10 +106,22 @@ def oracle_section(ranked: Sequence[Run], every: Sequence[Run]) -> Section:
         "run again with ground-truth eyes, on the tasks that both runs did. Relabelling cannot know whether the planner "
         "would have gone "
         "on rightly; the run can.",
+        "Each has a baseline of its own kind: the judge's verdicts as they are for the judge's oracle, the checks' for the rules' "
+        "and for the run that was made again.",
     )
-    table = Table("oracle", "The oracle setting", columns, tuple(table_rows))
+    names = [column.name for column in columns]
+    rows = [_oracle_row(run, _by_rules_oracle(run), _judge_oracle(run, judge), _rerun(run, every)) for run in ranked]
+    table = Table("oracle", "The oracle setting", columns, tuple(rows))
     charts = (drawing.oracle_chart(table),) if rows else ()
+    if len(rows) > 1:
+        table = replace(table, rows=(*rows, *_means(names, rows)), notes=(MEANS,))
     return Section("oracle", "If perception never failed", text, charts, (table,))
+
+
+MEANS = (
+    "A mean is of the pairs that have a value as it is and with perfect perception, so that both means are of the same pairs; "
+    "where these are not all pairs, it says how many. What was run again stands with the checks' mean of just those pairs."
+)
 
 
 Oracle = tuple[Estimate | None, Estimate | None, float | None]
@@ -142,25 +152,56 @@ def _perception_share(failed: Counter[ErrorMode]) -> float | None:
 
 
 def _rerun(run: Run, every: Sequence[Run]) -> tuple[Run, Comparison | None] | None:
-    """The run of the same planner with ground-truth eyes over the same task set, compared with this one."""
+    """The run of the same planner with ground-truth eyes over the same task set that shares most tasks with this one, compared."""
     planner, _, agent, variant = run.system
+    found = []
     for other in every:
-        card = other.evaluation.card
-        same = (card.planner.name, card.agent, card.variant) == (planner, agent, variant) and other.task_set == run.task_set
+        card, (own, _, *further) = other.evaluation.card, other.system
+        same = (own, *further) == (planner, agent, variant) and other.task_set == run.task_set and other.tasks & run.tasks
         if same and card.perception.deterministic and not card.planner.deterministic:
-            return other, compare(other, run)
-    return None
+            found.append(other)
+    best = max(found, key=lambda other: len(other.tasks & run.tasks), default=None)
+    return None if best is None else (best, compare(best, run))
 
 
 def _oracle_row(run: Run, rules: Oracle, judged: Oracle, again: tuple[Run, Comparison | None] | None) -> tuple[Value, ...]:
     gain = again[1].macro if again and again[1] else None
-    return run.label, judged[0], judged[1], judged[2], rules[0], rules[1], rules[2], again[0].macro if again else None, gain
+    return run.label, judged[0], judged[1], judged[2], rules[0], rules[1], rules[2], _shared_macro(run, again), gain
 
 
-def _means(rows: Sequence[tuple[Value, ...]]) -> tuple[Value, ...]:
-    """Mean over pairs, as the paper gives it; of the pairs that have a value."""
-    means: list[Value] = ["Mean of the pairs"]
-    for column in list(zip(*rows, strict=True))[1:]:
-        known = [v.value if isinstance(v, Estimate) else v for v in column if isinstance(v, Estimate | float)]
-        means.append(fmean(known) if known else None)
-    return tuple(means)
+def _shared_macro(run: Run, again: tuple[Run, Comparison | None] | None) -> Value:
+    """Macro of the run that was made again, on the tasks that both did; it says when these are not all."""
+    if again is None:
+        return None
+    found = macro(scores_of([t for t in again[0].scored if t.task.id in run.tasks]))
+    shared = len(again[0].tasks & run.tasks)
+    return found if shared == len(run.tasks) else Marked(found, note=f"on {shared} of its {len(run.tasks)} tasks")
+
+
+def _means(names: Sequence[str], rows: Sequence[tuple[Value, ...]]) -> list[tuple[Value, ...]]:
+    """Means over pairs, as the paper gives them. Both sides of a comparison are of the same pairs; what is not there is blank."""
+    values = [{name: _complete(cell) for name, cell in zip(names, row, strict=True)} for row in rows]
+
+    def means(title: str, *groups: tuple[str, ...]) -> tuple[Value, ...]:
+        cells: dict[str, Value] = {**dict.fromkeys(names, ""), "run": title}
+        for group in groups:
+            having = [row for row in values if all(row[name] is not None for name in group[:2])]
+            note = f"of {len(having)} of {len(values)} pairs" if len(having) < len(values) else ""
+            for name in group:
+                known = [value for row in having if (value := row[name]) is not None]
+                cells[name] = Marked(fmean(known), note=note) if known else None
+        return tuple(cells[name] for name in names)
+
+    by_judge, by_rules = (("macro_judge", "oracle_judge", "perception_judge"), ("macro_checks", "oracle_rules", "perception_rules"))
+    found = [means("Mean of the pairs", by_judge, by_rules)]
+    if any(row["macro_rerun"] is not None for row in values):
+        found.append(means("Mean of the pairs run again", ("macro_checks", "macro_rerun", "gain_rerun")))
+    return found
+
+
+def _complete(cell: Value) -> float | None:
+    """A figure that is of all tasks of its run; None for one that says that it is of some."""
+    plain = bare(cell)
+    if isinstance(cell, Marked) and cell.note:
+        return None
+    return plain.value if isinstance(plain, Estimate) else plain if isinstance(plain, float) else None

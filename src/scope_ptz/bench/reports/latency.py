@@ -1,4 +1,8 @@
-"""Where the time goes: by stage, by planner, by eyes, and at the current view against the panorama."""
+"""Where the time goes: by stage, by planner, by eyes, and at the current view against the panorama.
+
+The camera is a stage of its own. Its moves and frames are the simulator's cost, and which views a pair asks for decides them; a
+pair's own latency is everything else.
+"""
 
 from __future__ import annotations
 
@@ -11,16 +15,29 @@ from scope_ptz.bench.reports import drawing
 from scope_ptz.bench.reports.runs import Run, primary, timed
 from scope_ptz.bench.reports.sections import Section
 from scope_ptz.bench.reports.tables import Column, Table, Value
-from scope_ptz.bench.trials import Trial
+from scope_ptz.bench.tasks import Scope
+from scope_ptz.bench.trials import LookTime, Trial
 
-STAGES = ("planner_s", "perception_s", "camera_s", "render_s", "total_s")
 STAGE_TITLES = {
     "planner_s": "Planner",
     "perception_s": "Perception",
-    "camera_s": "Camera",
-    "render_s": "Rendering",
+    "tools_s": "Tools and loop",
+    "own_s": "All but the camera",
+    "capture_s": "Camera",
     "total_s": "Whole trial",
 }
+"""By the names of ``Timings``. The first three make up ``own_s``; with the camera they are the whole trial."""
+VIEWS: tuple[tuple[Scope, str], ...] = (("current", "Current view"), ("full", "Panorama"))
+INCLUDED = (
+    "Planner: its server's answers, retries included. Perception: what the eyes took for what tools asked them. Tools and loop: "
+    "the rest of a trial without the camera, such as stitching a panorama and writing pictures. Camera: moves and frames, which in "
+    "the simulator means rendering, also of frames that are only kept for the log: the simulator's cost, decided by the views that "
+    "were asked for. A pair's own latency is all but the camera."
+)
+LOOKS = (
+    "A look is a call of count_objects or query_answer that gave a result. Eyes: what perception took for it, without the camera. "
+    "Capture: the camera's moves and frames for it, rendering included; looks made at the same time share a frame."
+)
 
 
 def stage_seconds(run: Run, stage: str) -> list[float]:
@@ -48,23 +65,17 @@ def latency_section(runs: Sequence[Run]) -> Section:
     """All runs; the tables by model are of ranked ones only."""
     having = [run for run in runs if run.scored]
     sources = list(dict.fromkeys(timed(run, having) for run in primary([r for r in having if r.ranked])))
-    tables = (
-        _by_stage(having),
-        _by_model("latency_planner", "By planner", sources, lambda r: r.evaluation.card.planner.name, "planner_s", _per_step),
-        _by_model("latency_eyes", "By eyes", sources, lambda r: r.evaluation.card.perception.name, "perception_s", _per_look),
-        _views(sources),
-    )
+    tables = (_by_stage(having), _by_planner(sources), _by_eyes(sources), _views(sources))
     shared = [run.label for run in sources if run.evaluation.card.contended]
     text = [
-        "Wall seconds. What goes on at the same time counts once. A stage's figures are of the trials that used it. Where a "
-        "pair was also "
-        "run without contention, its latency is taken from that run."
+        "Wall seconds. What goes on at the same time counts once. A stage's figures are of the trials that used it. Where a pair "
+        "was also run without contention, its latency is taken from that run.",
+        INCLUDED,
     ]
     if shared:
         text.append(
             f"Marked “contended”: {len(shared)} of {len(sources)} model pairs were timed only while other runs used the same "
-            "machine or "
-            "servers, so that their latency is not their own."
+            "machine or servers, so that their latency is not their own."
         )
     charts = (drawing.time_chart(having, STAGE_TITLES),) if any(stage_seconds(r, "total_s") for r in having) else ()
     return Section("latency", "Latency and tool calls", tuple(text), charts, tables)
@@ -84,82 +95,113 @@ def _by_stage(runs: Sequence[Run]) -> Table:
     columns = [Column("run", "Run"), Column("contended", "Measured"), Column("timed", "Timed trials", "count")]
     for stage, words in STAGE_TITLES.items():
         columns += [
-            Column(f"{stage}_median", f"{words}, median (s)", "seconds"),
-            Column(f"{stage}_p95", f"{words}, p95 (s)", "seconds"),
+            Column(f"{stage}_median", f"{words}, median", "seconds"),
+            Column(f"{stage}_p95", f"{words}, p95", "seconds"),
         ]
     columns += [
-        Column("first_token_s_median", "Before first tokens, median (s)", "seconds"),
+        Column("first_token_s_median", "Before first tokens, median", "seconds"),
         Column("calls", "Tool calls, mean", "number"),
     ]
     rows = []
     for run in runs:
         cells: list[Value] = [run.label, _contended([run]), len(stage_seconds(run, "total_s"))]
-        for stage in STAGES:
+        for stage in STAGE_TITLES:
             seconds = stage_seconds(run, stage)
             cells += [middle(seconds), tail(seconds)]
         rows.append((*cells, middle(stage_seconds(run, "first_token_s")), calls_made(run.scored)))
-    return Table("latency_stages", "By stage", tuple(columns), tuple(rows))
+    return Table("latency_stages", "By stage (seconds a trial)", tuple(columns), tuple(rows))
 
 
-def _per_step(trial: Trial) -> list[float]:
-    return [trial.timings.planner_s / trial.steps] if trial.steps and trial.timings.planner_s > 0 else []
+def _by_planner(runs: Sequence[Run]) -> Table:
+    steps = (Column("step_median", "Seconds a step, median", "seconds"), Column("step_p95", "Seconds a step, p95", "seconds"))
+
+    def cells(own: Sequence[Run]) -> tuple[Value, ...]:
+        timed_trials = [t for run in own for t in run.scored if t.steps and t.timings.planner_s > 0]
+        seconds = [t.timings.planner_s / t.steps for t in timed_trials]
+        return middle(seconds), tail(seconds)
+
+    notes = (f"What the planner took. {_pooled('planner')}",)
+    return _by_model("latency_planner", "By planner", runs, lambda r: r.planner_name, "planner_s", steps, cells, notes)
 
 
-def _per_look(trial: Trial) -> list[float]:
-    return [seconds for looks in trial.look_s.values() for seconds in looks]
+def _by_eyes(runs: Sequence[Run]) -> Table:
+    looks = (
+        Column("look_median", "Eyes, seconds a look, median", "seconds"),
+        Column("look_p95", "Eyes, seconds a look, p95", "seconds"),
+        Column("capture_median", "Capture, seconds a look, median", "seconds"),
+        Column("capture_p95", "Capture, seconds a look, p95", "seconds"),
+    )
+
+    def cells(own: Sequence[Run]) -> tuple[Value, ...]:
+        made = _looks(own)
+        eyes, capture = [look.eyes_s for look in made], [look.capture_s for look in made]
+        return middle(eyes), tail(eyes), middle(capture), tail(capture)
+
+    notes = (f"A trial: all that perception took in it. {LOOKS} {_pooled('vision model')}",)
+    return _by_model("latency_eyes", "By eyes", runs, lambda r: r.eyes_name, "perception_s", looks, cells, notes)
+
+
+def _pooled(what: str) -> str:
+    return (
+        f"Trials of all model pairs with this {what}, pooled; only those without contention where there are any. Reference runs "
+        "are left out."
+    )
 
 
 def _by_model(
-    key: str, title: str, runs: Sequence[Run], name: Callable[[Run], str], stage: str, each: Callable[[Trial], list[float]]
-) -> Table:
-    unit = "step" if stage == "planner_s" else "look"
+    key: str, title: str, runs: Sequence[Run], name: Callable[[Run], str], stage: str,
+    single: tuple[Column, ...], cells: Callable[[Sequence[Run]], tuple[Value, ...]], notes: tuple[str, ...],
+) -> Table:  # fmt: skip
+    """A row a model. ``single``: columns about single steps or looks, filled by ``cells``."""
     columns = (
         Column("model", "Model"),
         Column("contended", "Measured"),
         Column("pairs", "Pairs", "count"),
         Column("trial_median", "Seconds a trial, median", "seconds"),
         Column("trial_p95", "Seconds a trial, p95", "seconds"),
-        Column(f"{unit}_median", f"Seconds a {unit}, median", "seconds"),
-        Column(f"{unit}_p95", f"Seconds a {unit}, p95", "seconds"),
+        *single,
         Column("calls", "Tool calls, mean", "number"),
     )
     rows = []
     for model in dict.fromkeys(name(run) for run in runs):
         own = _alone([run for run in runs if name(run) == model])
         seconds = [s for run in own for s in stage_seconds(run, stage)]
-        single = [s for run in own for trial in run.scored for s in each(trial)]
         calls = calls_made([t for run in own for t in run.scored])
-        rows.append((model, _contended(own), len(own), middle(seconds), tail(seconds), middle(single), tail(single), calls))
-    notes = (
-        f"Trials of all model pairs with this {'planner' if unit == 'step' else 'vision model'}, pooled; only those without "
-        "contention where there are any. Reference runs are left out.",
-    )
+        rows.append((model, _contended(own), len(own), middle(seconds), tail(seconds), *cells(own), calls))
     return Table(key, title, columns, tuple(rows), notes)
 
 
+def _looks(runs: Sequence[Run], view: Scope | None = None) -> list[LookTime]:
+    return [look for run in runs for t in run.scored for look in t.looks if view in (None, look.view)]
+
+
 def _views(runs: Sequence[Run]) -> Table:
-    """What the sweep costs, by eyes and over all of them."""
+    """What the panorama costs the eyes and the camera, by eyes and over all of them."""
     columns = (
-        Column("model", "Eyes"),
+        Column("view", "View"),
         Column("contended", "Measured"),
-        Column("current_looks", "Looks, current view", "count"),
-        Column("current_median", "Current, median (s)", "seconds"),
-        Column("current_p95", "Current, p95 (s)", "seconds"),
-        Column("full_looks", "Looks, panorama", "count"),
-        Column("full_median", "Panorama, median (s)", "seconds"),
-        Column("full_p95", "Panorama, p95 (s)", "seconds"),
-        Column("ratio", "Panorama to current", "ratio"),
+        Column("looks", "Looks", "count"),
+        Column("eyes_median", "Eyes, median (s)", "seconds"),
+        Column("eyes_p95", "Eyes, p95 (s)", "seconds"),
+        Column("ratio", "Eyes, to the current view", "ratio"),
+        Column("capture_median", "Capture, median (s)", "seconds"),
+        Column("capture_p95", "Capture, p95 (s)", "seconds"),
+        Column("call_median", "Whole call, median (s)", "seconds"),
     )
-    names = list(dict.fromkeys(run.evaluation.card.perception.name for run in runs))
-    groups = [(name, _alone([r for r in runs if r.evaluation.card.perception.name == name])) for name in names]
-    if len(groups) > 1:
-        groups.append(("all eyes", [run for _, own in groups for run in own]))
-    return Table("latency_views", "Current view against panorama", columns, tuple(_view_row(*group) for group in groups))
+    names = list(dict.fromkeys(run.eyes_name for run in runs))
+    parts = [(name, _alone([r for r in runs if r.eyes_name == name])) for name in names]
+    if len(parts) > 1:
+        parts.append(("all eyes", [run for _, own in parts for run in own]))
+    rows = [_view_row(view, words, own) for _, own in parts for view, words in VIEWS]
+    groups = {len(VIEWS) * number: name for number, (name, _) in enumerate(parts)}
+    notes = (f"{LOOKS} Whole call: both, and the tool's own work.",)
+    return Table("latency_views", "Current view against panorama", columns, tuple(rows), notes, groups)
 
 
-def _view_row(name: str, runs: Sequence[Run]) -> tuple[Value, ...]:
-    current = [s for run in runs for t in run.scored for s in t.look_s.get("current", ())]
-    full = [s for run in runs for t in run.scored for s in t.look_s.get("full", ())]
-    one, other = middle(current), middle(full)
-    ratio = other / one if one and other else None
-    return name, _contended(runs), len(current), one, tail(current), len(full), other, tail(full), ratio
+def _view_row(view: Scope, words: str, runs: Sequence[Run]) -> tuple[Value, ...]:
+    whole = [s for run in runs for t in run.scored for s in t.look_s.get(view, ())]
+    made = _looks(runs, view)
+    eyes, capture = [look.eyes_s for look in made], [look.capture_s for look in made]
+    base, own = middle([look.eyes_s for look in _looks(runs, "current")]), middle(eyes)
+    ratio = own / base if base and own else None
+    return words, _contended(runs), len(whole), own, tail(eyes), ratio, middle(capture), tail(capture), middle(whole)

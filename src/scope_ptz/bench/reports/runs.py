@@ -5,13 +5,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
 
 import numpy as np
 
-from scope_ptz.bench.reports.naming import split_name
+from scope_ptz.bench.reports.naming import served_instead, split_name
 from scope_ptz.bench.statistics.clustered import Estimate, Scores, macro_weights, share
 from scope_ptz.bench.trials import Evaluation, ModelCard, Trial
 from scope_ptz.errors import UnknownNameError
@@ -34,14 +34,16 @@ CATEGORY_TITLES = {
 class Run:
     """One evaluation; a trial is one run of one task in it.
 
-    ``label``: how the report calls it, unlike any other; ``planner`` and ``eyes``: None where the registry has
-    no such model."""
+    ``label``: how the report calls it, unlike any other; it says what sets the run apart from others wherever it stands.
+    ``planner`` and ``eyes``: None where the registry has no such model. ``elsewhere``: which other tasks it did, in words, when
+    they are not those of most pairs of the main task set; empty when they are, and for runs of another task set."""
 
     number: int
     evaluation: Evaluation
     label: str
     planner: Model | None
     eyes: Model | None
+    elsewhere: str = ""
 
     @property
     def kind(self) -> Kind:
@@ -57,10 +59,20 @@ class Run:
         return self.kind == "models"
 
     @property
+    def planner_name(self) -> str:
+        """The planner, and what its server served in its place if it did."""
+        return _named(self.evaluation.card.planner, self.planner)
+
+    @property
+    def eyes_name(self) -> str:
+        """The eyes, and what their server served in their place if it did."""
+        return _named(self.evaluation.card.perception, self.eyes)
+
+    @property
     def system(self) -> tuple[str, str, str, str]:
         """What was run, whatever the tasks: planner, eyes, agent, variant."""
         card = self.evaluation.card
-        return card.planner.name, card.perception.name, card.agent, card.variant
+        return self.planner_name, self.eyes_name, card.agent, card.variant
 
     @property
     def task_set(self) -> tuple[str, str]:
@@ -118,7 +130,8 @@ def viewpoint(trial: Trial) -> str:
 def collect(evaluations: Sequence[Evaluation], registry: Registry) -> tuple[Run, ...]:
     """Runs in the order of the paper's table: by eyes, then by the planner's size; other splits and reference runs last."""
     splits = {split_name(e.card.split) for e in evaluations}
-    wanted = [_label(e, with_split=len(splits) > 1) for e in evaluations]
+    bare = [Run(0, e, "", _known(e.card.planner, registry), _known(e.card.perception, registry)) for e in evaluations]
+    wanted = [_label(run, with_split=len(splits) > 1) for run in bare]
     shared = {label for label, number in Counter(wanted).items() if number > 1}
     wanted = [
         f"{label}, timed alone" if label in shared and not e.card.contended else label
@@ -126,18 +139,36 @@ def collect(evaluations: Sequence[Evaluation], registry: Registry) -> tuple[Run,
     ]
     times, seen = Counter(wanted), Counter[str]()
     runs = []
-    for evaluation, label in zip(evaluations, wanted, strict=True):
+    for run, label in zip(bare, wanted, strict=True):
         seen[label] += 1
-        unlike = f"{label} #{seen[label]}" if times[label] > 1 else label
-        card = evaluation.card
-        runs.append(Run(0, evaluation, unlike, _known(card.planner, registry), _known(card.perception, registry)))
+        runs.append(replace(run, label=f"{label} #{seen[label]}" if times[label] > 1 else label))
     ordered = sorted(runs, key=_order)
-    return tuple(Run(n, run.evaluation, run.label, run.planner, run.eyes) for n, run in enumerate(ordered, 1))
+    common = main_tasks(ordered)
+    apart = [_elsewhere(run, common) if run in of_main_set(ordered) else "" for run in ordered]
+    return tuple(
+        replace(run, number=number, elsewhere=words, label=f"{run.label} [{words}]" if words else run.label)
+        for number, (run, words) in enumerate(zip(ordered, apart, strict=True), 1)
+    )
 
 
-def _label(evaluation: Evaluation, *, with_split: bool) -> str:
-    card = evaluation.card
-    parts = [f"person {card.planner.name}" if card.planner.provider == PERSON else card.pair]
+def _named(card: ModelCard, model: Model | None) -> str:
+    served = served_instead(card, model)
+    return card.name if served is None else f"{card.name} (served: {served})"
+
+
+def _elsewhere(run: Run, common: frozenset[str]) -> str:
+    """What a run did in place of the common tasks; empty when it did these."""
+    if run.tasks == common:
+        return ""
+    if run.tasks < common:
+        return f"{len(run.tasks)} of the {len(common)} tasks"
+    return f"{len(run.tasks)} tasks, {len(run.tasks & common)} of the {len(common)} shared"
+
+
+def _label(run: Run, *, with_split: bool) -> str:
+    card = run.evaluation.card
+    pair = f"{run.planner_name} + {run.eyes_name}"
+    parts = [f"person {card.planner.name}" if card.planner.provider == PERSON else pair]
     parts += [f"agent {card.agent}"] if card.agent != "scope" else []
     parts += [card.variant] if card.variant else []
     parts += [f"{split_name(card.split)} split"] if with_split and card.split != "core" else []
@@ -154,7 +185,7 @@ def _known(card: ModelCard, registry: Registry) -> Model | None:
 def _order(run: Run) -> tuple[bool, bool, str, str, float, str, str]:
     card = run.evaluation.card
     size = run.planner.size_b if run.planner else 0.0
-    return not run.ranked, card.split != "core", card.split, card.perception.name, size, card.planner.name, run.label
+    return not run.ranked, card.split != "core", card.split, run.eyes_name, size, run.planner_name, run.label
 
 
 def main_task_set(runs: Sequence[Run]) -> tuple[str, str] | None:
@@ -165,6 +196,19 @@ def main_task_set(runs: Sequence[Run]) -> tuple[str, str] | None:
         ranked, trials = weight.get(run.task_set, (0, 0))
         weight[run.task_set] = (ranked + run.ranked, trials + len(run.headline))
     return max(weight, key=lambda key: weight[key]) if weight else None
+
+
+def of_main_set(runs: Sequence[Run]) -> tuple[Run, ...]:
+    """The runs of the main task set that have anything to tell."""
+    main = main_task_set(runs)
+    return tuple(run for run in runs if run.task_set == main and run.scored)
+
+
+def main_tasks(runs: Sequence[Run]) -> frozenset[str]:
+    """The tasks that most model pairs of the main task set did; without any pair, that most of its runs did."""
+    main = of_main_set(runs)
+    alike = on_the_same_tasks(pairs_of(main)) or on_the_same_tasks(main)
+    return alike[0].tasks if alike else frozenset()
 
 
 def primary(runs: Sequence[Run]) -> tuple[Run, ...]:

@@ -85,6 +85,16 @@ def check_submission(path: Path, tasks: Sequence[Task] | None = None) -> Finding
     return Findings(path.name, tuple(faults), counts, tuple(notes))
 
 
+def coverage(header: Header, lines: Sequence[TrialLine], tasks: Sequence[Task] | None = None) -> list[str]:
+    """Why these trials are not a whole split: missing, repeated and foreign tasks, or tasks that are worded otherwise.
+
+    Raises ``InputError`` when the split is not known and no tasks are given.
+    """
+    known = {task.id: task for task in (tasks if tasks is not None else _published(header))}
+    faults = list(_completeness(header, lines, known))
+    return faults or list(_digest_faults(header, known))
+
+
 def _rows(path: Path) -> tuple[list[tuple[int, Header | TrialLine]], list[str]]:
     try:
         if path.stat().st_size > MOST_BYTES:
@@ -134,8 +144,7 @@ def _header_faults(header: Header, lines: Sequence[TrialLine], known: Mapping[st
     datasets = {task.dataset for task in known.values()}
     if header.card.dataset not in {"+".join(sorted(datasets)), *datasets}:
         yield f"dataset {header.card.dataset} is not that of the tasks ({', '.join(sorted(datasets))})"
-    if header.tasks_digest != tasks_digest(known.values()):
-        yield "the digest of the tasks is another: wordings, categories or the choice of tasks differ"
+    yield from _digest_faults(header, known)
     if header.tasks != len(known):
         yield f"it names {header.tasks} tasks, the split has {len(known)}"
     if header.wanted != len(known) * header.card.epochs:
@@ -145,6 +154,11 @@ def _header_faults(header: Header, lines: Sequence[TrialLine], known: Mapping[st
         yield f"package version {header.card.package_version} is no version"
     elif version > (_version(__version__) or ()):
         yield f"made with scope-ptz {header.card.package_version}, which is newer than this one ({__version__}): update first"
+
+
+def _digest_faults(header: Header, known: Mapping[str, Task]) -> Iterator[str]:
+    if header.tasks_digest != tasks_digest(known.values()):
+        yield "the digest of the tasks is another: wordings, categories or the choice of tasks differ"
 
 
 def _version(text: str) -> tuple[int, ...] | None:

@@ -74,10 +74,17 @@ def in_words(value: Value, kind: Kind) -> str:
     if isinstance(plain, str):
         return plain
     if isinstance(plain, Estimate):
-        if plain.low is None or plain.high is None:
-            return _number(plain.value, kind)
-        return f"{_number(plain.value, kind)} ({_number(plain.low, kind)} to {_number(plain.high, kind)})"
+        told = ", ".join(filter(None, interval(plain, kind)))
+        return f"{_number(plain.value, kind)} ({told})"
     return _number(plain, kind)
+
+
+def interval(found: Estimate, kind: Kind) -> tuple[str, str]:
+    """The interval of an estimate in words, empty where there is none; and what must be known of it."""
+    if found.low is None or found.high is None:
+        return "", "interval not known"
+    lacking = ", ".join(name.replace("_", " ") for name in found.without)
+    return f"{_number(found.low, kind)} to {_number(found.high, kind)}", f"without {lacking}" if lacking else ""
 
 
 def _number(value: float, kind: Kind) -> str:
@@ -103,28 +110,37 @@ def _number(value: float, kind: Kind) -> str:
 
 
 def as_csv(table: Table) -> str:
-    """RFC 4180, numbers in full precision, shares as 0..1, missing values empty. Estimates take three columns."""
-    estimates = [any(isinstance(bare(row[index]), Estimate) for row in table.rows) for index in range(len(table.columns))]
+    """RFC 4180, numbers in full precision, shares as 0..1, missing values empty. Estimates take three columns, and a fourth where
+    an interval is without some strata."""
+    cells_of = [[bare(row[index]) for row in table.rows] for index in range(len(table.columns))]
+    endings = [_endings([cell for cell in cells if isinstance(cell, Estimate)]) for cells in cells_of]
     out = io.StringIO()
     writer = csv.writer(out)
     heads = (["group"] if table.groups else []) + [
         name
-        for column, wide in zip(table.columns, estimates, strict=True)
-        for name in ((column.name, f"{column.name}_low", f"{column.name}_high") if wide else (column.name,))
+        for column, further in zip(table.columns, endings, strict=True)
+        for name in (column.name, *(f"{column.name}_{ending}" for ending in further))
     ]
     writer.writerow(heads)
     group = ""
     for number, row in enumerate(table.rows):
         group = table.groups.get(number, group)
         cells: list[str | int | float | None] = [_inert(group)] if table.groups else []
-        for value, wide in zip(row, estimates, strict=True):
+        for value, further in zip(row, endings, strict=True):
             plain = bare(value)
             if isinstance(plain, Estimate):
-                cells += [plain.value, plain.low, plain.high]
+                cells += [plain.value, plain.low, plain.high, " ".join(plain.without)][: 1 + len(further)]
             else:
-                cells += [_inert(plain) if isinstance(plain, str) else plain, *((None, None) if wide else ())]
+                cells += [_inert(plain) if isinstance(plain, str) else plain, *(None for _ in further)]
         writer.writerow(cells)
     return out.getvalue()
+
+
+def _endings(estimates: list[Estimate]) -> tuple[str, ...]:
+    """The further columns that these estimates of one column take."""
+    if not estimates:
+        return ()
+    return ("low", "high", "without") if any(found.without for found in estimates) else ("low", "high")
 
 
 def _inert(text: str) -> str:

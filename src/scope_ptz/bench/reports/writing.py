@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from scope_ptz import __version__
 from scope_ptz.bench.reports.building import Report, build_report
-from scope_ptz.bench.reports.tables import MISSING, Column, Marked, Value, as_csv, as_markdown, bare, escape, in_words
+from scope_ptz.bench.reports.tables import MISSING, Column, Marked, Value, as_csv, as_markdown, bare, escape, in_words, interval
 from scope_ptz.bench.reports.task_pages import FrameStore, OpenSample, page_files, task_pages
 from scope_ptz.bench.statistics.clustered import Estimate
 from scope_ptz.bench.tasks import Task
@@ -110,16 +110,16 @@ def _environment() -> Environment:
 
 
 def cell(value: Value, column: Column) -> dict[str, Any]:
-    """A cell for the template: words and interval apart, and how it is marked."""
+    """A cell for the template: words, interval and what must be known of it apart, and how it is marked."""
     plain = bare(value)
     marks = value if isinstance(value, Marked) else Marked(None)
-    interval = ""
-    if isinstance(plain, Estimate) and plain.low is not None and plain.high is not None:
-        low, high = (in_words(bound, column.kind) for bound in (plain.low, plain.high))
-        interval = f"{low} to {high}"
+    bounds = limits = ""
+    if isinstance(plain, Estimate):
+        bounds, limits = interval(plain, column.kind)
         plain = plain.value
     words = in_words(plain, column.kind)
     return {
-        "words": words, "interval": interval, "missing": words == MISSING, "text": column.worded, "prose": column.kind == "prose",
+        "words": words, "interval": bounds, "limits": limits, "missing": words == MISSING,
+        "text": column.worded, "prose": column.kind == "prose",
         "best": marks.best, "best_of_all": marks.best_of_all, "link": marks.link, "note": marks.note,
     }  # fmt: skip

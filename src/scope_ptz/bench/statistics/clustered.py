@@ -35,7 +35,11 @@ class Scores:
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """``low`` and ``high``: the 95% interval, None where there is only one cluster. ``se``: standard error; ``n``: outcomes."""
+    """``low`` and ``high``: the 95% interval, None where it is not known. ``se``: standard error; ``n``: outcomes.
+
+    ``without``: strata of which all outcomes are of one cluster. They are in the value, but nothing is known of how they vary
+    between clusters, so that the interval is too narrow by what they would add. Where all strata are such, there is no interval.
+    """
 
     value: float
     low: float | None
@@ -43,6 +47,7 @@ class Estimate:
     se: float | None
     n: int
     clusters: int
+    without: tuple[str, ...] = ()
 
 
 def macro_weights(scores: Scores) -> dict[Hashable, float]:
@@ -76,16 +81,32 @@ def cluster_variance(scores: Scores, weights: Mapping[Any, float]) -> float | No
     return float(len(labels) / (len(labels) - 1) * np.sum(sums**2))
 
 
-def independent_variance(scores: Scores, weights: Mapping[Any, float]) -> float:
-    """Variance of ``weighted_mean`` if all outcomes were independent: sum_k w_k^2 s_k^2 / n_k."""
-    residuals, share = _residuals(scores, weights)
-    return float(np.sum((residuals * share) ** 2))
+def independent_variance(scores: Scores, weights: Mapping[Any, float]) -> float | None:
+    """``cluster_variance`` with every outcome a cluster of its own: as if all were independent. None for fewer than two."""
+    return cluster_variance(Scores(scores.values, scores.strata, tuple(range(len(scores.values)))), weights)
+
+
+def strata_without_spread(scores: Scores, weights: Mapping[Any, float]) -> tuple[Hashable, ...]:
+    """Strata of the estimate whose outcomes are all of one cluster: their residuals sum to 0 there, whatever they are."""
+    seen: dict[Hashable, set[Hashable]] = {}
+    for stratum, cluster in zip(scores.strata, scores.clusters, strict=True):
+        seen.setdefault(stratum, set()).add(cluster)
+    return tuple(stratum for stratum, clusters in seen.items() if weights.get(stratum) and len(clusters) < 2)
 
 
 def standard_error(scores: Scores, weights: Mapping[Any, float]) -> float | None:
-    """Root of the larger of the two variances: a few clusters that agree by chance must not feign precision."""
-    clustered = cluster_variance(scores, weights)
-    return None if clustered is None else sqrt(max(clustered, independent_variance(scores, weights)))
+    """Root of the larger of the two variances: a few clusters that agree by chance must not feign precision.
+
+    None where every stratum is of one cluster: then nothing tells how outcomes vary between clusters.
+    """
+    clustered, independent = cluster_variance(scores, weights), independent_variance(scores, weights)
+    if (
+        clustered is None
+        or independent is None
+        or len(strata_without_spread(scores, weights)) == np.count_nonzero([*weights.values()])
+    ):
+        return None
+    return sqrt(max(clustered, independent))
 
 
 def share(scores: Scores, weights: Mapping[Any, float] | None = None) -> Estimate | None:
@@ -102,7 +123,7 @@ def share(scores: Scores, weights: Mapping[Any, float] | None = None) -> Estimat
     if se is not None:
         size = value * (1 - value) / se**2 if se > 0 else float(len(scores.values))
         low, high = wilson(value, size, t_quantile(clusters))
-    return Estimate(value, low, high, se, len(scores.values), clusters)
+    return Estimate(value, low, high, se, len(scores.values), clusters, _without(scores, weights))
 
 
 def difference(scores: Scores, weights: Mapping[Any, float] | None = None) -> Estimate | None:
@@ -116,7 +137,11 @@ def difference(scores: Scores, weights: Mapping[Any, float] | None = None) -> Es
     value, se, clusters = weighted_mean(scores, weights), standard_error(scores, weights), len(set(scores.clusters))
     half = se * t_quantile(clusters) if se else None
     low, high = (None, None) if half is None else (max(-1.0, value - half), min(1.0, value + half))
-    return Estimate(value, low, high, se, len(scores.values), clusters)
+    return Estimate(value, low, high, se, len(scores.values), clusters, _without(scores, weights))
+
+
+def _without(scores: Scores, weights: Mapping[Any, float]) -> tuple[str, ...]:
+    return tuple(map(str, strata_without_spread(scores, weights)))
 
 
 def wilson(value: float, size: float, quantile: float) -> tuple[float, float]:

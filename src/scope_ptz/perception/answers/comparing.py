@@ -86,6 +86,9 @@ def how_far(view: View, question: s.HowFar) -> Reply:
 
 
 def compare_count(view: View, question: s.CompareCount) -> Reply:
+    """Which of two kinds there are more of, or fewer, or whether there are. Of one kind at two places a picture shows only one."""
+    if not question.second.phrases:
+        return unknown("I cannot tell: I see one picture, and nothing else to compare it with")
     a, b = len(find(view, question.first)), len(find(view, question.second))
     first, second = noun(view, question.first, many=True), noun(view, question.second, many=True)
     counts = f"{w.counted(a, noun(view, question.first))} and {w.counted(b, noun(view, question.second))}"

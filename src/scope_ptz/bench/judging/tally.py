@@ -1,0 +1,76 @@
+"""What came of judgements: how many gave a verdict, and which runs still wait for one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from scope_ptz.bench.judging.rubrics import prompt_version
+from scope_ptz.bench.trials import Judgement, Trial
+
+VERDICTS = ("correct", "incorrect")
+_MOST_CHARS = 300
+
+
+@dataclass(frozen=True, slots=True)
+class Tally:
+    """Judgements by what came of them. ``failure``: what the first failed one says, on one line."""
+
+    verdicts: int = 0
+    unparseable: int = 0
+    failed: int = 0
+    failure: str = ""
+
+    @classmethod
+    def of(cls, judgements: Iterable[Judgement]) -> Tally:
+        made = list(judgements)
+        failed = [judgement.reason for judgement in made if judgement.verdict == "failed"]
+        return cls(
+            verdicts=sum(judgement.verdict in VERDICTS for judgement in made),
+            unparseable=sum(judgement.verdict == "unparseable" for judgement in made),
+            failed=len(failed),
+            failure=" ".join(failed[0].split())[:_MOST_CHARS] if failed else "",
+        )
+
+    def __add__(self, other: Tally) -> Tally:
+        return Tally(
+            self.verdicts + other.verdicts, self.unparseable + other.unparseable, self.failed + other.failed,
+            self.failure or other.failure,
+        )  # fmt: skip
+
+    @property
+    def made(self) -> int:
+        return self.verdicts + self.unparseable + self.failed
+
+    @property
+    def told(self) -> str:
+        """How many of which, in words."""
+        return f"{self.verdicts} with a verdict, {self.unparseable} unparseable, {self.failed} failed"
+
+
+def without_verdict(trial: Trial) -> bool:
+    """Whether only a judge can score a run and none has given a verdict: it counts neither as right nor as wrong."""
+    return trial.scored_by == "judge" and trial.headline == "unscored"
+
+
+def not_judged(trial: Trial) -> bool:
+    """Whether a run without a verdict has not been judged at all, or only by judges whose servers failed."""
+    return without_verdict(trial) and all(judgement.verdict == "failed" for judgement in trial.judgements)
+
+
+def wanted(trials: Iterable[Trial], judge: str, repeats: int) -> list[Judgement | None]:
+    """The first ``repeats`` judgements of every run by a judge and today's prompt; None for those it was not asked for yet. Runs
+    that infrastructure broke are not judged."""
+    found: list[Judgement | None] = []
+    for trial in trials:
+        if trial.headline != "infrastructure":
+            own = {j.repeat: j for j in trial.judgements if (j.judge, j.prompt) == (judge, prompt_version())}
+            found += [own.get(number) for number in range(repeats)]
+    return found
+
+
+def judged_by(trials: Iterable[Trial], judge: str, repeats: int) -> str | None:
+    """Who has judged every run so often, without a failure: the ``judge`` of that name, or anyone where it is empty."""
+    rows = list(trials)
+    names = [judge] if judge else dict.fromkeys(j.judge for trial in rows for j in trial.judgements)
+    return next((n for n in names if all(j is not None and j.verdict != "failed" for j in wanted(rows, n, repeats))), None)

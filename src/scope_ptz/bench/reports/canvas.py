@@ -1,0 +1,137 @@
+"""What charts are drawn on. Colour-blind-safe colours, text as text, axes in the colour of the page's ink: they work in light and
+dark."""
+
+from __future__ import annotations
+
+import io
+import re
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from textwrap import wrap
+from typing import TYPE_CHECKING, Any
+
+from scope_ptz.bench.reports.runs import Run
+from scope_ptz.bench.reports.sections import Chart
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+INK, FAINT, PAPER = "#010203", "#040506", "#070809"
+"""Stand-ins that become the page's own colours."""
+HUES = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E442")
+"""Okabe and Ito (2008)."""
+GREY = "#8a8f98"
+GREYS, HATCHES = ("#c9ccd1", "#9a9fa8", "#757b85", "#b3b7bd"), ("////", "....", "xxxx", "----", "\\\\\\\\")
+"""Told apart by both: their numbers have no factor in common."""
+PX = 96.0
+_SETTINGS: Any = {
+    "svg.fonttype": "none", "svg.hashsalt": "scope",
+    "text.parse_math": False, "font.family": "DejaVu Sans", "font.size": 10.5, "text.color": INK,
+    "axes.edgecolor": INK, "axes.labelcolor": INK, "xtick.color": INK, "ytick.color": INK, "axes.spines.top": False,
+    "axes.spines.right": False, "axes.grid": True, "axes.axisbelow": True, "grid.color": FAINT, "grid.linewidth": 0.7,
+    "figure.facecolor": "none", "axes.facecolor": "none", "savefig.facecolor": "none", "legend.frameon": False,
+}  # fmt: skip
+
+
+@contextmanager
+def canvas(width_px: int, height_px: int) -> Iterator[tuple[Figure, Axes]]:
+    """A figure with one set of axes."""
+    with panels(width_px, height_px, 1) as (figure, (axes,)):
+        yield figure, axes
+
+
+@contextmanager
+def panels(width_px: int, height_px: int, number: int) -> Iterator[tuple[Figure, Sequence[Axes]]]:
+    """A figure with axes side by side that share their rows."""
+    import matplotlib as mpl
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+    from matplotlib.figure import Figure
+
+    with mpl.rc_context(_SETTINGS), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph")  # The reader's browser has the glyphs; only their width is guessed here.
+        figure = Figure(figsize=(width_px / PX, height_px / PX), dpi=PX, layout="constrained")
+        FigureCanvasSVG(figure)
+        yield figure, list(figure.subplots(1, number, sharey=True, squeeze=False)[0])
+
+
+def as_chart(key: str, title: str, alt: str, figure: Figure) -> Chart:
+    """The figure as inline SVG: ids of its own, the page's colours and fonts."""
+    out = io.StringIO()
+    figure.savefig(out, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
+    svg = out.getvalue()
+    svg = svg[svg.index("<svg") :]
+    svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.DOTALL)
+    svg = re.sub(r'\bid="', f'id="{key}-', svg)
+    svg = re.sub(r'(href="#|url\(#)', rf"\g<1>{key}-", svg)
+    svg = svg.replace(INK, "var(--ink)").replace(FAINT, "var(--line)").replace(PAPER, "var(--paper)")
+    svg = re.sub(r"font: ([\d.]+px) [^;\"]+", r"font: \1 system-ui, 'DejaVu Sans', sans-serif", svg)
+    svg = svg.replace("<svg ", '<svg aria-hidden="true" focusable="false" ', 1)
+    return Chart(key, title, alt, svg, round(figure.get_figwidth() * PX))
+
+
+def colours(runs: Sequence[Run]) -> dict[str, str]:
+    """A hue for each pair of eyes, lighter for smaller planners, as in the paper's figure; grey for what is not ranked."""
+    eyes = list(dict.fromkeys(run.eyes_name for run in runs if run.ranked))
+    found = {}
+    for run in runs:
+        if not run.ranked:
+            found[run.label] = GREY
+            continue
+        name = run.eyes_name
+        same = [r for r in runs if r.ranked and r.eyes_name == name]
+        place = (same.index(run) + 1) / len(same)
+        found[run.label] = _mixed(HUES[eyes.index(name) % len(HUES)], 0.45 + 0.55 * place)
+    return found
+
+
+def _mixed(colour: str, share: float) -> str:
+    """A colour mixed with light grey, so that it shows on white and on black."""
+    parts = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
+    return "#" + "".join(f"{round(part * share + 205 * (1 - share)):02x}" for part in parts)
+
+
+def shades(runs: Sequence[Run]) -> list[tuple[str, str | None]]:
+    """Fill and hatch for the bars of each run. What is not ranked has no hue: its greys and hatches tell it apart."""
+    tint, others = colours(runs), [run for run in runs if not run.ranked]
+    found: list[tuple[str, str | None]] = []
+    for run in runs:
+        if run.ranked:
+            found.append((tint[run.label], None))
+        else:
+            place = others.index(run)
+            found.append((GREYS[place % len(GREYS)], HATCHES[place % len(HATCHES)]))
+    return found
+
+
+def short(label: str, most: int = 46) -> str:
+    """A label that fits, without characters that no picture can hold."""
+    shown = "".join(mark if mark.isprintable() else " " for mark in label)
+    return shown if len(shown) <= most else shown[: most - 1] + "…"
+
+
+def lines(label: str, most: int = 42) -> str:
+    """A label on as many lines as it needs, three at most, so that nothing that sets a run apart is cut off."""
+    return "\n".join(wrap(short(label, 3 * most - 8), most) or [""])
+
+
+def legend_columns(labels: Sequence[str], most: int = 52) -> int:
+    """Columns of a legend below the axes: one where a label would not fit half the width in whatever font the reader has."""
+    return 2 if len(labels) > 1 and max(map(len, labels)) <= most else 1
+
+
+def legend_below(figure: Figure, labels: Sequence[str]) -> None:
+    """A legend that cuts no label off."""
+    columns = legend_columns(labels)
+    figure.legend(loc="outside lower center" if columns == 2 else "outside lower left", ncols=columns, fontsize=9.5)
+
+
+def legend_px(labels: Sequence[str]) -> int:
+    """Its height."""
+    return 20 * -(-len(labels) // legend_columns(labels))
+
+
+def row_px(labels: Sequence[str], least: int = 26) -> int:
+    """Height of a row that the longest of these labels fits in."""
+    return max([least, *(8 + 16 * (1 + words.count("\n")) for words in labels)])

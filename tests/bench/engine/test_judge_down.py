@@ -1,0 +1,117 @@
+"""A judge that is away or talks nonsense never looks like success, and the same command makes good what is missing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from scope_ptz.bench.engine.journal import Journal
+from scope_ptz.bench.engine.logs import read_evaluation, uuids_in
+from scope_ptz.bench.judging.rubrics import prompt_version
+from scope_ptz.bench.judging.tally import Tally, judged_by
+from scope_ptz.bench.trials import Judgement
+from tests.bench.engine.test_judges import verdict
+from tests.cli.conftest import Scope
+from tests.support.misbehaving import Exchange, Misbehaving, Say, good, status
+
+AWAY = "http://127.0.0.1:1/v1"
+
+
+def run(scope: Scope, tasks: Path, out: Path, *judge: str) -> tuple[int, str, str]:
+    done = scope("bench", "run", "--tasks", str(tasks), "--no-pictures", "--out", str(out), *judge)
+    return done.code, done.out, done.err
+
+
+def test_rescoring_by_a_judge_that_is_away_fails_and_the_same_command_mends_it(scope: Scope, evaluated: Path) -> None:
+    down = scope("bench", "rescore", str(evaluated), "--judge-url", AWAY, "--judge-model", "j")
+    assert down.code == 1
+    assert "4 judgements by j: 0 with a verdict, 0 unparseable, 4 failed" in down.out
+    assert "4 of 4 judgements failed because the judge's server gave no usable reply" in down.err
+    assert "127.0.0.1:1" in down.err and "Start it, or check the address." in down.err
+    assert "the same command asks for them again" in down.err
+    with Misbehaving(then=good(verdict)) as server:
+        up = scope("bench", "rescore", str(evaluated), "--judge-url", server.url, "--judge-model", "j")
+    assert up.code == 0, up.err
+    assert "4 judgements by j: 4 with a verdict, 0 unparseable, 0 failed" in up.out
+    assert [[j.verdict for j in t.judgements] for t in read_evaluation(evaluated).trials] == [
+        ["correct"], ["incorrect"], ["correct"], ["correct"],
+    ]  # fmt: skip
+
+
+def test_replies_that_are_no_verdict_are_counted_and_no_failure_of_servers(scope: Scope, evaluated: Path) -> None:
+    with Misbehaving(then=good(Say("I think it went well."))) as server:
+        done = scope("bench", "rescore", str(evaluated), "--judge-url", server.url, "--judge-model", "j")
+    assert done.code == 0, done.err
+    assert "4 judgements by j: 0 with a verdict, 4 unparseable, 0 failed" in done.out
+
+
+def test_a_run_whose_judge_is_away_is_not_done(scope: Scope, tasks_file: Path, tmp_path: Path) -> None:
+    code, out, err = run(scope, tasks_file, tmp_path, "--judge-url", AWAY, "--judge-model", "j")
+    assert code == 1
+    assert "judge      j: 0 with a verdict, 0 unparseable, 4 failed" in out
+    assert "Start it, or check the address." in err and "scope bench rescore" in err
+    (log,) = tmp_path.glob("*.eval")
+    runs = uuids_in(log)
+
+    async def half(exchange: Exchange) -> None:
+        behaviour = status(401) if "how many" in str(exchange.request.data) else good(verdict)
+        await behaviour(exchange)
+
+    with Misbehaving(then=half) as server:
+        code, out, err = run(scope, tasks_file, tmp_path, "--judge-url", server.url, "--judge-model", "j")
+        assert code == 1
+    assert "4 of 4 judgements by j are missing" in err
+    assert "2 of 4 judgements failed" in err
+    with Misbehaving(then=good(verdict)) as server:
+        code, out, err = run(scope, tasks_file, tmp_path, "--judge-url", server.url, "--judge-model", "j")
+        assert code == 0, err
+        assert len([r for r in server.requests if r.chat]) == 2
+    assert "this evaluation is done" in err
+    assert "judge      j: 4 with a verdict, 0 unparseable, 0 failed" in out
+    # The agent was not run again, and a judge that has said everything is not asked, wherever it is.
+    assert list(tmp_path.glob("*.eval")) == [log] and uuids_in(log) == runs
+    for judge in (("--judge-url", AWAY, "--judge-model", "j"), ("--judge-url", AWAY)):
+        code, out, err = run(scope, tasks_file, tmp_path, *judge)
+        assert (code, "4 with a verdict" in out, "missing" in err) == (0, True, False)
+
+
+def test_an_evaluation_that_was_run_without_a_judge_is_judged_by_the_same_command(
+    scope: Scope, tasks_file: Path, tmp_path: Path
+) -> None:
+    assert run(scope, tasks_file, tmp_path)[0] == 0
+    with Misbehaving(then=good(verdict)) as server:
+        judge = ("--judge-url", server.url, "--judge-model", "j", "--judge-repeats", "2")
+        code, out, err = run(scope, tasks_file, tmp_path, *judge)
+    assert code == 0, err
+    assert "8 of 8 judgements by j are missing" in err
+    assert "judge      j: 8 with a verdict" in out
+    (log,) = tmp_path.glob("*.eval")
+    assert [[j.repeat for j in t.judgements] for t in read_evaluation(log).trials] == [[0, 1]] * 4
+
+
+def test_what_another_judge_said_before_a_break_waits_for_its_own_command(scope: Scope, evaluated: Path) -> None:
+    trial = read_evaluation(evaluated).trials[0]
+    said = Judgement(judge="a", prompt=prompt_version(), verdict="correct", reason="Kept.")
+    Journal.beside(evaluated).add(trial.sample, said)  # as a rescoring by "a" that was killed leaves it
+    with Misbehaving(then=good(verdict)) as server:
+        for judge, asked in (("b", 4), ("a", 4 + 3)):
+            assert scope("bench", "rescore", str(evaluated), "--judge-url", server.url, "--judge-model", judge).code == 0
+            assert len([r for r in server.requests if r.chat]) == asked
+    assert said in read_evaluation(evaluated).trials[0].judgements
+    assert not list(evaluated.parent.glob("*.jsonl*"))
+
+
+def test_what_is_said_of_judgements(evaluated: Path) -> None:
+    def judgement(verdict: str, **values: object) -> Judgement:
+        return Judgement.model_validate({"judge": "j", "prompt": prompt_version(), "verdict": verdict, **values})
+
+    told = Tally.of([judgement("correct"), judgement("failed", reason="No route\nto it."), judgement("failed", reason="x")])
+    told += Tally.of([judgement("unparseable"), judgement("incorrect", error_mode="scope")])
+    assert (told.told, told.made, told.failure) == ("2 with a verdict, 1 unparseable, 2 failed", 5, "No route to it.")
+    first, second, *_ = read_evaluation(evaluated).trials
+    whole = [t.model_copy(update={"judgements": (judgement("unparseable"),)}) for t in (first, second)]
+    half = [whole[0], second.model_copy(update={"judgements": (judgement("failed"),)})]
+    assert [judged_by(whole, name, 1) for name in ("", "j", "k")] == ["j", "j", None]
+    assert judged_by(whole, "", 2) is None
+    assert judged_by(half, "", 1) is None
+    broken = half[1].model_copy(update={"headline": "infrastructure"})
+    assert judged_by([whole[0], broken], "", 1) == "j"

@@ -1,0 +1,104 @@
+"""What a latency includes: the camera, which in the simulator renders, is a stage of its own and in no pair's own time."""
+
+from __future__ import annotations
+
+from statistics import median
+
+import pytest
+
+from scope_ptz.agent.records import Called, Place
+from scope_ptz.agent.timing import Reply, Timings
+from scope_ptz.bench.reports.building import Report, build_report
+from scope_ptz.bench.reports.tables import Value, bare
+from scope_ptz.bench.trials import Evaluation, LookTime, Trial
+from scope_ptz.planner.base import ToolCall, ToolOutcome
+from scope_ptz.registry import load_registry
+from tests.bench.reports.making import card, facts, trial
+from tests.bench.reports.test_report import BEST, log, row, scored, table
+
+PATIENT = Timings(planner_s=1.0, perception_s=0.5, camera_s=0.25, render_s=40.0, total_s=42.0)
+
+
+def views(report: Report, eyes: str) -> dict[str, dict[str, Value]]:
+    """The rows of a pair of eyes in the table of views, by view."""
+    found = table(report, "latency_views")
+    start = next(number for number, name in found.groups.items() if name == eyes)
+    names = [column.name for column in found.columns]
+    return {str(values[0]): dict(zip(names, values, strict=True)) for values in found.rows[start : start + 2]}
+
+
+def timed(planner: str, *trials: Trial) -> Evaluation:
+    return Evaluation(card=card(planner, "moondream3", contended=False), trials=trials, wanted=len(trials))
+
+
+def test_the_camera_is_apart_and_what_is_left_is_the_pairs_own() -> None:
+    assert (PATIENT.capture_s, PATIENT.own_s, PATIENT.tools_s) == pytest.approx((40.25, 1.75, 0.25))
+    # Frames that were rendered while the eyes still looked at another leave no negative work of tools.
+    overlapping = Timings(planner_s=1.0, perception_s=2.0, render_s=1.5, total_s=4.0)
+    assert (overlapping.own_s, overlapping.tools_s) == pytest.approx((3.0, 0.0))
+
+
+def test_the_eyes_time_of_a_call_is_that_of_its_own_replies() -> None:
+    replies = tuple(Reply(kind="detect", result={}, frame_time_s=0, wall_s=wall_s) for wall_s in (0.02, 0.03))
+    outcome = ToolOutcome(call=ToolCall(id="1", name="count_objects", arguments={}), result={})
+    place = Place(pan_deg=0, tilt_deg=0, zoom=1)
+    made = Called(step=1, index=0, outcome=outcome, scene_time_s=0, pose=place, timings=PATIENT, replies=replies)
+    assert made.eyes_s == pytest.approx(0.05)
+
+
+def test_rendering_neither_counts_nor_ranks() -> None:
+    tasks = facts(2)
+    quick = Timings(planner_s=1.5, perception_s=0.5, camera_s=0.0, render_s=0.1, total_s=2.2)
+    made = build_report(
+        [
+            timed("qwen3-4b", *(trial(t, timings=PATIENT) for t in tasks)),
+            timed("qwen3-30b-a3b", *(trial(t, timings=quick) for t in tasks)),
+        ],
+        load_registry(),
+    )
+    # The first asked for views that took long to render. It is the faster pair all the same, and smaller: it beats the other.
+    slow, fast = (row(made, "design_points", f"{planner} + moondream3") for planner in ("qwen3-30b-a3b", "qwen3-4b"))
+    assert (fast["latency_s"], slow["latency_s"]) == pytest.approx((1.75, 2.1))
+    assert (fast["front"], slow["front"]) == ("yes", "no")
+    told = row(made, "latency_stages", "qwen3-4b + moondream3")
+    stages = [told[f"{stage}_median"] for stage in ("planner_s", "perception_s", "tools_s", "own_s", "capture_s", "total_s")]
+    assert stages == pytest.approx([1.0, 0.5, 0.25, 1.75, 40.25, 42.0])
+    words = {section.key: " ".join(section.text) for section in made.sections}
+    assert "all but the camera" in words["latency"] and "all of a trial but the camera" in words["design"]
+    chart = next(chart for section in made.sections for chart in section.charts if chart.key == "chart-front")
+    assert "without the camera" in chart.svg and "1.75 s" in chart.alt and "42" not in chart.alt
+
+
+def test_a_look_is_the_eyes_and_its_capture_stands_apart(report: Report, evaluations: list[Evaluation]) -> None:
+    alone = scored(log(evaluations, BEST, split="lite"))
+    by_view = {view: [look for t in alone for look in t.looks if look.view == view] for view in ("current", "full")}
+    found = views(report, "moondream3")
+    for words, view in (("Current view", "current"), ("Panorama", "full")):
+        told = found[words]
+        assert (told["looks"], told["contended"]) == (len(by_view[view]), "alone")
+        assert told["eyes_median"] == pytest.approx(median(look.eyes_s for look in by_view[view]))
+        assert told["capture_median"] == pytest.approx(median(look.capture_s for look in by_view[view]))
+        assert told["call_median"] == pytest.approx(median(s for t in alone for s in t.look_s.get(view, ())))  # type: ignore[call-overload]
+    medians = [median(look.eyes_s for look in by_view[view]) for view in ("full", "current")]
+    assert found["Panorama"]["ratio"] == pytest.approx(medians[0] / medians[1])
+    told_eyes = row(report, "latency_eyes", "moondream3")
+    assert told_eyes["look_median"] == pytest.approx(median(look.eyes_s for t in alone for look in t.looks))
+    assert told_eyes["capture_median"] == pytest.approx(0.25)
+
+
+def test_eyes_take_no_longer_for_a_look_than_for_the_trial_it_is_of() -> None:
+    looks = (LookTime(view="current", eyes_s=0.02, capture_s=5.3),)
+    timings = Timings(planner_s=0.1, perception_s=0.02, render_s=5.3, total_s=5.5)
+    rows = [trial(t, timings=timings, look_s={"current": (5.4,)}, looks=looks) for t in facts(1)]
+    told = row(build_report([timed("qwen3-4b", *rows)], load_registry()), "latency_eyes", "moondream3")
+    assert (told["look_median"], told["trial_median"], told["capture_median"]) == pytest.approx((0.02, 0.02, 5.3))
+
+
+def test_records_that_do_not_tell_the_parts_of_a_look_give_no_figures_for_them() -> None:
+    older = [trial(t, timings=PATIENT, look_s={"current": (41.0,)}) for t in facts(1)]
+    made = build_report([timed("qwen3-4b", *older)], load_registry())
+    told = row(made, "latency_eyes", "moondream3")
+    assert (told["look_median"], told["look_p95"], told["capture_median"], told["trial_median"]) == (None, None, None, 0.5)
+    current = views(made, "moondream3")["Current view"]
+    assert (current["looks"], current["call_median"]) == (len(older), 41.0)
+    assert [bare(current[name]) for name in ("eyes_median", "eyes_p95", "ratio", "capture_median", "capture_p95")] == [None] * 5

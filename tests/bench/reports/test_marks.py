@@ -1,0 +1,137 @@
+"""What sets a run apart from the others is said wherever it stands: other tasks, another model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import pytest
+
+from scope_ptz.bench.reports.building import Report, build_report
+from scope_ptz.bench.reports.canvas import shades
+from scope_ptz.bench.reports.naming import served_instead
+from scope_ptz.bench.reports.runs import collect, main_tasks
+from scope_ptz.bench.reports.tables import bare
+from scope_ptz.bench.trials import Evaluation, ModelCard, TaskFacts
+from scope_ptz.registry import load_registry
+from tests.bench.reports.making import evaluation, facts
+from tests.bench.reports.test_report import row, table
+
+TASKS = facts(4)
+PAIRS = ("qwen3-4b", "qwen3-30b-a3b")
+
+
+def run(planner: str, eyes: str, tasks: Sequence[TaskFacts] = TASKS, **further: Any) -> Evaluation:
+    return evaluation(planner, eyes, tasks, 0.6, **{"spoiled": 0.0, **further})
+
+
+def renamed(tasks: Sequence[TaskFacts]) -> list[TaskFacts]:
+    return [t.model_copy(update={"id": f"{t.id}5"}) for t in tasks]
+
+
+def charts(report: Report) -> dict[str, str]:
+    return {chart.key: chart.alt + chart.svg for section in report.sections for chart in section.charts}
+
+
+@pytest.fixture(scope="module")
+def mixed() -> Report:
+    """Two pairs over the same tasks; a third and the reference over others; a reference over the same."""
+    pairs = [run(planner, "moondream3") for planner in PAIRS]
+    elsewhere = run("grammar", "ground-truth", [*TASKS[:3], *renamed(TASKS[3:20])])
+    return build_report(
+        [*pairs, run("qwen3-4b-fp8", "moondream3", TASKS[:10]), elsewhere, run("qwen3-4b", "ground-truth")], load_registry()
+    )
+
+
+FEWER = "qwen3-4b-fp8 + moondream3 [10 of the 32 tasks]"
+OTHERS = "grammar + ground-truth [20 tasks, 3 of the 32 shared]"
+
+
+def test_runs_over_other_tasks_are_named_first_and_marked_everywhere(mixed: Report) -> None:
+    before = " ".join(mixed.warnings)
+    assert f"Not over the same tasks as the other pairs: {FEWER}." in before
+    assert f"Reference runs, variants and baselines over other tasks than the pairs': {OTHERS}." in before
+    for found in mixed.tables:
+        for values in found.rows:
+            first = str(bare(values[0]))
+            if first.startswith(("grammar + ground-truth", "qwen3-4b-fp8 + moondream3")):
+                assert first in (OTHERS, FEWER), found.key
+    drawn = charts(mixed)
+    for key in ("chart-accuracy", "chart-error-modes"):
+        assert "20 tasks, 3" in drawn[key] and "10 of the" in drawn[key]
+    assert "Hollow: over other tasks" in next(c.title for s in mixed.sections for c in s.charts if c.key == "chart-accuracy")
+
+
+def test_only_pairs_over_the_main_tasks_are_counted_and_averaged(mixed: Report) -> None:
+    assert "2 pairs of models on the main task set (32 tasks); 1 more pair over other tasks." in mixed.summary[0]
+    told = [row(mixed, "scope", f"{planner} + moondream3")["current"] for planner in PAIRS]
+    assert row(mixed, "scope", "Mean of the model pairs")["current"] == pytest.approx(sum(map(float, told)) / 2)  # type: ignore[arg-type]
+    assert {bare(values[0]) for values in table(mixed, "design_points").rows} == {f"{planner} + moondream3" for planner in PAIRS}
+
+
+def test_runs_over_the_same_tasks_are_not_marked() -> None:
+    runs = collect([run("qwen3-4b", "moondream3"), run("grammar", "ground-truth")], load_registry())
+    assert [(r.label, r.elsewhere) for r in runs] == [("qwen3-4b + moondream3", ""), ("grammar + ground-truth", "")]
+    assert main_tasks(runs) == {t.id for t in TASKS}
+    alone = build_report([run("qwen3-4b", "moondream3")], load_registry())
+    assert "1 pair of models on the main task set (32 tasks)." in alone.summary[0]
+    assert not any("other tasks" in line for line in alone.warnings)
+
+
+def test_reference_runs_are_told_apart_in_the_chart_of_error_modes() -> None:
+    references = [run(planner, "ground-truth") for planner in (*PAIRS, "qwen3-4b-fp8", "grammar", "qwen3-32b", "qwen3-14b")]
+    runs = collect([run("qwen3-4b", "moondream3"), *references], load_registry())
+    looks = shades(runs)
+    assert len(set(looks)) == len(runs)
+    assert all((hatch is None) is r.ranked for r, (_, hatch) in zip(runs, looks, strict=True))
+
+
+def served(planner: str, model: str, **further: Any) -> Evaluation:
+    made = run(planner, "moondream3", **further)
+    reported = {"model": model, "/v1/models id": model}
+    return made.model_copy(
+        update={"card": made.card.model_copy(update={"planner": made.card.planner.model_copy(update={"reported": reported})})}
+    )
+
+
+def test_a_server_that_named_another_model_is_said_in_rankings_and_before_them() -> None:
+    other = "qwen3-30b-a3b (served: m-9701)"
+    made = build_report([served("qwen3-30b-a3b", "m-9701"), run("qwen3-4b", "moondream3")], load_registry())
+    label = f"{other} + moondream3"
+    for key in ("accuracy", "outcomes", "latency_stages", "design_points", "oracle", "error_modes", "costs", "runs"):
+        firsts = {str(bare(values[0])) for values in table(made, key).rows}
+        assert label in firsts and not any("30b" in first and first != label for first in firsts), key
+    assert other in {bare(values[0]) for values in table(made, "latency_planner").rows}
+    drawn = charts(made)
+    assert all("served: m-9701" in drawn[key] for key in ("chart-accuracy", "chart-front", "chart-oracle"))
+    (line,) = [line for line in made.warnings if "another model" in line]
+    assert other in line and "qwen3-4b " not in line
+
+
+def test_another_model_in_its_place_is_another_system() -> None:
+    asked, other = served("qwen3-4b", "Qwen/Qwen3-4B-Instruct-2507"), served("qwen3-4b", "m-1", contended=False)
+    runs = collect([asked, other], load_registry())
+    assert len({r.system for r in runs}) == 2
+    told = build_report([asked, other], load_registry())
+    assert row(told, "design_points", "qwen3-4b + moondream3")["contended"] == "contended"
+
+
+@pytest.mark.parametrize(
+    ("reported", "said"),
+    [
+        ({}, None),
+        ({"model": "Qwen/Qwen3-4B-Instruct-2507"}, None),
+        ({"model": "qwen3-4b"}, None),
+        ({"model": "/models/qwen3-4b-instruct-2507"}, None),
+        ({"model": "planner", "/v1/models id": "planner", "/v1/models root": "Qwen/Qwen3-4B-Instruct-2507"}, None),
+        # The name that was asked for decides, not what else the server has on offer.
+        ({"model": "llama-3", "/v1/models id": "Qwen/Qwen3-4B-Instruct-2507"}, "llama-3"),
+        ({"model": "llama-3", "/v1/models id": "x", "/v1/models root": "Qwen/Qwen3-4B-Instruct-2507"}, "llama-3"),
+        ({"/v1/models id": "m-1"}, "m-1"),
+        ({"/version version": "0.9"}, None),
+    ],
+)
+def test_what_counts_as_another_model(reported: dict[str, str], said: str | None) -> None:
+    model = load_registry().model("qwen3-4b")
+    assert served_instead(ModelCard(name="qwen3-4b", registry="qwen3-4b", reported=reported), model) == said
+    assert served_instead(ModelCard(name="mine", reported=reported), None) is None

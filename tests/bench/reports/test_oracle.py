@@ -1,0 +1,96 @@
+"""Perfect perception against what was really there: every oracle beside its own baseline, means over the same pairs."""
+
+from __future__ import annotations
+
+from statistics import fmean
+from typing import Any
+
+import pytest
+
+from scope_ptz.bench.error_modes import ErrorMode
+from scope_ptz.bench.reports.building import Report, build_report
+from scope_ptz.bench.reports.sections import Chart
+from scope_ptz.bench.reports.tables import Marked, Table, bare
+from scope_ptz.bench.statistics.clustered import Estimate
+from scope_ptz.bench.trials import Evaluation, Judgement
+from scope_ptz.registry import load_registry
+from tests.bench.reports.making import JUDGE, card, facts, trial
+from tests.bench.reports.test_report import row, table
+
+TASKS = facts(4)
+"""32, four of each category."""
+
+
+def run(planner: str, eyes: str, wrong: int, *, judged_wrong: int | None = None, number: int = 32) -> Evaluation:
+    """A run that failed the first ``wrong`` tasks of each four, by the judge ``judged_wrong``; half of them for the eyes' sake."""
+    trials = []
+    for at, task in enumerate(TASKS[:number]):
+        place = at % 4
+        further: dict[str, Any] = {"error_mode": ErrorMode.VLM_QUERY if place % 2 == 0 else ErrorMode.SCOPE}
+        if judged_wrong is not None:
+            fails = place < judged_wrong
+            said = Judgement(
+                judge=JUDGE, prompt="standard-1", verdict="incorrect" if fails else "correct",
+                error_mode=further["error_mode"] if fails else None,
+            )  # fmt: skip
+            further["judgements"] = (said,)
+        headline = "incorrect" if place < wrong else "correct"
+        trials.append(trial(task, headline, **(further if headline == "incorrect" else further | {"error_mode": None})))
+    return Evaluation(card=card(planner, eyes), trials=tuple(trials), wanted=number)
+
+
+def build(*evaluations: Evaluation) -> Report:
+    return build_report(evaluations, load_registry())
+
+
+def chart(report: Report) -> Chart:
+    return next(c for section in report.sections for c in section.charts if c.key == "chart-oracle")
+
+
+def cell(found: Table, first: str, name: str) -> Any:
+    at = [column.name for column in found.columns].index(name)
+    return next(values[at] for values in found.rows if bare(values[0]) == first)
+
+
+def test_each_oracle_stands_beside_the_baseline_of_its_own_verdicts() -> None:
+    # By the checks 75%, by the judge 50%. Relabelled: 100% by the checks' rules, 75% by the judge.
+    made = build(run("qwen3-4b", "moondream3", 1, judged_wrong=2), run("qwen3-4b", "ground-truth", 0))
+    told = row(made, "oracle", "qwen3-4b + moondream3")
+    assert [told[n] for n in ("macro_checks", "oracle_rules", "macro_rerun")] == pytest.approx([0.75, 1.0, 1.0])
+    assert [told[n] for n in ("macro_judge", "oracle_judge")] == pytest.approx([0.5, 0.75])
+    drawn = chart(made)
+    checks = "by the checks: as it is 75.0%, VLM failures as right 100.0%, run again with ground-truth eyes 100.0%"
+    assert checks in drawn.alt and "by the judge: as it is 50.0%, VLM failures as right 75.0%" in drawn.alt
+    assert drawn.svg.index("Macro accuracy by the checks") < drawn.svg.index("Macro accuracy by the judge")
+
+
+def test_without_a_judge_there_is_no_panel_for_one() -> None:
+    drawn = chart(build(run("qwen3-4b", "moondream3", 1)))
+    assert "by the checks" in drawn.svg and "by the judge" not in drawn.svg and "by the judge" not in drawn.alt
+
+
+def test_means_are_of_the_pairs_that_have_both() -> None:
+    # Two pairs judged, one not; one run again. No mean mixes them.
+    made = build(
+        run("qwen3-4b", "moondream3", 1, judged_wrong=1),
+        run("qwen3-30b-a3b", "moondream3", 2, judged_wrong=3),
+        run("qwen3-32b", "moondream3", 4),
+        run("qwen3-30b-a3b", "ground-truth", 1),
+    )
+    found, mean, again = table(made, "oracle"), "Mean of the pairs", "Mean of the pairs run again"
+    assert row(made, "oracle", mean)["macro_checks"] == pytest.approx(fmean([0.75, 0.5, 0.0]))
+    assert row(made, "oracle", mean)["macro_judge"] == pytest.approx(fmean([0.75, 0.25]))
+    assert cell(found, mean, "macro_judge").note == cell(found, mean, "oracle_judge").note == "of 2 of 3 pairs"
+    assert cell(found, mean, "macro_checks").note == "" and cell(found, mean, "macro_rerun") == ""
+    told = row(made, "oracle", again)
+    assert (told["macro_checks"], told["macro_rerun"], told["gain_rerun"]) == pytest.approx((0.5, 0.75, 0.25))
+    assert cell(found, again, "macro_checks").note == "of 1 of 3 pairs"
+    assert "Mean" not in chart(made).alt
+
+
+def test_a_run_made_again_over_other_tasks_is_told_of_the_shared_ones_and_not_drawn() -> None:
+    made = build(run("qwen3-4b", "moondream3", 1), run("qwen3-4b", "ground-truth", 0, number=16))
+    shown = cell(table(made, "oracle"), "qwen3-4b + moondream3", "macro_rerun")
+    assert isinstance(shown, Marked) and shown.note == "on 16 of its 32 tasks"
+    assert isinstance(shown.value, Estimate) and shown.value.n == 16
+    assert "run again" not in chart(made).alt
