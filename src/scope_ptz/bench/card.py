@@ -105,8 +105,8 @@ def _what(data: Dataset) -> Iterator[str]:
         "- Scenes are British and European in their signs, vehicles and clothes.\n"
         "- The unseen worlds share their buildings and parked things with the published ones: they test wording, poses, times and "
         "moving things, not new places.\n"
-        "- What is baked, lettering most of all, is the same in every split: whoever has seen the answers of one split (unseen too) "
-        "knows much of the others by scene and name. Scores of models that were trained on any of them say nothing.\n"
+        "- What is baked, lettering most of all, is the same in every split: whoever has seen the answers of one split "
+        "(unseen too) knows much of the others by scene and name. Scores of models that were trained on any of them say nothing.\n"
         "- Ground-truth perception is written by the same people as the tasks, though the code that reads language is not shared."
     )
     yield "## Licence, people, canary"

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import lru_cache
 
 from scope_ptz.bench.authoring.drafts import Draft
+from scope_ptz.bench.ground import Sight
 from scope_ptz.bench.run_program import Equip
 from scope_ptz.camera.base import Frame
 from scope_ptz.geometry import Projection
 from scope_ptz.perception.answers import answer
 from scope_ptz.perception.ground_truth import GroundTruthPerception
 from scope_ptz.perception.language import parse_question
-from scope_ptz.perception.view import read_view
+from scope_ptz.perception.view import View, read_view
 from scope_ptz.tools.context import ToolContext
 from scope_ptz.world.actors import appearances, shows
 from scope_ptz.world.pack import Scene
@@ -59,8 +61,13 @@ def answered(draft: Draft) -> bool:
     asked = [str(call.arguments["question"]) for call in draft.looks if call.tool == "query_answer"]
     if draft.looks_closer or not asked:
         return True
-    view = read_view(sight.first, sight.scene.file, sight.time_s)
+    view = _view(sight)
     return all(answer(view, parse_question(question)).known for question in asked)
+
+
+@lru_cache(maxsize=512)
+def _view(sight: Sight) -> View:
+    return read_view(sight.first, sight.scene.file, sight.time_s)
 
 
 def equip_with_truth(scenes: Mapping[str, Scene], views: KnownViews | None = None) -> Equip:
