@@ -72,5 +72,5 @@ def test_an_audit_gives_readers_pictures_and_no_truth(scope: Scope, tmp_path: Pa
     assert "there already" in scope("bench", "audit", "make", "--tasks", str(tasks), "--out", str(folder)).err
     (folder / "answers.jsonl").write_text('{"q": "q001", "answer": "I cannot tell."}\n')
     scored = scope("bench", "audit", "score", str(folder), "--tasks", str(tasks), "--out", str(tmp_path / "audit.json"))
-    assert scored.code == 0 and "0 of 3 answers agree" in scored.out and "nobody said" in scored.out
+    assert scored.code == 0 and "0 of 1 answers agree" in scored.out and "nobody said" in scored.out
     assert (tmp_path / "audit.json").is_file()
