@@ -10,7 +10,7 @@ import pytest
 from scope_ptz.bench.authoring.assembly import Built, build
 from scope_ptz.bench.tasks import Category
 from scope_ptz.bench.validate import Report, validate
-from scope_ptz.cli.bench_eyes import equip_with_truth
+from scope_ptz.cli.bench_eyes import answered, equip_with_truth
 from scope_ptz.world.pack import Scene
 
 QUOTAS: dict[Category, int] = {
@@ -27,7 +27,7 @@ QUOTAS: dict[Category, int] = {
 
 @pytest.fixture(scope="session")
 def built(analytic_scene: Scene) -> Built:
-    return build([analytic_scene], 1, QUOTAS)
+    return build([analytic_scene], 1, QUOTAS, None, answered)
 
 
 @pytest.fixture(scope="session")

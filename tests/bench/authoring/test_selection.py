@@ -98,7 +98,7 @@ def test_no_place_in_an_offer_is_right_too_often(place: Place) -> None:
 
     last = [offer(n, f"vans {n}") for n in range(40)]
     first = [offer(n, f"cars {n}") for n in range(40, 60)]
-    rows = Selection("comparative", 12, Shared(), 1).fill([*last, *first])
+    rows = Selection("comparative", 10, Shared(), 1).fill([*last, *first])
     assert Counter(at for row in rows for at in right_at(row.draft, row.text) if at != "1") == {
         "0": 5,
         "last": AT_ONE_PLACE["comparative"],

@@ -52,10 +52,11 @@ import sys
 from pathlib import Path
 from scope_ptz.bench.authoring.assembly import build
 from scope_ptz.bench.task_files import dump_tasks
+from scope_ptz.cli.bench_eyes import answered
 from scope_ptz.world.pack import Scene
 from tests.bench.authoring.conftest import QUOTAS
 folder, seed, out = sys.argv[1:]
-dump_tasks(build([Scene(Path(folder))], int(seed), QUOTAS).tasks, Path(out))
+dump_tasks(build([Scene(Path(folder))], int(seed), QUOTAS, None, answered).tasks, Path(out))
 """
 
 
