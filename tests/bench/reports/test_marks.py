@@ -33,6 +33,15 @@ def charts(report: Report) -> dict[str, str]:
     return {chart.key: chart.alt + chart.svg for section in report.sections for chart in section.charts}
 
 
+def test_what_waits_for_a_judge_is_neither_right_nor_wrong() -> None:
+    own = run("qwen3-4b", "moondream3")
+    waiting = own.trials[0].model_copy(update={"headline": "unscored", "scored_by": "judge", "judgements": ()})
+    (before,) = collect([own], load_registry())
+    (after,) = collect([own.model_copy(update={"trials": (waiting, *own.trials[1:])})], load_registry())
+    assert len(after.scored) == len(before.scored) - 1
+    assert waiting in after.headline and waiting not in after.scored
+
+
 @pytest.fixture(scope="module")
 def mixed() -> Report:
     """Two pairs over the same tasks; a third and the reference over others; a reference over the same."""

@@ -41,7 +41,7 @@ def accuracy_section(runs: Sequence[Run]) -> Section:
         "Macro is the unweighted mean over categories, which is what the paper calls average; micro is the share of all "
         "trials (a trial is "
         "one run of one task). Both count correct trials among those that infrastructure did not break; an unscored trial is "
-        "not correct."
+        "not correct. Trials that only a judge can score are left out until one has given a verdict."
     ]
     if len({(run.task_set, run.tasks) for run in having}) > 1:
         text.append(
@@ -123,7 +123,7 @@ def _bounds(runs: Sequence[Run]) -> Table:
 def _counted(run: Run) -> tuple[Value, ...]:
     found = Counter(t.headline for t in run.headline)
     total = len(run.headline)
-    ran = total - found["infrastructure"]
+    ran = len(run.scored)
     return (
         run.label, total, found["correct"], found["incorrect"], found["unscored"], found["infrastructure"],
         found["correct"] / ran if ran else None, found["correct"] / total, 1 - found["incorrect"] / total,

@@ -11,6 +11,7 @@ from typing import Literal
 
 import numpy as np
 
+from scope_ptz.bench.judging.tally import without_verdict
 from scope_ptz.bench.reports.naming import served_instead, split_name
 from scope_ptz.bench.statistics.clustered import Estimate, Scores, macro_weights, share
 from scope_ptz.bench.trials import Evaluation, ModelCard, Trial
@@ -93,8 +94,9 @@ class Run:
 
     @cached_property
     def scored(self) -> tuple[Trial, ...]:
-        """Of these, all that infrastructure did not break; unscored ones are among them and count as not correct."""
-        return tuple(t for t in self.headline if t.headline != "infrastructure")
+        """Of these, all that infrastructure did not break and that need no judge, or have a judge's verdict; other unscored ones
+        are among them and count as not correct."""
+        return tuple(t for t in self.headline if t.headline != "infrastructure" and not without_verdict(t))
 
     @cached_property
     def tasks(self) -> frozenset[str]:
