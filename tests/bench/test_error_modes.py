@@ -11,11 +11,25 @@ from hypothesis import strategies as st
 
 from scope_ptz.bench.episode import Episode, Look
 from scope_ptz.bench.error_modes import ErrorMode, error_mode
-from scope_ptz.bench.expected import ActionOnly
+from scope_ptz.bench.expected import ActionOnly, Choice, Text
 from scope_ptz.bench.mutations import Gold, Setting, confusion, mutate
-from scope_ptz.bench.tasks import Argument, Behaviour, RequiredCall, Task
+from scope_ptz.bench.tasks import Argument, Behaviour, Item, RequiredCall, Task
 from scope_ptz.bench.verdict import judge
-from tests.bench.making import EYES, GO_BRIDGE, GO_HIGHWAY, PRESETS, Step, counted, play, samples, task, told
+from tests.bench.making import (
+    EYES,
+    GO_BRIDGE,
+    GO_HIGHWAY,
+    PRESETS,
+    SIGN_BOX,
+    START,
+    Step,
+    counted,
+    play,
+    samples,
+    task,
+    told,
+    view,
+)
 
 SAMPLES = samples()
 BY_NAME = {of.id.removeprefix("scope1-test-"): of for of, _ in SAMPLES}
@@ -51,6 +65,11 @@ def test_a_run_that_passes_or_cannot_be_scored_has_no_mode() -> None:
 BLIND: Step = ("count_objects", {"description": "cones", "view": "current"}, {"error": "timeout", "fault": "perception"})
 NO_PRESET: Step = ("go_to_preset", {"name": "motorway"}, {"error": "no such preset"})
 FULL_CARS: Step = counted(12, "cars", "full")
+UNTOLD: dict[str, object] = {"answer": "I cannot tell: there is no van in view", "known": False, "view": "current"}
+NO_ANSWER: Step = ("query_answer", {"question": "What colour is the van?", "view": "current"}, UNTOLD)
+TO_SIGN = {"found": True, "matches": 1, "chosen": "sign", "pose": {"pan_deg": 22.0, "tilt_deg": -5.0, "zoom": 5.0}}
+TO_SKY = TO_SIGN | {"pose": {"pan_deg": 60.0, "tilt_deg": 15.0, "zoom": 5.0}}
+ZOOM_HOME: list[Step] = [("zoom_to_object", {"description": "the sign"}, TO_SIGN), ("go_home", {})]
 
 
 @pytest.mark.parametrize(
@@ -108,6 +127,44 @@ FULL_CARS: Step = counted(12, "cars", "full")
             "It is not there.",
             ErrorMode.VLM_QUERY,
         ),
+        # Asked about the right thing in the right view, and told nothing: what comes of it is not the agent's aim.
+        ("descriptor-003", [GO_BRIDGE, NO_ANSWER], "I cannot tell: there is no van in view.", ErrorMode.VLM_QUERY),
+        ("descriptor-003", [GO_BRIDGE, NO_ANSWER], "The van is blue.", ErrorMode.HALLUCINATION),
+        ("descriptor-003", [GO_HIGHWAY, NO_ANSWER], "I cannot tell: there is no van in view.", ErrorMode.TOOL_ARGS),
+        # The search did its work, or was for something else: the camera is elsewhere by the agent's own doing.
+        ("single-call-011", ZOOM_HOME, "Done.", ErrorMode.TOOL_ARGS),
+        ("single-call-011", [("zoom_to_object", {"description": "the sign"}, TO_SKY)], "Done.", ErrorMode.VLM_QUERY),
+        ("single-call-011", [("zoom_to_object", {"description": "a person"}, TO_SKY)], "Done.", ErrorMode.TOOL_ARGS),
+        # One question about each machine: what is said of that one counts.
+        (
+            "descriptor-013",
+            [GO_HIGHWAY, told("Yes, there is an excavator.", "Is there an excavator?")],
+            "An excavator, nothing else.",
+            ErrorMode.REASONING,
+        ),
+        (
+            "descriptor-013",
+            [GO_HIGHWAY, told("Yes, there is an excavator.", "Is there an excavator?"), told("No.", "Is there a roller?")],
+            "An excavator, nothing else.",
+            ErrorMode.VLM_QUERY,
+        ),
+        (
+            "descriptor-013",
+            [
+                GO_HIGHWAY,
+                told("Yes.", "Is there an excavator?"),
+                told("Yes.", "Is there a roller?"),
+                told("Yes.", "Is there a van?"),
+            ],
+            "An excavator, a roller and a van.",
+            ErrorMode.VLM_QUERY,
+        ),
+        (
+            "descriptor-013",
+            [GO_HIGHWAY, told("There is no van in view.", "Is there a van?"), told("an excavator", "Which machines are there?")],
+            "An excavator and a van.",
+            ErrorMode.HALLUCINATION,
+        ),
     ],
 )
 def test_what_a_person_would_say(name: str, steps: list[Step], text: str, mode: ErrorMode) -> None:
@@ -125,6 +182,25 @@ def test_the_truth_of_the_very_view_goes_before_the_evidence() -> None:
 
     assert error_mode(of, extra, truth) is ErrorMode.VLM_COUNTING
     assert error_mode(of, extra, lambda look: 9 if look.viewpoint == "bridge" else None) is ErrorMode.REASONING
+
+
+def test_a_right_answer_about_one_of_two_things_is_no_wrong_one_about_both() -> None:
+    which = Choice(value="van", options={"van": (), "sign": ()}, picks=("nearer",))
+    of = task(
+        98, "comparative", which, [told("6 m", "How far is the van?")],
+        evidence=[view(START, items=[Item(instance=one, box_deg=SIGN_BOX) for one in ("van-01", "sign-02")], shows=which)],
+    )  # fmt: skip
+    far, near = told("The sign is 9 m away.", "How far is the sign?"), told("The van is 6 m away.", "How far is the van?")
+    denied = told("There is no van in view.", "How far is the van?")
+    assert error_mode(of, play([far, near], "The sign is nearer.")) is ErrorMode.REASONING
+    assert error_mode(of, play([far, denied], "The sign is nearer.")) is ErrorMode.VLM_QUERY
+
+
+def test_words_of_several_texts_are_grounded_wherever_each_was_read() -> None:
+    both = Text(accepted=("A482 / Harrowfield",), ocr=True)
+    of = task(97, "ocr", both, [told("A482", "What does it say?")], evidence=[view(START, shows=both)])
+    read = [told("It says A483.", "What does the upper line say?"), told("It says HARROWFIELD.", "And the lower one?")]
+    assert error_mode(of, play(read, 'It says "A483" and "HARROWFIELD".')) is ErrorMode.VLM_QUERY
 
 
 def test_a_target_that_perception_does_not_find_is_its_fault_and_one_that_was_never_asked_for_the_agents() -> None:

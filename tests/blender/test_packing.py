@@ -77,6 +77,24 @@ def test_what_is_no_picture_is_a_pack_error(tmp_path: Path) -> None:
         read_ids(tmp_path / "ids.tiff")
 
 
+@pytest.mark.parametrize("suffix", [".png", ".webp"])
+@pytest.mark.parametrize("share", [0.0, 0.02, 0.5])
+def test_numbers_cut_short_are_a_pack_error(tmp_path: Path, suffix: str, share: float) -> None:
+    numbers = np.random.default_rng(1).integers(0, 65536, (40, 60)).astype(np.uint16)
+    path = tmp_path / f"ids{suffix}"
+    write_ids(path, numbers)
+    whole = path.read_bytes()
+    path.write_bytes(whole[: int(share * len(whole))])
+    with pytest.raises(PackError, match="cannot be decoded"):
+        read_ids(path)
+
+
+def test_numbers_that_are_not_there_are_a_pack_error(tmp_path: Path) -> None:
+    for name in ("ids.png", "ids.webp"):
+        with pytest.raises(PackError, match="cannot be decoded"):
+            read_ids(tmp_path / name)
+
+
 def test_a_finished_part_is_not_made_again(tmp_path: Path) -> None:
     made: list[Path] = []
 

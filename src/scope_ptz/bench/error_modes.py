@@ -7,14 +7,19 @@ thing was not misled, and whoever was misled did not reason wrongly. docs/benchm
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
-from scope_ptz.bench.episode import Episode
-from scope_ptz.bench.grounds import CountTruth, is_grounded, target_in, wrong_counts, wrong_reads
+from scope_ptz.bench.checks import check_framing
+from scope_ptz.bench.coverage import gap
+from scope_ptz.bench.episode import Call, Episode, Look
+from scope_ptz.bench.grounds import is_grounded
 from scope_ptz.bench.matching import fits, in_any_order, in_order
-from scope_ptz.bench.tasks import RequiredCall, Task
-from scope_ptz.bench.verdict import Verdict, judge
+from scope_ptz.bench.misperceptions import CountTruth, target_in, wrong_counts, wrong_reads
+from scope_ptz.bench.reader_words import plain_words
+from scope_ptz.bench.tasks import ProgramCall, RequiredCall, Task
+from scope_ptz.bench.verdict import Verdict, claims, judge
+from scope_ptz.geometry import Perspective
 
 
 class ErrorMode(StrEnum):
@@ -130,14 +135,19 @@ def _missing(case: _Case, calls: tuple[RequiredCall, ...], leave_out: set[str]) 
 
 def _wrong_arguments(case: _Case) -> bool:
     """The right tools were called with wrong arguments or at the wrong target: the camera did or saw the wrong thing."""
-    if not case.acted_wrongly or _was_blind(case):
-        return False
-    return not _was_misled(case)
+    return case.acted_wrongly and not (_was_blind(case) or _was_left_unanswered(case) or _was_misled(case))
 
 
 def _was_blind(case: _Case) -> bool:
     """Every look failed: what is missing was not missed by wrong arguments."""
     return not case.episode.looks and any(call.fault == "perception" for call in case.episode.calls)
+
+
+def _was_left_unanswered(case: _Case) -> bool:
+    """All that is wrong beside the answer is that perception, asked about the right thing in the right view, could not tell."""
+    wrong = {check.name for check in case.verdict.checks if check.passed is False} - {"answer", "outcome"}
+    looks = [replace(look, known=True) for look in case.episode.looks]
+    return wrong == {"coverage"} and all(gap(view, looks) is None for view in case.task.evidence if view.must_look)
 
 
 def _was_misled(case: _Case) -> bool:
@@ -147,18 +157,49 @@ def _was_misled(case: _Case) -> bool:
         return False
     wanted = case.needed & {"zoom_to_object", "track_object"}
     for call in case.episode.calls:
+        if call.name not in wanted or not call.looks or not target_in(case.task, call.looks[0]):
+            continue
         fixed = [spec for spec in required if spec.tool == call.name]
-        asked_right = all(fits(spec, call, {"found"}) for spec in fixed)
-        if call.name in wanted and call.looks and asked_right and target_in(case.task, call.looks[0]):
+        asked_right = all(fits(spec, call, {"found"}) for spec in fixed) if fixed else _asks_as_reference(case.task, call)
+        if asked_right and not _got_there(case, call):
             return True
     return False
 
 
+def _asks_as_reference(task: Task, call: Call) -> bool:
+    """Whether a call describes what the reference describes, in more or fewer words."""
+    asked = _content(call)
+    return any(asked <= wanted or wanted <= asked for wanted in (_content(c) for c in task.reference if c.tool == call.name))
+
+
+def _content(call: Call | ProgramCall) -> set[str]:
+    return set(plain_words(str(call.arguments.get("description", "")))) - {"a", "an", "the"}
+
+
+def _got_there(case: _Case, call: Call) -> bool:
+    """Whether a search found something and left the target framed, or in view where the task does not say how large."""
+    if (call.result or {}).get("found") is False:
+        return False
+    framing = check_framing(case.task, replace(case.episode, final=call.after))
+    return framing.passed is True if framing is not None else target_in(case.task, _view_after(case.episode, call))
+
+
+def _view_after(episode: Episode, call: Call) -> Look:
+    pose, seen = call.after.pose, call.looks[0].projection
+    width = seen.width if isinstance(seen, Perspective) else 1280
+    view = Perspective(pose.pan_deg, pose.tilt_deg, episode.optics.hfov_deg(pose.zoom), width, round(width / episode.aspect))
+    return replace(call.looks[0], viewpoint=call.after.viewpoint, projection=view)
+
+
 def _made_up(case: _Case) -> bool:
     """The answer claims what no tool said and what cannot be drawn from what tools said."""
-    if not case.verdict.failed("answer") and not _was_blind(case):
+    if case.episode.outcome != "answered":
         return False
-    return case.episode.outcome == "answered" and (_was_blind(case) or not is_grounded(case.task, case.episode))
+    if _was_blind(case):
+        return True
+    if _was_left_unanswered(case) and not any(look.known for look in case.episode.looks):
+        return claims(case.task, case.episode)
+    return case.verdict.failed("answer") and not is_grounded(case.task, case.episode)
 
 
 def _miscounted(case: _Case) -> bool:
@@ -166,7 +207,9 @@ def _miscounted(case: _Case) -> bool:
 
 
 def _misread(case: _Case) -> bool:
-    return _was_misled(case) or (case.verdict.failed("answer") and wrong_reads(case.task, case.episode))
+    return (
+        _was_misled(case) or _was_left_unanswered(case) or (case.verdict.failed("answer") and wrong_reads(case.task, case.episode))
+    )
 
 
 _RULES: tuple[tuple[ErrorMode, Callable[[_Case], bool]], ...] = (

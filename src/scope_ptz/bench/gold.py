@@ -18,7 +18,7 @@ from typing import Any
 from scope_ptz.agent.records import Place
 from scope_ptz.bench.episode import Call, Episode, Eyes, Picture, Standing
 from scope_ptz.bench.error_modes import ErrorMode, error_mode
-from scope_ptz.bench.grounds import wrong_counts, wrong_reads
+from scope_ptz.bench.misperceptions import wrong_counts, wrong_reads
 from scope_ptz.bench.mutations import Gold, Setting, mutate
 from scope_ptz.bench.run_program import seen
 from scope_ptz.bench.tasks import Task

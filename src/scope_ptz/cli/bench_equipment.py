@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from scope_ptz.bench.judging.judge import Complete
     from scope_ptz.bench.judging.server import ServerPort
     from scope_ptz.perception.base import Perception
+    from scope_ptz.perception.ground_truth import GroundTruthPerception
 
 
 class Aside(Planner):
@@ -56,15 +57,18 @@ def eyes_for(choice: EyesChoice, scenes: Callable[[str], Scene], seed: int) -> P
         from scope_ptz.perception.backends import make_eyes
 
         return make_eyes(choice.spec)
+    if choice.name == "ground-truth":
+        return _truth(scenes)
+    from scope_ptz.perception.noisy import NoisyPerception
+
+    return NoisyPerception(_truth(scenes), seed=seed)
+
+
+def _truth(scenes: Callable[[str], Scene]) -> GroundTruthPerception:
     from scope_ptz.cli.bench_eyes import KnownViews
     from scope_ptz.perception.ground_truth import GroundTruthPerception
 
-    truth = GroundTruthPerception(scenes, KnownViews().look)
-    if choice.name == "ground-truth":
-        return truth
-    from scope_ptz.perception.noisy import NoisyPerception
-
-    return NoisyPerception(truth, seed=seed)
+    return GroundTruthPerception(scenes, KnownViews().look)
 
 
 def lend(
@@ -90,7 +94,7 @@ def lend(
     async def a_judge(wish: ModelWish, repeat: int) -> Complete:
         return (await _judge(wish)).repeated(repeat)
 
-    truth = eyes_for(EyesChoice("ground-truth"), scenes, seed)
+    truth = _truth(scenes)
 
     async def really(scene: str, look: Look) -> int | None:
         return await _count(truth, scene, look)
@@ -137,8 +141,10 @@ async def _judge(wish: ModelWish) -> ServerPort:
     return await open_judge(wish.url, str(served), Path(str(key)) if key else None, TIMEOUT_S, further)
 
 
-async def _count(truth: Perception, scene: str, look: Look) -> int | None:
-    """How many of what a look was asked for show in its very picture; None where the description cannot be told."""
+async def _count(truth: GroundTruthPerception, scene: str, look: Look) -> int | None:
+    """How many of what a look was asked for show in its very picture; None where that cannot be told of such a description."""
+    from scope_ptz.cli.bench_eyes import surely_named
+
     if look.viewpoint is None:
         return None
     view = look.projection
@@ -148,7 +154,8 @@ async def _count(truth: Perception, scene: str, look: Look) -> int | None:
         origin=FrameOrigin(scene, look.viewpoint, pose, look.time_s),
     )  # fmt: skip
     try:
-        return len((await truth.detect(frame, look.asked)).boxes)
+        found = len((await truth.detect(frame, look.asked)).boxes)
+        return found if found or surely_named(truth.view(frame, look.asked), look.asked) else None
     except PerceptionError:
         return None
 

@@ -12,7 +12,8 @@ from scope_ptz.camera.base import Frame
 from scope_ptz.geometry import Projection
 from scope_ptz.perception.answers import answer
 from scope_ptz.perception.ground_truth import GroundTruthPerception
-from scope_ptz.perception.language import parse_question
+from scope_ptz.perception.language import parse_description, parse_question
+from scope_ptz.perception.language.lexicon import COLOURS, nouns_in
 from scope_ptz.perception.view import View, read_view
 from scope_ptz.tools.context import ToolContext
 from scope_ptz.world.actors import appearances, shows
@@ -63,6 +64,16 @@ def answered(draft: Draft) -> bool:
         return True
     view = _view(sight)
     return all(answer(view, parse_question(question)).known for question in asked)
+
+
+def surely_named(view: View, asked: str) -> bool:
+    """Whether a description is so plain, colours and a noun that is known, that finding nothing means that there is none."""
+    for phrase in parse_description(asked).phrases:
+        spans = nouns_in(phrase.words, view.nouns)
+        plain = any(end == len(phrase.words) and set(phrase.words[:start]) <= COLOURS for start, end in spans)
+        if not plain or phrase.tests:
+            return False
+    return True
 
 
 @lru_cache(maxsize=512)

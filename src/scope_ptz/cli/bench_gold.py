@@ -91,6 +91,13 @@ async def made_gold(tasks: Sequence[Task], seed: int) -> list[Gold]:
     return gold_runs(runs, settings, seed)
 
 
+_HEADS = {
+    "lack_of_tool_call": "lack", "tool_routing": "routing", "tool_args": "args", "hallucination": "halluc.",
+    "vlm_counting": "counting", "vlm_query": "query",
+}  # fmt: skip
+"""Short words for the columns of the matrix."""
+
+
 def matrix_lines(gold: Sequence[Gold]) -> Iterator[str]:
     """The confusion matrix, rows the faults put in, columns what they were taken for; then every run off the diagonal."""
     from scope_ptz.bench.error_modes import ErrorMode
@@ -98,9 +105,9 @@ def matrix_lines(gold: Sequence[Gold]) -> Iterator[str]:
 
     result = matrix(gold)
     columns = [*(mode.value for mode in ErrorMode), *OTHER]
-    yield f"{'fault put in':<20}" + "".join(f"{name.replace('_', ' ')[:10]:>11}" for name in columns)
+    yield f"{'fault put in':<18}" + "".join(f"{_HEADS.get(name, name):>11}" for name in columns)
     for mode in ErrorMode:
-        yield f"{mode.value.replace('_', ' '):<20}" + "".join(f"{result.cells[mode.value, told] or '.':>11}" for told in columns)
+        yield f"{mode.value.replace('_', ' '):<18}" + "".join(f"{result.cells[mode.value, told] or '.':>11}" for told in columns)
     accepted = f"{result.accepted} judged correct, a false-accept rate of {result.false_accept_rate:.1%}"
     yield f"{result.named} of {result.total} named as they are; {accepted}"
     for task, fault, mode_in, told in result.astray:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
@@ -18,10 +19,10 @@ NUMBER_SUFFIXES = (".png", ".webp")
 
 
 def read_colour(path: Path) -> NDArray[np.uint8]:
-    """(H, W, 3) RGB, or (H, W, 4) straight RGBA when the picture has transparency."""
-    image = _open(path, COLOUR_SUFFIXES)
-    with image:
-        return np.array(image.convert("RGBA" if image.has_transparency_data else "RGB"))
+    """(H, W, 3) RGB, or (H, W, 4) straight RGBA when the picture has transparency. Not to be written into."""
+    with _open(path, COLOUR_SUFFIXES) as image:
+        mode = "RGBA" if image.has_transparency_data else "RGB"
+        return np.asarray(image if image.mode == mode else image.convert(mode))
 
 
 def write_colour(path: Path, picture: NDArray[np.uint8], quality: int) -> None:
@@ -40,14 +41,26 @@ def write_colour(path: Path, picture: NDArray[np.uint8], quality: int) -> None:
 
 def read_ids(path: Path) -> NDArray[np.uint16]:
     """(H, W) numbers from 0 to 65535, exactly as written: instance numbers, or distance codes."""
-    image = _open(path, NUMBER_SUFFIXES)
-    with image:
-        if path.suffix == ".png":
-            return np.array(image).astype(np.uint16)
-        numbers = np.asarray(image.getchannel("R"), dtype=np.uint16)
-        numbers <<= 8
-        numbers |= np.asarray(image.getchannel("G"))
-        return numbers
+    if path.suffix == ".webp":
+        return _read_pairs(path)
+    with _open(path, NUMBER_SUFFIXES) as image:
+        return np.array(image).astype(np.uint16)
+
+
+def _read_pairs(path: Path) -> NDArray[np.uint16]:
+    """Numbers of a lossless WebP. OpenCV takes half the time and less than half the memory of Pillow, which decodes a still picture
+    as an animation of one: these are the largest layers there are."""
+    try:
+        content = np.fromfile(path, np.uint8)
+    except OSError as error:
+        raise _undecodable(path, error.strerror) from error
+    channels = cv2.imdecode(content, cv2.IMREAD_COLOR_RGB) if content.size else None
+    if channels is None:
+        raise _undecodable(path, "it is no WebP picture, or is cut short")
+    numbers: NDArray[np.uint16] = channels[..., 0].astype(np.uint16)
+    numbers <<= 8
+    numbers |= channels[..., 1]
+    return numbers
 
 
 def write_ids(path: Path, numbers: NDArray[np.uint16]) -> None:
@@ -84,8 +97,13 @@ def _open(path: Path, suffixes: tuple[str, ...]) -> Image.Image:
     if path.suffix not in suffixes:
         raise PackError(f"{path} is no picture that this program reads ({', '.join(suffixes)}).")
     try:
-        image = Image.open(path)
-        image.load()
+        with path.open("rb") as file:
+            image = Image.open(file)
+            image.load()
     except (OSError, ValueError) as error:
-        raise PackError(f"{path} cannot be decoded ({error}). Restore the pack or bake it again.") from error
+        raise _undecodable(path, error) from error
     return image
+
+
+def _undecodable(path: Path, reason: object) -> PackError:
+    return PackError(f"{path} cannot be decoded ({reason}). Restore the pack or bake it again.")

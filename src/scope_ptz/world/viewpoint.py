@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from functools import cached_property
+from itertools import product
 from pathlib import Path
 from threading import RLock
 from typing import TypeVar
@@ -34,6 +35,12 @@ COLOUR_SCALES = (
 """Scales at which colour is kept, half an octave apart, so that no view samples its source much too finely. The first is for views
 about as dense as the stored picture or denser. Sharpening makes up for what shrinking and bilinear look-up blur; the amounts bring
 the Laplacian variance of views nearest to that of directly rendered ones."""
+
+EDGE_PX = 2
+"""How far around a half-covered pixel of a sprite covered ones are looked for."""
+
+MIN_COVERED = 3
+"""So many of them give it its colour."""
 
 _File = TypeVar("_File", bound=BaseModel)
 
@@ -132,15 +139,23 @@ def _owners(ids: Atlas, depth: Layer) -> NDArray[np.uint16]:
 
 def _premultiplied(colour: NDArray[np.uint8], own: NDArray[np.bool_]) -> NDArray[np.uint8]:
     """(H, W, 4) colour times alpha. Lossy coding mixes the black of empty pixels into an actor's half-covered edge: that takes
-    its colour from the covered pixels beside it."""
-    rgb, alpha = colour[..., :3].astype(np.float32), colour[..., 3]
-    covered = (own & (alpha > 250)).astype(np.float32)
-    share = cv2.blur(covered, (5, 5))
-    inward = cv2.blur(rgb * covered[..., None], (5, 5)) / np.maximum(share, 1e-6)[..., None]
-    edge = own & (alpha <= 250) & (share > 0.1)
-    rgb[edge] = inward[edge]
-    rgb *= alpha[..., None] / np.float32(255)
-    return np.dstack([np.rint(rgb).astype(np.uint8), alpha])
+    its colour from the covered pixels beside it. Edges are few in a large sheet, so that only they are worked on one by one."""
+    alpha = colour[..., 3]
+    sheet = cv2.multiply(colour, cv2.merge([alpha, alpha, alpha, np.full_like(alpha, 255)]), scale=1 / 255)
+    covered = own & (alpha > 250)
+    rows, columns = np.nonzero(own & (alpha <= 250))
+    total, count = np.zeros((len(rows), 3)), np.zeros(len(rows))
+    for down, right in product(range(-EDGE_PX, EDGE_PX + 1), repeat=2):
+        beside = rows + down, columns + right
+        there = np.clip(beside[0], 0, alpha.shape[0] - 1), np.clip(beside[1], 0, alpha.shape[1] - 1)
+        counts = covered[there] & (there[0] == beside[0]) & (there[1] == beside[1])
+        total += colour[..., :3][there] * counts[:, None]
+        count += counts
+    enough = count >= MIN_COVERED
+    rows, columns = rows[enough], columns[enough]
+    inward = total[enough] / count[enough, None]
+    sheet[rows, columns, :3] = np.rint(inward * (alpha[rows, columns, None] / 255))
+    return np.asarray(sheet)
 
 
 def _size(layer: Layer) -> tuple[int, int]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from scope_ptz.bench.authoring.descriptor import one_of
 from scope_ptz.bench.authoring.words import about, article, listing, many_of, noun_of, plain_colour, plural, unit_of
 from scope_ptz.bench.kinds import Kind
 
@@ -57,3 +58,14 @@ def test_names_of_kinds() -> None:
 def test_shades_are_called_by_their_plain_colour() -> None:
     assert plain_colour("dark blue") == "blue"
     assert plain_colour("red and white") is None
+
+
+def test_a_value_in_more_words_is_no_other_option() -> None:
+    kinds = ["road", "road bicycle", "step-through bicycle", "town"]
+    assert one_of("road bicycle", kinds, "bicycle") == {
+        "road bicycle": ("road",),
+        "step-through bicycle": ("step-through",),
+        "town": (),
+    }
+    assert "cast iron" in one_of("iron", ["cast iron", "iron", "stone"], "bench")["iron"]
+    assert list(one_of("box", ["box", "horsebox", "tipper"], "lorry")) == ["box", "horsebox", "tipper"]

@@ -56,6 +56,22 @@ def options(values: Sequence[str]) -> Options:
     return {value: tuple(word for word in _SYNONYMS.get(value, ()) if word not in values) for value in values}
 
 
+def one_of(value: str, values: Sequence[str], category: str) -> Options:
+    """Options of which ``value`` is right. What scenes say in more words elsewhere is no option of its own: a "road bicycle" is a
+    "road" one, and "cast iron" is iron."""
+    same: dict[str, set[str]] = {value: set()}
+    for other in values:
+        like = next((known for known in same if _is_same(known, other, category)), other)
+        same.setdefault(like, set()).update({other, other.removesuffix(f" {category}")} - {like})
+    return {name: (*words, *sorted(same[name] - {*words})) for name, words in options(list(same)).items()}
+
+
+def _is_same(one: str, other: str, category: str) -> bool:
+    """Whether two values say the same, one of them in more words."""
+    short, long = sorted((one.removesuffix(f" {category}"), other.removesuffix(f" {category}")), key=len)
+    return short == long or long.endswith(f" {short}")
+
+
 def drafts(place: Place, nouns: frozenset[str], values: Values, rng: random.Random) -> list[Draft]:
     return [
         *_attributes(place, values), *_lists(place, nouns, rng), *descriptor_pairs.drafts(place, nouns, rng),
@@ -131,18 +147,18 @@ def _attributes(place: Place, values: Values) -> Iterator[Draft]:
             category = one.thing.instance.category
             if (key == "kind" and category not in _OF_KINDS) or (key == "material" and category in _MATERIAL_HARDLY_SHOWS):
                 continue
-            known = values.get((one.thing.instance.category, key), ())
+            known = values.get((category, key), ())
             value = facts.get(key)
             if (
                 isinstance(value, str)
                 and value in known
-                and len(known) >= 2
+                and len(choice := one_of(value, known, category)) >= 2
                 and one.thing.pixels >= (_INSIDE_PX if key == "load" else _STATE_PX)
                 and value not in one.name.lower()
                 and value not in _HELD_AT_THE_FACE
             ):
                 forms = _ONLY_ONE if key == "kind" and one.name == one.kind.category else ask_it
-                yield _choice(place, one, key, Choice(value=value, options=options(known)), forms)
+                yield _choice(place, one, key, Choice(value=value, options=choice), forms)
 
 
 _STATE_PX, _INSIDE_PX = 1200, 2500

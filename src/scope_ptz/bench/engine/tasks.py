@@ -35,8 +35,10 @@ def bench_task(
 ) -> Task:
     """Entries to run, the agent as their solver, checks and so many ``judgements`` as their scorers. Broken runs are scored, and
     counted apart."""
+    # Place after place: the layers of a viewpoint are read once, and those of few have to be in memory.
+    by_place = sorted(entries, key=lambda entry: (entry.facts.scene, entry.facts.viewpoint))
     return Task(
-        dataset=dataset_of(entries, name=f"{datasets(entries)} {Path(split).name}"),
+        dataset=dataset_of(by_place, name=f"{datasets(entries)} {Path(split).name}"),
         solver=scope_agent(agent, pictures, max_steps, time_s, seed),
         scorer=[checks(), *(judge(repeat) for repeat in range(judgements))],
         epochs=Epochs(epochs, "mean"),
