@@ -77,7 +77,7 @@ def test_the_pairs_do_what_they_have_learned(swept: Swept) -> None:
         assert {t.task.id for t in trials if t.headline == "correct"} - {COUNTING.id} == {task.id for task in learned}
         (counted,) = (trial for trial in trials if trial.task.id == COUNTING.id)
         assert (counted.tool_calls, counted.perception_failures, counted.answer) == ({"count_objects": 1}, 0, COUNTED)
-        assert len(counted.look_s["current"]) == 1
+        assert [look.view for look in counted.looks] == ["current"]
     novice, adept = (str(swept.logs[pair]) for pair in (NOVICE, ADEPT))
     assert swept.program.run("bench", "gate", adept, "--baseline", novice).code == 0
     assert swept.program.run("bench", "gate", novice, "--baseline", adept).code == 1

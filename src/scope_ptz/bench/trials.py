@@ -83,11 +83,13 @@ class Label(_Record):
 
 class LookTime(_Record):
     """Where the wall seconds of one look went. ``eyes_s``: what perception took; ``capture_s``: camera moves and frames,
-    simulated ones included. Looks made at the same time share a frame, and with it its capture."""
+    simulated ones included; ``call_s``: the whole call, with the tool's own work. Looks made at the same time share a frame, and
+    with it its capture."""
 
     view: Literal["current", "full"]
     eyes_s: Seconds
     capture_s: Seconds
+    call_s: Seconds
 
 
 class Trial(_Record):
@@ -95,7 +97,7 @@ class Trial(_Record):
 
     ``scored_by`` says whose verdict ``headline`` is: the checks', or the judge's where a task has no check of its answer.
     ``error_mode`` is None unless the headline is "incorrect". ``tool_calls``: calls made, by tool, failed ones included.
-    ``look_s``: whole wall seconds of the calls that looked, camera included; ``looks``: their parts, empty where not known.
+    ``looks``: the calls that looked.
     """
 
     task: TaskFacts
@@ -118,7 +120,6 @@ class Trial(_Record):
     output_tokens: Count = 0
     cost_usd: Annotated[float, Field(ge=0, allow_inf_nan=False)] | None = None
     timings: Timings = Timings()
-    look_s: dict[Literal["current", "full"], tuple[Seconds, ...]] = {}
     looks: tuple[LookTime, ...] = ()
     judgements: tuple[Judgement, ...] = ()
     labels: tuple[Label, ...] = ()

@@ -124,7 +124,7 @@ def _chanced(
     return trial(
         task, headline, epoch=epoch, sample=f"{task.id}/{epoch}", error_mode=mode, judgements=(judgement,) if judged else (),
         timings=Timings(planner_s=planner_s, perception_s=eyes_s, camera_s=0.2, render_s=0.1, total_s=planner_s + eyes_s + 0.35),
-        look_s={task.scope: (look_s + 0.3,)}, looks=(LookTime(view=task.scope, eyes_s=look_s, capture_s=0.25),), input_tokens=3000,
+        looks=(LookTime(view=task.scope, eyes_s=look_s, capture_s=0.25, call_s=look_s + 0.3),), input_tokens=3000,
         output_tokens=200, cost_usd=0.002, collateral=chance.random() < 0.03, steps=chance.randint(2, 6),
     )  # fmt: skip
 

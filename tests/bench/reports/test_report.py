@@ -237,7 +237,7 @@ def test_the_papers_figures_stand_apart_and_say_so(report: Report) -> None:
 
 def test_what_was_not_measured_is_never_a_number() -> None:
     tasks = facts(2)
-    trials = tuple(trial(t, timings=Timings(), tool_calls={}, look_s={}) for t in tasks)
+    trials = tuple(trial(t, timings=Timings(), tool_calls={}) for t in tasks)
     found = Evaluation(card=card("unknown-planner", "unknown-eyes", sampling={}, seed=None), trials=trials, wanted=len(trials))
     made = build_report([found], load_registry())
     label = "unknown-planner + unknown-eyes"

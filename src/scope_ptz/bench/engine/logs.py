@@ -22,9 +22,9 @@ from scope_ptz.bench.engine.judgements import judgements_in
 from scope_ptz.bench.engine.pictures import jpeg_of
 from scope_ptz.bench.engine.sampling import STORE, Kept, sample_name, trace_of
 from scope_ptz.bench.engine.scorers import TRIAL
-from scope_ptz.bench.engine.trialing import look_times, trial_of
+from scope_ptz.bench.engine.trialing import trial_of
 from scope_ptz.bench.episode import Places
-from scope_ptz.bench.trials import Evaluation, LookTime, Trial
+from scope_ptz.bench.trials import Evaluation, Trial
 from scope_ptz.errors import TraceError
 
 ATTACHMENT = "attachment://"
@@ -177,12 +177,4 @@ def trial_in(sample: Mapping[str, Any], path: Path) -> Trial:
     if told is None or entry.task is None:
         kept = kept_in(sample) or Kept("", {}, "")
         return trial_of(entry, kept, sample["epoch"], path, judgements)
-    trial = Trial.model_validate({**told, "task": entry.facts, "judgements": judgements})
-    return trial if trial.looks or not trial.look_s else trial.model_copy(update={"looks": _looks_of(sample, path)})
-
-
-def _looks_of(sample: Mapping[str, Any], path: Path) -> tuple[LookTime, ...]:
-    """The parts of a run's looks, of a log that was written before trials held them."""
-    kept = kept_in(sample)
-    trace = trace_of(kept.trace, path) if kept is not None else None
-    return look_times(trace) if trace is not None else ()
+    return Trial.model_validate({**told, "task": entry.facts, "judgements": judgements})

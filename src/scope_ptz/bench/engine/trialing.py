@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
-from scope_ptz.agent.records import Called, Ended
+from scope_ptz.agent.records import Ended
 from scope_ptz.agent.trace import Trace
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.sampling import Kept, sample_name, trace_of
@@ -17,7 +17,6 @@ from scope_ptz.bench.importing.checking import check_calls_of
 from scope_ptz.bench.trials import Check, Judgement, LookTime, Trial
 from scope_ptz.bench.verdict import AGENTS_OWN_FAILURES, Headline, judge
 
-View = Literal["current", "full"]
 _LOOKERS = ("count_objects", "query_answer")
 
 
@@ -95,25 +94,23 @@ def broken_by(ended: Ended | None) -> str | None:
     return None
 
 
-def look_times(trace: Trace) -> tuple[LookTime, ...]:
-    """What the eyes took for each look, and what the camera took before it."""
+def _look_times(trace: Trace) -> tuple[LookTime, ...]:
+    """Where the time of each look went."""
+    looked = [c for c in trace.calls if c.outcome.call.name in _LOOKERS and c.outcome.error is None]
     return tuple(
-        LookTime(view=view, eyes_s=called.eyes_s, capture_s=max(called.timings.capture_s, 0.0)) for view, called in _looks(trace)
+        LookTime(
+            view="full" if called.outcome.call.arguments.get("view") == "full" else "current",
+            eyes_s=called.eyes_s,
+            capture_s=max(called.timings.capture_s, 0.0),
+            call_s=max(called.timings.total_s, 0.0),
+        )
+        for called in looked
     )
-
-
-def _looks(trace: Trace) -> Iterator[tuple[View, Called]]:
-    for called in trace.calls:
-        call = called.outcome.call
-        if call.name in _LOOKERS and called.outcome.error is None:
-            yield "full" if call.arguments.get("view") == "full" else "current", called
 
 
 def _run(trace: Trace) -> dict[str, Any]:
     """What the trace tells of how it went."""
-    ended, looks = trace.ended, dict[View, list[float]]()
-    for view, called in _looks(trace):
-        looks.setdefault(view, []).append(max(called.timings.total_s, 0.0))
+    ended = trace.ended
     return {
         "outcome": ended.outcome if ended else None,
         "answer": ended.text if ended else "",
@@ -125,6 +122,5 @@ def _run(trace: Trace) -> dict[str, Any]:
         "input_tokens": ended.usage.input_tokens if ended else 0,
         "output_tokens": ended.usage.output_tokens if ended else 0,
         "timings": ended.timings if ended else {},
-        "look_s": looks,
-        "looks": look_times(trace),
+        "looks": _look_times(trace),
     }

@@ -199,9 +199,8 @@ def _views(runs: Sequence[Run]) -> Table:
 
 
 def _view_row(view: Scope, words: str, runs: Sequence[Run]) -> tuple[Value, ...]:
-    whole = [s for run in runs for t in run.scored for s in t.look_s.get(view, ())]
     made = _looks(runs, view)
-    eyes, capture = [look.eyes_s for look in made], [look.capture_s for look in made]
+    eyes, capture, whole = ([getattr(look, part) for look in made] for part in ("eyes_s", "capture_s", "call_s"))
     base, own = middle([look.eyes_s for look in _looks(runs, "current")]), middle(eyes)
     ratio = own / base if base and own else None
-    return words, _contended(runs), len(whole), own, tail(eyes), ratio, middle(capture), tail(capture), middle(whole)
+    return words, _contended(runs), len(made), own, tail(eyes), ratio, middle(capture), tail(capture), middle(whole)
