@@ -135,6 +135,16 @@ ZOOM_HOME: list[Step] = [("zoom_to_object", {"description": "the sign"}, TO_SIGN
         ("single-call-011", ZOOM_HOME, "Done.", ErrorMode.TOOL_ARGS),
         ("single-call-011", [("zoom_to_object", {"description": "the sign"}, TO_SKY)], "Done.", ErrorMode.VLM_QUERY),
         ("single-call-011", [("zoom_to_object", {"description": "a person"}, TO_SKY)], "Done.", ErrorMode.TOOL_ARGS),
+        # A search is for what is too small to be read yet.
+        (
+            "ocr-004",
+            [
+                ("zoom_to_object", {"description": "the sign"}, {"found": False, "matches": 0}),
+                told("ROAD", "What does the sign say?"),
+            ],
+            "It says ROAD.",
+            ErrorMode.VLM_QUERY,
+        ),
         # One question about each machine: what is said of that one counts.
         (
             "descriptor-013",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -31,6 +32,23 @@ def test_description(description: str, ids: str) -> None:
 def test_question(question: str, expected: str) -> None:
     text, known = answer(VIEW, parse_question(question))
     assert ("" if known else "(?) ") + text == expected
+
+
+@pytest.mark.parametrize(
+    ("name", "asked"),
+    [
+        ("van with pink stripes", "the van with pink stripes"),
+        ("golden van on a lead", "golden van on a lead"),
+    ],
+)
+def test_a_thing_by_the_whole_name_that_the_scene_gives_it(name: str, asked: str) -> None:
+    truth = yard.truth()
+    named = [
+        replace(s, instance=s.instance.model_copy(update={"name": name})) if s.instance.id == "van-01" else s
+        for s in truth.sightings
+    ]
+    found = find(read_view(replace(truth, sightings=tuple(named)), yard.SCENE, 5.0), parse_description(asked))
+    assert [t.id for t in found] == ["van-01"]
 
 
 @pytest.mark.parametrize("absent", yard.ABSENT)

@@ -71,11 +71,16 @@ def inside(look: Look, directions: Floats) -> NDArray[np.bool_]:
         return np.asarray(np.all((points >= -_EDGE) & (points <= 1 + _EDGE), axis=-1))
 
 
+def is_within(item: Item, look: Look) -> bool:
+    """Whether a piece of evidence is wholly in the picture of a look, of whatever size."""
+    return bool(inside(look, box_directions(item.box_deg)).all())
+
+
 def shows(item: Item, look: Look) -> bool:
     """Whether a piece of evidence is wholly in the picture of a look and large enough there."""
-    outline = box_directions(item.box_deg)
-    if not inside(look, outline).all():
+    if not is_within(item, look):
         return False
+    outline = box_directions(item.box_deg)
     points = look.projection.points(outline) * (look.projection.width, look.projection.height)
     size = points.max(axis=0) - points.min(axis=0)
     if isinstance(look.projection, Equirectangular) and size[0] > look.projection.width / 2:

@@ -15,7 +15,7 @@ from scope_ptz.bench.coverage import gap
 from scope_ptz.bench.episode import Call, Episode, Look
 from scope_ptz.bench.grounds import is_grounded
 from scope_ptz.bench.matching import fits, in_any_order, in_order
-from scope_ptz.bench.misperceptions import CountTruth, target_in, wrong_counts, wrong_reads
+from scope_ptz.bench.misperceptions import CountTruth, target_in, target_shown, wrong_counts, wrong_reads
 from scope_ptz.bench.reader_words import plain_words
 from scope_ptz.bench.tasks import ProgramCall, RequiredCall, Task
 from scope_ptz.bench.verdict import Verdict, claims, judge
@@ -181,7 +181,7 @@ def _got_there(case: _Case, call: Call) -> bool:
     if (call.result or {}).get("found") is False:
         return False
     framing = check_framing(case.task, replace(case.episode, final=call.after))
-    return framing.passed is True if framing is not None else target_in(case.task, _view_after(case.episode, call))
+    return framing.passed is True if framing is not None else target_shown(case.task, _view_after(case.episode, call))
 
 
 def _view_after(episode: Episode, call: Call) -> Look:

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 
-from scope_ptz.bench.coverage import counts_for, inside, reference_directions, shows
+from scope_ptz.bench.coverage import counts_for, inside, is_within, reference_directions, shows
 from scope_ptz.bench.episode import Call, Episode, Look
 from scope_ptz.bench.expected import AnyExpected, Choice, NameSet, NoneThere, Number, Ordering, YesNo
 from scope_ptz.bench.reader import agrees, read
 from scope_ptz.bench.reader_text import wordings_of
 from scope_ptz.bench.reader_words import names_any
 from scope_ptz.bench.reading import Value
-from scope_ptz.bench.tasks import EvidenceView, Task
+from scope_ptz.bench.tasks import EvidenceView, Item, Task
 
 CountTruth = Callable[[Look], int | None]
 """How many of what was asked really show in the very picture of a look; None when the truth cannot say."""
@@ -96,8 +96,9 @@ def shown_by(task: Task, look: Look) -> Iterator[EvidenceView]:
     """The evidence that a look is of: same place, same scope, asked about it, and the frame holds the items or the whole view."""
     for view in task.evidence:
         if (view.scope == "full") == look.swept and counts_for(view, look):
-            seen = inside(look, reference_directions(view)) if view.whole else None
-            if seen is None or (seen.mean() > 0.9 and look_is_as_wide(view, look)):
+            if not all(is_within(item, look) for item in view.items):
+                continue
+            if not view.whole or (inside(look, reference_directions(view)).mean() > 0.9 and look_is_as_wide(view, look)):
                 yield view
 
 
@@ -112,9 +113,19 @@ def _reach_deg(view: EvidenceView) -> float:
 
 
 def target_in(task: Task, look: Look) -> bool:
-    """Whether something that the task is about is in the picture of a look; taken for granted where the evidence names nothing."""
+    """Whether something that the task is about is in the picture of a look, however small: that is what a search is for. Taken for
+    granted where the evidence names nothing."""
+    return _has_target(task, look, is_within)
+
+
+def target_shown(task: Task, look: Look) -> bool:
+    """Whether it is in the picture and large enough to be told or read."""
+    return _has_target(task, look, shows)
+
+
+def _has_target(task: Task, look: Look, has: Callable[[Item, Look], bool]) -> bool:
     items = [item for view in task.evidence for item in view.items if view.aim.viewpoint == look.viewpoint]
-    return any(shows(item, look) for item in items) if items else not any(view.items for view in task.evidence)
+    return any(has(item, look) for item in items) if items else not any(view.items for view in task.evidence)
 
 
 def _looks(episode: Episode) -> Iterator[tuple[Call, Look]]:

@@ -12,6 +12,7 @@ from scope_ptz.bench.cheats import Attempt, cheats, common_answers, guesses, hon
 from scope_ptz.bench.consistency import Look, inconsistencies
 from scope_ptz.bench.episode import Episode, Eyes
 from scope_ptz.bench.expected import ActionOnly, NoneThere, Number
+from scope_ptz.bench.misperceptions import wrong_reads
 from scope_ptz.bench.phrasing import right_answers
 from scope_ptz.bench.reader import agrees, read
 from scope_ptz.bench.run_program import Equip, Stage
@@ -41,7 +42,7 @@ class Fault:
 
 @dataclass
 class Report:
-    """``disagreements``: where the eyes that looked count otherwise than the task expects; they are told, not judged.
+    """``disagreements``: where the eyes that looked count or answer otherwise than the task expects; they are told, not judged.
 
     ``absences``: core tasks whose answer is that there is none, each with a twin; ``from_start``: core tasks that need neither a
     move, nor a zoom, nor a sweep. ``guessed``: the core tasks that an answer passes which is given whatever was seen;
@@ -201,7 +202,10 @@ class _Proof:
             (self.report.faults if passes else self.report.cheated).append(Fault(self.task.id, name, reason))
 
     def _compare(self, episode: Episode) -> None:
-        """Whether what was counted on the way is what the evidence shows."""
+        """Whether what was counted and answered on the way is what the evidence shows."""
+        if wrong_reads(self.task, episode):
+            answers = "; ".join(str(call.result["answer"]) for call in episode.calls if call.result and "answer" in call.result)
+            self.report.disagreements.append(Fault(self.task.id, "query", f"the evidence shows otherwise than: {answers}"))
         counts = [call for call in episode.calls if call.name == "count_objects" and call.result is not None]
         shows = [view.shows for view in self.task.evidence if isinstance(view.shows, Number | NoneThere)]
         for call, wanted in zip(counts, shows, strict=False):

@@ -7,6 +7,7 @@ from functools import lru_cache
 
 from scope_ptz.bench.authoring.drafts import Draft
 from scope_ptz.bench.ground import Sight
+from scope_ptz.bench.reader import agrees, read
 from scope_ptz.bench.run_program import Equip
 from scope_ptz.camera.base import Frame
 from scope_ptz.geometry import Projection
@@ -56,14 +57,17 @@ class KnownViews:
 
 
 def answered(draft: Draft) -> bool:
-    """Whether the ground-truth perception can answer what the reference program asks of a view; what is asked of a close-up is left
-    to the proof."""
+    """Whether the ground-truth perception can answer what the reference program asks of a view, and not otherwise than the draft
+    expects; what is asked of a close-up is left to the proof."""
     sight = draft.place.sight
     asked = [str(call.arguments["question"]) for call in draft.looks if call.tool == "query_answer"]
     if draft.looks_closer or not asked:
         return True
     view = _view(sight)
-    return all(answer(view, parse_question(question)).known for question in asked)
+    replies = [answer(view, parse_question(question)) for question in asked]
+    if len(draft.looks) == 1 and agrees(draft.expected, read(draft.expected, replies[0].text)) is False:
+        return False
+    return all(reply.known for reply in replies)
 
 
 def surely_named(view: View, asked: str) -> bool:

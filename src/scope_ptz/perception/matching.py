@@ -13,6 +13,7 @@ from dataclasses import replace
 from typing import cast
 
 from scope_ptz.perception.facts import FILLERS, SOFT, bears, colour_of, facts, fits_noun, fits_words, wears
+from scope_ptz.perception.full_names import named_in_full
 from scope_ptz.perception.language import syntax as s
 from scope_ptz.perception.language import words as w
 from scope_ptz.perception.language.lexicon import COLOURS, lexicon, nouns_in
@@ -25,7 +26,9 @@ _SIDES: dict[str, s.OrderKey] = {"left": "left", "right": "right", "top": "top",
 def find(view: View, description: s.Description) -> list[Thing]:
     """Everything that the description means, best first."""
     found = things_named(view, description)
-    return _worn(view, description.phrases[0]) if not found and len(description.phrases) == 1 else found
+    if found or len(description.phrases) != 1:
+        return found
+    return named_in_full(view, description.phrases[0]) or _worn(view, description.phrases[0])
 
 
 def things_named(view: View, description: s.Description) -> list[Thing]:

@@ -89,6 +89,8 @@ def compare_count(view: View, question: s.CompareCount) -> Reply:
     """Which of two kinds there are more of, or fewer, or whether there are. Of one kind at two places a picture shows only one."""
     if not question.second.phrases:
         return unknown("I cannot tell: I see one picture, and nothing else to compare it with")
+    if question.which and len(question.second.phrases) > 1:
+        return _most_of(view, question)
     a, b = len(find(view, question.first)), len(find(view, question.second))
     first, second = noun(view, question.first, many=True), noun(view, question.second, many=True)
     counts = f"{w.counted(a, noun(view, question.first))} and {w.counted(b, noun(view, question.second))}"
@@ -100,6 +102,18 @@ def compare_count(view: View, question: s.CompareCount) -> Reply:
     than = {"more": "more", "fewer": "fewer"}.get(question.sense)
     said = f"{than} {first} than {second}" if than else f"as many {first} as {second}"
     return reply(f"{'yes' if yes else 'no'}, there are {'' if yes else 'not '}{said}: {counts}")
+
+
+def _most_of(view: View, question: s.CompareCount) -> Reply:
+    """ "Which are there most of: cars, vans or lorries?" """
+    kinds = [s.Description((phrase,)) for phrase in (*question.first.phrases, *question.second.phrases)]
+    counts = [len(find(view, kind)) for kind in kinds]
+    best = (min if question.sense == "fewer" else max)(counts)
+    first = [noun(view, kind, many=True) for kind, count in zip(kinds, counts, strict=True) if count == best]
+    listed = w.listing([w.counted(count, noun(view, kind)) for kind, count in zip(kinds, counts, strict=True)])
+    sense = "fewest" if question.sense == "fewer" else "most"
+    verdict = f"there are {sense} {first[0]}" if len(first) == 1 else f"there are equally many {w.listing(first)}"
+    return reply(f"{verdict}: {listed}")
 
 
 def count_kinds(view: View, question: s.CountKinds) -> Reply:

@@ -10,7 +10,7 @@ from scope_ptz.perception.answers.naming import Reply, are, metres, name, names,
 from scope_ptz.perception.answers.seeing import what
 from scope_ptz.perception.answers.values import pose_of
 from scope_ptz.perception.answers.wording import none_of, noun
-from scope_ptz.perception.facts import COLOUR_KEYS, colour_of, fact_words, facts, key_words
+from scope_ptz.perception.facts import COLOUR_KEYS, NOTHING, colour_of, fact_words, facts, key_words
 from scope_ptz.perception.language import syntax as s
 from scope_ptz.perception.language import words as w
 from scope_ptz.perception.matching import find
@@ -27,7 +27,7 @@ def describe(view: View, question: s.Describe) -> Reply:
     if question.what is not None:
         return _describe_things(view, question.what, question.tests)
     if question.tests:
-        return what(view, s.What(s.Description((s.Phrase(("thing",)),)), question.tests))
+        return _load_of(view, question.tests) or what(view, s.What(s.Description((s.Phrase(("thing",)),)), question.tests))
     groups = _groups(t for t in view.top_level() if not t.concepts & BACKDROP)
     if not groups:
         return reply("I can see nothing that stands out")
@@ -35,6 +35,17 @@ def describe(view: View, question: s.Describe) -> Reply:
     texts = list(dict.fromkeys(t.text.text for t in view.texts if t.legible))[:MAX_TEXTS]
     readable = f". I can read {w.listing([f'{chr(34)}{t}{chr(34)}' for t in texts])}" if texts else ""
     return reply(f"I can see {said}{readable}")
+
+
+def _load_of(view: View, tests: tuple[s.Test, ...]) -> Reply | None:
+    """What is on something that the scene says to carry a load: that, rather than another thing that lies upon it."""
+    match tests:
+        case (s.Relation(kind="on", other=other),):
+            bearer = next(iter(find(view, other)), None)
+            load = bearer.attributes.get("load") if bearer is not None else None
+            if bearer is not None and isinstance(load, str) and load not in NOTHING:
+                return reply(f"the {name(bearer)} {place(bearer)} carries {load}")
+    return None
 
 
 def _describe_things(view: View, what: s.Description, tests: tuple[s.Test, ...]) -> Reply:

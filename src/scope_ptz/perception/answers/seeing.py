@@ -63,6 +63,8 @@ def _depth_side(view: View, thing: Thing, other: Thing) -> str:
 
 def what(view: View, question: s.What) -> Reply:
     """Names everything that fits."""
+    if _is_a_list(question.what):
+        return _of_a_list(view, question)
     missing = next((m for m in (missing_reference(view, t) for t in question.tests) if m is not None), None)
     if missing is not None:
         return reply(none_of(view, missing))
@@ -71,6 +73,21 @@ def what(view: View, question: s.What) -> Reply:
     if not found:
         return _nothing(view, question, description)
     return told(view, question.tests, _by_nearness(view, question.tests, found))
+
+
+def _is_a_list(description: s.Description) -> bool:
+    """ "The following", "these": no thing, but whatever is listed after it."""
+    words = {word for phrase in description.phrases for word in phrase.words}
+    return bool(words) and words <= {"following", "these", "those", "them"}
+
+
+def _of_a_list(view: View, question: s.What) -> Reply:
+    tests = [test for asked in question.tests for test in (asked.tests if isinstance(asked, s.Any) else (asked,))]
+    listed = tuple(s.Phrase(test.words) for test in tests if isinstance(test, s.Is))
+    if not listed:
+        return unknown("I cannot tell: I do not know which ones are meant")
+    found = [thing for phrase in listed for thing in find(view, s.Description((phrase,)))[:1]]
+    return reply(f"I can see {names(found)}" if found else none_of(view, s.Description(listed)))
 
 
 def _nothing(view: View, question: s.What, description: s.Description) -> Reply:
