@@ -20,9 +20,11 @@ KIND_WORDS = {
     "blind": "blind baseline",
     "person": "person",
 }
+ROUNDING = 1e-9
 INTERVALS = (
     "With each share stands its 95% interval, clustered by viewpoint (linearised variance by cluster, Student's t with one degree "
-    "of freedom fewer than there are viewpoints, Wilson's form at the effective sample size). With one viewpoint it is not known. "
+    "of freedom fewer than there are viewpoints, Wilson's form at the effective sample size). Repeats of a task are one "
+    "observation of it. With one viewpoint it is not known. "
     "“Without”: categories with one viewpoint, which are in the macro average but add nothing to its interval: it is too narrow."
 )
 
@@ -55,9 +57,10 @@ def accuracy_section(runs: Sequence[Run]) -> Section:
         )
     if others:
         text.append(
-            "The grammar planner and ground-truth eyes are no models: they are exact by construction. Runs with either, "
-            "blind baselines "
-            "and people stand in a table of their own and take no part in any ranking."
+            "The grammar planner and ground-truth eyes are no models. Ground-truth eyes are exact about what shows, unless they "
+            "are the noisy ones; both understand a language of their own only and may misunderstand a question or an "
+            "instruction. Runs with either, blind baselines and people stand in a table of their own and take no part in any "
+            "ranking."
         )
     main = of_main_set(runs)
     charts = (drawing.accuracy_chart(main),) if main else ()
@@ -93,7 +96,12 @@ def _marked(value: Estimate | None, index: int, run: Run, raw: Sequence[tuple[Ru
     same_tasks = [(r, v[index]) for r, v in raw if r.task_set == run.task_set and r.tasks == run.tasks]
     alike = [v.value for r, v in same_tasks if v and r.eyes_name == run.eyes_name]
     every = [v.value for _, v in same_tasks if v]
-    return Marked(value, len(alike) > 1 and value.value >= max(alike), len(every) > 1 and value.value >= max(every))
+    return Marked(value, _is_best(value.value, alike), _is_best(value.value, every))
+
+
+def _is_best(value: float, among: Sequence[float]) -> bool:
+    """Whether none of several is better; what differs by rounding only is alike."""
+    return len(among) > 1 and value > max(among) - ROUNDING
 
 
 def _partial_macro(value: Value, run: Run) -> Value:

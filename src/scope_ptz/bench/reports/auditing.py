@@ -18,11 +18,14 @@ MOST_LISTED = 60
 
 
 def audit_section(ranked: Sequence[Run], reference: Sequence[Run], pages: Mapping[str, str]) -> Section:
-    """Tasks with low success across pairs. ``pages``: the page of a failed task, by its id."""
+    """Tasks with low success across pairs. ``reference``: runs of the grammar planner with ground-truth eyes, exact ones only;
+    ``pages``: the page of a failed task, by its id."""
     text = [
         f"Tasks on which the pairs together succeed in at most {LOW:.0%} of their trials. Such a task is hard, or wrong: "
         "whoever audits the "
-        "benchmark begins here. A task that the exact reference planner and eyes fail as well is suspect."
+        "benchmark begins here. Beside it stands what the grammar planner with ground-truth eyes made of the task: what these "
+        "pass can be done as it is worded. They understand instructions and questions of their own language only, so that their "
+        "failing alone proves nothing."
     ]
     if len(ranked) < 2:
         text.append("Fewer than two model pairs: not measured.")
@@ -41,7 +44,7 @@ def audit_section(ranked: Sequence[Run], reference: Sequence[Run], pages: Mappin
         Column("trials", "Trials", "count"),
         Column("passed_by", "Passed by"),
         Column("modes", "Error modes (rules)"),
-        Column("reference", "Reference runs (%)", "share"),
+        Column("reference", "Grammar planner, ground-truth eyes (%)", "share"),
     )
     rows = tuple(_audit_row(task, value, by_task[task], exact.get(task, []), pages) for value, task in chosen[:MOST_LISTED])
     text.append(
@@ -95,9 +98,9 @@ def costs_section(runs: Sequence[Run]) -> Section:
         Column("judge_tokens", "Judge's tokens", "count"),
     )
     notes = (
-        "Tokens are the planner's and the eyes' as their servers report them; not measured where none are reported. A cost "
-        "stands only "
-        "where the log has one.",
+        "Tokens are the planner's as its server reports them; not measured where none are reported. What the eyes take is not "
+        "counted, whether their server reports it or not. A cost is that of the planner's tokens, and stands only where the log "
+        "has one.",
     )
     return Section("costs", "Cost", (), (), (Table("costs", "Tokens and cost", columns, tuple(_cost_row(r) for r in runs), notes),))
 

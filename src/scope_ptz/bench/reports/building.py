@@ -47,8 +47,8 @@ def build_report(evaluations: Sequence[Evaluation], registry: Registry, pages: M
     main = of_main_set(runs)
     ranked = pairs_of(main)
     alike = on_the_same_tasks(ranked)
-    exact = [run for run in main if run.kind == "reference"]
-    shown = [*ranked, *exact]
+    exact = [run for run in main if run.exact]
+    shown = [*ranked, *(run for run in main if run.kind == "reference")]
     links = pages or {}
     sections: list[Section | None] = [
         accuracy_section(runs),
@@ -98,10 +98,10 @@ def _overview(runs: Sequence[Run]) -> Section:
         Column("variant", "Variant"),
         Column("max_steps", "Most steps", "count"),
         Column("seed", "Seed"),
-        Column("sampling", "Sampling"),
+        Column("sampling", "Sampling", "prose"),
         Column("prompt", "Prompt"),
-        Column("planner_reported", "Planner's server says"),
-        Column("eyes_reported", "Eyes' server says"),
+        Column("planner_reported", "Planner's server says", "prose"),
+        Column("eyes_reported", "Eyes' server says", "prose"),
         Column("concurrency", "At once", "count"),
         Column("timing", "Timing"),
         Column("package", "scope-ptz"),
@@ -183,8 +183,8 @@ def _warnings(runs: Sequence[Run], ranked: Sequence[Run], alike: Sequence[Run]) 
         )
     if not all(run.ranked for run in runs):
         told.append(
-            "Some runs used the grammar planner or ground-truth eyes, saw nothing, or are a person's: they are marked and kept off "
-            "rankings of models."
+            "Some runs used the grammar planner or ground-truth eyes (as they are, or noisy), saw nothing, or are a person's: they "
+            "are marked and kept off rankings of models."
         )
     return tuple(told)
 
@@ -223,10 +223,15 @@ def _summary(runs: Sequence[Run], ranked: Sequence[Run], alike: Sequence[Run]) -
         told.append(f"The next is {order[1].label}, {_percent(order[1])}; between these two alone, {shown}.")
     if not ranked:
         told.append("No pair of models is among these runs: nothing is ranked.")
-    failed = sum((by_rules(run) for run in alike), start=Counter[ErrorMode]())
-    if failed:
-        mode, number = failed.most_common(1)[0]
-        told.append(f"Most frequent error mode of model pairs: {MODE_TITLES[mode]}, {number} of {failed.total()} failed trials.")
+    found_wrong = sum((by_rules(run) for run in alike), start=Counter[ErrorMode]())
+    if found_wrong:
+        mode, number = found_wrong.most_common(1)[0]
+        unscored = sum(trial.headline == "unscored" for run in alike for trial in run.scored)
+        told.append(
+            f"Most frequent error mode of model pairs: {MODE_TITLES[mode]}, {number} of "
+            f"{_number(found_wrong.total(), 'incorrect trial')}"
+            + (f"; {_number(unscored, 'more is', 'more are')} unscored and have no error mode." if unscored else ".")
+        )
     return tuple(told)
 
 
@@ -251,7 +256,8 @@ def _failed_tasks(runs: Sequence[Run], pages: Mapping[str, str]) -> Section:
         Column("instruction", "Instruction", "prose"),
         Column("expected", "Expected", "prose"),
         Column("failed", "Failed trials", "count"),
-        Column("trials", "of", "count"),
+        Column("unscored", "of these unscored", "count"),
+        Column("trials", "All trials", "count"),
         Column("failed_by", "Failed by"),
     )
     by_task = defaultdict(list)
@@ -261,6 +267,7 @@ def _failed_tasks(runs: Sequence[Run], pages: Mapping[str, str]) -> Section:
     rows = []
     for task, own in sorted(by_task.items()):
         failed = [run.label for run, trial in own if trial.headline in ("incorrect", "unscored")]
+        unscored = sum(trial.headline == "unscored" for _, trial in own)
         if failed:
             facts = own[0][1].task
             names = "; ".join(dict.fromkeys(failed))
@@ -271,12 +278,13 @@ def _failed_tasks(runs: Sequence[Run], pages: Mapping[str, str]) -> Section:
                     facts.instruction,
                     facts.expected,
                     len(failed),
+                    unscored,
                     len(own),
                     names,
                 )
             )
     text = (
-        f"{_number(len(rows), 'task')} failed at least once (incorrect or unscored)."
+        f"{_number(len(rows), 'task')} failed at least once. Failed trials are the incorrect and the unscored ones."
         + (" Each has a page with its frames." if pages else ""),
     )
     table = Table("failed_tasks", "Failed tasks", columns, tuple(rows))

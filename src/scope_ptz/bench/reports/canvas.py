@@ -15,6 +15,7 @@ from scope_ptz.bench.reports.runs import Run
 from scope_ptz.bench.reports.sections import Chart
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -121,10 +122,11 @@ def legend_columns(labels: Sequence[str], most: int = 52) -> int:
     return 2 if len(labels) > 1 and max(map(len, labels)) <= most else 1
 
 
-def legend_below(figure: Figure, labels: Sequence[str]) -> None:
-    """A legend that cuts no label off."""
+def legend_below(figure: Figure, labels: Sequence[str], keys: Sequence[Artist] = ()) -> None:
+    """A legend that cuts no label off. ``keys``: what stands before the labels where what is drawn does not carry them itself."""
     columns = legend_columns(labels)
-    figure.legend(loc="outside lower center" if columns == 2 else "outside lower left", ncols=columns, fontsize=9.5)
+    loc: Any = "outside lower center" if columns == 2 else "outside lower left"
+    figure.legend(**({"handles": keys} if keys else {}), loc=loc, ncols=columns, fontsize=9.5)
 
 
 def legend_px(labels: Sequence[str]) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from statistics import fmean
 
 from scope_ptz.bench.reports import drawing
@@ -13,7 +13,7 @@ from scope_ptz.bench.reports.runs import FULL_PRECISION, Run, is_mixture, scores
 from scope_ptz.bench.reports.sections import Section
 from scope_ptz.bench.reports.tables import Column, Table, Value
 from scope_ptz.bench.statistics.choice import undominated
-from scope_ptz.bench.statistics.clustered import Scores, difference, share
+from scope_ptz.bench.statistics.clustered import gap, share
 from scope_ptz.registry import Model
 
 LATENCY = "trial without the camera, median (s)"
@@ -46,7 +46,8 @@ def candidates(ranked: Sequence[Run], every: Sequence[Run]) -> list[Candidate]:
         accuracy = run.macro.value if run.macro else None
         found.append(Candidate(run, accuracy, seconds, run.memory_gb, source.evaluation.card.contended))
     complete = [c for c in found if c.complete]
-    points = [(-(c.accuracy or 0.0), c.latency_s or 0.0, c.memory_gb or 0.0) for c in complete]
+    # Rounded, so that of two alike in accuracy none is beaten by what arithmetic made of the last digit.
+    points = [(-round(c.accuracy or 0.0, 9), c.latency_s or 0.0, c.memory_gb or 0.0) for c in complete]
     front = {id(c) for c, on in zip(complete, undominated(points), strict=True) if on}
     return [Candidate(c.run, c.accuracy, c.latency_s, c.memory_gb, c.contended, id(c) in front) for c in found]
 
@@ -104,7 +105,7 @@ def _fitting(found: Sequence[Candidate]) -> Table:
     for size in SIZES_GB:
         fitting = [c for c in found if c.memory_gb is not None and c.memory_gb <= size and c.accuracy is not None]
         if fitting:
-            best = max(fitting, key=lambda c: (c.accuracy or 0.0, -(c.latency_s or 0.0)))
+            best = max(fitting, key=lambda c: (round(c.accuracy or 0.0, 9), -(c.latency_s or 0.0)))
             rows.append((f"{size} GB", best.run.label, best.accuracy, best.latency_s, best.memory_gb))
     notes = (f"Tried: {', '.join(map(str, SIZES_GB))} GB. A size that is not listed holds none of these pairs.",)
     return Table("memory_fits", "What fits into how much memory", columns, tuple(rows), notes)
@@ -167,22 +168,16 @@ def scope_section(runs: Sequence[Run]) -> Section:
     text = (
         "Micro accuracy by what the task asks about. The two kinds of task also differ in category, so that the difference "
         "is not the "
-        "panorama's alone.",
+        "panorama's alone. The interval of the difference joins those of its two sides (Newcombe 1998), so that it is no more "
+        "certain than either; where one of them has none, neither has the difference.",
     )
     return Section("scope", "Current view against full scene", text, (), (Table("scope", "By scope", columns, tuple(rows)),))
 
 
 def _scope_row(run: Run) -> tuple[Value, ...]:
     parts = {scope: [t for t in run.scored if t.task.scope == scope] for scope in ("current", "full")}
-    whole = scores_of(run.scored)
-    gap = None
-    if all(parts.values()):
-        by_scope = Scores(whole.values, tuple(t.task.scope for t in run.scored), whole.clusters)
-        gap = difference(by_scope, {"current": 1.0, "full": -1.0})
-        if gap is not None and gap.without:  # Of one side nothing is known but its mean.
-            gap = replace(gap, low=None, high=None)
-    current, full = (share(scores_of(parts[scope])) for scope in ("current", "full"))
-    return run.label, len(parts["current"]), current, len(parts["full"]), full, gap
+    current, full = (scores_of(parts[scope]) for scope in ("current", "full"))
+    return run.label, len(parts["current"]), share(current), len(parts["full"]), share(full), gap(current, full)
 
 
 def _mean(rows: Sequence[tuple[Value, ...]], index: int) -> float | None:
@@ -241,8 +236,8 @@ def _mixtures(ranked: Sequence[Run], every: Sequence[Run]) -> Table:
             if all(kinds):
                 cells = [v for k in kinds for v in (len(k), *(_average(k, w) for w in ("accuracy", "latency_s", "memory_gb")))]
                 moe, dense = (_average(kind, "accuracy") for kind in kinds)
-                gap = None if moe is None or dense is None else moe - dense
-                rows.append((name, "planners" if side == "planner" else "eyes", *cells, gap))
+                apart = None if moe is None or dense is None else moe - dense
+                rows.append((name, "planners" if side == "planner" else "eyes", *cells, apart))
     notes = (
         "Means over the pairs of each kind. Where a model that is held had only one kind beside it, there is nothing to compare.",
     )

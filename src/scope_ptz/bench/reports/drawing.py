@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from math import sqrt
 from statistics import fmean
 from typing import TYPE_CHECKING, Any
 
@@ -31,6 +32,10 @@ from scope_ptz.bench.reports.tables import Marked, Table, bare
 from scope_ptz.bench.statistics.clustered import Estimate
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.collections import PathCollection
+
     from scope_ptz.bench.reports.choosing import Candidate
 
 
@@ -68,6 +73,9 @@ def mode_chart(
 ) -> Chart:
     """Grouped bars, a group for each error mode; ``of``: how many trials a run's counts are out of; ``among``: the runs of all such
     charts, so that a run looks alike in each."""
+    from matplotlib.patches import Patch
+
+    keys: list[Artist] = []
     fills = dict(zip((run.label for run in among), shades(among), strict=True))
     labels = [short(run.label + ("" if run.ranked else " (not ranked)"), 120) for run in runs]
     with canvas(980, 370 + legend_px(labels)) as (figure, axes):
@@ -76,16 +84,20 @@ def mode_chart(
             heights = [100 * counted[run.label][mode] / max(1, of[run.label]) for mode in titles]
             at = [group - 0.42 + (number + 0.5) * width for group in range(len(titles))]
             (fill, hatch), edge = fills[run.label], "none" if run.ranked else "#22262b"
-            axes.bar(at, heights, width * 0.92, color=fill, label=words, hatch=hatch, edgecolor=edge, lw=0.6)
+            # A bar of no height is none: its edge would show as a dash on the axis.
+            bars = [(x, height) for x, height in zip(at, heights, strict=True) if height]
+            axes.bar([x for x, _ in bars], [y for _, y in bars], width * 0.92, color=fill, hatch=hatch, edgecolor=edge, lw=0.6)
+            keys.append(Patch(facecolor=fill, hatch=hatch, edgecolor=edge, lw=0.6, label=words))
         for group in range(1, len(titles)):
             axes.axvline(group - 0.5, color=FAINT, lw=1)
         axes.grid(axis="x", visible=False)
         axes.set_xticks(range(len(titles)), [words.replace(" ", "\n", 1) for words in titles.values()])
         axes.set_xlim(-0.5, len(titles) - 0.5)
-        axes.set_ylabel("Failed trials of 100")
-        legend_below(figure, labels)
+        axes.set_ylim(bottom=0)
+        axes.set_ylabel("Incorrect trials of 100")
+        legend_below(figure, labels, keys)
         totals = ", ".join(f"{words} {sum(counted[r.label][mode] for r in runs)}" for mode, words in titles.items())
-        alt = f"Bars: failed trials by error mode and run. Trials over all runs: {totals}. The table below has every figure."
+        alt = f"Bars: incorrect trials by error mode and run. Trials over all runs: {totals}. The table below has every figure."
         return as_chart(f"chart-{key.replace('_', '-')}", title, alt, figure)
 
 
@@ -164,26 +176,24 @@ def time_chart(runs: Sequence[Run], titles: Mapping[str, str]) -> Chart:
 
 
 def front_chart(found: Sequence[Candidate]) -> Chart:
-    """Accuracy against latency; the area of a point is its memory; those on the Pareto front are filled. Numbers lead to names."""
-    from matplotlib.collections import PathCollection
+    """Accuracy against latency; the area of a ring is its memory; those on the Pareto front are filled. Numbers lead to names.
+
+    A filling leaves a gap to its ring, so that a broken ring shows around it as it does around nothing.
+    """
+    from matplotlib.legend_handler import HandlerTuple
     from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
 
     complete = [c for c in found if c.accuracy is not None and c.latency_s is not None and c.memory_gb is not None]
     complete.sort(key=lambda c: -(c.accuracy or 0.0))
     tint = colours([c.run for c in found])
     with canvas(980, max(460, 150 + 26 * len(complete))) as (figure, axes):
+        keys, names = list[Any](), list[str]()
         for number, c in enumerate(complete, 1):
             shade, at = tint[c.run.label], (c.latency_s or 0.0, 100 * (c.accuracy or 0.0))
-            axes.scatter(
-                *at,
-                s=max(150.0, 10.0 * (c.memory_gb or 0.0)),
-                facecolor=shade if c.on_front else "none",
-                edgecolor=shade,
-                lw=2,
-                alpha=0.85,
-                linestyle="--" if c.contended else "-",
-                label=lines(f"{number}  {c.run.label}, {c.memory_gb:.0f} GB"),
-            )
+            area = max(280.0, 12.0 * (c.memory_gb or 0.0))
+            _point(axes, at, area, shade, c)
+            keys.append(_point(axes, (), 150.0, shade, c))
+            names.append(lines(f"{number}  {c.run.label}, {c.memory_gb:.0f} GB"))
             axes.annotate(
                 str(number), at, ha="center", va="center", fontsize=9.5, fontweight="bold", color="#000" if c.on_front else INK
             )
@@ -194,18 +204,27 @@ def front_chart(found: Sequence[Candidate]) -> Chart:
         axes.xaxis.set_minor_formatter(NullFormatter())
         axes.set_xlabel("Median wall seconds of a trial without the camera: planner, perception, tools (logarithmic)")
         axes.set_ylabel("Macro accuracy (%)")
-        keys = figure.legend(loc="outside right upper", fontsize=9.5, labelspacing=0.9)
-        for handle in keys.legend_handles:
-            if isinstance(handle, PathCollection):
-                handle.set_sizes([70.0])
+        one_on_the_other = {tuple: HandlerTuple(ndivide=1)}
+        figure.legend(keys, names, handler_map=one_on_the_other, loc="outside right upper", fontsize=9.5, labelspacing=0.9)
         on = "; ".join(
             f"{c.run.label} {100 * (c.accuracy or 0):.1f}%, {c.latency_s:.2f} s, {c.memory_gb:.0f} GB"
             for c in complete
             if c.on_front
         )
         alt = f"Scatter: accuracy against latency without the camera, area by memory. On the Pareto front: {on}."
-        title = "Accuracy, latency and memory. Filled: on the Pareto front; area: memory; broken outline: timed under contention"
+        title = "Accuracy, latency and memory. Filled: on the Pareto front; area: memory; broken ring: timed under contention"
         return as_chart("chart-front", title, alt, figure)
+
+
+def _point(axes: Axes, at: tuple[float, ...], area: float, shade: str, of: Candidate) -> tuple[PathCollection, ...]:
+    """A ring of this area in square points, and its filling if it has one. ``at``: empty for what only the legend shows."""
+    x, y = ([at[0]], [at[1]]) if at else ([], [])
+    width = 2.0
+    broken = (0, (3.0, 1.8)) if of.contended else "-"
+    ring = axes.scatter(x, y, s=area, facecolor="none", edgecolor=shade, lw=width, linestyle=broken)
+    if not of.on_front:
+        return (ring,)
+    return ring, axes.scatter(x, y, s=(sqrt(area) - 3 * width) ** 2, facecolor=shade, edgecolor="none", alpha=0.85)
 
 
 def repeats_chart(table: Table, most: int) -> Chart:

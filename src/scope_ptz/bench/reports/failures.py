@@ -23,11 +23,12 @@ MODE_TITLES = {
     ErrorMode.SCOPE: "Scope", ErrorMode.TOOL_ROUTING: "Tool routing",
 }  # fmt: skip
 """In the order of the paper's table."""
+BY_RULES = "Incorrect trials by error mode, by the rules"
 PERCEPTION = frozenset({ErrorMode.VLM_QUERY, ErrorMode.VLM_COUNTING})
 
 
 def by_rules(run: Run) -> Counter[ErrorMode]:
-    """Failed trials by mode, as the rules say."""
+    """Incorrect trials by mode, as the rules say; unscored ones have none."""
     return Counter(t.error_mode for t in run.scored if t.error_mode is not None)
 
 
@@ -40,11 +41,11 @@ def by_judge(run: Run, judge: str) -> Counter[ErrorMode]:
 def error_section(runs: Sequence[Run]) -> Section:
     """Error modes of runs of the main task set."""
     rules = {run.label: by_rules(run) for run in runs}
-    tables = [_mode_table("error_modes", "Failed trials by error mode, by the rules", rules)]
+    tables = [_mode_table("error_modes", BY_RULES, rules)]
     charts = [
         drawing.mode_chart(
             "error_modes",
-            "Failed trials by error mode, by the rules",
+            BY_RULES,
             runs,
             rules,
             {run.label: len(run.scored) for run in runs},
@@ -56,7 +57,7 @@ def error_section(runs: Sequence[Run]) -> Section:
     if judge is not None:
         said = {run.label: by_judge(run, judge) for run in runs if verdicts(run.scored, judge)}
         judged = [run for run in runs if run.label in said]
-        title = f"Failed trials by error mode, by the judge ({judge})"
+        title = f"Incorrect trials by error mode, by the judge ({judge})"
         tables.append(_mode_table("error_modes_judge", title, said))
         charts.append(
             drawing.mode_chart(
@@ -64,16 +65,16 @@ def error_section(runs: Sequence[Run]) -> Section:
             )
         )
     text = (
-        "Every failed trial has exactly one error mode: by rules in a published order, and beside it the one that the judge "
-        "named for the "
-        "trials that it found wrong." + ("" if judge else " No judge took part: its modes are not measured."),
+        "Every incorrect trial has exactly one error mode: by rules in a published order, and beside it the one that the judge "
+        "named for the trials that it found wrong. Unscored trials, whose answers could not be read, are not correct either, but "
+        "have none." + ("" if judge else " No judge took part: its modes are not measured."),
     )
     return Section("errors", "Error modes", text, tuple(charts), tuple(tables))
 
 
 def _mode_table(key: str, title: str, counted: Mapping[str, Counter[ErrorMode]]) -> Table:
     columns = [Column("run", "Run"), *(Column(mode.value, words, "count") for mode, words in MODE_TITLES.items())]
-    columns += [Column("failed", "All", "count"), Column("perception", "VLM query and counting (%)", "share")]
+    columns += [Column("failed", "All incorrect", "count"), Column("perception", "VLM query and counting (%)", "share")]
     rows = tuple(
         (
             label,
@@ -156,9 +157,9 @@ def _rerun(run: Run, every: Sequence[Run]) -> tuple[Run, Comparison | None] | No
     planner, _, agent, variant = run.system
     found = []
     for other in every:
-        card, (own, _, *further) = other.evaluation.card, other.system
+        own, _, *further = other.system
         same = (own, *further) == (planner, agent, variant) and other.task_set == run.task_set and other.tasks & run.tasks
-        if same and card.perception.deterministic and not card.planner.deterministic:
+        if same and other.exact_eyes and not other.evaluation.card.planner.deterministic:
             found.append(other)
     best = max(found, key=lambda other: len(other.tasks & run.tasks), default=None)
     return None if best is None else (best, compare(best, run))

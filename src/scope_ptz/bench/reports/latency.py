@@ -12,7 +12,7 @@ from statistics import fmean
 import numpy as np
 
 from scope_ptz.bench.reports import drawing
-from scope_ptz.bench.reports.runs import Run, primary, timed
+from scope_ptz.bench.reports.runs import Run, pairs_of, timed
 from scope_ptz.bench.reports.sections import Section
 from scope_ptz.bench.reports.tables import Column, Table, Value
 from scope_ptz.bench.tasks import Scope
@@ -64,8 +64,9 @@ def calls_made(trials: Sequence[Trial]) -> float | None:
 def latency_section(runs: Sequence[Run]) -> Section:
     """All runs; the tables by model are of ranked ones only."""
     having = [run for run in runs if run.scored]
-    sources = list(dict.fromkeys(timed(run, having) for run in primary([r for r in having if r.ranked])))
-    tables = (_by_stage(having), _by_planner(sources), _by_eyes(sources), _views(sources))
+    pairs = [(run, timed(run, having)) for run in pairs_of(having)]
+    sources = [source for _, source in pairs]
+    tables = (_by_stage(having), _by_planner(pairs), _by_eyes(pairs), _views(sources))
     shared = [run.label for run in sources if run.evaluation.card.contended]
     text = [
         "Wall seconds. What goes on at the same time counts once. A stage's figures are of the trials that used it. Where a pair "
@@ -112,7 +113,11 @@ def _by_stage(runs: Sequence[Run]) -> Table:
     return Table("latency_stages", "By stage (seconds a trial)", tuple(columns), tuple(rows))
 
 
-def _by_planner(runs: Sequence[Run]) -> Table:
+Timed = tuple[Run, Run]
+"""A pair's run over the most tasks, and the run from which its latency is taken, which may be the same."""
+
+
+def _by_planner(pairs: Sequence[Timed]) -> Table:
     steps = (Column("step_median", "Seconds a step, median", "seconds"), Column("step_p95", "Seconds a step, p95", "seconds"))
 
     def cells(own: Sequence[Run]) -> tuple[Value, ...]:
@@ -121,10 +126,10 @@ def _by_planner(runs: Sequence[Run]) -> Table:
         return middle(seconds), tail(seconds)
 
     notes = (f"What the planner took. {_pooled('planner')}",)
-    return _by_model("latency_planner", "By planner", runs, lambda r: r.planner_name, "planner_s", steps, cells, notes)
+    return _by_model("latency_planner", "By planner", pairs, lambda r: r.planner_name, "planner_s", steps, cells, notes)
 
 
-def _by_eyes(runs: Sequence[Run]) -> Table:
+def _by_eyes(pairs: Sequence[Timed]) -> Table:
     looks = (
         Column("look_median", "Eyes, seconds a look, median", "seconds"),
         Column("look_p95", "Eyes, seconds a look, p95", "seconds"),
@@ -138,36 +143,39 @@ def _by_eyes(runs: Sequence[Run]) -> Table:
         return middle(eyes), tail(eyes), middle(capture), tail(capture)
 
     notes = (f"A trial: all that perception took in it. {LOOKS} {_pooled('vision model')}",)
-    return _by_model("latency_eyes", "By eyes", runs, lambda r: r.eyes_name, "perception_s", looks, cells, notes)
+    return _by_model("latency_eyes", "By eyes", pairs, lambda r: r.eyes_name, "perception_s", looks, cells, notes)
 
 
 def _pooled(what: str) -> str:
     return (
-        f"Trials of all model pairs with this {what}, pooled; only those without contention where there are any. Reference runs "
-        "are left out."
+        f"Seconds: trials of all model pairs with this {what}, pooled; only of pairs timed without contention where there are any. "
+        "Tool calls do not depend on that: the mean over all pairs with it, each counting the same. Reference runs and variants of "
+        "a pair are left out."
     )
 
 
 def _by_model(
-    key: str, title: str, runs: Sequence[Run], name: Callable[[Run], str], stage: str,
+    key: str, title: str, pairs: Sequence[Timed], name: Callable[[Run], str], stage: str,
     single: tuple[Column, ...], cells: Callable[[Sequence[Run]], tuple[Value, ...]], notes: tuple[str, ...],
 ) -> Table:  # fmt: skip
     """A row a model. ``single``: columns about single steps or looks, filled by ``cells``."""
     columns = (
         Column("model", "Model"),
         Column("contended", "Measured"),
-        Column("pairs", "Pairs", "count"),
+        Column("pairs", "Pairs timed", "count"),
+        Column("pairs_all", "of pairs", "count"),
         Column("trial_median", "Seconds a trial, median", "seconds"),
         Column("trial_p95", "Seconds a trial, p95", "seconds"),
         *single,
-        Column("calls", "Tool calls, mean", "number"),
+        Column("calls", "Tool calls, mean over all pairs", "number"),
     )
     rows = []
-    for model in dict.fromkeys(name(run) for run in runs):
-        own = _alone([run for run in runs if name(run) == model])
+    for model in dict.fromkeys(name(run) for run, _ in pairs):
+        whole = [run for run, _ in pairs if name(run) == model]
+        own = _alone([source for run, source in pairs if name(run) == model])
         seconds = [s for run in own for s in stage_seconds(run, stage)]
-        calls = calls_made([t for run in own for t in run.scored])
-        rows.append((model, _contended(own), len(own), middle(seconds), tail(seconds), *cells(own), calls))
+        calls = fmean(made for run in whole if (made := calls_made(run.scored)) is not None)
+        rows.append((model, _contended(own), len(own), len(whole), middle(seconds), tail(seconds), *cells(own), calls))
     return Table(key, title, columns, tuple(rows), notes)
 
 

@@ -21,6 +21,8 @@ from scope_ptz.registry import Model, Registry
 Kind = Literal["models", "reference", "blind", "person"]
 """``reference``: the grammar planner or ground-truth eyes took part; ``blind``: nothing was seen; ``person``: a human baseline."""
 PERSON = "person"
+GRAMMAR, GROUND_TRUTH = "grammar", "ground-truth"
+"""What is no model and makes no noise either: noisy eyes are the ground truth made worse."""
 HEADLINE_STRATA = ("core", "imported")
 FULL_PRECISION = ("fp32", "fp16", "bf16")
 CATEGORY_TITLES = {
@@ -58,6 +60,18 @@ class Run:
     @property
     def ranked(self) -> bool:
         return self.kind == "models"
+
+    @property
+    def exact_eyes(self) -> bool:
+        """Whether its eyes are the simulator's ground truth as it is."""
+        eyes = self.evaluation.card.perception
+        return eyes.deterministic and eyes.name == GROUND_TRUTH
+
+    @property
+    def exact(self) -> bool:
+        """Whether no model took part and nothing was made worse: the grammar planner with ground-truth eyes."""
+        planner = self.evaluation.card.planner
+        return planner.deterministic and planner.name == GRAMMAR and self.exact_eyes and self.kind == "reference"
 
     @property
     def planner_name(self) -> str:
@@ -114,9 +128,14 @@ class Run:
 
 
 def scores_of(trials: Sequence[Trial], right: Iterable[bool] | None = None) -> Scores:
-    """Outcomes by category and viewpoint; ``right`` replaces the headline."""
+    """Outcomes by category and viewpoint, repeats of a task being one observation; ``right`` replaces the headline."""
     values = [t.headline == "correct" for t in trials] if right is None else list(right)
-    return Scores(np.array(values, dtype=np.float64), tuple(t.task.category for t in trials), tuple(viewpoint(t) for t in trials))
+    return Scores(
+        np.array(values, dtype=np.float64),
+        tuple(t.task.category for t in trials),
+        tuple(viewpoint(t) for t in trials),
+        tuple(t.task.id for t in trials),
+    )
 
 
 def macro(scores: Scores) -> Estimate | None:

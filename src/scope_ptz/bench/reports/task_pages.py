@@ -174,8 +174,7 @@ def _call(called: Called, sample: SampleFiles, frames: FrameStore) -> CallShown:
     pose = f"pan {called.pose.pan_deg:.1f}°, tilt {called.pose.tilt_deg:.1f}°, zoom {called.pose.zoom:.2f}x"
     replies = tuple(
         cut(
-            f"{reply.kind}{f' “{reply.asked}”' if reply.asked else ''}: {reply.error or _message(reply.result)} "
-            f"({reply.wall_s:.2f} s)"
+            f"{reply.kind}{f' “{reply.asked}”' if reply.asked else ''}: {reply.error or _seen(reply.result)} ({reply.wall_s:.2f} s)"
         )
         for reply in called.replies
     )
@@ -190,7 +189,55 @@ def _message(result: Mapping[str, Any] | None) -> str:
     for key in ("message", "text", "answer", "caption"):
         if isinstance(result.get(key), str) and result[key]:
             return str(result[key])
-    return json.dumps(result, ensure_ascii=False)
+    return _in_words(result)
+
+
+def _seen(result: Mapping[str, Any] | None) -> str:
+    """What the eyes said: places in percent of the frame, texts as they are. Who was asked, how often and the raw reply are left to
+    the log."""
+    for key, one in (("boxes", "box"), ("points", "point")):
+        places = result.get(key) if result else None
+        if isinstance(places, list | tuple) and result is not None:
+            number = f"{len(places)} {one if len(places) == 1 else key}" if places else f"no {one}"
+            more = "" if result.get("complete", True) else ", and more than these"
+            where = "; ".join(_place(place) for place in places)
+            return f"{number}{more}{f': {where}' if where else ''}{_notes(result)}"
+    return _message(result) + _notes(result or {})
+
+
+def _place(place: Any) -> str:
+    """A box or a point: from left and from top, in percent of the frame. What is neither is told as it is."""
+    if not isinstance(place, Mapping):
+        return _in_words(place)
+    sides = [_percent(place, axis) for axis in "xy"]
+    if None in sides:
+        return _in_words(place)
+    score = place.get("score")
+    said = [str(place["label"])] if place.get("label") else []
+    said += [f"score {score:.2f}"] if isinstance(score, int | float) else []
+    return f"{' '.join([*said, 'at'] if said else ['at'])} {sides[0]} from the left, {sides[1]} from the top"
+
+
+def _percent(place: Mapping[str, Any], axis: str) -> str | None:
+    ends = [place[name] for name in (axis, f"{axis}_min", f"{axis}_max") if isinstance(place.get(name), int | float)]
+    return "–".join(f"{100 * end:.0f}" for end in ends) + "%" if ends else None
+
+
+def _notes(result: Mapping[str, Any]) -> str:
+    notes = result.get("notes")
+    return f" ({'; '.join(map(str, notes))})" if isinstance(notes, list | tuple) and notes else ""
+
+
+def _in_words(value: Any) -> str:
+    """Data as a person reads it: names with their values, figures of four digits, nothing of what is empty."""
+    if isinstance(value, Mapping):
+        told = {str(key).replace("_", " "): part for key, part in value.items() if part not in (None, "", [], {}, ())}
+        return "; ".join(f"{key}: {_in_words(part)}" for key, part in told.items()) or "nothing"
+    if isinstance(value, list | tuple):
+        return ", ".join(f"({_in_words(part)})" if isinstance(part, Mapping) else _in_words(part) for part in value) or "nothing"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
 def cut(text: str) -> str:

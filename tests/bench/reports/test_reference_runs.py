@@ -1,0 +1,129 @@
+"""Noisy eyes are no ground truth, models are no reference, variants are no pairs; and what is called incorrect is not unscored."""
+
+from __future__ import annotations
+
+import re
+from statistics import fmean
+from typing import Any
+
+import pytest
+
+from scope_ptz.agent.timing import Timings
+from scope_ptz.bench.reports.building import Report, build_report
+from scope_ptz.bench.reports.runs import collect
+from scope_ptz.bench.trials import Evaluation, ModelCard
+from scope_ptz.registry import load_registry
+from tests.bench.reports.making import card, evaluation, facts, trial
+from tests.bench.reports.test_report import row, table
+
+TASKS = facts(4)
+PAIRS = (("qwen3-4b", "moondream3"), ("qwen3-30b-a3b", "moondream3"))
+
+
+def whole(planner: str, eyes: str, headline: str, **further: Any) -> Evaluation:
+    """A run in which all tasks end alike."""
+    made = card(planner, eyes, **further)
+    if eyes == "noisy":
+        made = made.model_copy(update={"perception": ModelCard(name="noisy", deterministic=True)})
+    return Evaluation(card=made, trials=tuple(trial(t, headline) for t in TASKS), wanted=len(TASKS))
+
+
+def build(*evaluations: Evaluation) -> Report:
+    return build_report(evaluations, load_registry())
+
+
+def chart(report: Report, key: str) -> Any:
+    return next(c for section in report.sections for c in section.charts if c.key == key)
+
+
+def words(report: Report, key: str) -> str:
+    return " ".join(next(section for section in report.sections if section.key == key).text)
+
+
+def test_a_run_with_noisy_eyes_is_not_the_run_with_ground_truth_eyes() -> None:
+    pair = whole(*PAIRS[0], "incorrect")
+    made = build(pair, whole(PAIRS[0][0], "noisy", "correct"))
+    told = row(made, "oracle", "qwen3-4b + moondream3")
+    assert (told["macro_rerun"], told["gain_rerun"]) == (None, None)
+    assert "run again" not in chart(made, "chart-oracle").alt
+    both = build(pair, whole(PAIRS[0][0], "noisy", "incorrect"), whole(PAIRS[0][0], "ground-truth", "correct"))
+    assert row(both, "oracle", "qwen3-4b + moondream3")["macro_rerun"] == pytest.approx(1.0)
+
+
+def test_the_audit_sets_beside_a_task_only_what_no_model_and_no_noise_took_part_in() -> None:
+    pairs = [whole(*pair, "incorrect") for pair in PAIRS]
+    noise = [whole("grammar", "noisy", "incorrect"), whole("qwen3-4b", "ground-truth", "incorrect")]
+    made = build(*pairs, *noise, whole("grammar", "ground-truth", "correct"))
+    assert {row(made, "audit", t.id)["reference"] for t in TASKS} == {1.0}
+    assert {row(build(*pairs, *noise), "audit", t.id)["reference"] for t in TASKS} == {None}
+    assert [r.label for r in collect([*pairs, *noise], load_registry()) if r.exact] == []
+    assert "grammar planner with ground-truth eyes" in words(made, "audit") and "exact reference" not in words(made, "audit")
+
+
+def test_nothing_is_called_exact_by_construction() -> None:
+    text = words(build(whole(*PAIRS[0], "correct"), whole("grammar", "noisy", "correct")), "accuracy")
+    assert "exact by construction" not in text and "exact about what shows" in text and "may misunderstand a question" in text
+
+
+def timed(planner: str, seconds: float, calls: int, **further: Any) -> Evaluation:
+    timings = Timings(planner_s=seconds, perception_s=1.0, total_s=seconds + 1.5)
+    trials = tuple(trial(t, timings=timings, tool_calls={"adjust_ptz": calls}) for t in TASKS)
+    return Evaluation(card=card(planner, "moondream3", **further), trials=trials, wanted=len(trials))
+
+
+def test_a_variant_is_no_pair_where_latency_is_told() -> None:
+    made = build(timed("qwen3-4b", 2.0, 2), timed("qwen3-4b", 50.0, 9, variant="short"), timed("qwen3-30b-a3b", 3.0, 4))
+    assert "2 of 2 model pairs were timed only while" in words(made, "latency")
+    assert "2 pairs of models" in made.summary[0]
+    told = row(made, "latency_planner", "qwen3-4b")
+    assert (told["trial_median"], told["calls"], told["pairs"], told["pairs_all"]) == (2.0, 2.0, 1, 1)
+    assert row(made, "latency_eyes", "moondream3")["calls"] == pytest.approx(3.0)
+
+
+def test_tool_calls_are_of_all_pairs_whichever_were_timed_alone() -> None:
+    logs = [timed(planner, 2.0, calls) for planner, calls in (("qwen3-4b", 2), ("qwen3-30b-a3b", 3), ("qwen3-32b", 7))]
+    made = build(*logs, timed("qwen3-4b", 1.0, 2, contended=False, concurrency=1))
+    told = row(made, "latency_eyes", "moondream3")
+    assert (told["contended"], told["pairs"], told["pairs_all"]) == ("alone", 1, 3)
+    assert told["calls"] == pytest.approx(fmean([2, 3, 7]))
+
+
+def test_incorrect_and_unscored_are_told_apart() -> None:
+    trials = tuple(trial(t, ("incorrect", "unscored", "correct", "incorrect")[n % 4]) for n, t in enumerate(TASKS))
+    made = build(Evaluation(card=card(*PAIRS[0]), trials=trials, wanted=len(trials)))
+    assert any("16 of 16 incorrect trials; 8 more are unscored and have no error mode." in line for line in made.summary)
+    text = words(made, "errors")
+    assert "Every incorrect trial has exactly one error mode" in text and "Unscored trials" in text
+    assert table(made, "error_modes").title.startswith("Incorrect trials")
+    unscored = next(t.task.id for t in trials if t.headline == "unscored")
+    assert (row(made, "failed_tasks", unscored)["failed"], row(made, "failed_tasks", unscored)["unscored"]) == (1, 1)
+
+
+def test_costs_say_whose_tokens_they_are() -> None:
+    found = table(build(whole(*PAIRS[0], "correct")), "costs")
+    assert "the planner's as its server" in found.notes[0] and "the eyes take is not counted" in found.notes[0]
+
+
+def test_long_conditions_have_room() -> None:
+    found = table(build(whole(*PAIRS[0], "correct")), "runs")
+    kinds = {column.name: column.kind for column in found.columns}
+    assert {kinds[name] for name in ("sampling", "planner_reported", "eyes_reported")} == {"prose"}
+
+
+def test_a_bar_of_no_height_is_not_drawn() -> None:
+    # One error mode of eight: of the run that is not ranked, whose bars have edges, one shows in the plot, one in the legend.
+    svg = chart(build(whole(*PAIRS[0], "incorrect"), whole("grammar", "ground-truth", "incorrect")), "chart-error-modes").svg
+    edged = re.findall(r'<path d="([^"]*)"[^>]*stroke: #22262b; stroke-width: 0.6', svg)
+    assert len(edged) == 2
+
+
+def test_a_ring_around_a_filling_is_apart_from_it() -> None:
+    from scope_ptz.bench.reports.choosing import candidates
+
+    runs = collect([evaluation(*pair, TASKS, 0.6, spoiled=0.0) for pair in PAIRS[:1]], load_registry())
+    (found,) = candidates(runs, runs)
+    assert found.on_front and found.contended
+    svg = chart(build(*(r.evaluation for r in runs)), "chart-front").svg
+    assert svg.count("stroke-dasharray") >= 2, "a broken ring in the plot and one in the legend"
+    drawn = [part for part in svg.split("<path ")[1:] if "stroke-dasharray" in part]
+    assert all("fill: none" in part.split("/>")[0] for part in drawn), "no broken outline on a filling of its own colour"

@@ -1,0 +1,132 @@
+"""Repeats of a task are one observation of it: however often a model that always does the same is asked, nothing more is known."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import isclose
+
+import numpy as np
+import pytest
+
+from scope_ptz.bench.reports.building import build_report
+from scope_ptz.bench.reports.runs import Run, collect
+from scope_ptz.bench.reports.tables import Marked, bare
+from scope_ptz.bench.statistics.clustered import Estimate, Scores, gap, independent_variance, macro_weights, newcombe, share
+from scope_ptz.bench.trials import Evaluation
+from scope_ptz.registry import load_registry
+from tests.bench.reports.making import card, facts, trial
+from tests.bench.reports.test_report import table
+
+TASKS = [t for t in facts(5) if t.category in ("single_call", "ocr")]
+"""Ten."""
+
+
+def repeated(times: int, right: frozenset[str], planner: str = "qwen3-4b", eyes: str = "moondream3") -> Evaluation:
+    """A deterministic run: each task ``times`` over, every time with the same outcome."""
+    trials = tuple(
+        trial(t, "correct" if t.id in right else "incorrect", epoch=epoch, sample=f"{t.id}/{epoch}")
+        for t in TASKS
+        for epoch in range(1, times + 1)
+    )
+    return Evaluation(card=card(planner, eyes, epochs=times), trials=trials, wanted=len(trials))
+
+
+def run(times: int, right: frozenset[str]) -> Run:
+    return collect([repeated(times, right)], load_registry())[0]
+
+
+@pytest.mark.parametrize("number", [0, 1, 4, 9, 10])
+def test_repeats_of_what_is_deterministic_narrow_no_interval(number: int) -> None:
+    right = frozenset(t.id for t in TASKS[:number])
+    once, thrice, nine = (run(times, right) for times in (1, 3, 9))
+    for name in ("macro", "micro"):
+        first = getattr(once, name)
+        assert first.low is not None and first.n == len(TASKS)
+        for other in (getattr(thrice, name), getattr(nine, name)):
+            assert (other.value, other.low, other.high, other.n) == pytest.approx((first.value, first.low, first.high, first.n))
+
+
+def test_tasks_that_all_vary_alike_have_a_width_too() -> None:
+    # Every task right in one of three trials: no task differs from another, which must not pass for certainty.
+    values, units = np.array([1.0, 0.0, 0.0] * 5), tuple(n for n in range(5) for _ in range(3))
+    found = share(Scores(values, ("a",) * 15, tuple(n % 3 for n in units), units))
+    assert found is not None and found.low is not None and found.high is not None
+    assert found.n == 5 and found.high - found.low > 0.4
+
+
+def test_the_floor_of_the_variance_is_over_tasks() -> None:
+    values, strata, clusters = np.array([1.0, 0, 1, 1, 0, 1]), ("a", "a", "a", "a", "b", "b"), ("x", "x", "y", "y", "x", "y")
+    once = Scores(values, strata, clusters)
+    again = Scores(np.repeat(values, 4), *(tuple(np.repeat(labels, 4).tolist()) for labels in (strata, clusters, range(6))))
+    weights = macro_weights(once)
+    assert independent_variance(again, weights) == pytest.approx(independent_variance(once, weights))
+    assert independent_variance(replace(again, units=None), weights) < independent_variance(once, weights)  # type: ignore[operator]
+    with pytest.raises(ValueError, match="units"):
+        Scores(values, strata, clusters, ("1",))
+
+
+@pytest.mark.parametrize("number", [3, 7, 8, 11])
+def test_what_is_all_right_is_one_whatever_the_number_of_categories(number: int) -> None:
+    strata = tuple(n % number for n in range(3 * number))
+    scores = Scores(np.ones(3 * number), strata, tuple(n % 4 for n in range(3 * number)))
+    found = share(scores, macro_weights(scores))
+    assert found is not None and found.value == 1.0
+
+
+def test_equal_values_are_all_the_best() -> None:
+    # The same tasks right, in trials of one, three and seven: thirds and sevenths do not add up to the last digit.
+    right = frozenset(t.id for t in TASKS[:-1])
+    logs = [repeated(times, right, planner) for times, planner in ((1, "qwen3-4b"), (3, "qwen3-30b-a3b"), (7, "qwen3-32b"))]
+    found = table(build_report(logs, load_registry()), "accuracy")
+    for name in ("macro", "micro", "ocr", "single_call"):
+        at = [column.name for column in found.columns].index(name)
+        cells = [values[at] for values in found.rows]
+        assert all(isinstance(cell, Marked) and cell.best and cell.best_of_all for cell in cells), name
+
+
+def test_no_rounding_decides_what_is_best() -> None:
+    from scope_ptz.bench.reports.accuracy import _is_best
+
+    values = [0.9999999999999999, 1.0, 1.0000000000000002]
+    assert all(_is_best(value, values) for value in values)
+    assert not _is_best(0.9999, values) and not _is_best(1.0, [1.0])
+
+
+def test_the_difference_of_two_shares_is_newcombes() -> None:
+    from statsmodels.stats.proportion import confint_proportions_2indep, proportion_confint  # type: ignore[import-untyped]
+
+    # 56 of 70 and 48 of 80: Newcombe's own example (1998, table II, case a), 0.0524 to 0.3339.
+    sides = [(k / n, *proportion_confint(k, n, method="wilson")) for k, n in ((56, 70), (48, 80))]
+    low, high = newcombe(*sides)
+    assert (low, high) == pytest.approx((0.0524, 0.3339), abs=5e-5)
+    assert (low, high) == pytest.approx(confint_proportions_2indep(56, 70, 48, 80, method="newcomb"))
+    assert newcombe((0.5, None, None), sides[1]) == (None, None)
+
+
+def test_a_side_without_spread_is_as_uncertain_in_the_difference_as_alone() -> None:
+    first = Scores(np.array([1.0, 0, 1, 1, 0, 1, 0, 1]), ("a",) * 8, (1, 1, 2, 2, 3, 3, 4, 4))
+    alike = Scores(np.zeros(2), ("a",) * 2, (1, 2))
+    found, alone = gap(first, alike), share(alike)
+    assert found is not None and found.low is not None and found.high is not None and alone is not None and alone.high is not None
+    assert found.value == pytest.approx(5 / 8)
+    assert found.value - found.low >= alone.high - 1e-12 > 0.9, "two trials of one side leave it open"
+    assert -1 <= found.low <= found.value <= found.high <= 1
+    assert gap(first, Scores(np.array([]), (), ())) is None
+    single = gap(first, Scores(np.array([0.0, 1.0]), ("a",) * 2, (1, 1)))
+    assert single is not None and (single.low, single.high) == (None, None)
+
+
+def test_current_minus_full_says_so_in_the_report() -> None:
+    tasks = facts(6)
+    full = [t for t in tasks if t.scope == "full"][:2]
+    current = [t for t in tasks if t.scope == "current"]
+    trials = [trial(t, "correct" if n % 3 else "incorrect") for n, t in enumerate(current)] + [trial(t, "incorrect") for t in full]
+    made = build_report(
+        [Evaluation(card=card("qwen3-4b", "moondream3"), trials=tuple(trials), wanted=len(trials))], load_registry()
+    )
+    _, _, _, _, side, between = (bare(cell) for cell in table(made, "scope").rows[0])
+    assert isinstance(side, Estimate) and isinstance(between, Estimate)
+    assert side.value == 0.0 and side.high is not None and side.high > 0.9
+    assert (
+        between.low is not None and between.value - between.low >= side.high - 1e-12 and isclose(between.value, 2 / 3, abs_tol=0.02)
+    )
