@@ -7,7 +7,10 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from scope_ptz.bench.expected import Choice, Description, Fact, NameSet
+from scope_ptz.bench.reader_comparisons import bearer_of, comparators, reference_of, ways
 from scope_ptz.bench.reader_denials import says_none, says_yes
+from scope_ptz.bench.reader_numbers import find_quantities
+from scope_ptz.bench.reader_options import option_mentions
 from scope_ptz.bench.reader_presence import says_that_none
 from scope_ptz.bench.reader_text import Mention, Script, wordings_of
 from scope_ptz.bench.reading import Reading, Unreadable, Value
@@ -24,24 +27,34 @@ _ALL = re.compile(r"\b(all|everything|both|each|every)\b")
 
 
 def read_choice(expected: Choice, script: Script) -> Reading:
-    """The one option that is named and not denied; where several are, the one that is concluded on."""
+    """The one option that is named and not denied; where several are, the one that is picked or concluded on."""
     if expected.subject and True in says_that_none(script, expected.subject):
         return Unreadable("it says that there is none")
-    names = {name: wordings_of(name, further) for name, further in expected.options.items()}
-    if "same" in names:
-        names["same"] = (*names["same"], *SAME)
-    mentions = [m for m in script.mentions(names) if not m.denied and not m.aside and not after_than(script, m)]
+    options = dict(expected.options)
+    if "same" in options:
+        options["same"] = (*options["same"], *SAME)
+    everything = [m for m in option_mentions(script, options) if not m.denied and not m.aside]
+    mentions = [m for m in everything if not after_than(script, m)]
     alike = [m for m in mentions if m.name == "same"]
     rest = [m for m in mentions if m.name != "same" and alike and m.start > alike[-1].start]
     only_both = all(script.words[m.start].text == "both" for m in alike)
-    if alike and only_both and len({m.name for m in rest}) == 1:
-        # "I looked at both presets. The gate has more."
-        mentions = [m for m in mentions if m.name != "same"] if _picked(expected, script, rest) else mentions
-    elif alike:
+    if alike and not (only_both and len({m.name for m in rest}) == 1):
         return Value("same")
+    if alike and not _compared(expected, script, rest)[0]:
+        # Unlike "I looked at both presets. The gate has more."
+        return Unreadable("whether both are meant is not clear")
+    if expected.picks:
+        mentions = [m for m in mentions if m.name != "same"]
+        picked, out = _compared(expected, script, [m for m in everything if m.name != "same"])
+        if picked & out:
+            return Unreadable("the comparisons contradict each other")
+        if picked or out:
+            mentions = [m for m in mentions if m.name in (picked or {m.name for m in mentions} - out)]
+        else:
+            mentions = [m for m in mentions if not _is_only_counted(script, m, expected.options[m.name])]
+        if len(picked) == 1:
+            return Value(picked.pop())
     named = {m.name for m in mentions}
-    if len(named) > 1 and expected.picks:
-        named = _picked(expected, script, mentions) or named
     if len(named) > 1:
         named = {m.name for m in mentions if m not in _of_parts(script, mentions)} or named
     if len(named) > 1:
@@ -52,18 +65,30 @@ def read_choice(expected: Choice, script: Script) -> Reading:
     return Unreadable("several options: " + ", ".join(sorted(named)) if named else "no option is named")
 
 
-def _picked(expected: Choice, script: Script, mentions: Sequence[Mention]) -> set[str]:
-    """What is named before a word that picks, in its segment or else its clause."""
-    picked = set[str]()
-    for pick in script.mentions({"pick": expected.picks}):
-        if pick.denied:
-            continue
-        word = script.words[pick.start]
-        near = [m for m in mentions if script.words[m.start].segment == word.segment]
-        near = near or [m for m in mentions if script.words[m.start].clause == word.clause]
-        before = [m for m in near if m.start < pick.start]
-        picked |= {(before[-1] if before else near[0]).name} if near else set()
-    return picked
+def _compared(expected: Choice, script: Script, mentions: Sequence[Mention]) -> tuple[set[str], set[str]]:
+    """The options that a comparison picks and those that it rules out. Of two options the one that is not "farther" is "closer"."""
+    picked, out = set[str](), set[str]()
+    pair = {name for name in expected.options if name != "same"}
+    for comparator in comparators(script, ways(expected.picks)):
+        bearer = bearer_of(script, comparator, mentions)
+        reference = reference_of(script, comparator, mentions)
+        one = {bearer.name} if bearer else pair - {reference.name} if reference and len(pair) == 2 else set[str]()
+        other = {reference.name} if reference else pair - one if one and len(pair) == 2 else set[str]()
+        if comparator.denied:
+            out |= one if comparator.name == "forward" else set()
+        elif comparator.name == "forward":
+            picked |= one
+            out |= {reference.name} if reference else set()
+        else:
+            out |= one
+            picked |= other if len(pair) == 2 else set()
+    return picked, out
+
+
+def _is_only_counted(script: Script, mention: Mention, further: Sequence[str]) -> bool:
+    """ "9 skips", "skips: 9": that tells how many there are, not that they are what is chosen."""
+    own = [q for q in find_quantities(script, (mention.name, *further)) if q.own]
+    return any(0 <= mention.start - q.end <= 3 or q.start == mention.end for q in own)
 
 
 def _of_parts(script: Script, mentions: Sequence[Mention]) -> list[Mention]:
@@ -110,14 +135,14 @@ def read_name_set(expected: NameSet, script: Script) -> Reading:
     return Unreadable("nothing is named")
 
 
+_DENIES_ALL = re.compile(
+    r"^no (?!(information|data|results?|answers?|response|output|reply|image|idea)\b)\w+\b(?! (is|are) (missing|absent))|"
+    r"\bthere (is|are) (no|not any)\b|\b(found|see|saw|find|sees) (no|nothing)\b"
+)
+
+
 def _denies_all(script: Script) -> bool:
-    return (
-        re.search(
-            r"^no \w+\b(?! (is|are) (missing|absent))|\bthere (is|are) (no|not any)\b|\b(found|see|saw|find|sees) (no|nothing)\b",
-            script.text(),
-        )
-        is not None
-    )
+    return _DENIES_ALL.search(script.text()) is not None
 
 
 def read_description(expected: Description, script: Script) -> Reading:

@@ -71,9 +71,10 @@ def _breakdown(script: Script, quantities: Sequence[Quantity]) -> bool | None:
         return None
     whole, *parts = quantities
     gaps = "".join(word.gap for word in script.words[whole.end : parts[0].start + 1])
-    if not re.search(r"[:(]", gaps):
-        return None
-    difference = "(" in gaps or (whole.start > 0 and script.words[whole.start - 1].text == "by")
+    if not re.match(r"[^\S\n]*[:(]", gaps):
+        return None  # "Skips: 7, bins: 2" takes nothing apart.
+    lead = [word.text for word in script.words[max(0, whole.start - 3) : whole.start]]
+    difference = "(" in gaps or lead[-1:] == ["by"] or "difference" in lead
     apart = abs(parts[0].value - parts[1].value) if len(parts) == 2 and difference else None
     return whole.value in (sum(q.value for q in parts), apart)
 

@@ -10,7 +10,10 @@ from scope_ptz.bench.reader_text import Script
 
 _NONE = re.compile(
     r"^(no|nope|none|nothing|nobody|no one|zero)$|^(none|nothing|nobody|no one)\b(?! (of (?!them|these|those)|but|else))"
+    r"(?! (\w+ )?(has |have )?(was |were |is |are |been |be )*(returned|reported|given|received|provided|loaded|answered|done|"
+    r"happened|changed|moved|worked|came|executed|required|wrong)\b)"
     r"|\bthere (is|are|were) (none|nothing)\b"
+    r"|\b(found|find|see|saw|spotted|detected) (none|nothing)( (here|there|visible|in view))?$"
     r"|\bnot (any|one|a single one)( (here|there|visible|in view))?$"
 )
 _OF_OTHERS = re.compile(r"\b(others?|else|elsewhere)\b")

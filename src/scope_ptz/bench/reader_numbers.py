@@ -40,6 +40,12 @@ _TOTALS = re.compile(
     r"\b(total|altogether|together|overall|in all|combined|sum|makes|making|therefore|thus|hence|so|final|finally)\b"
 )
 
+_ANNOUNCES = re.compile(
+    r"\b(total( [^\W\d]\w*){0,2}|difference( (is|equals|makes|being|therefore|thus))*|(final )?answer( is)?|sum( is)?)$"
+)
+_ANYTHING = frozenset({"object", "objects", "item", "items", "thing", "things"})
+"""What a total may be of without being of something else than what was asked for."""
+
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
@@ -82,7 +88,8 @@ def _quantity(script: Script, value: float, start: int, end: int, unit: Sequence
     bare = not after or ones is not None or after in _BARE_AFTER or number_at(words, end)[0] is not None or ")" in words[end].gap
     before = " ".join(w.text for w in words[max(0, start - 4) : start])
     segment = " ".join(w.text for w in words if w.segment == words[start].segment)
-    announced_total = re.search(r"\btotal( \w+){0,2}$", before) is not None
+    announced_total = _ANNOUNCES.search(before) is not None
+    bare = bare or (announced_total and after in _ANYTHING)
     return Quantity(
         value=value,
         start=start,

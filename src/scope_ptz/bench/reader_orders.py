@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from itertools import pairwise
 
 from scope_ptz.bench.expected import Ordering, Relation
 from scope_ptz.bench.reader_choices import SAME
+from scope_ptz.bench.reader_comparisons import bearer_of, reference_of
 from scope_ptz.bench.reader_numbers import find_quantities
-from scope_ptz.bench.reader_text import Mention, Script, wordings_of
+from scope_ptz.bench.reader_options import option_mentions
+from scope_ptz.bench.reader_ranks import concluding, contradicts_its_numbers
+from scope_ptz.bench.reader_text import Mention, Script
 from scope_ptz.bench.reading import Reading, Unreadable, Value
 
-_REFERENCES = frozenset({"than", "versus", "vs", "against"})
-_AT_REFERENCE = frozenset({"of", "from", "to"})
 _FILLERS = frozenset({
     "it", "is", "its", "on", "to", "the", "at", "in", "side", "of", "hand", "a", "bit", "slightly", "much", "them", "lies",
 })  # fmt: skip
@@ -25,29 +27,42 @@ _TURNED = {"forward": "backward", "backward": "forward"}
 
 def read_ordering(expected: Ordering, script: Script) -> Reading:
     """The options in the order that the answer gives them, turned round where it begins at the other end."""
-    names = {name: wordings_of(name, further) for name, further in expected.options.items()}
-    mentions = [m for m in script.mentions(names) if not m.denied or _is_counted(script, m)]
+    everything = [m for m in option_mentions(script, expected.options) if not m.denied or _is_counted(script, m)]
+    begins = concluding(script, everything, set(expected.options))
+    mentions = [m for m in everything if m.start >= begins]
     order = list(dict.fromkeys(m.name for m in mentions))
     if set(order) != set(expected.options):
         return Unreadable("not all of them are named" if order else "none of them is named")
-    ends = script.mentions({"first": expected.first, "last": expected.last})
-    thans = sum(w.text == "than" for w in script.words)
-    if 0 < thans < len(expected.options) - 1:
-        return Unreadable("only some of them are compared")
+    ends = [m for m in script.mentions({"first": expected.first, "last": expected.last}) if m.start >= begins]
+    told = _told(script, mentions, ends, order, begins)
+    if isinstance(told, str):
+        return Unreadable(told)
+    if contradicts_its_numbers(script, everything, told, expected.first):
+        return Unreadable("its own numbers contradict the order")
+    return Value(told)
+
+
+def _told(
+    script: Script, mentions: Sequence[Mention], ends: Sequence[Mention], order: list[str], begins: int
+) -> tuple[str, ...] | str:
+    """The order that is told, or the reason why none is."""
+    thans = sum(w.text == "than" for w in script.words[begins:])
+    if 0 < thans < len(order) - 1:
+        return "only some of them are compared"
     placed = _placed(script, mentions, ends)
     if placed.get("first") is not None and placed.get("last") is not None and placed["first"] != placed["last"]:
         between = [name for name in order if name not in placed.values()]
         if len(between) > 1 and (order[0], order[-1]) not in ((placed["first"], placed["last"]), (placed["last"], placed["first"])):
-            return Unreadable("the order between the two ends is not told")
+            return "the order between the two ends is not told"
         if order[0] == placed["last"] and order[-1] == placed["first"]:
             between.reverse()
-        return Value((str(placed["first"]), *between, str(placed["last"])))
+        return (str(placed["first"]), *between, str(placed["last"]))
     starts_at_last = placed.get("last") == order[0] or _heading_is_turned(mentions, ends)
-    if starts_at_last or any("<" in w.gap for w in script.words):
+    if starts_at_last or any("<" in w.gap for w in script.words[begins:]):
         order.reverse()
     elif placed.get("first") not in (None, order[0]) or placed.get("last") not in (None, order[-1]):
-        return Unreadable("the order is told in two ways")
-    return Value(tuple(order))
+        return "the order is told in two ways"
+    return tuple(order)
 
 
 def _is_counted(script: Script, mention: Mention) -> bool:
@@ -57,14 +72,19 @@ def _is_counted(script: Script, mention: Mention) -> bool:
 
 
 def _placed(script: Script, mentions: Sequence[Mention], ends: Sequence[Mention]) -> dict[str, str | None]:
-    """Which option is said to be at which end: in a segment with one end, what is named before it, else after it."""
+    """Which option is said to be at which end: in a segment what is named before it, else, where it has one end, after it."""
     placed: dict[str, str | None] = {}
     for group in script.segments():
         here = [m for m in mentions if group[0] <= m.start <= group[-1]]
         end = [m for m in ends if group[0] <= m.start <= group[-1] and not m.denied]
-        if len(end) == 1 and here:
-            before = [m for m in here if m.start < end[0].start]
-            placed.setdefault(end[0].name, (before[-1] if before else here[0]).name)
+        if any([w.text for w in script.words[one.end : two.start]] == ["to"] for one, two in pairwise(end)):
+            continue  # "from most to fewest" places nothing.
+        since = group[0]
+        for one in end:
+            before = [m for m in here if since <= m.start < one.start]
+            if before or (len(end) == 1 and here):
+                placed.setdefault(one.name, (before[-1] if before else here[0]).name)
+            since = one.start
     return placed
 
 
@@ -108,29 +128,12 @@ def _is_bare(script: Script, things: Sequence[Mention]) -> bool:
 
 def _way(script: Script, comparator: Mention, things: Sequence[Mention]) -> str | None:
     """The relation of subject to object that one comparator states; None when it does not say of which of them."""
-    clause = script.words[comparator.start].clause
-    here = [m for m in things if script.words[m.start].clause == clause]
-    reference = _reference(script, comparator, here)
+    reference = reference_of(script, comparator, things)
     if reference is not None:
         return comparator.name if reference.name == "object" else _TURNED[comparator.name]
-    before = [m for m in here if m.start < comparator.start]
-    after = [m for m in here if m.start > comparator.start]
-    bearer = before[-1] if before else after[0] if after else None
+    bearer = bearer_of(script, comparator, things)
     if bearer is not None:
         return comparator.name if bearer.name == "subject" else _TURNED[comparator.name]
+    clause = script.words[comparator.start].clause
     words = {w.text for i, w in enumerate(script.words) if w.clause == clause and not comparator.start <= i < comparator.end}
     return comparator.name if words <= _FILLERS else None
-
-
-def _reference(script: Script, comparator: Mention, here: Sequence[Mention]) -> Mention | None:
-    """What the comparator compares with: "more than B", "left of B", "compared with B"."""
-    for mention in here:
-        between = [w.text for w in script.words[comparator.end : mention.start]] if mention.start > comparator.end - 1 else []
-        if set(between) & _REFERENCES:
-            return mention
-        lead = [w.text for w in script.words[max(0, mention.start - 3) : mention.start]]
-        if "compared" in lead:
-            return mention
-        if between and set(between[:2]) & _AT_REFERENCE and len(between) <= 3:
-            return mention
-    return None

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from scope_ptz.bench.expected import NoneThere, YesNo
 from scope_ptz.bench.reader_counts import is_miscounted, read_number
 from scope_ptz.bench.reader_denials import denies_flatly, says_none, says_yes
+from scope_ptz.bench.reader_halves import leaves_the_half_open
 from scope_ptz.bench.reader_numbers import find_quantities
 from scope_ptz.bench.reader_text import Mention, Script
 from scope_ptz.bench.reader_words import plain_words
@@ -37,21 +38,52 @@ def verdict_words(script: Script) -> set[bool]:
     return said
 
 
+_ELLIPSIS = re.compile(
+    r"^((yes|no|and|so|but|indeed|well) )*(it|they|this|that|these|those|there) (really |actually |certainly |definitely )?"
+    r"(?P<verb>is|are|was|were|does|do|did|has|have)(?P<not> not)?( (the case|so|true|correct|right|actually|at all|indeed))*$"
+)
+_REFUTED = re.compile(r"^((and|so|but) )*(it|this|that|the (claim|statement)) (is|was) (false|untrue|incorrect|wrong)$")
+
+
+def _short_answers(script: Script) -> set[bool]:
+    """ "It is not.", "They do.", "That is not the case." """
+    said = set[bool]()
+    for group in script.segments():
+        piece = _text_of(script, group)
+        if match := _ELLIPSIS.match(piece):
+            said.add(match["not"] is None)
+        elif _REFUTED.match(piece):
+            said.add(False)
+    return said
+
+
 def read_yes_no(expected: YesNo, script: Script) -> Reading:
     """A bare yes or no, and what is stated about the thing; they must not contradict each other."""
-    said = verdict_words(script)
-    for mention in script.mentions({"yes": expected.affirms, "no": expected.denies}):
-        said.add((mention.name == "yes") != (mention.denied or mention.aside))
+    said = verdict_words(script) | _short_answers(script)
+    if not said and leaves_the_half_open(script, expected.affirms):
+        return Unreadable("of which half it is told may not be what is asked")
+    mentions = script.mentions({"yes": expected.affirms, "no": expected.denies})
+    stated = {(mention.name == "yes") != (mention.denied or mention.aside) for mention in mentions}
+    if len(stated) == 2 and len(said) == 1 and (last := script.segments()[-1:]) and _CONCLUDED.match(_text_of(script, last[0])):
+        return Value(said.pop())  # "At the gate: no van. At the works: 1 van. So yes."
+    said |= stated
     if not said and says_none(script):
         said = {False}
-    clauses = (" ".join(script.words[i].text for i in group) for group in script.clauses())
     if denies_flatly(script, ()) and True in said:
         said.add(False)
-    if any(re.search(r"\bthere (is|are) (none|not any)( here| there| visible| in view)?$", clause) for clause in clauses):
-        said.add(False)
+    for clause in script.clauses():
+        if re.search(r"\bthere (is|are) (none|not any)( here| there| visible| in view)?$", _text_of(script, clause)):
+            said.add(False)
     if len(said) == 1:
         return Value(said.pop())
     return Unreadable("both yes and no" if said else "neither yes nor no")
+
+
+_CONCLUDED = re.compile(r"^(so|therefore|thus|hence|overall) (the answer is |it is )?(yes|no)$")
+
+
+def _text_of(script: Script, group: Sequence[int]) -> str:
+    return " ".join(script.words[i].text for i in group)
 
 
 def read_none_there(expected: NoneThere, script: Script) -> Reading:
@@ -59,6 +91,8 @@ def read_none_there(expected: NoneThere, script: Script) -> Reading:
     if re.search(r"\b(none|no|nothing|zero|0) or (one|two|some|several|a few|1|2)\b", script.text()):
         return Unreadable("an alternative")
     said = says_that_none(script, expected.subject)
+    if leaves_the_half_open(script, expected.subject):
+        return Unreadable("of which half it is told may not be what is asked")
     if True in said and (_counts_some(script, expected.subject) or _claims(script, expected)):
         said = {True, False}
     if len(said) == 1:

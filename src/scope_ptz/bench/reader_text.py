@@ -9,6 +9,8 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+from scope_ptz.bench.reader_absences import MARK, is_denied_jointly, is_listed_as_absent, uncrossed
+from scope_ptz.bench.reader_claims import Claim, claim_of
 from scope_ptz.bench.reader_words import Word, clean, plain_words, same_word, words_of
 
 NEGATORS = frozenset({"no", "not", "never", "without", "neither", "nor", "none", "nobody", "nothing", "zero", "0", "lacks", "lack"})
@@ -79,7 +81,7 @@ class Script:
 
     def mentions(self, names: Mapping[str, Sequence[str]]) -> list[Mention]:
         """Every place where one of the wordings of a name stands; of overlapping ones the longest. "No cone is missing" says
-        nothing of cones."""
+        nothing of cones, nor does "I looked for cones"."""
         phrases = [(tuple(plain_words(w)), name) for name, wordings in names.items() for w in wordings]
         phrases.sort(key=lambda p: -len(p[0]))
         found, taken = list[Mention](), set[int]()
@@ -88,9 +90,11 @@ class Script:
                 end = start + len(phrase)
                 if phrase and self._is_at(phrase, start) and not taken & set(range(start, end)):
                     taken |= set(range(start, end))
-                    if self._denied_twice(start, end):
+                    claim = claim_of(self.words, start, end)
+                    if claim is Claim.NOTHING or self._denied_twice(start, end):
                         break
-                    found.append(Mention(name, start, end, self.denied(start, end), self._aside(start)))
+                    denied = self.denied(start, end) if claim is Claim.STATED else claim is Claim.MISSED
+                    found.append(Mention(name, start, end, denied, self._aside(start)))
                     break
         return found
 
@@ -116,7 +120,7 @@ class Script:
 
     def denied(self, start: int, end: int) -> bool:
         """Whether what stands at these words is said not to be so or not to be there."""
-        return self._denied_before(start) or self.denied_after(end)
+        return self._denied_before(start) or self.denied_after(end) or is_denied_jointly(self.words, start, end)
 
     def _denied_before(self, start: int) -> bool:
         segment = self.words[start].segment
@@ -148,27 +152,31 @@ class Script:
 
     def _opens_denied_list(self, at: int) -> bool:
         """Whether the piece that ends at a word is denied and is more than a bare "no"."""
-        return at > 0 and self.words[at - 1].segment == self.words[at].segment and self._denied_before(at)
+        return at > 0 and self.words[at].text not in NEGATORS and self._denied_before(at)
 
     def denied_after(self, end: int) -> bool:
         clause = self.words[end - 1].clause
         after = " ".join(w.text for w in self.words[end : end + 6] if w.clause == clause)
-        return bool(
-            re.match(
-                r"(\w+ ){0,2}?(is|are|was|were|can|could) not ((currently|actually|now|yet|even|be|been|\w+ly) )?"
-                r"(visible|present|there|seen|found|shown|here|anywhere|be (seen|found)|"
-                r"in( \w+){0,3} (view|sight|picture|image|frame|photo|scene|preset)s?)\b"
-                rf"|{_ABSENT}|(is |are |was |were )?(none|no|0|zero)$|(can|is|are|does|do) not$",
-                after,
+        return (
+            bool(
+                re.match(
+                    r"(\w+ ){0,2}?(is|are|was|were|can|could) not ((currently|actually|now|yet|even|be|been|\w+ly) )?"
+                    r"(visible|present|there|seen|found|shown|here|anywhere|be (seen|found)|"
+                    r"in( \w+){0,3} (view|sight|picture|image|frame|photo|scene|preset)s?)\b"
+                    rf"|{_ABSENT}|(is |are |was |were )?(none|no|0|zero)$|(can|is|are|does|do) not$",
+                    after,
+                )
             )
-        ) or self.is_marked(end, ("no",))
+            or self.is_marked(end, ("no",))
+            or is_listed_as_absent(self.words, end)
+        )
 
     def is_marked(self, end: int, marks: Sequence[str]) -> bool:
         """Whether one of some words stands beside what ends at a word, by itself: "drum (no)", "drum: no"."""
-        if end >= len(self.words) or self.words[end].text not in marks or not re.search(r"[(:=]", self.words[end].gap):
+        if end >= len(self.words) or self.words[end].text not in marks or not MARK.search(self.words[end].gap):
             return False
         alone = end + 1 == len(self.words) or self.words[end + 1].segment != self.words[end].segment
-        return alone or self.words[end + 1].gap.startswith(")")
+        return alone or self.words[end + 1].gap.lstrip()[:1] in (")", "(", "|")
 
     def text(self) -> str:
         return " ".join(w.text for w in self.words)
@@ -191,7 +199,7 @@ def _grouped(labels: Sequence[int]) -> list[list[int]]:
 
 def script(text: str) -> Script:
     """Make a text ready for reading. Questions are left out: they claim nothing."""
-    cleaned = re.sub(r"\s*\(with [^()]*\)", "", clean(text))  # "white (with black letters)" is white
+    cleaned = re.sub(r"\s*\(with [^()]*\)", "", uncrossed(clean(text)))  # "white (with black letters)" is white
     cleaned = cleaned[max((match.end() for match in _CORRECTED.finditer(cleaned)), default=0) :]
     words = words_of(re.sub(r"[^.!?\n]*\?", "", cleaned))
     kept, declined, hedged = list[Word](), False, False

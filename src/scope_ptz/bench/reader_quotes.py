@@ -1,0 +1,79 @@
+"""What a text quotes: which quotation marks belong together, and which quotes are readings and which are names or denied."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+_PLAIN = re.compile(r'"([^"]+)"|(?<!\w)\'([^\']+(?:\'\w[^\']*)*)\'(?!\w)')
+_READ = r"(?:reads?|says?|states?|displays?|shows?|spells?)"
+_SPEAKS = re.compile(rf"\b{_READ}\b|\btext\b|\bwritten\b", re.IGNORECASE)
+_DENIED_BEFORE = re.compile(
+    r"(?:\bnot|n't|\bnever|\brather than|\binstead of)(?:\s+(?:actually|really|clearly|in fact|read|say|state|display|show|"
+    r"spell|contain|bear|have|carry|the|an?|words?|text|lettering|letters|be|simply|quite|exactly|sign|anything|like))*\s*:?\s*$"
+    r"|\b(?:whether|if)\b[^.,;:]{0,40}$|\b(?:should|would|ought to)\s+(?:read|say|be)\s*$",
+    re.IGNORECASE,
+)
+_PLACE_AFTER = re.compile(r"\s*(?:camera )?(?:preset|view|viewpoint|position)\b", re.IGNORECASE)
+_PLACE_BEFORE = re.compile(
+    r"\b(?:presets?|views?|viewpoint|position)(?: called| named)?\s*:?\s*$|"
+    r"\b(?:moved|went|switched|turned|navigated|gone) (?:over )?to (?:the )?$",
+    re.IGNORECASE,
+)
+_INTRODUCED = re.compile(rf"\b(?:{_READ}|is|are|text|words?|and)\b\s*:?\s*$|[:,]\s*$", re.IGNORECASE)
+_NAMED_AFTER = re.compile(rf"\s*(?:(?!(?:and|then|but|also|it|which|that)\b)\w+ ){{0,2}}?{_READ}\b", re.IGNORECASE)
+
+
+@dataclass(frozen=True, slots=True)
+class Quote:
+    """What stands between two marks, ``start`` and ``end`` (exclusive) with the marks."""
+
+    text: str
+    start: int
+    end: int
+
+
+def quotes_of(text: str) -> list[Quote]:
+    """The quotes of a clean text in order. Of a quote that itself says what reads what, those within; else the whole."""
+    opened, found = list[tuple[str, int]](), list[Quote]()
+    for at, mark in enumerate(text):
+        if mark not in "\"'":
+            continue
+        before, after = text[at - 1 : at] or " ", text[at + 1 : at + 2] or " "
+        if not before.isspace() and not after.isalnum() and any(kind == mark for kind, _ in opened):
+            while opened[-1][0] != mark:
+                opened.pop()
+            _close(text, opened.pop()[1], at + 1, found)
+        elif not before.isalnum() and before not in ".,!?" and not after.isspace():
+            opened.append((mark, at))
+    if found:
+        return sorted(found, key=lambda quote: quote.start)
+    return [Quote(m[1] or m[2], m.start(), m.end()) for m in _PLAIN.finditer(text)]
+
+
+def _close(text: str, start: int, end: int, found: list[Quote]) -> None:
+    within = [quote for quote in found if quote.start > start]
+    rest = text[start + 1 : end - 1]
+    for quote in within:
+        rest = rest.replace(text[quote.start : quote.end], " ")
+    if within and _SPEAKS.search(rest):
+        return
+    found[:] = [quote for quote in found if quote not in within]
+    if text[start + 1 : end - 1].strip():
+        found.append(Quote(text[start + 1 : end - 1], start, end))
+
+
+def readings_of(quotes: list[Quote], text: str) -> list[Quote]:
+    """Those quotes that tell what is read: not what is denied, nor the names of presets, nor what it is that reads so."""
+    kept = list[Quote]()
+    for number, quote in enumerate(quotes):
+        before = text[quotes[number - 1].end if number else 0 : quote.start]
+        after = text[quote.end : quotes[number + 1].start if number + 1 < len(quotes) else len(text)]
+        if _DENIED_BEFORE.search(before):
+            continue
+        is_last = number + 1 == len(quotes)
+        is_place = _PLACE_AFTER.match(after) or _PLACE_BEFORE.search(before)
+        is_name = _NAMED_AFTER.match(after) and not _INTRODUCED.search(before)
+        if is_last or not (is_place or is_name):
+            kept.append(quote)
+    return kept
