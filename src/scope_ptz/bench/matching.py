@@ -18,11 +18,14 @@ _DEFAULTS: dict[str, dict[str, Any]] = {
 
 
 def arguments_of(call: Call) -> Mapping[str, Any]:
-    """The arguments of a call with defaults filled in; a zoom by percent is also given as its factor."""
+    """The arguments of a call with defaults filled in; a zoom by percent is also given as its factor, and so is one that is left
+    as it is."""
     arguments = {**_DEFAULTS.get(call.name, {}), **{k: v for k, v in call.arguments.items() if v is not None}}
     percent = arguments.get("zoom_percent")
     if isinstance(percent, int | float):
         arguments["zoom_factor"] = 1 + percent / 100
+    elif call.name == "adjust_ptz" and "zoom_limit" not in arguments:
+        arguments.setdefault("zoom_factor", 1.0)
     return arguments
 
 

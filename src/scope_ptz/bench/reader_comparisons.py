@@ -13,7 +13,8 @@ _OPPOSITES = (
     ({"closer", "closest", "nearer", "nearest"}, {"farther", "farthest", "further", "furthest"}),
     ({"larger", "largest", "bigger", "biggest", "most"}, {"smaller", "smallest", "least"}),
     ({"taller", "tallest"}, {"shorter", "shortest"}),
-    ({"leftmost", "furthest left", "farthest left", "left most"}, {"rightmost", "furthest right", "farthest right", "right most"}),
+    ({"leftmost", "left most", "furthest left", "farthest left", "furthest to the left", "farthest to the left"},
+     {"rightmost", "right most", "furthest right", "farthest right", "furthest to the right", "farthest to the right"}),
 )  # fmt: skip
 _COUNTING = frozenset({"more", "most", "fewer", "fewest", "less", "least"})
 _REFERENCES = frozenset({"than", "versus", "vs", "against"})

@@ -64,7 +64,7 @@ def agreement_lines(report: Report) -> Iterator[str]:
     for rater in report.raters:
         correct = sum(rating.correct for rating in rater.ratings.values())
         apart = "".join(f", {number} {name}" for name, number in sorted(rater.apart.items()))
-        yield f"  {rater.name:<44} {len(rater.ratings):>6} runs rated, {correct} correct{apart}"
+        yield f"  {rater.name:<44} {len(rater.ratings):>6} run{_s(len(rater.ratings))} rated, {correct} correct{apart}"
     for pair in report.pairs:
         yield ""
         yield f"{pair.first}  against  {pair.second}"
@@ -77,19 +77,26 @@ def agreement_lines(report: Report) -> Iterator[str]:
                 yield f"               {number:>5} x {first} was {second}"
     for group in report.groups:
         yield ""
-        left_out = f"; {group.left_out} runs were not rated by all" if group.left_out else ""
+        were = "was" if group.left_out == 1 else "were"
+        left_out = f"; {group.left_out} run{_s(group.left_out)} {were} not rated by all" if group.left_out else ""
         yield f"{group.what} ({len(group.raters)}), Fleiss"
         yield f"  verdicts     {figures(group.verdicts)}{left_out}"
 
 
 def figures(agreed: Agreement) -> str:
-    """One line of figures; "no value" where everyone said the same."""
+    """One line of figures; "no value" where everyone said the same, and none where nothing was rated by both."""
+    if not agreed.runs:
+        return "no run that both have rated"
     raw = f"{agreed.raw:.1%}" if agreed.raw is not None else "-"
     kappa = f"{agreed.kappa:.{_DIGITS}f}" if agreed.kappa is not None else "no value (all ratings are the same)"
     interval = (
         f" [{agreed.low:.{_DIGITS}f}, {agreed.high:.{_DIGITS}f}]" if agreed.low is not None and agreed.high is not None else ""
     )
-    return f"{agreed.runs} runs, agree on {raw}, kappa {kappa}{interval}"
+    return f"{agreed.runs} run{_s(agreed.runs)}, agree on {raw}, kappa {kappa}{interval}"
+
+
+def _s(number: int) -> str:
+    return "" if number == 1 else "s"
 
 
 def _told(agreed: Agreement) -> str:

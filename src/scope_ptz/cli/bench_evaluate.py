@@ -138,6 +138,7 @@ class _Prepared:
         from scope_ptz.bench.engine.runs import run
         from scope_ptz.cli.bench_equipment import judge_maker
         from scope_ptz.cli.bench_live import LiveTable
+        from scope_ptz.cli.bench_troubles import troubles
         from scope_ptz.cli.inspect_entry import bench
 
         done = tuple(t for t in read_evaluation(before[0].path).trials if t.headline != "infrastructure") if before else ()
@@ -168,8 +169,9 @@ class _Prepared:
             async with group:
                 group.start_soon(work)
         if table.stopped:
+            why = "".join(f" {line[0].upper()}{line[1:]}" for line in troubles(table.trials, setting.card))
             raise ScopeError(
-                "Too many runs in a row were broken by infrastructure, so the evaluation stopped. Look after the servers; "
+                f"Too many runs in a row were broken by infrastructure, so the evaluation stopped.{why} Look after the servers; "
                 "the same command goes on where it stopped."
             )
         if isinstance(came[0], ScopeError):

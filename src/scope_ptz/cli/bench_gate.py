@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from scope_ptz.cli.endings import FAILED, ending, put, put_json
+from scope_ptz.cli.endings import FAILED, complain, ending, put, put_json
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -41,8 +41,20 @@ def gate(
         else:
             for line in lines(found, now):
                 put(line)
+        if told := other_judges(now, before):
+            complain(told)
         if not found.passed:
             sys.exit(FAILED)
+
+
+def other_judges(now: Evaluation, before: Evaluation) -> str:
+    """What is to be said where different judges decided in the two logs; empty where not."""
+    from scope_ptz.bench.judging.deciding import decider_of
+
+    one, two = decider_of(before.trials), decider_of(now.trials)
+    if one is None or two is None or one == two:
+        return ""
+    return f"note: {one} decided in the baseline and {two} does now: what differs may be the judges'."
 
 
 def lines(found: Gate, now: Evaluation) -> Iterator[str]:
@@ -57,8 +69,9 @@ def lines(found: Gate, now: Evaluation) -> Iterator[str]:
     if len(found.overall.worse) > MOST_TOLD:
         yield f"       and {len(found.overall.worse) - MOST_TOLD} more"
     if found.left_out:
-        why = "because infrastructure broke them in one of the logs, or no judge gave a verdict there"
-        yield f"{len(found.left_out)} tasks are left out, {why}."
+        one = len(found.left_out) == 1
+        why = f"because infrastructure broke {'it' if one else 'them'} in one of the logs, or no judge gave a verdict there"
+        yield f"{'1 task is' if one else f'{len(found.left_out)} tasks are'} left out, {why}."
     where = ", ".join("over all" if c.group == "all" else c.group.replace("_", " ") for c in found.regressions)
     yield f"REGRESSION: {where} (alpha {found.alpha:g})" if where else f"no significant regression (alpha {found.alpha:g})"
 

@@ -91,7 +91,7 @@ async def made_gold(tasks: Sequence[Task], seed: int) -> list[Gold]:
     return gold_runs(runs, settings, seed)
 
 
-_HEADS = {
+HEADS = {
     "lack_of_tool_call": "lack", "tool_routing": "routing", "tool_args": "args", "hallucination": "halluc.",
     "vlm_counting": "counting", "vlm_query": "query",
 }  # fmt: skip
@@ -105,7 +105,7 @@ def matrix_lines(gold: Sequence[Gold]) -> Iterator[str]:
 
     result = matrix(gold)
     columns = [*(mode.value for mode in ErrorMode), *OTHER]
-    yield f"{'fault put in':<18}" + "".join(f"{_HEADS.get(name, name):>11}" for name in columns)
+    yield f"{'fault put in':<18}" + "".join(f"{HEADS.get(name, name):>11}" for name in columns)
     for mode in ErrorMode:
         yield f"{mode.value.replace('_', ' '):<18}" + "".join(f"{result.cells[mode.value, told] or '.':>11}" for told in columns)
     accepted = f"{result.accepted} judged correct, a false-accept rate of {result.false_accept_rate:.1%}"

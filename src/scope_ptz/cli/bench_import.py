@@ -56,6 +56,9 @@ def import_tasks(
             put(f"{len(imported.tasks)} tasks in {target}, every row with its findings in {report}")
             if any(content["map_to_fill"].values()):
                 put("Unknown names of scenes and presets can be given with --map; 'map_to_fill' in the report lists them.")
+        if not imported.tasks and not content["rows"]:
+            complain(f"{file} has a header and no rows: there is nothing to import.")
+            sys.exit(FAILED)
         if not imported.tasks:
             known = ", ".join(sorted(places_in(scenes, mapping).scenes)) or "none"
             complain(f"no row can be run. Scenes that are there: {known}. Name those of the file with --scenes or --map.")

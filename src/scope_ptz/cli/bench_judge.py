@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from scope_ptz.cli.endings import complain
+from scope_ptz.errors import InputError, ScopeError
 
 if TYPE_CHECKING:
     from scope_ptz.bench.judging.server import ServerPort
@@ -22,7 +23,7 @@ JudgeModel = Annotated[
     str | None,
     typer.Option(
         "--judge-model",
-        help="What the server calls the judge (or SCOPE_JUDGE_MODEL; default: gpt-oss-120b).",
+        help="What the server calls the judge (or SCOPE_JUDGE_MODEL; default: gpt-oss-120b, else its only model).",
         rich_help_panel=_PANEL,
     ),
 ]
@@ -42,12 +43,23 @@ JudgeOption = Annotated[
 TIMEOUT_S = 300.0
 
 
+class UnnamedJudgeError(ScopeError):
+    """A judge's server does not say what it serves, and nobody else has said who the judge is."""
+
+    def __init__(self, url: str, why: str) -> None:
+        super().__init__(
+            f"The judge's server at {url} cannot be asked for its model's name, so nothing was judged: {why} "
+            "A server that has no list of models needs --judge-model (or SCOPE_JUDGE_MODEL)."
+        )
+
+
 async def open_judge(
     url: str | None, model: str | None, key_file: Path | None, timeout_s: float, options: list[str] | None = None
 ) -> ServerPort:
     """The port to a judge, by options and environment. ``client.endpoint.model`` is its name. Close it in the end.
 
-    Raises ``InputError`` when no server is named, or it serves several models and none of them is known.
+    Raises ``InputError`` when no server is named, or it serves several models and none of them is known; ``UnnamedJudgeError`` when
+    no name is given and its server cannot be asked for one.
     """
     from pydantic import ValidationError
 
@@ -77,20 +89,21 @@ async def _named(endpoint: Endpoint, wanted: str) -> Endpoint:
     from scope_ptz.bench.judging.judge import DEFAULT_JUDGE
     from scope_ptz.endpoints.catalogue import find_api
     from scope_ptz.endpoints.failures import ServerFailure
-    from scope_ptz.errors import InputError
 
     if wanted:
         return endpoint.model_copy(update={"model": wanted})
     try:
         endpoint, served = await find_api(endpoint)
-    except ServerFailure:
-        served = ()  # A server need not have a list. One that is not there at all will be told of by the first judgement.
+    except ServerFailure as failure:  # No name is invented: judgements under it would stand beside the judge's own for good.
+        raise UnnamedJudgeError(endpoint.url, str(failure)) from None
+    if not served:
+        raise UnnamedJudgeError(endpoint.url, "its list of models is empty.")
     usual = [name for name in served if DEFAULT_JUDGE in name.lower()]
     if not usual and len(served) > 1:
         names = ", ".join(served[:20])
         raise InputError(
             f"The server at {endpoint.url} serves several models and no {DEFAULT_JUDGE}. Name one with --judge-model: {names}."
         )
-    if not usual and served:
+    if not usual:
         complain(f"note: the server at {endpoint.url} serves '{served[0]}'; it judges in place of {DEFAULT_JUDGE}.")
-    return endpoint.model_copy(update={"model": (usual or [*served, DEFAULT_JUDGE])[0]})
+    return endpoint.model_copy(update={"model": (usual or served)[0]})

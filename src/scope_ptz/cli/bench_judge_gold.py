@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from scope_ptz.cli.bench_agree import AsJson, figures
+from scope_ptz.cli.bench_gold import HEADS
 from scope_ptz.cli.bench_inputs import TasksOption
 from scope_ptz.cli.bench_judge import TIMEOUT_S, JudgeKey, JudgeModel, JudgeOption, JudgeTimeout, JudgeUrl, open_judge
-from scope_ptz.cli.endings import complain, ending, put, put_json
+from scope_ptz.cli.bench_rescore import judge_failed, them
+from scope_ptz.cli.endings import FAILED, complain, ending, put, put_json
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from scope_ptz.bench.judging.gold import GoldCase, GoldResult, GoldVerdict
     from scope_ptz.bench.judging.server import ServerPort
+    from scope_ptz.bench.judging.tally import Tally
+    from scope_ptz.bench.trials import Judgement
 
 
 def judge_gold(
@@ -46,31 +51,35 @@ def judge_gold(
         before = read_verdicts(out)
         cases = gold_cases(gold, tasks, passing, limit)
 
-        async def work() -> None:
+        async def work() -> Tally:
             port = await open_judge(judge_url, judge_model, judge_key_file, judge_timeout, judge_option)
             try:
-                await _judge_all(port, cases, before, out, repeats=repeats, concurrency=concurrency)
+                return await _judge_all(port, cases, before, out, repeats=repeats, concurrency=concurrency)
             finally:
                 await port.close()
 
-        anyio.run(work)
+        made = anyio.run(work)
         found = results(read_verdicts(out))
         if as_json:
             put_json([result.as_dict() for result in found], indent=1)
-            return
-        for result in found:
-            for line in gold_lines(result):
-                put(line)
+        else:
+            for result in found:
+                for line in gold_lines(result):
+                    put(line)
+        if made.failed:
+            complain(f"{judge_failed(made)} Nothing is lost; the same command asks for {them(made)} again.")
+            sys.exit(FAILED)
 
 
 async def _judge_all(
     port: ServerPort, cases: Sequence[GoldCase], before: Sequence[GoldVerdict], out: Path, *, repeats: int, concurrency: int
-) -> None:
-    """Judge what was not judged yet. A verdict that failed before is asked for again."""
+) -> Tally:
+    """Judge what was not judged yet, and what came of that. A verdict that failed before is asked for again."""
     from scope_ptz.bench.judging.gold import judge_gold as judge_cases
     from scope_ptz.bench.judging.judge import Judge
     from scope_ptz.bench.judging.lines import append_line
     from scope_ptz.bench.judging.rubrics import prompt_version
+    from scope_ptz.bench.judging.tally import Tally
 
     name = port.client.endpoint.model
     version = prompt_version()
@@ -80,7 +89,10 @@ async def _judge_all(
         if (verdict.judgement.judge, verdict.judgement.prompt) == (name, version) and verdict.judgement.verdict != "failed"
     }
 
+    made: list[Judgement] = []
+
     def note(verdict: GoldVerdict) -> None:
+        made.append(verdict.judgement)
         append_line(out, json.dumps(verdict.model_dump(mode="json"), ensure_ascii=False))
 
     for repeat in range(repeats):
@@ -88,6 +100,7 @@ async def _judge_all(
         complain(f"{name}: {len(left)} of {len(cases)} runs to judge" + (f", time {repeat + 1}" if repeats > 1 else ""))
         judge = Judge(name, port.repeated(repeat))
         await judge_cases(judge, left, concurrency=concurrency, repeat=repeat, note=note)
+    return Tally.of(made)
 
 
 def gold_cases(gold: Path | None, tasks: str, passing: int, limit: int | None) -> list[GoldCase]:
@@ -129,8 +142,11 @@ def gold_lines(result: GoldResult) -> Iterator[str]:
 
     modes = [mode.value for mode in ErrorMode]
     columns = [*modes, "correct", *APART]
-    yield f"{result.judge}: {sum(result.cells.values())} gold runs, rows the fault put in, columns what was said"
-    yield f"{'':<20}" + "".join(f"{name.replace('_', ' ')[:10]:>12}" for name in columns)
+    made = sum(result.cells.values())
+    times = f", {made} judgements" if made != result.runs else ""
+    runs = f"{result.runs} gold run{'' if result.runs == 1 else 's'}"
+    yield f"{result.judge}: {runs}{times}; rows: the fault put in, columns: what was said"
+    yield f"{'':<20}" + "".join(f"{HEADS.get(name, name):>12}" for name in columns)
     for row in (*modes, PASSES):
         if any(fault == row for fault, _ in result.cells):
             yield f"{row.replace('_', ' '):<20}" + "".join(f"{result.cells.get((row, name), 0) or '.':>12}" for name in columns)

@@ -51,10 +51,21 @@ async def judged(log: Path, wish: JudgeWish, opened: Callable[[], Awaitable[Serv
     from scope_ptz.bench.engine.logs import read_evaluation
     from scope_ptz.bench.judging.tally import Tally, judged_by, wanted
     from scope_ptz.cli.bench_equipment import judge_maker
+    from scope_ptz.cli.bench_judge import UnnamedJudgeError
     from scope_ptz.settings import load_settings
 
     evaluation = read_evaluation(log)
-    name = judged_by(evaluation.trials, wish.model or load_settings().judge_model, wish.repeats)
+    asked = wish.model or load_settings().judge_model
+    if not asked:
+        try:
+            asked = (await opened()).client.endpoint.model
+        except UnnamedJudgeError as error:
+            name = judged_by(evaluation.trials, "", wish.repeats)
+            if name is None:
+                raise
+            complain(f"{error} Every run has been judged by {name}: that is what is told here.")
+            asked = name
+    name = judged_by(evaluation.trials, asked, wish.repeats)
     if name is None:
         judge = await opened()
         name = judge.client.endpoint.model

@@ -63,8 +63,10 @@ def label(
 
 
 def drawn(evaluation: Evaluation, number: int | None, seed: int) -> list[Trial]:
-    """The runs to label, in an order that says nothing about them. Those that never began cannot be labelled."""
-    trials = sorted((trial for trial in evaluation.trials if trial.outcome is not None), key=lambda trial: trial.sample)
+    """The runs to label, in an order that says nothing about them. Those that never began cannot be labelled, and those that
+    infrastructure broke are made again, which no label outlives."""
+    fit = (trial for trial in evaluation.trials if trial.outcome is not None and trial.headline != "infrastructure")
+    trials = sorted(fit, key=lambda trial: trial.sample)
     random.Random(seed).shuffle(trials)
     return trials[:number]
 

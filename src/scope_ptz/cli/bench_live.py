@@ -15,9 +15,11 @@ from rich.text import Text
 
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.equipment import Watcher
+from scope_ptz.bench.judging.deciding import beside
 from scope_ptz.bench.judging.tally import not_judged, without_verdict
 from scope_ptz.bench.tasks import Category
 from scope_ptz.bench.trials import Evaluation, Trial
+from scope_ptz.cli.bench_troubles import events_of, told
 
 CATEGORIES: tuple[str, ...] = get_args(Category)
 BROKEN_IN_A_ROW = 12
@@ -70,6 +72,11 @@ class LiveTable(Watcher):
         if self._live is None and now - self._told >= TELL_EVERY_S:
             self._told = now
             self._console.print(self._line(), highlight=False)
+
+    @property
+    def trials(self) -> list[Trial]:
+        """The runs that have ended."""
+        return list(self._trials.values())
 
     def _left_s(self) -> float | None:
         fresh = len(self._trials) - self._before
@@ -159,8 +166,12 @@ def summary(evaluation: Evaluation) -> RenderableType:
         ((m, sum(t.error_mode == m for t in trials)) for m in {t.error_mode for t in trials if t.error_mode}), key=lambda x: -x[1]
     )
     parts += [Text(line) for line in waiting(trials)]
+    parts += [Text(f"judged     {several}")] if (several := beside(trials)) else []
     if modes:
         parts.append(Text("failed by  " + ", ".join(f"{mode.value.replace('_', ' ')} {count}" for mode, count in modes)))
+    if events := events_of(trials):
+        having = sum(bool(t.server_events) for t in trials)
+        parts.append(Text(f"servers    failed: {told(events)} (in {having} of {len(trials)} runs)"))
     timed = sorted(t.timings.total_s for t in trials if t.headline != "infrastructure")
     if timed:
         middle, most = timed[len(timed) // 2], timed[math.ceil(0.95 * len(timed)) - 1]

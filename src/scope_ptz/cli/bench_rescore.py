@@ -27,6 +27,10 @@ def rescore(
     checks: Annotated[bool, typer.Option("--checks", help="Run the executable checks of this version again.")] = False,
     repeats: Annotated[int, typer.Option("--judge-repeats", min=1, help="Judgements of each run, beside those there are.")] = 1,
     concurrency: Annotated[int, typer.Option("--concurrency", min=1, max=256, help="Runs judged at a time.")] = AT_A_TIME,
+    decides: Annotated[
+        str,
+        typer.Option("--decides", metavar="JUDGE", help="Whose verdicts count from now on where only a judge can score."),
+    ] = "",
     judge_url: JudgeUrl = None,
     judge_model: JudgeModel = None,
     judge_key_file: JudgeKey = None,
@@ -35,20 +39,26 @@ def rescore(
 ) -> None:
     """Add a judge's verdicts to logs (--judge-url), or those of today's checks (--checks). The agent is not run again.
 
+    Where only a judge can score, the first judge goes on deciding when another is added; --decides names another.
+
     Judgements that were made before a break are kept: the same command asks only for the rest. Exit code 1 when the judge's server
     failed on any; the same command asks for those again.
     """
     with ending():
         import anyio
 
+        from scope_ptz.bench.judging.deciding import beside
         from scope_ptz.bench.judging.tally import Tally
         from scope_ptz.cli.bench_equipment import lend
         from scope_ptz.cli.bench_evaluate import need_engine
         from scope_ptz.settings import load_settings
 
         need_engine()
+        from scope_ptz.bench.engine.logs import read_evaluation
+        from scope_ptz.bench.engine.rescoring import let_decide
+
         wants_judge = bool(judge_url or judge_model or load_settings().judge_url)
-        if not checks and not wants_judge:
+        if not checks and not wants_judge and not decides:
             raise InputError("Say what to score by: a judge (--judge-url), the checks (--checks), or both.")
 
         async def work() -> Tally:
@@ -56,10 +66,15 @@ def rescore(
             judge = await open_judge(judge_url, judge_model, judge_key_file, judge_timeout, judge_option) if wants_judge else None
             try:
                 for log in logs:
-                    lent = lend(seed=1, judge=judge)
-                    made = await score_again(log, judge, lent, repeats=repeats, checks=checks, at_a_time=concurrency)
-                    all_made += made
-                    put(f"{log}: {'checked again' if checks else ''}{', ' if checks and judge else ''}{told(judge, made)}")
+                    if checks or wants_judge:
+                        lent = lend(seed=1, judge=judge)
+                        made = await score_again(log, judge, lent, repeats=repeats, checks=checks, at_a_time=concurrency)
+                        all_made += made
+                        put(f"{log}: {'checked again' if checks else ''}{', ' if checks and judge else ''}{told(judge, made)}")
+                    if decides:
+                        let_decide(log, decides)
+                    if several := beside(read_evaluation(log).trials):
+                        put(f"{log}: {several}")
             finally:
                 if judge is not None:
                     await judge.close()
@@ -67,7 +82,7 @@ def rescore(
 
         all_made = anyio.run(work)
         if all_made.failed:
-            complain(f"{judge_failed(all_made)} Nothing is lost; the same command asks for {_them(all_made)} again.")
+            complain(f"{judge_failed(all_made)} Nothing is lost; the same command asks for {them(all_made)} again.")
             sys.exit(FAILED)
 
 
@@ -85,7 +100,8 @@ def judge_failed(made: Tally) -> str:
     return f"{made.failed} of {made.made} judgements failed because the judge's server gave no usable reply{first}"
 
 
-def _them(made: Tally) -> str:
+def them(made: Tally) -> str:
+    """The judgements that failed, as a pronoun."""
     return "it" if made.failed == 1 else "them"
 
 

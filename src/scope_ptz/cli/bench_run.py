@@ -171,13 +171,19 @@ def finish(ended: Ended) -> None:
     """Exit code 1 when runs are missing or broken, or the judge's server failed: such runs say nothing about the agent, and the
     same command tries again."""
     from scope_ptz.cli.bench_rescore import judge_failed
+    from scope_ptz.cli.bench_troubles import troubles
     from scope_ptz.cli.endings import complain
 
     evaluation, judged = ended.evaluation, ended.judged
     broken = sum(trial.headline == "infrastructure" for trial in evaluation.trials)
     missing = max(evaluation.wanted - len(evaluation.trials), 0)
+    for line in troubles(evaluation.trials, evaluation.card):
+        complain(line)
     if broken or missing:
-        complain(f"{broken} runs were broken by infrastructure and {missing} are missing; the same command runs them again.")
+        was = "1 run was" if broken == 1 else f"{broken} runs were"
+        it = "it" if broken + missing == 1 else "them"
+        lacks = f" and {missing} {'is' if missing == 1 else 'are'} missing" if missing else ""
+        complain(f"{was} broken by infrastructure{lacks}; the same command runs {it} again.")
     if judged is not None and judged.failed:
         complain(
             f"{judge_failed(judged)} No run is lost; the same command asks the judge again, and so does "
@@ -188,9 +194,11 @@ def finish(ended: Ended) -> None:
 
 
 def result(evaluation: Evaluation) -> dict[str, object]:
-    """What ``--json`` prints. Runs without a judge's verdict, where only a judge can score, are in no share."""
+    """What ``--json`` prints. Runs without a judge's verdict, where only a judge can score, are in no share. ``troubles``: what
+    servers did to runs, in sentences."""
     from scope_ptz.bench.judging.tally import not_judged
     from scope_ptz.cli.bench_live import CATEGORIES, accuracy, macro
+    from scope_ptz.cli.bench_troubles import events_of, troubles
 
     trials = evaluation.trials
     groups = {name: [t for t in trials if t.task.category == name] for name in CATEGORIES}
@@ -207,6 +215,8 @@ def result(evaluation: Evaluation) -> dict[str, object]:
             name: sum(t.headline == name for t in trials) for name in ("correct", "incorrect", "unscored", "infrastructure")
         },
         "not_judged": sum(not_judged(t) for t in trials),
+        "server_events": dict(events_of(trials)),
+        "troubles": troubles(trials, evaluation.card),
     }
 
 

@@ -109,12 +109,16 @@ def _run_all(names: list[str], each: RunOptions, console: Console) -> dict[str, 
     import anyio
 
     from scope_ptz.cli.bench_evaluate import evaluate
+    from scope_ptz.cli.bench_troubles import troubles
 
     done: dict[str, Evaluation | str] = {}
     for number, name in enumerate(names, 1):
         console.rule(f"{number} of {len(names)}: {name}")
         try:
-            done[name] = anyio.run(evaluate, replace(each, wishes=_wishes(each.wishes, name)), console).evaluation
+            made = anyio.run(evaluate, replace(each, wishes=_wishes(each.wishes, name)), console).evaluation
+            done[name] = made
+            for line in troubles(made.trials, made.card):
+                complain(f"{name}: {line}")
         except ScopeError as error:
             done[name] = str(error)
             complain(f"{name}: {error}")
@@ -140,21 +144,25 @@ def complete(evaluation: Evaluation) -> bool:
 
 
 def tables_of(done: dict[str, Evaluation | str], width: int) -> Iterator[Table]:
-    """Pairs of models best first, then what is no result of a model, then what was not run; categories where ``width``, in
-    characters, has room for them."""
+    """Pairs of models best first, then what is no result of a model, then what servers did to runs, then what was not run;
+    categories where ``width``, in characters, has room for them."""
+    from scope_ptz.cli.bench_troubles import troubles
+
     made = [(name, e) for name, e in done.items() if not isinstance(e, str)]
     ranked, others = [row for row in made if row[1].card.ranked], [row for row in made if not row[1].card.ranked]
     if ranked:
         yield _pairs_table("Pairs of models, best first", ranked, width)
     if others:
         yield _pairs_table("Built-in planner or ground-truth eyes: a check of the benchmark, no result of a model", others, width)
+    spoilt = [(name, line) for name, e in made for line in troubles(e.trials, e.card)]
     missing = [(name, why) for name, why in done.items() if isinstance(why, str)]
-    if missing:
-        table = _table("Not run")
-        table.add_column("why", overflow="fold")
-        for row in missing:
-            table.add_row(*row)
-        yield table
+    for title, rows in (("What servers did to runs", spoilt), ("Not run", missing)):
+        if rows:
+            table = _table(title)
+            table.add_column("why", overflow="fold")
+            for row in rows:
+                table.add_row(*row)
+            yield table
 
 
 def _pairs_table(title: str, rows: Sequence[tuple[str, Evaluation]], width: int) -> Table:

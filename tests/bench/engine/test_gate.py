@@ -8,7 +8,8 @@ import pytest
 
 from scope_ptz.bench.engine.gate import gate
 from scope_ptz.bench.engine.logs import read_evaluation
-from scope_ptz.bench.trials import Evaluation, Trial
+from scope_ptz.bench.trials import Evaluation, Judgement, Trial
+from scope_ptz.cli.bench_gate import lines, other_judges
 from scope_ptz.errors import InputError
 from tests.cli.conftest import Scope
 
@@ -54,6 +55,24 @@ def test_what_cannot_be_compared(a_log: Path) -> None:
     broken = tuple(t.model_copy(update={"headline": "infrastructure"}) for t in like.trials)
     with pytest.raises(InputError, match="nothing to compare"):
         gate(like.model_copy(update={"trials": broken}), like)
+
+
+def judged_by(like: Evaluation, judge: str) -> Evaluation:
+    said = Judgement(judge=judge, prompt="p", verdict="correct")
+    trials = (t.model_copy(update={"scored_by": "judge", "headline": "correct", "judgements": (said,)}) for t in like.trials)
+    return like.model_copy(update={"trials": tuple(trials)})
+
+
+def test_one_task_is_one_and_other_judges_are_told(a_log: Path) -> None:
+    like = read_evaluation(a_log)
+    first, *rest = like.trials
+    broken = first.model_copy(update={"headline": "infrastructure"})
+    now = like.model_copy(update={"trials": (broken, *rest)})
+    assert any(line.startswith("1 task is left out, because infrastructure broke it") for line in lines(gate(now, like), now))
+    assert other_judges(like, like) == other_judges(judged_by(like, "a"), judged_by(like, "a")) == ""
+    assert other_judges(judged_by(like, "a"), like) == ""
+    told = other_judges(judged_by(like, "b"), judged_by(like, "a"))
+    assert told.startswith("note: a (p) decided in the baseline and b (p) does now")
 
 
 def test_the_command(scope: Scope, evaluated: Path) -> None:

@@ -12,9 +12,15 @@ from pathlib import Path
 
 import pytest
 
+from scope_ptz.bench.engine.beside import check_beside
+from scope_ptz.bench.engine.journal import Journal, journal_file
 from scope_ptz.bench.engine.logs import open_sample, read_evaluation
 from scope_ptz.bench.engine.runs import alone
+from scope_ptz.bench.judging.labels import add_label, labels_file, read_labels
+from scope_ptz.bench.judging.rubrics import prompt_version
 from scope_ptz.bench.task_files import dump_tasks
+from scope_ptz.bench.trials import Judgement, Label
+from scope_ptz.cli.bench_label import drawn
 from scope_ptz.errors import InputError
 from tests.bench.engine.making import many
 from tests.cli.conftest import Scope
@@ -161,6 +167,7 @@ def test_a_dead_server_stops_the_evaluation(scope: Scope, tmp_path: Path) -> Non
         assert len([r for r in server.requests if r.chat]) < 20
     assert done.code == 1
     assert "Too many runs in a row" in done.err
+    assert f"The model server at {server.url} refused the key. Set the key of this server" in done.err
     (log,) = (tmp_path / "logs").glob("*.eval")
     assert {trial.headline for trial in read_evaluation(log).trials} == {"infrastructure"}
 
@@ -174,3 +181,37 @@ def test_a_stalling_server_is_an_outcome(scope: Scope, tmp_path: Path) -> None:
     (trial,) = read_evaluation(log).trials
     assert trial.headline == "infrastructure"
     assert trial.tool_calls == {}
+
+
+def test_labels_go_along_with_the_runs_that_are_taken_over(scope: Scope, tmp_path: Path) -> None:
+    tasks, logs = many(11), tmp_path / "logs"
+    dump_tasks(tasks, tmp_path / "tasks.jsonl")
+    well = good(turner)
+    with Misbehaving(then=in_turn([well, well, status(401)], well)) as server:
+        assert run(scope, server, tmp_path / "tasks.jsonl", logs) == 1
+        (old,) = logs.glob("*.eval")
+        first = read_evaluation(old)
+        broken = next(trial for trial in first.trials if trial.headline == "infrastructure")
+        kept = next(trial for trial in first.trials if trial.headline == "correct")
+        # What infrastructure broke is made again: it is shown to nobody, and a label of it is of another run.
+        assert broken.sample not in {trial.sample for trial in drawn(first, None, 1)} and len(drawn(first, None, 1)) == 10
+        for sample, verdict in ((kept.sample, "correct"), (kept.sample, "unclear"), (broken.sample, "incorrect")):
+            mode = "scope" if verdict == "incorrect" else None
+            add_label(labels_file(old), Label.model_validate({"by": "ann", "verdict": verdict, "error_mode": mode}), sample)
+        said = Judgement(judge="j", prompt=prompt_version(), verdict="correct")
+        Journal.beside(old).add(kept.sample, said)  # as a rescoring that was killed leaves it
+        assert run(scope, server, tmp_path / "tasks.jsonl", logs) == 0
+    (new,) = logs.glob("*.eval")
+    assert new != old
+    assert [(row.sample, row.verdict) for row in read_labels(labels_file(new))] == [(kept.sample, "unclear")]
+    assert Journal.beside(new).find(kept.sample, "j", 0) == said
+    # The old log has its own as they were.
+    away = logs / "superseded" / old.name
+    assert away.is_file() and len(read_labels(labels_file(away))) == 2
+    assert sorted(path.name for path in logs.glob("*.jsonl")) == sorted([labels_file(new).name, journal_file(new).name])
+    compared = scope("bench", "label", str(new), "--compare")
+    assert compared.code == 0 and "1 unclear" in compared.out
+    # A damaged line is told before anything is run.
+    labels_file(new).write_text("nonsense\n", "utf-8")
+    with pytest.raises(InputError, match="line 1 is no label"):
+        check_beside([new])

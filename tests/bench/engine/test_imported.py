@@ -8,10 +8,16 @@ from pathlib import Path
 from scope_ptz.bench.engine.gate import gate
 from scope_ptz.bench.engine.logs import read_evaluation
 from scope_ptz.bench.importing.tasks import ImportedTask
+from scope_ptz.bench.judging.deciding import beside, decided, decider_of
+from scope_ptz.bench.judging.tally import not_judged
+from scope_ptz.bench.reports.judged import judge_name, verdicts
+from scope_ptz.bench.reports.runs import Run
 from scope_ptz.bench.tasks import RequiredCall
-from scope_ptz.bench.trials import Judgement, TaskFacts
+from scope_ptz.bench.trials import Evaluation, Judgement, TaskFacts, Trial
 from scope_ptz.cli.bench_live import accuracy, waiting
 from tests.bench.engine.making import SCENE
+from tests.bench.reports.making import card, facts
+from tests.bench.reports.making import trial as report_trial
 from tests.cli.conftest import Scope
 from tests.support.misbehaving import Misbehaving, Say, good
 
@@ -45,10 +51,78 @@ def test_imported_tasks_run_and_are_judged(scope: Scope, tmp_path: Path) -> None
     assert (trial.headline, trial.scored_by, trial.reason) == ("correct", "judge", "It turned.")
     again = scope(*run).json
     assert (again["not_judged"], again["macro"]) == (0, 1.0)
-    # Another judge whose server is away takes nothing back.
+    # Another judge decides nothing, unless it is asked to: neither one that says otherwise nor one whose server is away.
+    other = {"reason": "It did not.", "verdict": "incorrect", "error_mode": "scope"}
+    with Misbehaving(then=good(Say(json.dumps(other)))) as server:
+        second = scope("bench", "rescore", str(log), "--judge-url", server.url, "--judge-model", "b")
+    assert second.code == 0 and "decides on the run that only a judge can score; what b (judge-1:" in second.out
+    (trial,) = read_evaluation(log).trials
+    assert (trial.headline, trial.reason, [j.judge for j in trial.judgements]) == ("correct", "It turned.", ["j", "b"])
+    assert "judged     j (judge-1:" in scope(*run[:-1]).out
+    unknown = scope("bench", "rescore", str(log), "--decides", "c")
+    assert unknown.code == 2 and "'c' has given no verdict" in unknown.err and "j (judge-1:" in unknown.err
+    assert scope("bench", "rescore", str(log), "--decides", "b").code == 0
+    (trial,) = read_evaluation(log).trials
+    assert (trial.headline, trial.error_mode, [j.judge for j in trial.judgements]) == ("incorrect", "scope", ["b", "j"])
+    assert scope(*run).json["macro"] == 0.0
+    assert scope("bench", "rescore", str(log), "--checks").code == 0, "what is rescored goes on saying who decides"
+    assert read_evaluation(log).trials[0].headline == "incorrect"
+    assert scope("bench", "rescore", str(log), "--decides", "j").code == 0
     assert scope("bench", "rescore", str(log), "--judge-url", "http://127.0.0.1:1/v1", "--judge-model", "k").code == 1
     (trial,) = read_evaluation(log).trials
-    assert (trial.headline, [j.verdict for j in trial.judgements]) == ("correct", ["correct", "failed"])
+    assert (trial.headline, [j.verdict for j in trial.judgements]) == (
+        "correct", ["correct", "incorrect", "failed"],
+    )  # fmt: skip
+
+
+def said_by(name: str, verdict: str, prompt: str = "p") -> Judgement:
+    mode = "scope" if verdict == "incorrect" else None
+    return Judgement.model_validate({"judge": name, "prompt": prompt, "verdict": verdict, "error_mode": mode})
+
+
+def test_one_judge_decides_on_all_runs_of_a_log(evaluated: Path) -> None:
+    first, second, third, fourth = (
+        t.model_copy(update={"scored_by": "judge", "headline": "unscored"}) for t in read_evaluation(evaluated).trials
+    )
+    a, b = said_by("a", "correct"), said_by("b", "incorrect")
+
+    def judged(trial: Trial, *made: Judgement) -> Trial:
+        return trial.model_copy(update={"judgements": made})
+
+    # The first judge's server failed on one: another's verdict does not stand in for it, and the run waits for its judge.
+    rows = [judged(first, a, b), judged(second, a, b), judged(third, said_by("a", "failed"), b), fourth]
+    made = decided(rows)
+    assert [t.headline for t in made] == ["correct", "correct", "unscored", "unscored"]
+    assert not_judged(made[2]) and not_judged(made[3]) and accuracy(made) == 1.0
+    assert decider_of(made) == "a (p)" and "a (p) decides on the 4 runs" in beside(made)
+    named = decided(rows, "b")
+    assert [t.headline for t in named] == ["incorrect", "incorrect", "incorrect", "unscored"]
+    assert [t.judgements[0].judge for t in named[:3]] == ["b", "b", "b"]
+    assert decider_of(named) == "b (p)"
+    # One model under two prompts is two judges, and a judge that has said nothing yet decides nothing.
+    again = [judged(first, a, said_by("a", "incorrect", "q")), judged(second, a)]
+    assert [t.headline for t in decided(again)] == ["correct", "correct"]
+    assert [t.headline for t in decided(again, "a (q)")] == ["incorrect", "unscored"]
+    assert [t.headline for t in decided(again, "nobody")] == ["correct", "correct"]
+    broken = judged(first, a).model_copy(update={"headline": "infrastructure"})
+    assert decided([broken])[0].headline == "infrastructure" and beside([broken]) == ""
+
+
+def test_the_judge_of_a_report_is_the_one_that_decides_and_never_one_that_was_away() -> None:
+    task = facts(1)[0]
+
+    def run(*made: Judgement, by: str = "judge") -> Run:
+        row = report_trial(task, scored_by=by, judgements=made)
+        return Run(1, Evaluation(card=card("qwen3-4b", "moondream2"), trials=(row,), wanted=1), "x", None, None)
+
+    a, b, away = said_by("a", "correct"), said_by("b", "incorrect"), said_by("A-phantom", "failed")
+    assert judge_name([run(a, b)]) == "a" and judge_name([run(b, a)]) == "b"
+    assert judge_name([run(b, a, by="checks")]) == "a"
+    assert judge_name([run(away, b, by="checks"), run(away, by="checks")]) == "b"
+    assert (judge_name([run(away, by="checks")]), judge_name([run()])) == ("A-phantom", None)
+    # What a judge said first where its server had failed before.
+    late = a.model_copy(update={"repeat": 1})
+    assert verdicts(run(said_by("a", "failed"), late).scored, "a")[0][1] == late
 
 
 def test_replies_without_a_verdict_are_in_no_share_and_in_no_gate(scope: Scope, evaluated: Path) -> None:

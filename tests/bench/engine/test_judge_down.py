@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 from scope_ptz.bench.engine.journal import Journal
@@ -11,7 +12,7 @@ from scope_ptz.bench.judging.tally import Tally, judged_by
 from scope_ptz.bench.trials import Judgement
 from tests.bench.engine.test_judges import verdict
 from tests.cli.conftest import Scope
-from tests.support.misbehaving import Exchange, Misbehaving, Say, good, status
+from tests.support.misbehaving import Behaviour, Exchange, Misbehaving, Say, body, good, status
 
 AWAY = "http://127.0.0.1:1/v1"
 
@@ -72,6 +73,37 @@ def test_a_run_whose_judge_is_away_is_not_done(scope: Scope, tasks_file: Path, t
     for judge in (("--judge-url", AWAY, "--judge-model", "j"), ("--judge-url", AWAY)):
         code, out, err = run(scope, tasks_file, tmp_path, *judge)
         assert (code, "4 with a verdict" in out, "missing" in err) == (0, True, False)
+    assert f"The judge's server at {AWAY} cannot be asked for its model's name" in err
+    assert "Every run has been judged by j" in err
+
+
+def test_no_judge_is_invented_for_a_server_that_is_away(scope: Scope, evaluated: Path, tasks_file: Path, tmp_path: Path) -> None:
+    before = evaluated.read_bytes()
+    gone = scope("bench", "rescore", str(evaluated), "--judge-url", AWAY)
+    assert gone.code == 1 and "nothing was judged" in gone.err and "Start it, or check the address." in gone.err
+    assert evaluated.read_bytes() == before
+    code, _, err = run(scope, tasks_file, tmp_path / "new", "--judge-url", AWAY)
+    assert code == 1 and "nothing was judged" in err and not list((tmp_path / "new").glob("*.eval"))
+
+
+def served(*names: str) -> Behaviour:
+    listing = body(json.dumps({"object": "list", "data": [{"id": name} for name in names]}))
+
+    async def behave(exchange: Exchange) -> None:
+        await (good(verdict) if exchange.request.chat else listing)(exchange)
+
+    return behave
+
+
+def test_another_judge_is_asked_although_one_has_said_everything(scope: Scope, tasks_file: Path, tmp_path: Path) -> None:
+    for name in ("judge-a", "judge-b"):
+        with Misbehaving(then=served(name)) as server:
+            code, out, err = run(scope, tasks_file, tmp_path, "--judge-url", server.url)
+            assert code == 0, err
+            assert len([r for r in server.requests if r.chat]) == 4
+        assert f"judge      {name}: 4 with a verdict" in out
+    (log,) = tmp_path.glob("*.eval")
+    assert {tuple(j.judge for j in t.judgements) for t in read_evaluation(log).trials} == {("judge-a", "judge-b")}
 
 
 def test_an_evaluation_that_was_run_without_a_judge_is_judged_by_the_same_command(

@@ -136,6 +136,71 @@ def test_one_tool_several_times(tmp_path: Path) -> None:
     assert [call.arguments["pan_deg"].equals for call in done.tasks[0].calls] == [5, 6]
 
 
+@pytest.mark.parametrize("zoom", [{"zoom_percent": 0}, {"zoom_factor": 1}, {}])
+def test_an_expected_zoom_of_nothing_is_met_by_a_call_that_leaves_the_zoom(tmp_path: Path, zoom: dict[str, Any]) -> None:
+    wanted = json.dumps([{"pan_deg": 20, "tilt_deg": 0, **zoom}])
+    done = imported(tmp_path, {"expected_tool_order_json": '["ptz_adjust"]', "expected_tool_args_json": wanted})
+    (task,) = done.tasks
+    for further, met in (
+        ({}, True),
+        ({"zoom_percent": 0.0}, True),
+        ({"zoom_factor": 2.0}, not zoom),
+        ({"zoom_limit": "in"}, not zoom),
+    ):
+        check = check_calls_of(task, play([("adjust_ptz", {"pan_deg": 20.0, **further})], "Done."))
+        assert check.passed is met, (further, check.reason)
+
+
+@pytest.mark.parametrize(
+    ("order", "arguments", "kind", "told"),
+    [
+        (["ptz_adjust", 5], None, "unknown-tool", "5 names no tool"),
+        (["ptz_adjust", None], None, "unknown-tool", "null names no tool"),
+        (["ptz_adjust", True], None, "unknown-tool", "true names no tool"),
+        (["ptz_adjust", {"tool": 7}], None, "unknown-tool", '{"tool": 7} names no tool'),
+        (["count_pointing"], {"object_of_interest": ["a", "b"]}, "wrong-arguments", '["a", "b"], which is no text'),
+        (["count_pointing"], [{"object_of_interest": 5}], "wrong-arguments", "object_of_interest is 5, which is no text"),
+        (["count_pointing"], {"object_of_interest": "a", "name": "b"}, "unchecked-argument", 'name is "b", and object_of_interest'),
+        (["count_pointing"], {"ptz_adjust": {"pan_deg": 5}}, "unchecked-argument", "ptz_adjust: "),
+        (["count_pointing"], [{}, {"pan_deg": 5}], "unchecked-argument", '{"pan_deg": 5} (number 2)'),
+        (["count_pointing"], ["cars"], "unchecked-argument", '"cars" (number 1)'),
+        (["count_pointing"], {"count_pointing": [{}, {"view": "full"}]}, "unchecked-argument", 'count_pointing: {"view": "full"}'),
+        (["count_pointing", "take_image"], {"count_pointing": {}, "take_image": 3}, "unchecked-argument", "take_image: 3: no arg"),
+        (None, {"pan_deg": 5}, "unchecked-argument", '{"pan_deg": 5}: no call is expected'),
+        (["count_pointing"], 7, "unchecked-argument", '"7" (number 1)'),
+    ],
+)
+def test_what_is_read_nowhere_is_told(tmp_path: Path, order: Any, arguments: Any, kind: str, told: str) -> None:
+    cells = {"expected_tool_order_json": json.dumps(order), "expected_tool_args_json": json.dumps(arguments)}
+    done = imported(tmp_path, cells)
+    found = [finding for finding in done.findings[done.rows[0].line] if told in finding.detail]
+    assert [finding.kind for finding in found] == [kind], done.findings
+    assert len(done.tasks) == 1
+
+
+def test_nothing_is_told_of_what_is_read(tmp_path: Path) -> None:
+    """Arguments by place, by tool, by number, and of the only call without its name."""
+    both = '["count_pointing", "ptz_adjust"]'
+    for order, arguments in (
+        (both, [{"object_of_interest": "cars"}, {"pan_deg": 5}]),
+        (both, [{"object_of_interest": "cars"}, None]),
+        (both, {"count_pointing": {"object_of_interest": "cars"}, "ptz_adjust": [{"pan_deg": 5}]}),
+        (both, {"0": {"object_of_interest": "cars"}, "1": {"pan_deg": 5}}),
+        ('["count_pointing"]', {"object_of_interest": "cars", "view_type": "full"}),
+        ('["query_answer"]', {"instruction": "what?", "object_of_interest": "van"}),
+    ):
+        done = imported(tmp_path, {"expected_tool_order_json": order, "expected_tool_args_json": json.dumps(arguments)})
+        assert not kinds(done) & {"wrong-arguments", "unknown-tool", "unchecked-argument"}, (arguments, done.findings)
+
+
+def test_a_file_without_rows_says_so(tmp_path: Path) -> None:
+    path = tmp_path / "empty.csv"
+    path.write_text("question,expected_answer\n", "utf-8")
+    done = CliRunner().invoke(app, ["bench", "import", str(path), "--out", str(tmp_path / "x.jsonl")])
+    assert done.exit_code == 1
+    assert "has a header and no rows" in done.stderr and "--map" not in done.stderr
+
+
 @pytest.mark.parametrize(
     ("spelling", "category"),
     [

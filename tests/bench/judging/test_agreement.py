@@ -25,11 +25,12 @@ from scope_ptz.bench.judging.gold import (
     results,
 )
 from scope_ptz.bench.judging.judge import Judge, NoReplyError, Reply
+from scope_ptz.bench.judging.kappa import cohen
 from scope_ptz.bench.judging.lines import append_line
 from scope_ptz.bench.judging.wording import facts_of
 from scope_ptz.bench.mutations import Gold, Setting, mutate
 from scope_ptz.bench.trials import Evaluation, Judgement, Label, ModelCard, RunCard, Trial
-from scope_ptz.cli.bench_agree import agreement_lines
+from scope_ptz.cli.bench_agree import agreement_lines, figures
 from scope_ptz.cli.bench_judge_gold import gold_lines
 from scope_ptz.errors import InputError
 from tests.bench.judging.runs import PLACES
@@ -121,6 +122,8 @@ def test_the_report_as_text_and_as_json() -> None:
     assert "both correct 4, both incorrect 2, only the first correct 2, only the second 4" in text
     content = json.loads(json.dumps(report.as_dict()))
     assert content["pairs"][0]["verdicts"]["kappa"] == pytest.approx(0.0)
+    assert figures(cohen(["correct"], ["correct"], ["t"], 1)).startswith("1 run, agree on 100.0%")
+    assert figures(cohen([], [], [], 1)) == "no run that both have rated"
     assert "Nobody rated" in next(iter(agreement_lines(agreement([]))))
 
 

@@ -23,7 +23,7 @@ from scope_ptz.bench.task_files import dump_tasks
 from scope_ptz.bench.tasks import Task
 from scope_ptz.cli.app import app
 from scope_ptz.cli.bench_eyes import equip_with_truth
-from scope_ptz.cli.bench_judge import open_judge
+from scope_ptz.cli.bench_judge import UnnamedJudgeError, open_judge
 from scope_ptz.cli.session import open_scene
 from scope_ptz.errors import ConfigError, InputError
 from tests.bench.judging.runs import CORRECT, written
@@ -83,7 +83,11 @@ def test_a_judge_of_gold_runs_from_the_command_line(gold: Path, tmp_path: Path) 
         again = judge_gold(gold, out, server.url, "--repeats", "2", "--json")
         assert len(server.requests) == 12, "what was judged is not asked again"
     (content,) = json.loads(again.stdout)
-    assert content["runs"] == 12
+    assert (content["runs"], content["judgements"]) == (6, 12)
+    with m.Misbehaving(then=good_judge) as server:
+        told = judge_gold(gold, out, server.url, "--repeats", "2").output
+    assert "6 gold runs, 12 judgements; rows: the fault put in" in told
+    assert all(f" {head}" in told for head in ("lack", "routing", "halluc.", "unparseable"))
     assert content["modes"]["raw"] == 1.0
     compared = CliRunner().invoke(app, ["bench", "agree", str(out)])
     assert "the known faults  against  gpt-oss-120b" in compared.output
@@ -94,6 +98,11 @@ def test_what_failed_is_asked_again_and_counts_once(gold: Path, tmp_path: Path) 
     out = tmp_path / "verdicts.jsonl"
     with m.Misbehaving(then=m.status(401)) as server:
         failed = judge_gold(gold, out, server.url, "--json")
+    assert failed.exit_code == 1
+    assert "6 of 6 judgements failed because the judge's server gave no usable reply" in failed.stderr
+    with m.Misbehaving(then=m.status(401)) as server:
+        plain = judge_gold(gold, out, server.url)
+    assert "correct or not: no run that both have rated" in plain.output and "all ratings are the same" not in plain.output
     (content,) = json.loads(failed.stdout)
     assert content["apart"] == {"unparseable": 0, "failed": 6}
     assert content["false_accept_rate"] is None
@@ -102,7 +111,14 @@ def test_what_failed_is_asked_again_and_counts_once(gold: Path, tmp_path: Path) 
     (content,) = json.loads(mended.stdout)
     assert content["apart"] == {"unparseable": 0, "failed": 0}
     assert content["runs"] == 6
-    assert len(read_verdicts(out)) == 12
+    assert len(read_verdicts(out)) == 18
+
+
+def test_a_judge_of_gold_runs_that_is_away_is_an_error_before_anything_is_written(gold: Path, tmp_path: Path) -> None:
+    out = tmp_path / "verdicts.jsonl"
+    where = ["--gold", str(gold / "gold.jsonl.gz"), "--tasks", str(gold / "tasks.jsonl"), "--out", str(out)]
+    done = CliRunner().invoke(app, ["bench", "judge-gold", *where, "--judge-url", "http://127.0.0.1:1/v1"])
+    assert done.exit_code == 1 and "nothing was judged" in done.stderr and not out.exists()
 
 
 def test_limits_take_modes_in_turn(gold: Path, tmp_path: Path) -> None:
@@ -127,12 +143,19 @@ async def name_of(url: str, model: str | None = None) -> str:
     [
         (lambda: models("tiny", "openai/gpt-oss-120b"), "openai/gpt-oss-120b"),
         (lambda: models("tiny"), "tiny"),
-        (lambda: m.status(404), "gpt-oss-120b"),
     ],
 )
 def test_the_judge_has_the_name_that_its_server_gives_it(listing: Callable[[], m.Behaviour], name: str) -> None:
     with m.Misbehaving(then=listing()) as server:
         assert anyio.run(name_of, server.url) == name
+
+
+@pytest.mark.parametrize("listing", [lambda: m.status(404), lambda: models()])
+def test_no_name_is_invented_for_a_judge_whose_server_says_none(listing: Callable[[], m.Behaviour]) -> None:
+    with m.Misbehaving(then=listing()) as server:
+        with pytest.raises(UnnamedJudgeError, match=r"cannot be asked for its model's name.*--judge-model"):
+            anyio.run(name_of, server.url)
+        assert anyio.run(name_of, server.url, "mine") == "mine"
 
 
 def test_several_models_and_no_usual_one_is_a_question(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -155,7 +178,7 @@ def test_the_judge_comes_from_the_environment_and_its_key_goes_to_no_other(
         out = tmp_path / "v.jsonl"
         where = ["--gold", str(gold / "gold.jsonl.gz"), "--tasks", str(gold / "tasks.jsonl"), "--out", str(out)]
         done = CliRunner().invoke(app, ["bench", "judge-gold", *where, "--limit", "1", "--passing", "0"])
-        assert done.exit_code == 0, done.output
+        assert done.exit_code == 1 and "refused the key" in done.stderr, done.output
         assert {request.headers["authorization"] for request in server.requests} == {f"Bearer {KEY}"}
     assert KEY not in done.output
     assert KEY not in out.read_text()

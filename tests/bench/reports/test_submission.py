@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -15,8 +16,10 @@ from typer.testing import CliRunner, Result
 
 import scope_ptz
 from scope_ptz.bench.checks import run_checks
+from scope_ptz.bench.engine.cards import DETERMINISTIC
 from scope_ptz.bench.reports.submission import secrets_in, submission_lines, submission_schema, write_submission
-from scope_ptz.bench.reports.submission_checks import check_submission
+from scope_ptz.bench.reports.submission_checks import BUILT_IN, check_submission
+from scope_ptz.bench.reports.submission_trials import checks_of
 from scope_ptz.bench.task_files import dump_tasks
 from scope_ptz.bench.tasks import Task
 from scope_ptz.bench.trials import Check, Evaluation, TaskFacts, Trial
@@ -42,8 +45,11 @@ def made(epochs: int = 2) -> Evaluation:
         )  # fmt: skip
         checks = tuple(Check(name=c.name, passed=c.passed, reason=c.reason) for c in run_checks(task, episode))
         assert judge(task, episode).headline == "correct"
+        assert {check.name for check in checks} == checks_of(task)
+        calls = dict(Counter(call.name for call in episode.calls))
+        further: dict[str, Any] = {"outcome": episode.outcome, "tool_calls": calls, "steps": 1 + len(episode.calls)}
         for epoch in range(1, epochs + 1):
-            trials.append(trial(known, epoch=epoch, checks=checks, answer=episode.text, outcome=episode.outcome))
+            trials.append(trial(known, epoch=epoch, checks=checks, answer=episode.text, **further))
     trials.sort(key=lambda t: (t.task.id, t.epoch))
     first = trials[0]
     failed = tuple(c.model_copy(update={"passed": False}) if c.name == "coverage" else c for c in first.checks)
@@ -139,6 +145,90 @@ def test_whatever_is_wrong_is_told(spoil: Callable[[Rows], None], told: str, row
     assert told in faults_of(rows, tmp_path)
 
 
+def broken(**values: Any) -> Callable[[Rows], None]:
+    return change(1, headline="infrastructure", error_mode=None, **values)
+
+
+def counted(**values: Any) -> Callable[[Rows], None]:
+    """Changes the first run of a task that wants a move, a call and a count."""
+    return lambda rows: next(row for row in rows[1:] if row["task"].endswith("counting-001")).update(values)
+
+
+def unlooked(rows: Rows) -> None:
+    rows[2].update(tool_calls={"go_to_preset": 1})
+
+
+def unmoved(rows: Rows) -> None:
+    row = next(row for row in rows[1:] if "pose" in row["checks"] and "calls" not in row["checks"])
+    row.update(tool_calls={"take_image": 1})
+
+
+def unpictured(rows: Rows) -> None:
+    row = next(row for row in rows[1:] if "pictures" in row["checks"])
+    row["tool_calls"].pop("take_image")
+
+
+def fewer_checks(rows: Rows) -> None:
+    del rows[1]["checks"]["coverage"]
+    rows[1].update(headline="correct", error_mode=None)
+
+
+JUDGED = [{"judge": "me", "prompt": "p", "verdict": "correct", "error_mode": None}]
+
+
+@pytest.mark.parametrize(
+    ("spoil", "told"),
+    [
+        (fewer_checks, "the task's checks coverage are missing"),
+        (lambda rows: rows[2]["checks"].update(luck=True), "the task has no checks luck"),
+        (lambda rows: rows[2]["checks"].update(outcome=False), "the outcome answered and its check differ"),
+        (broken(), "broken by infrastructure although it ended answered"),
+        (counted(checks={"outcome": True, "answer": True}), "the task's checks calls, coverage, pose are missing"),
+        (broken(outcome="step_limit"), "broken by infrastructure although it ended step_limit"),
+        (broken(perception_failures=1), "broken by infrastructure although it ended answered"),
+        (change(1, headline="correct", error_mode=None, scored_by="judge", judged=JUDGED), "by a judge, and the task has checks"),
+        (change(2, tool_calls={}, steps=0), "it ended answered without a step"),
+        (change(2, tool_calls={}, steps=0), "coverage passed and nothing looked"),
+        (unlooked, "coverage passed and nothing looked"),
+        (counted(tool_calls={"count_objects": 1}), "calls passed with 0 of 1 calls of go_to_preset"),
+        (counted(steps=0), "2 calls in no step"),
+        (counted(bad_calls=2, perception_failures=1), "3 calls failed of 2"),
+        (unmoved, "passed and nothing moved the camera"),
+        (unpictured, "pictures passed with 0 of"),
+        (lambda rows: rows[0]["card"]["perception"].update(name="ground-truth"), "ground-truth is said to be a model"),
+        (lambda rows: rows[0]["card"]["planner"].update(name="grammar"), "grammar is said to be a model"),
+    ],
+)  # fmt: skip
+def test_what_the_file_and_the_tasks_show_to_be_untrue_is_refused(
+    spoil: Callable[[Rows], None], told: str, rows: Rows, tmp_path: Path
+) -> None:
+    spoil(rows)
+    assert told in faults_of(rows, tmp_path)
+
+
+def test_what_really_happens_is_not_refused(rows: Rows, tmp_path: Path) -> None:
+    """Runs that never began or were broken, that were blind, and planners that see for themselves."""
+    never = change(1, headline="infrastructure", error_mode=None, outcome=None, checks={}, steps=0, tool_calls={}, answer="")
+    failed = dict.fromkeys(rows[1]["checks"], False)
+    cut = broken(outcome="planner_error", answer="", checks=failed)
+    blind = broken(answer="I cannot tell.", perception_failures=1, checks={**failed, "outcome": True})
+    for spoil in (never, cut, blind):
+        changed = json.loads(json.dumps(rows))
+        spoil(changed)
+        found = faults_of(changed, tmp_path).splitlines()
+        assert all(line.startswith("line 1: totals say") for line in found), found
+    for known in ({"sees": "true"}, {}):
+        changed = json.loads(json.dumps(rows))
+        unlooked(changed)
+        changed[0]["card"]["sampling"] = {"planner": known}
+        changed[0]["card"]["perception"]["name"] = "moondream2" if known else changed[0]["card"]["planner"]["name"]
+        assert faults_of(changed, tmp_path) == ""
+
+
+def test_names_of_built_in_planners_and_eyes_are_those_of_run_cards() -> None:
+    assert BUILT_IN == DETERMINISTIC
+
+
 def test_totals_are_counted_again(rows: Rows, tmp_path: Path) -> None:
     rows[0]["totals"]["headlines"] = {"correct": 2 * len(TASKS)}
     rows[0]["totals"]["error_modes"] = {"reasoning": 4}
@@ -168,6 +258,23 @@ def test_an_invented_tool_is_counted_and_a_key_in_an_answer_removed(tmp_path: Pa
     _, lines = submission_lines(found)
     line = next(row for row in lines if "unknown" in row.tool_calls)
     assert line.tool_calls == {"take_image": 1, "unknown": 2} and "[removed]" in line.answer and "hf_" not in line.answer
+
+
+def test_settings_lose_their_addresses_and_keys_and_nothing_else() -> None:
+    planner = {
+        "url": "http://10.0.0.7/v1", "temperature": 0.7, "prompt": "You steer a camera.", "api_key": "abc",
+        "options": {"thinking": True, "proxy": "http://proxy.lan", "stop": ["a", "b://c"]}, "tools": [{"name": "go_home"}],
+    }  # fmt: skip
+    whole = made(1)
+    sampling = {"planner": planner, "price": {"input": 1.0}}
+    found = whole.model_copy(update={"card": whole.card.model_copy(update={"sampling": sampling})})
+    assert submission_lines(found)[0].card.sampling == {
+        "planner": {
+            "temperature": 0.7, "prompt": "You steer a camera.", "options": {"thinking": True, "stop": ["a"]},
+            "tools": [{"name": "go_home"}],
+        },
+        "price": {"input": 1.0},
+    }  # fmt: skip
 
 
 def test_an_unfinished_run_is_no_submission() -> None:

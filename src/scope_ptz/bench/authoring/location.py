@@ -22,6 +22,9 @@ _SIDE_OPTIONS: tuple[Options, Options] = (
 )
 
 
+_LEFTMOST = ("leftmost", "furthest left", "furthest to the left")
+
+
 def drafts(place: Place, nouns: frozenset[str], rng: random.Random) -> list[Draft]:
     if place.swept:
         return []
@@ -168,7 +171,9 @@ def _order(place: Place, named: list[Named], rng: random.Random) -> Iterator[Dra
             ),
             (
                 "furthest",
-                Choice(value=value[0], options=dict.fromkeys(value, ())),
+                Choice(
+                    value=value[0], options=dict.fromkeys(value, ()), picks=("leftmost", "furthest left", "furthest to the left")
+                ),
                 Question(
                     (
                         (

@@ -14,6 +14,11 @@ from scope_ptz.bench.trials import Judgement
 from scope_ptz.errors import TraceError
 
 
+def journal_file(log: Path) -> Path:
+    """Where the judgements of a rescoring of a log stand while it goes on."""
+    return log.with_suffix(".judgements.jsonl")
+
+
 class Journal:
     """Judgements by run, judge and number; ``made``: those that were added. Without a path none are known before."""
 
@@ -34,7 +39,7 @@ class Journal:
     @classmethod
     def beside(cls, log: Path) -> Journal:
         """The journal of a log."""
-        return cls(log.with_suffix(".judgements.jsonl"))
+        return cls(journal_file(log))
 
     def find(self, sample: str, judge: str, repeat: int) -> Judgement | None:
         """A judgement by today's prompt that reached a verdict; one that failed is to be made again."""

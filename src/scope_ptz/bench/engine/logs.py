@@ -24,10 +24,13 @@ from scope_ptz.bench.engine.sampling import STORE, Kept, sample_name, trace_of
 from scope_ptz.bench.engine.scorers import TRIAL
 from scope_ptz.bench.engine.trialing import trial_of
 from scope_ptz.bench.episode import Places
+from scope_ptz.bench.judging.deciding import decided
 from scope_ptz.bench.trials import Evaluation, Trial
 from scope_ptz.errors import TraceError
 
 ATTACHMENT = "attachment://"
+DECIDES = "decides"
+"""In a log's metadata: the judge that was asked for by name, whose verdicts count where only a judge can score."""
 HEADER, START = "header.json", "_journal/start.json"
 SUMMARIES, JOURNALED = "summaries.json", "_journal/summaries/"
 _SAMPLES = "samples/"
@@ -49,7 +52,7 @@ class SampleFiles:
 
 
 def read_evaluation(path: Path) -> Evaluation:
-    """A log as data. Runs come in the order of tasks and epochs.
+    """A log as data. Runs come in the order of tasks and epochs; where several judges scored them, one decides on all.
 
     Raises:
         TraceError: there is no log, it is damaged, or no log of this benchmark.
@@ -57,7 +60,8 @@ def read_evaluation(path: Path) -> Evaluation:
     with reading(path):
         header = read_header(path)
         wanted = (header.eval.dataset.samples or 0) * (header.eval.config.epochs or 1)
-        trials = [trial_in(sample, path) for sample in samples(path)]
+        named = (header.eval.metadata or {}).get(DECIDES, "")
+        trials = decided([trial_in(sample, path) for sample in samples(path)], named)
         first = next((kept_in(sample) for sample in samples(path)), None)
         card = card_of(header, trace_of(first.trace, path) if first is not None else None)
     order = {str(name): at for at, name in enumerate(header.eval.dataset.sample_ids or ())}

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import AsyncGenerator, Callable, Mapping, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
+from zipfile import ZIP_DEFLATED, ZipFile
 
 import anyio
 from inspect_ai._eval.score import score_async
@@ -16,9 +18,10 @@ from inspect_ai.util._display import init_display_type
 
 from scope_ptz.bench.engine.journal import JOURNAL, Journal
 from scope_ptz.bench.engine.judging import judge
-from scope_ptz.bench.engine.logs import kept_in, read_header, reading, trials_by_sample
+from scope_ptz.bench.engine.logs import DECIDES, HEADER, kept_in, read_evaluation, read_header, reading, trials_by_sample
 from scope_ptz.bench.engine.sampling import STORE
 from scope_ptz.bench.engine.scorers import checks
+from scope_ptz.bench.judging.deciding import check_decides
 from scope_ptz.bench.judging.rubrics import prompt_version
 from scope_ptz.bench.judging.tally import Tally
 from scope_ptz.bench.trials import Trial
@@ -71,6 +74,31 @@ async def rescore(
         scratch.unlink(missing_ok=True)
     journal.done()
     return Tally.of(journal.made)
+
+
+def let_decide(log: Path, judge: str) -> None:
+    """Write into a log which of its judges decides on runs that only a judge can score.
+
+    Raises ``TraceError`` for what is no log, ``InputError`` when that judge has given no verdict on such a run.
+    """
+    check_decides(read_evaluation(log).trials, judge)
+    if read_header(log).status == "started":
+        raise InputError(f"{log} is not finished: run it to its end first, with the command that began it.")
+    scratch = log.with_name(f".{log.stem}.decided.eval")
+    try:
+        with reading(log), ZipFile(log) as old, ZipFile(scratch, "w", ZIP_DEFLATED) as new:
+            for info in old.infolist():
+                content = old.read(info)
+                if info.filename == HEADER:
+                    told = json.loads(content)
+                    told["eval"]["metadata"] = {**(told["eval"].get("metadata") or {}), DECIDES: judge}
+                    content = json.dumps(told).encode()
+                new.writestr(info, content)
+        scratch.replace(log)
+    except OSError as error:
+        raise OutputError(f"The log {log} cannot be replaced: {error.strerror}.") from error
+    finally:
+        scratch.unlink(missing_ok=True)
 
 
 def _further(before: Mapping[str, Trial], judge_name: str, repeats: int) -> range:

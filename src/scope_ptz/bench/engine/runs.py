@@ -23,8 +23,9 @@ from inspect_ai.log._recover import RecoveryNotAvailable, recover_eval_log_async
 from inspect_ai.model import Model
 from inspect_ai.util._display import init_display_type
 
+from scope_ptz.bench.engine.beside import check_beside, put_away
 from scope_ptz.bench.engine.cards import AGENT_SOURCE, CARD, card_of
-from scope_ptz.bench.engine.logs import read_evaluation, read_header, runs_in, uuids_in
+from scope_ptz.bench.engine.logs import DECIDES, read_evaluation, read_header, runs_in, uuids_in
 from scope_ptz.bench.engine.sampling import sample_name
 from scope_ptz.bench.trials import Evaluation, RunCard
 from scope_ptz.errors import InputError, OutputError, TraceError
@@ -153,14 +154,16 @@ async def run(task: Task, setting: Setting, before: Sequence[Found]) -> Path:
 
     Raises ``OutputError`` when it was stopped before there was one, ``TraceError`` when it failed as a whole.
     """
+    check_beside([old.path for old in before])
     init_display_type("none")
     told = (before[0].header.eval.metadata or {}).get(CARD) if before else None
     card = RunCard.model_validate(told) if told else setting.card
+    named = (before[0].header.eval.metadata or {}).get(DECIDES) if before else None
     logs = await eval_async(
         await _going_on(task, before) if before else task,
         model=setting.planner or setting.eyes,
         model_roles=_roles(setting),
-        metadata={CARD: card.model_dump(mode="json"), IDENTITY: setting.identity},
+        metadata={CARD: card.model_dump(mode="json"), IDENTITY: setting.identity, **({DECIDES: named} if named else {})},
         log_dir=str(setting.log_dir),
         log_format="eval",
         log_images=True,
@@ -180,7 +183,7 @@ async def run(task: Task, setting: Setting, before: Sequence[Found]) -> Path:
         raise TraceError(f"The evaluation failed: {log.error.message}")
     written = Path(log.location)
     if log.status in ("success", "error"):
-        _put_away([old.path for old in before if old.path.name != written.name])
+        put_away([old.path for old in before if old.path.name != written.name], written, written.parent / SUPERSEDED)
     return written
 
 
@@ -210,12 +213,3 @@ def _info(path: Path, header: EvalLog) -> EvalLogInfo:
         name=str(path), type="file", size=path.stat().st_size, mtime=path.stat().st_mtime, task=header.eval.task,
         task_id=header.eval.task_id, suffix=None,
     )  # fmt: skip
-
-
-def _put_away(paths: Sequence[Path]) -> None:
-    """Move logs aside whose runs are all in another one: nothing is deleted, and no report counts a run twice."""
-    for path in paths:
-        if path.is_file():
-            folder = path.parent / SUPERSEDED
-            folder.mkdir(exist_ok=True)
-            path.replace(folder / path.name)

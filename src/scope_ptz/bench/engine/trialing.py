@@ -12,16 +12,18 @@ from scope_ptz.agent.trace import Trace
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.sampling import Kept, sample_name, trace_of
 from scope_ptz.bench.episode import Episode, Look
-from scope_ptz.bench.error_modes import ErrorMode, error_mode
+from scope_ptz.bench.error_modes import error_mode
 from scope_ptz.bench.importing.checking import check_calls_of
+from scope_ptz.bench.judging.deciding import verdict_by
 from scope_ptz.bench.trials import Check, Judgement, LookTime, Trial
-from scope_ptz.bench.verdict import AGENTS_OWN_FAILURES, Headline, judge
+from scope_ptz.bench.verdict import AGENTS_OWN_FAILURES, judge
 
 _LOOKERS = ("count_objects", "query_answer")
 
 
 def trial_of(entry: Entry, kept: Kept, epoch: int, where: Path, judgements: tuple[Judgement, ...] = ()) -> Trial:
-    """The judged run: by its task's checks, or by the newest judgement where there are none."""
+    """The judged run: by its task's checks; where there are none by the first verdict of a judge (a log with several judges says
+    which of them decides: ``judging.deciding``)."""
     name = sample_name(entry.facts.id, epoch)
     trace = trace_of(kept.trace, where)
     if trace is None:
@@ -67,20 +69,9 @@ class _Truths:
 
 def _by_judge(trace: Trace, judgements: tuple[Judgement, ...]) -> dict[str, Any]:
     broken = broken_by(trace.ended)
-    # A judge whose server failed takes nothing back of what another one has said.
-    last = next((j for j in reversed(judgements) if j.verdict != "failed"), judgements[-1] if judgements else None)
-    headline: Headline
-    mode: ErrorMode | None = None
     if broken is not None:
-        headline, reason = "infrastructure", broken
-    elif last is None:
-        headline, reason = "unscored", "no judge has said anything yet, and there are no checks of this answer"
-    elif last.verdict in ("correct", "incorrect"):
-        headline, reason = ("correct" if last.verdict == "correct" else "incorrect"), last.reason or f"said {last.judge}"
-        mode = (last.error_mode or ErrorMode.REASONING) if headline == "incorrect" else None
-    else:
-        headline, reason = "unscored", f"the judge {last.judge} gave no verdict ({last.verdict})"
-    return {"headline": headline, "scored_by": "judge", "reason": reason, "error_mode": mode}
+        return {"headline": "infrastructure", "scored_by": "judge", "reason": broken, "error_mode": None}
+    return {"scored_by": "judge", **verdict_by(judgements)}
 
 
 def broken_by(ended: Ended | None) -> str | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -19,6 +19,7 @@ from scope_ptz.bench.importing.mapping import (
     scope_of,
     spelled,
 )
+from scope_ptz.bench.importing.steps import plain, spare_arguments, steps_in, without_names
 from scope_ptz.bench.reader_words import plain_words
 from scope_ptz.bench.tasks import Argument, RequiredCall, ToolName
 from scope_ptz.errors import ToolCallError
@@ -47,15 +48,17 @@ def expected_calls(order_cell: str, arguments_cell: str, *, compare: bool, prese
     """The calls that a row expects. ``compare``: with their arguments; ``preset_of``: the scene's preset by the file's name."""
     made = Expectation()
     order, given = _read(order_cell, "expected_tool_order_json", made), _read(arguments_cell, "expected_tool_args_json", made)
-    names = list(_steps(order))
+    names = list(steps_in(order, lambda told: made.note("unknown-tool", told)))
     if not names and isinstance(given, dict) and any(spelled(name) in TOOLS for name in given):
         names = [(name, {}) for name in given]  # Arguments by tool, and no order beside them.
+    for told in spare_arguments(given, [name for name, _ in names]):
+        made.note("unchecked-argument", told)
     for at, (name, own) in enumerate(names):
         tool = TOOLS.get(spelled(name))
         if tool is None:
             made.note("unknown-tool", name)
             continue
-        further = _arguments_of(given, name, at, [n for n, _ in names[:at]].count(name))
+        further = _arguments_of(given, name, at, [n for n, _ in names[:at]].count(name), alone=len(names) == 1)
         mapped = _mapped(tool, {**further, **own}, preset_of, made)
         made.calls.append(RequiredCall(tool=tool, arguments=mapped if compare else {}))
     return made
@@ -69,30 +72,9 @@ def _read(cell: str, column: str, made: Expectation) -> Any:
         return None
 
 
-def _steps(order: Any) -> Iterator[tuple[str, Mapping[str, Any]]]:
-    """Tool names with arguments of their own, from a list of names, of objects, or of lists of these."""
-    if isinstance(order, str):
-        yield order, {}
-    elif isinstance(order, dict):
-        name = next((order[key] for key in ("tool", "name", "tool_name", "function") if isinstance(order.get(key), str)), None)
-        if name is not None:
-            own: Mapping[str, Any] = next(
-                (order[key] for key in ("args", "arguments", "parameters") if isinstance(order.get(key), dict)), {}
-            )
-            yield name, own
-        else:
-            for key, value in order.items():
-                if spelled(key) in TOOLS:
-                    yield key, value if isinstance(value, dict) else {}
-                else:
-                    yield from _steps(value)
-    elif isinstance(order, list):
-        for step in order:
-            yield from _steps(step)
-
-
-def _arguments_of(given: Any, name: str, at: int, times_before: int) -> Mapping[str, Any]:
-    """The arguments of one expected call: by place in a list, or by tool, where one tool may have several in turn."""
+def _arguments_of(given: Any, name: str, at: int, times_before: int, *, alone: bool) -> Mapping[str, Any]:
+    """The arguments of one expected call: by place in a list, or by tool, where one tool may have several in turn. ``alone``: it is
+    the only one, so that arguments without its name are its own."""
     if isinstance(given, list):
         one = given[at] if at < len(given) else None
         if not isinstance(one, dict):
@@ -107,7 +89,7 @@ def _arguments_of(given: Any, name: str, at: int, times_before: int) -> Mapping[
     if isinstance(own, dict):
         return dict(own)
     flat = not any(isinstance(value, dict | list) for value in given.values())
-    return dict(given) if flat and at == 0 else {}
+    return dict(given) if at == 0 and (flat or (alone and without_names(given, [name]))) else {}
 
 
 def _mapped(tool: ToolName, given: Mapping[str, Any], preset_of: PresetOf, made: Expectation) -> dict[str, Argument]:
@@ -136,7 +118,13 @@ def _mapped(tool: ToolName, given: Mapping[str, Any], preset_of: PresetOf, made:
             take("view", scope, Argument(equals=scope))
     if tool == "track_object":
         _duration(given, take, used, made)
-    spare = sorted(set(given) - used - set(TEXT_ARGUMENTS.get(tool, ())))
+    texts = set(TEXT_ARGUMENTS.get(tool, ()))
+    for name in sorted(texts & set(given) - used):
+        if not isinstance(given[name], str):
+            made.note("wrong-arguments", f"{tool}: {name} is {plain(given[name])}, which is no text")
+        elif tool != "query_answer":  # Its wording is free: there is nothing to compare.
+            made.note("unchecked-argument", f"{tool}: {name} is {plain(given[name])}, and {text} was read")
+    spare = sorted(set(given) - used - texts)
     if spare:
         made.note("wrong-arguments", f"{tool} takes no {', '.join(spare)}")
     _validate(tool, call, made)

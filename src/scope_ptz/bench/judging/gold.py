@@ -96,13 +96,14 @@ async def judge_gold(
 
 @dataclass(frozen=True)
 class GoldResult:
-    """``cells``: runs by fault ("passes" for none) and by what the judge made of them (a mode, "correct", or one of ``APART``).
+    """``cells``: judgements by fault ("passes" for none) and by what they say (a mode, "correct", or one of ``APART``).
 
-    ``verdicts``: agreement on correct or not, over all runs that it gave a verdict on; ``modes``: on the mode, where it condemned a
-    faulty run.
+    ``runs``: of which there may be several judgements each; the other counts are of judgements. ``verdicts``: agreement on correct
+    or not, over all that it gave a verdict on; ``modes``: on the mode, where it condemned a faulty run.
     """
 
     judge: str
+    runs: int
     cells: Mapping[tuple[str, str], int]
     verdicts: Agreement
     modes: Agreement
@@ -131,7 +132,8 @@ class GoldResult:
             matrix.setdefault(fault, {})[told] = number
         return {
             "judge": self.judge,
-            "runs": sum(self.cells.values()),
+            "runs": self.runs,
+            "judgements": sum(self.cells.values()),
             "false_accept_rate": self.false_accept_rate,
             "false_reject_rate": self.false_reject_rate,
             "apart": {name: self._count(faulty=True, told=(name,)) + self._count(faulty=False, told=(name,)) for name in APART},
@@ -148,6 +150,7 @@ def result(judge: str, verdicts: Sequence[GoldVerdict], seed: int = 1) -> GoldRe
     blamed = [row for row in given if row[0] != PASSES and row[1] != "correct"]
     return GoldResult(
         judge=judge,
+        runs=len({verdict.key for verdict in verdicts}),
         cells=Counter((fault, said) for fault, said, _ in told),
         verdicts=cohen(
             ["correct" if fault == PASSES else "incorrect" for fault, _, _ in given],

@@ -54,8 +54,9 @@ def without_verdict(trial: Trial) -> bool:
 
 
 def not_judged(trial: Trial) -> bool:
-    """Whether a run without a verdict has not been judged at all, or only by judges whose servers failed."""
-    return without_verdict(trial) and all(judgement.verdict == "failed" for judgement in trial.judgements)
+    """Whether a run without a verdict waits for its judge: it has not been judged at all, its judge's server failed, or only judges
+    that do not decide have judged it."""
+    return without_verdict(trial) and not any(judgement.verdict == "unparseable" for judgement in trial.judgements)
 
 
 def wanted(trials: Iterable[Trial], judge: str, repeats: int) -> list[Judgement | None]:

@@ -221,6 +221,21 @@ def _public(model: ModelCard) -> ModelCard:
     return model.model_copy(update={"reported": _harmless(model.reported), "provider": provider})
 
 
-def _harmless(said: Any) -> dict[str, Any]:
-    """Settings without what looks like a secret or an address."""
-    return {k: v for k, v in said.items() if not any(secrets_in({k: v})) and "://" not in str(v)}
+def _harmless(said: Mapping[str, Any]) -> dict[str, Any]:
+    """Settings without what looks like a secret or an address; whatever stands beside such a value stays."""
+    return {name: _stripped(value) for name, value in said.items() if not _harmful(name, value)}
+
+
+def _stripped(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return _harmless(value)
+    if isinstance(value, list | tuple):
+        return [_stripped(one) for one in value if not _harmful("", one)]
+    return value
+
+
+def _harmful(name: str, value: Any) -> bool:
+    """Whether a single value may not be published. Of a value with parts these are looked at one by one."""
+    if "://" in name or _SECRET.search(name):
+        return True
+    return isinstance(value, str) and ("://" in value or any(secrets_in({name: value})))

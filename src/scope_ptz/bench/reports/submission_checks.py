@@ -12,28 +12,16 @@ from typing import Any
 from pydantic import ValidationError
 
 from scope_ptz import __version__
-from scope_ptz.agent.records import OUTCOMES
-from scope_ptz.bench.expected import ActionOnly
-from scope_ptz.bench.reader import agrees, read
-from scope_ptz.bench.reports.submission import (
-    CUT,
-    LINE,
-    TOOLS,
-    UNKNOWN_TOOL,
-    Header,
-    TrialLine,
-    secrets_in,
-    tasks_digest,
-    totals_of,
-)
+from scope_ptz.bench.reports.submission import LINE, Header, TrialLine, secrets_in, tasks_digest, totals_of
+from scope_ptz.bench.reports.submission_trials import trial_faults
 from scope_ptz.bench.splits import SPLITS, load_split
 from scope_ptz.bench.tasks import Task
 from scope_ptz.errors import InputError
 
 MOST_BYTES = 200_000_000
 NOT_RANKED = "not ranked: {pair} uses the grammar planner or ground-truth eyes, which are no models"
-SLACK_S = 0.5
-"""By how much the parts of a time may exceed the whole: clocks are read one after the other."""
+BUILT_IN = ("grammar", "ground-truth", "noisy")
+"""Planners and eyes that are no models, whatever a header says of them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,10 +65,13 @@ def check_submission(path: Path, tasks: Sequence[Task] | None = None) -> Finding
     known = {task.id: task for task in (tasks if tasks is not None else _published(header))}
     faults += [f"line 1: {fault}" for fault in _header_faults(header, [row for _, row in lines], known)]
     for number, row in lines:
-        faults += [f"line {number} ({row.task}): {fault}" for fault in _line_faults(row, header, known.get(row.task))]
+        faults += [f"line {number} ({row.task}): {fault}" for fault in trial_faults(row, header, known.get(row.task))]
     faults += _completeness(header, [row for _, row in lines], known)
     counted = totals_of([row for _, row in lines])
-    notes = [] if header.card.ranked else [NOT_RANKED.format(pair=header.card.pair)]
+    unranked = not header.card.ranked or any(_built_in(model.name) for model in (header.card.planner, header.card.perception))
+    notes = [NOT_RANKED.format(pair=header.card.pair)] if unranked else []
+    if broken := counted.headlines.get("infrastructure", 0):
+        notes.append(f"{broken} of {counted.trials} trials were broken by infrastructure and are in no share")
     counts = {"trials": counted.trials, **{str(name): number for name, number in counted.headlines.items()}}
     return Findings(path.name, tuple(faults), counts, tuple(notes))
 
@@ -150,10 +141,17 @@ def _header_faults(header: Header, lines: Sequence[TrialLine], known: Mapping[st
     if header.wanted != len(known) * header.card.epochs:
         whole = len(known) * header.card.epochs
         yield f"{header.wanted} trials were wanted where {len(known)} tasks times {header.card.epochs} are {whole}"
+    for model in (header.card.planner, header.card.perception):
+        if _built_in(model.name) and not model.deterministic:
+            yield f"{model.name} is said to be a model ('deterministic' is false), and it is built in"
     if (version := _version(header.card.package_version)) is None:
         yield f"package version {header.card.package_version} is no version"
     elif version > (_version(__version__) or ()):
         yield f"made with scope-ptz {header.card.package_version}, which is newer than this one ({__version__}): update first"
+
+
+def _built_in(name: str) -> bool:
+    return name.lower().replace("_", "-") in BUILT_IN
 
 
 def _digest_faults(header: Header, known: Mapping[str, Task]) -> Iterator[str]:
@@ -164,65 +162,6 @@ def _digest_faults(header: Header, known: Mapping[str, Task]) -> Iterator[str]:
 def _version(text: str) -> tuple[int, ...] | None:
     numbers = text.split("+")[0].split(".")[:3]
     return tuple(int(n) for n in numbers) if all(n.isdigit() for n in numbers) else None
-
-
-def _line_faults(line: TrialLine, header: Header, task: Task | None) -> Iterator[str]:
-    if line.epoch > header.card.epochs:
-        yield f"repeat {line.epoch} of {header.card.epochs}"
-    if line.error_mode is not None and line.headline != "incorrect":
-        yield f"error mode {line.error_mode} although the trial is {line.headline}"
-    if line.error_mode is None and line.headline == "incorrect" and line.scored_by == "checks":
-        yield "an incorrect trial has no error mode"
-    yield from _verdict_faults(line)
-    if line.outcome is not None and line.outcome not in OUTCOMES:
-        yield f"outcome {line.outcome} is none of {', '.join(OUTCOMES)}"
-    if strange := sorted(set(line.tool_calls) - TOOLS - {UNKNOWN_TOOL}):
-        yield f"there are no tools {', '.join(strange)[:200]}"
-    if line.steps > header.card.max_steps:
-        yield f"{line.steps} steps where {header.card.max_steps} are the most"
-    times = line.times
-    longest = max(times.planner_s, times.perception_s, times.camera_s, times.render_s)
-    if longest > times.total_s + SLACK_S:
-        yield f"a stage took {longest:g} s of {times.total_s:g} s in all"
-    if task is not None:
-        if line.category != task.category:
-            yield f"category {line.category} where the task's is {task.category}"
-        yield from _answer_faults(line, task)
-
-
-def _verdict_faults(line: TrialLine) -> Iterator[str]:
-    """The headline follows from the checks."""
-    if line.scored_by == "judge":
-        if line.headline in ("correct", "incorrect") and line.headline not in {said.verdict for said in line.judged}:
-            yield f"{line.headline} by the judge, which no judgement says"
-        return
-    passed = list(line.checks.values())
-    if line.headline in ("correct", "incorrect", "unscored") and not passed:
-        yield "no check at all"
-    elif line.headline == "correct" and not all(p is True for p in passed):
-        yield "correct although not every check passed"
-    elif line.headline == "incorrect" and False not in passed:
-        yield "incorrect although no check failed"
-    elif line.headline == "unscored" and (False in passed or None not in passed):
-        yield "unscored although the checks tell"
-
-
-def _answer_faults(line: TrialLine, task: Task) -> Iterator[str]:
-    """The answer, read again, gives what the answer check says."""
-    if isinstance(task.expected, ActionOnly) or line.scored_by == "judge" or line.answer.endswith(CUT):
-        return
-    if "answer" not in line.checks:
-        if line.headline != "infrastructure":
-            yield "the task wants an answer and there is no answer check"
-        return
-    ended = line.outcome in ("answered", "clarification", "refused")
-    found = agrees(task.expected, read(task.expected, line.answer)) if ended else False
-    if found != line.checks["answer"]:
-        yield f"the answer reads as {_words(found)} and its check says {_words(line.checks['answer'])}"
-
-
-def _words(passed: bool | None) -> str:
-    return {True: "right", False: "wrong", None: "unreadable"}[passed]
 
 
 def _completeness(header: Header, lines: Sequence[TrialLine], known: Mapping[str, Task]) -> Iterator[str]:
