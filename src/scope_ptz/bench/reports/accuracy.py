@@ -146,10 +146,9 @@ def _by_judge(runs: Sequence[Run]) -> Table:
         Column("agreement", "Verdicts alike (%)", "share"),
     )  # fmt: skip
     notes = (
-        "The paper's accuracy is the judge's. Both macros are of the same trials: those that have a verdict of the judge. "
-        "Unparseable and "
-        "failed judgements are in neither. Trials that the judge itself scored (no check of the answer) are left out of the "
-        "agreement.",
+        "The paper's accuracy is the judge's. Both macros are of trials that have a verdict of the judge; unparseable and failed "
+        "judgements are in neither. Trials that a judge scored, for want of a check of the answer, are not in the macro by checks "
+        "and not in the agreement.",
     )
     return Table("judge", "The judge's verdicts beside the checks'", columns, tuple(_judged_row(run) for run in runs), notes)
 
@@ -162,10 +161,11 @@ def _judged_row(run: Run) -> tuple[Value, ...]:
     states = Counter(judgement.verdict for _, judgement in said)
     clear = [(t, j.verdict == "correct") for t, j in said if j.verdict in ("correct", "incorrect")]
     trials = [t for t, _ in clear]
+    checked = [t for t in trials if t.scored_by == "checks"]
     own = [(t, right) for t, right in clear if t.scored_by == "checks" and t.headline != "unscored"]
     alike = sum((t.headline == "correct") == right for t, right in own) / len(own) if own else None
     by_judge = macro(scores_of(trials, [right for _, right in clear]))
-    return run.label, name, len(said), states["unparseable"], states["failed"], by_judge, macro(scores_of(trials)), alike
+    return run.label, name, len(said), states["unparseable"], states["failed"], by_judge, macro(scores_of(checked)), alike
 
 
 def share_correct(trials: Sequence[Trial]) -> float | None:

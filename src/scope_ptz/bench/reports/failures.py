@@ -28,8 +28,8 @@ PERCEPTION = frozenset({ErrorMode.VLM_QUERY, ErrorMode.VLM_COUNTING})
 
 
 def by_rules(run: Run) -> Counter[ErrorMode]:
-    """Incorrect trials by mode, as the rules say; unscored ones have none."""
-    return Counter(t.error_mode for t in run.scored if t.error_mode is not None)
+    """Incorrect trials by mode, as the rules say; unscored ones have none, and those that a judge scored have the judge's."""
+    return Counter(t.error_mode for t in run.checked if t.error_mode is not None)
 
 
 def by_judge(run: Run, judge: str) -> Counter[ErrorMode]:
@@ -40,19 +40,11 @@ def by_judge(run: Run, judge: str) -> Counter[ErrorMode]:
 
 def error_section(runs: Sequence[Run]) -> Section:
     """Error modes of runs of the main task set."""
-    rules = {run.label: by_rules(run) for run in runs}
+    checked = [run for run in runs if run.checked]
+    rules = {run.label: by_rules(run) for run in checked}
     tables = [_mode_table("error_modes", BY_RULES, rules)]
-    charts = [
-        drawing.mode_chart(
-            "error_modes",
-            BY_RULES,
-            runs,
-            rules,
-            {run.label: len(run.scored) for run in runs},
-            MODE_TITLES,
-            runs,
-        )
-    ]
+    totals = {run.label: len(run.checked) for run in checked}
+    charts = [drawing.mode_chart("error_modes", BY_RULES, checked, rules, totals, MODE_TITLES, runs)] if checked else []
     judge = judge_name(runs)
     if judge is not None:
         said = {run.label: by_judge(run, judge) for run in runs if verdicts(run.scored, judge)}
@@ -130,9 +122,8 @@ Oracle = tuple[Estimate | None, Estimate | None, float | None]
 
 
 def _by_rules_oracle(run: Run) -> Oracle:
-    right = [t.headline == "correct" or t.error_mode in PERCEPTION for t in run.scored]
-    failed = by_rules(run)
-    return run.macro, macro(scores_of(run.scored, right)), _perception_share(failed)
+    right = [t.headline == "correct" or t.error_mode in PERCEPTION for t in run.checked]
+    return macro(scores_of(run.checked)), macro(scores_of(run.checked, right)), _perception_share(by_rules(run))
 
 
 def _judge_oracle(run: Run, judge: str | None) -> Oracle:

@@ -118,6 +118,11 @@ class Run:
         return frozenset(t.task.id for t in self.headline)
 
     @cached_property
+    def checked(self) -> tuple[Trial, ...]:
+        """Of the scored ones those whose verdict is the checks'."""
+        return tuple(t for t in self.scored if t.scored_by == "checks")
+
+    @cached_property
     def macro(self) -> Estimate | None:
         """Unweighted mean over the categories that occur."""
         return macro(scores_of(self.scored)) if self.scored else None
