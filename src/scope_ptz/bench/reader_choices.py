@@ -51,10 +51,15 @@ def read_choice(expected: Choice, script: Script) -> Reading:
         if picked or out:
             mentions = [m for m in mentions if m.name in (picked or {m.name for m in mentions} - out)]
         else:
-            mentions = [m for m in mentions if not _is_only_counted(script, m, expected.options[m.name])]
+            against = any(after_than(script, m) for m in everything)
+            mentions = [
+                m for m in mentions if (against and _heads(script, m)) or not _is_only_counted(script, m, expected.options[m.name])
+            ]
         if len(picked) == 1:
             return Value(picked.pop())
     named = {m.name for m in mentions}
+    if len(named) > 1:
+        named = {m.name for m in mentions if not _in_brackets(script, m)} or named
     if len(named) > 1:
         named = {m.name for m in mentions if m not in _of_parts(script, mentions)} or named
     if len(named) > 1:
@@ -85,10 +90,26 @@ def _compared(expected: Choice, script: Script, mentions: Sequence[Mention]) -> 
     return picked, out
 
 
+def _heads(script: Script, mention: Mention) -> bool:
+    """ "Cones: two of them, against one bollard": what is named first and by itself is the answer, the rest is why."""
+    after = script.words[mention.end : mention.end + 1]
+    return mention.start <= 1 and bool(after) and after[0].gap.strip() == ":"
+
+
 def _is_only_counted(script: Script, mention: Mention, further: Sequence[str]) -> bool:
     """ "9 skips", "skips: 9": that tells how many there are, not that they are what is chosen."""
     own = [q for q in find_quantities(script, (mention.name, *further)) if q.own]
     return any(0 <= mention.start - q.end <= 3 or q.start == mention.end for q in own)
+
+
+def _in_brackets(script: Script, mention: Mention) -> bool:
+    """ "Green (the wall above is red)": what is added in brackets is not what is chosen; "green (or red)" is an alternative."""
+    gaps = "".join(word.gap for word in script.words[: mention.start + 1])
+    before = script.words[mention.start - 1].text if mention.start else ""
+    return gaps.count("(") > gaps.count(")") and before not in _ALTERNATIVES
+
+
+_ALTERNATIVES = frozenset({"or", "maybe", "perhaps", "possibly", "probably", "rather", "actually"})
 
 
 def _of_parts(script: Script, mentions: Sequence[Mention]) -> list[Mention]:

@@ -63,7 +63,7 @@ def _wholes(script: Script, quantities: Sequence[Quantity]) -> list[Quantity]:
 
 def _breakdown(script: Script, quantities: Sequence[Quantity]) -> bool | None:
     """Whether what follows the first number after a colon or in brackets makes it up: "7: 5 bollards, 2 cones", "4 more (7 to 3)",
-    "by 4: 7 cones against 3".
+    "4 more: 7 cones, 3 bollards", "by 4: 7 cones against 3".
 
     None where nothing like that follows.
     """
@@ -74,7 +74,8 @@ def _breakdown(script: Script, quantities: Sequence[Quantity]) -> bool | None:
     if not re.match(r"[^\S\n]*[:(]", gaps):
         return None  # "Skips: 7, bins: 2" takes nothing apart.
     lead = [word.text for word in script.words[max(0, whole.start - 3) : whole.start]]
-    difference = "(" in gaps or lead[-1:] == ["by"] or "difference" in lead
+    compares = any(word.text in ("more", "fewer", "less") for word in script.words[whole.end : parts[0].start])
+    difference = "(" in gaps or compares or lead[-1:] == ["by"] or "difference" in lead
     apart = abs(parts[0].value - parts[1].value) if len(parts) == 2 and difference else None
     return whole.value in (sum(q.value for q in parts), apart)
 

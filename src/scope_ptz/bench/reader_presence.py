@@ -91,7 +91,7 @@ def read_none_there(expected: NoneThere, script: Script) -> Reading:
     if re.search(r"\b(none|no|nothing|zero|0) or (one|two|some|several|a few|1|2)\b", script.text()):
         return Unreadable("an alternative")
     said = says_that_none(script, expected.subject)
-    if leaves_the_half_open(script, expected.subject):
+    if not verdict_words(script) and leaves_the_half_open(script, expected.subject):
         return Unreadable("of which half it is told may not be what is asked")
     if True in said and (_counts_some(script, expected.subject) or _claims(script, expected)):
         said = {True, False}

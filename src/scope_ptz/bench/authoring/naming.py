@@ -75,6 +75,7 @@ def by_name(sight: Sight, min_pixels: int = 350, made_out_px: float = MADE_OUT_P
             continue
         if (
             set(words) & _MISLEADING
+            or (set(words) & _HAVING and sighting.share < _HAD_SHARE)
             or (set(words) & COLOUR_WORDS and not has_colour(thing))
             or ("phone" in words and thing.category in GROUPS["person"])
             or not recognised(sight, sighting, name, made_out_px)
@@ -106,6 +107,9 @@ _STEM = 4
 
 _BY_WORDS = SIGNS | {"shop", "kiosk", "market stall", "door"}
 """What is told from others of its kind by what is written on it."""
+
+_HAVING, _HAD_SHARE = frozenset({"with", "carrying", "pushing", "holding"}), 0.75
+"""Where less than so much of a thing shows, what it is told by ("with a pram") may be what is hidden."""
 
 _PERSON_PX = 700
 """What somebody wears or holds is seen on no fewer pixels."""
