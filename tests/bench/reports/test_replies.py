@@ -6,9 +6,10 @@ from typing import Any
 
 import pytest
 
-from scope_ptz.bench.reports.task_pages import _message, _seen
+from scope_ptz.bench.reports.task_pages import _message, _seen, evidence_lines
 from scope_ptz.endpoints.failures import Attempt
 from scope_ptz.perception.base import Answer, Box, Detections, Point, Points
+from tests.bench.making import samples
 
 ATTEMPT = Attempt(seconds=0.04647572699468583)
 BOX = Box(x_min=0.1, y_min=0.4, x_max=0.25, y_max=0.6)
@@ -57,3 +58,10 @@ def test_what_has_no_sentence_is_told_by_name_with_rounded_figures() -> None:
 )
 def test_a_reply_of_another_form_is_told_as_it_is(odd: dict[str, Any]) -> None:
     assert _seen(odd)
+
+
+def test_a_task_that_rests_on_no_view_is_told_from_one_that_is_not_at_hand() -> None:
+    tasks = [task for task, _ in samples()]
+    assert next(evidence_lines(task) for task in tasks if not task.evidence) == ("none: the answer rests on no view",)
+    assert all("pan" in line for task in tasks if task.evidence for line in evidence_lines(task))
+    assert evidence_lines(None) == ()

@@ -248,6 +248,8 @@ def cut(text: str) -> str:
 def evidence_lines(task: Task | None) -> tuple[str, ...]:
     """What the expected answer rests on, as far as the task itself is at hand."""
     lines = []
+    if task is not None and not task.evidence:
+        return ("none: the answer rests on no view",)
     for view in task.evidence if task else ():
         aim = view.aim
         items = ", ".join(f"{i.instance}{'' if i.value is None else f' = {i.value}'}" for i in view.items) or "nothing of the kind"
