@@ -112,8 +112,11 @@ async def validate(
     seed: int = 1,
     look: Look = view_truth,
     say: Say | None = None,
+    beside: Sequence[Task] = (),
 ) -> Report:
     """Run everything on every task. Right ways are held to pass all, cheats to pass none.
+
+    ``beside``: the dataset of which ``tasks`` are a selection; twins and reworded tasks may be there.
 
     ``look`` reads the truth of a view; one that remembers views saves most of the time.
     """
@@ -142,7 +145,7 @@ async def validate(
             await proof.guess(usual.get(task.category, "2"))
         if say is not None:
             say(number, len(tasks))
-    report.faults += structure(tasks)
+    report.faults += structure(tasks, beside)
     _weigh_guesses(report, tasks)
     return report
 
@@ -234,10 +237,10 @@ def sibling_answers(tasks: Sequence[Task]) -> dict[str, str]:
     return found
 
 
-def structure(tasks: Sequence[Task]) -> list[Fault]:
+def structure(tasks: Sequence[Task], beside: Sequence[Task] = ()) -> list[Fault]:
     """What must hold between tasks: no text twice, twins that know each other, paraphrases of tasks that are there."""
     faults = []
-    by_id = {task.id: task for task in tasks}
+    by_id = {task.id: task for task in (*beside, *tasks)}
     texts = Counter((task.world, task.preset, task.instruction.lower()) for task in tasks)
     for task in tasks:
         if texts[(task.world, task.preset, task.instruction.lower())] > 1:

@@ -74,7 +74,7 @@ def validate(
         from scope_ptz.cli.bench_proof import prove
         from scope_ptz.cli.bench_report import report_lines
 
-        report = prove(load_split(tasks), seed)
+        report = prove(load_split(tasks), seed, beside=load_split("core") if tasks in ("lite", "paraphrase") else ())
         if as_json:
             put_json(report.as_dict())
         else:

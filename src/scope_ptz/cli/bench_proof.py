@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from scope_ptz.bench.tasks import Task
 
 
-def prove(tasks: Sequence[Task], seed: int, say: Callable[[int, int], None] | None = None) -> Report:
-    """The report of a validation."""
+def prove(tasks: Sequence[Task], seed: int, say: Callable[[int, int], None] | None = None, beside: Sequence[Task] = ()) -> Report:
+    """The report of a validation. ``beside``: the dataset of which the tasks are a selection."""
     worlds, views = worlds_of(tasks), KnownViews()
-    return anyio.run(lambda: validate(tasks, worlds, equip_with_truth(worlds, views), seed=seed, look=views.look, say=say))
+    equip = equip_with_truth(worlds, views)
+    return anyio.run(lambda: validate(tasks, worlds, equip, seed=seed, look=views.look, say=say, beside=beside))

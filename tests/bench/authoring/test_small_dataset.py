@@ -72,6 +72,12 @@ def test_the_same_seed_makes_the_same_bytes_and_another_seed_does_not(built: Bui
     assert load_tasks(files[0]) == tuple(built.tasks)
 
 
+def test_a_selection_may_leave_a_twin_behind(built: Built) -> None:
+    alone = [task for task in built.tasks if task.pair is not None][:1]
+    assert [fault.attempt for fault in structure(alone)] == ["pair"]
+    assert not structure(alone, beside=built.tasks)
+
+
 def test_no_two_ask_the_same(built: Built) -> None:
     assert not structure(built.tasks)
     views = Counter((t.evidence[0].aim, t.evidence[0].scope, t.expected, t.tags) for t in core(built) if t.category == "counting")
