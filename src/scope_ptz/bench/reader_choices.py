@@ -59,7 +59,7 @@ def read_choice(expected: Choice, script: Script) -> Reading:
             return Value(picked.pop())
     named = {m.name for m in mentions}
     if len(named) > 1:
-        named = {m.name for m in mentions if not _in_brackets(script, m)} or named
+        named = {m.name for m in mentions if not _is_added(script, m)} or named
     if len(named) > 1:
         named = {m.name for m in mentions if m not in _of_parts(script, mentions)} or named
     if len(named) > 1:
@@ -102,11 +102,10 @@ def _is_only_counted(script: Script, mention: Mention, further: Sequence[str]) -
     return any(0 <= mention.start - q.end <= 3 or q.start == mention.end for q in own)
 
 
-def _in_brackets(script: Script, mention: Mention) -> bool:
+def _is_added(script: Script, mention: Mention) -> bool:
     """ "Green (the wall above is red)": what is added in brackets is not what is chosen; "green (or red)" is an alternative."""
-    gaps = "".join(word.gap for word in script.words[: mention.start + 1])
     before = script.words[mention.start - 1].text if mention.start else ""
-    return gaps.count("(") > gaps.count(")") and before not in _ALTERNATIVES
+    return script.in_brackets(mention.start) and before not in _ALTERNATIVES
 
 
 _ALTERNATIVES = frozenset({"or", "maybe", "perhaps", "possibly", "probably", "rather", "actually"})

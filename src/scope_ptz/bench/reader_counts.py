@@ -74,17 +74,12 @@ def _breakdown(script: Script, quantities: Sequence[Quantity]) -> bool | None:
     if not re.match(r"[^\S\n]*[:(]", gaps):
         return None  # "Skips: 7, bins: 2" takes nothing apart.
     if "(" not in gaps:  # "4: 2 skips (1 blue, 1 yellow) and 2 posts"
-        parts = [q for q in parts if not _in_brackets(script, q)]
+        parts = [q for q in parts if not script.in_brackets(q.start)]
     lead = [word.text for word in script.words[max(0, whole.start - 3) : whole.start]]
     compares = any(word.text in ("more", "fewer", "less") for word in script.words[whole.end : parts[0].start])
     difference = "(" in gaps or compares or lead[-1:] == ["by"] or "difference" in lead
     apart = abs(parts[0].value - parts[1].value) if len(parts) == 2 and difference else None
     return whole.value in (sum(q.value for q in parts), apart)
-
-
-def _in_brackets(script: Script, quantity: Quantity) -> bool:
-    gaps = "".join(word.gap for word in script.words[: quantity.start + 1])
-    return gaps.count("(") > gaps.count(")")
 
 
 def _is_range(script: Script, quantities: Sequence[Quantity]) -> bool:

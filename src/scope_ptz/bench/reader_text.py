@@ -98,6 +98,11 @@ class Script:
                     break
         return found
 
+    def in_brackets(self, at: int) -> bool:
+        """Whether the word at a place stands in round brackets."""
+        gaps = "".join(word.gap for word in self.words[: at + 1])
+        return gaps.count("(") > gaps.count(")")
+
     def _is_at(self, phrase: tuple[str, ...], start: int) -> bool:
         words = self.words[start : start + len(phrase)]
         return (
