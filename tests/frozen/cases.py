@@ -1,0 +1,275 @@
+"""What is compared: each function returns what today's code gives, as JSON-like data."""
+
+from __future__ import annotations
+
+import gzip
+import hashlib
+import json
+from collections.abc import Callable, Iterable
+from functools import partial
+from pathlib import Path
+from typing import Any
+from zipfile import ZIP_DEFLATED, ZipFile
+
+from tests.frozen import adapter
+from tests.frozen.server import Reply, Scripted, calls_message, text_message
+
+DATA = Path(__file__).parent / "v0_1_0"
+RUNS, LOGS = DATA / "traces", DATA / "logs"
+SUBMISSION = DATA / "submission.jsonl"
+SUBMITTED = LOGS / "reaction.eval"
+RUN_NAMES = sorted(path.name for path in RUNS.iterdir())
+LOG_NAMES = sorted(path.stem for path in LOGS.glob("*.eval"))
+REPORTED = ("truth", "noisy", "repeats", "judged", "served", "agent")
+RANKED = {"judged": ("qwen3-4b", "moondream2"), "truth": ("qwen3-30b-a3b", "moondream2"), "noisy": ("qwen3-4b", "qwen2.5-vl-7b")}
+"""Logs that are shown in reports a second time, as if these models had planned and looked."""
+JUDGED_HERE = "truth"
+"""The log whose runs are put before a scripted judge: all eight categories are in it."""
+
+
+def stored(name: str) -> Any:
+    """An expected result."""
+    return json.loads((DATA / name).read_text("utf-8"))
+
+
+def call(tool: str, /, **arguments: Any) -> dict[str, Any]:
+    """A call of a tool."""
+    return {"name": tool, "arguments": arguments}
+
+
+EVERY_TOOL = [
+    [call("get_presets")],
+    [call("go_to_preset", name="gate")],
+    [call("go_to_preset", name="moon")],
+    [call("adjust_ptz", pan_deg=12.5, tilt_deg=3.0)],
+    [call("adjust_ptz", tilt_deg=-200.0)],
+    [call("adjust_ptz", tilt_deg=400.0, zoom_factor=50.0)],
+    [call("adjust_ptz", zoom_limit="out")],
+    [call("adjust_ptz", zoom_percent=50.0)],
+    [call("adjust_ptz", zoom_factor=2.0, zoom_limit="in")],
+    [call("adjust_ptz", sideways=1)],
+    [call("adjust_ptz", pan_deg="far")],
+    [{"name": "adjust_ptz", "arguments": '{"pan_deg": 12'}],
+    [{"name": "adjust_ptz", "arguments": "[1]"}],
+    [call("dance")],
+    [call("go_home")],
+    [call("take_image")],
+    [call("count_objects", description="cones", view="current")],
+    [call("count_objects", description="giraffes")],
+    [call("count_objects", description=" ")],
+    [call("query_answer", question="is there a worker?", view="current")],
+    [call("query_answer", question="why is the sky blue?")],
+    [call("query_answer")],
+    [call("zoom_to_object", description="excavator")],
+    [call("zoom_to_object", description="giraffe")],
+    [call("go_to_preset", name="highway")],
+    [call("track_object", description="car", duration_s=1.0)],
+    [call("track_object", description="giraffe", duration_s=2.0)],
+    [call("track_object", description="car", duration_s=-1.0)],
+    [call("adjust_ptz", pan_deg=1.0), call("go_to_preset", name="moon"), call("go_home")],
+]
+"""Every tool with a success, and what can be clamped, not found or wrong."""
+
+SWEEPS = [
+    [call("count_objects", description="workers", view="full")],
+    [call("query_answer", question="is there a giraffe?", view="full")],
+    [call("go_to_preset", name="highway")],
+    [call("track_object", description="car", duration_s=6.0)],
+]
+"""What takes longer: looks at the full scene, and tracking."""
+
+FEW = [[call("get_presets")], [call("adjust_ptz", zoom_factor=50.0)], [call("dance")], [call("count_objects", description="cones")]]
+
+CONVERSATIONS: dict[str, tuple[dict[str, str], list[list[dict[str, Any]]]]] = {
+    "every-tool": ({"stream": "false"}, EVERY_TOOL),
+    "sweeps": ({"stream": "false"}, SWEEPS),
+    "written": ({"stream": "false", "tools": "text", "prompt": "short-1"}, FEW),
+    "examples": ({"stream": "false", "prompt": "examples-1", "thinking": "off", "temperature": "0.5", "seed": "3"}, FEW),
+}
+
+
+def conversation(name: str, scratch: Path) -> dict[str, Any]:
+    """What a chat model is sent in a run: the last request, which holds all before it, and the results of the calls."""
+    options, steps = CONVERSATIONS[name]
+    written = options.get("tools") == "text"
+
+    def script(body: dict[str, Any]) -> dict[str, Any]:
+        done = sum(message["role"] == "assistant" for message in body["messages"])
+        first = next(at for at, m in enumerate(body["messages"]) if m["role"] == "user" and "every tool" in str(m["content"]))
+        done -= sum(message["role"] == "assistant" for message in body["messages"][:first])
+        if done >= len(steps):
+            return text_message("All done.")
+        if written:
+            return text_message("\n".join(f"<tool_call>\n{json.dumps(made)}\n</tool_call>" for made in steps[done]))
+        return calls_message(steps[done])
+
+    with Scripted(script) as server:
+        trace = adapter.ask("use every tool", scratch, planner={"url": server.url, **options})
+    calls = [record["outcome"] | {"fault": record["fault"]} for record in trace if record["event"] == "call"]
+    return {
+        "planner_details": {name: value for name, value in trace[0]["planner_details"].items() if name != "url"},
+        "requests": len(server.requests),
+        "last_request": server.requests[-1],
+        "calls": calls,
+        "outcome": trace[-1]["outcome"],
+    }
+
+
+LOOKS = {
+    "detect": "count the cones",
+    "query": "what colour is the excavator?",
+    "point": "zoom in on the excavator",
+    "sweep": "is there a giraffe anywhere in the whole scene?",
+}
+
+
+def looks(name: str, scratch: Path) -> list[Any]:
+    """What a chat model that sees is asked, without the pictures; each request once."""
+    with Scripted(lambda _: text_message("[]")) as server:
+        adapter.ask(LOOKS[name], scratch, eyes=server.url)
+    found = {json.dumps(_without_pictures(request), sort_keys=True) for request in server.requests}
+    return [json.loads(request) for request in sorted(found)]
+
+
+def _without_pictures(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _without_pictures(part) for key, part in value.items()}
+    if isinstance(value, list):
+        return [_without_pictures(part) for part in value]
+    return "data:..." if isinstance(value, str) and value.startswith("data:image/") else value
+
+
+def verdict(body: dict[str, Any]) -> dict[str, Any] | Reply:
+    """A judge that decides by a digest of the run that it is told of; of some it never gives a verdict."""
+    told = json.dumps(body["messages"][1], sort_keys=True)
+    kind = int(hashlib.sha256(told.encode()).hexdigest(), 16) % 6
+    if kind == 0:
+        return text_message("I think it went well.")
+    good = {"reason": "All as asked.", "verdict": "correct", "error_mode": None}
+    bad = {"reason": "It counted wrongly.", "verdict": "incorrect", "error_mode": "vlm_counting"}
+    return text_message(json.dumps(bad if kind < 3 else good))
+
+
+def judging(scratch: Path) -> dict[str, Any]:
+    """What a judge is sent about each run of a log, and the scores of that log afterwards."""
+    with adapter.copied(LOGS / f"{JUDGED_HERE}.eval", scratch) as log, Scripted(verdict, "the-judge") as server:
+        done = adapter.rescore_judge(log, server.url)
+        assert done.code == 0, done.err
+        systems = dict[str, str]()
+        asked = []
+        for request in server.requests:
+            system, *rest = request["messages"]
+            key = hashlib.sha256(system["content"].encode()).hexdigest()[:12]
+            systems[key] = system["content"]
+            asked.append({**request, "messages": [f"system {key}", *rest]})
+        asked.sort(key=lambda request: json.dumps(request, sort_keys=True))
+        judgements = {
+            trial["sample"]: [{k: v for k, v in made.items() if k != "latency_s"} for made in trial["judgements"]]
+            for trial in adapter.read_log(log)["trials"]
+        }
+        return {"systems": systems, "requests": asked, "scores": adapter.scores_of(log), "judgements": judgements}
+
+
+def replays(names: Iterable[str]) -> dict[str, Any]:
+    """Exit code and findings of the replay of each run folder."""
+    return {name: dict(zip(("code", "found"), adapter.replay(RUNS / name), strict=True)) for name in names}
+
+
+def log_read(name: str) -> dict[str, Any]:
+    """A log as it is read, and its scores."""
+    return {"evaluation": adapter.read_log(LOGS / f"{name}.eval"), "scores": adapter.scores_of(LOGS / f"{name}.eval")}
+
+
+def log_rescored(name: str, scratch: Path) -> dict[str, Any]:
+    """The same of a log whose checks were made again: it has one score more."""
+    with adapter.copied(LOGS / f"{name}.eval", scratch) as log:
+        done = adapter.rescore_checks(log)
+        assert done.code == 0, done.err
+        return {"evaluation": adapter.read_log(log), "scores": adapter.scores_of(log)}
+
+
+def tables(scratch: Path) -> dict[str, str]:
+    """The tables of a report of the stored logs, and of copies of some under names of models, which are ranked."""
+    logs = [LOGS / f"{name}.eval" for name in REPORTED]
+    for name, pair in RANKED.items():
+        logs.append(as_models(LOGS / f"{name}.eval", scratch / f"{name}.eval", *pair))
+    return adapter.report_tables(logs, scratch / "report")
+
+
+def as_models(log: Path, copy: Path, planner: str, eyes: str) -> Path:
+    """A copy of a log whose card says that these models planned and looked."""
+    header = adapter.header_of(log)
+    card = header["eval"]["metadata"]["card"]
+    card["run_id"] = f"{planner}-{eyes}"
+    for role, name in (("planner", planner), ("perception", eyes)):
+        card[role] |= {"name": name, "registry": name, "provider": "http", "deterministic": False}
+    copy.parent.mkdir(parents=True, exist_ok=True)
+    with ZipFile(log) as old, ZipFile(copy, "w", ZIP_DEFLATED) as new:
+        for info in old.infolist():
+            new.writestr(info.filename, json.dumps(header) if info.filename == "header.json" else old.read(info))
+    return copy
+
+
+def submission(scratch: Path) -> list[dict[str, Any]]:
+    """The lines of a submission made of a log."""
+    return adapter.make_submission(SUBMITTED, scratch)
+
+
+def submission_checks(scratch: Path) -> dict[str, Any]:
+    """The checks of the stored submission as it is, without its last line, and with another verdict."""
+    lines = SUBMISSION.read_text("utf-8").splitlines()
+    shorter, other = scratch / "shorter.jsonl", scratch / "other.jsonl"
+    shorter.write_text("\n".join(lines[:-1]) + "\n", "utf-8")
+    other.write_text("\n".join([lines[0], lines[1].replace('"correct"', '"perfect"', 1), *lines[2:]]) + "\n", "utf-8")
+    made = {"whole": SUBMISSION, "shorter": shorter, "other": other}
+    return {name: dict(zip(("code", "found"), adapter.validate_submission(path), strict=True)) for name, path in made.items()}
+
+
+def plan_inputs() -> list[dict[str, Any]]:
+    """Every task's name, instruction and presets, with the plan of 0.1.0."""
+    presets = stored("presets.json")
+    with gzip.open(DATA / "plans.jsonl.gz", "rt", encoding="utf-8") as file:
+        rows = [json.loads(line) for line in file]
+    return [{**row, "presets": presets[row["world"]]} for row in rows]
+
+
+def plans(rows: list[dict[str, Any]], scratch: Path) -> list[dict[str, Any]]:
+    """Today's plans of such rows."""
+    return adapter.plan(((row["plan"]["instruction"], row["presets"]) for row in rows), scratch)
+
+
+def names() -> dict[str, list[str]]:
+    """What the stored logs say that Inspect registered: tasks, solvers, scorers, metrics and models."""
+    found: dict[str, set[str]] = {kind: set() for kind in ("task", "solver", "scorer", "metric", "model", "role")}
+    for name in LOG_NAMES:
+        header = adapter.header_of(LOGS / f"{name}.eval")
+        about = header["eval"]
+        found["task"].add(about["task_registry_name"])
+        found["solver"] |= {step["solver"] for step in header["plan"]["steps"]}
+        for scorer in about["scorers"]:
+            found["scorer"].add(scorer["name"])
+            found["metric"] |= {metric["name"] for metric in scorer["metrics"]}
+        found["model"].add(about["model"])
+        for role, model in about["model_roles"].items():
+            found["role"].add(role)
+            found["model"].add(model["model"])
+    return {kind: sorted(some) for kind, some in found.items()}
+
+
+def outcomes() -> list[str]:
+    """Every outcome that the stored runs have."""
+    ends = (
+        json.loads((RUNS / name / "trace.jsonl").read_text("utf-8").splitlines()[-1] or "{}")
+        for name in RUN_NAMES
+        if name != "cut-off"
+    )
+    return sorted({end["outcome"] for end in ends})
+
+
+SIMPLE: dict[str, Callable[[], Any]] = {
+    "tools.json": adapter.tool_schemas,
+    "digests.json": adapter.digests,
+    "names.json": names,
+    "replays.json": partial(replays, RUN_NAMES),
+}
+"""Stored files that need no scratch folder."""
