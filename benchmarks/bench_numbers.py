@@ -25,11 +25,11 @@ from scope_ptz.agent.loop import Agent
 from scope_ptz.agent.records import Called, Decided, Ended, Started
 from scope_ptz.agent.store import NoImages
 from scope_ptz.agent.trace import Trace
-from scope_ptz.bench.episode import Places, episode_of
-from scope_ptz.bench.run_program import BlankCamera
-from scope_ptz.bench.splits import load_split
-from scope_ptz.bench.tasks import Task
-from scope_ptz.bench.verdict import judge
+from scope_ptz.bench.programs import BlankCamera
+from scope_ptz.bench.scoring.episode import Places, episode_of
+from scope_ptz.bench.scoring.verdict import judge
+from scope_ptz.bench.tasks.splits import load_split
+from scope_ptz.bench.tasks.task import Task
 from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.cli.bench_eyes import KnownViews
 from scope_ptz.cli.bench_inputs import worlds_of
@@ -37,8 +37,8 @@ from scope_ptz.perception.base import Perception
 from scope_ptz.perception.ground_truth import GroundTruthPerception
 from scope_ptz.perception.noisy import NoisyPerception
 from scope_ptz.planner.grammar import GrammarPlanner
-from scope_ptz.world.clock import SceneClock
-from scope_ptz.world.pack import Scene
+from scope_ptz.simulator.clock import SceneClock
+from scope_ptz.simulator.pack import Scene
 
 WIDTH, HEIGHT = 1280, 720
 NOISE_SEED = 1

@@ -18,14 +18,14 @@ from rich.console import Console
 
 from scope_ptz.agent.loop import Agent
 from scope_ptz.agent.store import NoImages, RunFolder
+from scope_ptz.bench.engine.context import Equipment, ModelWish
 from scope_ptz.bench.engine.entries import Entry
-from scope_ptz.bench.engine.equipment import Equipment, ModelWish
-from scope_ptz.bench.run_program import BlankCamera
+from scope_ptz.bench.programs import BlankCamera
 from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.cli.bench_equipment import lend, planner_for
 from scope_ptz.cli.bench_evaluate import RunOptions, evaluate
 from scope_ptz.cli.choosing import EyesChoice, PlannerChoice, Wishes
-from scope_ptz.world.clock import SceneClock
+from scope_ptz.simulator.clock import SceneClock
 
 
 async def bare(entries: tuple[Entry, ...], lent: Equipment, folder: Path, *, pictures: bool) -> float:

@@ -24,15 +24,15 @@ import numpy as np
 from numpy.typing import NDArray
 from rapidocr import RapidOCR
 
-from scope_ptz.bench.phrasing import right_answers
-from scope_ptz.bench.reader import agrees, read
-from scope_ptz.bench.splits import load_split
-from scope_ptz.bench.tasks import Task
+from scope_ptz.bench.answers.reader import agrees, read
+from scope_ptz.bench.tasks.splits import load_split
+from scope_ptz.bench.tasks.task import Task
 from scope_ptz.cli.bench_inputs import worlds_of
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose, pan_tilt_deg
-from scope_ptz.world.pack import Scene, find_scenes
-from scope_ptz.world.truth import MIN_CAP_HEIGHT_PX, TextSighting, view_truth
-from scope_ptz.world.views import picture
+from scope_ptz.simulator.pack import Scene, find_scenes
+from scope_ptz.simulator.truth import MIN_CAP_HEIGHT_PX, TextSighting, view_truth
+from scope_ptz.simulator.views import picture
+from scope_ptz.taskgen.facts.phrasing import right_answers
 
 WIDTH, HEIGHT = 1280, 720
 ALIKE = 5 / 6

@@ -24,10 +24,10 @@ import numpy as np
 from scope_ptz.blender.client import BlenderWorker
 from scope_ptz.blender.environment import worker_command
 from scope_ptz.geometry import AXIS_M5075_G, Perspective, Pose
-from scope_ptz.world.pack import Scene, find_scenes
-from scope_ptz.world.reproject import atlas_map, colour_view
-from scope_ptz.world.truth import view_truth
-from scope_ptz.world.viewpoint import Viewpoint
+from scope_ptz.simulator.pack import Scene, find_scenes
+from scope_ptz.simulator.reproject import atlas_map, colour_view
+from scope_ptz.simulator.truth import view_truth
+from scope_ptz.simulator.viewpoint import Viewpoint
 
 WIDTH, HEIGHT = 1280, 720
 ROUNDS = 40

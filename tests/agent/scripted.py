@@ -16,8 +16,8 @@ from scope_ptz.errors import UnknownNameError
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose
 from scope_ptz.perception.base import Answer, Box, Caption, Detections, Perception, Point, Points
 from scope_ptz.planner.base import CallTools, Decision, Finish, Planner, State, ToolCall, Usage
+from scope_ptz.simulator.clock import SceneClock
 from scope_ptz.tools.context import ImageStore
-from scope_ptz.world.clock import SceneClock
 
 Step = Decision | BaseException | Callable[[State], Decision]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from scope_ptz.bench.episode import Call, Episode, Eyes, Picture, Standing, looks_of
-from scope_ptz.bench.expected import (
+from scope_ptz.bench.scoring.episode import Call, Episode, Eyes, Picture, Standing, looks_of
+from scope_ptz.bench.tasks.expected import (
     ActionOnly,
     AnyExpected,
     Choice,
@@ -20,7 +20,7 @@ from scope_ptz.bench.expected import (
     Text,
     YesNo,
 )
-from scope_ptz.bench.tasks import (
+from scope_ptz.bench.tasks.task import (
     Aim,
     Argument,
     Behaviour,

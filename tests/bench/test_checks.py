@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scope_ptz.bench.checks import check_pose, framed, run_checks
-from scope_ptz.bench.episode import Episode, Picture, Standing
-from scope_ptz.bench.expected import ActionOnly, Number
-from scope_ptz.bench.matching import in_any_order, in_order
-from scope_ptz.bench.tasks import Argument, Behaviour, Forbidden, Framing, RequiredCall, Task
-from scope_ptz.bench.verdict import judge, tally
+from scope_ptz.bench.scoring.checks import check_pose, framed, run_checks
+from scope_ptz.bench.scoring.episode import Episode, Picture, Standing
+from scope_ptz.bench.scoring.matching import in_any_order, in_order
+from scope_ptz.bench.scoring.verdict import judge, tally
+from scope_ptz.bench.tasks.expected import ActionOnly, Number
+from scope_ptz.bench.tasks.task import Argument, Behaviour, Forbidden, Framing, RequiredCall, Task
 from scope_ptz.errors import ScopeError
 from scope_ptz.geometry import Pose, pan_tilt_deg
 from tests.bench.making import AT_HIGHWAY, EYES, GO_HIGHWAY, START, Step, counted, final, play, samples, task, told, view

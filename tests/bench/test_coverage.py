@@ -10,9 +10,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from scope_ptz.bench.coverage import box_directions, density_px_deg, gap, inside, reference_directions, shows
-from scope_ptz.bench.episode import Look, Standing
-from scope_ptz.bench.tasks import EvidenceView, Item
+from scope_ptz.bench.scoring.coverage import box_directions, density_px_deg, gap, inside, reference_directions, shows
+from scope_ptz.bench.scoring.episode import Look, Standing
+from scope_ptz.bench.tasks.task import EvidenceView, Item
 from scope_ptz.geometry import Pose, direction, pan_tilt_deg
 from tests.bench.making import EYES, view
 

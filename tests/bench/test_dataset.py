@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from scope_ptz.bench.splits import load_split, read_manifest
+from scope_ptz.bench.tasks.splits import load_split, read_manifest
 from scope_ptz.cli.bench_build import _numbers
 from scope_ptz.errors import InputError
 from tests.cli.conftest import Scope, scenes, scope

@@ -11,7 +11,7 @@ import pytest
 from scope_ptz.agent.records import Budgets
 from scope_ptz.agent.store import RunFolder
 from scope_ptz.agent.trace import TraceWriter, read_trace
-from scope_ptz.bench.episode import Episode, Eyes, Places, episode_of
+from scope_ptz.bench.scoring.episode import Episode, Eyes, Places, episode_of
 from scope_ptz.errors import PerceptionError
 from scope_ptz.geometry import Equirectangular, Perspective, Pose
 from scope_ptz.tools.sweep import sweep

@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scope_ptz.bench.episode import Episode, Look
-from scope_ptz.bench.error_modes import ErrorMode, error_mode
-from scope_ptz.bench.expected import ActionOnly, Choice, Text
-from scope_ptz.bench.mutations import Gold, Setting, confusion, mutate
-from scope_ptz.bench.tasks import Argument, Behaviour, Item, RequiredCall, Task
-from scope_ptz.bench.verdict import judge
+from scope_ptz.bench.scoring.episode import Episode, Look
+from scope_ptz.bench.scoring.error_modes import ErrorMode, error_mode
+from scope_ptz.bench.scoring.verdict import judge
+from scope_ptz.bench.tasks.expected import ActionOnly, Choice, Text
+from scope_ptz.bench.tasks.task import Argument, Behaviour, Item, RequiredCall, Task
+from scope_ptz.taskgen.gold.mutations import Gold, Setting, confusion, mutate
 from tests.bench.making import (
     EYES,
     GO_BRIDGE,

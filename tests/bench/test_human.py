@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from scope_ptz.agent.trace import read_trace
-from scope_ptz.bench.expected import ActionOnly, Number
-from scope_ptz.bench.people import open_run, read_result
-from scope_ptz.bench.task_files import dump_tasks
-from scope_ptz.bench.tasks import Aim, Behaviour, EvidenceView, FinalPose, Task
+from scope_ptz.bench.human import open_run, read_result
+from scope_ptz.bench.tasks.expected import ActionOnly, Number
+from scope_ptz.bench.tasks.files import dump_tasks
+from scope_ptz.bench.tasks.task import Aim, Behaviour, EvidenceView, FinalPose, Task
 from scope_ptz.camera.base import Frame
 from scope_ptz.cli.human_agent import Left, parse
 from scope_ptz.cli.human_pictures import Viewer, escape

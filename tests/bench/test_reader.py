@@ -14,7 +14,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import TypeAdapter
 
-from scope_ptz.bench.expected import (
+from scope_ptz.bench.answers.reader import agrees, read
+from scope_ptz.bench.answers.result import Declined, Unreadable, Value
+from scope_ptz.bench.tasks.expected import (
     ActionOnly,
     AnyExpected,
     Choice,
@@ -26,9 +28,7 @@ from scope_ptz.bench.expected import (
     Text,
     YesNo,
 )
-from scope_ptz.bench.phrasing import right_answers, wrong_answer
-from scope_ptz.bench.reader import agrees, read
-from scope_ptz.bench.reading import Declined, Unreadable, Value
+from scope_ptz.taskgen.facts.phrasing import right_answers, wrong_answer
 
 DATA = Path(__file__).parent / "data"
 ADAPTER: TypeAdapter[AnyExpected] = TypeAdapter(Expected)

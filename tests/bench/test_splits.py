@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from scope_ptz.bench.splits import lite, load_split, read_manifest, write_manifest, write_splits
-from scope_ptz.bench.tasks import Task
+from scope_ptz.bench.tasks.splits import lite, load_split, read_manifest, write_manifest, write_splits
+from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import InputError, UnknownNameError
-from scope_ptz.world.pack import load_scene
+from scope_ptz.simulator.pack import load_scene
 from tests.bench.making import samples
 
 SAMPLES = [task for task, _ in samples()]

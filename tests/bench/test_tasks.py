@@ -12,9 +12,9 @@ from pydantic import ValidationError
 from typer.testing import CliRunner
 
 import scope_ptz
-from scope_ptz.bench.expected import ActionOnly, Choice, Number, Ordering
-from scope_ptz.bench.task_files import dump_tasks, load_tasks
-from scope_ptz.bench.tasks import CANARY, TASK, Argument, schema
+from scope_ptz.bench.tasks.expected import ActionOnly, Choice, Number, Ordering
+from scope_ptz.bench.tasks.files import dump_tasks, load_tasks
+from scope_ptz.bench.tasks.task import CANARY, TASK, Argument, schema
 from scope_ptz.cli.app import app
 from scope_ptz.errors import InputError
 from tests.bench.making import samples

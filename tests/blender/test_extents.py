@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from scope_ptz.blender.extents import Body, Ints, extent, extents
-from scope_ptz.world.models import SceneViewpoint
+from scope_ptz.simulator.models import SceneViewpoint
 
 QUAD: Ints = np.array([[0, 1, 2], [1, 3, 2]])
 

@@ -10,7 +10,7 @@ from scope_ptz.blender.keyframes import MAX_SIDE_PX, keyframes
 from scope_ptz.blender.panorama import joined, smoothed
 from scope_ptz.blender.tiles import Cell, Target, busiest, cover, covers, in_rows, most_useful, targets
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, direction, pan_tilt_deg
-from scope_ptz.world.models import Band, SceneActor, SceneFile, ScenePreset, SceneText, SceneViewpoint
+from scope_ptz.simulator.models import Band, SceneActor, SceneFile, ScenePreset, SceneText, SceneViewpoint
 
 HERE = SceneViewpoint(name="mast", position_m=(0.0, 0.0, 6.0), pan0_bearing_deg=30.0)
 BAND = Band(top_tilt_deg=59.0, bottom_tilt_deg=-90.0)

@@ -16,9 +16,9 @@ from scope_ptz.blender.sources import scene_key
 from scope_ptz.blender.workshop import Workshop
 from scope_ptz.errors import BlenderError, PackError
 from scope_ptz.geometry import Perspective
-from scope_ptz.world.layers import decode_depth, encode_depth, read_colour, read_ids, write_colour, write_ids
-from scope_ptz.world.models import Band, Extent, SceneFile, ScenePreset, SceneViewpoint
-from scope_ptz.world.pack import Scene
+from scope_ptz.simulator.layers import decode_depth, encode_depth, read_colour, read_ids, write_colour, write_ids
+from scope_ptz.simulator.models import Band, Extent, SceneFile, ScenePreset, SceneViewpoint
+from scope_ptz.simulator.pack import Scene
 
 HERE = SceneViewpoint(name="mast", position_m=(0, 0, 6), pan0_bearing_deg=0)
 SCENE = SceneFile(
@@ -135,10 +135,10 @@ def test_the_key_follows_what_the_scene_imports_and_nothing_else(tmp_path: Path,
     studio = tmp_path / "studio"
     (studio / "kit").mkdir(parents=True)
     (studio / "scenes").mkdir()
-    (studio / "kit" / "cones.py").write_text("from scope_ptz.studio.kit import plastic\n")
+    (studio / "kit" / "cones.py").write_text("from scope_studio.kit import plastic\n")
     (studio / "kit" / "plastic.py").write_text("colour = 'red'\n")
     (studio / "kit" / "boats.py").write_text("length_m = 7\n")
-    (studio / "scenes" / "my_road.py").write_text("from scope_ptz.studio.kit.cones import cone\n")
+    (studio / "scenes" / "my_road.py").write_text("from scope_studio.kit.cones import cone\n")
     monkeypatch.setattr(sources, "STUDIO", studio)
     before = scene_key("my-road")
     (studio / "kit" / "boats.py").write_text("length_m = 8\n")

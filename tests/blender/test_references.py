@@ -9,7 +9,7 @@ import pytest
 from scope_ptz.blender.references import references
 from scope_ptz.blender.tolerances import shortcomings
 from scope_ptz.blender.verify import PoseReport, compare
-from scope_ptz.world.pack import list_scenes, load_scene
+from scope_ptz.simulator.pack import list_scenes, load_scene
 
 FOLDER = Path(__file__).parent.parent / "data" / "references"
 

@@ -14,8 +14,8 @@ from scope_ptz.camera.conformance import CameraConformance
 from scope_ptz.camera.simulated import CUT_S, SimulatedCamera
 from scope_ptz.errors import UnknownNameError
 from scope_ptz.geometry import Pose
-from scope_ptz.world.clock import SceneClock
-from scope_ptz.world.pack import Scene
+from scope_ptz.simulator.clock import SceneClock
+from scope_ptz.simulator.pack import Scene
 from tests.support.synthetic_pack import HEIGHT, WAYPOINTS, WIDTH
 
 pytestmark = pytest.mark.anyio

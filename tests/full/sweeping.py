@@ -18,9 +18,9 @@ from pathlib import Path
 import pytest
 
 from scope_ptz.bench.engine.logs import read_evaluation, uuids_in
-from scope_ptz.bench.splits import load_split
-from scope_ptz.bench.task_files import dump_tasks
-from scope_ptz.bench.tasks import Task
+from scope_ptz.bench.tasks.files import dump_tasks
+from scope_ptz.bench.tasks.splits import load_split
+from scope_ptz.bench.tasks.task import Task
 from tests.bench.engine.making import counting, turning
 from tests.cli.conftest import Done
 from tests.full.serving import transformers_serve

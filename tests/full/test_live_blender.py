@@ -22,10 +22,10 @@ from scope_ptz.camera.conformance import CameraConformance
 from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.geometry import Equirectangular, Perspective, Pose
 from scope_ptz.settings import load_settings
-from scope_ptz.world.clock import SceneClock
-from scope_ptz.world.models import SceneFile
-from scope_ptz.world.pack import Scene
-from scope_ptz.world.views import instance_numbers
+from scope_ptz.simulator.clock import SceneClock
+from scope_ptz.simulator.models import SceneFile
+from scope_ptz.simulator.pack import Scene
+from scope_ptz.simulator.views import instance_numbers
 
 pytestmark = pytest.mark.full
 

@@ -11,7 +11,7 @@ from scope_ptz.perception.answers import answer
 from scope_ptz.perception.language import parse_description, parse_question, words
 from scope_ptz.perception.matching import find
 from scope_ptz.perception.view import concepts_of, read_view
-from scope_ptz.world.models import SceneInstance
+from scope_ptz.simulator.models import SceneInstance
 from tests.perception import yard
 
 VIEW = read_view(yard.truth(), yard.SCENE, 5.0)

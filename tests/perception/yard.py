@@ -11,8 +11,8 @@ import numpy as np
 
 from scope_ptz.camera.base import Frame, FrameOrigin
 from scope_ptz.geometry import Perspective, Pose, Projection, pan_tilt_deg
-from scope_ptz.world.models import SceneActor, SceneFile, SceneInstance, ScenePreset, SceneText, SceneViewpoint
-from scope_ptz.world.truth import Sighting, TextSighting, ViewTruth
+from scope_ptz.simulator.models import SceneActor, SceneFile, SceneInstance, ScenePreset, SceneText, SceneViewpoint
+from scope_ptz.simulator.truth import Sighting, TextSighting, ViewTruth
 
 CAMERA_M = np.array([0.0, 0.0, 6.0])
 PROJECTION = Perspective(pan_deg=0.0, tilt_deg=-5.0, hfov_deg=70.0, width=1280, height=720)

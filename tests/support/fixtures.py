@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from scope_ptz.world.pack import Scene
+from scope_ptz.simulator.pack import Scene
 from tests.support.synthetic_pack import write_scene
 
 

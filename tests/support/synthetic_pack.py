@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from scope_ptz.geometry import Equirectangular, Perspective, Projection, direction, pan_tilt_deg
-from scope_ptz.world import layers
-from scope_ptz.world.models import (
+from scope_ptz.simulator import layers
+from scope_ptz.simulator.models import (
     ActorSheet,
     Band,
     Depth,

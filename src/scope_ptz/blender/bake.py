@@ -27,9 +27,9 @@ from scope_ptz.blender.verify import PoseReport, draw_poses, verify
 from scope_ptz.blender.workshop import Progress, Workshop
 from scope_ptz.errors import BlenderError, UnknownNameError
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective
-from scope_ptz.world.layers import encode_depth, read_colour
-from scope_ptz.world.models import Extent, SceneActor, SceneFile, SceneViewpoint
-from scope_ptz.world.pack import Scene
+from scope_ptz.simulator.layers import encode_depth, read_colour
+from scope_ptz.simulator.models import Extent, SceneActor, SceneFile, SceneViewpoint
+from scope_ptz.simulator.pack import Scene
 
 CHECKS, CHECK_SEED = 2, 1
 """Live renders a viewpoint at the end of a bake, at the wide end and again zoomed in."""
@@ -65,7 +65,7 @@ def bake(
 ) -> Baked:
     """Bake a scene into the folder ``out_dir`` (which must bear the scene's name).
 
-    ``source`` is the name of a scene in ``scope_ptz.studio.scenes`` or the path of a Python file with a ``build(stage)``;
+    ``source`` is the name of a scene in ``scope_studio.scenes`` or the path of a Python file with a ``build(stage)``;
     ``command`` starts the worker. Unfinished parts are kept under ``cache_dir``. At the end every file is read back against its
     checksum, and some views are compared with live renders.
     """

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from scope_ptz.geometry import Equirectangular, Limits, Optics, Perspective, pan_tilt_deg
-from scope_ptz.world.models import Band
+from scope_ptz.simulator.models import Band
 
 ASPECTS = (16 / 9, 4 / 3)
 """Shapes of frame that a pack serves."""

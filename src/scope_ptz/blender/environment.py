@@ -25,7 +25,7 @@ def worker_command(cache_dir: Path, blender_python: Path | None = None) -> list[
     ``blender_python`` is the user's choice: a Python that can import ``bpy``, or the ``blender`` program itself. Without it the
     environment under ``cache_dir`` is used, and made first when it does not exist (a download of about 400 MB).
     """
-    script = str(Path(__file__).resolve().parents[1] / "studio" / "worker.py")
+    script = str(Path(__file__).resolve().parents[2] / "scope_studio" / "worker.py")
     if blender_python is None:
         return [str(ensure_environment(cache_dir)), script]
     program = shutil.which(str(blender_python))

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from scope_ptz.geometry import pan_tilt_deg
 from scope_ptz.geometry.sphere import camera_axes
-from scope_ptz.world.models import Extent, SceneViewpoint
+from scope_ptz.simulator.models import Extent, SceneViewpoint
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -13,7 +13,7 @@ from scope_ptz.blender.requests import perspective_request
 from scope_ptz.blender.tiles import TELE_FOCAL_PX
 from scope_ptz.geometry import Perspective, pan_tilt_deg
 from scope_ptz.geometry.sphere import camera_axes
-from scope_ptz.world.models import Band, SceneActor, SceneViewpoint
+from scope_ptz.simulator.models import Band, SceneActor, SceneViewpoint
 
 TURN_STEP_DEG, DISTANCE_STEP = 2.5, 1.06
 """A new picture when the actor shows itself from an angle this much different, or its distance changed by this factor."""

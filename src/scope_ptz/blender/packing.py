@@ -17,8 +17,8 @@ from scope_ptz.blender.quality import FAR_M, NEAR_M, Quality
 from scope_ptz.blender.sheets import Sheet
 from scope_ptz.errors import BlenderError
 from scope_ptz.geometry import Perspective
-from scope_ptz.world.layers import write_colour, write_ids
-from scope_ptz.world.models import ActorSheet, Depth, Extent, Layer, Manifest, SceneFile, SceneViewpoint, Tile
+from scope_ptz.simulator.layers import write_colour, write_ids
+from scope_ptz.simulator.models import ActorSheet, Depth, Extent, Layer, Manifest, SceneFile, SceneViewpoint, Tile
 
 COLOUR = ".avif"
 """At the same structural similarity a quarter lighter than WebP."""

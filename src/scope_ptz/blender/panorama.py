@@ -15,7 +15,7 @@ from scope_ptz.blender.client import BlenderWorker
 from scope_ptz.blender.requests import panorama_request
 from scope_ptz.blender.workshop import Workshop
 from scope_ptz.geometry import Equirectangular
-from scope_ptz.world.layers import read_colour
+from scope_ptz.simulator.layers import read_colour
 
 STRIP_ROWS = 384
 OVERLAP_ROWS = 8

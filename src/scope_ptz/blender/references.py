@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.geometry import Pose
-from scope_ptz.world.layers import read_colour, read_ids, write_colour, write_ids
+from scope_ptz.simulator.layers import read_colour, read_ids, write_colour, write_ids
 
 INDEX = "references.json"
 QUALITY = 97

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from scope_ptz.blender.keyframes import Keyframe
 from scope_ptz.blender.quality import DEPTH_STEP, FAR_M, NEAR_M
-from scope_ptz.world.layers import encode_depth, read_colour
-from scope_ptz.world.models import Sprite
+from scope_ptz.simulator.layers import encode_depth, read_colour
+from scope_ptz.simulator.models import Sprite
 
 MAX_SHEET_WIDTH = 4096
 SHADOW_GAMMA = 0.5

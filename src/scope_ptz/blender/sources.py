@@ -6,17 +6,32 @@ import ast
 from hashlib import sha256
 from pathlib import Path
 
-PACKAGE = "scope_ptz.studio"
-STUDIO = Path(__file__).resolve().parents[1] / "studio"
+PACKAGE = "scope_studio"
+STUDIO = Path(__file__).resolve().parents[2] / "scope_studio"
 
 
 def scene_key(source: str) -> str:
     """A name for the present state of a scene's code: its own module and everything in the studio that it imports, however far."""
-    own = Path(source) if source.endswith(".py") else STUDIO / "scenes" / f"{source.replace('-', '_')}.py"
+    own = scene_file(source)
     digest = sha256()
     for path in [own, *sorted(_reach(own))]:
         digest.update(path.read_bytes())
-    return f"{own.stem.replace('_', '-')}-{digest.hexdigest()[:12]}"
+    name = own.parent.name if own.name == "__init__.py" else own.stem
+    return f"{name.replace('_', '-')}-{digest.hexdigest()[:12]}"
+
+
+def scene_file(source: str) -> Path:
+    """The Python file of a scene, which need not exist: ``source`` is a path that ends in ``.py``, or the name of a scene."""
+    if source.endswith(".py"):
+        return Path(source)
+    place = STUDIO / "scenes" / source.replace("-", "_")
+    single = place.with_suffix(".py")
+    return single if single.is_file() else place / "__init__.py"
+
+
+def scene_names() -> list[str]:
+    """Names of the scenes that can be built from code."""
+    return sorted(f.parent.name.replace("_", "-") for f in (STUDIO / "scenes").glob("*/__init__.py"))
 
 
 def _reach(start: Path) -> set[Path]:

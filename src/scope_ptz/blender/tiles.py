@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.geometry import Equirectangular, Perspective, direction, pan_tilt_deg
-from scope_ptz.world.models import SceneFile, SceneText, SceneViewpoint
+from scope_ptz.simulator.models import SceneFile, SceneText, SceneViewpoint
 
 CELL_PAN_DEG, CELL_TILT_DEG = 6.0, 4.0
 WIDER_PAN_DEG, WIDER_TILT_DEG = 30.0, 20.0

@@ -18,10 +18,10 @@ from scope_ptz.blender.references import keep_reference
 from scope_ptz.blender.requests import perspective_request
 from scope_ptz.blender.workshop import Progress, Workshop
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose, angle_between_deg, direction, pan_tilt_deg, wrap_pan_deg
-from scope_ptz.world.layers import read_colour
-from scope_ptz.world.models import Tile
-from scope_ptz.world.pack import Scene
-from scope_ptz.world.reproject import colour_view, id_view
+from scope_ptz.simulator.layers import read_colour
+from scope_ptz.simulator.models import Tile
+from scope_ptz.simulator.pack import Scene
+from scope_ptz.simulator.reproject import colour_view, id_view
 
 SEED_OF_LIVE = 7
 """Not the seed that packs are baked with: equal noise would flatter."""

@@ -14,9 +14,9 @@ from scope_ptz.blender.requests import perspective_request
 from scope_ptz.camera.base import Arrival, Camera, CameraInfo, Frame, FrameOrigin, PresetInfo
 from scope_ptz.errors import BlenderError, CameraError, UnknownNameError
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose
-from scope_ptz.world.clock import SceneClock
-from scope_ptz.world.layers import read_colour
-from scope_ptz.world.models import SceneFile, ScenePreset
+from scope_ptz.simulator.clock import SceneClock
+from scope_ptz.simulator.layers import read_colour
+from scope_ptz.simulator.models import SceneFile, ScenePreset
 
 
 class BlenderCamera(Camera):

@@ -12,10 +12,10 @@ from scope_ptz.camera.base import Arrival, Camera, CameraInfo, Frame, FrameOrigi
 from scope_ptz.camera.motion import AXIS_M5075_G_HEAD
 from scope_ptz.errors import UnknownNameError
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose
-from scope_ptz.world.clock import SceneClock
-from scope_ptz.world.models import ScenePreset
-from scope_ptz.world.pack import Scene
-from scope_ptz.world.views import picture
+from scope_ptz.simulator.clock import SceneClock
+from scope_ptz.simulator.models import ScenePreset
+from scope_ptz.simulator.pack import Scene
+from scope_ptz.simulator.views import picture
 
 TICK_S = 0.05
 """While moving, how often the camera looks whether it was told something else."""

@@ -16,6 +16,7 @@ from scope_ptz.blender.bake import bake
 from scope_ptz.blender.client import BlenderWorker
 from scope_ptz.blender.environment import is_ready, worker_command
 from scope_ptz.blender.quality import named_quality
+from scope_ptz.blender.sources import scene_names
 from scope_ptz.blender.tolerances import shortcomings
 from scope_ptz.blender.verify import PoseReport, draw_poses, verify
 from scope_ptz.cli.endings import FAILED
@@ -131,8 +132,7 @@ def _check(source: str) -> None:
     """A wrong name is told before Blender starts."""
     if source.endswith(".py") and Path(source).is_file():
         return
-    modules = Path(__file__).resolve().parents[1] / "studio" / "scenes"
-    known = [p.stem.replace("_", "-") for p in modules.glob("*.py") if "\nNAME = " in p.read_text(encoding="utf-8")]
+    known = scene_names()
     if source not in known:
         raise UnknownNameError("scene", source, known)
 

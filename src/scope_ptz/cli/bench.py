@@ -38,7 +38,7 @@ def bench() -> None:
 def schema() -> None:
     """Print the JSON schema of a task."""
     with ending():
-        from scope_ptz.bench.tasks import schema as task_schema
+        from scope_ptz.bench.tasks.task import schema as task_schema
 
         put_json(task_schema(), indent=2)
 
@@ -70,7 +70,7 @@ def validate(
 ) -> None:
     """Prove the tasks: right programs and answers pass, cheats do not. Exit code 1 on any failure."""
     with ending(as_json=as_json):
-        from scope_ptz.bench.splits import load_split
+        from scope_ptz.bench.tasks.splits import load_split
         from scope_ptz.cli.bench_proof import prove
         from scope_ptz.cli.bench_report import report_lines
 

@@ -13,10 +13,10 @@ from scope_ptz.cli.endings import complain, ending, put, put_json
 from scope_ptz.errors import InputError, OutputError
 
 if TYPE_CHECKING:
-    from scope_ptz.bench.episode import Look
-    from scope_ptz.bench.run_program import Stage
-    from scope_ptz.bench.tasks import Task
-    from scope_ptz.world.pack import Scene
+    from scope_ptz.bench.programs import Stage
+    from scope_ptz.bench.scoring.episode import Look
+    from scope_ptz.bench.tasks.task import Task
+    from scope_ptz.simulator.pack import Scene
 
 audit_app = typer.Typer(
     help="Readers who see only pictures answer tasks: draw the questions, score the answers.", no_args_is_help=True
@@ -43,11 +43,12 @@ def make(
     with ending():
         import anyio
 
-        from scope_ptz.bench.audit import DRAW, QUESTIONS, Draw, digest_of, drawn
-        from scope_ptz.bench.run_program import Stage
-        from scope_ptz.bench.splits import load_split
+        from scope_ptz.bench.programs import Stage
+        from scope_ptz.bench.tasks.files import digest_of
+        from scope_ptz.bench.tasks.splits import load_split
         from scope_ptz.cli.bench_eyes import KnownViews, equip_with_truth
         from scope_ptz.cli.bench_show import EYES
+        from scope_ptz.taskgen.audit import DRAW, QUESTIONS, Draw, drawn
 
         rows = load_split(tasks)
         chosen = drawn(rows, number, seed)
@@ -79,8 +80,8 @@ def score(
 ) -> None:
     """Read the answers with the benchmark's own reader. What looking into a disagreement showed goes into findings.jsonl."""
     with ending(as_json=as_json):
-        from scope_ptz.bench.audit import score as hold
-        from scope_ptz.bench.splits import load_split
+        from scope_ptz.bench.tasks.splits import load_split
+        from scope_ptz.taskgen.audit import score as hold
 
         audit = hold(folder, load_split(tasks))
         if out is not None:
@@ -100,7 +101,7 @@ async def _question(q: str, task: Task, stage: Stage, out: Path) -> dict[str, An
     """The row of a question; its pictures are written."""
     import cv2
 
-    from scope_ptz.world.views import picture
+    from scope_ptz.simulator.views import picture
 
     episode = await stage.run(task, task.reference, "")
     looks = list({(look.viewpoint, look.projection): look for call in episode.calls for look in call.looks[:1]}.values())

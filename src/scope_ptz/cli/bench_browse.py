@@ -13,7 +13,7 @@ from scope_ptz.cli.endings import ending, put
 from scope_ptz.errors import InputError
 
 if TYPE_CHECKING:
-    from scope_ptz.bench.tasks import Task
+    from scope_ptz.bench.tasks.task import Task
 
 CATEGORIES = (
     "counting", "descriptor", "location", "ocr", "single_call", "multi_step_command", "multi_step_reasoning", "comparative",
@@ -54,7 +54,7 @@ def browse(
 
 
 def _tasks(name: str) -> tuple[Task, ...]:
-    from scope_ptz.bench.splits import load_split
+    from scope_ptz.bench.tasks.splits import load_split
 
     return load_split(name) if name else (*load_split("all"), *load_split("unseen"))
 

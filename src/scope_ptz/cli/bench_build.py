@@ -13,8 +13,8 @@ from scope_ptz.cli.endings import FAILED, complain, ending, put
 from scope_ptz.errors import InputError
 
 if TYPE_CHECKING:
-    from scope_ptz.bench.authoring.assembly import Built
-    from scope_ptz.bench.tasks import Category
+    from scope_ptz.bench.tasks.task import Category
+    from scope_ptz.taskgen.authoring.assembly import Built
 
 UNSEEN_NUMBERS = (7, 8, 9)
 
@@ -43,10 +43,10 @@ def build(
             if card is not None:
                 write_card(out, card)
             sys.exit(0 if good else FAILED)
-        from scope_ptz.bench.authoring.assembly import build as make
-        from scope_ptz.bench.task_files import dump_tasks
-        from scope_ptz.bench.unseen import build_unseen
+        from scope_ptz.bench.tasks.files import dump_tasks
         from scope_ptz.cli.bench_eyes import answered
+        from scope_ptz.taskgen.authoring.assembly import build as make
+        from scope_ptz.taskgen.dataset.unseen import build_unseen
 
         scenes = list(scenes_named(scene).values())
         made = (
@@ -70,7 +70,7 @@ def _numbers(seeds: list[int] | None, further: list[int] | None) -> tuple[int, .
 
 
 def _quotas(share: float) -> dict[Category, int] | None:
-    from scope_ptz.bench.authoring.assembly import QUOTAS
+    from scope_ptz.taskgen.authoring.assembly import QUOTAS
 
     return None if share == 1.0 else {name: max(2, round(number * share)) for name, number in QUOTAS.items()}
 

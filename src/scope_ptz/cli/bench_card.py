@@ -17,9 +17,9 @@ def card(
 ) -> None:
     """Write the dataset card from the dataset's own files."""
     with ending():
-        from scope_ptz.bench.card import Dataset
-        from scope_ptz.bench.card import card as text_of
-        from scope_ptz.bench.splits import published_folder
+        from scope_ptz.bench.tasks.splits import published_folder
+        from scope_ptz.taskgen.dataset.card import Dataset
+        from scope_ptz.taskgen.dataset.card import card as text_of
 
         folder = data or published_folder()
         if out is not None:
@@ -31,8 +31,8 @@ def card(
 
 def write_card(folder: Path, out: Path) -> None:
     """Write the card of a dataset folder."""
-    from scope_ptz.bench.card import Dataset
-    from scope_ptz.bench.card import card as text_of
+    from scope_ptz.taskgen.dataset.card import Dataset
+    from scope_ptz.taskgen.dataset.card import card as text_of
 
     text = text_of(Dataset.read(folder))
     try:

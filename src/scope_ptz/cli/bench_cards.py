@@ -13,7 +13,7 @@ from scope_ptz import __version__
 from scope_ptz.bench.engine.cards import AGENT_SOURCE, DETERMINISTIC, PRICE, engine_version
 from scope_ptz.bench.engine.entries import Entry, datasets, digest
 from scope_ptz.bench.engine.estimate import Price
-from scope_ptz.bench.trials import ModelCard, RunCard
+from scope_ptz.bench.scoring.trials import ModelCard, RunCard
 from scope_ptz.cli.choosing import Choice, EyesChoice, PlannerChoice
 from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.planner.base import Planner

@@ -9,22 +9,22 @@ from typing import TYPE_CHECKING
 
 import anyio
 
-from scope_ptz.bench.authoring.assembly import build
-from scope_ptz.bench.card import GOLD, PROOF
-from scope_ptz.bench.gold import write_gold
-from scope_ptz.bench.splits import write_manifest, write_splits
-from scope_ptz.bench.unseen import build_unseen
+from scope_ptz.bench.tasks.splits import write_manifest, write_splits
 from scope_ptz.cli.bench_build import tell_short
 from scope_ptz.cli.bench_eyes import answered
 from scope_ptz.cli.bench_gold import made_gold, matrix_lines
 from scope_ptz.cli.bench_proof import prove
 from scope_ptz.cli.endings import complain, put
+from scope_ptz.taskgen.authoring.assembly import build
+from scope_ptz.taskgen.dataset.card import GOLD, PROOF
+from scope_ptz.taskgen.dataset.unseen import build_unseen
+from scope_ptz.taskgen.gold.runs import write_gold
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from scope_ptz.bench.tasks import Category
-    from scope_ptz.world.pack import Scene
+    from scope_ptz.bench.tasks.task import Category
+    from scope_ptz.simulator.pack import Scene
 
 
 def build_dataset(

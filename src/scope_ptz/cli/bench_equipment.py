@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from anyio import to_thread
 
+from scope_ptz.bench.engine.context import Equipment, ModelWish
 from scope_ptz.bench.engine.entries import Entry, entries_of, imported_entries
-from scope_ptz.bench.engine.equipment import Equipment, ModelWish
-from scope_ptz.bench.episode import Look
+from scope_ptz.bench.scoring.episode import Look
 from scope_ptz.camera.base import Frame, FrameOrigin
 from scope_ptz.cli.choosing import EyesChoice, PlannerChoice, Wishes, choose
 from scope_ptz.cli.session import GROUND_TRUTH_NOTE, NOISY_NOTE, make_planner, scene_search
@@ -19,8 +19,8 @@ from scope_ptz.errors import PerceptionError
 from scope_ptz.geometry import Equirectangular, Pose
 from scope_ptz.planner.base import Decision, Planner, State
 from scope_ptz.settings import load_settings
-from scope_ptz.world.library import Library
-from scope_ptz.world.pack import Scene
+from scope_ptz.simulator.library import Library
+from scope_ptz.simulator.pack import Scene
 
 if TYPE_CHECKING:
     from scope_ptz.bench.judging.judge import Complete
@@ -162,8 +162,8 @@ async def _count(truth: GroundTruthPerception, scene: str, look: Look) -> int | 
 
 def tasks_of(split: str, scenes: Callable[[str], Scene]) -> tuple[Entry, ...]:
     """The tasks of a split by name, or of a file."""
-    from scope_ptz.bench.importing.tasks import holds_imported, load_imported
-    from scope_ptz.bench.splits import load_split
+    from scope_ptz.bench.tasks.imported import holds_imported, load_imported
+    from scope_ptz.bench.tasks.splits import load_split
 
     if holds_imported(Path(split)):
         return imported_entries(load_imported(Path(split)))

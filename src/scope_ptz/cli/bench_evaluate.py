@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import anyio
 
-from scope_ptz.bench.trials import Trial
+from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.cli.bench_judged import Ended, JudgeWish, judged, open_wished
 from scope_ptz.cli.choosing import Choice, Wishes, choose
 from scope_ptz.cli.endings import complain
@@ -88,7 +88,7 @@ class _Prepared:
 
     def __init__(self, options: RunOptions, choice: Choice) -> None:
         from scope_ptz.bench.engine.entries import chosen, digest
-        from scope_ptz.bench.engine.guests import source_digest
+        from scope_ptz.bench.engine.external_agents import source_digest
         from scope_ptz.bench.engine.runs import identity_of
         from scope_ptz.cli.bench_equipment import lend, planner_for
 
@@ -133,7 +133,7 @@ class _Prepared:
         return [] if self.options.fresh else await find(self.options.out, self.identity)
 
     async def run(self, console: Console, before: Sequence[Found]) -> Path:
-        from scope_ptz.bench.engine.equipment import EQUIPMENT
+        from scope_ptz.bench.engine.context import EQUIPMENT
         from scope_ptz.bench.engine.logs import read_evaluation
         from scope_ptz.bench.engine.runs import run
         from scope_ptz.cli.bench_equipment import judge_maker

@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import lru_cache
 
-from scope_ptz.bench.authoring.drafts import Draft
-from scope_ptz.bench.ground import Sight
-from scope_ptz.bench.reader import agrees, read
-from scope_ptz.bench.run_program import Equip
+from scope_ptz.bench.answers.reader import agrees, read
+from scope_ptz.bench.programs import Equip
 from scope_ptz.camera.base import Frame
 from scope_ptz.geometry import Projection
 from scope_ptz.perception.answers import answer
@@ -16,10 +14,12 @@ from scope_ptz.perception.ground_truth import GroundTruthPerception
 from scope_ptz.perception.language import parse_description, parse_question
 from scope_ptz.perception.language.lexicon import COLOURS, nouns_in
 from scope_ptz.perception.view import View, read_view
+from scope_ptz.simulator.actors import appearances, shows
+from scope_ptz.simulator.pack import Scene
+from scope_ptz.simulator.truth import ViewTruth, view_truth
+from scope_ptz.taskgen.authoring.drafts import Draft
+from scope_ptz.taskgen.facts.robust import Sight
 from scope_ptz.tools.context import ToolContext
-from scope_ptz.world.actors import appearances, shows
-from scope_ptz.world.pack import Scene
-from scope_ptz.world.truth import ViewTruth, view_truth
 
 
 class NamesOnly:

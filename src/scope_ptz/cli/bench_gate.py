@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from scope_ptz.bench.engine.gate import Comparison, Gate
-    from scope_ptz.bench.trials import Evaluation
+    from scope_ptz.bench.scoring.trials import Evaluation
 
 MOST_TOLD = 40
 

@@ -13,11 +13,11 @@ from scope_ptz.cli.endings import FAILED, complain, ending, put
 from scope_ptz.errors import ConfigError, InputError
 
 if TYPE_CHECKING:
-    from scope_ptz.bench.generating.ledger import Ledger
-    from scope_ptz.bench.generating.loop import Order, Prove
-    from scope_ptz.bench.tasks import Category, Task
+    from scope_ptz.bench.tasks.task import Category, Task
     from scope_ptz.endpoints.endpoint import Endpoint
-    from scope_ptz.world.pack import Scene
+    from scope_ptz.simulator.pack import Scene
+    from scope_ptz.taskgen.generating.ledger import Ledger
+    from scope_ptz.taskgen.generating.loop import Order, Prove
 
 
 def generate(
@@ -42,11 +42,11 @@ def generate(
     with ending():
         import anyio
 
-        from scope_ptz.bench.generating.ledger import Ledger
-        from scope_ptz.bench.generating.loop import Order
-        from scope_ptz.bench.generating.operators import read_runs
-        from scope_ptz.bench.splits import load_split
+        from scope_ptz.bench.tasks.splits import load_split
         from scope_ptz.cli.session import open_scene
+        from scope_ptz.taskgen.generating.ledger import Ledger
+        from scope_ptz.taskgen.generating.loop import Order
+        from scope_ptz.taskgen.generating.operators import read_runs
 
         order = Order(
             scene=open_scene(scene),
@@ -72,8 +72,8 @@ def generate(
 
 
 async def _run(order: Order, ledger: Ledger, endpoint: Endpoint, model: str, temperature: float) -> None:
-    from scope_ptz.bench.generating.loop import generate as drafts
     from scope_ptz.bench.judging.server import JudgeOptions, ServerPort
+    from scope_ptz.taskgen.generating.loop import generate as drafts
 
     options = JudgeOptions(temperature=temperature, seed=order.seed)
     port = ServerPort(await _named(endpoint, model), options)
@@ -85,8 +85,8 @@ async def _run(order: Order, ledger: Ledger, endpoint: Endpoint, model: str, tem
 
 def prover(scene: Scene) -> Prove:
     """Proof of single tasks by the same attempts as ``scope bench validate`` makes."""
-    from scope_ptz.bench.validate import validate
     from scope_ptz.cli.bench_eyes import KnownViews, equip_with_truth
+    from scope_ptz.taskgen.validation.validate import validate
 
     views = KnownViews()
     equip = equip_with_truth({scene.name: scene}, views)
@@ -101,7 +101,7 @@ def prover(scene: Scene) -> Prove:
 
 def _wanted(want: list[str], number: int) -> dict[Category, int]:
     """How many of each category: as given, or the published shares of a number."""
-    from scope_ptz.bench.authoring.assembly import QUOTAS
+    from scope_ptz.taskgen.authoring.assembly import QUOTAS
 
     if not want:
         shares = sorted(QUOTAS, key=lambda name: -(number * QUOTAS[name] / sum(QUOTAS.values()) % 1))

@@ -13,8 +13,8 @@ from scope_ptz.cli.bench_inputs import TasksOption, worlds_of
 from scope_ptz.cli.endings import FAILED, ending, put, put_json
 
 if TYPE_CHECKING:
-    from scope_ptz.bench.mutations import Gold
-    from scope_ptz.bench.tasks import Task
+    from scope_ptz.bench.tasks.task import Task
+    from scope_ptz.taskgen.gold.mutations import Gold
 
 gold_app = typer.Typer(help="Runs with one known fault each: what the error-mode rules make of them.", no_args_is_help=True)
 AsJson = Annotated[bool, typer.Option("--json", help="The result as JSON.")]
@@ -31,8 +31,8 @@ def make(
     with ending(as_json=as_json):
         import anyio
 
-        from scope_ptz.bench.gold import matrix, write_gold
-        from scope_ptz.bench.splits import load_split
+        from scope_ptz.bench.tasks.splits import load_split
+        from scope_ptz.taskgen.gold.runs import matrix, write_gold
 
         gold = anyio.run(made_gold, load_split(tasks), seed)
         out.parent.mkdir(parents=True, exist_ok=True)
@@ -52,8 +52,8 @@ def check(
 ) -> None:
     """Apply the rules to the gold runs again. Exit code 1 when fewer faults are named, or more let through, than published."""
     with ending(as_json=as_json):
-        from scope_ptz.bench.gold import matrix, read_gold
-        from scope_ptz.bench.splits import load_split, published_folder
+        from scope_ptz.bench.tasks.splits import load_split, published_folder
+        from scope_ptz.taskgen.gold.runs import matrix, read_gold
 
         published, runs = read_gold(gold or published_folder() / "gold.jsonl.gz", load_split(tasks))
         result = matrix(runs)
@@ -70,13 +70,13 @@ def check(
 
 async def made_gold(tasks: Sequence[Task], seed: int) -> list[Gold]:
     """Gold runs of tasks: their reference programs through the tools with the ground truth for eyes, then the faults."""
-    from scope_ptz.bench.authoring.places import preset_at
-    from scope_ptz.bench.gold import EYES, gold_runs
-    from scope_ptz.bench.mutations import Setting
-    from scope_ptz.bench.phrasing import right_answers
-    from scope_ptz.bench.run_program import Stage
-    from scope_ptz.bench.verdict import judge
+    from scope_ptz.bench.programs import Stage
+    from scope_ptz.bench.scoring.verdict import judge
     from scope_ptz.cli.bench_eyes import KnownViews, equip_with_truth
+    from scope_ptz.taskgen.authoring.places import preset_at
+    from scope_ptz.taskgen.facts.phrasing import right_answers
+    from scope_ptz.taskgen.gold.mutations import Setting
+    from scope_ptz.taskgen.gold.runs import EYES, gold_runs
 
     worlds = worlds_of(tasks)
     equip = equip_with_truth(worlds, KnownViews())
@@ -100,8 +100,8 @@ HEADS = {
 
 def matrix_lines(gold: Sequence[Gold]) -> Iterator[str]:
     """The confusion matrix, rows the faults put in, columns what they were taken for; then every run off the diagonal."""
-    from scope_ptz.bench.error_modes import ErrorMode
-    from scope_ptz.bench.gold import OTHER, matrix
+    from scope_ptz.bench.scoring.error_modes import ErrorMode
+    from scope_ptz.taskgen.gold.runs import OTHER, matrix
 
     result = matrix(gold)
     columns = [*(mode.value for mode in ErrorMode), *OTHER]

@@ -17,10 +17,10 @@ from scope_ptz.errors import InputError, OutputError, TraceError
 
 if TYPE_CHECKING:
     from scope_ptz.agent.trace import Trace
-    from scope_ptz.bench.tasks import Task
-    from scope_ptz.bench.trials import Evaluation
+    from scope_ptz.bench.scoring.trials import Evaluation
+    from scope_ptz.bench.tasks.task import Task
     from scope_ptz.cli.human_agent import Left
-    from scope_ptz.world.pack import Scene
+    from scope_ptz.simulator.pack import Scene
 
 MAX_STEPS = 200
 
@@ -36,7 +36,7 @@ def human(
 ) -> None:
     """Do tasks yourself: you type what the camera does, and you are its eyes. Stop and go on whenever you like."""
     with ending():
-        from scope_ptz.bench.splits import load_split
+        from scope_ptz.bench.tasks.splits import load_split
 
         if category and category not in CATEGORIES:
             raise InputError(f"There is no category '{category}'. There are: {', '.join(CATEGORIES)}.")
@@ -105,7 +105,7 @@ class _Sitting:
         return left
 
     def _finish(self) -> None:
-        from scope_ptz.bench.people import write_result
+        from scope_ptz.bench.human import write_result
 
         result = self._result()
         if not result.trials:
@@ -115,8 +115,8 @@ class _Sitting:
         put(f"\n{len(result.trials)} of {result.wanted} tasks done, {right} correct; {write_result(result, self.out)}")
 
     def _result(self) -> Evaluation:
-        from scope_ptz.bench.people import card, trial
-        from scope_ptz.bench.trials import Evaluation
+        from scope_ptz.bench.human import card, trial
+        from scope_ptz.bench.scoring.trials import Evaluation
 
         done = [(task, trace) for task in self.tasks if (trace := self._trace(task)) is not None]
         started = min((trace.started.started for _, trace in done), default=datetime.now(UTC)).isoformat()
@@ -138,7 +138,7 @@ async def run_by_person(task: Task, scene: Scene, folder: Path, by: str) -> Left
     from scope_ptz.cli.human_agent import HumanEyes, HumanPlanner
     from scope_ptz.cli.human_pictures import Viewer
     from scope_ptz.settings import inline_pictures
-    from scope_ptz.world.clock import SceneClock
+    from scope_ptz.simulator.clock import SceneClock
 
     clock = SceneClock(task.time_s)
     camera = SimulatedCamera(scene, clock=clock)

@@ -12,7 +12,7 @@ import typer
 from scope_ptz.cli.endings import FAILED, complain, ending, put, put_json
 
 if TYPE_CHECKING:
-    from scope_ptz.bench.importing.places import Places
+    from scope_ptz.taskgen.importing.places import Places
 
 
 def import_tasks(
@@ -34,9 +34,9 @@ def import_tasks(
     Exit code 1 when no row can be run.
     """
     with ending(as_json=as_json):
-        from scope_ptz.bench.importing.report import import_file, report_lines
-        from scope_ptz.bench.importing.tasks import dump_imported
+        from scope_ptz.bench.tasks.imported import dump_imported
         from scope_ptz.errors import OutputError
+        from scope_ptz.taskgen.importing.report import import_file, report_lines
 
         imported = import_file(file, places_in(scenes, mapping))
         target = out or Path(f"{file.stem}.imported.jsonl")
@@ -67,11 +67,11 @@ def import_tasks(
 
 def places_in(folder: Path | None, mapping: Path | None) -> Places:
     """The scenes of a folder and the built-in ones, with what a mapping file says. Raises ``InputError``."""
-    from scope_ptz.bench.importing.places import PlaceMap, Places, ScenePresets, read_place_map
     from scope_ptz.cli.session import scene_search
     from scope_ptz.errors import InputError
     from scope_ptz.settings import load_settings
-    from scope_ptz.world.pack import list_scenes, load_scene
+    from scope_ptz.simulator.pack import list_scenes, load_scene
+    from scope_ptz.taskgen.importing.places import PlaceMap, Places, ScenePresets, read_place_map
 
     if folder is not None and not folder.is_dir():
         raise InputError(f"There is no folder {folder} of scenes.")

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from scope_ptz.bench.tasks import Task
-    from scope_ptz.world.pack import Scene
+    from scope_ptz.bench.tasks.task import Task
+    from scope_ptz.simulator.pack import Scene
 
 TasksOption = Annotated[
     str,
@@ -22,7 +22,7 @@ def scenes_named(names: list[str] | None) -> dict[str, Scene]:
     """Scenes by name; all there are when none is named."""
     from scope_ptz.cli.session import open_scene, scene_search
     from scope_ptz.settings import load_settings
-    from scope_ptz.world.pack import list_scenes
+    from scope_ptz.simulator.pack import list_scenes
 
     return {name: open_scene(name) for name in dict.fromkeys(names or list_scenes(scene_search(load_settings())))}
 

@@ -19,10 +19,10 @@ from scope_ptz.cli.endings import FAILED, complain, ending, put, put_json
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from scope_ptz.bench.judging.gold import GoldCase, GoldResult, GoldVerdict
     from scope_ptz.bench.judging.server import ServerPort
     from scope_ptz.bench.judging.tally import Tally
-    from scope_ptz.bench.trials import Judgement
+    from scope_ptz.bench.scoring.trials import Judgement
+    from scope_ptz.taskgen.gold.judges import GoldCase, GoldResult, GoldVerdict
 
 
 def judge_gold(
@@ -46,7 +46,7 @@ def judge_gold(
     with ending(as_json=as_json):
         import anyio
 
-        from scope_ptz.bench.judging.gold import read_verdicts, results
+        from scope_ptz.taskgen.gold.judges import read_verdicts, results
 
         before = read_verdicts(out)
         cases = gold_cases(gold, tasks, passing, limit)
@@ -75,11 +75,11 @@ async def _judge_all(
     port: ServerPort, cases: Sequence[GoldCase], before: Sequence[GoldVerdict], out: Path, *, repeats: int, concurrency: int
 ) -> Tally:
     """Judge what was not judged yet, and what came of that. A verdict that failed before is asked for again."""
-    from scope_ptz.bench.judging.gold import judge_gold as judge_cases
     from scope_ptz.bench.judging.judge import Judge
     from scope_ptz.bench.judging.lines import append_line
     from scope_ptz.bench.judging.rubrics import prompt_version
     from scope_ptz.bench.judging.tally import Tally
+    from scope_ptz.taskgen.gold.judges import judge_gold as judge_cases
 
     name = port.client.endpoint.model
     version = prompt_version()
@@ -107,15 +107,15 @@ def gold_cases(gold: Path | None, tasks: str, passing: int, limit: int | None) -
     """Gold runs and, among them, runs of the same tasks that pass, made by their reference programs."""
     import anyio
 
-    from scope_ptz.bench.episode import Places
-    from scope_ptz.bench.gold import EYES, read_gold
-    from scope_ptz.bench.judging.gold import gold_case, in_turn, passing_case
-    from scope_ptz.bench.phrasing import right_answers
-    from scope_ptz.bench.run_program import Stage
-    from scope_ptz.bench.splits import load_split, published_folder
-    from scope_ptz.bench.verdict import judge
+    from scope_ptz.bench.programs import Stage
+    from scope_ptz.bench.scoring.episode import Places
+    from scope_ptz.bench.scoring.verdict import judge
+    from scope_ptz.bench.tasks.splits import load_split, published_folder
     from scope_ptz.cli.bench_eyes import equip_with_truth
     from scope_ptz.cli.bench_inputs import worlds_of
+    from scope_ptz.taskgen.facts.phrasing import right_answers
+    from scope_ptz.taskgen.gold.judges import gold_case, in_turn, passing_case
+    from scope_ptz.taskgen.gold.runs import EYES, read_gold
 
     _, runs = read_gold(gold or published_folder() / "gold.jsonl.gz", load_split(tasks))
     runs = in_turn(runs)[:limit]
@@ -137,8 +137,8 @@ def gold_cases(gold: Path | None, tasks: str, passing: int, limit: int | None) -
 
 def gold_lines(result: GoldResult) -> Iterator[str]:
     """What a judge made of gold runs, as text."""
-    from scope_ptz.bench.error_modes import ErrorMode
-    from scope_ptz.bench.judging.gold import APART, PASSES
+    from scope_ptz.bench.scoring.error_modes import ErrorMode
+    from scope_ptz.taskgen.gold.judges import APART, PASSES
 
     modes = [mode.value for mode in ErrorMode]
     columns = [*modes, "correct", *APART]

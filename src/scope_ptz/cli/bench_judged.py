@@ -11,10 +11,10 @@ from scope_ptz.cli.bench_rescore import AT_A_TIME, score_again
 from scope_ptz.cli.endings import complain
 
 if TYPE_CHECKING:
-    from scope_ptz.bench.engine.equipment import Equipment
+    from scope_ptz.bench.engine.context import Equipment
     from scope_ptz.bench.judging.server import ServerPort
     from scope_ptz.bench.judging.tally import Tally
-    from scope_ptz.bench.trials import Evaluation
+    from scope_ptz.bench.scoring.trials import Evaluation
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from scope_ptz.bench.engine.logs import SampleFiles
-    from scope_ptz.bench.trials import Evaluation, Label, Trial
+    from scope_ptz.bench.scoring.trials import Evaluation, Label, Trial
 
 _HELP = """c correct   i1-i8 incorrect, with the error mode   u unclear   s skip   b back   q quit   ? modes
 A note may follow: "i6 the tool counted 4, there are 5"."""
@@ -157,8 +157,8 @@ class _Labelling:
                         return 1
 
     def _label(self, verb: str, mode: str | None, note: str) -> Label | None:
-        from scope_ptz.bench.error_modes import ErrorMode
-        from scope_ptz.bench.trials import Label
+        from scope_ptz.bench.scoring.error_modes import ErrorMode
+        from scope_ptz.bench.scoring.trials import Label
 
         if verb == "i" and mode is None:
             put("Which error mode?")

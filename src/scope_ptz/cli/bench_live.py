@@ -13,12 +13,12 @@ from rich.progress_bar import ProgressBar
 from rich.table import Table
 from rich.text import Text
 
+from scope_ptz.bench.engine.context import Watcher
 from scope_ptz.bench.engine.entries import Entry
-from scope_ptz.bench.engine.equipment import Watcher
 from scope_ptz.bench.judging.deciding import beside
 from scope_ptz.bench.judging.tally import not_judged, without_verdict
-from scope_ptz.bench.tasks import Category
-from scope_ptz.bench.trials import Evaluation, Trial
+from scope_ptz.bench.scoring.trials import Evaluation, Trial
+from scope_ptz.bench.tasks.task import Category
 from scope_ptz.cli.bench_troubles import events_of, told
 
 CATEGORIES: tuple[str, ...] = get_args(Category)

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import anyio
 
-from scope_ptz.bench.validate import Report, validate
 from scope_ptz.cli.bench_eyes import KnownViews, equip_with_truth
 from scope_ptz.cli.bench_inputs import worlds_of
+from scope_ptz.taskgen.validation.validate import Report, validate
 
 if TYPE_CHECKING:
-    from scope_ptz.bench.tasks import Task
+    from scope_ptz.bench.tasks.task import Task
 
 
 def prove(tasks: Sequence[Task], seed: int, say: Callable[[int, int], None] | None = None, beside: Sequence[Task] = ()) -> Report:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from scope_ptz.bench.validate import Fault, Report
+from scope_ptz.taskgen.validation.validate import Fault, Report
 
 MOST_LISTED = 40
 

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
     from scope_ptz.bench.reports.submission import Header, TrialLine
     from scope_ptz.bench.reports.task_pages import SampleFiles
-    from scope_ptz.bench.tasks import Task
-    from scope_ptz.bench.trials import Evaluation, Trial
+    from scope_ptz.bench.scoring.trials import Evaluation, Trial
+    from scope_ptz.bench.tasks.task import Task
 
 submission_app = typer.Typer(help="The file for a public leaderboard.", no_args_is_help=True)
 MOST_TOLD = 50
@@ -39,7 +39,7 @@ def report(
     """Write a page, Markdown and CSV tables of logs: everything that the paper shows, for any set of runs."""
     with ending():
         _need_extra()
-        from scope_ptz.bench.reports.writing import write_report
+        from scope_ptz.bench.reports.write import write_report
         from scope_ptz.registry import load_registry
         from scope_ptz.settings import load_settings
 
@@ -48,7 +48,7 @@ def report(
 
         def open_trial(evaluation: Evaluation, trial: Trial) -> SampleFiles:
             from scope_ptz.bench.engine.logs import open_sample
-            from scope_ptz.bench.people import open_run
+            from scope_ptz.bench.human import open_run
 
             path = where[id(evaluation)]
             return open_run(path, trial.sample) if path.suffix == RESULT else open_sample(path, trial.sample)
@@ -132,7 +132,7 @@ def _lacking(header: Header, lines: Sequence[TrialLine], tasks: str | None) -> l
 
 
 def _is_published(split: str) -> bool:
-    from scope_ptz.bench.splits import SPLITS
+    from scope_ptz.bench.tasks.splits import SPLITS
 
     return split in SPLITS
 
@@ -157,7 +157,7 @@ def _read(path: Path) -> Evaluation:
     from scope_ptz.bench.judging.labels import labels_file, read_labels, with_labels
 
     if path.suffix == RESULT:
-        from scope_ptz.bench.people import read_result
+        from scope_ptz.bench.human import read_result
 
         return read_result(path)
     from scope_ptz.bench.engine.logs import read_evaluation
@@ -167,7 +167,7 @@ def _read(path: Path) -> Evaluation:
 
 def _tasks(wanted: str | None) -> Sequence[Task]:
     """The tasks named; by default whatever is published, which may be nothing."""
-    from scope_ptz.bench.splits import load_split
+    from scope_ptz.bench.tasks.splits import load_split
     from scope_ptz.errors import InputError
 
     if wanted is not None:
@@ -182,7 +182,7 @@ def _tasks(wanted: str | None) -> Sequence[Task]:
 
 
 def _expected(wanted: str | None) -> Sequence[Task] | None:
-    from scope_ptz.bench.splits import load_split
+    from scope_ptz.bench.tasks.splits import load_split
 
     return None if wanted is None else load_split(wanted)
 

@@ -16,7 +16,7 @@ from scope_ptz.errors import InputError
 
 if TYPE_CHECKING:
     from scope_ptz.bench.engine.estimate import Price
-    from scope_ptz.bench.trials import Evaluation
+    from scope_ptz.bench.scoring.trials import Evaluation
     from scope_ptz.cli.bench_judged import Ended
 
 TASKS_PANEL, RUN_PANEL = "Tasks", "Running"

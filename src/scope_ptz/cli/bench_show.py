@@ -11,17 +11,17 @@ import numpy as np
 from PIL import Image
 
 from scope_ptz.agent.drawing import AMBER, CYAN, EDGE, FAINT, INK, SURFACE, Canvas, cut, drawable, wrap
-from scope_ptz.bench.coverage import box_directions
-from scope_ptz.bench.episode import Eyes
-from scope_ptz.bench.phrasing import right_answers
-from scope_ptz.bench.run_program import Stage
-from scope_ptz.bench.tasks import EvidenceView, Item, Task
-from scope_ptz.bench.verdict import judge
+from scope_ptz.bench.programs import Stage
+from scope_ptz.bench.scoring.coverage import box_directions
+from scope_ptz.bench.scoring.episode import Eyes
+from scope_ptz.bench.scoring.verdict import judge
+from scope_ptz.bench.tasks.task import EvidenceView, Item, Task
 from scope_ptz.cli.bench_eyes import equip_with_truth
 from scope_ptz.errors import OutputError
 from scope_ptz.geometry import Equirectangular, Perspective, Pose, Projection
-from scope_ptz.world.pack import Scene
-from scope_ptz.world.views import picture
+from scope_ptz.simulator.pack import Scene
+from scope_ptz.simulator.views import picture
+from scope_ptz.taskgen.facts.phrasing import right_answers
 
 EYES = Eyes(1280, 720)
 _MARGIN, _HEAD, _LINE = 28, 118, 24

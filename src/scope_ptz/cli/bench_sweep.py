@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-    from scope_ptz.bench.trials import Evaluation
+    from scope_ptz.bench.scoring.trials import Evaluation
     from scope_ptz.cli.bench_evaluate import RunOptions
     from scope_ptz.cli.choosing import Wishes
 

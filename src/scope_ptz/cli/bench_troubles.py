@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from scope_ptz.bench.trials import ModelCard, RunCard, Trial
+from scope_ptz.bench.scoring.trials import ModelCard, RunCard, Trial
 from scope_ptz.endpoints.failures import FailureKind, ServerFailure
 
 

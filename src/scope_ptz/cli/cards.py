@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 
-from scope_ptz.world.models import Layer, Manifest, ScenePreset, SceneViewpoint
-from scope_ptz.world.pack import Scene
+from scope_ptz.simulator.models import Layer, Manifest, ScenePreset, SceneViewpoint
+from scope_ptz.simulator.pack import Scene
 
 
 @dataclass(frozen=True, slots=True)

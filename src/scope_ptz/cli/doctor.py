@@ -82,7 +82,7 @@ def _packages() -> Finding:
 
 
 def _scenes(settings: ScopeSettings) -> Iterator[Finding]:
-    from scope_ptz.world.pack import find_scenes
+    from scope_ptz.simulator.pack import find_scenes
 
     scenes = find_scenes(scene_search(settings))
     if settings.scenes_dir is not None and not settings.scenes_dir.is_dir():

@@ -10,8 +10,8 @@ from typing import Any
 from inspect_ai import Task, task
 from inspect_ai.model import ModelAPI, modelapi
 
+from scope_ptz.bench.engine.context import EQUIPMENT
 from scope_ptz.bench.engine.entries import chosen
-from scope_ptz.bench.engine.equipment import EQUIPMENT
 from scope_ptz.bench.engine.models import ScopeModel
 from scope_ptz.bench.engine.tasks import bench_task
 from scope_ptz.cli.bench_equipment import lend

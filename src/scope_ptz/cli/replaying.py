@@ -18,7 +18,7 @@ from scope_ptz.cli.display import LiveView, plain, show_end
 from scope_ptz.cli.endings import FAILED, put_json
 from scope_ptz.cli.session import open_scene
 from scope_ptz.errors import InputError, PackError, UnknownNameError
-from scope_ptz.world.clock import SceneClock
+from scope_ptz.simulator.clock import SceneClock
 
 _LEAD_S = 30.0
 """The clock starts this much before the run, so that getting to the first pose ends in time."""

@@ -18,8 +18,8 @@ from scope_ptz.cli.session import Start, open_camera, open_scene, scene_search
 from scope_ptz.errors import InputError, OutputError
 from scope_ptz.geometry import Pose
 from scope_ptz.settings import has_desktop, load_settings
-from scope_ptz.world.pack import Scene
-from scope_ptz.world.pack import list_scenes as scene_names
+from scope_ptz.simulator.pack import Scene
+from scope_ptz.simulator.pack import list_scenes as scene_names
 
 
 def list_scenes(*, as_json: bool) -> None:

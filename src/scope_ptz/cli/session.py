@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from scope_ptz.cli.choosing import EyesChoice, PlannerChoice
     from scope_ptz.perception.base import Perception
     from scope_ptz.planner.base import Planner
-    from scope_ptz.world.pack import Scene
+    from scope_ptz.simulator.pack import Scene
 
 DEFAULT_SCENE = "highway-works"
 GROUND_TRUTH_NOTE = "Perception is the simulator's own ground truth, not a model."
@@ -39,7 +39,7 @@ def scene_search(settings: ScopeSettings) -> tuple[Path, ...]:
 
 def open_scene(name: str) -> Scene:
     """A scene by name, from the configured folder or the package."""
-    from scope_ptz.world.pack import load_scene
+    from scope_ptz.simulator.pack import load_scene
 
     return load_scene(name, scene_search(load_settings()))
 
@@ -47,7 +47,7 @@ def open_scene(name: str) -> Scene:
 async def open_camera(start: Start, scene: Scene, *, realtime: bool) -> SimulatedCamera:
     """A simulated camera at its start."""
     from scope_ptz.camera.simulated import SimulatedCamera
-    from scope_ptz.world.clock import SceneClock
+    from scope_ptz.simulator.clock import SceneClock
 
     if start.viewpoint and start.preset:
         raise InputError("Give --viewpoint or --preset, not both: a preset names its viewpoint.")

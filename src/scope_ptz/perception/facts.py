@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from scope_ptz.perception.language import words as w
 from scope_ptz.perception.language.lexicon import COLOURS, lexicon, nouns_in, singular_phrase
 from scope_ptz.perception.view import Thing, View, head_of
-from scope_ptz.world.models import Attribute
+from scope_ptz.simulator.models import Attribute
 
 _STATES = [
     "",

@@ -16,8 +16,8 @@ from scope_ptz.perception.language import parse_description, parse_question
 from scope_ptz.perception.language.syntax import Describe
 from scope_ptz.perception.matching import find
 from scope_ptz.perception.view import Thing, View, read_view
-from scope_ptz.world.pack import Scene
-from scope_ptz.world.truth import ViewTruth, view_truth
+from scope_ptz.simulator.pack import Scene
+from scope_ptz.simulator.truth import ViewTruth, view_truth
 
 Look = Callable[[Scene, str, Projection, float], ViewTruth]
 

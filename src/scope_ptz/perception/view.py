@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from scope_ptz.perception.base import Box
 from scope_ptz.perception.language import words as w
 from scope_ptz.perception.language.lexicon import lexicon, singular_phrase
-from scope_ptz.world.actors import whereabouts
-from scope_ptz.world.models import Attribute, SceneActor, SceneFile, SceneInstance
-from scope_ptz.world.truth import Sighting, TextSighting, ViewTruth
+from scope_ptz.simulator.actors import whereabouts
+from scope_ptz.simulator.models import Attribute, SceneActor, SceneFile, SceneInstance
+from scope_ptz.simulator.truth import Sighting, TextSighting, ViewTruth
 
 Floats = NDArray[np.float64]
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from scope_ptz.bench.task_files import dump_tasks
+from scope_ptz.bench.tasks.files import dump_tasks
 from scope_ptz.cli import main
 from tests.bench.engine.making import TASKS
 from tests.cli.conftest import scenes, scope

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from scope_ptz.bench.expected import ActionOnly, AnyExpected, Number
-from scope_ptz.bench.tasks import Aim, Behaviour, Category, EvidenceView, FinalPose, ProgramCall, Task
+from scope_ptz.bench.tasks.expected import ActionOnly, AnyExpected, Number
+from scope_ptz.bench.tasks.task import Aim, Behaviour, Category, EvidenceView, FinalPose, ProgramCall, Task
 from scope_ptz.geometry import AXIS_M5075_G
 
 SCENE = "analytic-yard"

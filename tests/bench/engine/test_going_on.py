@@ -12,14 +12,14 @@ from pathlib import Path
 
 import pytest
 
-from scope_ptz.bench.engine.beside import check_beside
+from scope_ptz.bench.engine.annotations import check_beside
 from scope_ptz.bench.engine.journal import Journal, journal_file
 from scope_ptz.bench.engine.logs import open_sample, read_evaluation
 from scope_ptz.bench.engine.runs import alone
 from scope_ptz.bench.judging.labels import add_label, labels_file, read_labels
 from scope_ptz.bench.judging.rubrics import prompt_version
-from scope_ptz.bench.task_files import dump_tasks
-from scope_ptz.bench.trials import Judgement, Label
+from scope_ptz.bench.scoring.trials import Judgement, Label
+from scope_ptz.bench.tasks.files import dump_tasks
 from scope_ptz.cli.bench_label import drawn
 from scope_ptz.errors import InputError
 from tests.bench.engine.making import many

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from scope_ptz.bench.engine.guests import Desk, GuestPlanner, Reply, source_digest
+from scope_ptz.bench.engine.external_agents import Desk, GuestPlanner, Reply, source_digest
 from scope_ptz.bench.engine.logs import open_sample, read_evaluation
 from scope_ptz.errors import PlannerError
 from scope_ptz.geometry import Limits, Pose

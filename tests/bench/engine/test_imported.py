@@ -7,13 +7,14 @@ from pathlib import Path
 
 from scope_ptz.bench.engine.gate import gate
 from scope_ptz.bench.engine.logs import read_evaluation
-from scope_ptz.bench.importing.tasks import ImportedTask
 from scope_ptz.bench.judging.deciding import beside, decided, decider_of
 from scope_ptz.bench.judging.tally import not_judged
 from scope_ptz.bench.reports.judged import judge_name, verdicts
 from scope_ptz.bench.reports.runs import Run
-from scope_ptz.bench.tasks import RequiredCall
-from scope_ptz.bench.trials import Evaluation, Judgement, TaskFacts, Trial
+from scope_ptz.bench.scoring.trials import Evaluation, Judgement, Trial
+from scope_ptz.bench.tasks.facts import TaskFacts
+from scope_ptz.bench.tasks.imported import ImportedTask
+from scope_ptz.bench.tasks.task import RequiredCall
 from scope_ptz.cli.bench_live import accuracy, waiting
 from tests.bench.engine.making import SCENE
 from tests.bench.reports.making import card, facts

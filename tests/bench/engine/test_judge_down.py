@@ -9,7 +9,7 @@ from scope_ptz.bench.engine.journal import Journal
 from scope_ptz.bench.engine.logs import read_evaluation, uuids_in
 from scope_ptz.bench.judging.rubrics import prompt_version
 from scope_ptz.bench.judging.tally import Tally, judged_by
-from scope_ptz.bench.trials import Judgement
+from scope_ptz.bench.scoring.trials import Judgement
 from tests.bench.engine.test_judges import verdict
 from tests.cli.conftest import Scope
 from tests.support.misbehaving import Behaviour, Exchange, Misbehaving, Say, body, good, status

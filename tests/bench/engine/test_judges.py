@@ -11,8 +11,8 @@ from rich.console import Console
 
 from scope_ptz.bench.engine.journal import Journal
 from scope_ptz.bench.engine.logs import read_evaluation
-from scope_ptz.bench.task_files import dump_tasks
-from scope_ptz.bench.trials import ModelCard
+from scope_ptz.bench.scoring.trials import ModelCard
+from scope_ptz.bench.tasks.files import dump_tasks
 from scope_ptz.cli.bench_sweep import tables_of
 from tests.bench.engine.making import TASKS
 from tests.cli.conftest import Scope

@@ -9,10 +9,10 @@ import pytest
 from inspect_ai import eval_async
 from inspect_ai.model import Model, get_model
 
-from scope_ptz.bench.engine.equipment import EQUIPMENT
+from scope_ptz.bench.engine.context import EQUIPMENT
 from scope_ptz.bench.engine.logs import read_evaluation
 from scope_ptz.bench.judging.judge import ATTEMPTS
-from scope_ptz.bench.task_files import dump_tasks
+from scope_ptz.bench.tasks.files import dump_tasks
 from scope_ptz.cli.inspect_entry import bench
 from tests.bench.engine.making import counting, turning
 from tests.bench.engine.test_going_on import turner

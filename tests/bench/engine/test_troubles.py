@@ -6,8 +6,8 @@ from pathlib import Path
 
 from rich.console import Console
 
-from scope_ptz.bench.task_files import dump_tasks
-from scope_ptz.bench.trials import Evaluation
+from scope_ptz.bench.scoring.trials import Evaluation
+from scope_ptz.bench.tasks.files import dump_tasks
 from scope_ptz.cli.bench_sweep import tables_of
 from scope_ptz.cli.bench_troubles import troubles
 from tests.bench.engine.making import TASKS, many

@@ -6,11 +6,11 @@ import json
 from dataclasses import replace
 from typing import Any
 
-from scope_ptz.bench.episode import Episode, Places
 from scope_ptz.bench.judging.case import Case, CaseCall, case_of_episode
-from scope_ptz.bench.judging.wording import facts_of
-from scope_ptz.bench.tasks import Task
-from scope_ptz.bench.trials import TaskFacts
+from scope_ptz.bench.scoring.episode import Episode, Places
+from scope_ptz.bench.tasks.facts import TaskFacts
+from scope_ptz.bench.tasks.task import Task
+from scope_ptz.bench.tasks.wording import facts_of
 from scope_ptz.geometry import Pose
 from tests.bench.making import PRESETS, samples
 

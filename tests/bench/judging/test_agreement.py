@@ -10,9 +10,17 @@ from typing import Any
 import anyio
 import pytest
 
-from scope_ptz.bench.error_modes import ErrorMode
 from scope_ptz.bench.judging.agreement import agreement, raters_of
-from scope_ptz.bench.judging.gold import (
+from scope_ptz.bench.judging.judge import Judge, NoReplyError, Reply
+from scope_ptz.bench.judging.kappa import cohen
+from scope_ptz.bench.judging.lines import append_line
+from scope_ptz.bench.scoring.error_modes import ErrorMode
+from scope_ptz.bench.scoring.trials import Evaluation, Judgement, Label, ModelCard, RunCard, Trial
+from scope_ptz.bench.tasks.wording import facts_of
+from scope_ptz.cli.bench_agree import agreement_lines, figures
+from scope_ptz.cli.bench_judge_gold import gold_lines
+from scope_ptz.errors import InputError
+from scope_ptz.taskgen.gold.judges import (
     GoldCase,
     GoldVerdict,
     gold_case,
@@ -24,15 +32,7 @@ from scope_ptz.bench.judging.gold import (
     result,
     results,
 )
-from scope_ptz.bench.judging.judge import Judge, NoReplyError, Reply
-from scope_ptz.bench.judging.kappa import cohen
-from scope_ptz.bench.judging.lines import append_line
-from scope_ptz.bench.judging.wording import facts_of
-from scope_ptz.bench.mutations import Gold, Setting, mutate
-from scope_ptz.bench.trials import Evaluation, Judgement, Label, ModelCard, RunCard, Trial
-from scope_ptz.cli.bench_agree import agreement_lines, figures
-from scope_ptz.cli.bench_judge_gold import gold_lines
-from scope_ptz.errors import InputError
+from scope_ptz.taskgen.gold.mutations import Gold, Setting, mutate
 from tests.bench.judging.runs import PLACES
 from tests.bench.making import EYES, PRESETS, samples
 

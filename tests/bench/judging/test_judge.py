@@ -10,12 +10,12 @@ import anyio
 import pytest
 from pydantic import SecretStr
 
-from scope_ptz.bench.error_modes import ErrorMode
 from scope_ptz.bench.judging.judge import Judge, NoReplyError, Reply
 from scope_ptz.bench.judging.rendering import LEAST_CHARS
 from scope_ptz.bench.judging.rubrics import prompt_version
 from scope_ptz.bench.judging.server import JudgeOptions, ServerPort
-from scope_ptz.bench.trials import Judgement
+from scope_ptz.bench.scoring.error_modes import ErrorMode
+from scope_ptz.bench.scoring.trials import Judgement
 from scope_ptz.endpoints.endpoint import Endpoint, Timeouts
 from tests.bench.judging.runs import CORRECT, MISCOUNTED, facts_and_case, long_case, written
 from tests.support import misbehaving as m

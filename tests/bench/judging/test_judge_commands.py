@@ -12,20 +12,20 @@ import anyio
 import pytest
 from typer.testing import CliRunner, Result
 
-from scope_ptz.bench.authoring.places import preset_at
-from scope_ptz.bench.episode import Episode
-from scope_ptz.bench.error_modes import ErrorMode
-from scope_ptz.bench.gold import EYES, write_gold
-from scope_ptz.bench.judging.gold import read_verdicts
-from scope_ptz.bench.mutations import Setting, mutate
-from scope_ptz.bench.run_program import Stage
-from scope_ptz.bench.task_files import dump_tasks
-from scope_ptz.bench.tasks import Task
+from scope_ptz.bench.programs import Stage
+from scope_ptz.bench.scoring.episode import Episode
+from scope_ptz.bench.scoring.error_modes import ErrorMode
+from scope_ptz.bench.tasks.files import dump_tasks
+from scope_ptz.bench.tasks.task import Task
 from scope_ptz.cli.app import app
 from scope_ptz.cli.bench_eyes import equip_with_truth
 from scope_ptz.cli.bench_judge import UnnamedJudgeError, open_judge
 from scope_ptz.cli.session import open_scene
 from scope_ptz.errors import ConfigError, InputError
+from scope_ptz.taskgen.authoring.places import preset_at
+from scope_ptz.taskgen.gold.judges import read_verdicts
+from scope_ptz.taskgen.gold.mutations import Setting, mutate
+from scope_ptz.taskgen.gold.runs import EYES, write_gold
 from tests.bench.judging.runs import CORRECT, written
 from tests.bench.judging.test_labels import turn_task
 from tests.support import misbehaving as m

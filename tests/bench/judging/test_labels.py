@@ -11,12 +11,12 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner, Result
 
-from scope_ptz.bench.error_modes import ErrorMode
-from scope_ptz.bench.expected import ActionOnly
 from scope_ptz.bench.judging.labels import add_label, labels_file, read_labels, with_labels
-from scope_ptz.bench.task_files import dump_tasks
-from scope_ptz.bench.tasks import Behaviour, FinalPose, Forbidden, ProgramCall, Task
-from scope_ptz.bench.trials import Label
+from scope_ptz.bench.scoring.error_modes import ErrorMode
+from scope_ptz.bench.scoring.trials import Label
+from scope_ptz.bench.tasks.expected import ActionOnly
+from scope_ptz.bench.tasks.files import dump_tasks
+from scope_ptz.bench.tasks.task import Behaviour, FinalPose, Forbidden, ProgramCall, Task
 from scope_ptz.cli.app import app
 from scope_ptz.cli.bench_label import folder_name, kept_pictures
 from scope_ptz.errors import InputError, OutputError

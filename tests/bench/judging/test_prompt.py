@@ -9,15 +9,15 @@ from typing import get_args
 import pytest
 
 from scope_ptz.agent.trace import Trace, read_trace
-from scope_ptz.bench.episode import Places
-from scope_ptz.bench.error_modes import ErrorMode
 from scope_ptz.bench.judging.case import CaseCall, case_of
 from scope_ptz.bench.judging.judge import messages
 from scope_ptz.bench.judging.quoting import BAR
 from scope_ptz.bench.judging.rendering import LEAST_CHARS, render
 from scope_ptz.bench.judging.rubrics import prompt_version, system_prompt
-from scope_ptz.bench.judging.wording import expected_in_words, facts_of
-from scope_ptz.bench.tasks import Category
+from scope_ptz.bench.scoring.episode import Places
+from scope_ptz.bench.scoring.error_modes import ErrorMode
+from scope_ptz.bench.tasks.task import Category
+from scope_ptz.bench.tasks.wording import expected_in_words, facts_of
 from scope_ptz.cli.app import app
 from scope_ptz.geometry import Pose
 from tests.bench.judging.runs import facts_and_case, long_case

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scope_ptz.bench.error_modes import ErrorMode
 from scope_ptz.bench.judging.replies import MOST_REASON_CHARS, REPLY_SCHEMA, JudgeReply, read_reply
+from scope_ptz.bench.scoring.error_modes import ErrorMode
 from tests.bench.judging.runs import CORRECT, MISCOUNTED, written
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from scope_ptz.bench.reports.building import Report, build_report
-from scope_ptz.bench.trials import Evaluation
+from scope_ptz.bench.reports.build import Report, build_report
+from scope_ptz.bench.scoring.trials import Evaluation
 from scope_ptz.registry import load_registry
 from tests.bench.reports.making import sweep
 

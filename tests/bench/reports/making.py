@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from typing import Any
 
 from scope_ptz.agent.timing import Timings
-from scope_ptz.bench.error_modes import ErrorMode
-from scope_ptz.bench.tasks import Category
-from scope_ptz.bench.trials import Check, Evaluation, Judgement, LookTime, ModelCard, RunCard, TaskFacts, Trial
+from scope_ptz.bench.scoring.error_modes import ErrorMode
+from scope_ptz.bench.scoring.trials import Check, Evaluation, Judgement, LookTime, ModelCard, RunCard, Trial
+from scope_ptz.bench.tasks.facts import TaskFacts
+from scope_ptz.bench.tasks.task import Category
 
 CATEGORIES: tuple[Category, ...] = (
     "counting", "descriptor", "location", "ocr", "single_call", "multi_step_command", "multi_step_reasoning", "comparative"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from scope_ptz.bench.error_modes import ErrorMode
-from scope_ptz.bench.reports.building import build_report
-from scope_ptz.bench.trials import Evaluation, Judgement, Trial
+from scope_ptz.bench.reports.build import build_report
+from scope_ptz.bench.scoring.error_modes import ErrorMode
+from scope_ptz.bench.scoring.trials import Evaluation, Judgement, Trial
 from scope_ptz.registry import load_registry
 from tests.bench.reports.making import card, facts, trial
 from tests.bench.reports.test_report import row

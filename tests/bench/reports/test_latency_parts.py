@@ -8,9 +8,9 @@ import pytest
 
 from scope_ptz.agent.records import Called, Place
 from scope_ptz.agent.timing import Reply, Timings
-from scope_ptz.bench.reports.building import Report, build_report
+from scope_ptz.bench.reports.build import Report, build_report
 from scope_ptz.bench.reports.tables import Value, bare
-from scope_ptz.bench.trials import Evaluation, LookTime, Trial
+from scope_ptz.bench.scoring.trials import Evaluation, LookTime, Trial
 from scope_ptz.planner.base import ToolCall, ToolOutcome
 from scope_ptz.registry import load_registry
 from tests.bench.reports.making import card, facts, trial

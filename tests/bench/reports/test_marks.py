@@ -7,12 +7,13 @@ from typing import Any
 
 import pytest
 
-from scope_ptz.bench.reports.building import Report, build_report
-from scope_ptz.bench.reports.canvas import shades
-from scope_ptz.bench.reports.naming import served_instead
+from scope_ptz.bench.reports.build import Report, build_report
+from scope_ptz.bench.reports.chart_style import shades
+from scope_ptz.bench.reports.labels import served_instead
 from scope_ptz.bench.reports.runs import collect, main_tasks
 from scope_ptz.bench.reports.tables import bare
-from scope_ptz.bench.trials import Evaluation, ModelCard, TaskFacts
+from scope_ptz.bench.scoring.trials import Evaluation, ModelCard
+from scope_ptz.bench.tasks.facts import TaskFacts
 from scope_ptz.registry import load_registry
 from tests.bench.reports.making import evaluation, facts
 from tests.bench.reports.test_report import row, table

@@ -7,12 +7,12 @@ from typing import Any
 
 import pytest
 
-from scope_ptz.bench.error_modes import ErrorMode
-from scope_ptz.bench.reports.building import Report, build_report
+from scope_ptz.bench.reports.build import Report, build_report
 from scope_ptz.bench.reports.sections import Chart
 from scope_ptz.bench.reports.tables import Marked, Table, bare
+from scope_ptz.bench.scoring.error_modes import ErrorMode
+from scope_ptz.bench.scoring.trials import Evaluation, Judgement
 from scope_ptz.bench.statistics.clustered import Estimate
-from scope_ptz.bench.trials import Evaluation, Judgement
 from scope_ptz.registry import load_registry
 from tests.bench.reports.making import JUDGE, card, facts, trial
 from tests.bench.reports.test_report import row, table

@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 
 from scope_ptz.agent.timing import Timings
-from scope_ptz.bench.reports.building import Report, build_report
+from scope_ptz.bench.reports.build import Report, build_report
 from scope_ptz.bench.reports.runs import collect
-from scope_ptz.bench.trials import Evaluation, ModelCard
+from scope_ptz.bench.scoring.trials import Evaluation, ModelCard
 from scope_ptz.registry import load_registry
 from tests.bench.reports.making import card, evaluation, facts, trial
 from tests.bench.reports.test_report import row, table
@@ -118,7 +118,7 @@ def test_a_bar_of_no_height_is_not_drawn() -> None:
 
 
 def test_a_ring_around_a_filling_is_apart_from_it() -> None:
-    from scope_ptz.bench.reports.choosing import candidates
+    from scope_ptz.bench.reports.recommendations import candidates
 
     runs = collect([evaluation(*pair, TASKS, 0.6, spoiled=0.0) for pair in PAIRS[:1]], load_registry())
     (found,) = candidates(runs, runs)

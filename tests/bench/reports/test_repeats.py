@@ -8,11 +8,11 @@ from math import isclose
 import numpy as np
 import pytest
 
-from scope_ptz.bench.reports.building import build_report
+from scope_ptz.bench.reports.build import build_report
 from scope_ptz.bench.reports.runs import Run, collect
 from scope_ptz.bench.reports.tables import Marked, bare
+from scope_ptz.bench.scoring.trials import Evaluation
 from scope_ptz.bench.statistics.clustered import Estimate, Scores, gap, independent_variance, macro_weights, newcombe, share
-from scope_ptz.bench.trials import Evaluation
 from scope_ptz.registry import load_registry
 from tests.bench.reports.making import card, facts, trial
 from tests.bench.reports.test_report import table

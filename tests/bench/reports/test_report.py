@@ -9,13 +9,13 @@ from statistics import fmean, median
 import pytest
 
 from scope_ptz.agent.timing import Timings
-from scope_ptz.bench.error_modes import ErrorMode
-from scope_ptz.bench.reports.building import Report, build_report
+from scope_ptz.bench.reports.build import Report, build_report
 from scope_ptz.bench.reports.runs import CATEGORY_TITLES, collect, timed
 from scope_ptz.bench.reports.tables import Marked, Table, Value, bare, in_words
-from scope_ptz.bench.reports.writing import html
+from scope_ptz.bench.reports.write import html
+from scope_ptz.bench.scoring.error_modes import ErrorMode
+from scope_ptz.bench.scoring.trials import Evaluation, Trial
 from scope_ptz.bench.statistics.clustered import Estimate
-from scope_ptz.bench.trials import Evaluation, Trial
 from scope_ptz.errors import InputError
 from scope_ptz.registry import load_registry
 from tests.bench.reports.making import card, evaluation, facts, trial

@@ -8,7 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 from scope_ptz.bench.engine import logs
-from scope_ptz.bench.trials import Evaluation
+from scope_ptz.bench.scoring.trials import Evaluation
 from scope_ptz.cli.app import app
 from tests.bench.reports.making import evaluation, facts
 

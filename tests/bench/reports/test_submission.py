@@ -15,15 +15,16 @@ import pytest
 from typer.testing import CliRunner, Result
 
 import scope_ptz
-from scope_ptz.bench.checks import run_checks
 from scope_ptz.bench.engine.cards import DETERMINISTIC
 from scope_ptz.bench.reports.submission import secrets_in, submission_lines, submission_schema, write_submission
 from scope_ptz.bench.reports.submission_checks import BUILT_IN, check_submission
 from scope_ptz.bench.reports.submission_trials import checks_of
-from scope_ptz.bench.task_files import dump_tasks
-from scope_ptz.bench.tasks import Task
-from scope_ptz.bench.trials import Check, Evaluation, TaskFacts, Trial
-from scope_ptz.bench.verdict import judge
+from scope_ptz.bench.scoring.checks import run_checks
+from scope_ptz.bench.scoring.trials import Check, Evaluation, Trial
+from scope_ptz.bench.scoring.verdict import judge
+from scope_ptz.bench.tasks.facts import TaskFacts
+from scope_ptz.bench.tasks.files import dump_tasks
+from scope_ptz.bench.tasks.task import Task
 from scope_ptz.cli.app import app
 from scope_ptz.errors import InputError
 from tests.bench.making import samples

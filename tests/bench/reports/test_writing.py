@@ -15,10 +15,10 @@ from PIL import Image
 from scope_ptz.agent.records import Budgets, Called, Decided, Labels, Place, Started
 from scope_ptz.agent.timing import Reply, Timings
 from scope_ptz.agent.trace import Trace
-from scope_ptz.bench.reports.building import Report
+from scope_ptz.bench.reports.build import Report
 from scope_ptz.bench.reports.task_pages import FrameStore, file_name
-from scope_ptz.bench.reports.writing import html, markdown, write_report
-from scope_ptz.bench.trials import Check, Evaluation, Trial
+from scope_ptz.bench.reports.write import html, markdown, write_report
+from scope_ptz.bench.scoring.trials import Check, Evaluation, Trial
 from scope_ptz.errors import OutputError, TraceError
 from scope_ptz.planner.base import CallTools, Finish, ToolCall, ToolOutcome
 from scope_ptz.registry import load_registry

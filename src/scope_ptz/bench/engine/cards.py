@@ -10,7 +10,7 @@ from inspect_ai.log import EvalLog
 from pydantic import ValidationError
 
 from scope_ptz.agent.trace import Trace
-from scope_ptz.bench.trials import ModelCard, RunCard
+from scope_ptz.bench.scoring.trials import ModelCard, RunCard
 from scope_ptz.errors import TraceError
 
 ENGINE = "inspect-ai"

@@ -15,12 +15,12 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from scope_ptz.bench.importing.tasks import ImportedTask
-from scope_ptz.bench.judging.wording import facts_of
-from scope_ptz.bench.tasks import Task
-from scope_ptz.bench.trials import TaskFacts
+from scope_ptz.bench.tasks.facts import TaskFacts
+from scope_ptz.bench.tasks.imported import ImportedTask
+from scope_ptz.bench.tasks.task import Task
+from scope_ptz.bench.tasks.wording import facts_of
 from scope_ptz.errors import InputError, TraceError, UnknownNameError
-from scope_ptz.world.pack import Scene
+from scope_ptz.simulator.pack import Scene
 
 OpenScene = Callable[[str], Scene]
 DIGEST_CHARS = 16

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from statistics import fmean
 
 from scope_ptz.bench.engine.entries import Entry
-from scope_ptz.bench.trials import Evaluation
+from scope_ptz.bench.scoring.trials import Evaluation
 
 _LOOKERS = frozenset({"count_objects", "query_answer", "zoom_to_object", "track_object"})
 TYPICAL_CALLS = 2.0

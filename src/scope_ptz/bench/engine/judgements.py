@@ -8,7 +8,7 @@ from typing import Any
 from inspect_ai.scorer import CORRECT, INCORRECT, Score
 from pydantic import ValidationError
 
-from scope_ptz.bench.trials import Judgement
+from scope_ptz.bench.scoring.trials import Judgement
 from scope_ptz.errors import TraceError
 
 JUDGE = "judge"

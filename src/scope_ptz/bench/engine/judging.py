@@ -26,7 +26,7 @@ from scope_ptz.bench.engine.judgements import JUDGE, score_of_judgement
 from scope_ptz.bench.engine.models import LOOK, Asked, ScopeModel
 from scope_ptz.bench.engine.sampling import STORE, Kept, sample_name, trace_of
 from scope_ptz.bench.engine.scorers import METRICS
-from scope_ptz.bench.engine.trialing import broken_by
+from scope_ptz.bench.engine.scoring import broken_by
 from scope_ptz.bench.judging.judge import Judge, Message, NoReplyError, Reply
 
 FIRST_SEED = 1

@@ -22,10 +22,10 @@ from scope_ptz.bench.engine.judgements import judgements_in
 from scope_ptz.bench.engine.pictures import jpeg_of
 from scope_ptz.bench.engine.sampling import STORE, Kept, sample_name, trace_of
 from scope_ptz.bench.engine.scorers import TRIAL
-from scope_ptz.bench.engine.trialing import trial_of
-from scope_ptz.bench.episode import Places
+from scope_ptz.bench.engine.scoring import trial_of
 from scope_ptz.bench.judging.deciding import decided
-from scope_ptz.bench.trials import Evaluation, Trial
+from scope_ptz.bench.scoring.episode import Places
+from scope_ptz.bench.scoring.trials import Evaluation, Trial
 from scope_ptz.errors import TraceError
 
 ATTACHMENT = "attachment://"

@@ -24,7 +24,7 @@ from inspect_ai.model import (
 )
 from inspect_ai.tool import ToolCall, ToolChoice, ToolInfo
 
-from scope_ptz.bench.engine.equipment import ModelWish, equipment
+from scope_ptz.bench.engine.context import ModelWish, equipment
 from scope_ptz.bench.engine.messages import call_id, state_of
 from scope_ptz.bench.engine.wire import WIRE
 from scope_ptz.bench.judging.judge import Complete
@@ -32,7 +32,7 @@ from scope_ptz.planner.base import CallTools, Decision, Planner
 from scope_ptz.planner.chat.messages import callable_name
 
 if TYPE_CHECKING:
-    from scope_ptz.bench.engine.eyes import Eyes
+    from scope_ptz.bench.engine.perception import Eyes
 
 
 @dataclass

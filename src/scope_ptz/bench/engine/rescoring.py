@@ -24,7 +24,7 @@ from scope_ptz.bench.engine.scorers import checks
 from scope_ptz.bench.judging.deciding import check_decides
 from scope_ptz.bench.judging.rubrics import prompt_version
 from scope_ptz.bench.judging.tally import Tally
-from scope_ptz.bench.trials import Trial
+from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.errors import InputError, OutputError
 
 AT_A_TIME = 8

@@ -13,7 +13,7 @@ from pydantic import ValidationError
 from scope_ptz.agent.records import RECORD, Called, Decided, Ended, Started
 from scope_ptz.agent.trace import FILE_NAME, Trace
 from scope_ptz.bench.engine.entries import Entry
-from scope_ptz.bench.episode import Episode, Places, episode_of
+from scope_ptz.bench.scoring.episode import Episode, Places, episode_of
 from scope_ptz.errors import TraceError
 
 STORE = "scope"

@@ -23,13 +23,13 @@ from inspect_ai.scorer import (
 )
 from inspect_ai.solver import TaskState
 
+from scope_ptz.bench.engine.context import EQUIPMENT
 from scope_ptz.bench.engine.entries import Entry
-from scope_ptz.bench.engine.equipment import EQUIPMENT
 from scope_ptz.bench.engine.sampling import STORE, Kept, sample_name, trace_of
-from scope_ptz.bench.engine.trialing import trial_of
-from scope_ptz.bench.error_modes import ErrorMode
-from scope_ptz.bench.trials import Trial
-from scope_ptz.bench.verdict import Headline
+from scope_ptz.bench.engine.scoring import trial_of
+from scope_ptz.bench.scoring.error_modes import ErrorMode
+from scope_ptz.bench.scoring.trials import Trial
+from scope_ptz.bench.scoring.verdict import Headline
 
 CHECKS = "checks"
 TRIAL = "trial"

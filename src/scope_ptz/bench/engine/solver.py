@@ -8,21 +8,21 @@ from inspect_ai.solver import Generate, Solver, TaskState, solver
 from scope_ptz.agent.loop import Agent
 from scope_ptz.agent.records import Budgets, Labels, Run
 from scope_ptz.agent.store import NoImages
+from scope_ptz.bench.engine.context import Equipment, equipment
 from scope_ptz.bench.engine.entries import Entry
-from scope_ptz.bench.engine.equipment import Equipment, equipment
-from scope_ptz.bench.engine.eyes import LoggedEyes
-from scope_ptz.bench.engine.guests import GuestPlanner, load_guest
+from scope_ptz.bench.engine.external_agents import GuestPlanner, load_guest
 from scope_ptz.bench.engine.messages import Record, conversation_of
 from scope_ptz.bench.engine.models import ScopeModel
+from scope_ptz.bench.engine.perception import LoggedEyes
 from scope_ptz.bench.engine.pictures import KeptPictures, reference
 from scope_ptz.bench.engine.ports import LoggedPlanner, ToolLog
 from scope_ptz.bench.engine.sampling import STORE, Kept, sample_name
-from scope_ptz.bench.engine.trialing import broken_by
-from scope_ptz.bench.run_program import BlankCamera
+from scope_ptz.bench.engine.scoring import broken_by
+from scope_ptz.bench.programs import BlankCamera
 from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.errors import ConfigError
 from scope_ptz.planner.base import Planner
-from scope_ptz.world.clock import SceneClock
+from scope_ptz.simulator.clock import SceneClock
 
 OWN_AGENT = "scope"
 WIDTH, HEIGHT = 1280, 720

@@ -11,7 +11,7 @@ from inspect_ai import Epochs, Task
 from scope_ptz import __version__
 from scope_ptz.bench.engine.cards import AGENT_SOURCE
 from scope_ptz.bench.engine.entries import Entry, datasets, digest
-from scope_ptz.bench.engine.guests import source_digest
+from scope_ptz.bench.engine.external_agents import source_digest
 from scope_ptz.bench.engine.judging import judge
 from scope_ptz.bench.engine.sampling import dataset_of
 from scope_ptz.bench.engine.scorers import checks

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from itertools import combinations
 from typing import Any, Literal
 
-from scope_ptz.bench.error_modes import ErrorMode
 from scope_ptz.bench.judging.kappa import Agreement, cohen, fleiss
-from scope_ptz.bench.trials import Evaluation, Judgement, Trial
+from scope_ptz.bench.scoring.error_modes import ErrorMode
+from scope_ptz.bench.scoring.trials import Evaluation, Judgement, Trial
 
 CORRECT, INCORRECT = "correct", "incorrect"
 Kind = Literal["checks", "judge", "person", "gold"]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from scope_ptz.agent.trace import Trace
-from scope_ptz.bench.episode import Episode, Places, Standing
+from scope_ptz.bench.scoring.episode import Episode, Places, Standing
 from scope_ptz.geometry import Pose
 from scope_ptz.planner.base import ToolOutcome
 

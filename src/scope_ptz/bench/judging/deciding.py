@@ -10,9 +10,9 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from scope_ptz.bench.error_modes import ErrorMode
 from scope_ptz.bench.judging.tally import VERDICTS
-from scope_ptz.bench.trials import Judgement, Trial
+from scope_ptz.bench.scoring.error_modes import ErrorMode
+from scope_ptz.bench.scoring.trials import Judgement, Trial
 from scope_ptz.errors import InputError
 
 

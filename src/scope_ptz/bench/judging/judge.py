@@ -9,13 +9,14 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict
 
 from scope_ptz.agent.trace import Trace
-from scope_ptz.bench.episode import Places
 from scope_ptz.bench.judging.case import Case, case_of
 from scope_ptz.bench.judging.quoting import cut
 from scope_ptz.bench.judging.rendering import LEAST_CHARS, render
 from scope_ptz.bench.judging.replies import REPLY_SCHEMA, JudgeReply, read_reply
 from scope_ptz.bench.judging.rubrics import prompt_version, system_prompt
-from scope_ptz.bench.trials import Judgement, TaskFacts
+from scope_ptz.bench.scoring.episode import Places
+from scope_ptz.bench.scoring.trials import Judgement
+from scope_ptz.bench.tasks.facts import TaskFacts
 from scope_ptz.errors import ScopeError
 
 DEFAULT_JUDGE = "gpt-oss-120b"

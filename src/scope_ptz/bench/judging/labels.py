@@ -12,9 +12,9 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from scope_ptz.bench.error_modes import ErrorMode
 from scope_ptz.bench.judging.lines import append_line, whole_lines
-from scope_ptz.bench.trials import Evaluation, Label
+from scope_ptz.bench.scoring.error_modes import ErrorMode
+from scope_ptz.bench.scoring.trials import Evaluation, Label
 from scope_ptz.errors import InputError
 
 SUFFIX = ".labels.jsonl"

@@ -13,10 +13,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from scope_ptz.bench.episode import Places
 from scope_ptz.bench.judging.case import Case, CaseCall
 from scope_ptz.bench.judging.quoting import cut, inline, quoted
-from scope_ptz.bench.trials import TaskFacts
+from scope_ptz.bench.scoring.episode import Places
+from scope_ptz.bench.tasks.facts import TaskFacts
 from scope_ptz.geometry import Pose
 
 LEAST_CHARS = 6_000

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
-from scope_ptz.bench.error_modes import ErrorMode
+from scope_ptz.bench.scoring.error_modes import ErrorMode
 
 NO_MODE = "none"
 MOST_REASON_CHARS = 1_000

@@ -13,7 +13,7 @@ from importlib.resources import files
 
 from scope_ptz.bench.judging.rendering import specimen
 from scope_ptz.bench.judging.replies import REPLY_SCHEMA
-from scope_ptz.bench.tasks import Category
+from scope_ptz.bench.tasks.task import Category
 
 PROMPT = "judge-1"
 _HEADING = re.compile(r"^# (.+)\n", re.MULTILINE)

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from scope_ptz.bench.judging.rubrics import prompt_version
-from scope_ptz.bench.trials import Judgement, Trial
+from scope_ptz.bench.scoring.trials import Judgement, Trial
 
 VERDICTS = ("correct", "incorrect")
 _MOST_CHARS = 300

@@ -6,13 +6,13 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 
-from scope_ptz.bench.reports import drawing
+from scope_ptz.bench.reports import charts as drawing
 from scope_ptz.bench.reports.judged import judge_name, verdicts
 from scope_ptz.bench.reports.runs import CATEGORY_TITLES, Run, macro, of_main_set, scores_of
 from scope_ptz.bench.reports.sections import Section
 from scope_ptz.bench.reports.tables import Column, Marked, Table, Value, bare
+from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.bench.statistics.clustered import Estimate, share
-from scope_ptz.bench.trials import Trial
 
 KIND_WORDS = {
     "models": "models",

@@ -7,15 +7,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from statistics import fmean
 
-from scope_ptz.bench.error_modes import ErrorMode
-from scope_ptz.bench.reports import drawing
+from scope_ptz.bench.reports import charts as drawing
 from scope_ptz.bench.reports.comparing import Comparison, compare
 from scope_ptz.bench.reports.judged import judge_name, verdicts
 from scope_ptz.bench.reports.runs import Run, macro, scores_of
 from scope_ptz.bench.reports.sections import Section
 from scope_ptz.bench.reports.tables import Column, Marked, Table, Value, bare
+from scope_ptz.bench.scoring.error_modes import ErrorMode
+from scope_ptz.bench.scoring.trials import Judgement, Trial
 from scope_ptz.bench.statistics.clustered import Estimate
-from scope_ptz.bench.trials import Judgement, Trial
 
 MODE_TITLES = {
     ErrorMode.VLM_QUERY: "VLM query", ErrorMode.VLM_COUNTING: "VLM counting", ErrorMode.REASONING: "Reasoning",

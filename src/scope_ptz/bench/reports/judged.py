@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from scope_ptz.bench.judging.deciding import first_verdict
 from scope_ptz.bench.judging.tally import VERDICTS
 from scope_ptz.bench.reports.runs import Run
-from scope_ptz.bench.trials import Judgement, Trial
+from scope_ptz.bench.scoring.trials import Judgement, Trial
 
 
 def judge_name(runs: Sequence[Run]) -> str | None:

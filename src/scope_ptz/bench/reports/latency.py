@@ -11,12 +11,12 @@ from statistics import fmean
 
 import numpy as np
 
-from scope_ptz.bench.reports import drawing
+from scope_ptz.bench.reports import charts as drawing
 from scope_ptz.bench.reports.runs import Run, pairs_of, timed
 from scope_ptz.bench.reports.sections import Section
 from scope_ptz.bench.reports.tables import Column, Table, Value
-from scope_ptz.bench.tasks import Scope
-from scope_ptz.bench.trials import LookTime, Trial
+from scope_ptz.bench.scoring.trials import LookTime, Trial
+from scope_ptz.bench.tasks.task import Scope
 
 STAGE_TITLES = {
     "planner_s": "Planner",

@@ -12,9 +12,9 @@ from typing import Literal
 import numpy as np
 
 from scope_ptz.bench.judging.tally import without_verdict
-from scope_ptz.bench.reports.naming import served_instead, split_name
+from scope_ptz.bench.reports.labels import served_instead, split_name
+from scope_ptz.bench.scoring.trials import Evaluation, ModelCard, Trial
 from scope_ptz.bench.statistics.clustered import Estimate, Scores, macro_weights, share
-from scope_ptz.bench.trials import Evaluation, ModelCard, Trial
 from scope_ptz.errors import UnknownNameError
 from scope_ptz.registry import Model, Registry
 

@@ -6,14 +6,14 @@ from collections import defaultdict
 from collections.abc import Sequence
 from statistics import fmean
 
-from scope_ptz.bench.reports import drawing
+from scope_ptz.bench.reports import charts as drawing
 from scope_ptz.bench.reports.accuracy import share_correct
 from scope_ptz.bench.reports.comparing import compare, comparison_table
 from scope_ptz.bench.reports.runs import CATEGORY_TITLES, Run
 from scope_ptz.bench.reports.sections import Section
 from scope_ptz.bench.reports.tables import Column, Table, Value
+from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.bench.statistics.repeats import mean_pass_all
-from scope_ptz.bench.trials import Trial
 
 System = tuple[str, str, str, str]
 

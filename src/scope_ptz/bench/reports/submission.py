@@ -14,11 +14,11 @@ from typing import Annotated, Any, Literal, Protocol, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
-from scope_ptz.bench.error_modes import ErrorMode
-from scope_ptz.bench.reports.naming import split_name
-from scope_ptz.bench.tasks import CANARY, Category, ToolName
-from scope_ptz.bench.trials import Check, Count, Evaluation, ModelCard, RunCard, Seconds, Trial
-from scope_ptz.bench.verdict import Headline
+from scope_ptz.bench.reports.labels import split_name
+from scope_ptz.bench.scoring.error_modes import ErrorMode
+from scope_ptz.bench.scoring.trials import Check, Count, Evaluation, ModelCard, RunCard, Seconds, Trial
+from scope_ptz.bench.scoring.verdict import Headline
+from scope_ptz.bench.tasks.task import CANARY, Category, ToolName
 from scope_ptz.errors import InputError, OutputError
 
 MOST_ANSWER = 8_000

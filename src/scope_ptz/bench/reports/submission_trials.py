@@ -6,13 +6,13 @@ from collections import Counter
 from collections.abc import Iterator
 
 from scope_ptz.agent.records import OUTCOMES
-from scope_ptz.bench.expected import ActionOnly
-from scope_ptz.bench.reader import agrees, read
-from scope_ptz.bench.reading import Value
+from scope_ptz.bench.answers.reader import agrees, read
+from scope_ptz.bench.answers.result import Value
 from scope_ptz.bench.reports.submission import CUT, TOOLS, UNKNOWN_TOOL, Header, TrialLine
-from scope_ptz.bench.tasks import Task
-from scope_ptz.bench.trials import RunCard
-from scope_ptz.bench.verdict import MOVERS
+from scope_ptz.bench.scoring.trials import RunCard
+from scope_ptz.bench.scoring.verdict import MOVERS
+from scope_ptz.bench.tasks.expected import ActionOnly
+from scope_ptz.bench.tasks.task import Task
 
 SLACK_S = 0.5
 """By how much the parts of a time may exceed the whole: clocks are read one after the other."""

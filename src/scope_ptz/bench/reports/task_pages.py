@@ -16,8 +16,8 @@ from typing import Any, Protocol
 from scope_ptz.agent.records import Called
 from scope_ptz.agent.trace import Trace
 from scope_ptz.bench.reports.runs import Run
-from scope_ptz.bench.tasks import Task
-from scope_ptz.bench.trials import Evaluation, Trial
+from scope_ptz.bench.scoring.trials import Evaluation, Trial
+from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import ScopeError
 
 FRAME_WIDTH = 640

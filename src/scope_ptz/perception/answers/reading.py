@@ -11,7 +11,7 @@ from scope_ptz.perception.language import syntax as s
 from scope_ptz.perception.language import words as w
 from scope_ptz.perception.matching import find
 from scope_ptz.perception.view import Thing, View, concepts_of
-from scope_ptz.world.truth import MAX_READING_ANGLE_DEG, MIN_CAP_HEIGHT_PX, TextSighting
+from scope_ptz.simulator.truth import MAX_READING_ANGLE_DEG, MIN_CAP_HEIGHT_PX, TextSighting
 
 
 def read(view: View, question: s.Read) -> Reply:

@@ -1,0 +1,1 @@
+"""The answer parser: free text in, a typed value out."""

@@ -1,0 +1,80 @@
+"""Naming without claiming: what was only looked for or asked about, and what a tool told nothing of."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from enum import Enum, auto
+
+from scope_ptz.bench.answers.words import Word
+
+
+class Claim(Enum):
+    """What naming a thing says of it. ``NOTHING``: neither that it is there nor that it is not."""
+
+    STATED = auto()
+    FOUND = auto()
+    MISSED = auto()
+    NOTHING = auto()
+
+
+def claim_of(words: Sequence[Word], start: int, end: int) -> Claim:
+    """What the naming at words ``start`` to ``end`` (exclusive) claims."""
+    clause = words[start].clause
+    before = "".join(f"{w.text} " for w in words[max(0, start - 30) : start] if w.clause == clause)
+    after = "".join(f"{w.text} " for w in words[end : end + 30] if w.clause == clause)
+    after_noun = words[end : end + 1]
+    if after_noun and after_noun[0].text in _OF_TOOLS and not after_noun[0].gap.strip():
+        return Claim.NOTHING
+    if _UNTOLD.search(before) or _UNDONE.match(after):
+        return Claim.NOTHING
+    if not _is_sought(before, after):
+        return Claim.STATED
+    onward = after + "".join(f"{w.text} " for w in words[end : end + 60] if w.clause == clause + 1)
+    if _MISSED.search(onward):
+        return Claim.MISSED
+    return Claim.FOUND if _FOUND.search(onward) else Claim.NOTHING
+
+
+def _is_sought(before: str, after: str) -> bool:
+    asked = list(_WHETHER.finditer(before))
+    if asked and not _GOES_ON.intersection(before[asked[-1].end() :].split()):
+        return True
+    sought = list(_SOUGHT.finditer(before))
+    if not sought or _SEEN.match(after):
+        return False
+    since = {*before[sought[-1].start() :].split()} - {"see", "find"} | {*before[sought[-1].end() :].split()}
+    return not since & (_GOES_ON | _STATES)
+
+
+_WHETHER = re.compile(r"\b(whether|if)\b")
+_SOUGHT = re.compile(
+    r"\b(look|looks|looked|looking|search|searches|searched|searching|scan|scans|scanned|scanning|check|checks|checked|checking|hunt|"
+    r"hunted|hunting|watch|watched|swept|sweep|query|queried) (\w+ ){0,6}?for\b|\bin search of\b|"
+    r"\b(ask|asks|asked|asking|queried|inquired|enquired) (\w+ ){0,5}?(about|after|for)\b|"
+    r"\b(try|tried|trying|attempt|attempted|need|needed|want|wanted|going|order|asked|told|instructed|wish) to "
+    r"(find|locate|spot|see|detect|count|look at)\b"
+)
+_GOES_ON = frozenset({
+    "found", "saw", "sees", "spotted", "detected", "but", "so", "then", "yes", "no", "however", "shows", "revealed", "identified",
+})  # fmt: skip
+"""Words after which something else is told than what was looked for."""
+
+_STATES = frozenset({"see", "find", "is", "are", "was", "were", "has", "have", "there", "reads", "says"})
+_SEEN = re.compile(r"(\w+ ){0,3}?(is|are|was|were) (not )?(visible|present|found|seen|detected|there)\b")
+_FOUND = re.compile(
+    r"(?<!not )\b(found|find|see|saw|spotted|detected|located) (it|one|them|some|both|several|two|three|four|five|six|[1-9]\d*)\b"
+)
+_MISSED = re.compile(
+    r"\b(found|find|see|saw|spotted|detected|located) (none|nothing|neither|0|zero)\b"
+    r"|\bnot (find|found|see|seen|spot|detect|locate)( (it|one|any|them|either)\b| $)"
+    r"|\bwithout (success|finding (it|one|any|them))|\bin vain\b|\bto no avail\b|\bthere (is|are|was|were) none\b"
+)
+_OF_TOOLS = frozenset({"tool", "tools", "detector", "function", "query", "request", "search"})
+_UNTOLD = re.compile(
+    r"\b(no|without|not (?:have|get|got|receive|received|return|returned|give|given|provide|provided)|without any) (?:\w+ ){0,2}?"
+    r"(?:information|info|data|results?|answers?|counts?|records?|knowledge|outputs?|response|reports?|details?|idea|reply|figures?|"
+    r"detections?|readings?|measurements?) (?:\w+ ){0,5}?(?:about|of|on|for|regarding|concerning) (?:\w+ ){0,3}$"
+)
+"""A denial of what is known, not of what is there: "no information about"."""
+_UNDONE = re.compile(r"(has|have) (not )?(yet )?been (counted|checked|searched|queried|measured)\b")

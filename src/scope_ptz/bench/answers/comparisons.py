@@ -1,0 +1,70 @@
+"""Comparing words ("more", "closer"): which way they go, of what they are said and with what it is compared."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+
+from scope_ptz.bench.answers.text import Mention, Script
+
+_OPPOSITES = (
+    ({"more", "most", "greater", "greatest", "higher", "highest", "busier", "busiest"},
+     {"fewer", "fewest", "less", "least", "lower", "lowest", "quieter", "quietest"}),
+    ({"closer", "closest", "nearer", "nearest"}, {"farther", "farthest", "further", "furthest"}),
+    ({"larger", "largest", "bigger", "biggest", "most"}, {"smaller", "smallest", "least"}),
+    ({"taller", "tallest"}, {"shorter", "shortest"}),
+    ({"leftmost", "left most", "furthest left", "farthest left", "furthest to the left", "farthest to the left"},
+     {"rightmost", "right most", "furthest right", "farthest right", "furthest to the right", "farthest to the right"}),
+)  # fmt: skip
+_COUNTING = frozenset({"more", "most", "fewer", "fewest", "less", "least"})
+_REFERENCES = frozenset({"than", "versus", "vs", "against"})
+_AT_REFERENCE = frozenset({"of", "from", "to"})
+
+
+def ways(picks: Iterable[str]) -> dict[str, tuple[str, ...]]:
+    """The words that go the way of some ("forward") and those that go against it ("backward")."""
+    forward, backward = set(picks), set[str]()
+    for ones, others in _OPPOSITES:
+        for same, against in ((ones, others), (others, ones)):
+            if same & set(picks):
+                forward |= same
+                backward |= against
+    return {"forward": tuple(sorted(forward)), "backward": tuple(sorted(backward - forward))}
+
+
+def comparators(script: Script, wordings: dict[str, tuple[str, ...]]) -> list[Mention]:
+    """Where the words stand; "at least", "at most" and "more or less" compare nothing."""
+    found = list[Mention]()
+    for mention in script.mentions(wordings):
+        before = script.words[mention.start - 1].text if mention.start else ""
+        after = " ".join(w.text for w in script.words[mention.end : mention.end + 2])
+        if before not in ("at", "or") and not re.match(r"or less\b", after):
+            found.append(mention)
+    return found
+
+
+def bearer_of(script: Script, comparator: Mention, things: Sequence[Mention]) -> Mention | None:
+    """Of what a comparing word is said: of the noun that it counts ("fewer skips"), else of what is named before it, else after."""
+    words, reference = script.words, reference_of(script, comparator, things)
+    clause = [m for m in things if words[m.start].clause == words[comparator.start].clause and m != reference]
+    if words[comparator.end - 1].text in _COUNTING:
+        counted = [m for m in clause if m.start == comparator.end and not words[m.start].gap.strip()]
+        if counted:
+            return counted[0]
+    near = [m for m in clause if words[m.start].segment == words[comparator.start].segment] or clause
+    before = [m for m in near if m.start < comparator.start]
+    return before[-1] if before else near[0] if near else None
+
+
+def reference_of(script: Script, comparator: Mention, things: Sequence[Mention]) -> Mention | None:
+    """What the comparator compares with: "more than B", "left of B", "compared with B"."""
+    for mention in (m for m in things if script.words[m.start].clause == script.words[comparator.start].clause):
+        between = [w.text for w in script.words[comparator.end : mention.start]] if mention.start > comparator.end - 1 else []
+        if set(between) & _REFERENCES:
+            return mention
+        lead = [w.text for w in script.words[max(0, mention.start - 3) : mention.start]]
+        if "compared" in lead:
+            return mention
+        if between and set(between[:2]) & _AT_REFERENCE and len(between) <= 3:
+            return mention
+    return None

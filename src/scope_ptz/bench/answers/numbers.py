@@ -1,0 +1,170 @@
+"""Numbers in free text that could be counts: of what was asked for or of something else, exact or only a bound."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from scope_ptz.bench.answers.numerals import number_at
+from scope_ptz.bench.answers.text import Script
+from scope_ptz.bench.answers.words import Word, plain_words, same_word
+
+_MEASURES = ("degree", "percent", "x", "second", "minute", "metre", "kilometre", "px", "pixel", "time")
+_LABELS = frozenset({
+    "zoom", "pan", "tilt", "preset", "lane", "bay", "platform", "exit", "step", "junction", "number", "no", "reading",
+    "marked", "labelled", "saying", "view", "picture", "image", "frame",
+})  # fmt: skip
+_BARE_AFTER = frozenset({
+    "are", "is", "were", "was", "in", "on", "at", "of", "and", "or", "here", "there", "visible", "altogether", "overall",
+    "by", "near", "to", "from", "out", "all", "now", "currently", "seen", "found", "present", "so", "then", "as", "but",
+    "around", "within", "along", "across", "each", "per", "that", "which", "when", "after", "before", "total", "with",
+    "right", "behind", "under", "i", "we", "together", "more", "fewer", "others", "ones", "plus", "minus", "less", "for",
+})  # fmt: skip
+_BOUNDS = re.compile(
+    r"\b(at least|at most|more than|fewer than|less than|greater than|over|under|above|below|up to|a minimum of|a maximum of|"
+    r"geq|leq|gt|lt|(half|twice|double|triple|thrice|times|x)( of)?( the)?|(half|third|quarter|root|square|multiple|fraction) of)$"
+)
+_OR_MORE = re.compile(r"(\w+ ){0,4}or (more|fewer|less|so)\b|(ish|plus)\b")
+_FRACTION = re.compile(r"(and )?a (half|third|quarter)\b|(halves|thirds|quarters|fifths|tenths|squared|cubed|factorial)\b")
+_COMPARED_BEFORE = re.compile(r"(<|(?<![-=])>|[≤≥≦≧≪≫≲≳⩽⩾±≠])[=\s]*$")
+_COMPARED_AFTER = re.compile(r"\s*(<|>|[≤≥≦≧≪≫≲≳⩽⩾±])")
+_NOT_WRITTEN_OUT = frozenset({
+    "a", "an", "the", "total", "of", "exactly", "quite", "really", "just", "even", "there", "is", "are", "be", "was", "were", "to",
+    "see", "seen", "count", "counted", "find", "found", "any", "answer", "number", "it", "that", "true", "correct", "right",
+    "about", "precisely", "as", "many",
+})  # fmt: skip
+"""Words between "not" and the number that it denies."""
+
+_TOTALS = re.compile(
+    r"\b(total|altogether|together|overall|in all|combined|sum|makes|making|therefore|thus|hence|so|final|finally)\b"
+)
+
+_ANNOUNCES = re.compile(
+    r"\b(total( [^\W\d]\w*){0,2}|difference( (is|equals|makes|being|therefore|thus))*|(final )?answer( is)?|sum( is)?)$"
+)
+_ANYTHING = frozenset({"object", "objects", "item", "items", "thing", "things"})
+"""What a total may be of without being of something else than what was asked for."""
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A number in a text, words ``start`` to ``end`` (exclusive). ``own``: it counts what was asked for; ``other``: not.
+
+    ``bound``: it stands in place of a number that is not told ("at least 3", "<3", "3 and a half").
+    """
+
+    value: float
+    start: int
+    end: int
+    own: bool = False
+    other: bool = False
+    bound: bool = False
+    denied: bool = False
+    total: bool = False
+
+
+def find_quantities(script: Script, unit: Sequence[str]) -> list[Quantity]:
+    """Every number that could be a count, in order; measures (15 degrees, 2x) not asked for, ordinals, labels and numbers glued to
+    letters ("0x3", "A4") are none."""
+    words, found, at = script.words, list[Quantity](), 0
+    while at < len(words):
+        value, end = number_at(words, at)
+        if value is None:
+            at += 1
+            continue
+        is_glued = at > 0 and words[at].gap == ""
+        if not is_glued and (_followed_by(words, end, unit) or not _is_no_count(words, at, end)):
+            found.append(_quantity(script, value, at, end, unit))
+        at = end
+    return found
+
+
+def _quantity(script: Script, value: float, start: int, end: int, unit: Sequence[str]) -> Quantity:
+    words = script.words
+    owned = _followed_by(words, end, unit) or _announced(words, start, unit)
+    after = words[end].text if end < len(words) and words[end].segment == words[end - 1].segment else ""
+    ones = re.match(r"(\w+ ){0,2}(ones|others)\b", " ".join(w.text for w in words[end : end + 3]))
+    bare = not after or ones is not None or after in _BARE_AFTER or number_at(words, end)[0] is not None or ")" in words[end].gap
+    before = " ".join(w.text for w in words[max(0, start - 4) : start])
+    segment = " ".join(w.text for w in words if w.segment == words[start].segment)
+    announced_total = _ANNOUNCES.search(before) is not None
+    bare = bare or (announced_total and after in _ANYTHING)
+    return Quantity(
+        value=value,
+        start=start,
+        end=end,
+        own=owned,
+        other=not owned and not bare,
+        bound=_is_bound(words, start, end),
+        denied=_is_denied(words, start),
+        total="=" in words[start].gap or announced_total or (bool(_TOTALS.search(segment)) and (owned or bare)),
+    )
+
+
+def _is_no_count(words: Sequence[Word], start: int, end: int) -> bool:
+    after = words[end] if end < len(words) else None
+    if after is not None and after.segment == words[end - 1].segment:
+        if any(same_word(after.text, measure) for measure in _MEASURES):
+            return True
+        if after.gap == "" and after.text[0].isalpha() and after.text != "ish":
+            return True
+    return (words[start].text[0].isdigit() and _is_label(words, start)) or words[start].gap.endswith("#")
+
+
+def _is_label(words: Sequence[Word], at: int) -> bool:
+    """Whether the digits at a word say which of several, as in "preset 3" and "presets 1, 2 and 3"."""
+    while at > 0 and words[at].clause == words[at - 1].clause:
+        at -= 1
+        if words[at].segment == words[at + 1].segment and any(same_word(words[at].text, label) for label in _LABELS):
+            return True
+        if not words[at].text[0].isdigit() and words[at].text not in ("and", "or", "to", "of"):
+            return False
+    return False
+
+
+def _is_bound(words: Sequence[Word], start: int, end: int) -> bool:
+    segment = words[start].segment
+    before = " ".join(w.text for w in words[max(0, start - 4) : start] if w.segment == segment)
+    rest = " ".join(w.text for w in words[end : end + 6] if w.segment == segment)
+    signs = _COMPARED_BEFORE.search(words[start].gap) or (end < len(words) and _COMPARED_AFTER.match(words[end].gap))
+    return bool(_BOUNDS.search(before) or _OR_MORE.match(rest) or _FRACTION.match(rest) or signs)
+
+
+def _is_denied(words: Sequence[Word], start: int) -> bool:
+    """ "not 3", "it is not the case that there are 3", "neither 3 nor 5"."""
+    at = start - 1
+    while at >= 0 and words[at].segment == words[start].segment:
+        if words[at].text in ("not", "never", "neither", "nor"):
+            return True
+        if words[at].text not in _NOT_WRITTEN_OUT and words[at].text != "case":
+            return False
+        at -= 1
+    return False
+
+
+def _followed_by(words: Sequence[Word], end: int, unit: Sequence[str]) -> bool:
+    """Whether the thing counted comes after the number, with at most four adjectives between."""
+    phrases = [plain_words(u) for u in unit]
+    for at in range(end, min(end + 5, len(words))):
+        if words[at].segment != words[end - 1].segment:
+            return False
+        for phrase in phrases:
+            if all(at + i < len(words) and same_word(words[at + i].text, p) for i, p in enumerate(phrase)):
+                return True
+        is_adjectives = words[at].text not in _BARE_AFTER or (words[at].text in ("and", "of") and at > end)
+        if not is_adjectives or number_at(words, at)[0] is not None:
+            return False
+    return False
+
+
+def _announced(words: Sequence[Word], start: int, unit: Sequence[str]) -> bool:
+    """ "Cones: 5"."""
+    if start == 0 or not re.fullmatch(r"\s*[:=]\s*|\s+-\s+", words[start].gap):
+        return False
+    for phrase in (plain_words(u) for u in unit):
+        begin = start - len(phrase)
+        is_named = begin >= 0 and all(same_word(words[begin + i].text, p) for i, p in enumerate(phrase))
+        if is_named and (begin == 0 or number_at(words, begin - 1)[0] is None):
+            return True
+    return False

@@ -1,0 +1,88 @@
+"""Where a text names one of several options, by its whole name or by a shortening that fits no other of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import combinations
+
+from scope_ptz.bench.answers.text import Mention, Script, wordings_of
+from scope_ptz.bench.answers.words import plain_words, same_word
+
+_LINKS = frozenset({"with", "in", "of", "on", "at", "from", "who", "carrying", "and"})
+_BEFORE = frozenset({
+    "the", "a", "an", "then", "is", "are", "and", "or", "than", "more", "most", "fewer", "fewest", "order", "so", "therefore",
+    "thus", "answer", "finally", "first", "last", "second", "third", "next", "lastly", "nearest", "closest", "farthest",
+    "furthest", "largest", "biggest", "smallest", "leftmost", "rightmost",
+})  # fmt: skip
+_AFTER = frozenset({
+    "is", "are", "was", "were", "has", "have", "and", "or", "then", "than", "comes", "come", "appears", "appear", "seems", "looks",
+    "stands", "takes", "being", "followed", "because", "since", "as", "while", "next", "last", "first", "second", "third", "by",
+    "to",
+})  # fmt: skip
+"""What may stand around a shortening; any other word would make it the name of another thing ("the Whitlock sign", "bus stop")."""
+
+
+def option_mentions(script: Script, options: Mapping[str, Sequence[str]]) -> list[Mention]:
+    """Every place where an option is named. "The bus" names the red double-decker bus where there is no other bus."""
+    whole = {name: wordings_of(name, further) for name, further in options.items()}
+    short = _shortenings(whole)
+    found = script.mentions({name: (*wordings, *short[name]) for name, wordings in whole.items()})
+    return [m for m in found if _is_one_of(script, m, whole[m.name]) or _stands_alone(script, m)]
+
+
+def _is_one_of(script: Script, mention: Mention, wordings: Sequence[str]) -> bool:
+    said = [w.text for w in script.words[mention.start : mention.end]]
+    return any(len(words) == len(said) and _begins(words, said) for words in map(plain_words, wordings))
+
+
+def _begins(words: Sequence[str], said: Sequence[str]) -> bool:
+    articles = ({"a", "the"}, {"an", "the"}, {"a", "an"})
+    return all(same_word(one, other) or {one, other} in articles for one, other in zip(words, said, strict=True))
+
+
+def _stands_alone(script: Script, mention: Mention) -> bool:
+    words = script.words
+    before = words[mention.start - 1 : mention.start] if mention.start else ()
+    plural = words[mention.end - 1].text.endswith("s")
+    opens = (
+        not before or bool(words[mention.start].gap.strip()) or before[0].text in _BEFORE or (plural and before[0].text.isdigit())
+    )
+    after = words[mention.end : mention.end + 1]
+    closes = not after or bool(after[0].gap.strip()) or after[0].text in _AFTER
+    if not closes:
+        closes = " ".join(w.text for w in words[mention.end : mention.end + 3]) in _PLACES
+    return opens and closes
+
+
+_PLACES = frozenset({"in the middle", "on the left", "on the right", "in the centre", "in between them"})
+
+
+def _shortenings(whole: Mapping[str, Sequence[str]]) -> dict[str, tuple[str, ...]]:
+    """By option: its noun with some of the words before it, or the proper name that it begins with; none that fits two options."""
+    found = dict[str, tuple[str, ...]]()
+    for name in whole:
+        others = [plain_words(wording) for other, wordings in whole.items() if other != name for wording in wordings]
+        found[name] = tuple(" ".join(words) for words in _shorter(name) if not any(_is_within(words, other) for other in others))
+    return found
+
+
+def _shorter(name: str) -> list[tuple[str, ...]]:
+    words = plain_words(name)
+    links = [at for at, word in enumerate(words) if word in _LINKS]
+    core = words[: links[0]] if links else words
+    if not core or len(core) > 5:
+        return []
+    nouns = [(*before, core[-1]) for size in range(len(core)) for before in combinations(core[:-1], size)]
+    capitals = [word for word in name.split() if word[0].isupper()]
+    proper = plain_words(" ".join(capitals)) if name.startswith(" ".join(capitals)) and len(capitals) < len(name.split()) else []
+    shorter = [*nouns, *([tuple(proper)] if proper and len(proper) < len(words) else [])]
+    return [s for s in shorter if list(s) != words and any(len(word) > 2 for word in s)]
+
+
+def _is_within(words: Sequence[str], other: Sequence[str]) -> bool:
+    """Whether some words stand in a name in their order, with or without others between."""
+    at = 0
+    for word in other:
+        if at < len(words) and same_word(word, words[at]):
+            at += 1
+    return at == len(words)

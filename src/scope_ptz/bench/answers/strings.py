@@ -1,0 +1,127 @@
+"""Reading what an answer says is written somewhere, and comparing texts as a person would who knows what cameras confuse."""
+
+from __future__ import annotations
+
+import re
+from itertools import pairwise
+
+from scope_ptz.bench.answers.figures import is_figure, read_figure
+from scope_ptz.bench.answers.quotes import Quote, quotes_of, readings_of
+from scope_ptz.bench.answers.result import Reading, Unreadable, Value
+from scope_ptz.bench.answers.text import Script
+from scope_ptz.bench.answers.words import clean
+from scope_ptz.bench.tasks.expected import Text
+
+APART = " / "
+"""Between texts that stand apart from each other."""
+
+_LOOK_ALIKES = str.maketrans({"o": "0", "i": "1", "l": "1", "|": "1", "s": "5", "b": "8"})
+_NUMERALS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
+_DIGITS = {word: str(number) for number, word in enumerate(_NUMERALS)}
+_CUES = (
+    (re.compile(r"\b(?:reads?|says?|states?|displays?|spells?)\b\s*:?\s*", re.IGNORECASE), 14),
+    (re.compile(r":\s+"), 14),
+    (re.compile(r"\b(?:shows?|called|named)\b\s*", re.IGNORECASE), 14),
+    (re.compile(r"\b(?:(?<![Tt]here )is|(?<![Tt]here )are)\b\s*"), 6),
+)
+"""What comes before a text, the surest first, and how many words may follow; of the last sort the last one counts.
+An "IS" in capitals is lettering."""
+_WRITTEN = re.compile(
+    r"^\W*(?!it\b|what\b|the (?:text|words?)\b)(.{1,80}?)\s+(?:is|are)\s+(?:written|painted|printed|displayed)\b", re.IGNORECASE
+)
+"""A sentence that begins with what is written."""
+
+_LEADS = re.compile(r"^(?:the )?(?:text|words?|letters|lettering)\s+(?:that reads?\s+)?", re.IGNORECASE)
+_TRAILERS = re.compile(
+    r",?\s+(?:in|on|above|below|with|at|written|painted|printed|near|beside)\s+(?:(?:the|a|an|its|big|large|small|bold|capital|white|black|red|"
+    r"blue|green|yellow|dark|light|orange)\s+)*(?:letters?|lettering|capitals|sign|board|text|background|front|back|plate|door|van|car|"
+    r"lorry|truck|bus|shop|wall|view|top|bottom|left|right|gantry|white|black|red|blue|green|yellow|orange)\b.*$",
+    re.IGNORECASE,
+)
+_NEXT_SENTENCE = re.compile(r"[.!]\s+(?=(?:It|This|That|The|There|I|They|In|On|At|Source|Let|Please|If|Would|You|Feel|So)\b)")
+_DENIED = re.compile(r"(?:\bnot|n't|\bnever)(?: \w+)? $", re.IGNORECASE)
+_NO_LETTERING = re.compile(r"(?:there (?:is|are)|done|not)\b", re.IGNORECASE)
+_FINISHED = re.compile(
+    r"(?:(?:ok|okay|sure|done|finished|completed?|ready|all set)|"
+    r"(?:(?:the|this|your|all|i have|i|has) )*(?:it|everything|task|request|job|action|operation|command|instruction|step|all)s?"
+    r"(?: (?:is|was|has|have|been|are|now|all))*(?: \w+ly)? (?:done|completed?|finished|executed|performed|successful|carried out)"
+    r"(?:,? (?:\w+ly|with success|as (?:requested|asked)|now))*)\W*",
+    re.IGNORECASE,
+)
+"""An answer in prose that tells of something else than of what is written."""
+
+_MOST_ALONE = 8
+_MOST_IN_CAPITALS = 16
+
+
+def same_text(one: str, other: str, *, ocr: bool) -> bool:
+    """Whether two texts are the same but for case, punctuation and spaces, and with ``ocr`` but for look-alikes.
+
+    Parts that stand apart (" / ") may come in any order.
+    """
+    parts, others = ([folded(part, ocr) for part in text.split(APART)] for text in (one, other))
+    return "".join(parts) == "".join(others) or sorted(parts) == sorted(others)
+
+
+def folded(text: str, ocr: bool) -> str:
+    words = re.findall(r"[^\W_]+", re.sub(r"(?<=\w)'(?=\w)", "", clean(text).lower()))
+    joined = "".join(_DIGITS.get(word, word) for word in words)
+    return joined.translate(_LOOK_ALIKES) if ocr else joined
+
+
+def read_text(expected: Text, script: Script, answer: str) -> Reading:
+    """What the answer quotes; else what follows "reads", "says" or "is"; else a short answer as a whole."""
+    text = clean(answer)
+    quotes = quotes_of(text)
+    if script.declined and not quotes:
+        return Unreadable("declined")
+    if is_figure(expected.accepted) and (figure := Unreadable("a guess") if script.hedged else read_figure(expected, answer)):
+        return figure
+    if quotes:
+        return _from_quotes(quotes, text)
+    if re.search(r"\b(?:no (?:text|letters|writing)|blank|nothing (?:is )?written)\b", text, re.IGNORECASE):
+        return Value("")
+    begins = _WRITTEN.match(text)
+    candidate, most = (begins.group(1), _MOST_ALONE) if begins else _after_cue(text)
+    if most == 0:
+        return Unreadable("only what it does not read is told")
+    candidate = _NEXT_SENTENCE.split(candidate)[0]
+    candidate = _TRAILERS.sub("", candidate.strip().strip(".!,")).strip()
+    candidate = _LEADS.sub("", re.sub(r"\s*\n\s*", APART, candidate))
+    words = [word for word in candidate.split() if word != APART.strip()]
+    if candidate.isupper():
+        # Nobody writes prose in capitals: this is the lettering itself.
+        most = max(most, _MOST_IN_CAPITALS)
+    if not candidate.isupper() and (_NO_LETTERING.match(candidate) or any(map(_FINISHED.fullmatch, (candidate, text)))):
+        return Unreadable("no text is quoted")
+    if len(words) > most:
+        return Unreadable("no text is quoted")
+    if "or" in [w.lower() for w in words] and not any("or" in a.lower().split() for a in expected.accepted):
+        return Unreadable("an alternative")
+    return Value(candidate)
+
+
+def _after_cue(text: str) -> tuple[str, int]:
+    """What follows the surest cue, and how many words it may have; the whole text where there is no cue, no word where all that is
+    said to be read is denied."""
+    for cue, most in _CUES:
+        found = [match for match in cue.finditer(text) if match.end() < len(text)]
+        ends = [match.end() for match in found if not _DENIED.search(text[: match.start()])]
+        if ends:
+            return text[ends[-1] if cue is _CUES[-1][0] else ends[0] :], most
+        if found:
+            return "", 0
+    return text, _MOST_ALONE
+
+
+def _from_quotes(quotes: list[Quote], text: str) -> Reading:
+    readings = readings_of(quotes, text)
+    if not readings:
+        return Unreadable("only what it does not read is quoted")
+    between = [text[one.end : two.start] for one, two in pairwise(quotes)]
+    if len({folded(q.text, ocr=False) for q in quotes}) > 1 and any(
+        re.fullmatch(r"\s*,?\s+(?:or|and then)\s+", b) for b in between
+    ):
+        return Unreadable("an alternative")
+    said = {folded(quote.text, ocr=False): quote.text for quote in reversed(readings)}
+    return Value(APART.join(reversed(said.values())))

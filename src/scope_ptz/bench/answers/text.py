@@ -1,0 +1,239 @@
+"""Free text as clauses of words: markup and spelling set aside, what is denied, guessed, asked or declined told apart.
+
+This is the benchmark's own reading of English. It shares nothing with the language of the ground-truth perception.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from scope_ptz.bench.answers.absences import MARK, is_denied_jointly, is_listed_as_absent, uncrossed
+from scope_ptz.bench.answers.claims import Claim, claim_of
+from scope_ptz.bench.answers.words import Word, clean, plain_words, same_word, words_of
+
+NEGATORS = frozenset({"no", "not", "never", "without", "neither", "nor", "none", "nobody", "nothing", "zero", "0", "lacks", "lack"})
+_ASIDE = (
+    ("rather", "than"), ("instead", "of"), ("other", "than"), ("apart", "from"), ("as", "opposed", "to"), ("unlike",),
+    ("except",), ("except", "for"), ("besides",), ("excluding",),
+)  # fmt: skip
+_A_OR_THE = frozenset({"a", "an", "the"})
+"""In the middle of a name one is as good as the other."""
+
+_ARTICLES = frozenset({"a", "an", "the", "one", "two", "three", "some", "its", "his", "their"})
+_SUBJECTS = frozenset({"it", "they", "there", "i", "we", "this", "that"})
+_STOPS = frozenset({"but", "just", "only", "however", "although", "though", "yet", "while", "whereas", "instead"})
+_HEDGES = re.compile(
+    r"\b((yes|no) if|maybe|perhaps|possibly|might|may|conceivably|i guess|just a guess|at a guess|or so|could (be|have)"
+    r"(?! (found|seen|detected|made|spotted|identified|located)))\b"
+)
+_DECLINES = re.compile(
+    r"\bnot (?:\w+ )?(tell|say|determine|determined|make|know|known|read|readable|compare|compared|rank|count|counted|judge|judged|"
+    r"identify|identified|answer|answered|confirm|confirmed|decide|sure|certain|able|possible|legible|clear|"
+    r"see (anything|clearly|enough))\b"
+    r"|\b(unable|impossible|hard|difficult) to\b|\bno (way to|idea)\b|\b(unclear|illegible|unreadable|unknown|indeterminable)\b"
+    r"|\b(no one|nobody|who|god) knows\b"
+    r"|\btoo (\w+ )?(dark|blurry|blurred|small|far|distant|dim|unclear|bright|faint)\b.* to (\w+ )?"
+    r"(see|tell|say|read|count|make|determine|identify|judge|be)\b"
+)
+
+_CORRECTED = re.compile(
+    r"\b(?:correction|i mean|i meant|or rather(?! than)|(?:scratch|strike) that|make (?:that|it)(?= \w+\W*$)|i stand corrected|"
+    r"on second thoughts?|my mistake|oops)\b|(?:^|[.,;!—-]\s*)(?:no,? )?(?:wait|hold on)\b(?=\W)",
+    re.IGNORECASE,
+)
+"""What takes back all that was said before it."""
+
+_ABSENT = r"(is |are |was |were )?((now|currently|completely|entirely) )?(absent|missing|nowhere)\b"
+_NOT_NO = re.compile(
+    r"\b(not|never) (no|without|zero|0|none)$|\bnot (true|the case|correct|right)( that)?( there (is|are|was|were))? no$"
+    r"|\b(no|not|without|zero) (\w+ )?(shortage|lack|lacks|absence|want)( of)?$"
+)
+"""A denial denied: "not without", "no lack of"."""
+
+
+_WHO_CAN = frozenset({"i", "we", "you", "they", "it", "that", "who", "nobody", "one"})
+_CAN_WHAT = frozenset({
+    "not", "see", "be", "find", "only", "also", "make", "tell", "count", "spot", "confirm", "say", "identify", "read", "clearly",
+    "just", "still", "barely", "definitely", "hardly", "detect", "recognise", "notice", "determine",
+})  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Mention:
+    """Words ``start`` to ``end`` (exclusive) name ``name``. ``denied``: said not to be so; ``aside``: named to be told apart."""
+
+    name: str
+    start: int
+    end: int
+    denied: bool
+    aside: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Script:
+    """A text made ready for reading. ``declined``/``hedged``: something in it was, and those clauses are left out of ``words``."""
+
+    words: tuple[Word, ...]
+    declined: bool
+    hedged: bool
+
+    def mentions(self, names: Mapping[str, Sequence[str]]) -> list[Mention]:
+        """Every place where one of the wordings of a name stands; of overlapping ones the longest. "No cone is missing" says
+        nothing of cones, nor does "I looked for cones"."""
+        phrases = [(tuple(plain_words(w)), name) for name, wordings in names.items() for w in wordings]
+        phrases.sort(key=lambda p: -len(p[0]))
+        found, taken = list[Mention](), set[int]()
+        for start in range(len(self.words)):
+            for phrase, name in phrases:
+                end = start + len(phrase)
+                if phrase and self._is_at(phrase, start) and not taken & set(range(start, end)):
+                    taken |= set(range(start, end))
+                    claim = claim_of(self.words, start, end)
+                    if claim is Claim.NOTHING or self._denied_twice(start, end):
+                        break
+                    denied = self.denied(start, end) if claim is Claim.STATED else claim is Claim.MISSED
+                    found.append(Mention(name, start, end, denied, self._aside(start)))
+                    break
+        return found
+
+    def in_brackets(self, at: int) -> bool:
+        """Whether the word at a place stands in round brackets."""
+        gaps = "".join(word.gap for word in self.words[: at + 1])
+        return gaps.count("(") > gaps.count(")")
+
+    def _is_at(self, phrase: tuple[str, ...], start: int) -> bool:
+        words = self.words[start : start + len(phrase)]
+        return (
+            len(words) == len(phrase)
+            and not (phrase == ("can",) and self._is_verb(start))
+            and words[0].clause == words[-1].clause
+            and all(same_word(w.text, p) or {w.text, p} <= _A_OR_THE for w, p in zip(words, phrase, strict=True))
+        )
+
+    def _is_verb(self, at: int) -> bool:
+        """Whether "can" says what is possible, and names no can."""
+        before, after = self.words[max(0, at - 1) : at], self.words[at + 1 : at + 2]
+        return any(w.text in _WHO_CAN for w in before) or any(w.text in _CAN_WHAT for w in after)
+
+    def _aside(self, start: int) -> bool:
+        before = [w.text for w in self.words[max(0, start - 4) : start] if w.clause == self.words[start].clause]
+        while before and before[-1] in _ARTICLES:
+            before.pop()
+        return any(tuple(before[-len(words) :]) == words for words in _ASIDE)
+
+    def denied(self, start: int, end: int) -> bool:
+        """Whether what stands at these words is said not to be so or not to be there."""
+        return self._denied_before(start) or self.denied_after(end) or is_denied_jointly(self.words, start, end)
+
+    def _denied_before(self, start: int) -> bool:
+        segment = self.words[start].segment
+        at = start - 1
+        while at >= 0 and self.words[at].segment == segment:
+            word = self.words[at]
+            if word.text in NEGATORS and not (word.text == "0" and at > 0 and word.gap == ""):
+                after = self.words[at + 1].text
+                return not (word.text == "no" and after == "other") and not (word.text == "none" and after != "of")
+            ends_list = word.text == "and" and self.words[at + 1].text in _ARTICLES | _SUBJECTS
+            if word.text in _STOPS or ends_list:
+                return False
+            at -= 1
+        return at >= 0 and self._continues_list(segment) and self._opens_denied_list(at)
+
+    def _denied_twice(self, start: int, end: int) -> bool:
+        segment, clause = self.words[start].segment, self.words[end - 1].clause
+        before = [w.text for w in self.words[max(0, start - 9) : start] if w.segment == segment]
+        ends = [at for at in range(len(before) + 1) if before[at - 1 : at] and _NOT_NO.search(" ".join(before[:at]))]
+        after = " ".join(w.text for w in self.words[end : end + 6] if w.clause == clause)
+        return bool(ends) or (self._denied_before(start) and re.match(_ABSENT, after) is not None)
+
+    def _continues_list(self, segment: int) -> bool:
+        """ "no cars, vans or buses": the pieces after the comma are denied too when the list ends in "or"."""
+        clause = next(w.clause for w in self.words if w.segment == segment)
+        rest = [w.text for w in self.words if w.clause == clause and w.segment >= segment]
+        own = [w.text for w in self.words if w.segment == segment]
+        return ("or" in rest or "nor" in rest) and not (set(own) & (_STOPS | {"is", "are", "there", "it", "i", "yes"}))
+
+    def _opens_denied_list(self, at: int) -> bool:
+        """Whether the piece that ends at a word is denied and is more than a bare "no"."""
+        return at > 0 and self.words[at].text not in NEGATORS and self._denied_before(at)
+
+    def denied_after(self, end: int) -> bool:
+        clause = self.words[end - 1].clause
+        after = " ".join(w.text for w in self.words[end : end + 6] if w.clause == clause)
+        return (
+            bool(
+                re.match(
+                    r"(\w+ ){0,2}?(is|are|was|were|can|could) not ((currently|actually|now|yet|even|be|been|\w+ly) )?"
+                    r"(visible|present|there|seen|found|shown|here|anywhere|be (seen|found)|"
+                    r"in( \w+){0,3} (view|sight|picture|image|frame|photo|scene|preset)s?)\b"
+                    rf"|{_ABSENT}|(is |are |was |were )?(none|no|0|zero)$|(can|is|are|does|do) not$",
+                    after,
+                )
+            )
+            or self.is_marked(end, ("no",))
+            or is_listed_as_absent(self.words, end)
+        )
+
+    def is_marked(self, end: int, marks: Sequence[str]) -> bool:
+        """Whether one of some words stands beside what ends at a word, by itself: "drum (no)", "drum: no"."""
+        if end >= len(self.words) or self.words[end].text not in marks or not MARK.search(self.words[end].gap):
+            return False
+        alone = end + 1 == len(self.words) or self.words[end + 1].segment != self.words[end].segment
+        return alone or self.words[end + 1].gap.lstrip()[:1] in (")", "(", "|")
+
+    def text(self) -> str:
+        return " ".join(w.text for w in self.words)
+
+    def segments(self) -> list[list[int]]:
+        """Word positions by segment."""
+        return _grouped([w.segment for w in self.words])
+
+    def clauses(self) -> list[list[int]]:
+        """Word positions by clause."""
+        return _grouped([w.clause for w in self.words])
+
+
+def _grouped(labels: Sequence[int]) -> list[list[int]]:
+    groups: dict[int, list[int]] = {}
+    for position, label in enumerate(labels):
+        groups.setdefault(label, []).append(position)
+    return list(groups.values())
+
+
+def script(text: str) -> Script:
+    """Make a text ready for reading. Questions are left out: they claim nothing."""
+    cleaned = re.sub(r"\s*\(with [^()]*\)", "", uncrossed(clean(text)))  # "white (with black letters)" is white
+    cleaned = cleaned[max((match.end() for match in _CORRECTED.finditer(cleaned)), default=0) :]
+    words = words_of(re.sub(r"[^.!?\n]*\?", "", cleaned))
+    kept, declined, hedged = list[Word](), False, False
+    for positions in _grouped([w.clause for w in words]):
+        said = " ".join(words[i].text for i in positions)
+        refused = [m.end() for m in _DECLINES.finditer(said)]
+        if refused and not re.search(r"\bbut\b", said[refused[-1] :]):
+            declined = True
+            kept += _ground([words[i] for i in positions], said[: refused[-1]].count(" "))
+            kept += _reason([words[i] for i in positions], said[: refused[-1]].count(" ") + 1)
+        elif _HEDGES.search(said):
+            hedged = True
+        else:
+            kept += [words[i] for i in positions]
+    return Script(tuple(kept), declined, hedged)
+
+
+def _ground(words: Sequence[Word], refused: int) -> Sequence[Word]:
+    """What stands before "..., so I cannot tell"; nothing where it is not the ground of it."""
+    segment = words[refused].segment
+    begins = next(at for at, word in enumerate(words) if word.segment == segment)
+    return words[:begins] if words[begins].text in ("so", "therefore", "thus", "hence") else ()
+
+
+def _reason(words: Sequence[Word], start: int) -> Sequence[Word]:
+    """What stands after "I cannot tell:" or "... because"; nothing when no reason is given."""
+    begins = (at for at in range(start, len(words)) if ":" in words[at].gap or words[at].text == "because")
+    return words[next(begins, len(words)) :]
+
+
+def wordings_of(name: str, further: Iterable[str]) -> tuple[str, ...]:
+    return name, *further

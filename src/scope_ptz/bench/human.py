@@ -1,0 +1,112 @@
+"""Runs of people as judged runs: the same checks, in the same records as an evaluation of models."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from scope_ptz import __version__
+from scope_ptz.agent.timing import Timings
+from scope_ptz.agent.trace import Trace, picture_of, read_trace
+from scope_ptz.bench.scoring.episode import Places, episode_of
+from scope_ptz.bench.scoring.error_modes import error_mode
+from scope_ptz.bench.scoring.trials import Check, Evaluation, ModelCard, RunCard, Trial
+from scope_ptz.bench.scoring.verdict import judge
+from scope_ptz.bench.tasks.files import digest_of
+from scope_ptz.bench.tasks.task import Task
+from scope_ptz.bench.tasks.wording import facts_of
+from scope_ptz.errors import InputError, OutputError, TraceError
+from scope_ptz.simulator.models import SceneFile
+
+RESULT = "evaluation.json"
+DIGEST_CHARS = 16
+
+
+def card(by: str, split: str, tasks: Sequence[Task], started: str, max_steps: int) -> RunCard:
+    """The run card of a person: planner and eyes are one."""
+    who = ModelCard(name=by, provider="person")
+    return RunCard(
+        run_id=f"human-{by}",
+        started=started,
+        package_version=__version__,
+        engine_version="none",
+        dataset=tasks[0].dataset,
+        dataset_digest=digest_of(tasks)[:DIGEST_CHARS],
+        split=split,
+        planner=who,
+        perception=who,
+        max_steps=max_steps,
+        contended=False,
+    )
+
+
+def trial(task: Task, scene: SceneFile, trace: Trace, sample: str) -> Trial:
+    """A finished run, judged by the task's checks. The person saw every view that the camera showed before a decision."""
+    episode = episode_of(trace, Places.of(scene), planner_sees=True)
+    verdict, ended = judge(task, episode), trace.ended
+    viewpoint = next(preset.viewpoint for preset in scene.presets if preset.name == task.preset)
+    return Trial(
+        task=facts_of(task, viewpoint),
+        sample=sample,
+        headline=verdict.headline,
+        reason=verdict.reason,
+        error_mode=error_mode(task, episode),
+        checks=tuple(Check(name=c.name, passed=c.passed, reason=c.reason) for c in verdict.checks),
+        collateral=verdict.collateral,
+        outcome=episode.outcome,
+        answer=episode.text,
+        steps=ended.steps if ended else len(trace.decisions),
+        tool_calls=dict(Counter(call.outcome.call.name for call in trace.calls if call.fault != "skipped")),
+        bad_calls=sum(call.fault == "bad_call" for call in trace.calls),
+        perception_failures=sum(call.fault == "perception" for call in trace.calls),
+        timings=ended.timings if ended else Timings(),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class KeptRun:
+    """A person's run as reports show it: its trace, and the pictures in its folder."""
+
+    trace: Trace
+
+    def picture(self, name: str) -> bytes | None:
+        """A picture by its name in the trace; None when it is not there. Raises ``TraceError`` for one outside the folder."""
+        path = picture_of(self.trace.folder, name)
+        try:
+            return path.read_bytes()
+        except OSError:
+            return None
+
+
+def open_run(result: Path, sample: str) -> KeptRun:
+    """A run of a result by its name (``Trial.sample``), from its folder beside the result. Raises ``TraceError``."""
+    folder = result.parent / sample
+    if sample in {"", ".", ".."} or Path(sample).name != sample:
+        raise TraceError(f"{result} names a run outside its own folder: {sample}.")
+    return KeptRun(read_trace(folder))
+
+
+def write_result(evaluation: Evaluation, folder: Path) -> Path:
+    """Write the result, whole or not at all: a program that is stopped leaves the one before."""
+    path, fresh = folder / RESULT, folder / f"{RESULT}.new"
+    try:
+        fresh.write_text(evaluation.model_dump_json(indent=1) + "\n", "utf-8")
+        fresh.replace(path)
+    except OSError as error:
+        raise OutputError(f"The result {path} cannot be written: {error.strerror}.") from error
+    return path
+
+
+def read_result(path: Path) -> Evaluation:
+    """A result of ``scope bench human``. Raises ``InputError`` when it is none."""
+    try:
+        return Evaluation.model_validate_json(path.read_bytes())
+    except OSError as error:
+        raise InputError(f"The result {path} cannot be read: {error.strerror}.") from error
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        raise InputError(f"{path} holds no result: {'.'.join(map(str, first['loc']))}: {first['msg']}.") from error

@@ -1,0 +1,79 @@
+"""Runs programs of tool calls as an agent would, through the real tools and the simulated camera, fast and in memory.
+
+Which eyes look, and where pictures go, is the caller's choice; blank frames serve eyes that read the ground truth.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from scope_ptz.bench.scoring.episode import Call, Episode, Eyes, Picture, Standing, looks_of
+from scope_ptz.bench.tasks.task import ProgramCall, Task
+from scope_ptz.camera.base import Camera, Frame, FrameOrigin
+from scope_ptz.camera.simulated import SimulatedCamera
+from scope_ptz.errors import PerceptionError, ToolCallError, UnknownNameError
+from scope_ptz.geometry import Perspective
+from scope_ptz.simulator.clock import SceneClock
+from scope_ptz.simulator.pack import Scene
+from scope_ptz.tools.context import ToolContext
+from scope_ptz.tools.registry import run_tool
+
+Equip = Callable[[Camera], ToolContext]
+"""Gives a camera eyes and a place for its pictures."""
+
+
+class BlankCamera(SimulatedCamera):
+    """A simulated camera whose frames say where they were taken, but show nothing: drawing them is most of the work."""
+
+    def __init__(self, scene: Scene, *, clock: SceneClock, width: int, height: int) -> None:
+        super().__init__(scene, clock=clock, width=width, height=height)
+        self._scene_name = scene.name
+        self._blank = np.zeros((height, width, 3), np.uint8)
+
+    async def frame(self) -> Frame:
+        pose, time_s = await self.pose(), self.clock.now_s()
+        hfov_deg = self.info.optics.hfov_deg(pose.zoom)
+        view = Perspective(pose.pan_deg, pose.tilt_deg, hfov_deg, self.info.frame_width, self.info.frame_height)
+        origin = FrameOrigin(self._scene_name, self.viewpoint, pose, time_s)
+        return Frame(image=self._blank, pose=pose, hfov_deg=hfov_deg, time_s=time_s, projection=view, origin=origin)
+
+
+class Stage:
+    """A scene on which programs are run."""
+
+    def __init__(self, scene: Scene, equip: Equip, eyes: Eyes) -> None:
+        self.scene, self.equip, self.eyes = scene, equip, eyes
+
+    async def run(self, task: Task, program: Sequence[ProgramCall], text: str, outcome: str = "answered") -> Episode:
+        """The run of a program from the task's start, ended with a text. A call that fails stays in it; the rest is still made."""
+        clock = SceneClock(task.time_s)
+        camera = BlankCamera(self.scene, clock=clock, width=self.eyes.width, height=self.eyes.height)
+        with clock.hold():
+            await camera.go_to_preset(task.preset)
+        context = self.equip(camera)
+        start = Standing(camera.viewpoint, await camera.pose())
+        calls, pictures, before = list[Call](), list[Picture](), start
+        for step in program:
+            time_s = clock.now_s()
+            result, error, fault = None, None, None
+            try:
+                result = (await run_tool(context, step.tool, dict(step.arguments))).model_dump(mode="json")
+            except (ToolCallError, UnknownNameError) as wrong:
+                error, fault = str(wrong), "bad_call"
+            except PerceptionError as failed:
+                error, fault = str(failed), "perception"
+            after = Standing(camera.viewpoint, await camera.pose())
+            call = Call(step.tool, step.arguments, before, after, result, error, fault, time_s)
+            calls.append(seen(call, self.eyes))
+            if result is not None and step.tool == "take_image":
+                pictures.append(Picture(str(result["file"])))
+            before = after
+        return Episode(task.instruction, start, tuple(calls), before, text, outcome, tuple(pictures))
+
+
+def seen(call: Call, eyes: Eyes) -> Call:
+    """A call with the looks that it took."""
+    looks = looks_of(call, eyes) if call.succeeded else ()
+    return Call(call.name, call.arguments, call.before, call.after, call.result, call.error, call.fault, call.time_s, looks)

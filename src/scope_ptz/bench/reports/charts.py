@@ -1,0 +1,246 @@
+"""Charts as SVG, and what they say to whoever cannot see them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from math import sqrt
+from statistics import fmean
+from typing import TYPE_CHECKING, Any
+
+from scope_ptz.bench.reports.chart_style import (
+    FAINT,
+    GREY,
+    HUES,
+    INK,
+    PAPER,
+    as_chart,
+    canvas,
+    colours,
+    legend_below,
+    legend_px,
+    lines,
+    panels,
+    row_px,
+    shades,
+    short,
+)
+from scope_ptz.bench.reports.runs import Run
+from scope_ptz.bench.reports.sections import Chart
+from scope_ptz.bench.reports.tables import Marked, Table, bare
+from scope_ptz.bench.scoring.error_modes import ErrorMode
+from scope_ptz.bench.statistics.clustered import Estimate
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.collections import PathCollection
+
+    from scope_ptz.bench.reports.recommendations import Candidate
+
+
+def accuracy_chart(runs: Sequence[Run]) -> Chart:
+    """Macro accuracy with its interval, the best on top; runs over other tasks below and hollow, reference runs last and grey."""
+    ordered = sorted(runs, key=lambda r: (r.ranked, not r.elsewhere, r.macro.value if r.macro else 0.0))
+    tint = colours(runs)
+    labels = [lines(r.label + ("" if r.ranked else " (not ranked)")) for r in ordered]
+    with canvas(880, 110 + row_px(labels) * len(ordered)) as (figure, axes):
+        for y, run in enumerate(ordered):
+            found = run.macro
+            if found is None:
+                continue
+            if found.low is not None and found.high is not None:
+                axes.plot([100 * found.low, 100 * found.high], [y, y], color=tint[run.label], lw=2.5, solid_capstyle="round")
+            face = PAPER if run.elsewhere else tint[run.label]
+            axes.plot(100 * found.value, y, "o" if run.ranked else "D", mec=tint[run.label], mfc=face, mew=2, ms=7, clip_on=False)
+        axes.set_yticks(range(len(ordered)), labels)
+        axes.set_xlim(0, 101)
+        axes.set_ylim(-0.6, len(ordered) - 0.4)
+        axes.set_xlabel("Macro accuracy (%), 95% interval")
+        values = "; ".join(f"{r.label} {100 * r.macro.value:.1f}%" for r in reversed(ordered) if r.macro)
+        title = "Macro accuracy" + (". Hollow: over other tasks" if any(r.elsewhere for r in runs) else "")
+        return as_chart("chart-accuracy", title, f"Macro accuracy by run, best first: {values}.", figure)
+
+
+def mode_chart(
+    key: str,
+    title: str,
+    runs: Sequence[Run],
+    counted: Mapping[str, Counter[ErrorMode]],
+    of: Mapping[str, int],
+    titles: Mapping[ErrorMode, str],
+    among: Sequence[Run],
+) -> Chart:
+    """Grouped bars, a group for each error mode; ``of``: how many trials a run's counts are out of; ``among``: the runs of all such
+    charts, so that a run looks alike in each."""
+    from matplotlib.patches import Patch
+
+    keys: list[Artist] = []
+    fills = dict(zip((run.label for run in among), shades(among), strict=True))
+    labels = [short(run.label + ("" if run.ranked else " (not ranked)"), 120) for run in runs]
+    with canvas(980, 370 + legend_px(labels)) as (figure, axes):
+        width = 0.84 / max(1, len(runs))
+        for number, (run, words) in enumerate(zip(runs, labels, strict=True)):
+            heights = [100 * counted[run.label][mode] / max(1, of[run.label]) for mode in titles]
+            at = [group - 0.42 + (number + 0.5) * width for group in range(len(titles))]
+            (fill, hatch), edge = fills[run.label], "none" if run.ranked else "#22262b"
+            # A bar of no height is none: its edge would show as a dash on the axis.
+            bars = [(x, height) for x, height in zip(at, heights, strict=True) if height]
+            axes.bar([x for x, _ in bars], [y for _, y in bars], width * 0.92, color=fill, hatch=hatch, edgecolor=edge, lw=0.6)
+            keys.append(Patch(facecolor=fill, hatch=hatch, edgecolor=edge, lw=0.6, label=words))
+        for group in range(1, len(titles)):
+            axes.axvline(group - 0.5, color=FAINT, lw=1)
+        axes.grid(axis="x", visible=False)
+        axes.set_xticks(range(len(titles)), [words.replace(" ", "\n", 1) for words in titles.values()])
+        axes.set_xlim(-0.5, len(titles) - 0.5)
+        axes.set_ylim(bottom=0)
+        axes.set_ylabel("Incorrect trials of 100")
+        legend_below(figure, labels, keys)
+        totals = ", ".join(f"{words} {sum(counted[r.label][mode] for r in runs)}" for mode, words in titles.items())
+        alt = f"Bars: incorrect trials by error mode and run. Trials over all runs: {totals}. The table below has every figure."
+        return as_chart(f"chart-{key.replace('_', '-')}", title, alt, figure)
+
+
+AS_IS, LIFTED, AGAIN = ("o", HUES[0]), ("s", HUES[1]), ("D", HUES[2])
+ORACLE_PANELS = (
+    ("by the checks", (
+        ("macro_checks", "as it is", AS_IS), ("oracle_rules", "VLM failures as right", LIFTED),
+        ("macro_rerun", "run again with ground-truth eyes", AGAIN),
+    )),
+    ("by the judge", (("macro_judge", "as it is", AS_IS), ("oracle_judge", "VLM failures as right", LIFTED))),
+)  # fmt: skip
+"""Each by verdicts of one kind, so that what is compared differs in nothing else."""
+
+
+def oracle_chart(table: Table) -> Chart:
+    """Accuracy as it is beside perfect perception, by the checks and by the judge in panels of their own. ``table``: of pairs."""
+    names = [column.name for column in table.columns]
+    rows = [(str(row[0]), {name: _whole(cell) for name, cell in zip(names, row, strict=True)}) for row in reversed(table.rows)]
+    drawn = [(words, series) for words, series in ORACLE_PANELS if any(v[name] is not None for _, v in rows for name, *_ in series)]
+    labels, told, known = [lines(label) for label, _ in rows], [], dict[str, Any]()
+    with panels(1080, 150 + row_px(labels, 34) * len(rows), max(1, len(drawn))) as (figure, grid):
+        for axes, (words, series) in zip(grid, drawn, strict=False):
+            for y, (label, values) in enumerate(rows):
+                found = [(title, 100 * value) for name, title, _ in series if (value := values[name]) is not None]
+                if found:
+                    told.append(f"{label} {words}: {', '.join(f'{title} {value:.1f}%' for title, value in found)}")
+                    axes.plot([min(v for _, v in found), max(v for _, v in found)], [y, y], color=GREY, lw=1.5, zorder=1)
+            for name, title, (marker, colour) in series:
+                points = [(100 * value, y) for y, (_, values) in enumerate(rows) if (value := values[name]) is not None]
+                if points:
+                    known[title] = axes.plot(*zip(*points, strict=True), marker, color=colour, ms=9, alpha=0.9)[0]
+            axes.set_title(f"Macro accuracy {words} (%)", fontsize=10.5, loc="left")
+            axes.set_xlim(0, 102)
+            axes.set_ylim(-0.6, len(rows) - 0.4)
+        grid[0].set_yticks(range(len(rows)), labels)
+        figure.legend(known.values(), known.keys(), loc="outside lower center", ncols=3, fontsize=9.5)
+        return as_chart("chart-oracle", "The oracle setting", f"Macro accuracy by pair. {'; '.join(told)}.", figure)
+
+
+def _whole(cell: Any) -> float | None:
+    """A value that is of all tasks of the run: one that is of some says so in its note."""
+    return None if isinstance(cell, Marked) and cell.note else _value(cell)
+
+
+def _value(cell: Any) -> float | None:
+    found = bare(cell)
+    if isinstance(found, Estimate):
+        return found.value
+    return float(found) if isinstance(found, int | float) else None
+
+
+def time_chart(runs: Sequence[Run], titles: Mapping[str, str]) -> Chart:
+    """Mean seconds by stage, stacked, without the camera; what the camera took stands beside the bar in figures."""
+    stages = ("planner_s", "perception_s", "tools_s")
+    timed = [(run, [t.timings for t in run.scored if t.timings.total_s > 0]) for run in runs]
+    rows = [(run, {s: fmean(getattr(t, s) for t in own) for s in titles}) for run, own in reversed(timed) if own]
+    notes = [("" if r.ranked else " (not ranked)") + (" (contended)" if r.evaluation.card.contended else "") for r, _ in rows]
+    labels = [lines(run.label + note) for (run, _), note in zip(rows, notes, strict=True)]
+    with canvas(980, 150 + row_px(labels, 30) * len(rows)) as (figure, axes):
+        left = [0.0] * len(rows)
+        for stage, colour in zip(stages, (HUES[0], HUES[1], HUES[2]), strict=True):
+            wide = [mean[stage] for _, mean in rows]
+            axes.barh(range(len(rows)), wide, left=left, color=colour, height=0.62, label=titles[stage])
+            left = [a + b for a, b in zip(left, wide, strict=True)]
+        for y, (_, mean) in enumerate(rows):
+            words = f"{left[y]:.2f} s + camera {mean['capture_s']:.2f} s"
+            axes.annotate(words, (left[y], y), (5, 0), textcoords="offset points", va="center", fontsize=9.5)
+        axes.set_xlim(0, max(left) * 1.45)
+        axes.set_yticks(range(len(rows)), labels)
+        axes.grid(axis="y", visible=False)
+        axes.set_xlabel("Mean wall seconds a trial without the camera, by stage")
+        figure.legend(loc="outside lower center", ncols=3, fontsize=9.5)
+        told = "; ".join(f"{r.label} {m['own_s']:.2f} s and the camera {m['capture_s']:.2f} s" for r, m in reversed(rows))
+        alt = f"Mean wall seconds of a trial by stage, without the camera. In all: {told}."
+        return as_chart("chart-time", "Where a pair's own time goes", alt, figure)
+
+
+def front_chart(found: Sequence[Candidate]) -> Chart:
+    """Accuracy against latency; the area of a ring is its memory; those on the Pareto front are filled. Numbers lead to names.
+
+    A filling leaves a gap to its ring, so that a broken ring shows around it as it does around nothing.
+    """
+    from matplotlib.legend_handler import HandlerTuple
+    from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
+
+    complete = [c for c in found if c.accuracy is not None and c.latency_s is not None and c.memory_gb is not None]
+    complete.sort(key=lambda c: -(c.accuracy or 0.0))
+    tint = colours([c.run for c in found])
+    with canvas(980, max(460, 150 + 26 * len(complete))) as (figure, axes):
+        keys, names = list[Any](), list[str]()
+        for number, c in enumerate(complete, 1):
+            shade, at = tint[c.run.label], (c.latency_s or 0.0, 100 * (c.accuracy or 0.0))
+            area = max(280.0, 12.0 * (c.memory_gb or 0.0))
+            _point(axes, at, area, shade, c)
+            keys.append(_point(axes, (), 150.0, shade, c))
+            names.append(lines(f"{number}  {c.run.label}, {c.memory_gb:.0f} GB"))
+            axes.annotate(
+                str(number), at, ha="center", va="center", fontsize=9.5, fontweight="bold", color="#000" if c.on_front else INK
+            )
+        axes.set_xscale("log")
+        axes.margins(x=0.12, y=0.14)
+        axes.xaxis.set_major_locator(LogLocator(base=10, subs=(1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0)))
+        axes.xaxis.set_major_formatter(ScalarFormatter())
+        axes.xaxis.set_minor_formatter(NullFormatter())
+        axes.set_xlabel("Median wall seconds of a trial without the camera: planner, perception, tools (logarithmic)")
+        axes.set_ylabel("Macro accuracy (%)")
+        one_on_the_other = {tuple: HandlerTuple(ndivide=1)}
+        figure.legend(keys, names, handler_map=one_on_the_other, loc="outside right upper", fontsize=9.5, labelspacing=0.9)
+        on = "; ".join(
+            f"{c.run.label} {100 * (c.accuracy or 0):.1f}%, {c.latency_s:.2f} s, {c.memory_gb:.0f} GB"
+            for c in complete
+            if c.on_front
+        )
+        alt = f"Scatter: accuracy against latency without the camera, area by memory. On the Pareto front: {on}."
+        title = "Accuracy, latency and memory. Filled: on the Pareto front; area: memory; broken ring: timed under contention"
+        return as_chart("chart-front", title, alt, figure)
+
+
+def _point(axes: Axes, at: tuple[float, ...], area: float, shade: str, of: Candidate) -> tuple[PathCollection, ...]:
+    """A ring of this area in square points, and its filling if it has one. ``at``: empty for what only the legend shows."""
+    x, y = ([at[0]], [at[1]]) if at else ([], [])
+    width = 2.0
+    broken = (0, (3.0, 1.8)) if of.contended else "-"
+    ring = axes.scatter(x, y, s=area, facecolor="none", edgecolor=shade, lw=width, linestyle=broken)
+    if not of.on_front:
+        return (ring,)
+    return ring, axes.scatter(x, y, s=(sqrt(area) - 3 * width) ** 2, facecolor=shade, edgecolor="none", alpha=0.85)
+
+
+def repeats_chart(table: Table, most: int) -> Chart:
+    """pass^k by k."""
+    labels = [short(str(row[0]), 100) for row in table.rows]
+    with canvas(880, 330 + legend_px(labels)) as (figure, axes):
+        told = []
+        for number, (row, words) in enumerate(zip(table.rows, labels, strict=True)):
+            points = [(k, 100 * value) for k, cell in enumerate(row[2:], 1) if (value := _value(cell)) is not None]
+            if points:
+                hue, marker = HUES[number % len(HUES)], "os^Dvp*"[number % 7]
+                axes.plot(*zip(*points, strict=True), marker=marker, color=hue, label=words, lw=2, ms=7)
+                told.append(f"{row[0]} from {points[0][1]:.1f}% to {points[-1][1]:.1f}%")
+        axes.set_xticks(range(1, most + 1))
+        axes.set_ylim(0, 102)
+        axes.set_xlabel("k")
+        axes.set_ylabel("pass^k (%)")
+        legend_below(figure, labels)
+        return as_chart("chart-repeats", "pass^k", f"pass^k falls with k: {'; '.join(told)}.", figure)

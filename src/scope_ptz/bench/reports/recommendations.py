@@ -1,0 +1,249 @@
+"""Choosing what to deploy: spreads, scopes, mixtures against dense models, quantised against full precision, the Pareto front."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from statistics import fmean
+
+from scope_ptz.bench.reports import charts as drawing
+from scope_ptz.bench.reports.comparing import compare, comparison_table
+from scope_ptz.bench.reports.latency import middle, stage_seconds
+from scope_ptz.bench.reports.runs import FULL_PRECISION, Run, is_mixture, scores_of, timed
+from scope_ptz.bench.reports.sections import Section
+from scope_ptz.bench.reports.tables import Column, Table, Value
+from scope_ptz.bench.statistics.choice import undominated
+from scope_ptz.bench.statistics.clustered import gap, share
+from scope_ptz.registry import Model
+
+LATENCY = "trial without the camera, median (s)"
+SIZES_GB = (8, 16, 24, 48, 80, 160)
+"""Usual sizes of accelerator memory, and of two of the largest."""
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """A pair with what it is chosen by; None: not measured or not in the registry. ``latency_s``: a trial without the camera."""
+
+    run: Run
+    accuracy: float | None
+    latency_s: float | None
+    memory_gb: float | None
+    contended: bool
+    on_front: bool = False
+
+    @property
+    def complete(self) -> bool:
+        return None not in (self.accuracy, self.latency_s, self.memory_gb)
+
+
+def candidates(ranked: Sequence[Run], every: Sequence[Run]) -> list[Candidate]:
+    """Ranked runs with accuracy, latency and memory, and which of them no other beats in all three."""
+    found = []
+    for run in ranked:
+        source = timed(run, every)
+        seconds = middle(stage_seconds(source, "own_s"))
+        accuracy = run.macro.value if run.macro else None
+        found.append(Candidate(run, accuracy, seconds, run.memory_gb, source.evaluation.card.contended))
+    complete = [c for c in found if c.complete]
+    # Rounded, so that of two alike in accuracy none is beaten by what arithmetic made of the last digit.
+    points = [(-round(c.accuracy or 0.0, 9), c.latency_s or 0.0, c.memory_gb or 0.0) for c in complete]
+    front = {id(c) for c, on in zip(complete, undominated(points), strict=True) if on}
+    return [Candidate(c.run, c.accuracy, c.latency_s, c.memory_gb, c.contended, id(c) in front) for c in found]
+
+
+def design_section(ranked: Sequence[Run], every: Sequence[Run]) -> Section:
+    """Accuracy, latency and memory together, and what fits into how much memory."""
+    found = candidates(ranked, every)
+    columns = (
+        Column("run", "Run"),
+        Column("macro", "Macro (%)", "share"),
+        Column("latency_s", LATENCY.capitalize(), "seconds"),
+        Column("contended", "Measured"),
+        Column("memory_gb", "Memory (GB, computed)", "gb"),
+        Column("front", "On the Pareto front"),
+    )
+    rows = tuple(
+        (
+            c.run.label,
+            c.accuracy,
+            c.latency_s,
+            "contended" if c.contended else "alone",
+            c.memory_gb,
+            ("yes" if c.on_front else "no") if c.complete else None,
+        )
+        for c in sorted(found, key=lambda c: -(c.accuracy or 0.0))
+    )
+    notes = (
+        "Memory is computed from the registry (parameters at their precision, cache for 16,384 tokens, 1.5 GB for each "
+        "server), not "
+        "measured. On the front: no other pair is at least as accurate, as fast and as small, and better in one of these.",
+    )
+    text = (
+        "A pair worth choosing is one that no other beats in accuracy, latency and memory at once. Differences in accuracy "
+        "that were "
+        "not shown (see the comparisons) are no reason to prefer the larger pair, and latencies compare only where they were "
+        "measured "
+        "alike: all of them alone, on the same machine.",
+        "Latency here is planner, perception and tools: all of a trial but the camera. Rendering frames is the simulator's cost, "
+        "and would rank pairs by the views that they asked for.",
+    )
+    charts = (drawing.front_chart(found),) if any(c.complete for c in found) else ()
+    tables = (Table("design_points", "Accuracy, latency and memory", columns, rows, notes), _fitting(found))
+    return Section("design", "Accuracy, latency, memory", text, charts, tables)
+
+
+def _fitting(found: Sequence[Candidate]) -> Table:
+    columns = (
+        Column("memory", "Memory"),
+        Column("run", "Most accurate pair that fits"),
+        Column("macro", "Macro (%)", "share"),
+        Column("latency_s", LATENCY.capitalize(), "seconds"),
+        Column("memory_gb", "Memory (GB, computed)", "gb"),
+    )
+    rows: list[tuple[Value, ...]] = []
+    for size in SIZES_GB:
+        fitting = [c for c in found if c.memory_gb is not None and c.memory_gb <= size and c.accuracy is not None]
+        if fitting:
+            best = max(fitting, key=lambda c: (round(c.accuracy or 0.0, 9), -(c.latency_s or 0.0)))
+            rows.append((f"{size} GB", best.run.label, best.accuracy, best.latency_s, best.memory_gb))
+    notes = (f"Tried: {', '.join(map(str, SIZES_GB))} GB. A size that is not listed holds none of these pairs.",)
+    return Table("memory_fits", "What fits into how much memory", columns, tuple(rows), notes)
+
+
+def spread_section(ranked: Sequence[Run]) -> Section:
+    """How much the planner matters, and how much the eyes."""
+    tables = (
+        _spread("spread_planner", "Changing only the planner", "Eyes held", ranked, lambda r: r.system[1], lambda r: r.system[0]),
+        _spread("spread_eyes", "Changing only the eyes", "Planner held", ranked, lambda r: r.system[0], lambda r: r.system[1]),
+    )
+    text = (
+        "The spread is the highest macro accuracy minus the lowest with one side of the pair held. It grows with the "
+        "number of pairs and "
+        "with noise: see which of the differences were shown.",
+    )
+    return Section("spread", "Planner spread against vision spread", text, (), tables)
+
+
+def _spread(
+    key: str, title: str, held_title: str, runs: Sequence[Run], held: Callable[[Run], str], changed: Callable[[Run], str]
+) -> Table:
+    columns = (
+        Column("held", held_title),
+        Column("pairs", "Pairs", "count"),
+        Column("lowest", "Lowest"),
+        Column("low", "Macro (%)", "share"),
+        Column("highest", "Highest"),
+        Column("high", "Macro (%)", "share"),
+        Column("spread", "Spread (points)", "points"),
+    )
+    rows: list[tuple[Value, ...]] = []
+    for name in dict.fromkeys(held(run) for run in runs):
+        own = [
+            (run.macro.value, changed(run)) for run in runs if held(run) == name and run.macro and run.system[2:] == ("scope", "")
+        ]
+        if len({model for _, model in own}) > 1:
+            (low, worst), (high, best) = min(own), max(own)
+            rows.append((name, len(own), worst, low, best, high, high - low))
+        else:
+            rows.append((name, len(own), None, None, None, None, None))
+    return Table(key, title, columns, tuple(rows), ("Our own loop with its standard prompt only.",))
+
+
+def scope_section(runs: Sequence[Run]) -> Section:
+    """Current view against full scene."""
+    columns = (
+        Column("run", "Run"),
+        Column("current_trials", "Trials, current", "count"),
+        Column("current", "Current view (%)", "share"),
+        Column("full_trials", "Trials, full", "count"),
+        Column("full", "Full scene (%)", "share"),
+        Column("difference", "Current minus full (points)", "points"),
+    )
+    rows = [_scope_row(run) for run in runs]
+    ranked = [row for row, run in zip(rows, runs, strict=True) if run.ranked and not run.elsewhere]
+    if len(ranked) > 1:
+        counts = [sum(int(str(row[index])) for row in ranked) for index in (1, 3)]
+        rows.append(("Mean of the model pairs", counts[0], _mean(ranked, 2), counts[1], _mean(ranked, 4), _mean(ranked, 5)))
+    text = (
+        "Micro accuracy by what the task asks about. The two kinds of task also differ in category, so that the difference "
+        "is not the "
+        "panorama's alone. The interval of the difference joins those of its two sides (Newcombe 1998), so that it is no more "
+        "certain than either; where one of them has none, neither has the difference.",
+    )
+    return Section("scope", "Current view against full scene", text, (), (Table("scope", "By scope", columns, tuple(rows)),))
+
+
+def _scope_row(run: Run) -> tuple[Value, ...]:
+    parts = {scope: [t for t in run.scored if t.task.scope == scope] for scope in ("current", "full")}
+    current, full = (scores_of(parts[scope]) for scope in ("current", "full"))
+    return run.label, len(parts["current"]), share(current), len(parts["full"]), share(full), gap(current, full)
+
+
+def _mean(rows: Sequence[tuple[Value, ...]], index: int) -> float | None:
+    known = [v for row in rows if (v := getattr(row[index], "value", None)) is not None]
+    return fmean(known) if known else None
+
+
+def architecture_section(ranked: Sequence[Run], every: Sequence[Run]) -> Section:
+    """Mixtures of experts against dense models, quantised against full precision, as far as the registry knows the models."""
+    pairs = [(q, f) for q in ranked for f in ranked if _is_quantised_of(q, f)]
+    found = [c for quantised, full in pairs if (c := compare(quantised, full)) is not None]
+    notes = (
+        "Models of one family, size and number of active parameters in the registry, the rest of the pair unchanged. Seconds and "
+        "gigabytes of these pairs stand in the table of accuracy, latency and memory.",
+    )
+    precision = comparison_table("quantised", "Quantised minus full precision", found, notes)
+    text = ["Which models are mixtures of experts or quantised is the registry's word; models that it does not know are left out."]
+    if not found:
+        text.append("No two pairs differ in precision alone: quantised against full precision is not measured.")
+    tables = (_mixtures(ranked, every), *((precision,) if found else ()))
+    return Section("architecture", "Mixtures against dense, quantised against full", tuple(text), (), tables)
+
+
+def _is_quantised_of(one: Run, other: Run) -> bool:
+    """Whether a pair is another with one of its models quantised and nothing else changed."""
+    if one.task_set != other.task_set or one.system[2:] != other.system[2:]:
+        return False
+    if one.system[1] == other.system[1]:
+        return _quantised_of(one.planner, other.planner)
+    return one.system[0] == other.system[0] and _quantised_of(one.eyes, other.eyes)
+
+
+def _quantised_of(one: Model | None, other: Model | None) -> bool:
+    if one is None or other is None or (one.family, one.size_b, one.active_b) != (other.family, other.size_b, other.active_b):
+        return False
+    return bool(one.family) and one.precision not in FULL_PRECISION and other.precision in FULL_PRECISION
+
+
+def _mixtures(ranked: Sequence[Run], every: Sequence[Run]) -> Table:
+    """A row for each model that is held while mixtures and dense models change on the other side."""
+    columns = [Column("held", "Held"), Column("changed", "Changed")]
+    for key, words in (("moe", "Mixtures"), ("dense", "Dense")):
+        columns += [
+            Column(f"{key}_pairs", f"{words}: pairs", "count"),
+            Column(f"{key}_macro", f"{words}: macro, mean (%)", "share"),
+            Column(f"{key}_latency_s", f"{words}: {LATENCY}", "seconds"),
+            Column(f"{key}_memory_gb", f"{words}: memory (GB, computed)", "gb"),
+        ]
+    columns.append(Column("difference", "Mixtures minus dense (points)", "points"))
+    found = candidates(ranked, every)
+    rows: list[tuple[Value, ...]] = []
+    for side, other in (("planner", 1), ("eyes", 0)):
+        for name in dict.fromkeys(c.run.system[other] for c in found):
+            own = [c for c in found if c.run.system[other] == name and getattr(c.run, side)]
+            kinds = [[c for c in own if is_mixture(getattr(c.run, side)) is mixture] for mixture in (True, False)]
+            if all(kinds):
+                cells = [v for k in kinds for v in (len(k), *(_average(k, w) for w in ("accuracy", "latency_s", "memory_gb")))]
+                moe, dense = (_average(kind, "accuracy") for kind in kinds)
+                apart = None if moe is None or dense is None else moe - dense
+                rows.append((name, "planners" if side == "planner" else "eyes", *cells, apart))
+    notes = (
+        "Means over the pairs of each kind. Where a model that is held had only one kind beside it, there is nothing to compare.",
+    )
+    return Table("mixtures", "Mixtures of experts against dense models", tuple(columns), tuple(rows), notes)
+
+
+def _average(found: Sequence[Candidate], what: str) -> float | None:
+    known = [value for c in found if (value := getattr(c, what)) is not None]
+    return fmean(known) if known else None

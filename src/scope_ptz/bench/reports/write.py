@@ -1,0 +1,125 @@
+"""A report on disk: the page, Markdown, CSV, and a page for each failed task. Everything that came from a model is escaped."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from scope_ptz import __version__
+from scope_ptz.bench.reports.build import Report, build_report
+from scope_ptz.bench.reports.tables import MISSING, Column, Marked, Value, as_csv, as_markdown, bare, escape, in_words, interval
+from scope_ptz.bench.reports.task_pages import FrameStore, OpenSample, page_files, task_pages
+from scope_ptz.bench.scoring.trials import Evaluation
+from scope_ptz.bench.statistics.clustered import Estimate
+from scope_ptz.bench.tasks.task import Task
+from scope_ptz.errors import OutputError
+from scope_ptz.registry import Registry
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+GENERATOR = "scope bench report"
+_OWN = (("tables", "*.csv"), ("tasks", "*.html"), ("frames", "*.jpg"))
+
+
+def write_report(
+    evaluations: Sequence[Evaluation],
+    registry: Registry,
+    out: Path,
+    *,
+    open_sample: OpenSample | None = None,
+    tasks: Mapping[str, Task] | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    pages: bool = True,
+) -> Report:
+    """Write ``index.html``, ``report.md``, ``tables/*.csv``, ``tasks/*.html`` and ``frames/*.jpg`` into ``out``.
+
+    ``tasks``: the tasks themselves by id, for the evidence on their pages. ``progress`` is told how many pages are done, and of how
+    many. Without ``pages`` failed tasks have none. Raises ``OutputError`` when the folder holds something else or cannot be
+    written, ``InputError`` without any run.
+    """
+    files = page_files(evaluations) if pages else {}
+    report = build_report(evaluations, registry, files)
+    try:
+        _clear(out)
+        (out / "tables").mkdir(parents=True, exist_ok=True)
+        (out / "tasks").mkdir(exist_ok=True)
+        made_later = task_pages(report.runs, files, open_sample, FrameStore(out / "frames", "../frames"), tasks or {})
+        environment = _environment()
+        template = environment.get_template("task.html.j2")
+        for number, page in enumerate(made_later, 1):
+            made = page()
+            (out / made.file).write_text(template.render(page=made, version=__version__), "utf-8")
+            if progress is not None:
+                progress(number, len(made_later))
+        for table in report.tables:
+            (out / "tables" / f"{table.key}.csv").write_text(as_csv(table), "utf-8", newline="")
+        (out / "report.md").write_text(markdown(report), "utf-8")
+        (out / "index.html").write_text(html(report, environment), "utf-8")
+    except OSError as error:
+        raise OutputError(f"The report cannot be written to {out}: {error.strerror}.") from error
+    return report
+
+
+def _clear(out: Path) -> None:
+    """Make room for a report where an older one stands; never touch a folder that holds anything else."""
+    if out.exists() and not out.is_dir():
+        raise OutputError(f"{out} is a file. Give a folder for the report.")
+    if not out.exists() or not any(out.iterdir()):
+        return
+    page = out / "index.html"
+    if not page.is_file() or f'content="{GENERATOR}' not in page.read_text("utf-8", errors="replace")[:2000]:
+        raise OutputError(f"{out} holds something that is no report. Give an empty folder or a new name.")
+    for folder, pattern in _OWN:
+        for old in (out / folder).glob(pattern):
+            old.unlink()
+
+
+def html(report: Report, environment: Environment | None = None) -> str:
+    """The page, on its own: no script, nothing loaded from anywhere."""
+    template = (environment or _environment()).get_template("index.html.j2")
+    return template.render(report=report, version=__version__, generator=GENERATOR)
+
+
+def markdown(report: Report) -> str:
+    """The same in Markdown, without charts."""
+    parts = ["# SCOPE benchmark report", *(escape(line) for line in report.summary)]
+    parts += ["> " + escape(line) for line in report.warnings]
+    for section in report.sections:
+        parts.append(f"## {escape(section.title)}")
+        parts += [escape(line) for line in section.text]
+        parts += [as_markdown(table) for table in section.tables]
+    return "\n\n".join(parts) + f"\n\n*Made by scope-ptz {__version__}.*\n"
+
+
+def _environment() -> Environment:
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+    from markupsafe import Markup
+
+    found = Environment(
+        loader=PackageLoader("scope_ptz", "data/report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    found.filters["cell"] = cell
+    found.filters["drawn"] = Markup  # Charts only: they are drawn here, and their texts are escaped by the drawing library.
+    return found
+
+
+def cell(value: Value, column: Column) -> dict[str, Any]:
+    """A cell for the template: words, interval and what must be known of it apart, and how it is marked."""
+    plain = bare(value)
+    marks = value if isinstance(value, Marked) else Marked(None)
+    bounds = limits = ""
+    if isinstance(plain, Estimate):
+        bounds, limits = interval(plain, column.kind)
+        plain = plain.value
+    words = in_words(plain, column.kind)
+    return {
+        "words": words, "interval": bounds, "limits": limits, "missing": words == MISSING,
+        "text": column.worded, "prose": column.kind == "prose",
+        "best": marks.best, "best_of_all": marks.best_of_all, "link": marks.link, "note": marks.note,
+    }  # fmt: skip

@@ -1,0 +1,1 @@
+"""Scoring: checks, verdicts, error modes, judged trials."""

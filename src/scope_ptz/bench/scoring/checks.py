@@ -1,0 +1,179 @@
+"""The checks: one function a kind, each on a task and a run. None is "cannot be told", which is never a pass."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from scope_ptz.bench.answers.reader import agrees, read
+from scope_ptz.bench.answers.result import Declined, Unreadable
+from scope_ptz.bench.scoring.coverage import gap
+from scope_ptz.bench.scoring.episode import Episode, Standing
+from scope_ptz.bench.scoring.matching import in_any_order, in_order
+from scope_ptz.bench.tasks.expected import ActionOnly
+from scope_ptz.bench.tasks.task import FinalPose, RunOutcome, Task
+from scope_ptz.geometry import Perspective, direction, wrap_pan_deg
+
+CheckName = Literal["outcome", "answer", "coverage", "pose", "calls", "forbidden", "pictures", "framing"]
+SAME_ANGLE_DEG = 0.5
+SAME_ZOOM_SHARE = 0.03
+"""Within these two poses are the same."""
+
+
+@dataclass(frozen=True, slots=True)
+class CheckResult:
+    """``passed`` is None when it cannot be told (an answer that cannot be read)."""
+
+    name: CheckName
+    passed: bool | None
+    reason: str
+
+
+def run_checks(task: Task, episode: Episode) -> tuple[CheckResult, ...]:
+    """Every check that the task calls for, in a fixed order."""
+    results = (check(task, episode) for check in _CHECKS)
+    return tuple(result for result in results if result is not None)
+
+
+def check_outcome(task: Task, episode: Episode) -> CheckResult:
+    """The run ended as it should: answered, or where the task wants that with a question or a refusal."""
+    wanted: tuple[RunOutcome, ...] = task.behaviour.outcomes
+    passed = episode.outcome in wanted
+    return CheckResult("outcome", passed, "as wanted" if passed else f"ended {episode.outcome}, not {' or '.join(wanted)}")
+
+
+def check_answer(task: Task, episode: Episode) -> CheckResult | None:
+    """The answer, read by the deterministic reader, is the expected one."""
+    if isinstance(task.expected, ActionOnly):
+        return None
+    if episode.outcome not in ("answered", "clarification", "refused"):
+        return CheckResult("answer", False, "there is no answer")
+    reading = read(task.expected, episode.text)
+    passed = agrees(task.expected, reading)
+    if isinstance(reading, Unreadable):
+        return CheckResult("answer", None, f"cannot be read: {reading.reason}")
+    said = "declined" if isinstance(reading, Declined) else f"read as {_plain(reading.value)}"
+    return CheckResult("answer", passed, said if passed else f"{said}, which is not what is expected")
+
+
+def _plain(value: object) -> str:
+    return (
+        ", ".join(sorted(value)) or "none"
+        if isinstance(value, frozenset) and all(isinstance(v, str) for v in value)
+        else str(value)
+    )
+
+
+def check_coverage(task: Task, episode: Episode) -> CheckResult | None:
+    """Perception looked, successfully, at everything that the answer rests on."""
+    wanted = [view for view in task.evidence if view.must_look]
+    if not wanted:
+        return None
+    gaps = [found for view in wanted if (found := gap(view, episode.looks)) is not None]
+    return CheckResult("coverage", not gaps, "; ".join(gaps) or "everything asked about was looked at")
+
+
+def check_pose(task: Task, episode: Episode) -> CheckResult | None:
+    """The camera ends where the instruction wants it."""
+    final = task.behaviour.final
+    if final is None:
+        return None
+    wrong = pose_difference(final, episode.final)
+    return CheckResult("pose", not wrong, "; ".join(wrong) or "the final pose is as wanted")
+
+
+def pose_difference(wanted: FinalPose, is_at: Standing) -> list[str]:
+    """What of a pose is not as wanted, in words."""
+    wrong = []
+    if is_at.viewpoint != wanted.viewpoint:
+        wrong.append(f"at viewpoint {is_at.viewpoint}, not {wanted.viewpoint}")
+    pan = abs(wrap_pan_deg(is_at.pose.pan_deg - wanted.pan_deg))
+    tilt = abs(is_at.pose.tilt_deg - wanted.tilt_deg)
+    zoom = abs(is_at.pose.zoom / wanted.zoom - 1)
+    if pan > wanted.tolerance_deg + 1e-6:
+        wrong.append(f"pan is off by {pan:.2f} degrees")
+    if tilt > wanted.tolerance_deg + 1e-6:
+        wrong.append(f"tilt is off by {tilt:.2f} degrees")
+    if zoom > wanted.zoom_share + 1e-6:
+        wrong.append(f"zoom is off by {zoom:.1%}")
+    return wrong
+
+
+def check_calls(task: Task, episode: Episode) -> CheckResult | None:
+    """The calls that the instruction fixes were made with success, in order where it fixes the order."""
+    behaviour = task.behaviour
+    if not behaviour.calls:
+        return None
+    missing = (in_order if behaviour.order == "ordered" else in_any_order)(behaviour.calls, episode.calls)
+    return CheckResult("calls", missing is None, missing or "every required call was made")
+
+
+def check_forbidden(task: Task, episode: Episode) -> CheckResult | None:
+    """Nothing happened that must not."""
+    forbidden = task.behaviour.forbidden
+    if not forbidden.tools and not forbidden.changes:
+        return None
+    used = sorted({call.name for call in episode.calls if call.succeeded and call.name in forbidden.tools})
+    changed = [change for change in changes(episode.start, episode.final) if change in forbidden.changes]
+    wrong = [f"{name} was called" for name in used] + [f"{name} was changed" for name in changed]
+    return CheckResult("forbidden", not wrong, "; ".join(wrong) or "nothing forbidden happened")
+
+
+def changes(before: Standing, after: Standing) -> list[str]:
+    """Which of viewpoint, pan, tilt and zoom differ."""
+    one, two = before.pose, after.pose
+    differs = {
+        "viewpoint": before.viewpoint != after.viewpoint,
+        "pan": abs(wrap_pan_deg(one.pan_deg - two.pan_deg)) > SAME_ANGLE_DEG,
+        "tilt": abs(one.tilt_deg - two.tilt_deg) > SAME_ANGLE_DEG,
+        "zoom": abs(two.zoom / one.zoom - 1) > SAME_ZOOM_SHARE,
+    }
+    return [name for name, different in differs.items() if different]
+
+
+def check_pictures(task: Task, episode: Episode) -> CheckResult | None:
+    """As many pictures were taken as were asked for, and their files are there."""
+    wanted = task.behaviour.pictures
+    if wanted is None:
+        return None
+    lost = [picture.file for picture in episode.pictures if picture.exists is False]
+    if lost:
+        return CheckResult("pictures", False, f"missing: {', '.join(lost)}")
+    taken = len({picture.file for picture in episode.pictures})
+    return CheckResult("pictures", taken == wanted, f"{taken} of {wanted} pictures were taken")
+
+
+def check_framing(task: Task, episode: Episode) -> CheckResult | None:
+    """The target is in the middle of the final view and as large as wanted."""
+    framing = task.behaviour.framing
+    if framing is None:
+        return None
+    if episode.final.viewpoint != framing.viewpoint:
+        return CheckResult("framing", False, f"the camera is at {episode.final.viewpoint}, not {framing.viewpoint}")
+    fill, offset = framed(framing.outline_deg, episode)
+    wrong = []
+    if not framing.min_fill - 1e-6 <= fill <= framing.max_fill + 1e-6:
+        wrong.append(f"{framing.instance} fills {fill:.0%} of the frame")
+    if offset > framing.max_offset + 1e-6:
+        wrong.append(f"{framing.instance} is {offset:.1%} off the middle")
+    return CheckResult("framing", not wrong, "; ".join(wrong) or f"{framing.instance} fills {fill:.0%} of the frame, in the middle")
+
+
+def framed(outline_deg: Sequence[tuple[float, float]], episode: Episode) -> tuple[float, float]:
+    """Fill of the limiting side and the larger offset from the middle of an outline in the final view; infinite when behind."""
+    pose = episode.final.pose
+    view = Perspective(pose.pan_deg, pose.tilt_deg, episode.optics.hfov_deg(pose.zoom), 1600, round(1600 / episode.aspect))
+    outline = np.array(outline_deg, dtype=np.float64)
+    points = view.points(direction(outline[:, 0], outline[:, 1]))
+    if np.isnan(points).any():
+        return float("inf"), float("inf")
+    low, high = points.min(axis=0), points.max(axis=0)
+    return float((high - low).max()), float(np.abs((low + high) / 2 - 0.5).max())
+
+
+_CHECKS: tuple[Callable[[Task, Episode], CheckResult | None], ...] = (
+    check_outcome, check_answer, check_coverage, check_pose, check_calls, check_forbidden, check_pictures, check_framing,
+)  # fmt: skip

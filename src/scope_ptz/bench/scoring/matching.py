@@ -1,0 +1,89 @@
+"""Whether the calls that a task demands are among those that a run made."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from typing import Any
+
+from scope_ptz.bench.answers.words import names_any
+from scope_ptz.bench.scoring.episode import Call
+from scope_ptz.bench.tasks.task import Argument, RequiredCall
+
+_DEFAULTS: dict[str, dict[str, Any]] = {
+    "adjust_ptz": {"pan_deg": 0.0, "tilt_deg": 0.0},
+    "count_objects": {"view": "current"},
+    "query_answer": {"view": "current"},
+    "track_object": {"duration_s": 10.0},
+}
+
+
+def arguments_of(call: Call) -> Mapping[str, Any]:
+    """The arguments of a call with defaults filled in; a zoom by percent is also given as its factor, and so is one that is left
+    as it is."""
+    arguments = {**_DEFAULTS.get(call.name, {}), **{k: v for k, v in call.arguments.items() if v is not None}}
+    percent = arguments.get("zoom_percent")
+    if isinstance(percent, int | float):
+        arguments["zoom_factor"] = 1 + percent / 100
+    elif call.name == "adjust_ptz" and "zoom_limit" not in arguments:
+        arguments.setdefault("zoom_factor", 1.0)
+    return arguments
+
+
+def fits(wanted: RequiredCall, call: Call, leave_out: Collection[str] = ()) -> bool:
+    """Whether a call is the required one and found its target, if it has one. ``leave_out``: arguments that are not compared."""
+    if not call.succeeded or call.name != wanted.tool:
+        return False
+    if "found" not in leave_out and (call.result or {}).get("found") is False:
+        return False
+    given = arguments_of(call)
+    return all(_fits_argument(spec, given.get(name)) for name, spec in wanted.arguments.items() if name not in leave_out)
+
+
+def _fits_argument(spec: Argument, given: Any) -> bool:
+    if spec.mentions:
+        return isinstance(given, str) and names_any(given, spec.mentions)
+    if isinstance(spec.equals, str):
+        return isinstance(given, str) and given.strip().lower() == spec.equals.strip().lower()
+    is_number = isinstance(given, int | float) and not isinstance(given, bool)
+    return is_number and spec.equals is not None and abs(given - spec.equals) <= spec.within + 1e-6
+
+
+def in_order(wanted: Sequence[RequiredCall], calls: Sequence[Call], leave_out: Collection[str] = ()) -> str | None:
+    """What is missing of the required calls as a subsequence of the calls made; None when all are there."""
+    at = 0
+    for spec in wanted:
+        for number in range(spec.times):
+            while at < len(calls) and not fits(spec, calls[at], leave_out):
+                at += 1
+            if at == len(calls):
+                time = f" (time {number + 1} of {spec.times})" if spec.times > 1 else ""
+                return f"{_words(spec)} is missing{time}, or comes too early"
+            at += 1
+    return None
+
+
+def in_any_order(wanted: Sequence[RequiredCall], calls: Sequence[Call], leave_out: Collection[str] = ()) -> str | None:
+    """What is missing of the required calls when each takes a call of its own; None when all are there."""
+    slots = [spec for spec in wanted for _ in range(spec.times)]
+    taken: dict[int, int] = {}
+
+    def place(slot: int, tried: set[int]) -> bool:
+        for number, call in enumerate(calls):
+            if number not in tried and fits(slots[slot], call, leave_out):
+                tried.add(number)
+                if number not in taken or place(taken[number], tried):
+                    taken[number] = slot
+                    return True
+        return False
+
+    for slot, spec in enumerate(slots):
+        if not place(slot, set()):
+            return f"{_words(spec)} is missing"
+    return None
+
+
+def _words(spec: RequiredCall) -> str:
+    arguments = ", ".join(
+        f"{name}={a.equals if a.equals is not None else '/'.join(a.mentions)}" for name, a in spec.arguments.items()
+    )
+    return f"{spec.tool}({arguments})"

@@ -1,0 +1,1 @@
+"""Tasks as data: the schema, task files, splits."""

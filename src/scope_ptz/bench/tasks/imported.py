@@ -1,0 +1,79 @@
+"""Imported tasks as data, and the files that hold them: JSONL, one a line."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from scope_ptz.bench.tasks.facts import TaskFacts
+from scope_ptz.bench.tasks.findings import Finding
+from scope_ptz.bench.tasks.task import RequiredCall
+from scope_ptz.errors import InputError, OutputError
+
+Policy = Literal["all", "exact", "any", "none"]
+"""Which expected tools a run must use: all of them, exactly them, any of them, or none is checked."""
+
+
+class ImportedTask(BaseModel):
+    """A row that can be run. Its answer is a judge's business; its expected calls are an executable check.
+
+    ``line`` and ``raw``: where it stands in the file, and its cells as they are. ``policy`` and ``order``: of ``calls``.
+    ``start_s``: scene time at the start.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    imported: Literal[1] = 1
+    facts: TaskFacts
+    line: int
+    raw: dict[str, str]
+    calls: tuple[RequiredCall, ...] = ()
+    policy: Policy = "all"
+    order: Literal["ordered", "any"] = "any"
+    start_s: float = 0.0
+    findings: tuple[Finding, ...] = ()
+
+
+def holds_imported(path: Path) -> bool:
+    """Whether a file is one of imported tasks, by its first line."""
+    try:
+        with path.open(encoding="utf-8") as file:
+            first = json.loads(file.readline(2**20))
+    except (OSError, ValueError, RecursionError):
+        return False
+    return isinstance(first, dict) and first.get("imported") == 1
+
+
+def load_imported(path: Path) -> tuple[ImportedTask, ...]:
+    """The tasks of a file. Raises ``InputError`` that names the line."""
+    try:
+        lines = path.read_text("utf-8").split("\n")  # Only line feeds end a line of JSON.
+    except OSError as error:
+        raise InputError(f"The tasks {path} cannot be read: {error.strerror}.") from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path} holds no imported tasks: it is no text.") from error
+    tasks = list[ImportedTask]()
+    for number, line in enumerate(lines, 1):
+        if not line.strip():
+            continue
+        try:
+            tasks.append(ImportedTask.model_validate_json(line))
+        except ValidationError as error:
+            first = error.errors(include_url=False, include_input=False)[0]
+            where = ".".join(str(part) for part in first["loc"])
+            raise InputError(f"{path}, line {number}: {where or 'as a whole'}: {first['msg']}.") from error
+    return tuple(tasks)
+
+
+def dump_imported(tasks: Iterable[ImportedTask], path: Path) -> None:
+    """Write tasks, one a line. Raises ``OutputError``."""
+    rows = ({**task.model_dump(mode="json", exclude_defaults=True), "imported": 1} for task in tasks)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("".join(json.dumps(row, ensure_ascii=False) + "\n" for row in rows), "utf-8")
+    except OSError as error:
+        raise OutputError(f"{path} cannot be written: {error.strerror}.") from error

@@ -1,0 +1,198 @@
+"""Moving things: where they are at a time, and how their sprites are set into a picture of the still world.
+
+A sprite is a picture of an actor rendered from the viewpoint with the actor at one point of its path. Between two such points the
+nearest sprite is turned to the true direction and scaled to the true distance. The depth layer decides per pixel what hides it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from scope_ptz.geometry import Perspective, Projection, pan_tilt_deg
+from scope_ptz.simulator.models import ActorSheet, Extent, SceneActor, Sprite
+from scope_ptz.simulator.pack import Scene
+from scope_ptz.simulator.reproject import Grid, step_px
+from scope_ptz.simulator.runs import measure
+from scope_ptz.simulator.tiles import Tiles
+from scope_ptz.simulator.viewpoint import Viewpoint
+
+TOLERANCE_M = 0.15
+TOLERANCE_SHARE = 0.01
+"""An actor is hidden where the still world is nearer than it by more than this (in metres, and as a share of the distance)."""
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Appearance:
+    """An actor as a viewpoint sees it at one instant.
+
+    ``view`` is the perspective that its sprite fills; ``offset_m`` its ground point from the optical centre in the camera's own
+    frame; ``scale`` how many times larger it appears than in its sprite.
+    """
+
+    actor: SceneActor
+    sheet: ActorSheet
+    sprite: Sprite
+    view: Perspective
+    offset_m: Floats
+    scale: float
+
+    @property
+    def distance_m(self) -> float:
+        return float(np.linalg.norm(self.offset_m))
+
+
+@dataclass(frozen=True, slots=True)
+class Whereabouts:
+    """Where an actor is on its path: time on it, metres gone since its start, ground point (3,) in world coordinates."""
+
+    path_s: float
+    walked_m: float
+    position_m: Floats
+
+
+def whereabouts(actor: SceneActor, time_s: float) -> Whereabouts | None:
+    """Where an actor is at a scene time, None while it is out of the scene."""
+    path = np.array(actor.waypoints, dtype=np.float64)
+    path_s = (time_s - actor.delay_s) % actor.period_s
+    if not path[0, 0] <= path_s <= path[-1, 0]:
+        return None
+    walked = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(path[:, 1:], axis=0), axis=-1)))
+    position_m = np.array([np.interp(path_s, path[:, 0], path[:, axis]) for axis in (1, 2, 3)])
+    return Whereabouts(path_s, float(np.interp(path_s, path[:, 0], walked)), position_m)
+
+
+def appearances(scene: Scene, viewpoint: Viewpoint, time_s: float) -> list[Appearance]:
+    """The actors that are in the scene at a time and have sprites from this viewpoint, farthest first."""
+    return _seen(viewpoint, ((actor, time_s) for actor in scene.file.actors))
+
+
+def composited(scene: Scene, viewpoint: Viewpoint, time_s: float) -> list[Appearance]:
+    """All that is set into the picture of the still world: the actors, and what a variation of the scene holds."""
+    moving = ((actor, time_s) for actor in scene.file.actors)
+    return _seen(viewpoint, (*moving, *((held.actor, held.time_s) for held in scene.held)))
+
+
+def _seen(viewpoint: Viewpoint, actors: Iterable[tuple[SceneActor, float]]) -> list[Appearance]:
+    sheets = {sheet.number: sheet for sheet in viewpoint.manifest.actors}
+    seen = [
+        _appearance(viewpoint, actor, sheets[actor.number], here)
+        for actor, time_s in actors
+        if actor.number in sheets and (here := whereabouts(actor, time_s)) is not None
+    ]
+    return sorted(seen, key=lambda a: (-a.distance_m, a.actor.number))
+
+
+def _sprite(sheet: ActorSheet, here: Whereabouts) -> Sprite:
+    """The nearest place on the path, and of a thing with legs the nearest moment of its stride there."""
+    phase = here.walked_m / sheet.stride_m % 1.0 if sheet.stride_m else 0.0
+
+    def misfit(sprite: Sprite) -> tuple[float, float]:
+        off = abs(sprite.phase - phase)
+        return abs(sprite.path_s - here.path_s), min(off, 1.0 - off)
+
+    return min(sheet.sprites, key=misfit)
+
+
+def _appearance(viewpoint: Viewpoint, actor: SceneActor, sheet: ActorSheet, here: Whereabouts) -> Appearance:
+    sprite = _sprite(sheet, here)
+    then, now = viewpoint.offset(np.array(sprite.position_m)), viewpoint.offset(here.position_m)
+    scale = float(np.linalg.norm(then) / np.linalg.norm(now))
+    rendered = Perspective(sprite.pan_deg, sprite.tilt_deg, sprite.hfov_deg, sprite.width, sprite.height)
+    hfov_deg = float(np.degrees(2 * np.arctan(sprite.width / 2 * scale / rendered.focal_px)))
+    # Aim so that the pixel that showed the ground point then lies in its direction now, at the new scale.
+    foot = rendered.points(then)
+    pan, tilt = sprite.pan_deg, sprite.tilt_deg
+    wanted_pan, wanted_tilt = (float(a) for a in pan_tilt_deg(now))
+    for _ in range(6):
+        got_pan, got_tilt = pan_tilt_deg(Perspective(pan, tilt, hfov_deg, sprite.width, sprite.height).directions(foot))
+        pan += (wanted_pan - float(got_pan) + 180.0) % 360.0 - 180.0
+        tilt += wanted_tilt - float(got_tilt)
+    return Appearance(actor, sheet, sprite, Perspective(pan, tilt, hfov_deg, sprite.width, sprite.height), now, scale)
+
+
+def extent(viewpoint: Viewpoint, appearance: Appearance) -> Extent:
+    """The whole silhouette of an actor now, hidden parts included."""
+    own = _crop(appearance.sprite, viewpoint.sprite_distances(appearance.sheet)) > 0
+    measures = measure(own.astype(np.uint16), appearance.view)
+    if not len(measures.numbers):
+        return Extent(number=appearance.actor.number, solid_angle_sr=0.0, hull=[], distance_m=appearance.distance_m)
+    x0, y0, x1, y1 = measures.box[0]
+    corners = appearance.view.directions(np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]))
+    pan, tilt = pan_tilt_deg(corners)
+    return Extent(
+        number=appearance.actor.number,
+        solid_angle_sr=float(measures.solid_angle_sr[0]),
+        hull=list(zip(pan.tolist(), tilt.tolist(), strict=True)),
+        distance_m=float(_distances(viewpoint, appearance)[own].min()),
+    )
+
+
+def shows(appearance: Appearance, projection: Projection) -> bool:
+    """Whether an actor may show in a picture, as far as directions tell."""
+    return bool(Tiles([appearance.view]).in_view(projection))
+
+
+def draw(
+    viewpoint: Viewpoint,
+    projection: Projection,
+    appearance: Appearance,
+    depth_m: NDArray[np.float32],
+    picture: NDArray[np.uint8] | None,
+    numbers: NDArray[np.uint16] | None,
+) -> None:
+    """Set one actor into a picture and into its instance numbers, in place. ``depth_m`` (H, W) is the still world's distance."""
+    sprite = Tiles([appearance.view])
+    showing = next(iter(sprite.in_view(projection)), None)
+    if showing is None:
+        return
+    place = showing.place
+    grid = Grid(projection, step_px(projection), place)
+    uv = sprite.points(showing, projection, grid.x, grid.y)
+    where = grid.to_pixels(uv * (appearance.sprite.width, appearance.sprite.height) - 0.5)
+    distance_m = cv2.remap(_distances(viewpoint, appearance), where, None, cv2.INTER_NEAREST, borderValue=0.0)
+    still_m = depth_m[place] * (1 + TOLERANCE_SHARE) + TOLERANCE_M
+    own = distance_m > 0
+    if numbers is not None:
+        numbers[place][own & (distance_m <= still_m)] = appearance.actor.number
+    if picture is not None:
+        drop = grid.to_pixels(grid.directions()[..., 2])
+        height_m = float(appearance.offset_m[2])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ground_m = np.where(drop * height_m > 0, height_m / drop, np.inf)
+        _blend(picture[place], _sample(viewpoint, appearance, where, projection), np.where(own, distance_m, ground_m) <= still_m)
+
+
+def _sample(viewpoint: Viewpoint, appearance: Appearance, where: NDArray[np.float32], projection: Projection) -> NDArray[np.uint8]:
+    """(H, W, 4) premultiplied colour of the sprite at the places of a map; shrunk first when it is denser than the view."""
+    colour = _crop(appearance.sprite, viewpoint.sprite_colours(appearance.sheet))
+    shrink = projection.density / appearance.view.focal_px
+    if shrink < 0.75:
+        size = max(1, round(colour.shape[1] * shrink)), max(1, round(colour.shape[0] * shrink))
+        factor = np.array([size[0] / colour.shape[1], size[1] / colour.shape[0]], dtype=np.float32)
+        colour = cv2.resize(colour, size, interpolation=cv2.INTER_AREA)
+        where = (where + np.float32(0.5)) * factor - np.float32(0.5)
+    return np.asarray(cv2.remap(np.ascontiguousarray(colour), where, None, cv2.INTER_LINEAR, borderValue=(0, 0, 0, 0)))
+
+
+def _blend(picture: NDArray[np.uint8], premultiplied: NDArray[np.uint8], shows: NDArray[np.bool_]) -> None:
+    """Lay premultiplied colour over a picture, in place, where it shows."""
+    over = cv2.bitwise_and(premultiplied, premultiplied, mask=shows.view(np.uint8))
+    through = cv2.cvtColor(255 - over[..., 3], cv2.COLOR_GRAY2RGB)
+    cv2.add(cv2.multiply(picture, through, scale=1 / 255), np.ascontiguousarray(over[..., :3]), dst=picture)
+
+
+def _distances(viewpoint: Viewpoint, appearance: Appearance) -> NDArray[np.float32]:
+    """(h, w) metres to the actor's own pixels of its sprite, as far as it is now; 0 where the sprite shows no actor."""
+    codes = _crop(appearance.sprite, viewpoint.sprite_distances(appearance.sheet))
+    return np.where(codes > 0, viewpoint.depth_metres[codes] / np.float32(appearance.scale), np.float32(0.0))
+
+
+def _crop(sprite: Sprite, sheet: NDArray) -> NDArray:  # type: ignore[type-arg]
+    return sheet[sprite.top : sprite.top + sprite.height, sprite.left : sprite.left + sprite.width]

@@ -1,0 +1,50 @@
+"""The picture files of a viewpoint's folder, each held against its checksum and its size before it is used."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scope_ptz.errors import PackError
+from scope_ptz.simulator import layers
+from scope_ptz.simulator.models import Layer
+
+
+class Pictures:
+    """Reads layers of one folder; keeps none. Raises ``PackError`` for whatever is not as it was baked."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    def colour(self, layer: Layer) -> NDArray[np.uint8]:
+        """(H, W, 3) RGB, or (H, W, 4) for the sheets of actors."""
+        return self._sized(layer, layers.read_colour(self.checked(layer)))
+
+    def numbers(self, layer: Layer) -> NDArray[np.uint16]:
+        """(H, W) instance numbers, 0 = nothing annotated; or distance codes."""
+        return self._sized(layer, layers.read_ids(self.checked(layer)))
+
+    def checked(self, layer: Layer) -> Path:
+        """Where a layer's file lies, its checksum being as in the manifest."""
+        path = (self.folder / layer.file).resolve()
+        if not path.is_relative_to(self.folder.resolve()):
+            raise PackError(f"{self.folder / 'manifest.json'} names a file outside its folder: {layer.file}. Do not use this pack.")
+        try:
+            digest = hashlib.sha256(path.read_bytes()).hexdigest()
+        except OSError as error:
+            raise PackError(f"{path} is missing or cannot be read ({error.strerror}). Restore it or bake again.") from error
+        if digest != layer.sha256:
+            raise PackError(f"{path} is damaged: its checksum differs from the manifest. Restore the pack or bake it again.")
+        return path
+
+    def _sized(self, layer: Layer, image: NDArray[np.generic]) -> NDArray:  # type: ignore[type-arg]
+        if image.shape[:2] != (layer.height, layer.width):
+            raise PackError(
+                f"{self.folder / layer.file} is {image.shape[1]}x{image.shape[0]} pixels, its manifest says "
+                f"{layer.width}x{layer.height}. Bake it again."
+            )
+        image.flags.writeable = False
+        return image

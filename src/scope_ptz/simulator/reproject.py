@@ -1,0 +1,216 @@
+"""From the stored sphere of a viewpoint to any view: one map, one look-up.
+
+Where a pixel of the view lies on the sheet of stored pictures is computed exactly on a coarse grid and interpolated between its
+nodes; the grid is as fine as it must be for errors to stay below ``MAX_MAP_ERROR_PX``. Nothing here keeps state that could change
+a result: the same pack and projection give the same bytes.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from scope_ptz.geometry import Equirectangular, Perspective, Projection, pan_tilt_deg, wrap_pan_deg
+from scope_ptz.simulator.atlas import Atlas, Slot
+from scope_ptz.simulator.models import Band
+from scope_ptz.simulator.tiles import Place, Showing, Tiles
+from scope_ptz.simulator.viewpoint import Viewpoint
+
+MAX_MAP_ERROR_PX = 0.04
+"""Largest error of an interpolated map, in pixels of the view."""
+
+MAX_STEP_PX = 32
+
+TILE_GAIN = 1.1
+"""Tiles are used from views on that need this many times the density of the panorama."""
+
+OVERSAMPLING = 1.2
+"""Bilinear look-up in a picture this much to 1.7 times as dense as the view keeps the sharpness of a rendered view: less blurs,
+more shimmers."""
+
+_AROUND = ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (-1, 1), (1, -1), (-1, -1))
+"""The eight neighbours, those above and below first: they are the likeliest to be equally far on the ground."""
+
+Floats = NDArray[np.float64]
+Map = NDArray[np.float32]
+
+
+def colour_view(viewpoint: Viewpoint, projection: Projection) -> NDArray[np.uint8]:
+    """(H, W, 3) RGB: the still world through a projection."""
+    return _look_up(viewpoint, viewpoint.colour_atlas, projection, cv2.INTER_LINEAR)
+
+
+def id_view(viewpoint: Viewpoint, projection: Projection) -> NDArray[np.uint16]:
+    """(H, W) instance numbers of the still world, 0 where nothing is annotated."""
+    return _look_up(viewpoint, viewpoint.id_atlas, projection, cv2.INTER_NEAREST)
+
+
+def depth_view(viewpoint: Viewpoint, projection: Projection) -> NDArray[np.float32]:
+    """(H, W) distance of the still world from the optical centre in metres, infinite for the sky."""
+    codes = _look_up(viewpoint, viewpoint.depth_atlas, projection, cv2.INTER_NEAREST)
+    return np.take(viewpoint.depth_metres, codes)
+
+
+def distances_m(viewpoint: Viewpoint, directions: Floats) -> tuple[NDArray[np.float32], NDArray[np.uint16]]:
+    """How far the still world is along directions (n, 3) in the camera's own frame, infinite for the sky, and which instance each
+    of these distances was measured on: those of the nearest texel of the depth layer."""
+    viewpoint.owner_atlas.need(0)
+    slot, band = viewpoint.depth_atlas.need(0), viewpoint.manifest.band
+    pan_deg, tilt_deg = pan_tilt_deg(directions)
+    down = (band.top_tilt_deg - tilt_deg) / (band.top_tilt_deg - band.bottom_tilt_deg)
+    columns = slot.x + np.floor((pan_deg + 180.0) / 360.0 * slot.width).astype(int) % slot.width
+    rows = slot.y + np.clip(np.floor(down * slot.height).astype(int), 0, slot.height - 1)
+    metres = np.take(viewpoint.depth_metres, viewpoint.depth_atlas.sheet[rows, columns])
+    return metres, viewpoint.owner_atlas.sheet[rows, columns]
+
+
+def outlined_depth_view(viewpoint: Viewpoint, projection: Projection, numbers: NDArray[np.uint16]) -> NDArray[np.float32]:
+    """Like ``depth_view``, with the edges of instances where the finer ``numbers`` (H, W) of the same view have them.
+
+    Where a distance was measured on another instance than the pixel shows, a neighbour's that was not is taken.
+    """
+    where = atlas_map(viewpoint, viewpoint.depth_atlas, projection)
+    metres: NDArray[np.float32] = np.take(
+        viewpoint.depth_metres, cv2.remap(viewpoint.depth_atlas.sheet, where, None, cv2.INTER_NEAREST)
+    )
+    viewpoint.owner_atlas.need(0)
+    owners = cv2.remap(viewpoint.owner_atlas.sheet, where, None, cv2.INTER_NEAREST)
+    ys, xs = np.nonzero(owners != numbers)
+    texel_px = max(1.0, projection.density / (viewpoint.manifest.depth.width / (2 * math.pi)))
+    refined = metres.copy()
+    for reach in (1.0, 2.0):
+        for dx, dy in _AROUND:
+            y = np.clip(ys + round(dy * reach * texel_px), 0, projection.height - 1)
+            x = np.clip(xs + round(dx * reach * texel_px), 0, projection.width - 1)
+            fits = (owners[y, x] == numbers[ys, xs]) & (owners[y, x] == numbers[y, x])
+            refined[ys[fits], xs[fits]] = metres[y[fits], x[fits]]
+            ys, xs = ys[~fits], xs[~fits]
+    return refined
+
+
+def _look_up(viewpoint: Viewpoint, atlas: Atlas, projection: Projection, interpolation: int) -> NDArray[Any]:
+    where = atlas_map(viewpoint, atlas, projection)
+    return np.asarray(cv2.remap(atlas.sheet, where, None, interpolation))
+
+
+def atlas_map(viewpoint: Viewpoint, atlas: Atlas, projection: Projection) -> Map:
+    """(H, W, 2): for each pixel of the view its x, y on the sheet of an atlas."""
+    needed = projection.density
+    step = step_px(projection)
+    patches: list[tuple[Place, Map, NDArray[np.uint8]]] = []
+    behind: Map | None = None
+    if needed > TILE_GAIN * atlas.slots[0][0].width / (2 * math.pi) and len(atlas.slots) > 1:
+        for showing in viewpoint.tiles.in_view(projection):
+            where, inside, filled = _tile_map(viewpoint.tiles, showing, atlas, Grid(projection, step, showing.place))
+            if filled:  # sharper ones that came before it still lie over it
+                behind = where
+                break
+            patches.append((showing.place, where, inside))
+    if behind is None:
+        slot = _slot(atlas, 0, atlas.slots[0][0].width / (2 * math.pi), needed)
+        behind = _base_map(viewpoint.manifest.band, slot, Grid(projection, step))
+    for place, where, inside in reversed(patches):
+        cv2.copyTo(where, inside, behind[place])
+    return behind
+
+
+class Grid:
+    """Nodes ``step`` pixels apart over a part of a picture and one step beyond it, and the way back from nodes to pixels.
+
+    ``x`` and ``y`` are the columns and rows of the nodes in pixels, counted from the picture's corner.
+    """
+
+    def __init__(self, projection: Projection, step: int, place: Place | None = None) -> None:
+        self.projection, self.step = projection, step
+        self.place = place or (slice(0, projection.height), slice(0, projection.width))
+        rows, columns = self.place
+        self.x: Floats = columns.start + (np.arange(-(-(columns.stop - columns.start) // step) + 2) - 0.5) * step
+        self.y: Floats = rows.start + (np.arange(-(-(rows.stop - rows.start) // step) + 2) - 0.5) * step
+
+    def directions(self) -> Floats:
+        """(rows, columns, 3) unit vectors at the nodes."""
+        points = np.stack(np.meshgrid(self.x / self.projection.width, self.y / self.projection.height), axis=-1)
+        return self.projection.directions(points)
+
+    def to_pixels(self, nodes: Floats) -> NDArray[np.float32]:
+        """Values at nodes (rows, columns) or (rows, columns, n), bilinear between them, at the middle of each pixel of the part."""
+        n, (rows, columns) = self.step, self.place
+        size = nodes.shape[1] * n, nodes.shape[0] * n
+        fine: NDArray[np.float32] = cv2.resize(nodes.astype(np.float32), size, interpolation=cv2.INTER_LINEAR)
+        return fine[n : n + rows.stop - rows.start, n : n + columns.stop - columns.start]
+
+
+def step_px(projection: Projection) -> int:
+    """The widest power of two that keeps ``step ** 2 / 8 * curvature`` within the error allowed."""
+    if isinstance(projection, Equirectangular):
+        return 8
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.5, 0.0], [0.5, 1.0]])
+    poles = projection.points(np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]))
+    if np.any(np.all((poles > -0.05) & (poles < 1.05), axis=-1)):
+        return 1
+    _, tilt = pan_tilt_deg(projection.directions(corners))
+    from_pole = math.radians(90.0 - float(np.abs(tilt).max()))
+    widest = math.sqrt(8 * MAX_MAP_ERROR_PX * projection.density * math.sin(from_pole))
+    return int(min(MAX_STEP_PX, 2 ** math.floor(math.log2(max(1.0, widest)))))
+
+
+def _base_map(band: Band, slot: Slot, grid: Grid) -> Map:
+    middle, turn, tilt = _turn_and_tilt_deg(grid)
+    x = slot.x - 0.5 + (wrap_pan_deg(middle) + 180.0 + turn) / 360.0 * slot.width
+    y = slot.y - 0.5 + (band.top_tilt_deg - tilt) / (band.top_tilt_deg - band.bottom_tilt_deg) * slot.height
+    where = grid.to_pixels(np.stack([x, np.clip(y, slot.y - 0.5, slot.y + slot.height - 0.5)], axis=-1))
+    left, right = slot.x - 0.5, slot.x + slot.width - 0.5
+    for beyond, turn_px in ((x < left, slot.width), (x > right, -slot.width)):
+        columns = np.flatnonzero(beyond.any(axis=0))
+        if columns.size:
+            # Pixels lie between nodes: none beyond the seam is outside of the columns from the node before to the node after.
+            first, last = max(0, (columns[0] - 2) * grid.step), (columns[-1] + 1) * grid.step
+            part = where[:, first:last, 0]
+            part += np.float32(turn_px) * (part < left if turn_px > 0 else part > right)
+    return where
+
+
+def _turn_and_tilt_deg(grid: Grid) -> tuple[float, Floats, Floats]:
+    """The pan of the middle of a picture, and for each node how far it is turned from there and its tilt."""
+    projection = grid.projection
+    if isinstance(projection, Equirectangular):
+        fall = projection.bottom_tilt_deg - projection.top_tilt_deg
+        turn, tilt = np.meshgrid(
+            (grid.x / projection.width - 0.5) * projection.pan_span_deg, projection.top_tilt_deg + grid.y / projection.height * fall
+        )
+        return projection.left_pan_deg + projection.pan_span_deg / 2, turn, tilt
+    if isinstance(projection, Perspective):
+        # A ray is (right, up, focal length) in the view; only the tilt turns it, in the plane of the last two.
+        sine, cosine = math.sin(math.radians(projection.tilt_deg)), math.cos(math.radians(projection.tilt_deg))
+        right, up = grid.x - projection.width / 2, (projection.height / 2 - grid.y)[:, None]
+        ahead, rise = projection.focal_px * cosine - up * sine, projection.focal_px * sine + up * cosine
+        level = np.sqrt(right**2 + ahead**2)
+        return projection.pan_deg, np.degrees(np.arctan2(right, ahead)), np.degrees(np.arctan2(rise, level))
+    raise TypeError(f"no map for {type(projection).__name__}")
+
+
+def _tile_map(tiles: Tiles, showing: Showing, atlas: Atlas, grid: Grid) -> tuple[Map, NDArray[np.uint8], bool]:
+    """A tile's map over a part of the view, which pixels there it covers, and whether that is all of the view."""
+    projection = grid.projection
+    slot = _slot(atlas, 1 + showing.tile, tiles.views[showing.tile].focal_px, projection.density)
+    nodes = tiles.points(showing, projection, grid.x, grid.y) * (slot.width, slot.height) + (slot.x - 0.5, slot.y - 0.5)
+    low, high = (slot.x, slot.y), (slot.x + slot.width - 1, slot.y + slot.height - 1)
+    where = grid.to_pixels(nodes)
+    inside = showing.mask()
+    if inside is None:
+        inside = cv2.inRange(where, low, high)
+    whole = where.shape[:2] == (projection.height, projection.width) and bool(np.all((nodes >= low) & (nodes <= high)))
+    return where, inside, whole
+
+
+def _slot(atlas: Atlas, index: int, density: float, needed: float) -> Slot:
+    """A picture of full ``density`` (pixels per radian) at the scale that suits a view.
+
+    The coarsest that is still ``OVERSAMPLING`` times as dense as the view, or the first when none is.
+    """
+    enough = [k for k, scale in enumerate(atlas.scales) if scale.size * density >= OVERSAMPLING * needed]
+    return atlas.need(index, enough[-1] if enough else 0)

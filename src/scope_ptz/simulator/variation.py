@@ -1,0 +1,199 @@
+"""Varied worlds: the same place at another time, with its moving things elsewhere and other presets, made exactly from a number.
+
+What is baked stays as it is. Moving things are set into the picture and into the truth by the same code, so that a variation
+that moves, holds or leaves them out changes both alike.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from string import ascii_lowercase
+
+import numpy as np
+
+from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, direction
+from scope_ptz.simulator.models import Attribute, Extent, SceneActor, SceneFile, SceneInstance, ScenePreset, SceneViewpoint
+
+MOST_START_S = 120.0
+CLEARANCE_M = 3.0
+"""Nothing is held nearer than this to the way of something that moves."""
+
+_MOMENTS = 16
+_LONGER = (1.0, 1.5, 2.0)
+_ZOOMS = (1.0, 1.2, 1.5, 1.8, 2.2, 2.6)
+_CLOSE_ZOOM, _FAR_TILT_DEG, _LOW_TILT_DEG = 2.0, -7.5, -17.5
+_POSES = 14
+_WIDTH, _HEIGHT = 1280, 720
+_CLEAR_PX = 900.0
+_WINDS = ("north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west")
+
+
+@dataclass(frozen=True, slots=True)
+class Held:
+    """A moving thing that stays for good where it is at one scene time."""
+
+    actor: SceneActor
+    time_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Variation:
+    """A varied scene file. What is ``held`` stands among its instances, no longer among its actors."""
+
+    file: SceneFile
+    held: tuple[Held, ...]
+
+
+def vary(file: SceneFile, number: int, extents: Mapping[str, Sequence[Extent]]) -> Variation:
+    """Variation ``number`` of a scene; the same number gives the same world. ``extents``: what can be seen, by viewpoint."""
+    rng = random.Random(f"{file.name}:{number}")
+    start_s = round(rng.uniform(0.0, MOST_START_S), 1)
+    moving, held = _fates(file.actors, rng)
+    presets = list(_presets(file, extents, rng))
+    home = next(p.viewpoint for p in file.presets if p.name == file.home_preset)
+    varied = file.model_copy(
+        update={
+            "start_s": start_s,
+            "actors": moving,
+            "instances": [*file.instances, *map(_standing, held)],
+            "presets": presets,
+            "home_preset": next(p.name for p in presets if p.viewpoint == home),
+        }
+    )
+    return Variation(SceneFile.model_validate(varied.model_dump()), tuple(held))
+
+
+def companions(actors: Sequence[SceneActor]) -> list[list[SceneActor]]:
+    """Actors that go together, such as a dog and who leads it: those of one timetable share their fate."""
+    groups: dict[tuple[float, ...], list[SceneActor]] = {}
+    for actor in actors:
+        groups.setdefault((actor.period_s, *(round(w[0], 3) for w in actor.waypoints)), []).append(actor)
+    return list(groups.values())
+
+
+def _fates(actors: Sequence[SceneActor], rng: random.Random) -> tuple[list[SceneActor], list[Held]]:
+    """Every group comes at other times, stays somewhere on its way, or is not there."""
+    moving, held = list[SceneActor](), list[Held]()
+    for group in companions(actors):
+        fate = rng.choices(("late", "held", "gone"), (4, 4, 2))[0]
+        if fate == "held":
+            others = [a for a in actors if a not in group]
+            spots = (_hold(group, rng) for _ in range(_MOMENTS))
+            stay = next((s for s in spots if all(_clear(h, others) for h in s)), None)
+            if stay is not None:
+                held += stay
+                continue
+        if fate != "gone":
+            period_s = _period(group[0], rng)
+            delay_s = round(period_s * rng.uniform(0.15, 0.85), 1)
+            moving += [a.model_copy(update={"delay_s": a.delay_s + delay_s, "period_s": period_s}) for a in group]
+    return moving, held
+
+
+def _period(actor: SceneActor, rng: random.Random) -> float:
+    """As often as before or more seldom; what goes round and round goes on doing so."""
+    rests_s = actor.period_s - (actor.waypoints[-1][0] - actor.waypoints[0][0])
+    longer = rng.choice(_LONGER)
+    return actor.period_s if rests_s < 0.1 else round(actor.period_s * longer, 3)
+
+
+def _hold(group: Sequence[SceneActor], rng: random.Random) -> list[Held]:
+    share = rng.uniform(0.15, 0.85)
+    return [Held(a, round(a.delay_s + a.waypoints[0][0] + share * (a.waypoints[-1][0] - a.waypoints[0][0]), 2)) for a in group]
+
+
+def _place(held: Held) -> tuple[float, float, float, float]:
+    """Ground point (x, y, z) in metres and heading in radians (0 along y) of what is held."""
+    path = np.array(held.actor.waypoints)
+    path_s = held.time_s - held.actor.delay_s
+    x, y, z = (float(np.interp(path_s, path[:, 0], path[:, axis])) for axis in (1, 2, 3))
+    one, two = next((a, b) for a, b in pairwise(held.actor.waypoints) if path_s <= b[0])
+    return x, y, z, math.atan2(two[1] - one[1], two[2] - one[2])
+
+
+def _clear(held: Held, others: Sequence[SceneActor]) -> bool:
+    """Whether nothing that moves comes near."""
+    x, y, _, _ = _place(held)
+    reach = CLEARANCE_M + max(held.actor.size_m[:2]) / 2
+    return all(_distance(x, y, one, two) > reach for other in others for one, two in pairwise(other.waypoints))
+
+
+def _distance(x: float, y: float, one: Sequence[float], two: Sequence[float]) -> float:
+    """From a point to the straight way between two waypoints, metres on the ground."""
+    start, along = np.array(one[1:3]), np.array(two[1:3]) - np.array(one[1:3])
+    length = float(along @ along)
+    share = 0.0 if length == 0.0 else min(max(float((np.array([x, y]) - start) @ along) / length, 0.0), 1.0)
+    return float(np.linalg.norm(np.array([x, y]) - start - share * along))
+
+
+def _standing(held: Held) -> SceneInstance:
+    """What is held as a thing of the scene. Of its state nothing is said: its picture is still that of something under way."""
+    actor, (x, y, z, heading) = held.actor, _place(held)
+    width, length, height = actor.size_m
+    c, s = abs(math.cos(heading)), abs(math.sin(heading))
+    half_x, half_y = (width * c + length * s) / 2, (width * s + length * c) / 2
+    facts: dict[str, Attribute] = {k: v for k, v in actor.attributes.items() if k != "state"}
+    return SceneInstance(
+        id=actor.id,
+        number=actor.number,
+        category=actor.category,
+        name=actor.name.removeprefix("walking ").removeprefix("moving "),
+        attributes=facts,
+        box_min_m=(x - half_x, y - half_y, z),
+        box_max_m=(x + half_x, y + half_y, z + height),
+    )
+
+
+def _presets(file: SceneFile, extents: Mapping[str, Sequence[Extent]], rng: random.Random) -> Iterator[ScenePreset]:
+    """As many presets at each viewpoint as before, elsewhere: of some views at random the one in which most shows."""
+    places = {place.name: place for place in file.viewpoints}
+    taken = {preset.name for preset in file.presets}
+    made = list(file.presets)
+    for old in file.presets:
+        candidates = [_named(_pose(old, rng), places[old.viewpoint]) for _ in range(_POSES)]
+        apart = [c for c in candidates if all(_is_apart(c, p) for p in made if p.viewpoint == old.viewpoint)] or candidates
+        free = [c for c in apart if c.name not in taken] or apart
+        best = max(free, key=lambda c: _things_in(c, extents[old.viewpoint]))
+        name = next(n for n in (best.name, *(f"{best.name}-{letter}" for letter in ascii_lowercase)) if n not in taken)
+        taken.add(name)
+        made.append(best.model_copy(update={"name": name}))
+        yield made[-1]
+
+
+def _pose(old: ScenePreset, rng: random.Random) -> ScenePreset:
+    limits = Limits()
+    pan = (old.pan_deg + rng.choice((-1, 1)) * rng.uniform(10, 80) + 180) % 360 - 180
+    tilt = min(max(old.tilt_deg + rng.uniform(-5, 4), -35.0), 0.0)
+    pan = min(max(round(pan), limits.min_pan_deg), limits.max_pan_deg)
+    return old.model_copy(update={"pan_deg": float(pan), "tilt_deg": float(round(tilt)), "zoom": rng.choice(_ZOOMS)})
+
+
+def _is_apart(one: ScenePreset, two: ScenePreset) -> bool:
+    off_deg = abs((one.pan_deg - two.pan_deg + 180) % 360 - 180)
+    return off_deg > 12 or abs(one.tilt_deg - two.tilt_deg) > 8 or max(one.zoom, two.zoom) > 1.6 * min(one.zoom, two.zoom)
+
+
+def _things_in(preset: ScenePreset, extents: Sequence[Extent]) -> int:
+    """How many outlines of some size have their middle well inside the view; what hides what is not asked."""
+    view = Perspective(preset.pan_deg, preset.tilt_deg, AXIS_M5075_G.hfov_deg(preset.zoom), _WIDTH, _HEIGHT)
+    large = [e for e in extents if e.hull and e.solid_angle_sr * view.focal_px**2 > _CLEAR_PX]
+    if not large:
+        return 0
+    middles = np.array([np.mean(direction(*np.array(e.hull, dtype=np.float64).T), axis=0) for e in large])
+    points = view.points(middles)
+    with np.errstate(invalid="ignore"):
+        return int(np.all((points > 0.05) & (points < 0.95), axis=-1).sum())
+
+
+def _named(preset: ScenePreset, place: SceneViewpoint) -> ScenePreset:
+    """With a name that says where from and which way, such as ``mast-south-east-close``, and the same in words."""
+    wind = _WINDS[round((place.pan0_bearing_deg + preset.pan_deg) / 45) % 8]
+    close, far, low = preset.zoom >= _CLOSE_ZOOM, preset.tilt_deg > _FAR_TILT_DEG, preset.tilt_deg < _LOW_TILT_DEG
+    how = "-close" if close else "-far" if far else "-low" if low else ""
+    words = {"-close": ", close up", "-far": ", far off", "-low": ", at what is near", "": ""}[how]
+    said = f"looking {wind} from the {place.name}{words}"
+    return preset.model_copy(update={"name": f"{place.name}-{wind}{how}", "description": said})

@@ -1,0 +1,181 @@
+"""One optical centre: its layers, read on demand and checked, and the sheets from which views are taken."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from functools import cached_property
+from itertools import product
+from pathlib import Path
+from threading import RLock
+from typing import TypeVar
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ValidationError
+
+from scope_ptz.errors import PackError
+from scope_ptz.simulator import layers
+from scope_ptz.simulator.atlas import Atlas, Scale
+from scope_ptz.simulator.models import FORMAT_VERSION, ActorSheet, Extent, Layer, Manifest, SceneFile, SceneViewpoint
+from scope_ptz.simulator.pictures import Pictures
+from scope_ptz.simulator.tiles import Tiles
+
+COLOUR_SCALES = (
+    Scale(1.0, sharpening=0.6),
+    Scale(1.0, sharpening=0.1),
+    Scale(2**-0.5, sharpening=0.3),
+    Scale(2**-1.0),
+    Scale(2**-1.5, sharpening=0.15),
+    Scale(2**-2.0),
+    Scale(2**-2.5, sharpening=0.15),
+    Scale(2**-3.0),
+)
+"""Scales at which colour is kept, half an octave apart, so that no view samples its source much too finely. The first is for views
+about as dense as the stored picture or denser. Sharpening makes up for what shrinking and bilinear look-up blur; the amounts bring
+the Laplacian variance of views nearest to that of directly rendered ones."""
+
+EDGE_PX = 2
+"""How far around a half-covered pixel of a sprite covered ones are looked for."""
+
+MIN_COVERED = 3
+"""So many of them give it its colour."""
+
+_File = TypeVar("_File", bound=BaseModel)
+
+
+class Viewpoint:
+    """A viewpoint folder. Layers are read on demand; each read is checked against the manifest."""
+
+    def __init__(self, folder: Path, scene: SceneFile, place: SceneViewpoint) -> None:
+        self.folder, self.pictures = folder, Pictures(folder)
+        self.manifest = manifest = read_json(folder / "manifest.json", Manifest)
+        self.name = place.name
+        self._sprite_colours: dict[int, NDArray[np.uint8]] = {}
+        self._sprite_distances: dict[int, NDArray[np.uint16]] = {}
+        self._lock = RLock()
+        if (manifest.scene, manifest.viewpoint, manifest.scene_version) != (scene.name, place.name, scene.version):
+            raise PackError(
+                f"{folder} was baked for viewpoint '{manifest.viewpoint}' of scene '{manifest.scene}' version "
+                f"{manifest.scene_version}, but lies in '{place.name}' of '{scene.name}' version {scene.version}. Bake it again."
+            )
+
+        tiles = manifest.tiles
+        self.tiles = Tiles([tile.view for tile in tiles])
+        colours, ids = [manifest.base, *(t.colour for t in tiles)], [manifest.ids, *(t.ids for t in tiles)]
+        # The sheets know the files and not this object: without a cycle, all goes as soon as nobody holds a viewpoint any more.
+        read, depth = self.pictures, manifest.depth
+        self.colour_atlas = Atlas([_size(c) for c in colours], lambda i: read.colour(colours[i]), np.uint8, 3, COLOUR_SCALES)
+        self.id_atlas = id_atlas = Atlas([_size(n) for n in ids], lambda i: read.numbers(ids[i]), np.uint16, 1)
+        self.depth_atlas = Atlas([_size(depth)], lambda _: read.numbers(depth), np.uint16, 1)
+        self.owner_atlas = Atlas([_size(depth)], lambda _: _owners(id_atlas, depth), np.uint16, 1)
+
+    @cached_property
+    def position_m(self) -> NDArray[np.float64]:
+        """World position of the optical centre."""
+        return np.array(self.manifest.position_m, dtype=np.float64)
+
+    @cached_property
+    def world_to_camera(self) -> NDArray[np.float64]:
+        """(3, 3) rotation from world axes (x east, y north) to the camera's own frame (y forward at pan 0)."""
+        bearing = np.radians(self.manifest.pan0_bearing_deg)
+        c, s = np.cos(bearing), np.sin(bearing)
+        return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+    @cached_property
+    def extents(self) -> dict[int, Extent]:
+        """Whole silhouettes of the instances that can be seen from here, by number."""
+        return {extent.number: extent for extent in self.manifest.extents}
+
+    def offset(self, points_m: NDArray[np.float64]) -> NDArray[np.float64]:
+        """World points (..., 3) as vectors from the optical centre in the camera's own frame, metres."""
+        return np.asarray((points_m - self.position_m) @ self.world_to_camera.T)
+
+    def files(self) -> Iterator[Layer]:
+        """Every file of the pack besides the manifest."""
+        manifest = self.manifest
+        yield from (manifest.base, manifest.ids, manifest.depth)
+        for tile in manifest.tiles:
+            yield from (tile.colour, tile.ids)
+        for sheet in manifest.actors:
+            yield from (sheet.colour, sheet.depth)
+
+    def check_files(self) -> int:
+        """Hold every file against its checksum; the number of files. Raises ``PackError`` for the first that is not as baked."""
+        return len([self.pictures.checked(layer) for layer in self.files()])
+
+    @cached_property
+    def depth_metres(self) -> NDArray[np.float32]:
+        """(65536,) table from a distance code to metres; the sky is infinitely far."""
+        depth = self.manifest.depth
+        return layers.decode_depth(np.arange(65536).astype(np.uint16), depth.near_m, depth.far_m)
+
+    def sprite_distances(self, sheet: ActorSheet) -> NDArray[np.uint16]:
+        """An actor's sheet as (H, W) distance codes, 0 where it shows no actor. Read once and shared."""
+        with self._lock:
+            if sheet.number not in self._sprite_distances:
+                self._sprite_distances[sheet.number] = self.pictures.numbers(sheet.depth)
+            return self._sprite_distances[sheet.number]
+
+    def sprite_colours(self, sheet: ActorSheet) -> NDArray[np.uint8]:
+        """An actor's sheet as (H, W, 4) colour premultiplied by alpha. Read once and shared; the ground truth never needs it."""
+        with self._lock:
+            if sheet.number not in self._sprite_colours:
+                colour = self.pictures.colour(sheet.colour)
+                if colour.shape[2] != 4:
+                    raise PackError(f"{self.folder / sheet.colour.file} has no transparency: no sheet of sprites. Bake it again.")
+                self._sprite_colours[sheet.number] = _premultiplied(colour, self.sprite_distances(sheet) > 0)
+            return self._sprite_colours[sheet.number]
+
+
+def _owners(ids: Atlas, depth: Layer) -> NDArray[np.uint16]:
+    """As large as the depth layer: the instance on which each of its distances was measured."""
+    slot = ids.need(0)
+    rows = slot.y + ((np.arange(depth.height) + 0.5) / depth.height * slot.height).astype(int)
+    columns = slot.x + ((np.arange(depth.width) + 0.5) / depth.width * slot.width).astype(int)
+    return np.ascontiguousarray(ids.sheet[rows[:, None], columns])
+
+
+def _premultiplied(colour: NDArray[np.uint8], own: NDArray[np.bool_]) -> NDArray[np.uint8]:
+    """(H, W, 4) colour times alpha. Lossy coding mixes the black of empty pixels into an actor's half-covered edge: that takes
+    its colour from the covered pixels beside it. Edges are few in a large sheet, so that only they are worked on one by one."""
+    alpha = colour[..., 3]
+    sheet = cv2.multiply(colour, cv2.merge([alpha, alpha, alpha, np.full_like(alpha, 255)]), scale=1 / 255)
+    covered = own & (alpha > 250)
+    rows, columns = np.nonzero(own & (alpha <= 250))
+    total, count = np.zeros((len(rows), 3)), np.zeros(len(rows))
+    for down, right in product(range(-EDGE_PX, EDGE_PX + 1), repeat=2):
+        beside = rows + down, columns + right
+        there = np.clip(beside[0], 0, alpha.shape[0] - 1), np.clip(beside[1], 0, alpha.shape[1] - 1)
+        counts = covered[there] & (there[0] == beside[0]) & (there[1] == beside[1])
+        total += colour[..., :3][there] * counts[:, None]
+        count += counts
+    enough = count >= MIN_COVERED
+    rows, columns = rows[enough], columns[enough]
+    inward = total[enough] / count[enough, None]
+    sheet[rows, columns, :3] = np.rint(inward * (alpha[rows, columns, None] / 255))
+    return np.asarray(sheet)
+
+
+def _size(layer: Layer) -> tuple[int, int]:
+    return layer.width, layer.height
+
+
+def read_json(path: Path, model: type[_File]) -> _File:
+    """A validated file of a pack; ``PackError`` says what is wrong with it."""
+    try:
+        content = json.loads(path.read_bytes())
+    except OSError as error:
+        raise PackError(f"{path} is missing or cannot be read ({error.strerror}). Restore it or bake again.") from error
+    except ValueError as error:
+        raise PackError(f"{path} is no valid JSON ({error}). Restore the pack or bake it again.") from error
+    version = content.get("format") if isinstance(content, dict) else None
+    if isinstance(version, int) and version > FORMAT_VERSION:
+        raise PackError(f"{path} has format {version}, this program reads up to {FORMAT_VERSION}. Install a newer scope-ptz.")
+    try:
+        return model.model_validate(content)
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(str(part) for part in first["loc"])
+        raise PackError(f"{path} is not as it should be: {where}: {first['msg']}. Restore the pack or bake it again.") from error

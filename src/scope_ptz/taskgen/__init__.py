@@ -1,0 +1,1 @@
+"""Task generation: authoring, drafting by language models, importing, validation, gold runs, audits and the published dataset."""

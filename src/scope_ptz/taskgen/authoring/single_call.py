@@ -1,0 +1,264 @@
+"""Single calls: one tool does it. Moves, presets, home, pictures, close-ups, and looks that need one call only."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+
+from scope_ptz.bench.tasks.expected import ActionOnly, Number
+from scope_ptz.bench.tasks.task import Argument, Behaviour, Category, Need, ProgramCall, RequiredCall
+from scope_ptz.simulator.models import SceneActor
+from scope_ptz.taskgen.authoring.counting import counted
+from scope_ptz.taskgen.authoring.drafts import Draft, Question, count, view
+from scope_ptz.taskgen.authoring.naming import distinct
+from scope_ptz.taskgen.authoring.places import Place, Places, adjust, go, move, preset_at, say
+from scope_ptz.taskgen.authoring.targets import framing
+from scope_ptz.taskgen.authoring.words import about, capital, many_of, noun_of, unit_of
+from scope_ptz.taskgen.facts.kinds import Kind
+from scope_ptz.taskgen.facts.robust import TRACE_PX
+
+_POLITE = ("{M}.", "Please {m}.", "{M}, please.", "Could you {m}?", "I need you to {m}.", "{M} now.", "Now {m}.")
+
+
+def polite(order: str) -> tuple[str, ...]:
+    return tuple(form.format(m=order, M=capital(order)) for form in _POLITE)
+
+
+def command(
+    category: Category,
+    kind: str, key: str, place: Place, orders: tuple[str, ...], program: tuple[ProgramCall, ...], behaviour: Behaviour,
+    needs: tuple[Need, ...], tags: tuple[str, ...] = (),
+) -> Draft:  # fmt: skip
+    """An order without an answer: what the camera does decides."""
+    return Draft(
+        category=category,
+        kind=kind,
+        key=key,
+        place=place,
+        expected=ActionOnly(),
+        orders=orders,
+        program=program,
+        behaviour=behaviour,
+        needs=needs,
+        tags=("command", *tags),
+        reads=kind,
+    )
+
+
+def drafts(places: Places, pool: list[Place], rng: random.Random) -> Iterator[Draft]:
+    """All sorts in turn, so that whoever takes the first n has a mixture."""
+    sorts = [
+        _moves(places, rng),
+        _presets(places, rng),
+        _pans(places, rng),
+        _close_ups(pool),
+        _follows(pool),
+        _sweeps(places),
+        _moves(places, rng),
+        _services(places, rng),
+        _tilts(places, rng),
+    ]
+    while sorts:
+        for sort in list(sorts):
+            draft = next(sort, None)
+            if draft is None:
+                sorts.remove(sort)
+            else:
+                yield draft
+
+
+def _adjusted(places: Places, name: str, call: ProgramCall, kind: str, rng: random.Random) -> Draft | None:
+    start = places.stay(name)
+    there = move(start.at, call)
+    if there is None:
+        return None
+    end = Place(start.scene, name, (call,), there)
+    orders = tuple(dict.fromkeys(text for _ in range(4) for text in polite(" and ".join(say(call, rng)))))
+    return command("single_call", kind, f"adjust:{end.key}", start, orders, (call,), Behaviour(final=end.final), end.needs)
+
+
+def _moves(places: Places, rng: random.Random) -> Iterator[Draft]:
+    """Two axes, or the zoom, at once."""
+    names = list(places.presets)
+    for n in range(60):
+        pan, tilt, factor = (
+            rng.choice((-1, 1)) * rng.choice((8, 12, 16, 22, 35, 55)),
+            rng.choice((-14, -9, -6, 5, 7, 9)),
+            rng.choice((1.2, 1.5, 1.8, 2.0, 2.5, 3.0)),
+        )
+        call = (adjust(factor=factor), adjust(pan, tilt), adjust(pan, 0, factor))[n % 3]
+        draft = _adjusted(places, names[n % len(names)], call, ("zoom", "turn-both", "turn-zoom")[n % 3], rng)
+        if draft is not None:
+            yield draft
+
+
+def _pans(places: Places, rng: random.Random) -> Iterator[Draft]:
+    names = list(places.presets)
+    for _ in range(40):
+        amount = rng.choice((-1, 1)) * rng.choice((5, 8, 15, 20, 24, 33, 45, 65, 80, 100))
+        draft = _adjusted(places, rng.choice(names), adjust(amount), "pan", rng)
+        if draft is not None:
+            yield draft
+
+
+def _tilts(places: Places, rng: random.Random) -> Iterator[Draft]:
+    names = list(places.presets)
+    for _ in range(30):
+        draft = _adjusted(places, rng.choice(names), adjust(0, rng.choice((-18, -11, -7, -4, 3, 6, 9, 12))), "tilt", rng)
+        if draft is not None:
+            yield draft
+
+
+def _presets(places: Places, rng: random.Random) -> Iterator[Draft]:
+    for name, preset in places.presets.items():
+        starts = [other for other in places.presets if other != name]
+        if not starts:
+            continue
+        start = places.stay(rng.choice(starts))
+        end = Place(start.scene, start.start, (go(name),), preset_at(preset))
+        orders = tuple(dict.fromkeys(text for _ in range(4) for text in polite(say(go(name), rng)[0])))
+        yield command("single_call", "preset", f"go:{name}", start, orders, (go(name),), Behaviour(final=end.final), ("preset",))
+
+
+def _services(places: Places, rng: random.Random) -> Iterator[Draft]:
+    """Home, a picture of the view, the list of presets."""
+    scene, home = places.scene, places.scene.file.home_preset
+    others = [name for name in places.presets if name != home]
+    rng.shuffle(others)
+    for n, name in enumerate(others[:3]):
+        start = places.stay(name)
+        final = Place(scene, name, (), preset_at(places.presets[home])).final
+        ways = ("go home", "return to the home position", "take the camera back home", "move back to the home view")
+        orders = tuple(order for way in ways for order in polite(way))
+        yield command(
+            "single_call",
+            "home",
+            f"home:{name}",
+            start,
+            orders,
+            (ProgramCall(tool="go_home"),),
+            Behaviour(final=final),
+            ("preset",),
+        )
+        shot = tuple(
+            f"{w} of the {name} view{e}"
+            for w in ("Take a picture", "Save a still", "Capture an image", "Take a snapshot")
+            for e in (".", ", please.", " as it is now.")
+        )
+        yield command(
+            "single_call",
+            "picture",
+            f"picture:{name}",
+            start,
+            shot,
+            (ProgramCall(tool="take_image"),),
+            Behaviour(final=start.final, calls=(RequiredCall(tool="take_image"),), pictures=1),
+            (),
+            ("picture",),
+        )
+        if n == 0:
+            orders = (
+                f"Which presets are stored for {scene.file.title}?",
+                f"List the preset views of {scene.file.title}.",
+                f"What views have been saved for the camera at {scene.file.title}?",
+            )
+            calls = (ProgramCall(tool="get_presets"),)
+            behaviour = Behaviour(calls=(RequiredCall(tool="get_presets"),), final=start.final)
+            yield command("single_call", "list", "presets", start, orders, calls, behaviour, (), ("presets",))
+
+
+def _close_ups(pool: list[Place]) -> Iterator[Draft]:
+    for place in pool:
+        if not place.stays and place.preset is None:
+            continue
+        here = Place(place.scene, place.preset or place.start, (), place.at)
+        for one in distinct(place.sight, 400):
+            target = framing(here, one.thing, one.thing.instance)
+            if target is None or len(one.thing.instance.attributes) == 0:
+                continue
+            orders = tuple(
+                t
+                for w in (
+                    f"zoom in on {one.the}",
+                    f"get a close-up of {one.the}",
+                    f"frame {one.the}",
+                    f"centre {one.the} and zoom in on it",
+                )
+                for t in polite(w)
+            )
+            call = ProgramCall(tool="zoom_to_object", arguments={"description": one.name})
+            yield command(
+                "single_call",
+                "close-up",
+                f"close-up:{one.thing.instance.id}",
+                here,
+                orders,
+                (call,),
+                Behaviour(framing=target),
+                ("zoom",),
+                ("framing",),
+            )
+
+
+def _follows(pool: list[Place]) -> Iterator[Draft]:
+    """Something that moves, in view when the task begins and for the seconds after, and the only one of its kind."""
+    for n, place in enumerate(pool):
+        here = Place(place.scene, place.preset or place.start, (), place.at)
+        began = here.sight.samples[0]
+        later = here.sight.look(here.scene, str(here.at.viewpoint), here.sight.projection, here.sight.time_s + 1.5)
+        for sighting in began.visible:
+            actor = sighting.instance
+            kind = Kind(actor.category)
+            if not isinstance(actor, SceneActor) or sighting.pixels < 600 or sighting.share < 0.9:
+                continue
+            others = [s for s in began.sightings if s.instance is not actor]
+            rivals = [s for s in others if kind.fits(s.instance) or kind.doubtful(s.instance)]
+            if any(s.pixels > TRACE_PX for s in rivals) or actor.number not in {s.instance.number for s in later.visible}:
+                continue
+            seconds = (4.0, 5.0, 6.0, 8.0)[n % 4]
+            ways = (
+                f"follow the {kind.category} for {seconds:g} seconds",
+                f"keep the {kind.category} in view for {seconds:g} seconds",
+                f"track the {kind.category} for the next {seconds:g} seconds",
+            )
+            call = ProgramCall(tool="track_object", arguments={"description": kind.category, "duration_s": seconds})
+            wanted = {"description": Argument(mentions=unit_of(kind)), "duration_s": Argument(equals=seconds, within=0.5)}
+            yield command(
+                "single_call",
+                "follow",
+                f"follow:{actor.id}",
+                here,
+                tuple(order for way in ways for order in polite(way)),
+                (call,),
+                Behaviour(calls=(RequiredCall(tool="track_object", arguments=wanted),)),
+                ("move",),
+                ("moving",),
+            )
+
+
+def _sweeps(places: Places) -> Iterator[Draft]:
+    for place in places.around():
+        if place.calls:
+            continue
+        for kind, number in counted(place.sight)[:40]:
+            many = many_of(kind)
+            expected = Number(value=number, unit=unit_of(kind))
+            items = [place.sight.item(t, True) for t in place.sight.of(kind) or ()]
+            yield Draft(
+                category="single_call",
+                kind="count-all",
+                key=f"count:{noun_of(kind)}",
+                place=place,
+                expected=expected,
+                question=Question(
+                    (
+                        (f"how many {many} are there in all?", f"how many {many} there are in all"),
+                        (f"what is the total of {many}?", f"the total of {many}"),
+                    )
+                ),
+                evidence=(view(place, expected, about(kind), items, whole=True),),
+                looks=(count(many, place),),
+                tags=("full",),
+                weight=number,
+                reads=str(number),
+            )

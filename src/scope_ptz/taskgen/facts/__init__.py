@@ -1,0 +1,1 @@
+"""Facts about scenes that tasks are made from: robust ground truth, object kinds, phrasing, similarity."""

@@ -1,0 +1,245 @@
+"""Kinds of things that a question can be about, and which things somebody could call by a kind's name.
+
+What one person calls a litter bin another calls a bin, and that is a recycling bin to a third: such names rule each other out, so
+that no expected number rests on taste.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from scope_ptz.simulator.models import SceneActor, SceneInstance
+
+GROUPS: dict[str, frozenset[str]] = {
+    "person": frozenset({
+        "person", "worker", "pedestrian", "passenger", "shopper", "child", "guard", "busker", "stallholder", "waiter", "customer",
+        "security guard", "street performer", "musician", "police officer", "banksman",
+    }),
+    "vehicle": frozenset({
+        "car", "taxi", "van", "lorry", "bus", "pickup truck", "police car", "ambulance", "fire engine", "articulated lorry",
+        "coach", "minibus", "truck",
+    }),
+}  # fmt: skip
+"""Words for many categories at once, and what surely is one."""
+
+SIGNS = frozenset({
+    "sign", "message sign", "arrow board", "board", "notice", "poster", "banner", "a-board", "shop sign", "no entry sign",
+    "tram stop sign", "taxi sign", "menu board", "headline board", "map board", "timetable", "signpost", "price card",
+    "departures board", "street name sign", "bus stop", "bus stop flag", "hanging sign", "information board", "warning sign",
+    "notice board", "advertising column", "billboard", "bus stop sign", "wayfinding sign", "safety sign", "gantry", "plate",
+    "traffic sign", "road sign", "street sign", "parking sign", "estate agent board", "for sale board", "label", "placard",
+    "speed sign", "dock number", "bay number", "pavement board", "wall sign", "window notice", "door sign", "company board",
+})  # fmt: skip
+"""Whatever bears a notice."""
+
+KNOWN_BY_THEIR_FACE = SIGNS | {"vending machine", "ticket machine", "dock number", "bay number"}
+"""What nobody can tell from behind: of these only the side that bears the lettering says what they are."""
+
+FACELESS = frozenset({
+    "cabinet", "generator", "liquid container", "bike stand", "gas cage", "lane signal", "parking meter", "dock light",
+    "camera pole",
+})  # fmt: skip
+"""Plain boxes, poles and lamps at a camera's distance, beside others that look the same and bear no name: nothing is asked of
+them."""
+
+BACKDROP: Mapping[str, frozenset[str]] = {
+    "highway-works": frozenset({"roller door", "door", "dock door", "window", "pallet"}),
+    "station-square": frozenset({"awning"}),
+    "freight-yard": frozenset({"roller door"}),
+}
+"""By scene: what shows in its backdrop, or as part of something larger, without being a thing of its ground truth; and what is so
+hidden under something else that people do not count it alike."""
+
+_TWINS: tuple[frozenset[str], ...] = (
+    GROUPS["person"] | {"cyclist", "driver", "mannequin", "statue"},
+    GROUPS["vehicle"] | {
+        "tram", "train", "bicycle", "cargo bike", "motorcycle", "scooter", "trailer", "excavator", "roller", "forklift", "tractor",
+        "tug", "terminal tractor", "reach stacker", "road sweeper", "cyclist", "locomotive", "wagon", "railway wagon", "vehicle",
+        "shunter",
+    },
+    frozenset({"lorry", "truck", "pickup truck", "articulated lorry", "trailer", "van", "terminal tractor", "container lorry"}),
+    frozenset({"bicycle", "cargo bike", "motorcycle", "scooter", "cyclist"}),
+    SIGNS,
+    frozenset({"car", "taxi", "police car"}),
+    frozenset({"bus", "coach", "minibus"}),
+    frozenset({"tram", "train", "locomotive", "wagon", "railway wagon"}),
+    frozenset({"bin", "litter bin", "wheelie bin", "recycling bin", "post box", "grit bin", "bottle bank", "dustbin", "waste bin"}),
+    frozenset({"bag", "backpack", "suitcase", "handbag", "rucksack", "bin bag", "shopping bag", "sack", "rubbish bag"}),
+    frozenset({"planter", "flower pot", "plant pot", "flower bed", "flower box", "pot", "window box", "flower tub", "potted tree"}),
+    frozenset({"flower bucket", "bucket", "pot"}),
+    frozenset({"lamp post", "tram pole", "camera pole", "pole", "lamp", "lantern", "street lamp", "light tower", "floodlight",
+               "lighting mast", "flagpole", "signpost", "traffic light", "floodlight mast", "light", "lighting tower",
+               "bollard light", "wall lamp", "camera mast"}),
+    frozenset({"bollard", "marker post", "post", "traffic post"}),
+    frozenset({"kiosk", "market stall", "portable toilet", "stall", "stand", "gazebo", "tent", "ticket kiosk"}),
+    frozenset({"crate", "box", "carton", "case", "parcel", "cardboard box", "pallet box", "package", "chest", "stillage"}),
+    frozenset({"bench", "chair", "seat", "stool"}),
+    frozenset({"awning", "canopy", "sunshade"}),
+    frozenset({"parasol", "umbrella", "sunshade"}),
+    frozenset({"hand cart", "luggage trolley", "trolley", "cart", "sack truck", "pallet truck", "roll cage", "pram", "pushchair",
+               "shopping trolley", "wheelbarrow", "hand truck"}),
+    frozenset({"barrier", "guardrail", "fence panel", "railing", "crash barrier", "concrete block", "fence", "gate", "boom gate",
+               "barrier gate", "boom barrier", "pedestrian barrier", "barrier arm"}),
+    frozenset({"traffic cone", "cone", "bollard"}),
+    frozenset({"drum", "barrel", "oil drum", "keg", "cask", "cable drum", "tank"}),
+    frozenset({"cabinet", "utility box", "electricity box", "junction box", "control box", "electrical cabinet", "green box"}),
+    frozenset({"cabin", "portable toilet", "container", "shed", "hut", "gatehouse", "kiosk", "portable cabin",
+               "site office", "office"}),
+    frozenset({"container", "shipping container", "skip", "tank container", "swap body"}),
+    frozenset({"pallet", "pallet stack", "stack of pallets", "stack"}),
+    frozenset({"bird", "pigeon", "gull", "seagull", "crow", "sparrow"}),
+    frozenset({"statue", "plinth", "fountain", "monument", "sculpture"}),
+    frozenset({"drain", "manhole cover", "tree grate", "grate", "drain cover", "hatch", "gully"}),
+    frozenset({"clock", "watch", "sundial"}),
+    frozenset({"camera", "camera pole", "security camera", "camera mast"}),
+    frozenset({"tree", "bush", "shrub", "potted tree", "topiary"}),
+    frozenset({"forklift", "reach truck", "order picker", "forklift truck", "reach stacker", "telehandler"}),
+    frozenset({"excavator", "digger", "backhoe", "loader", "wheel loader", "mini excavator", "bulldozer"}),
+    frozenset({"door", "gate", "roller door", "dock door", "loading dock", "shutter", "dock"}),
+    frozenset({"cup", "mug", "glass"}),
+    frozenset({"box of fruit", "crate", "produce", "tray"}),
+    frozenset({"ladder", "step ladder", "scaffolding"}),
+    frozenset({"loaf", "cake", "ham", "produce"}),
+    frozenset({"bus stop", "shelter", "bus shelter", "tram shelter", "cycle shelter", "smoking shelter"}),
+    frozenset({"traffic light", "beacon", "belisha beacon", "lane signal", "dock light"}),
+    frozenset({"manhole", "manhole cover", "drain"}),
+    frozenset({"fire hydrant", "fire extinguisher", "fire point"}),
+    frozenset({"phone", "phone box", "emergency phone"}),
+)  # fmt: skip
+"""Categories of which one person says one, and another the other."""
+
+_NEAR_COLOURS = (
+    {"silver", "grey"}, {"silver", "white"}, {"orange", "yellow"}, {"orange", "red"}, {"cream", "white"}, {"buff", "yellow"},
+    {"purple", "pink"}, {"beige", "cream"}, {"beige", "brown"}, {"grey", "black"}, {"navy", "black"}, {"navy", "blue"},
+    {"ochre", "yellow"}, {"ochre", "orange"}, {"ochre", "brown"}, {"golden", "yellow"}, {"golden", "brown"}, {"tan", "brown"},
+    {"tan", "beige"}, {"turquoise", "blue"}, {"turquoise", "green"}, {"teal", "blue"}, {"teal", "green"}, {"maroon", "red"},
+    {"burgundy", "red"}, {"maroon", "brown"}, {"rust", "orange"}, {"rust", "brown"}, {"beige", "white"}, {"amber", "orange"},
+    {"amber", "yellow"}, {"rust", "red"}, {"lilac", "purple"}, {"lilac", "pink"},
+    {"cream", "grey"}, {"light", "grey", "white"}, {"khaki", "green"}, {"khaki", "brown"},
+)  # fmt: skip
+
+_RIDDEN = frozenset({"forklift", "reach truck", "tug", "terminal tractor", "roller", "motorcycle", "scooter", "bicycle", "cyclist"})
+"""Things whose driver one sees."""
+
+_OTHERWISE = {"car": frozenset({"taxi", "cab"}), "bus": frozenset({"coach", "minibus"})}
+"""Words in the name of a thing by which some would call it rather than by its category."""
+
+COLOUR_WORDS = frozenset({
+    "white", "black", "grey", "silver", "red", "blue", "navy", "green", "yellow", "orange", "brown", "beige", "cream", "buff",
+    "pink", "purple", "lilac", "turquoise", "teal", "gold", "golden", "amber", "maroon", "burgundy", "rust", "ochre", "tan",
+    "khaki", "bronze",
+})  # fmt: skip
+
+Thing = SceneInstance | SceneActor
+
+
+@dataclass(frozen=True)
+class Kind:
+    """Things of a category (or of a group of them), of one colour or with one more attribute where these are given."""
+
+    category: str
+    colour: str | None = None
+    attribute: tuple[str, str] | None = None
+
+    def fits(self, thing: Thing) -> bool:
+        facts = thing.attributes
+        return (
+            not self._goes_by_another(thing)
+            and thing.category in GROUPS.get(self.category, {self.category})
+            and (self.colour is None or own_colour(thing) == self.colour)
+            and (self.attribute is None or str(facts.get(self.attribute[0])) == self.attribute[1])
+        )
+
+    def _goes_by_another(self, thing: Thing) -> bool:
+        """A taxi is a car to some, and a coach a bus."""
+        return thing.category == self.category and bool(
+            _OTHERWISE.get(self.category, frozenset()) & set(thing.name.lower().split())
+        )
+
+    def rides_on(self, thing: Thing) -> bool:
+        """Whether somebody of this kind may sit on a moving thing in plain view, who is no thing of the ground truth."""
+        return self.category in GROUPS["person"] and thing.category in _RIDDEN
+
+    def doubtful(self, thing: Thing) -> bool:
+        """Whether somebody could call a thing that does not fit by this kind's name."""
+        if self.fits(thing):
+            return False
+        if self._goes_by_another(thing):
+            return True
+        if thing.category not in GROUPS.get(self.category, {self.category}):
+            words, name = set(self.category.split()), set(f"{thing.category} {thing.name}".lower().split())
+            alike = any({self.category, thing.category} <= group for group in _TWINS)
+            return words <= name or alike or thing.category.split()[-1] == self.category
+        if self.attribute is not None:
+            return self.attribute[0] not in thing.attributes
+        colour = own_colour(thing) or ""
+        return not colour or bool(set((self.colour or "").split()) & set(colour.split())) or near_colours(self.colour, colour)
+
+
+def own_colour(thing: Thing) -> str | None:
+    """The colour of a thing itself: not that of somebody's clothes, nor of what it holds ("planter with red flowers")."""
+    colour = thing.attributes.get("colour")
+    if not isinstance(colour, str) or thing.category in GROUPS["person"] or not has_colour(thing):
+        return None
+    words = thing.name.lower().split()
+    behind = next((words[at + 1 :] for at, word in enumerate(words) if word in _JOINS), [])
+    return None if set(colour.split()) & set(behind) else colour
+
+
+def has_colour(thing: Thing) -> bool:
+    """Whether people would say of such a thing that it has one colour."""
+    return thing.category not in _COLOURLESS
+
+
+def colour_shows(thing: Thing) -> bool:
+    """Whether a thing is all of its colour, and its name keeps it: not a board, which has letters of another, nor what is striped,
+    nor a door that is rolled up."""
+    facts = thing.attributes
+    striped = facts.get("pattern", "plain") != "plain"
+    rolled_up = "door" in thing.category and facts.get("state", "closed") != "closed"
+    told = not _OF_A_COLOUR.isdisjoint(thing.name.lower().split())
+    return thing.category not in SIGNS and not striped and not rolled_up and not told
+
+
+_OF_A_COLOUR = frozenset({"concrete", "aluminium", "steel", "galvanised", "timber", "wooden", "brick"})
+"""Words in a name that tell the colour."""
+
+
+_COLOURLESS = (SIGNS - {"shop sign", "pavement board", "hanging sign"}) | {
+    "cyclist", "driver", "clock", "statue", "fox", "tram", "lorry", "articulated lorry", "charging point", "traffic light",
+    "plate compactor", "belisha beacon",
+}  # fmt: skip
+"""Of these nobody would say that they have one colour, or that colour."""
+
+_JOINS = frozenset({"of", "with", "in", "on", "for"})
+
+
+def near_colours(one: str | None, other: str) -> bool:
+    """Whether people disagree on which of two colours a thing has."""
+    words = {*(one or "").split(), *other.split()}
+    return one is not None and any(words >= pair for pair in _NEAR_COLOURS)
+
+
+COUNTED_STATES: tuple[tuple[str, str, str], ...] = (
+    ("person", "state", "sitting"), ("chair", "state", "occupied"), ("chair", "state", "empty"), ("bench", "state", "empty"),
+    ("parasol", "state", "open"), ("parasol", "state", "closed"), ("awning", "state", "open"), ("table", "state", "free"),
+    ("crate", "state", "empty"), ("market stall", "state", "open"), ("worker", "vest", "orange"), ("worker", "vest", "yellow"),
+    ("worker", "helmet", "white"), ("worker", "helmet", "yellow"), ("worker", "helmet", "blue"), ("taxi", "light", "lit"),
+    ("skip", "state", "full"), ("skip", "state", "empty"), ("door", "state", "open"), ("dock door", "state", "open"),
+    ("dock door", "state", "closed"), ("roller door", "state", "open"), ("roller door", "state", "closed"),
+    ("lamp post", "state", "lit"), ("parking space", "state", "empty"), ("parking space", "state", "occupied"),
+    ("umbrella", "state", "open"), ("container", "state", "open"),
+)  # fmt: skip
+"""(category, attribute, value) that can be told at a glance, and so be counted."""
+
+
+def kinds_in(things: Iterable[Thing]) -> list[Kind]:
+    """Every category, group of them, category with a colour and category in a state, in a fixed order."""
+    present = list(things)
+    found = {(t.category, c) for t in present for c in (None, own_colour(t)) if c is None or " and " not in c}
+    plain = [Kind(category, colour) for category, colour in sorted(found, key=str)]
+    groups = [Kind(group) for group in GROUPS if Kind(group) not in plain]
+    grouped = [kind for kind in groups if any(kind.fits(thing) for thing in present)]
+    states = [Kind(category, None, (key, value)) for category, key, value in COUNTED_STATES]
+    return [*plain, *grouped, *(kind for kind in states if any(kind.fits(thing) for thing in present))]

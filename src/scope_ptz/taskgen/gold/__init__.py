@@ -1,0 +1,1 @@
+"""Gold runs: reference runs with one known fault each."""

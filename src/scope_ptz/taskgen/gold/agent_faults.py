@@ -1,0 +1,212 @@
+"""Known faults of what an agent does, to put into a run that passes: calls left out, wrong tools, scopes and arguments.
+
+Every way gives the run with the fault, or None where the run offers no place for it.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from scope_ptz.bench.answers.reader import read
+from scope_ptz.bench.answers.result import Value
+from scope_ptz.bench.scoring.episode import Call, Episode, Eyes, Standing, looks_of
+from scope_ptz.bench.scoring.matching import in_order
+from scope_ptz.bench.scoring.verdict import MOVERS
+from scope_ptz.bench.tasks.expected import (
+    ActionOnly,
+    AnyExpected,
+)
+from scope_ptz.bench.tasks.task import Task
+from scope_ptz.geometry import Pose
+from scope_ptz.taskgen.facts.phrasing import wrong_answer
+
+LOOKERS = frozenset({"count_objects", "query_answer"})
+TURNS = ("pan_deg", "tilt_deg")
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """What a mutation may know of the world of a run: where presets are and what frames look like."""
+
+    presets: Mapping[str, Standing]
+    eyes: Eyes
+
+
+def replayed(episode: Episode, calls: Iterable[Call], setting: Setting) -> Episode:
+    """The run with other calls: poses follow on from each other again, and looks are where the camera then is."""
+    at, made = episode.start, list[Call]()
+    for call in calls:
+        after = _after(call, at, episode, setting)
+        moved = replace(call, before=at, after=after, looks=())
+        made.append(replace(moved, looks=looks_of(moved, setting.eyes) if moved.succeeded else ()))
+        at = after
+    kept = {str((call.result or {}).get("file")) for call in made if call.name == "take_image"}
+    return replace(episode, calls=tuple(made), final=at, pictures=tuple(p for p in episode.pictures if p.file in kept))
+
+
+def _after(call: Call, at: Standing, episode: Episode, setting: Setting) -> Standing:
+    if not call.succeeded or call.name not in MOVERS:
+        return at
+    if call.name == "go_to_preset":
+        return setting.presets[call.arguments["name"]]
+    if call.name == "go_home":
+        return call.after
+    if call.name == "adjust_ptz":
+        one, two = call.before.pose, call.after.pose
+        pan, tilt, zoom = two.pan_deg - one.pan_deg, two.tilt_deg - one.tilt_deg, two.zoom / one.zoom
+        limits = setting.eyes.limits
+        return Standing(at.viewpoint, limits.clamp(at.pose.turned(pan, tilt).zoomed(zoom))[0])
+    return Standing(at.viewpoint, call.after.pose)
+
+
+def retold(call: Call, **said: Any) -> Call:
+    return replace(call, result={**(call.result or {}), **said})
+
+
+def changed(episode: Episode, setting: Setting, change: Callable[[Call], Call | None]) -> Episode:
+    """The run with each call changed, or left out where the change gives None."""
+    return replayed(episode, [new for call in episode.calls if (new := change(call)) is not None], setting)
+
+
+# Lack of a tool call
+
+
+def drop_all(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
+    return replayed(episode, (), setting)
+
+
+def drop_looks(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
+    if not any(call.name in LOOKERS for call in episode.calls):
+        return None
+    return changed(episode, setting, lambda call: None if call.name in LOOKERS else call)
+
+
+def drop_pictures(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
+    if not episode.pictures:
+        return None
+    return changed(episode, setting, lambda call: None if call.name == "take_image" else call)
+
+
+# Wrong tool
+
+
+_STAND_INS: dict[str, tuple[str, dict[str, Any], dict[str, Any]]] = {
+    "take_image": ("query_answer", {"question": "What is in view?"}, {"message": "A view.", "answer": "A view."}),
+    "zoom_to_object": ("adjust_ptz", {"zoom_factor": 1.2}, {"message": "Moved."}),
+}
+
+
+def swap_tools(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
+    """Every call of one tool becomes a call of one that cannot do its work."""
+    name = rng.choice([call.name for call in episode.calls])
+    other, arguments, said = _STAND_INS.get(name, ("take_image", {}, {"message": "Done.", "file": "pictures/001.png"}))
+    if any(call.name == other for call in episode.calls):
+        return None
+
+    def swap(call: Call) -> Call:
+        if call.name != name:
+            return call
+        pose = call.before.pose.zoomed(1.2) if other == "adjust_ptz" else call.before.pose
+        return replace(call, name=other, arguments=arguments, after=Standing(call.before.viewpoint, pose), result=said)
+
+    return changed(episode, setting, swap)
+
+
+def swap_order(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
+    if len(task.behaviour.calls) < 2 or task.behaviour.order != "ordered":
+        return None
+    places = list(range(len(episode.calls) - 1))
+    rng.shuffle(places)
+    for at in places:
+        calls = list(episode.calls)
+        calls[at], calls[at + 1] = calls[at + 1], calls[at]
+        if in_order(task.behaviour.calls, calls) is not None:
+            return replayed(episode, calls, setting)
+    return None
+
+
+# Wrong scope
+
+
+def flip_scope(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
+    if not any(call.name in LOOKERS for call in episode.calls) or isinstance(task.expected, ActionOnly):
+        return None
+    told = wrong_answer(task.expected, rng)
+    if told is None:
+        return None
+
+    def flip(call: Call) -> Call:
+        if call.name not in LOOKERS:
+            return call
+        view = "full" if call.arguments.get("view", "current") == "current" else "current"
+        said: dict[str, Any] = {"count": count_of(task.expected, told, call)} if call.name == "count_objects" else {"answer": told}
+        return retold(replace(call, arguments={**call.arguments, "view": view}), view=view, message=told, **said)
+
+    return replace(changed(episode, setting, flip), text=told)
+
+
+def count_of(expected: AnyExpected, told: str, call: Call) -> int:
+    reading, counted = read(expected, told), int((call.result or {}).get("count", 0))
+    if isinstance(reading, Value) and isinstance(reading.value, float):
+        return round(reading.value)
+    return 0 if counted else 2
+
+
+# Wrong arguments
+
+
+def other_preset(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
+    visited = [call.arguments["name"] for call in episode.calls if call.name == "go_to_preset"]
+    if not visited:
+        return None
+    right = rng.choice(visited)
+    wrong = rng.choice([name for name in setting.presets if name != right])
+
+    def go(call: Call) -> Call:
+        if call.name != "go_to_preset" or call.arguments["name"] != right:
+            return call
+        return retold(replace(call, arguments={"name": wrong}), message=f"At preset {wrong}.")
+
+    return changed(episode, setting, go)
+
+
+def turned_round(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
+    """ "Panning left when asked to pan right"."""
+    if not any(call.name == "adjust_ptz" and turns(call) for call in episode.calls):
+        return None
+
+    def turn(call: Call) -> Call:
+        if call.name != "adjust_ptz":
+            return call
+        one, two = call.before.pose, call.after.pose
+        arguments = {k: -v if k in TURNS else v for k, v in call.arguments.items()}
+        pose = Pose(2 * one.pan_deg - two.pan_deg, 2 * one.tilt_deg - two.tilt_deg, two.zoom)
+        return replace(call, arguments=arguments, after=Standing(call.after.viewpoint, pose))
+
+    return changed(episode, setting, turn)
+
+
+def turns(call: Call) -> bool:
+    """Whether an adjustment changes the direction, not the magnification alone."""
+    return any(call.arguments.get(name) for name in TURNS)
+
+
+def other_target(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
+    """Counts, or asks about, something else than what was asked for."""
+    told = wrong_answer(task.expected, rng)
+    if told is None or not any(view.about for view in task.evidence) or not any(call.name in LOOKERS for call in episode.calls):
+        return None
+
+    def aside(call: Call) -> Call:
+        if call.name == "count_objects":
+            arguments = {**call.arguments, "description": "clouds"}
+            return retold(replace(call, arguments=arguments), count=count_of(task.expected, told, call), message=told)
+        if call.name == "query_answer":
+            arguments = {**call.arguments, "question": "What is the weather like?"}
+            return retold(replace(call, arguments=arguments), answer=told, known=True, message=told)
+        return call
+
+    return replace(changed(episode, setting, aside), text=told)

@@ -1,0 +1,214 @@
+"""Judges on runs whose faults are known: what they let through, what they condemn wrongly, which mode they name."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import zip_longest
+from pathlib import Path
+from typing import Any
+
+import anyio
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from scope_ptz.bench.judging.agreement import Item, Rater, numbered, rate
+from scope_ptz.bench.judging.case import Case, case_of_episode
+from scope_ptz.bench.judging.judge import Judge
+from scope_ptz.bench.judging.kappa import Agreement, cohen
+from scope_ptz.bench.judging.lines import whole_lines
+from scope_ptz.bench.scoring.episode import Episode, Places
+from scope_ptz.bench.scoring.error_modes import ErrorMode
+from scope_ptz.bench.scoring.trials import Judgement
+from scope_ptz.bench.tasks.facts import TaskFacts
+from scope_ptz.bench.tasks.task import Task
+from scope_ptz.bench.tasks.wording import facts_of
+from scope_ptz.errors import InputError
+from scope_ptz.taskgen.gold.mutations import Gold
+
+PASSES = "passes"
+APART = ("unparseable", "failed")
+
+
+class GoldCase(BaseModel):
+    """A run with a known verdict. ``fault``: the mode of its one fault, None when it has none; ``how``: how it was put in."""
+
+    model_config = ConfigDict(frozen=True, arbitrary_types_allowed=True)
+
+    facts: TaskFacts
+    case: Case
+    fault: ErrorMode | None
+    how: str
+
+    @property
+    def key(self) -> str:
+        """Its name among gold runs."""
+        return f"{self.facts.id}/{self.fault.value if self.fault else PASSES}/{self.how}"
+
+
+class GoldVerdict(BaseModel):
+    """What a judge said about a gold run, as it is kept in a file."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    key: str
+    task: str
+    fault: ErrorMode | None
+    judgement: Judgement
+
+
+def gold_case(gold: Gold, places: Places) -> GoldCase:
+    """A faulty run for a judge. ``places``: of its scene."""
+    return _case(gold.task, gold.episode, places, gold.mode, gold.fault)
+
+
+def passing_case(task: Task, episode: Episode, places: Places) -> GoldCase:
+    """A run that passes all checks, for a judge."""
+    return _case(task, episode, places, None, "reference")
+
+
+def _case(task: Task, episode: Episode, places: Places, fault: ErrorMode | None, how: str) -> GoldCase:
+    facts = facts_of(task, episode.start.viewpoint or "")
+    case = case_of_episode(episode, places)
+    return GoldCase(facts=facts, case=case, fault=fault, how=how)
+
+
+async def judge_gold(
+    judge: Judge, cases: Iterable[GoldCase], *, concurrency: int = 8, repeat: int = 0, note: Callable[[GoldVerdict], None]
+) -> None:
+    """Judge runs, several at a time; ``note`` gets each verdict when it is there, so that nothing is lost when this is ended.
+
+    Raises what ``note`` raises.
+    """
+    limit = anyio.Semaphore(concurrency)
+
+    async def one(gold: GoldCase) -> None:
+        async with limit:
+            judgement = await judge.judge_case(gold.facts, gold.case, repeat=repeat)
+        note(GoldVerdict(key=gold.key, task=gold.facts.id, fault=gold.fault, judgement=judgement))
+
+    try:
+        async with anyio.create_task_group() as group:
+            for gold in cases:
+                group.start_soon(one, gold)
+    except BaseExceptionGroup as errors:
+        raise errors.exceptions[0] from None
+
+
+@dataclass(frozen=True)
+class GoldResult:
+    """``cells``: judgements by fault ("passes" for none) and by what they say (a mode, "correct", or one of ``APART``).
+
+    ``runs``: of which there may be several judgements each; the other counts are of judgements. ``verdicts``: agreement on correct
+    or not, over all that it gave a verdict on; ``modes``: on the mode, where it condemned a faulty run.
+    """
+
+    judge: str
+    runs: int
+    cells: Mapping[tuple[str, str], int]
+    verdicts: Agreement
+    modes: Agreement
+
+    def _count(self, *, faulty: bool, told: tuple[str, ...] | None = None) -> int:
+        return sum(
+            number for (fault, said), number in self.cells.items() if (fault != PASSES) is faulty and (told is None or said in told)
+        )
+
+    @property
+    def false_accept_rate(self) -> float | None:
+        """Of the faulty runs with a verdict the share that it calls correct."""
+        given = self._count(faulty=True) - self._count(faulty=True, told=APART)
+        return self._count(faulty=True, told=("correct",)) / given if given else None
+
+    @property
+    def false_reject_rate(self) -> float | None:
+        """Of the passing runs with a verdict the share that it does not call correct."""
+        given = self._count(faulty=False) - self._count(faulty=False, told=APART)
+        return 1 - self._count(faulty=False, told=("correct",)) / given if given else None
+
+    def as_dict(self) -> dict[str, Any]:
+        """As JSON data."""
+        matrix: dict[str, dict[str, int]] = {}
+        for (fault, told), number in sorted(self.cells.items()):
+            matrix.setdefault(fault, {})[told] = number
+        return {
+            "judge": self.judge,
+            "runs": self.runs,
+            "judgements": sum(self.cells.values()),
+            "false_accept_rate": self.false_accept_rate,
+            "false_reject_rate": self.false_reject_rate,
+            "apart": {name: self._count(faulty=True, told=(name,)) + self._count(faulty=False, told=(name,)) for name in APART},
+            "matrix": matrix,
+            "verdicts": self.verdicts.as_dict(),
+            "modes": self.modes.as_dict(),
+        }
+
+
+def result(judge: str, verdicts: Sequence[GoldVerdict], seed: int = 1) -> GoldResult:
+    """What a judge made of gold runs."""
+    told = [(_fault(verdict), _told(verdict.judgement), verdict) for verdict in verdicts]
+    given = [row for row in told if row[1] not in APART]
+    blamed = [row for row in given if row[0] != PASSES and row[1] != "correct"]
+    return GoldResult(
+        judge=judge,
+        runs=len({verdict.key for verdict in verdicts}),
+        cells=Counter((fault, said) for fault, said, _ in told),
+        verdicts=cohen(
+            ["correct" if fault == PASSES else "incorrect" for fault, _, _ in given],
+            ["correct" if said == "correct" else "incorrect" for _, said, _ in given],
+            [verdict.task for _, _, verdict in given],
+            seed,
+        ),
+        modes=cohen([r[0] for r in blamed], [r[1] for r in blamed], [r[2].task for r in blamed], seed),
+    )
+
+
+def results(verdicts: Sequence[GoldVerdict], seed: int = 1) -> list[GoldResult]:
+    """Of every judge in turn, all its repeats together. A judgement that failed and was made good later does not count."""
+    newest = {(v.key, v.judgement.judge, v.judgement.prompt, v.judgement.repeat): v for v in verdicts}
+    by_judge: dict[str, list[GoldVerdict]] = {}
+    for verdict in newest.values():
+        by_judge.setdefault(f"{verdict.judgement.judge} ({verdict.judgement.prompt})", []).append(verdict)
+    return [result(judge, rows, seed) for judge, rows in by_judge.items()]
+
+
+def raters_of_gold(verdicts: Iterable[GoldVerdict]) -> list[Rater]:
+    """The known faults as a rater, and every judge of them."""
+    newest = {(v.key, v.judgement.judge, v.judgement.prompt, v.judgement.repeat): v for v in verdicts}
+    known, judges = Rater("the known faults", "gold", "gold"), dict[str, Rater]()
+    by_key: dict[str, list[GoldVerdict]] = {}
+    for verdict in sorted(newest.values(), key=lambda v: v.judgement.repeat):
+        by_key.setdefault(verdict.key, []).append(verdict)
+    for key, rows in by_key.items():
+        item = Item("gold", key, rows[0].task)
+        rate(known, item, "incorrect" if rows[0].fault else "correct", rows[0].fault)
+        for name, group, judgement in numbered([row.judgement for row in rows]):
+            rater = judges.setdefault(name, Rater(name, "judge", f"judge:{group}"))
+            rate(rater, item, judgement.verdict, judgement.error_mode)
+    return [known, *judges.values()] if by_key else []
+
+
+def in_turn(runs: Sequence[Gold]) -> list[Gold]:
+    """The runs with the modes in turn, so that the first few are of all sorts."""
+    waiting = [[run for run in runs if run.mode is mode] for mode in ErrorMode]
+    return [run for row in zip_longest(*waiting) for run in row if run is not None]
+
+
+def read_verdicts(path: Path) -> tuple[GoldVerdict, ...]:
+    """The verdicts of a file. A last line that was cut off is left out. Raises ``InputError`` for other damage."""
+    rows = list[GoldVerdict]()
+    for number, line in whole_lines(path):
+        try:
+            rows.append(GoldVerdict.model_validate_json(line))
+        except ValidationError as error:
+            first = error.errors(include_url=False, include_input=False)[0]
+            raise InputError(f"{path}, line {number} is no verdict on a gold run: {first['msg']}.") from error
+    return tuple(rows)
+
+
+def _fault(verdict: GoldVerdict) -> str:
+    return verdict.fault.value if verdict.fault else PASSES
+
+
+def _told(judgement: Judgement) -> str:
+    return judgement.error_mode.value if judgement.error_mode else judgement.verdict

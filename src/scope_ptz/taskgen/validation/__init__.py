@@ -1,0 +1,1 @@
+"""Validation: proof that reference programs pass and adversarial answers fail."""

@@ -1,0 +1,91 @@
+"""Moving actors inside Blender: built when first wanted, and stood on their paths at a given time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import bpy
+import numpy as np
+
+from scope_studio.kit.core.stage import INSTANCE_PROP, ActorPath, Built, Stage
+
+GAIT_PHASES = 8
+"""Bodies of a walker: enough that a stride looks even."""
+
+
+class Troupe:
+    """The bodies of all actors, hidden unless they are on stage."""
+
+    def __init__(self, stage: Stage) -> None:
+        self._stage = stage
+        self._bodies: dict[tuple[str, int], Built] = {}
+
+    def body(self, actor: ActorPath, phase: float) -> Built:
+        """The body for a gait phase in [0, 1), rounded to one of ``GAIT_PHASES``."""
+        index = round(phase * GAIT_PHASES) % GAIT_PHASES if actor.stride_m else 0
+        key = (actor.id, index)
+        if key not in self._bodies:
+            finished = tuple(m.name for m in bpy.data.materials)
+            built = actor.build(index / GAIT_PHASES)
+            self._stage.finish(spare=finished)
+            for obj in built.objects:
+                obj[INSTANCE_PROP] = actor.id
+                obj.pass_index = actor.number
+            show(built, False)
+            self._bodies[key] = built
+        return self._bodies[key]
+
+    def stand(self, actor: ActorPath, time_s: float, phase: float | None = None) -> Built | None:
+        """Put the actor where it is at a scene time and show it; None when it is not in the scene then."""
+        t = time_s % actor.period_s
+        if not actor.waypoints[0][0] <= t <= actor.waypoints[-1][0]:
+            return None
+        position, bearing_deg, walked_m = along(actor, t)
+        if phase is None:
+            phase = (walked_m / actor.stride_m) % 1.0 if actor.stride_m else 0.0
+        built = self.body(actor, phase)
+        self._stage.put(built, position, bearing_deg)
+        show(built, True)
+        return built
+
+    @contextmanager
+    def on_stage(self, time_s: float) -> Iterator[None]:
+        """Everyone who is in the scene at that time is, until the end of the block."""
+        standing = [built for actor in self._stage.actors if (built := self.stand(actor, time_s)) is not None]
+        bpy.context.view_layer.update()
+        try:
+            yield
+        finally:
+            for built in standing:
+                show(built, False)
+
+    def size_m(self, actor: ActorPath) -> tuple[float, float, float]:
+        """Width, length and height of the actor's largest body."""
+        built = self.body(actor, 0.0)
+        self._stage.put(built, (0.0, 0.0, 0.0), 0.0)
+        bpy.context.view_layer.update()
+        corners = np.array([obj.matrix_world @ v.co for obj in built.objects if obj.type == "MESH" for v in obj.data.vertices])
+        reach = np.abs(corners).max(axis=0)
+        return float(2 * reach[0]), float(2 * reach[1]), float(corners[:, 2].max())
+
+
+def along(actor: ActorPath, t: float) -> tuple[tuple[float, float, float], float, float]:
+    """Position, bearing in degrees and metres walked since the first waypoint, at a time within the path."""
+    walked = 0.0
+    last = len(actor.waypoints) - 2
+    for k, (a, b) in enumerate(zip(actor.waypoints, actor.waypoints[1:], strict=False)):
+        length = math.dist(a[1:], b[1:])
+        if t <= b[0] or k == last:
+            share = 0.0 if b[0] == a[0] else (t - a[0]) / (b[0] - a[0])
+            x, y, z = (a[i] + (b[i] - a[i]) * share for i in (1, 2, 3))
+            return (x, y, z), math.degrees(math.atan2(b[1] - a[1], b[2] - a[2])), walked + length * share
+        walked += length
+    raise ValueError("a path needs two waypoints")
+
+
+def show(built: Built, on: bool) -> None:
+    """In renders. The viewport does not matter in a worker, but an object hidden there keeps Cycles from syncing it too."""
+    for obj in built.objects:
+        obj.hide_render = not on

@@ -1,0 +1,127 @@
+"""The scene as plain data: what ``scene.json`` says of it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+import numpy as np
+from mathutils import Vector
+
+from scope_studio.actors import Troupe
+from scope_studio.kit.core.stage import Instance, Stage
+
+
+def scene(stage: Stage, troupe: Troupe) -> dict[str, Any]:
+    """Instances with world boxes, texts in world coordinates, viewpoints, presets, actors, absences."""
+    bpy.context.view_layer.update()
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    corners: dict[str, np.ndarray] = {}
+    return {
+        "name": stage.name,
+        "title": stage.title,
+        "start_s": stage.start_s,
+        "blender_version": bpy.app.version_string,
+        "viewpoints": [
+            {
+                "name": v.name,
+                "position_m": list(v.position),
+                "pan0_bearing_deg": v.pan0_bearing_deg,
+                "description": v.description,
+            }
+            for v in stage.viewpoints
+        ],
+        "presets": [
+            {
+                "name": p.name,
+                "viewpoint": p.viewpoint,
+                "pan_deg": p.pan_deg,
+                "tilt_deg": p.tilt_deg,
+                "zoom": p.zoom,
+                "description": p.description,
+            }
+            for p in stage.presets
+        ],
+        "home_preset": stage.home_preset or "",
+        "instances": [_instance(i, depsgraph, corners) for i in stage.instances],
+        "texts": [text for i in stage.instances for text in _texts(i)],
+        "actors": [
+            {
+                "id": a.id,
+                "number": a.number,
+                "category": a.category,
+                "name": a.name,
+                "attributes": a.attributes,
+                "waypoints": [list(w) for w in a.waypoints],
+                "period_s": a.period_s,
+                "size_m": list(troupe.size_m(a)),
+            }
+            for a in stage.actors
+        ],
+        "absent": list(stage.absent),
+        "strides_m": {a.id: a.stride_m for a in stage.actors},
+        "sun": _sun(),
+    }
+
+
+def _instance(instance: Instance, depsgraph: bpy.types.Depsgraph, cache: dict[str, np.ndarray]) -> dict[str, Any]:
+    points = np.concatenate([_world_points(o, depsgraph, cache) for o in instance.built.objects])
+    if len(points) == 0:
+        raise ValueError(f"instance {instance.id} has no mesh")
+    return {
+        "id": instance.id,
+        "number": instance.number,
+        "category": instance.category,
+        "name": instance.name,
+        "attributes": instance.attributes,
+        "parent": instance.parent,
+        "box_min_m": _rounded(points.min(axis=0)),
+        "box_max_m": _rounded(points.max(axis=0)),
+    }
+
+
+def _world_points(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, cache: dict[str, np.ndarray]) -> np.ndarray:
+    if obj.type not in {"MESH", "CURVE", "FONT", "SURFACE"}:
+        return np.empty((0, 3))
+    evaluated = obj.evaluated_get(depsgraph)
+    key = f"{obj.data.name_full}" if not obj.modifiers else f"object {obj.name_full}"
+    if key not in cache:
+        mesh = evaluated.to_mesh()
+        flat = np.empty(len(mesh.vertices) * 3, dtype=np.float32)
+        mesh.vertices.foreach_get("co", flat)
+        cache[key] = flat.reshape(-1, 3).astype(np.float64)
+        evaluated.to_mesh_clear()
+    matrix = np.array(evaluated.matrix_world)
+    return cache[key] @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def _texts(instance: Instance) -> list[dict[str, Any]]:
+    matrix = instance.built.root.matrix_world
+    scale = matrix.to_scale()[0]
+    turn = matrix.to_quaternion()
+    return [
+        {
+            "id": f"{instance.id}-text-{k:02d}",
+            "text": mark.text,
+            "parent": instance.id,
+            "centre_m": _rounded(matrix @ Vector(mark.centre)),
+            "right": _rounded(turn @ Vector(mark.right), 6),
+            "up": _rounded(turn @ Vector(mark.up), 6),
+            "width_m": round(mark.width_m * scale, 5),
+            "height_m": round(mark.height_m * scale, 5),
+            "cap_height_m": round(mark.cap_height_m * scale, 5),
+        }
+        for k, mark in enumerate(instance.built.texts, start=1)
+    ]
+
+
+def _sun() -> list[float] | None:
+    """Unit vector towards the sun, for the length of shadows; None when the scene has none."""
+    for obj in bpy.data.objects:
+        if obj.type == "LIGHT" and obj.data.type == "SUN":
+            return _rounded(obj.matrix_world.to_quaternion() @ Vector((0, 0, 1)), 6)
+    return None
+
+
+def _rounded(values: Any, digits: int = 4) -> list[float]:
+    return [round(float(v), digits) + 0.0 for v in values]

@@ -1,0 +1,1 @@
+"""Buildings, shop fronts and what belongs to their walls."""

@@ -1,0 +1,107 @@
+"""Loading docks: shelters with roller doors, levellers, traffic lights, wheel guides, numbers. Walls are y = 0, fronts face +y."""
+
+from __future__ import annotations
+
+from scope_studio.kit.buildings.warehouse import DOCK_SILL_M, DOCK_TALL_M, DOCK_WIDE_M
+from scope_studio.kit.core.finishes import glow, lens, paint, rubber, sheet, steel
+from scope_studio.kit.core.solid import Solid
+from scope_studio.kit.core.stage import Built
+from scope_studio.kit.signs.faces import board, write
+
+OPEN_SHARE = {"closed": 0.0, "half open": 0.5, "open": 0.94}
+
+
+def roller_door(
+    state: str = "closed",
+    *,
+    wide: float = DOCK_WIDE_M,
+    tall: float = DOCK_TALL_M,
+    sill: float = DOCK_SILL_M,
+    colour: str = "light grey",
+) -> Built:
+    """A roller door in its guides, "closed", "half open" or "open"."""
+    s = Solid("roller door")
+    skin = paint(colour, dirt=0.30)
+    low = sill + tall * OPEN_SHARE[state]
+    slats = max(1, round((sill + tall - low) / 0.115))
+    pitch = (sill + tall - low) / slats
+    for k in range(slats):
+        s.box((wide - 0.06, 0.035, pitch - 0.008), (0, -0.10 + 0.004 * (k % 2), low + pitch * (k + 0.5)), skin, 0.012)
+    s.box((wide - 0.06, 0.06, 0.08), (0, -0.10, low + 0.04), rubber(), 0.01)
+    for x in (-wide / 2, wide / 2):
+        s.box((0.10, 0.10, tall), (x, -0.08, sill + tall / 2), steel(), 0.005)
+    s.box((wide + 0.2, 0.30, 0.34), (0, 0.02, sill + tall + 0.10), paint("dark grey", dirt=0.3), 0.02)
+    return s.built()
+
+
+def shelter() -> Built:
+    """The padded frame that a trailer backs against, with yellow guide stripes, and rubber buffers below."""
+    s = Solid("dock shelter")
+    pad, yellow = rubber(), sheet("yellow", dirt=0.4)
+    w, low, tall = DOCK_WIDE_M / 2, DOCK_SILL_M - 0.15, DOCK_TALL_M + 0.35
+    for side in (-1, 1):
+        x = side * (w + 0.26)
+        s.box((0.50, 0.45, tall), (x, 0.225, low + tall / 2), pad, 0.04)
+        s.box((0.10, 0.006, tall - 0.3), (x + side * 0.12, 0.453, low + tall / 2), yellow, 0.0)
+        s.box((0.24, 0.26, 0.48), (side * (w - 0.35), 0.13, DOCK_SILL_M - 0.28), pad, 0.03)
+        s.box((0.30, 0.04, 0.56), (side * (w - 0.35), 0.02, DOCK_SILL_M - 0.28), steel(dark=True), 0.006)
+    s.box((2 * w + 1.02, 0.45, 0.55), (0, 0.225, low + tall + 0.20), pad, 0.04)
+    return s.built()
+
+
+def leveller(*, lowered: bool = True) -> Built:
+    """A hinged steel dock plate in the sill, its lip hanging down or, raised, standing proud."""
+    s = Solid("dock leveller")
+    z = DOCK_SILL_M
+    s.box((2.0, 2.2, 0.04), (0, -1.12, z - 0.02 if lowered else z + 0.10), steel(dark=True), 0.004)
+    if lowered:
+        s.box((1.9, 0.035, 0.36), (0, 0.0, z - 0.20), steel(), 0.006)
+    else:
+        s.box((1.9, 0.38, 0.03), (0, 0.16, z + 0.11), steel(), 0.006)
+    for x in (-1.02, 1.02):
+        s.box((0.05, 0.05, 0.5), (x, 0.02, z - 0.25), sheet("yellow", dirt=0.4), 0.004)
+    s.box((2.1, 0.03, 0.40), (0, -0.02, z - 0.55), lens("black"), 0.0)
+    return s.built()
+
+
+def signal(state: str) -> Built:
+    """A red over green dock traffic light on a grey backing, "red", "green" or "unlit"; its back on y = 0, middle at z = 0."""
+    s = Solid("dock light")
+    s.box((0.30, 0.10, 0.62), (0, 0.05, 0), paint("dark grey", dirt=0.2), 0.02)
+    for colour, z, brightness in (("red", 0.15, 6.0), ("green", -0.15, 14.0)):
+        on = state == colour
+        s.lathe([(0.115, 0.10), (0.12, 0.16), (0.105, 0.17)], paint("black"), (0, 0, z), "Y", 24)
+        s.lathe(
+            [(0.10, 0.13), (0.095, 0.172), (0.05, 0.190)],
+            glow(colour, brightness) if on else lens(f"dark {colour}"),
+            (0, 0, z),
+            "Y",
+            24,
+        )
+    return s.built()
+
+
+def number(value: str) -> Built:
+    """A large dock number on a blue board over the door; its back on y = 0, middle at z = 0."""
+    s = Solid("dock number")
+    with s.at(0, 0.02, 0):
+        board(s, 1.20, 1.40, "blue", back=False)
+        write(s, value, 1.02, 0, 0, "white")
+    return s.built()
+
+
+def wheel_guides(length: float = 8.0) -> Built:
+    """Two yellow floor tubes that steer a trailer's wheels, running out along +y."""
+    s = Solid("wheel guides")
+    yellow = paint("yellow", dirt=0.55)
+    for side in (-1, 1):
+        x = side * 1.42
+        s.tube(
+            [(x, 0.3, 0.16), (x, length - 0.8, 0.16), (x + side * 0.35, length, 0.16), (x + side * 0.35, length, 0.0)],
+            0.075,
+            yellow,
+            sides=12,
+        )
+        for k in range(4):
+            s.rod((x, 0.5 + (length - 1.6) * k / 3, 0.0), (x, 0.5 + (length - 1.6) * k / 3, 0.16), 0.05, yellow)
+    return s.built()

@@ -1,0 +1,154 @@
+"""Shop fronts of a market square with dark plate glass, sign boards, awnings with lettered valances, a pharmacy's cross."""
+
+from __future__ import annotations
+
+import random
+
+import bpy
+
+from scope_studio.kit.buildings.townhouses import block
+from scope_studio.kit.core.finishes import PALETTE, glass, glow, lens, paint, sheet
+from scope_studio.kit.core.shading import Shader, plain
+from scope_studio.kit.core.solid import Solid
+from scope_studio.kit.core.stage import Built
+from scope_studio.kit.signs.lettering import extent
+
+
+def front(width: float, colour: str, *, height: float = 3.4, seed: int = 0) -> Built:
+    """A timber shop front 0.3 m deep before y = 0: pilasters, stall risers, plate glass with goods behind, transoms.
+
+    The middle is left dark, 1.1 m wide, for a ``shop_door``."""
+    s = Solid("shop front")
+    rng = random.Random(f"shop front {seed}")
+    wood = paint(colour, dirt=0.18, roughness=0.4)
+    y, top, half = 0.14, height - 0.62, width / 2
+    block(s, (width, 0.12, height), (0, 0.06, height / 2), wood)
+    for low, high in ((-half, -0.62), (0.62, half)):
+        w, x = high - low - 0.3, (low + high) / 2
+        block(s, (w, 0.03, top - 0.62), (x, y, (top + 0.62) / 2), glass())
+        s.box((w + 0.1, 0.14, 0.10), (x, y + 0.04, 0.60), wood, 0.015)
+        s.box((w, 0.04, 0.36), (x, y + 0.005, 0.32), wood, 0.02)
+        bars = max(1, round(w / 1.5))
+        for k in range(bars + 1):
+            s.box((0.06, 0.08, top - 0.62), (x - w / 2 + w * k / bars, y + 0.02, (top + 0.62) / 2), wood, 0.008)
+        s.box((w, 0.07, 0.05), (x, y + 0.02, top - 0.52), wood, 0.008)
+        _display(s, x, w, y + 0.017, rng)
+    block(s, (1.14, 0.03, top), (0, y - 0.02, top / 2), plain("shop dark", (0.012, 0.012, 0.013), 0.6))
+    for x in (-half + 0.13, -0.70, 0.70, half - 0.13):
+        s.box((0.26 if abs(x) > 1 else 0.14, 0.20, height - 0.1), (x, y + 0.03, height / 2 - 0.05), wood, 0.02)
+        s.box((0.32 if abs(x) > 1 else 0.18, 0.26, 0.3), (x, y + 0.03, 0.15), wood, 0.02)
+    s.box((width, 0.26, 0.72), (0, y - 0.02, height - 0.36), wood, 0.02)
+    s.box((width + 0.16, 0.44, 0.14), (0, y + 0.06, height + 0.05), wood, 0.03)
+    return s.built()
+
+
+def _display(s: Solid, x: float, w: float, y: float, rng: random.Random) -> None:
+    """Posters and the pale shapes of goods, flat behind the glass line."""
+    tints = ("cream", "light blue", "dark red", "beige", "pink", "green", "yellow", "light grey")
+    u = -w / 2 + 0.3
+    while u < w / 2 - 0.3:
+        tall, wide, tint = rng.uniform(0.18, 0.55), rng.uniform(0.16, 0.34), rng.choice(tints)
+        block(
+            s,
+            (wide, 0.004, tall),
+            (x + u, y, 0.70 + tall / 2),
+            plain(f"display {tint}", tuple(c * 0.4 for c in PALETTE[tint]), 0.7),
+        )
+        u += wide + rng.uniform(0.05, 0.3)
+
+
+def shop_door(colour: str, *, open: bool = False, notice: str | None = None) -> Built:  # noqa: A002
+    """A half-glazed door 1.0 x 2.2 m, hinged at x = 0.5; ``open`` turns it outwards. ``notice`` is a card on the glass."""
+    s = Solid("shop door")
+    wood = paint(colour, dirt=0.12, roughness=0.3)
+    with s.at(0.5, 0.0, 0.0, turn=-100.0 if open else 0.0):
+        for z, tall in ((0.42, 0.80), (2.14, 0.12)):
+            s.box((1.0, 0.05, tall), (-0.5, 0, z), wood, 0.01)
+        for x in (-0.94, -0.06):
+            s.box((0.12, 0.05, 2.2), (x, 0, 1.1), wood, 0.01)
+        block(s, (0.80, 0.014, 1.3), (-0.5, 0, 1.45), glass())
+        s.box((0.62, 0.02, 0.5), (-0.5, 0.025, 0.42), wood, 0.02)
+        s.rod((-0.90, 0.06, 0.95), (-0.90, 0.06, 1.35), 0.014, paint("yellow", roughness=0.25))
+        if notice:
+            shut = notice == "CLOSED"
+            s.box((0.46, 0.006, 0.18), (-0.5, 0.012, 1.65), sheet("red" if shut else "white"), 0.0)
+            s.text(notice, 0.08, (-0.5, 0.0165, 1.65), sheet("white" if shut else "green"))
+    return s.built()
+
+
+def sign_board(
+    text: str, width: float, *, colour: str = "dark green", ink: str = "cream", cap: float = 0.30, height: float = 0.56
+) -> Built:
+    """A shop's name board, its back at y = 0, centred on the origin."""
+    s = Solid("shop sign")
+    s.box((width, 0.05, height), (0, 0.025, 0), paint(colour, dirt=0.15, roughness=0.35), 0.012)
+    for z in (-height / 2 + 0.04, height / 2 - 0.04):
+        s.box((width - 0.08, 0.012, 0.02), (0, 0.055, z), paint(ink, dirt=0.1), 0.003)
+    s.text(text, min(cap, (width - 0.4) / extent(text, 1.0)), (0, 0.054, 0), paint(ink, dirt=0.06))
+    return s.built()
+
+
+def stripes(name: str, first: str, second: str, pitch_m: float) -> bpy.types.Material:
+    """Canvas striped across the local x axis; plain when both colours are the same. A third of the light comes through."""
+    found = bpy.data.materials.get(name)
+    if found is not None:
+        return found
+    s = Shader(name)
+    p = s.object_coords()
+    x, _, _ = s.xyz(p)
+    mask = s.math("GREATER_THAN", s.math("PINGPONG", s.math("ADD", x, 50.0 * pitch_m), pitch_m), pitch_m / 2)
+    stain = s.ramp(s.noise(p, 1.7, 5.0), 0.5, 0.75, 0.0, 0.22)
+    base = s.mix(stain, s.mix(mask, PALETTE[first], PALETTE[second]), (0.16, 0.14, 0.11))
+    s.surface(base_color=base, roughness=0.9, normal=s.bump(s.noise(p, 5.0, 4.0), 0.3, 0.02))
+    through = s.node("ShaderNodeBsdfTranslucent")
+    s.feed(through.inputs["Color"], base)
+    mixed = s.node("ShaderNodeMixShader")
+    mixed.inputs[0].default_value = 0.32
+    s.tree.links.new(s.bsdf.outputs[0], mixed.inputs[1])
+    s.tree.links.new(through.outputs[0], mixed.inputs[2])
+    output = next(n for n in s.tree.nodes if n.type == "OUTPUT_MATERIAL")
+    s.tree.links.new(mixed.outputs[0], output.inputs["Surface"])
+    return s.material
+
+
+def awning(width: float, first: str, second: str, *, reach: float = 1.6, text: str | None = None, open: bool = True) -> Built:  # noqa: A002
+    """A canvas awning hung at the origin, sloping down by 0.7 m over ``reach``, with a lettered valance; or rolled up."""
+    s = Solid("awning")
+    cloth = stripes(f"canvas {first} {second}", first, second, 0.42)
+    iron = paint("dark grey", dirt=0.15)
+    if not open:
+        s.lathe([(0.11, -width / 2), (0.11, width / 2)], cloth, (0, 0.16, 0), "X", 16)
+        s.box((width + 0.1, 0.14, 0.10), (0, 0.08, 0.12), iron, 0.02)
+        return s.built()
+    drop, columns = 0.72, 24
+    rows = [(0.06, 0.0), (reach * 0.5, -drop * 0.46), (reach, -drop), (reach + 0.02, -drop - 0.26)]
+    n = columns + 1
+    points = [
+        (-width / 2 + width * i / columns, y, z - 0.012 * (i % 2) * (k > 0)) for k, (y, z) in enumerate(rows) for i in range(n)
+    ]
+    faces = [(k * n + i, (k + 1) * n + i, (k + 1) * n + i + 1, k * n + i + 1) for k in range(len(rows) - 1) for i in range(columns)]
+    s.add(points, faces, cloth)
+    for x in (-width / 2 + 0.05, width / 2 - 0.05):
+        s.rod((x, 0.05, -0.75), (x, reach - 0.02, -drop - 0.02), 0.016, iron)
+    s.rod((-width / 2, reach, -drop), (width / 2, reach, -drop), 0.018, iron)
+    s.box((width + 0.06, 0.16, 0.14), (0, 0.06, 0.04), iron, 0.03)
+    if text:
+        cap = min(0.17, (width - 0.5) / extent(text, 1.0))
+        s.box((extent(text, cap) + 0.3, 0.012, 0.25), (0, reach + 0.03, -drop - 0.13), paint("cream", dirt=0.08), 0.0)
+        s.text(text, cap, (0, reach + 0.0395, -drop - 0.13), paint("black", dirt=0.0))
+    return s.built()
+
+
+def pharmacy_cross(size: float = 0.9, *, lit: bool = True) -> Built:
+    """A green cross on a bracket, read from both sides (+x and -x); its wall is the plane y = 0."""
+    s = Solid("pharmacy cross")
+    s.rod((0, 0, 0), (0, 0.5, 0), 0.03, paint("dark grey"))
+    arm, cy = size / 3, 0.5 + size / 2
+    for material, grow, thick in (
+        (paint("dark grey", dirt=0.1), 0.04, 0.08),
+        (glow("green", 2.5) if lit else lens("green"), 0.0, 0.10),
+    ):
+        a, b = arm / 2 + grow / 2, size / 2 + grow / 2
+        shape = [(-a, -b), (a, -b), (a, -a), (b, -a), (b, a), (a, a), (a, b), (-a, b), (-a, a), (-b, a), (-b, -a), (-a, -a)]
+        s.prism([(cy + u, v) for u, v in shape], (-thick, thick), material, "YZ")
+    return s.built()

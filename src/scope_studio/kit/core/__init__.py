@@ -1,0 +1,1 @@
+"""Meshes, materials and the stage: what every object is made with."""

@@ -1,0 +1,191 @@
+"""Finishes of made things: painted metal, plastic, galvanised steel, reflective sheet, concrete, rubber, wood, lamps.
+
+Each function returns one material per colour, made on first use. Dirt and wear come from object coordinates (things
+are modelled standing on z = 0, so splash dirt sits low) shifted by the object's random number, so that linked copies
+are not identical."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import bpy
+
+from scope_studio.kit.core.shading import Shader, Value
+
+Colour = tuple[float, float, float]
+
+PALETTE: dict[str, Colour] = {
+    "white": (0.80, 0.80, 0.78),
+    "cream": (0.72, 0.66, 0.50),
+    "light grey": (0.48, 0.49, 0.50),
+    "grey": (0.22, 0.23, 0.24),
+    "dark grey": (0.055, 0.058, 0.062),
+    "black": (0.012, 0.012, 0.013),
+    "red": (0.58, 0.016, 0.014),
+    "dark red": (0.24, 0.012, 0.014),
+    "orange": (0.86, 0.140, 0.005),
+    "hi-vis orange": (1.0, 0.195, 0.012),
+    "amber": (1.0, 0.36, 0.010),
+    "yellow": (0.90, 0.59, 0.012),
+    "hi-vis yellow": (0.62, 0.90, 0.020),
+    "green": (0.012, 0.19, 0.055),
+    "dark green": (0.010, 0.070, 0.030),
+    "blue": (0.010, 0.085, 0.42),
+    "light blue": (0.10, 0.32, 0.62),
+    "navy": (0.010, 0.016, 0.050),
+    "brown": (0.12, 0.055, 0.022),
+    "pink": (0.66, 0.18, 0.24),
+    "purple": (0.14, 0.03, 0.24),
+    "beige": (0.42, 0.33, 0.21),
+    "khaki": (0.16, 0.14, 0.075),
+    "denim": (0.040, 0.075, 0.16),
+    "silver": (0.52, 0.53, 0.54),
+}
+"""Plain colour names -> linear RGB."""
+
+DIRT: Colour = (0.085, 0.070, 0.052)
+
+
+def _shared(name: str, make: Callable[[Shader], bpy.types.Material]) -> bpy.types.Material:
+    found = bpy.data.materials.get(name)
+    return found if found is not None else make(Shader(name))
+
+
+def _coords(s: Shader) -> Value:
+    """Object coordinates, offset per object."""
+    made = s.node("ShaderNodeVectorMath", operation="ADD")
+    s.feed(made.inputs[0], s.object_coords())
+    s.feed(made.inputs[1], s.math("MULTIPLY", s.random(), 37.0))
+    return made.outputs[0]
+
+
+def soiled(s: Shader, colour: Value, amount: float, splash_m: float = 0.35) -> Value:
+    """``colour`` under grime: patches, rain streaks, and splash near the ground."""
+    where = _coords(s)
+    patches = s.ramp(s.noise(where, 3.2, 6.0, 0.62), 0.48, 0.80, 0.0, amount)
+    streaks = s.ramp(s.noise(s.scaled(where, (22.0, 22.0, 0.9)), 1.0, 3.0), 0.55, 0.85, 0.0, amount * 0.7)
+    _, _, z = s.xyz(s.object_coords())
+    splash = s.math("MULTIPLY", s.ramp(z, 0.0, splash_m, 1.0, 0.0), s.ramp(s.noise(where, 9.0, 5.0), 0.3, 0.7, 0.1, amount * 1.6))
+    return s.mix(s.math("MAXIMUM", s.math("MAXIMUM", patches, streaks), splash), colour, DIRT)
+
+
+def paint(colour: str, *, dirt: float = 0.30, roughness: float = 0.38) -> bpy.types.Material:
+    """Painted metal or moulded plastic."""
+
+    def make(s: Shader) -> bpy.types.Material:
+        fade = s.mix(s.ramp(s.noise(_coords(s), 5.0, 4.0), 0.35, 0.7, 0.0, 0.10), PALETTE[colour], (0.6, 0.6, 0.58))
+        rough = s.ramp(s.noise(_coords(s), 14.0), 0.3, 0.7, roughness - 0.06, roughness + 0.14)
+        return s.surface(base_color=soiled(s, fade, dirt), roughness=rough)
+
+    return _shared(f"paint {colour} {dirt:.2f} {roughness:.2f}", make)
+
+
+def steel(*, dark: bool = False) -> bpy.types.Material:
+    """Galvanised steel with its spangle, weathered to a dull grey."""
+
+    def make(s: Shader) -> bpy.types.Material:
+        where = _coords(s)
+        spangle = s.voronoi(where, 38.0, output="Color")
+        value = s.ramp(spangle, 0.0, 1.0, 0.24 if not dark else 0.09, 0.36 if not dark else 0.15, smooth=False)
+        weather = s.ramp(s.noise(where, 4.0, 5.0), 0.35, 0.7)
+        base = s.mix(weather, s.mix(value, (0, 0, 0), (1, 1, 1.02)), (0.27, 0.28, 0.29) if not dark else (0.10, 0.10, 0.11))
+        return s.surface(base_color=soiled(s, base, 0.25), metallic=0.55, roughness=s.ramp(spangle, 0.0, 1.0, 0.42, 0.58))
+
+    return _shared("steel dark" if dark else "steel", make)
+
+
+def sheet(colour: str, *, dirt: float = 0.16) -> bpy.types.Material:
+    """Retroreflective sheeting: even, slightly glowing colour with a faint cell pattern, grimy along the streaks."""
+
+    def make(s: Shader) -> bpy.types.Material:
+        cells = s.ramp(s.voronoi(s.object_coords(), 160.0, "DISTANCE_TO_EDGE"), 0.0, 0.12, 0.90, 1.0)
+        base = s.mix(1.0, PALETTE[colour], s.mix(cells, (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)), "MULTIPLY")
+        dirty = soiled(s, base, dirt, 0.0)
+        return s.surface(base_color=dirty, roughness=0.34, emission_color=dirty, emission_strength=0.10)
+
+    return _shared(f"sheet {colour} {dirt:.2f}", make)
+
+
+def glow(colour: str, strength: float = 6.0) -> bpy.types.Material:
+    """A lit lamp."""
+    c = PALETTE[colour]
+    return _shared(
+        f"glow {colour} {strength:g}",
+        lambda s: s.surface(base_color=c, emission_color=c, emission_strength=strength, roughness=0.3),
+    )
+
+
+def lens(colour: str) -> bpy.types.Material:
+    """An unlit lamp behind coloured plastic, or dark glass."""
+    return _shared(f"lens {colour}", lambda s: s.surface(base_color=PALETTE[colour], roughness=0.08, coat_weight=0.6))
+
+
+def glass() -> bpy.types.Material:
+    """Dark glazing, opaque: what a camera outside sees by day."""
+    return _shared("glazing", lambda s: s.surface(base_color=(0.018, 0.021, 0.023), roughness=0.04))
+
+
+def clear_glass() -> bpy.types.Material:
+    """Clear panes: faintly green, mostly see-through."""
+    return _shared("clear pane", lambda s: s.surface(base_color=(0.55, 0.62, 0.60), roughness=0.04, alpha=0.22))
+
+
+def rubber() -> bpy.types.Material:
+    return _shared("rubber", lambda s: s.surface(base_color=soiled(s, (0.018, 0.018, 0.018), 0.5, 0.2), roughness=0.75))
+
+
+def concrete(*, light: bool = True) -> bpy.types.Material:
+    """Cast concrete: blotches, air holes, stains from the top."""
+
+    def make(s: Shader) -> bpy.types.Material:
+        where = _coords(s)
+        blotch = s.ramp(s.noise(where, 2.6, 7.0, 0.65), 0.3, 0.72)
+        tone = 1.0 if light else 0.6
+        low, high = (0.23 * tone, 0.225 * tone, 0.21 * tone), (0.44 * tone, 0.435 * tone, 0.41 * tone)
+        holes = s.ramp(s.voronoi(where, 42.0), 0.06, 0.16)
+        base = s.mix(s.ramp(holes, 0.0, 1.0, 0.55, 0.0), s.mix(blotch, low, high), (0.07, 0.068, 0.06))
+        grain = s.math("ADD", s.math("MULTIPLY", s.noise(where, 90.0, 3.0), 0.4), holes)
+        return s.surface(base_color=soiled(s, base, 0.42, 0.25), roughness=0.86, normal=s.bump(grain, 0.25, 0.004))
+
+    return _shared("concrete light" if light else "concrete dark", make)
+
+
+def timber(*, fresh: bool = True) -> bpy.types.Material:
+    """Sawn softwood, grain along the local x axis."""
+
+    def make(s: Shader) -> bpy.types.Material:
+        where = s.scaled(_coords(s), (2.0, 26.0, 26.0))
+        grain = s.noise(where, 1.0, 6.0, 0.6, 0.8)
+        low, high = ((0.20, 0.105, 0.042), (0.44, 0.28, 0.13)) if fresh else ((0.10, 0.085, 0.07), (0.24, 0.20, 0.16))
+        return s.surface(
+            base_color=soiled(s, s.mix(s.ramp(grain, 0.3, 0.7), low, high), 0.3),
+            roughness=0.8,
+            normal=s.bump(grain, 0.3, 0.004),
+        )
+
+    return _shared("timber fresh" if fresh else "timber worn", make)
+
+
+def granular(name: str, low: Colour, high: Colour, grain_scale: float) -> bpy.types.Material:
+    """Loose material: sand, gravel, spoil."""
+
+    def make(s: Shader) -> bpy.types.Material:
+        where = s.object_coords()
+        stones = s.voronoi(where, grain_scale, output="Color")
+        depth = s.voronoi(where, grain_scale)
+        damp = s.ramp(s.noise(where, 1.6, 5.0), 0.38, 0.66)
+        base = s.mix(s.math("MULTIPLY", s.math("ADD", stones, damp), 0.5), low, high)
+        return s.surface(base_color=base, roughness=0.92, normal=s.bump(depth, 0.9, 0.6 / grain_scale))
+
+    return _shared(name, make)
+
+
+def cloth(colour: str, roughness: float = 0.9) -> bpy.types.Material:
+    """Woven or tarpaulin-like stuff with creases."""
+
+    def make(s: Shader) -> bpy.types.Material:
+        where = _coords(s)
+        creases = s.noise(where, 7.0, 5.0, 0.6, 0.6)
+        return s.surface(base_color=soiled(s, PALETTE[colour], 0.25), roughness=roughness, normal=s.bump(creases, 0.6, 0.02))
+
+    return _shared(f"cloth {colour} {roughness:.2f}", make)

@@ -1,0 +1,1 @@
+"""Street, roadside and market furniture."""

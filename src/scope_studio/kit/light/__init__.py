@@ -1,0 +1,1 @@
+"""Skies and light."""

@@ -1,0 +1,172 @@
+"""Dusk: a deep blue sky over a warm horizon, lamps that throw pools of light, evening haze, and a long exposure.
+
+The counterpart of ``sky`` for the hour after sunset. There is no sun: soft light comes from the whole sky, and every lamp is an
+area light of at least 0.3 m (small ones would speckle at few samples) that the camera does not see; what it sees is the
+glowing lens of the fitting that the light belongs to.
+"""
+
+from __future__ import annotations
+
+import math
+
+import bpy
+from mathutils import Vector
+
+from scope_studio.kit.core.shading import Shader, Value
+
+GLOW_BEARING_DEG = 312.0
+"""Where the sun went down."""
+
+ZENITH = (0.050, 0.095, 0.235)
+MIDDLE = (0.150, 0.225, 0.400)
+COOL_HORIZON = (0.300, 0.320, 0.400)
+WARM_HORIZON = (1.10, 0.520, 0.220)
+HAZE = (0.135, 0.155, 0.205)
+
+SODIUM = (1.0, 0.56, 0.20)
+LED = (0.86, 0.93, 1.0)
+WARM = (1.0, 0.80, 0.56)
+"""Colours of lamps, linear RGB."""
+
+DIMMED = ("paint ", "vehicle lamp", "sheet ")
+"""Materials whose faint glow by day (lamp covers, reflective sheet) would pass for lit lamps at dusk, by prefix."""
+
+
+class _WorldShader(Shader):
+    """The shading vocabulary, writing into the node tree of a world."""
+
+    def __init__(self, world: bpy.types.World) -> None:
+        self.tree = world.node_tree
+        self.tree.nodes.clear()
+
+
+def setup(scene: bpy.types.Scene, *, sky_strength: float = 0.36, exposure: float = 1.5) -> None:
+    """Give ``scene`` its evening sky, view transform, and light paths that stay clean at eight samples."""
+    _world(scene, sky_strength)
+    scene.display_settings.display_device = "sRGB"
+    scene.view_settings.view_transform = "AgX"
+    scene.view_settings.look = "AgX - Medium High Contrast"
+    scene.view_settings.exposure = exposure
+    scene.view_settings.gamma = 1.0
+    scene.cycles.use_light_tree = True
+    scene.cycles.sample_clamp_indirect = 1.5
+    scene.cycles.max_bounces = 5
+    scene.cycles.diffuse_bounces = 2
+    scene.cycles.glossy_bounces = 2
+
+
+def _world(scene: bpy.types.Scene, strength: float) -> None:
+    """Camera and mirror rays see clouds; diffuse light comes from a smooth gradient, which stays clean at few samples."""
+    world = bpy.data.worlds.new("Dusk")
+    scene.world = world
+    s = _WorldShader(world)
+    x, y, z = s.xyz(s.node("ShaderNodeTexCoord").outputs["Generated"])
+    height = s.math("MAXIMUM", z, 0.0)
+    bearing = math.radians(GLOW_BEARING_DEG)
+    towards = s.math("ADD", s.math("MULTIPLY", x, math.sin(bearing)), s.math("MULTIPLY", y, math.cos(bearing)))
+    horizon = s.mix(s.ramp(towards, -0.25, 1.0), COOL_HORIZON, WARM_HORIZON)
+    clear = s.mix(s.ramp(height, 0.0, 0.26), horizon, MIDDLE)
+    clear = s.mix(s.ramp(height, 0.14, 0.85), clear, ZENITH)
+    seen = _clouds(s, x, y, height, towards, clear)
+    light = s.mix(s.ramp(z, -0.1, 0.9), (0.42, 0.42, 0.50), (0.30, 0.37, 0.56))
+    light = s.mix(s.ramp(s.math("SUBTRACT", towards, z), 0.0, 1.0, 0.0, 0.6), light, (0.85, 0.55, 0.36))
+    light = s.mix(s.ramp(z, -0.25, 0.0), (0.07, 0.07, 0.08), light)
+    path = s.node("ShaderNodeLightPath")
+    direct = s.math("MAXIMUM", path.outputs["Is Camera Ray"], path.outputs["Is Glossy Ray"])
+    background = s.node("ShaderNodeBackground")
+    s.feed(background.inputs["Color"], s.mix(direct, light, seen))
+    background.inputs["Strength"].default_value = strength
+    s.tree.links.new(background.outputs[0], s.node("ShaderNodeOutputWorld").inputs["Surface"])
+    world.cycles.sampling_method = "MANUAL"
+    world.cycles.sample_map_resolution = 256
+
+
+def _clouds(s: Shader, x: Value, y: Value, height: Value, towards: Value, clear: Value) -> Value:
+    """Thin sheets of evening cloud: slate above, still lit from below where the sun went down."""
+    depth = s.math("ADD", height, 0.10)
+    plane = s.node("ShaderNodeCombineXYZ")
+    s.feed(plane.inputs[0], s.math("DIVIDE", x, depth))
+    s.feed(plane.inputs[1], s.math("DIVIDE", y, depth))
+    p = s.scaled(plane.outputs[0], (0.55, 1.0, 1.0))
+    lumps = s.noise(p, 0.75, detail=8.0, roughness=0.58, distortion=0.3)
+    mask = s.math("MULTIPLY", s.ramp(lumps, 0.50, 0.66), s.ramp(height, 0.02, 0.10, 0.25, 0.85))
+    lit = s.math("MULTIPLY", s.ramp(towards, 0.1, 0.95), s.ramp(height, 0.05, 0.45, 1.0, 0.1))
+    body = s.mix(lit, (0.105, 0.130, 0.195), (0.62, 0.30, 0.22))
+    edge = s.mix(lit, (0.185, 0.225, 0.320), (1.05, 0.56, 0.34))
+    return s.mix(mask, clear, s.mix(s.ramp(lumps, 0.55, 0.68), edge, body))
+
+
+def pool(
+    position: tuple[float, float, float],
+    power_w: float,
+    colour: tuple[float, float, float] = LED,
+    *,
+    size_m: float = 0.5,
+    aim: tuple[float, float, float] = (0.0, 0.0, -1.0),
+    spread_deg: float = 150.0,
+    stretch: float = 1.0,
+) -> None:
+    """A lamp's light without its fitting: a disc (an ellipse of height ``stretch`` times its width) shining along ``aim``."""
+    light = bpy.data.lights.new("lamp light", "AREA")
+    light.shape = "ELLIPSE" if stretch != 1.0 else "DISK"
+    light.size = size_m
+    if stretch != 1.0:
+        light.size_y = size_m * stretch
+    light.energy = power_w
+    light.color = colour
+    light.spread = math.radians(spread_deg)
+    lamp = bpy.data.objects.new("lamp light", light)
+    bpy.context.scene.collection.objects.link(lamp)
+    lamp.location = position
+    lamp.rotation_euler = Vector(aim).to_track_quat("-Z", "Y").to_euler()
+    lamp.visible_camera = False
+
+
+def finish_materials(*, visibility_m: float = 1500.0, spare: tuple[str, ...] = ()) -> None:
+    """Last step of a scene: evening haze on every material, unlit lamps unlit, and no mesh sampled as a lamp.
+
+    ``visibility_m`` is the distance at which 63% of a thing's light is replaced by haze. Materials named in ``spare``
+    stay as they are.
+    """
+    for material in bpy.data.materials:
+        if material.name in spare or material.node_tree is None:
+            continue
+        material.cycles.emission_sampling = "NONE"
+        if material.name.startswith(DIMMED):
+            _dim(material.node_tree)
+        _add_haze(material.node_tree, visibility_m)
+
+
+def _dim(tree: bpy.types.NodeTree) -> None:
+    for node in tree.nodes:
+        if node.type == "BSDF_PRINCIPLED":
+            node.inputs["Emission Strength"].default_value *= 0.05
+
+
+def _add_haze(tree: bpy.types.NodeTree, visibility_m: float) -> None:
+    """Mix in the haze's glow by distance, for camera rays only."""
+    output = next((n for n in tree.nodes if n.type == "OUTPUT_MATERIAL" and n.is_active_output), None)
+    if output is None or not output.inputs["Surface"].is_linked:
+        return
+    source = output.inputs["Surface"].links[0].from_socket
+    distance = tree.nodes.new("ShaderNodeCameraData").outputs["View Distance"]
+    camera_ray = tree.nodes.new("ShaderNodeLightPath").outputs["Is Camera Ray"]
+
+    def math_node(operation: str, a: Value, b: Value | None = None) -> Value:
+        made = tree.nodes.new("ShaderNodeMath")
+        made.operation = operation
+        for socket, value in zip(made.inputs, (a, b), strict=False):
+            if isinstance(value, bpy.types.NodeSocket):
+                tree.links.new(value, socket)
+            elif value is not None:
+                socket.default_value = value
+        return made.outputs[0]
+
+    share = math_node("SUBTRACT", 1.0, math_node("EXPONENT", math_node("MULTIPLY", distance, -1.0 / visibility_m)))
+    glow = tree.nodes.new("ShaderNodeEmission")
+    glow.inputs["Color"].default_value = (*HAZE, 1.0)
+    mixed = tree.nodes.new("ShaderNodeMixShader")
+    tree.links.new(math_node("MULTIPLY", share, camera_ray), mixed.inputs[0])
+    tree.links.new(source, mixed.inputs[1])
+    tree.links.new(glow.outputs[0], mixed.inputs[2])
+    tree.links.new(mixed.outputs[0], output.inputs["Surface"])

@@ -1,0 +1,1 @@
+"""Ground, plants, animals and distant surroundings."""

@@ -1,0 +1,1 @@
+"""People: figures, clothing, poses, what they carry."""

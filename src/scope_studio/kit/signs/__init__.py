@@ -1,0 +1,1 @@
+"""Signs: road signs, gantries, variable message signs, lettering."""

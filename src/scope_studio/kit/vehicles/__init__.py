@@ -1,0 +1,1 @@
+"""Cars, lorries, buses, trams, cycles and machines."""

@@ -1,0 +1,330 @@
+"""Car bodies: lofted shells with glazing, number plates and lettering, and the assembly of a painted vehicle."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import bmesh
+import bpy
+from mathutils import Vector
+from mathutils.bvhtree import BVHTree
+
+from scope_studio.kit.core import shading
+from scope_studio.kit.core.parts import Flat, Parts, Point
+from scope_studio.kit.core.stage import Built, TextMark
+from scope_studio.kit.signs import lettering
+from scope_studio.kit.vehicles import paintwork as pw
+from scope_studio.kit.vehicles import wheels
+
+
+@dataclass(frozen=True)
+class Station:
+    """A cross-section of a body at ``y``: right-hand ``(x, z)`` points from the floor's middle round to the roof's
+    middle.
+
+    ``dy`` moves single points along y, which rakes and bows the section.
+    """
+
+    y: float
+    section: Sequence[Flat]
+    dy: dict[int, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Pane:
+    """A window: the cage between two stations and two rows, on both sides, or joined ``across`` the middle."""
+
+    stations: tuple[int, int]
+    rows: tuple[int, int]
+    across: bool = False
+    frame_m: float = 0.025
+    tinted: bool = False
+
+
+def shell(
+    stations: Sequence[Station],
+    panes: Sequence[Pane],
+    *,
+    creases: Sequence[tuple[int, float, int, int]],
+    bulge: tuple[float, float],
+    cutters: Parts | None = None,
+    levels: int = 3,
+) -> bpy.types.Mesh:
+    """A closed body lofted through ``stations`` from front to rear and subdivided; windows are framed in black trim.
+
+    ``bulge`` bows the front and rear ends outwards; ``cutters`` are solids taken away (wheel arches), leaving
+    their own material;
+    ``creases`` are (row, strength, first station, last station).
+    """
+    bm = bmesh.new()
+    crease = bm.edges.layers.float.new("crease_edge")
+    corner = bm.verts.layers.float.new("crease_vert")
+    rows = len(stations[0].section)
+    ring = 2 * rows - 2
+    grid = [[bm.verts.new(_ring_point(s, j, rows)) for j in range(ring)] for s in stations]
+    quads = {}
+    for i in range(len(grid) - 1):
+        for j in range(ring):
+            k = (j + 1) % ring
+            quads[i, j] = bm.faces.new((grid[i][j], grid[i + 1][j], grid[i + 1][k], grid[i][k]))
+    for end, push in ((grid[0], bulge[0]), (grid[-1], -bulge[1])):
+        _cap(bm, end, rows, push)
+    bm.edges.ensure_lookup_table()
+    for row, strength, first, last in creases:
+        for column in {row, (ring - row) % ring}:
+            for i in range(first, min(last, len(grid) - 1)):
+                bm.edges.get((grid[i][column], grid[i + 1][column]))[crease] = strength
+    for pane in panes:
+        span = range(*pane.stations)
+        right = [quads[i, j] for i in span for j in range(*pane.rows)]
+        left = [quads[i, ring - 1 - j] for i in span for j in range(*pane.rows)]
+        for region in [right + left] if pane.across else [right, left]:
+            _glaze(bm, region, pane, crease, corner)
+    bmesh.ops.recalc_face_normals(bm, faces=bm.faces[:])
+    data = bpy.data.meshes.new("shell")
+    bm.to_mesh(data)
+    bm.free()
+    for material in (pw.paint_slot(), pw.black_trim(), pw.clear_glass(), pw.clear_glass(0.78)):
+        data.materials.append(material)
+    data.polygons.foreach_set("use_smooth", [True] * len(data.polygons))
+    return _evaluated(data, cutters, levels)
+
+
+def _ring_point(station: Station, j: int, rows: int) -> Point:
+    row = j if j < rows else 2 * rows - 2 - j
+    x, z = station.section[row]
+    return (x if j < rows else -x, station.y + station.dy.get(row, 0.0), z)
+
+
+def _cap(bm: bmesh.types.BMesh, end: list[bmesh.types.BMVert], rows: int, push: float) -> None:
+    ring = 2 * rows - 2
+    spine = [end[0]]
+    for row in range(2, rows - 2):
+        middle = end[row].co.copy()
+        middle.x, middle.y = 0.0, middle.y + push
+        spine.append(bm.verts.new(middle))
+    spine.append(end[rows - 1])
+    for step in range(rows - 3):
+        low, high = step + 1, step + 2
+        bm.faces.new((end[low], end[high], spine[step + 1], spine[step]))
+        bm.faces.new((spine[step], spine[step + 1], end[ring - high], end[ring - low]))
+
+
+def _glaze(
+    bm: bmesh.types.BMesh,
+    region: list[bmesh.types.BMFace],
+    pane: Pane,
+    crease: bmesh.types.BMLayerItem,
+    corner: bmesh.types.BMLayerItem,
+) -> None:
+    bmesh.ops.inset_region(bm, faces=region, thickness=pane.frame_m, use_even_offset=True, use_boundary=True)
+    _crease_border(region, 0.9, crease, corner)
+    rim = bmesh.ops.inset_region(bm, faces=region, thickness=0.016, depth=-0.010, use_even_offset=True, use_boundary=True)
+    _crease_border(region, 0.9, crease, corner)
+    for face in rim["faces"]:
+        face.material_index = 1
+    for face in region:
+        face.material_index = 3 if pane.tinted else 2
+
+
+def _crease_border(
+    region: list[bmesh.types.BMFace], strength: float, crease: bmesh.types.BMLayerItem, corner: bmesh.types.BMLayerItem
+) -> None:
+    inside = set(region)
+    for face in region:
+        for edge in face.edges:
+            if sum(f in inside for f in edge.link_faces) == 1:
+                edge[crease] = strength
+        for vert in face.verts:
+            if sum(f in inside for f in vert.link_faces) == 1:
+                vert[corner] = 0.85
+
+
+def _evaluated(data: bpy.types.Mesh, cutters: Parts | None, levels: int) -> bpy.types.Mesh:
+    collection = bpy.context.scene.collection
+    obj = bpy.data.objects.new("shell", data)
+    collection.objects.link(obj)
+    smooth = obj.modifiers.new("smooth", "SUBSURF")
+    smooth.levels, smooth.render_levels = levels, levels
+    tool = None
+    if cutters is not None:
+        tool = bpy.data.objects.new("cutters", cutters.build("cutters"))
+        collection.objects.link(tool)
+        cut = obj.modifiers.new("cut", "BOOLEAN")
+        cut.object, cut.operation, cut.solver, cut.material_mode = tool, "DIFFERENCE", "EXACT", "TRANSFER"
+    graph = bpy.context.evaluated_depsgraph_get()
+    made = bpy.data.meshes.new_from_object(obj.evaluated_get(graph), depsgraph=graph)
+    for used in (obj, tool):
+        if used is not None:
+            spent = used.data
+            bpy.data.objects.remove(used, do_unlink=True)
+            bpy.data.meshes.remove(spent)
+    return made
+
+
+class Surface:
+    """Ray casts against a made mesh: where fittings and lettering touch the body."""
+
+    def __init__(self, made: bpy.types.Mesh) -> None:
+        self.tree = BVHTree.FromPolygons([v.co for v in made.vertices], [p.vertices for p in made.polygons])
+
+    def side(self, y: float, z: float) -> float:
+        """The body's half width at ``(y, z)`` on the right."""
+        hit = self.tree.ray_cast(Vector((9.0, y, z)), Vector((-1, 0, 0)))[0]
+        return hit.x if hit is not None else 0.0
+
+    def end(self, x: float, z: float, front: bool) -> float:
+        """Where the front or rear of the body is (y) at ``(x, z)``."""
+        sign = 1.0 if front else -1.0
+        hit = self.tree.ray_cast(Vector((x, 20.0 * sign, z)), Vector((0, -sign, 0)))[0]
+        return hit.y if hit is not None else 0.0
+
+    def top(self, x: float, y: float) -> float:
+        """The height of the body at ``(x, y)``."""
+        hit = self.tree.ray_cast(Vector((x, y, 20.0)), Vector((0, 0, -1)))[0]
+        return hit.z if hit is not None else 0.0
+
+
+@dataclass
+class Lettering:
+    """A line of letters standing in its place on a vehicle, and its mark."""
+
+    points: list[Point]
+    faces: list[tuple[int, ...]]
+    colour: str
+    mark: TextMark
+
+
+_READERS: dict[str, tuple[Point, Point]] = {
+    "-Y": ((1, 0, 0), (0, 0, 1)),
+    "+Y": ((-1, 0, 0), (0, 0, 1)),
+    "+X": ((0, 1, 0), (0, 0, 1)),
+    "-X": ((0, -1, 0), (0, 0, 1)),
+}
+
+
+def words(
+    body: str,
+    cap_m: float,
+    centre: Point,
+    facing: str,
+    colour: str = "black",
+    *,
+    width_m: float = math.inf,
+    onto: Surface | None = None,
+) -> Lettering:
+    """A line of lettering around ``centre``, narrowed to fit ``width_m``; ``onto`` lays it on a curved side
+    instead of a plane."""
+    flat, faces = lettering.letters(body, cap_m)
+    if onto is not None:
+        flat, faces = _fine(flat, faces)
+    xs, ys = [p[0] for p in flat], [p[1] for p in flat]
+    width, height = max(xs) - min(xs), max(ys) - min(ys)
+    squeeze = min(1.0, width_m / width)
+    right, up = _READERS[facing]
+    normal = Vector(right).cross(up)
+    points: list[Point] = []
+    for x, y, lift in flat:
+        u, v = (x - (max(xs) + min(xs)) / 2) * squeeze, y - cap_m / 2
+        px, py, pz = (centre[k] + right[k] * u + up[k] * v + normal[k] * lift for k in range(3))
+        if onto is not None:
+            px = math.copysign(onto.side(py, pz) + 0.004 + lift, -1 if facing == "-X" else 1)
+        points.append((px, py, pz))
+    if onto is not None:
+        centre = (sum(p[0] for p in points) / len(points), centre[1], centre[2])
+    return Lettering(points, faces, colour, TextMark(body, centre, right, up, width * squeeze, height, cap_m))
+
+
+def _fine(points: list[Point], faces: list[tuple[int, ...]]) -> tuple[list[Point], list[tuple[int, ...]]]:
+    """Split long triangles, so that letters can follow a curve."""
+    bm = bmesh.new()
+    verts = [bm.verts.new(p) for p in points]
+    for face in faces:
+        if len(set(face)) > 2:
+            bm.faces.new([verts[k] for k in face])
+    for _ in range(4):
+        bmesh.ops.triangulate(bm, faces=bm.faces[:])
+        long = [e for e in bm.edges if e.calc_length() > 0.07]
+        if not long:
+            break
+        bmesh.ops.subdivide_edges(bm, edges=long, cuts=1)
+    bm.verts.index_update()
+    made = [tuple(v.co) for v in bm.verts], [tuple(v.index for v in f.verts) for f in bm.faces]
+    bm.free()
+    return made
+
+
+def both_sides(
+    body: str,
+    cap_m: float,
+    y: float,
+    z: float,
+    colour: str,
+    *,
+    x: float = 0.0,
+    width_m: float = math.inf,
+    onto: Surface | None = None,
+) -> list[Lettering]:
+    """The same lettering on the right and on the left, proud of the panel at ``x`` or laid ``onto`` the surface."""
+    return [
+        words(body, cap_m, (sign * (x + 0.003), y, z), facing, colour, width_m=width_m, onto=onto)
+        for sign, facing in ((1, "+X"), (-1, "-X"))
+    ]
+
+
+def plates(plate: str, front: tuple[float, float], rear: tuple[float, float]) -> tuple[Parts, list[Lettering]]:
+    """UK number plates, white in front and yellow behind; ``front`` and ``rear`` are the (y, z) of the plate's face."""
+    parts, letters = Parts(), []
+    for (y, z), colour, rgb, sign in (
+        (front, "white", (0.82, 0.82, 0.80), 1),
+        (rear, "yellow", (0.86, 0.52, 0.01), -1),
+    ):
+        parts.box((0.55, 0.016, 0.135), (0, y - sign * 0.004, z), pw.black_trim(), bevel_m=0.004)
+        face = shading.plain(f"number plate {colour}", rgb, 0.35)
+        parts.box((0.52, 0.012, 0.111), (0, y, z), face, bevel_m=0.003)
+        letters.append(words(plate, 0.079, (0, y + sign * 0.0085, z), "+Y" if sign > 0 else "-Y", width_m=0.47))
+    return parts, letters
+
+
+def body_mesh(model: str, make: Callable[[], Parts]) -> bpy.types.Mesh:
+    """The model's mesh, made on first use and shared by every vehicle of that model in the file."""
+    return bpy.data.meshes.get(f"kit {model}") or make().build(f"kit {model}")
+
+
+def finish(
+    name: str,
+    body: bpy.types.Mesh,
+    paints: Sequence[bpy.types.Material],
+    letters: Sequence[Lettering] = (),
+    fittings: Parts | None = None,
+) -> Built:
+    """A vehicle from the shared mesh in its own paint, with its own lettering and fittings in a second object."""
+    obj = bpy.data.objects.new(name, body)
+    bpy.context.scene.collection.objects.link(obj)
+    for number, material in enumerate(paints):
+        slot = next(s for s in obj.material_slots if s.material == pw.paint_slot(number))
+        slot.link = "OBJECT"
+        slot.material = material
+    own = fittings or Parts()
+    marks = []
+    for line in letters:
+        own.add(line.points, line.faces, pw.ink(line.colour))
+        marks.append(line.mark)
+    objects = [obj]
+    if own.materials:
+        extra = bpy.data.objects.new(f"{name} fittings", own.build(f"{name} fittings"))
+        bpy.context.scene.collection.objects.link(extra)
+        objects.append(extra)
+    return Built.of(name, objects, marks)
+
+
+def arches(axles: Sequence[float], radius: float, inner_x: float) -> Parts:
+    """Cutters for the wheel arches of axles at y, reaching from ``inner_x`` outwards on both sides."""
+    tools = Parts()
+    for y in axles:
+        for sign in (-1, 1):
+            low, high = sorted((sign * inner_x, sign * 1.6))
+            tools.disc(radius, low, high, (0, y, radius * 0.86), wheels.shade(), axis="X", steps=40)
+    return tools

@@ -1,0 +1,1 @@
+"""Road works: barriers, plant, stock."""

@@ -1,0 +1,1 @@
+"""Freight yards: ground, lamps, safety equipment, stock."""

@@ -1,0 +1,47 @@
+"""The triangles of every annotated instance, for silhouettes that no renderer shows: those of hidden things too."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+from scope_studio.kit.core.stage import Stage
+
+
+def write(stage: Stage, out: Path) -> None:
+    """An .npz with the distinct meshes (``vertices-K`` (n, 3) float32, ``triangles-K`` (m, 3) int32) and where they stand.
+
+    ``uses`` (k, 2) int32 holds instance number and mesh; ``matrices`` (k, 4, 4) float64 the world transforms.
+    """
+    bpy.context.view_layer.update()
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    arrays: dict[str, np.ndarray] = {}
+    known: dict[str, int] = {}
+    uses: list[tuple[int, int]] = []
+    matrices: list[np.ndarray] = []
+    for instance in stage.instances:
+        for obj in instance.built.objects:
+            if obj.type not in {"MESH", "CURVE", "FONT", "SURFACE"} or obj.hide_render:
+                continue
+            key = obj.data.name_full if not obj.modifiers else f"object {obj.name_full}"
+            evaluated = obj.evaluated_get(depsgraph)
+            if key not in known:
+                known[key] = len(known)
+                vertices, triangles = _triangles(evaluated)
+                arrays[f"vertices-{known[key]}"], arrays[f"triangles-{known[key]}"] = vertices, triangles
+            uses.append((instance.number, known[key]))
+            matrices.append(np.array(evaluated.matrix_world))
+    np.savez(out, uses=np.array(uses, dtype=np.int32).reshape(-1, 2), matrices=np.array(matrices).reshape(-1, 4, 4), **arrays)
+
+
+def _triangles(evaluated: bpy.types.Object) -> tuple[np.ndarray, np.ndarray]:
+    mesh = evaluated.to_mesh()
+    mesh.calc_loop_triangles()
+    vertices = np.empty(len(mesh.vertices) * 3, dtype=np.float32)
+    mesh.vertices.foreach_get("co", vertices)
+    triangles = np.empty(len(mesh.loop_triangles) * 3, dtype=np.int32)
+    mesh.loop_triangles.foreach_get("vertices", triangles)
+    evaluated.to_mesh_clear()
+    return vertices.reshape(-1, 3), triangles.reshape(-1, 3)

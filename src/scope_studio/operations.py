@@ -1,0 +1,109 @@
+"""What the worker can be asked to do. Every operation takes and returns plain JSON values; pictures go to files."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import bpy
+
+from scope_studio import describe, meshes, render, sprites
+from scope_studio.actors import Troupe
+from scope_studio.kit.core.stage import Stage, Viewpoint
+
+Progress = Callable[[int, int], None]
+
+
+class Studio:
+    """The one scene that is loaded."""
+
+    def __init__(self, progress: Progress) -> None:
+        self._progress = progress
+        self._stage: Stage | None = None
+        self._troupe: Troupe | None = None
+
+    @property
+    def stage(self) -> Stage:
+        if self._stage is None:
+            raise RuntimeError("no scene is loaded")
+        return self._stage
+
+    @property
+    def troupe(self) -> Troupe:
+        if self._troupe is None:
+            self._troupe = Troupe(self.stage)
+        return self._troupe
+
+    def viewpoint(self, name: str) -> Viewpoint:
+        for candidate in self.stage.viewpoints:
+            if candidate.name == name:
+                return candidate
+        raise ValueError(f"the scene has no viewpoint '{name}'")
+
+    def load_scene(self, source: str) -> dict[str, Any]:
+        """Build a scene: the name of a module in ``scope_studio.scenes`` (kebab-case), or the path of a Python file."""
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        bpy.context.preferences.filepaths.use_scripts_auto_execute = False
+        self._troupe = None
+        module = _module(source)
+        name = getattr(module, "NAME", Path(source).stem.replace("_", "-"))
+        stage = Stage(name, getattr(module, "TITLE", name.replace("-", " ").capitalize()))
+        module.build(stage)
+        stage.finish()
+        bpy.context.view_layer.update()
+        self._stage = stage
+        return {"name": stage.name, "title": stage.title, "instances": len(stage.instances), "device": render.use_gpu() or "CPU"}
+
+    def describe(self) -> dict[str, Any]:
+        return describe.scene(self.stage, self.troupe)
+
+    def save(self, path: str) -> None:
+        """Write the scene as a .blend file to look at in Blender."""
+        bpy.ops.wm.save_as_mainfile(filepath=path, compress=True)
+
+    def meshes(self, out: str) -> None:
+        meshes.write(self.stage, Path(out))
+
+    def colour(
+        self, viewpoint: str, projection: dict[str, float], samples: int, seed: int, out: str, time_s: float | None = None
+    ) -> None:
+        """A denoised picture (8-bit PNG). With ``time_s``, moving actors stand where they are at that time."""
+        with self._cast(time_s):
+            render.colour(self.viewpoint(viewpoint), projection, samples, seed, Path(out))
+
+    def truth(self, viewpoint: str, projection: dict[str, float], out: str, time_s: float | None = None) -> None:
+        """Instance numbers (uint16) and distances in metres (float32, 0 = sky) of the same picture, as one .npz file."""
+        with self._cast(time_s):
+            render.truth(self.viewpoint(viewpoint), projection, Path(out))
+
+    def sprites(self, actor: str, viewpoint: str, frames: list[dict[str, Any]], samples: int, out_dir: str) -> None:
+        sprites.render_frames(
+            self.stage, self.troupe, actor, self.viewpoint(viewpoint), frames, samples, Path(out_dir), self._progress
+        )
+
+    def _cast(self, time_s: float | None) -> AbstractContextManager[None]:
+        """Actors are only built when a picture wants them."""
+        return nullcontext() if time_s is None else self.troupe.on_stage(time_s)
+
+
+def _module(source: str) -> ModuleType:
+    """A scene's module: ``build(stage)``, and if it likes ``NAME`` (kebab-case) and ``TITLE``."""
+    if not source.endswith(".py"):
+        return importlib.import_module(f"scope_studio.scenes.{source.replace('-', '_')}")
+    spec = importlib.util.spec_from_file_location("scope_user_scene", source)
+    if spec is None or spec.loader is None:
+        raise ValueError(f"cannot load {source}")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def operations(progress: Progress) -> dict[str, Callable[..., Any]]:
+    """By name."""
+    studio = Studio(progress)
+    return {name: getattr(studio, name) for name in ("load_scene", "describe", "save", "meshes", "colour", "truth", "sprites")}

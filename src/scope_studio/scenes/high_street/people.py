@@ -1,0 +1,183 @@
+"""High street: people, dogs and pigeons that stay where they are."""
+
+from __future__ import annotations
+
+from scope_studio.kit.core.stage import Built, Stage
+from scope_studio.kit.nature import birds
+from scope_studio.kit.nature.wet_ground import KERB_M
+from scope_studio.kit.people import companions, people, stances, umbrellas
+from scope_studio.scenes.high_street.plan import Plot
+from scope_studio.scenes.high_street.shops import plots
+
+UMBRELLAS: tuple[tuple[str, str | None, float, float, float, int, bool], ...] = (
+    ("red", None, -5.6, -31.5, 10, 21, True), ("black", None, 7.7, -30.0, 182, 22, True), ("yellow", None, -5.0, 1.5, 172, 23,
+    True),
+    ("blue", None, 7.9, -15.5, 5, 24, True), ("green", "white", 7.2, 12.0, 250, 25, False), ("black", None, -5.2, 17.4, 4, 26,
+    True),
+    ("purple", None, 7.6, 30.8, 176, 27, True), ("pink", None, -5.4, 40.6, 130, 28, False), ("navy", "white", 12.0, 61.2, 268,
+    29, True),
+)  # fmt: skip
+"""Colour, second colour, place, bearing, seed, walking."""
+STANDING: tuple[tuple[float, float, float, str, int, str | None, str], ...] = (
+    (-5.0, -6.1, 95, "stand", 41, None, "waiting"), (-4.6, -7.2, 60, "phone", 42, None, "on the phone"), (-5.4, -39.0, 178,
+    "walk", 43, "bag", "walking"),
+    (8.3, -24.0, 0, "walk", 44, None, "walking"), (8.75, 14.6, 300, "stand", 45, "bag", "standing"), (-6.4, 46.0, 60, "phone",
+    47, None, "on the phone"),
+    (8.6, 38.0, 250, "stand", 48, "bag", "standing"), (-8.0, -50.3, 95, "walk", 49, None, "walking"), (10.5, 50.0, 275, "walk",
+    50, "bag", "walking"),
+    (2.0, 61.0, 180, "stand", 51, None, "standing"), (2.4, -60.9, 80, "walk", 52, "bag", "walking"), (-11.0, -61.4, 268, "walk",
+    53, None, "walking"),
+)  # fmt: skip
+"""Place, bearing, pose, seed, what they hold, what they do."""
+
+
+def build(stage: Stage) -> None:
+    _walkers(stage)
+    _pairs(stage)
+    _sitters(stage)
+    _indoors(stage)
+    _pigeons(stage)
+
+
+def _umbrella(stage: Stage, person: str, colour: str, second: str | None, here: Plot) -> None:
+    x, y, z = stances.UMBRELLA_GRIP
+    built = umbrellas.umbrella(colour, second=second)
+    name = f"{colour} and {second} umbrella" if second else f"{colour} umbrella"
+    stage.place(
+        built,
+        "umbrella",
+        name,
+        here.at(x, y, z),
+        here.bearing_deg,
+        parent=person,
+        lean_deg=(-5.0, 4.0),
+        colour=colour,
+        state="open",
+    )
+
+
+def _walkers(stage: Stage) -> None:
+    for colour, second, x, y, bearing, seed, walking in UMBRELLAS:
+        here = Plot(x, y, bearing)
+        stance = stances.with_umbrella((seed * 0.37) % 1.0 if walking else None, seed=seed)
+        person = stage.place(
+            people.pedestrian(stance=stance, seed=seed), "pedestrian", f"pedestrian with a {colour} umbrella", here.at(0, 0),
+            bearing,
+            state="walking" if walking else "standing", holding="umbrella", umbrella=colour,
+        )  # fmt: skip
+        _umbrella(stage, person, colour, second, here)
+    for x, y, bearing, pose, seed, holding, doing in STANDING:
+        built = people.pedestrian(pose=pose, phase=(seed * 0.29) % 1.0, holding=holding, seed=seed)
+        facts = {"holding": holding} if holding else {}
+        stage.place(built, "pedestrian", f"pedestrian {doing}", (x, y, KERB_M), bearing, state=doing, **facts)
+    worker = people.worker(vest="orange", helmet="white", pose="clipboard", seed=61)
+    stage.place(
+        worker, "worker", "worker in an orange vest", (-2.75, 31.9, 0.004), 130, vest="orange", helmet="white", state="standing"
+    )
+    worker = people.worker(vest="yellow", helmet="blue", pose="kneel", seed=62)
+    stage.place(
+        worker,
+        "worker",
+        "kneeling worker in a yellow vest",
+        (-1.5, 29.95, 0.004),
+        10,
+        vest="yellow",
+        helmet="blue",
+        state="kneeling",
+    )
+
+
+def _pairs(stage: Stage) -> None:
+    here = Plot(-5.2, -16.6, 6.0)
+    person = people.pedestrian(stance=stances.pushing(0.15), seed=8, top="green")
+    stage.place(
+        person, "pedestrian", "woman with a pram", here.at(0, 0), here.bearing_deg, state="walking", top="green", pushing="pram"
+    )
+    stage.place(companions.pram("navy"), "pram", "navy pram", here.at(0, 0.98), here.bearing_deg, colour="navy")
+    here = Plot(7.9, 4.2, 186.0)
+    person = people.pedestrian(stance=stances.leading(None, seed=3), seed=15, top="navy")
+    owner = stage.place(
+        person, "pedestrian", "man with a dog", here.at(0, 0), here.bearing_deg, state="standing", top="navy", holding="lead"
+    )
+    gx, gy, gz = stances.LEAD_GRIP
+    dog = companions.dog("golden", lead_to=(gx - 0.62, gy - 0.15, gz), collar="blue")
+    stage.place(
+        dog,
+        "dog",
+        "golden dog",
+        here.at(0.62, 0.15),
+        here.bearing_deg,
+        parent=owner,
+        colour="golden",
+        state="standing",
+        collar="blue",
+    )
+
+
+def _sitters(stage: Stage) -> None:
+    rows = (
+        (Plot(-6.42, -9.2, 90.0), 0.525, 71, True, "sitting at the bus stop"), (Plot(8.92, 1.0, 270.0), 0.47, 72, False,
+        "sitting on a bench"),
+        (Plot(-6.72, 20.5, 90.0), 0.47, 75, False, "sitting on a bench"),
+    )  # fmt: skip
+    for here, seat, seed, crossed, doing in rows:
+        built = people.pedestrian(stance=stances.sitting(seat, seed=seed, crossed=crossed), seed=seed)
+        stage.place(built, "pedestrian", f"person {doing}", here.at(0, 0), here.bearing_deg, state="sitting")
+    plot = plots()[5]
+    for x, side, seed in ((-2.4, 1, 73), (0.2, -1, 74)):
+        spot = plot.at(x + side * 0.72, 1.05 + 0.1 * side)
+        bearing = plot.bearing_deg - 90 * side + (20 if side > 0 else 160 % 90)
+        built = people.pedestrian(stance=stances.sitting(0.46, seed=seed), seed=seed)
+        stage.place(built, "pedestrian", "person sitting at the café", spot, bearing, state="sitting")
+
+
+def _indoors(stage: Stage) -> None:
+    """Shopkeepers and customers behind glass."""
+    for number, x, y, bearing, seed, who in (
+        (3, 1.4, -1.6, 0, 81, "butcher"), (9, -1.6, -1.7, 10, 82, "baker"), (6, -1.0, -1.5, 30, 83, "hairdresser"), (5, 1.8,
+        -1.4, -20, 84, "customer"),
+        (22, -1.4, -1.7, 15, 85, "greengrocer"), (14, -1.4, -1.6, -15, 86, "estate agent"),
+    ):  # fmt: skip
+        plot = plots()[number]
+        top = "white" if who in ("butcher", "baker") else None
+        built = people.pedestrian(pose="stand", top=top, seed=seed)
+        stage.place(
+            built,
+            "pedestrian",
+            f"{who} in the shop",
+            plot.at(x, y, 0.03),
+            plot.bearing_deg + bearing,
+            state="standing",
+            behind="glass",
+            role=who,
+        )
+
+
+def _pigeons(stage: Stage) -> None:
+    flock = (
+        (-4.9, -27.4, 20), (-5.3, -27.0, 130), (-4.6, -26.6, 250), (-5.6, -26.5, 300), (-5.0, -26.0, 75), (-4.5, -25.5, 190),
+        (-5.4, -25.2, 10),
+        (-5.9, -27.5, 95), (7.4, 8.4, 60), (7.8, 8.8, 200), (7.2, 9.1, 310),
+    )  # fmt: skip
+    looks = (
+        ("grey", "stand"),
+        ("grey", "peck"),
+        ("dark grey", "peck"),
+        ("brown", "stand"),
+        ("grey", "peck"),
+        ("white", "stand"),
+        ("dark grey", "stand"),
+    )
+    made: dict[tuple[str, str], Built] = {}
+    spots = [(x, y, KERB_M, b, looks[k % len(looks)]) for k, (x, y, b) in enumerate(flock)]
+    for number, xs in ((7, (-1.2, -0.8, 1.4)), (12, (2.0, 1.3))):
+        plot = plots()[number]
+        spots += [
+            (*plot.at(x, 0.28, 3.50), plot.bearing_deg + 40 * (k - 1), ("grey", "rest") if k % 2 else ("dark grey", "stand"))
+            for k, x in enumerate(xs)
+        ]
+    spots += [(-5.6, -9.0 - 0.5 * k, KERB_M + 2.47, 80 + 60 * k, ("grey", "stand") if k else ("grey", "rest")) for k in range(2)]
+    for x, y, z, bearing, look in spots:
+        built = made[look].copy() if look in made else made.setdefault(look, birds.pigeon(look[0], pose=look[1]))
+        state = {"stand": "standing", "peck": "pecking", "rest": "resting"}[look[1]]
+        stage.place(built, "pigeon", f"{look[0]} pigeon", (x, y, z), bearing, colour=look[0], state=state)

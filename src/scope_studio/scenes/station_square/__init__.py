@@ -1,0 +1,77 @@
+"""Scene "station-square": the forecourt of a town's railway station on a market morning."""
+
+from __future__ import annotations
+
+import bpy
+
+from scope_studio.kit.core.stage import Stage
+from scope_studio.kit.light import sky
+from scope_studio.scenes.station_square import beyond as station_square_beyond
+from scope_studio.scenes.station_square import furniture as station_square_furniture
+from scope_studio.scenes.station_square import ground as station_square_ground
+from scope_studio.scenes.station_square import life as station_square_life
+from scope_studio.scenes.station_square import market as station_square_market
+from scope_studio.scenes.station_square import people as station_square_people
+from scope_studio.scenes.station_square import town as station_square_town
+from scope_studio.scenes.station_square import traffic as station_square_traffic
+
+NAME = "station-square"
+TITLE = "Station square"
+ABSENT = (
+    "ambulance",
+    "ball",
+    "boat",
+    "bus",
+    "cat",
+    "child",
+    "crane",
+    "excavator",
+    "fire engine",
+    "horse",
+    "ladder",
+    "lorry",
+    "motorcycle",
+    "phone box",
+    "police car",
+    "scaffolding",
+    "skateboard",
+    "skip",
+    "traffic cone",
+    "traffic light",
+    "train",
+    "tent",
+)
+"""Things that a person might ask for and that are not there."""
+
+
+def build(stage: Stage) -> None:
+    """Build the whole scene in an empty Blender file and fill in the stage."""
+    stage.start_s = 27.0  # the cyclist, the traveller and the dog are in the home view then
+    sky.setup(
+        bpy.context.scene, sun_bearing_deg=128.0, sun_elevation_deg=31.0, sun_strength=5.6, sky_strength=0.72, cloud_cover=0.25
+    )
+    station_square_town.build(stage)
+    station_square_beyond.church(stage)
+    station_square_traffic.build(stage)
+    station_square_furniture.build(stage)
+    station_square_life.build(stage)
+    station_square_market.build(stage)
+    station_square_people.build(stage)
+    station_square_ground.build(stage)
+    station_square_beyond.build(stage)  # last: everything else slows down with each object that the file already holds
+    _cameras(stage)
+    stage.absent = list(ABSENT)
+    stage.finish = sky.finish_materials
+
+
+def _cameras(stage: Stage) -> None:
+    stage.viewpoint("kiosk", (4.0, -8.0, 6.4), 0.0, "camera on a lamp mast beside the news kiosk")
+    stage.viewpoint("hotel", (6.0, -27.4, 8.0), 0.0, "bracket on the front of the Station Hotel")
+    stage.preset("square", "kiosk", -24, -8, 1.0, "the market, the fountain and the station", home=True)
+    stage.preset("market", "kiosk", -52, -13, 2.0, "the market stalls and their customers")
+    stage.preset("terrace", "kiosk", -82, -9, 2.6, "the café terrace")
+    stage.preset("taxi-rank", "kiosk", 66, -13, 1.2, "the taxi rank and the shops on the eastern side")
+    stage.preset("forecourt", "hotel", -3, -13, 1.0, "the whole square with the station behind it")
+    stage.preset("tram-stop", "hotel", -60, -15, 1.7, "the tram at its stop")
+    stage.preset("news-stand", "hotel", 13, -14, 2.4, "the news kiosk with its headline boards")
+    stage.preset("approach", "hotel", 38, -9, 1.5, "the station approach with taxis and delivery van")

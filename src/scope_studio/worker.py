@@ -1,0 +1,84 @@
+"""The Blender side of the pipe: reads requests as JSON lines, does them, answers in JSON lines.
+
+Run by its path, with Blender's own Python or as ``blender --background --python worker.py``. Every answer starts with ``MARK``,
+so that whatever Blender prints cannot be mistaken for one; its own output goes to the error stream.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import os
+import sys
+import traceback
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+MARK = "@scope "
+
+
+def adopt_packages() -> None:
+    """Make ``scope_ptz`` and ``scope_studio`` importable without putting their neighbours (another NumPy, perhaps) on the path."""
+    for name in ("scope_ptz", "scope_studio"):
+        home = Path(__file__).resolve().parents[1] / name
+        spec = importlib.util.spec_from_file_location(name, home / "__init__.py", submodule_search_locations=[str(home)])
+        if spec is None or spec.loader is None:
+            raise ImportError(f"no package at {home}")
+        module = importlib.util.module_from_spec(spec)
+        sys.modules[name] = module
+        spec.loader.exec_module(module)
+
+
+class Channel:
+    """The worker's end of the pipe."""
+
+    def __init__(self) -> None:
+        self._out = os.fdopen(os.dup(1), "w", encoding="utf-8")
+        os.dup2(2, 1)
+        self._in = sys.stdin
+        self._number = 0
+
+    def send(self, message: dict[str, Any]) -> None:
+        self._out.write(f"{MARK}{json.dumps(message)}\n")
+        self._out.flush()
+
+    def serve(self, operations: dict[str, Callable[..., Any]]) -> None:
+        """Answer requests until the pipe closes or one says "quit"."""
+        for line in self._in:
+            request = json.loads(line)
+            if request["op"] == "quit":
+                return
+            self._number = request["id"]
+            try:
+                result = operations[request["op"]](**request["params"])
+            except Exception as error:  # whatever went wrong in Blender is the answer
+                traceback.print_exc()
+                self.send({"id": self._number, "error": f"{type(error).__name__}: {error}"})
+            else:
+                self.send({"id": self._number, "result": result})
+
+    def progress(self, done: int, total: int) -> None:
+        """How far the operation under way has come."""
+        self.send({"id": self._number, "progress": [done, total]})
+
+
+def main() -> None:
+    """Announce the Blender version, then serve."""
+    channel = Channel()
+    import bpy
+
+    from scope_studio.operations import operations
+
+    channel.send({"hello": bpy.app.version_string})
+    channel.serve(operations(channel.progress))
+
+
+if __name__ == "__main__":
+    folder = str(Path(__file__).resolve().parent)
+    sys.path[:] = [p for p in sys.path if p != folder]
+    adopt_packages()
+    from scope_studio.worker import main as adopted_main
+
+    adopted_main()
+    os._exit(0)  # Blender's own teardown can hang or crash with nothing left to save

@@ -1,0 +1,41 @@
+"""A small dataset of the synthetic scene, made and proved once."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import anyio
+import pytest
+
+from scope_ptz.bench.tasks.task import Category
+from scope_ptz.cli.bench_eyes import answered, equip_with_truth
+from scope_ptz.simulator.pack import Scene
+from scope_ptz.taskgen.authoring.assembly import Built, build
+from scope_ptz.taskgen.validation.validate import Report, validate
+
+QUOTAS: dict[Category, int] = {
+    "counting": 8,
+    "descriptor": 4,
+    "location": 6,
+    "ocr": 1,
+    "single_call": 8,
+    "multi_step_command": 6,
+    "multi_step_reasoning": 4,
+    "comparative": 4,
+}
+
+
+@pytest.fixture(scope="session")
+def built(analytic_scene: Scene) -> Built:
+    return build([analytic_scene], 1, QUOTAS, None, answered)
+
+
+@pytest.fixture(scope="session")
+def report(built: Built, analytic_scene: Scene) -> Report:
+    scenes = {analytic_scene.name: analytic_scene}
+    return anyio.run(lambda: validate(built.tasks, scenes, equip_with_truth(scenes)))
+
+
+@pytest.fixture(scope="session")
+def scenes_root(analytic_folder: Path) -> Path:
+    return analytic_folder.parent

@@ -1,0 +1,53 @@
+"""A few tasks of a scene that ships, and of two scenes together: made, worded, proved."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+
+import anyio
+import pytest
+
+from scope_ptz.bench.tasks.expected import NoneThere
+from scope_ptz.bench.tasks.task import Category
+from scope_ptz.cli.bench_eyes import KnownViews, equip_with_truth
+from scope_ptz.cli.bench_report import report_lines
+from scope_ptz.simulator.pack import Scene, load_scene
+from scope_ptz.taskgen.authoring.assembly import QUOTAS, Built, build
+from scope_ptz.taskgen.validation.validate import validate
+
+FEW: dict[Category, int] = {**dict.fromkeys(QUOTAS, 2), "counting": 6, "descriptor": 4, "ocr": 1}
+
+
+@pytest.fixture(scope="module")
+def two_scenes(analytic_scene: Scene) -> dict[str, Scene]:
+    return {"highway-works": load_scene("highway-works"), analytic_scene.name: analytic_scene}
+
+
+@pytest.fixture(scope="module")
+def made(two_scenes: dict[str, Scene]) -> Built:
+    return build(list(two_scenes.values()), 3, FEW)
+
+
+def test_both_scenes_have_their_share(made: Built, two_scenes: dict[str, Scene]) -> None:
+    assert not made.short
+    per_scene = Counter(task.scene for task in made.tasks if task.stratum == "core" and task.category == "counting")
+    assert set(per_scene) == set(two_scenes)
+    assert max(per_scene.values()) - min(per_scene.values()) <= 2
+
+
+def test_all_of_it_is_proved(made: Built, two_scenes: dict[str, Scene]) -> None:
+    views = KnownViews()
+    report = anyio.run(lambda: validate(made.tasks, two_scenes, equip_with_truth(two_scenes, views), look=views.look))
+    assert report.sound, "\n".join(report_lines(report))
+    assert not report.disagreements
+    assert report.absences == sum(isinstance(t.expected, NoneThere) for t in made.tasks if t.stratum == "core")
+
+
+def test_the_english_is_clean(made: Built) -> None:
+    for task in made.tasks:
+        text = task.instruction
+        assert text[0].isupper() or text[0] == '"'
+        assert text[-1] in ".?"
+        assert not re.search(r"  |\{|\}|\ba [aeio]\w*|\ban [bcdfgjklpqrtvwxyz]\w*|\.\.|,\.", text), text
+        assert not any(thing in text for thing in ("-01", "-02", "scope1"))

@@ -1,0 +1,198 @@
+"""A dataset of the synthetic scene: quotas, distinctness, pairs, the same bytes again, and that faults are caught."""
+
+from __future__ import annotations
+
+import os
+import random
+import subprocess
+import sys
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+
+import anyio
+import pytest
+
+from scope_ptz.bench.tasks.expected import Choice, NoneThere, Number, YesNo
+from scope_ptz.bench.tasks.files import dump_tasks, load_tasks
+from scope_ptz.bench.tasks.task import Task
+from scope_ptz.cli.bench_eyes import equip_with_truth
+from scope_ptz.cli.bench_report import report_lines
+from scope_ptz.simulator.pack import Scene
+from scope_ptz.taskgen.authoring.assembly import QUOTAS as PUBLISHED
+from scope_ptz.taskgen.authoring.assembly import Built
+from scope_ptz.taskgen.authoring.reactions import reactions
+from scope_ptz.taskgen.facts.phrasing import offered
+from scope_ptz.taskgen.validation.adversarial import common_answers
+from scope_ptz.taskgen.validation.validate import Report, structure, validate
+from tests.taskgen.authoring.conftest import QUOTAS
+
+
+def core(built: Built) -> list[Task]:
+    return [task for task in built.tasks if task.stratum == "core"]
+
+
+def prove(tasks: list[Task], scene: Scene) -> Report:
+    scenes = {scene.name: scene}
+    return anyio.run(lambda: validate(tasks, scenes, equip_with_truth(scenes)))
+
+
+def test_the_published_numbers_are_the_papers() -> None:
+    assert sum(PUBLISHED.values()) == 536
+
+
+def test_quotas_are_filled_or_what_is_short_is_told(built: Built) -> None:
+    counts = Counter(task.category for task in core(built))
+    assert {name: counts[name] + built.short.get(name, 0) for name in QUOTAS} == QUOTAS
+    assert counts["counting"] == QUOTAS["counting"]
+
+
+_BUILD = """
+import sys
+from pathlib import Path
+from scope_ptz.taskgen.authoring.assembly import build
+from scope_ptz.bench.tasks.files import dump_tasks
+from scope_ptz.cli.bench_eyes import answered
+from scope_ptz.simulator.pack import Scene
+from tests.taskgen.authoring.conftest import QUOTAS
+folder, seed, out = sys.argv[1:]
+dump_tasks(build([Scene(Path(folder))], int(seed), QUOTAS, None, answered).tasks, Path(out))
+"""
+
+
+def test_the_same_seed_makes_the_same_bytes_and_another_seed_does_not(built: Built, analytic_folder: Path, tmp_path: Path) -> None:
+    """In a process of its own, where strings and sets hash otherwise."""
+    files = [tmp_path / f"{n}.jsonl" for n in range(3)]
+    dump_tasks(built.tasks, files[0])
+    for seed, hashes, file in ((1, "4711", files[1]), (2, "0", files[2])):
+        environment = {**os.environ, "PYTHONHASHSEED": hashes}
+        subprocess.run([sys.executable, "-c", _BUILD, str(analytic_folder), str(seed), str(file)], env=environment, check=True)
+    one, same, another = (file.read_bytes() for file in files)
+    assert one == same != another
+    assert load_tasks(files[0]) == tuple(built.tasks)
+
+
+def test_a_selection_may_leave_a_twin_behind(built: Built) -> None:
+    alone = [task for task in built.tasks if task.pair is not None][:1]
+    assert [fault.attempt for fault in structure(alone)] == ["pair"]
+    assert not structure(alone, beside=built.tasks)
+
+
+def test_no_two_ask_the_same(built: Built) -> None:
+    assert not structure(built.tasks)
+    views = Counter((t.evidence[0].aim, t.evidence[0].scope, t.expected, t.tags) for t in core(built) if t.category == "counting")
+    assert max(views.values()) == 1
+    assert len({task.id for task in built.tasks}) == len(built.tasks)
+
+
+def test_absences_stand_beside_presences_of_like_wording(built: Built) -> None:
+    by_id = {task.id: task for task in built.tasks}
+    absences = [task for task in core(built) if isinstance(task.expected, NoneThere)]
+    assert absences
+    for task in absences:
+        twin = by_id[task.pair or ""]
+        assert twin.pair == task.id
+        assert not isinstance(twin.expected, NoneThere)
+        assert task.preset == twin.preset or task.evidence[0].aim.viewpoint == twin.evidence[0].aim.viewpoint
+
+
+def test_a_sum_over_two_views_counts_nothing_twice(built: Built) -> None:
+    for task in core(built):
+        if len(task.evidence) > 1 and isinstance(task.expected, Number) and not {"sort:difference", "sort:excess"} & set(task.tags):
+            things = [item.instance for view in task.evidence for item in view.items]
+            assert len(things) == len(set(things)) == task.expected.value
+
+
+def test_paraphrases_expect_what_their_task_expects(built: Built) -> None:
+    by_id = {task.id: task for task in built.tasks}
+    wordings = [task for task in built.tasks if task.stratum == "paraphrase"]
+    assert wordings
+    for task in wordings:
+        original = by_id[task.paraphrase_of or ""]
+        assert task.instruction != original.instruction
+        assert (task.expected, task.behaviour, task.reference) == (original.expected, original.behaviour, original.reference)
+
+
+def test_everything_is_proved(report: Report) -> None:
+    assert report.sound, "\n".join(report_lines(report))
+    assert not report.disagreements
+    assert report.passed["reference"] == report.tasks
+    assert all(share == 0 for share in report.cheat_shares.values())
+    assert {"nothing", "guess", "blind", "stay", "wrong-answer", "ignored", "wrong-pose"} <= set(report.tried)
+
+
+def test_no_answer_passes_both_tasks_of_a_pair(report: Report, built: Built) -> None:
+    twins = {task.id: task.pair for task in core(built)}
+    assert set(report.guessed) >= {f"looked-and-guessed: {guess}" for guess in ("none", "0", "yes", "no", "most common")}
+    for name, ids in report.guessed.items():
+        assert not any(twins[one] in ids for one in ids), name
+        assert report.whole[name] == sum(twins[one] is None for one in ids)
+    none = set(report.guessed["looked-and-guessed: none"])
+    # Beside absences "none" is right only where something in a single task is not so.
+    denied = {task.id for task in core(built) if isinstance(task.expected, YesNo) and not task.expected.value}
+    assert none and {one for one in none if twins[one] is None} <= denied
+
+
+def test_what_a_question_offers() -> None:
+    sides = Choice(value="right", options={"left": ("left half",), "right": ("right half",)})
+    assert offered(sides, "Turn 20 degrees to the right. Is the car in the left or the right half?") == ("left", "right")
+    assert offered(sides, "On which side is the car?") == ()
+    assert offered(Number(value=2), "How many cars or vans are there?") == ()
+    three = Choice(value="bus", options={"red car": (), "van": (), "bus": (), "same": ()})
+    assert offered(three, "Which is nearest: the van, the red car or the bus?") == ("van", "red car", "bus")
+
+
+def test_the_most_common_answer_stands_without_the_words_of_its_question(built: Built) -> None:
+    counts = [task.expected for task in core(built) if task.category == "counting" and task.pair is None]
+    common = Counter(f"{e.value:g}" for e in counts if isinstance(e, Number)).most_common(1)[0][0]
+    assert common_answers(built.tasks, presences=True)["counting"] == common
+
+
+def wrong_count(task: Task) -> Task:
+    assert isinstance(task.expected, Number)
+    return task.model_copy(update={"expected": task.expected.model_copy(update={"value": task.expected.value + 1})})
+
+
+def without_evidence_of_looking(task: Task) -> Task:
+    views = tuple(view.model_copy(update={"must_look": False}) for view in task.evidence)
+    return task.model_copy(update={"evidence": views, "behaviour": task.behaviour.model_copy(update={"final": None})})
+
+
+def elsewhere(task: Task) -> Task:
+    final = task.behaviour.final
+    assert final is not None
+    moved = final.model_copy(update={"pan_deg": final.pan_deg + 2.0})
+    return task.model_copy(update={"behaviour": task.behaviour.model_copy(update={"final": moved})})
+
+
+@pytest.mark.parametrize(("spoil", "caught"), [(without_evidence_of_looking, "cheated"), (elsewhere, "faults")])
+def test_a_spoilt_task_is_caught(built: Built, analytic_scene: Scene, spoil: Callable[[Task], Task], caught: str) -> None:
+    task = next(t for t in core(built) if t.category == "counting" and isinstance(t.expected, Number) and t.behaviour.final)
+    spoilt = prove([spoil(task).model_copy(update={"pair": None})], analytic_scene)
+    assert not spoilt.sound
+    assert getattr(spoilt, caught)
+
+
+def test_a_wrong_expected_count_is_told(built: Built, analytic_scene: Scene) -> None:
+    task = next(t for t in core(built) if t.category == "counting" and isinstance(t.expected, Number))
+    spoilt = prove([wrong_count(task).model_copy(update={"pair": None})], analytic_scene)
+    assert not spoilt.sound
+    assert [fault.attempt for fault in spoilt.faults] == ["truth"]
+
+
+def test_a_twin_that_is_gone_is_told(built: Built) -> None:
+    task = next(t for t in core(built) if t.pair)
+    assert [fault.attempt for fault in structure([task])] == ["pair"]
+
+
+def test_reactions_leave_the_camera_alone(analytic_scene: Scene) -> None:
+    tasks, missing = reactions([analytic_scene], 1)
+    assert missing == 0 and len(tasks) >= 40
+    assert len({task.instruction for task in tasks}) == len(tasks)
+    assert prove(random.Random(1).sample(tasks, 3), analytic_scene).sound
+
+
+def test_a_preset_that_is_gone_is_told(built: Built, analytic_scene: Scene) -> None:
+    task = next(t for t in core(built) if t.pair is None).model_copy(update={"preset": "old-gate"})
+    report = prove([task], analytic_scene)
+    assert [fault.reason for fault in report.faults] == ["the scene has no preset old-gate"]

@@ -1,0 +1,182 @@
+"""Drafts of a scripted model server: good ones are proved and kept, wrong and malicious ones dropped with the reason."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from scope_ptz.agent.records import Labels
+from scope_ptz.bench.tasks.files import load_tasks
+from scope_ptz.errors import InputError
+from scope_ptz.taskgen.generating.ledger import Ledger
+from scope_ptz.taskgen.generating.operators import read_runs
+from scope_ptz.taskgen.generating.schema import Draft, read_draft, read_reply, reply_schema
+from tests.cli.conftest import Scope, scenes, scope
+from tests.support import misbehaving as m
+
+__all__ = ["scenes", "scope"]
+
+TO_YARD = {"moves": [{"preset": "yard"}]}
+BALL, BLOCK, BOARD = {"category": "ball"}, {"category": "block"}, {"category": "board"}
+
+
+def draft(instruction: str, category: str, program: str, expected: str, **further: Any) -> dict[str, Any]:
+    given: dict[str, Any] = {"start": "board", "views": [TO_YARD], "things": [BALL]}
+    return {"instruction": instruction, "category": category, "program": program, "expected": expected, **given, **further}
+
+
+COUNT = draft("Go to the yard preset and count the balls.", "counting", "count", "3")
+TURNED = {"moves": [{"preset": "yard"}, {"pan_deg": 30.0}]}
+GOOD = [
+    COUNT,
+    draft("From the yard preset turn thirty degrees right: how many balls?", "counting", "count", "two", views=[TURNED]),
+    draft(
+        "Bring up the board preset and tell me what the board says.", "ocr", "text", "NO ENTRY",
+        start="yard", views=[{"moves": [{"preset": "board"}]}], things=[BOARD],
+    ),
+    draft("In the yard view, are there more balls or more blocks?", "comparative", "most", "balls", things=[BALL, BLOCK]),
+    draft("Pan left by 12 degrees.", "single_call", "action", "", start="yard", views=[{"moves": [{"pan_deg": -12.0}]}], things=[]),
+]  # fmt: skip
+BAD = {
+    "the ground truth says": {**COUNT, "expected": "4"},
+    "has no preset 'attic'": {**COUNT, "instruction": "Count the balls at attic.", "views": [{"moves": [{"preset": "attic"}]}]},
+    "moves.0.preset": {**COUNT, "views": [{"moves": [{"preset": "../../etc/passwd"}]}]},
+    "Extra inputs are not permitted": {**COUNT, "code": "__import__('os').system('touch owned')"},
+    "cannot be printed": {**COUNT, "instruction": "Count the balls at yard.\x1b]0;owned\x07"},
+    "does not say 25": {**COUNT, "views": [{"moves": [{"preset": "yard"}, {"pan_deg": 25.0}]}]},
+    "does not name the preset 'yard'": {**COUNT, "instruction": "Count the balls there."},
+    "does not name the ball": {**COUNT, "instruction": "Count the cars at yard."},
+    "no 'dragon'": {**COUNT, "instruction": "Count the dragons at yard.", "things": [{"category": "dragon"}]},
+    "makes no task of the category": {**COUNT, "category": "ocr"},
+    "either names a preset or turns": {**COUNT, "views": [{"moves": [{"preset": "yard", "pan_deg": 3.0}]}]},
+    "beyond the camera's limits": {
+        **COUNT, "instruction": "Tilt down 60 at yard and count the balls.",
+        "views": [{"moves": [{"preset": "yard"}, {"tilt_deg": -60.0}]}],
+    },
+    "program: Input should be": {**COUNT, "program": "exec"},
+    "holds its answer": draft(
+        "At the board preset, read the board that says NO ENTRY.", "ocr", "text", "NO ENTRY",
+        start="yard", views=[{"moves": [{"preset": "board"}]}], things=[BOARD],
+    ),
+    "would be counted twice": draft(
+        "Add up the blocks at yard and those seen after a turn of 30 degrees to the right.", "multi_step_reasoning", "sum", "3",
+        views=[TO_YARD, {"moves": [{"pan_deg": 30.0}]}], things=[BLOCK],
+    ),
+    "does not say that all around is meant": {**COUNT, "views": [{**TO_YARD, "sweep": True}]},
+    "Input should be": "count the balls",
+}  # fmt: skip
+NEAR = {**COUNT, "instruction": "Please go to the yard preset and count the balls."}
+WANTED = ("--want", "counting=2", "--want", "ocr=1", "--want", "comparative=1", "--want", "single_call=1")
+
+
+def says(*drafts: Any) -> m.Behaviour:
+    return m.good(m.Say(json.dumps({"drafts": drafts})))
+
+
+def test_good_drafts_are_proved_and_kept_and_no_request_is_made_twice(scope: Scope, tmp_path: Path) -> None:
+    out = tmp_path / "made"
+    more = [draft("Look at the yard preset: is there a ball?", "descriptor", "exists", "yes")]
+    with m.Misbehaving([says(*GOOD, NEAR, COUNT), m.good(m.Say("Sorry, no.")), says(*more)]) as server:
+        options = ("bench", "generate", "--scene", "analytic-yard", "--url", server.url, "--model", "drafter", "--out", str(out))
+        first = scope(*options, *WANTED, "--requests", "1")
+        assert first.code == 0, first.err
+        second = scope(*options, *WANTED, "--want", "descriptor=1", "--requests", "3")
+        assert second.code == 0, second.err
+        third = scope(*options, *WANTED, "--requests", "3")
+        assert third.code == 0 and len(server.requests) == 3
+    tasks = load_tasks(out / "tasks.jsonl")
+    assert [task.category for task in tasks] == ["counting", "counting", "ocr", "comparative", "single_call", "descriptor"]
+    assert [task.expected.model_dump().get("value") for task in tasks] == [3.0, 2.0, None, "balls", None, True]
+    assert all(task.scene == "analytic-yard" and "generated" in task.tags for task in tasks)
+    fates = [entry.fate for entry in Ledger(out).entries]
+    assert fates == ["kept"] * 5 + ["dropped", "dropped", "no reply", "kept"]
+    review = (out / "review.md").read_text()
+    assert "- [ ] scope1-analytic-yard-generated-ocr-003" in review and "no more tasks of the category counting" in review
+    assert "generate" not in first.err or "request 1: 5 kept, 2 dropped" in first.err
+
+
+def test_what_the_model_is_told(scope: Scope, tmp_path: Path) -> None:
+    with m.Misbehaving([says(GOOD[4])]) as server:
+        done = scope(
+            "bench", "generate", "--scene", "analytic-yard", "--url", server.url, "--out", str(tmp_path / "made"),
+            "--model", "drafter", "--want", "single_call=1",
+        )  # fmt: skip
+    assert done.code == 0, done.err
+    (request,) = server.requests
+    told = json.loads(request.data["messages"][1]["content"])
+    assert told["inventory"]["ball"] == {"no colour": 5}
+    assert told["absent from the whole scene"] == ["zebra"]
+    (yard,) = [view for view in told["views"] if view["preset"] == "yard"]
+    assert yard["surely shows"]["ball"] == 3 and yard["changes"]["pan +30"]["ball"] == "3 -> 2"
+    assert yard["texts that can be read"] == ["NO ENTRY"]
+    assert told["wanted"] == {"single_call": {"drafts": 1, "programs": ["action"]}}
+    assert request.data["response_format"]["json_schema"]["schema"] == reply_schema()
+
+
+def test_wrong_and_malicious_drafts_are_dropped_with_the_reason(scope: Scope, tmp_path: Path) -> None:
+    out, rows = tmp_path / "made", list(BAD.values())
+    with m.Misbehaving([says(COUNT, *rows[:9]), says(NEAR, *rows[9:])]) as server:
+        done = scope(
+            "bench", "generate", "--scene", "analytic-yard", "--url", server.url, "--model", "drafter", "--out", str(out),
+            "--want", "counting=5", "--want", "ocr=5", "--want", "multi_step_reasoning=5", "--requests", "2",
+        )  # fmt: skip
+        told = json.loads(server.requests[1].data["messages"][1]["content"])
+    assert done.code == 1 and "still missing: 4 of counting" in done.err
+    entries = Ledger(out).entries
+    assert [entry.fate for entry in entries] == ["kept", *["dropped"] * 9, "near-duplicate", *["dropped"] * (len(rows) - 9)]
+    reasons = [entry.reason for entry in entries if entry.fate == "dropped"]
+    assert [wanted for wanted, reason in zip(BAD, reasons, strict=True) if wanted not in reason] == []
+    assert any("does not name the ball" in reason for reason in told["why earlier drafts were dropped"])
+    assert {path.name for path in out.iterdir()} == {"drafts.jsonl", "tasks.jsonl", "review.md"}
+    assert not (tmp_path / "owned").exists()
+    assert "\x1b" not in (out / "review.md").read_text()
+
+
+def test_a_server_that_never_answers_ends_it_and_nothing_is_lost(scope: Scope, tmp_path: Path) -> None:
+    out = tmp_path / "made"
+    with m.Misbehaving([says(COUNT), m.good(m.Say("no")), m.good(m.Say("[")), m.good(m.Say('{"drafts": 3}'))]) as server:
+        done = scope(
+            "bench", "generate", "--scene", "analytic-yard", "--url", server.url, "--model", "drafter", "--out", str(out),
+            "--want", "counting=5",
+        )  # fmt: skip
+    assert done.code == 1 and "3 requests in a row brought no drafts" in done.err
+    assert len(load_tasks(out / "tasks.jsonl")) == 1
+
+
+@pytest.mark.parametrize("want", ["counting", "sums=3", "counting=0", "counting=-1"])
+def test_a_wish_that_is_none_is_told(scope: Scope, tmp_path: Path, want: str) -> None:
+    done = scope(
+        "bench", "generate", "--scene", "analytic-yard", "--url", "http://127.0.0.1:9/v1", "--out", str(tmp_path), "--want", want
+    )
+    assert done.code == 2 and "counting=5" in done.err
+
+
+def test_replies_may_be_fenced_and_a_bare_list() -> None:
+    assert read_reply(f"```json\n{json.dumps([COUNT])}\n```") == [COUNT]
+    assert isinstance(read_draft(COUNT), Draft)
+    with pytest.raises(ValueError, match="no JSON"):
+        read_reply("[" * 100_000)
+    with pytest.raises(ValueError, match="longer"):
+        read_reply("x" * 300_000)
+    assert "instruction" in str(read_draft({**COUNT, "instruction": ["a"]}))
+    assert "pan_deg" in str(read_draft({**COUNT, "views": [{"moves": [{"pan_deg": float("nan")}]}]}))
+
+
+def test_runs_of_operators_are_told_with_their_feedback(scope: Scope, tmp_path: Path) -> None:
+    done = scope("ask", "count the balls", "--scene", "analytic-yard", "--json")
+    assert done.code == 0, done.err
+    (run,) = (tmp_path / "runs").iterdir()
+    feedback = tmp_path / "feedback.jsonl"
+    feedback.write_text(json.dumps({"run": run.name, "rating": "bad", "note": "It missed one."}) + "\n")
+    (read,) = read_runs(tmp_path / "runs", feedback)
+    assert read.told()["asked"] == "count the balls" and read.told()["operator said"] == "bad: It missed one."
+    assert read.trace.started.labels == Labels(perception_note=read.trace.started.labels.perception_note, seed=0)
+    feedback.write_text(json.dumps({"run": "../elsewhere", "rating": "bad"}) + "\n")
+    with pytest.raises(InputError, match="not in"):
+        read_runs(tmp_path / "runs", feedback)
+    feedback.write_text('{"run": "x", "rating": "fine"}\n')
+    with pytest.raises(InputError, match="line 1: rating"):
+        read_runs(tmp_path / "runs", feedback)
