@@ -31,8 +31,8 @@ from scope_ptz.bench.scoring.verdict import judge
 from scope_ptz.bench.tasks.splits import load_split
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.camera.simulated import SimulatedCamera
-from scope_ptz.cli.bench_eyes import KnownViews
 from scope_ptz.cli.bench_inputs import worlds_of
+from scope_ptz.cli.bench_perception import KnownViews
 from scope_ptz.perception.base import Perception
 from scope_ptz.perception.ground_truth import GroundTruthPerception
 from scope_ptz.perception.noisy import NoisyPerception
@@ -123,11 +123,11 @@ def _eyes(name: str, worlds: Mapping[str, Scene]) -> Perception:
         return NoisyPerception(truth, seed=NOISE_SEED)
     if name == "truth":
         return truth
-    from scope_ptz.perception.backends import make_eyes
-    from scope_ptz.perception.backends.spec import EyesSpec
+    from scope_ptz.perception.backends import make_backend
+    from scope_ptz.perception.backends.spec import BackendSpec
     from scope_ptz.perception.router import RouterPerception
 
-    return RouterPerception(reader=make_eyes(EyesSpec(name="rapidocr", backend="ocr")), detector=truth, answerer=truth)
+    return RouterPerception(reader=make_backend(BackendSpec(name="rapidocr", backend="ocr")), detector=truth, answerer=truth)
 
 
 async def _run(task: Task, world: Scene, perception: Perception, *, drawn: bool) -> Trace:

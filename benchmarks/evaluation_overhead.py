@@ -18,19 +18,19 @@ from rich.console import Console
 
 from scope_ptz.agent.loop import Agent
 from scope_ptz.agent.store import NoImages, RunFolder
-from scope_ptz.bench.engine.context import Equipment, ModelWish
+from scope_ptz.bench.engine.context import EvalContext, ModelRequest
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.programs import BlankCamera
 from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.cli.bench_equipment import lend, planner_for
 from scope_ptz.cli.bench_evaluate import RunOptions, evaluate
-from scope_ptz.cli.choosing import EyesChoice, PlannerChoice, Wishes
+from scope_ptz.cli.choosing import ModelOptions, ResolvedPerception, ResolvedPlanner
 from scope_ptz.simulator.clock import SceneClock
 
 
-async def bare(entries: tuple[Entry, ...], lent: Equipment, folder: Path, *, pictures: bool) -> float:
+async def bare(entries: tuple[Entry, ...], lent: EvalContext, folder: Path, *, pictures: bool) -> float:
     """Processor seconds for all runs, one after the other, without any engine."""
-    planner, eyes = planner_for(PlannerChoice("grammar")), await lent.make_eyes(ModelWish("ground-truth"))
+    planner, eyes = planner_for(ResolvedPlanner("grammar")), await lent.make_perception(ModelRequest("ground-truth"))
     began = time.process_time()
     for entry in entries:
         clock, scene = SceneClock(entry.time_s), lent.open_scene(entry.world)
@@ -43,13 +43,13 @@ async def bare(entries: tuple[Entry, ...], lent: Equipment, folder: Path, *, pic
 
 
 async def main(tasks: Path, *, pictures: bool) -> None:
-    lent = lend(seed=1, eyes=EyesChoice("ground-truth"))
+    lent = lend(seed=1, eyes=ResolvedPerception("ground-truth"))
     entries = lent.load_tasks(str(tasks))
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
         await bare(entries[:3], lent, folder, pictures=pictures)  # scenes read, grammar compiled
         alone = await bare(entries, lent, folder, pictures=pictures)
-        options = RunOptions(wishes=Wishes(), out=folder / "logs", tasks=str(tasks), pictures=pictures, concurrency=1)
+        options = RunOptions(wishes=ModelOptions(), out=folder / "logs", tasks=str(tasks), pictures=pictures, concurrency=1)
         console = Console(quiet=True)
         await evaluate(replace(options, limit=3), console)  # the engine imported
         began = time.process_time()

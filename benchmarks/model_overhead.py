@@ -31,8 +31,8 @@ import openai
 from scope_ptz.camera.base import Frame
 from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose
-from scope_ptz.perception.backends import make_eyes
-from scope_ptz.perception.backends.spec import EyesSpec
+from scope_ptz.perception.backends import make_backend
+from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.encoding import JPEG_QUALITY
 from scope_ptz.planner.base import Briefing, Exchange, State, ToolCall, ToolOutcome
 from scope_ptz.planner.chat.messages import build_messages
@@ -191,9 +191,11 @@ async def _planner_cases(url: str, bare: openai.AsyncOpenAI) -> dict[str, tuple[
 async def _eyes_cases(url: str, bare: openai.AsyncOpenAI, frames: _Frames) -> dict[str, tuple[Work, Work]]:
     http = httpx2.AsyncClient()
     at = Endpoint(url=url, model=MODEL)
-    moondream = make_eyes(EyesSpec(name="moondream", backend="moondream", endpoint=at))
-    kinds = {name: EyesSpec(name=name, backend="openai_vision", model=MODEL, endpoint=at, coordinates=name) for name in COORDINATES}
-    visions = {name: make_eyes(spec) for name, spec in kinds.items()}
+    moondream = make_backend(BackendSpec(name="moondream", backend="moondream", endpoint=at))
+    kinds = {
+        name: BackendSpec(name=name, backend="openai_vision", model=MODEL, endpoint=at, coordinates=name) for name in COORDINATES
+    }
+    visions = {name: make_backend(spec) for name, spec in kinds.items()}
 
     async def plain() -> object:
         reply = await http.post(f"{url}/detect", json={"image_url": _data_url(frames.next()), "object": "cones", "stream": False})

@@ -63,7 +63,7 @@ def test_eyes_that_fail_are_an_error_to_the_planner_and_counted(scope: Scope, tm
             "m",
             "--perception",
             "moondream",
-            "--eyes-url",
+            "--perception-url",
             eyes.url,
             "--json",
         )
@@ -81,7 +81,7 @@ def test_eyes_that_fail_are_an_error_to_the_planner_and_counted(scope: Scope, tm
 def test_a_count_of_places_that_were_partly_lost_is_a_lower_bound(scope: Scope, tmp_path: Path) -> None:
     box = {"x_min": 0.1, "y_min": 0.1, "x_max": 0.2, "y_max": 0.2}
     with Misbehaving(then=good(moondream={"detect": {"objects": [box, {**box, "x_min": "left"}]}})) as eyes:
-        done = scope(*ASK, "--perception", "moondream", "--eyes-url", eyes.url, "--json")
+        done = scope(*ASK, "--perception", "moondream", "--perception-url", eyes.url, "--json")
     assert "at least 1 cone" in shown(done, tmp_path)
     assert done.json["tool_calls"][0]["result"]["complete"] is False
 

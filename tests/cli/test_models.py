@@ -60,7 +60,7 @@ def test_the_nineteen_pairs(scope: Scope) -> None:
 
 def test_a_pair_by_name_on_two_servers(scope: Scope) -> None:
     with Misbehaving(then=good(follow_script)) as brain, Misbehaving() as eyes:
-        done = ask(scope, "--pair", "qwen3-30b-a3b+moondream3", "--planner-url", brain.url, "--eyes-url", eyes.url)
+        done = ask(scope, "--pair", "qwen3-30b-a3b+moondream3", "--planner-url", brain.url, "--perception-url", eyes.url)
         assert done.code == 0, done.err
         assert MODEL in done.err  # the server serves another model, and that is said
         assert [r.path.rpartition("/")[2] for r in eyes.requests] == ["detect"]
@@ -120,7 +120,7 @@ def test_users_models_and_their_addresses(scope: Scope, tmp_path: Path, monkeypa
 def test_keys_come_from_the_environment_and_stay_there(scope: Scope, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SCOPE_PLANNER_KEY", KEY)
     with Misbehaving(then=good(follow_script)) as brain, Misbehaving() as eyes:
-        done = ask(scope, "--planner-url", brain.url, "--perception", "moondream2", "--eyes-url", eyes.url)
+        done = ask(scope, "--planner-url", brain.url, "--perception", "moondream2", "--perception-url", eyes.url)
         assert done.code == 0
         assert all(r.headers["authorization"] == f"Bearer {KEY}" for r in brain.requests)
         assert not any(KEY in str(r.headers) for r in eyes.requests)
@@ -161,7 +161,7 @@ def test_a_backend_of_ones_own_gets_the_address_of_its_model_or_of_the_environme
         assert ask(scope, "--perception", "our_eyes").code == 2
         monkeypatch.setenv("SCOPE_MODELS", str(file))
         assert ask(scope, "--perception", "mine").json["tool_calls"][0]["error"] is None
-        monkeypatch.setenv("SCOPE_EYES_URL", server.url)
+        monkeypatch.setenv("SCOPE_PERCEPTION_URL", server.url)
         assert ask(scope, "--perception", "our_eyes").json["tool_calls"][0]["error"] is None
         assert len(server.requests) == 2
 
@@ -190,7 +190,7 @@ WRONG = {
     "an unknown option": ("--planner-url", "http://127.0.0.1:9/v1", "--planner-option", "hurry=1"),
     "an option without a value": ("--planner-url", "http://127.0.0.1:9/v1", "--planner-option", "hurry"),
     "the grammar has no server": ("--planner", "grammar", "--planner-url", "http://127.0.0.1:9/v1"),
-    "ground truth has no server": ("--perception", "noisy", "--eyes-url", "http://127.0.0.1:9/v1"),
+    "ground truth has no server": ("--perception", "noisy", "--perception-url", "http://127.0.0.1:9/v1"),
     "a reader beside ground truth": ("--reader", "rapidocr"),
 }
 
@@ -213,7 +213,7 @@ def test_eyes_are_composed(scope: Scope) -> None:
     with Misbehaving() as eyes:
         done = scope(
             "ask", "what colour is the van?", "--scene", SCENE, "--json",
-            "--perception", "moondream3", "--eyes-url", eyes.url, "--reader", "rapidocr",
+            "--perception", "moondream3", "--perception-url", eyes.url, "--reader", "rapidocr",
         )  # fmt: skip
         assert done.code == 0, done.err
         assert "white van" in done.json["answer"].lower()

@@ -116,7 +116,7 @@ def test_what_has_no_server_cannot_be_checked(scope: Scope) -> None:
 
 def test_eyes_are_checked_on_a_frame(scope: Scope) -> None:
     with Misbehaving(then=good(moondream=MOONDREAM)) as server:
-        code, verdicts = checks(scope, "--perception", "moondream2", "--eyes-url", server.url)
+        code, verdicts = checks(scope, "--perception", "moondream2", "--perception-url", server.url)
     assert code == 0
     assert verdicts["a question"] == "ok"
     assert verdicts["boxes of 'purple elephant'"] == "ok"
@@ -140,7 +140,7 @@ def test_a_profile_tells_speed_validity_and_the_verdict(scope: Scope, tmp_path: 
     with Misbehaving(then=good(able)) as server:
         url = server.url
         report = profiled(
-            scope, "qwen3-30b-a3b+moondream3", "--planner-url", url, "--eyes-url", url, "--instructions", str(file)
+            scope, "qwen3-30b-a3b+moondream3", "--planner-url", url, "--perception-url", url, "--instructions", str(file)
         )  # fmt: skip
         text = scope("profile", "--planner-url", url, "--instructions", str(file), "--prompts").out
     planner, eyes = report["planner"], report["eyes"]
@@ -158,14 +158,14 @@ def test_a_profile_tells_speed_validity_and_the_verdict(scope: Scope, tmp_path: 
 
 def test_failures_are_counted_and_no_verdict_is_invented(scope: Scope) -> None:
     with Misbehaving(then=status(401)) as server:
-        report = profiled(scope, "--perception", "moondream2", "--eyes-url", server.url, code=1)
+        report = profiled(scope, "--perception", "moondream2", "--perception-url", server.url, code=1)
         assert report["eyes"]["eyes"]["failures"] == {"unauthorised": 8}
     assert report["real_time"] == "unknown"
 
 
 def test_eyes_that_fail_at_one_thing_do_not_meet_the_bar(scope: Scope) -> None:
     with Misbehaving(then=good(moondream={**MOONDREAM, "detect": {"error": "out of memory"}})) as server:
-        report = profiled(scope, "--perception", "moondream2", "--eyes-url", server.url, code=1)
+        report = profiled(scope, "--perception", "moondream2", "--perception-url", server.url, code=1)
     eyes = report["eyes"]["eyes"]
     assert (set(eyes["by_skill"]), eyes["never_worked"]) == ({"query", "caption", "point"}, ["detect"])
     assert "out of memory" in eyes["first_failure"]

@@ -18,8 +18,8 @@ from scope_ptz.endpoints.calls import Caller
 from scope_ptz.endpoints.chat import ChatClient
 from scope_ptz.endpoints.endpoint import Endpoint, Timeouts
 from scope_ptz.endpoints.failures import FailureKind
-from scope_ptz.perception.backends import make_eyes
-from scope_ptz.perception.backends.spec import EyesSpec
+from scope_ptz.perception.backends import make_backend
+from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import Perception
 from scope_ptz.planner.base import Planner
 from scope_ptz.planner.chat.planner import ChatOptions, ChatPlanner
@@ -50,7 +50,7 @@ async def _no_sleep(_: float) -> None:
 
 
 def eyes_at(url: str, backend: str, patience: Timeouts = PATIENT) -> Perception:
-    return make_eyes(EyesSpec(name="eyes", backend=backend, model="m", endpoint=endpoint(url, patience)))
+    return make_backend(BackendSpec(name="eyes", backend=backend, model="m", endpoint=endpoint(url, patience)))
 
 
 class Told:
@@ -288,11 +288,11 @@ ODD_WORDS = [
 
 @pytest.mark.parametrize(("text", "count"), [odd[1:] for odd in ODD_WORDS], ids=[odd[0] for odd in ODD_WORDS])
 async def test_odd_words_for_places(text: str, count: int | None, tmp_path: Path) -> None:
-    eyes = EyesSpec(name="eyes", backend="openai_vision", model="m", coordinates="qwen3-vl")
+    eyes = BackendSpec(name="eyes", backend="openai_vision", model="m", coordinates="qwen3-vl")
     planner = ScriptedPlanner(calls(COUNT), answer("So."))
     with Misbehaving(then=good(Say(text))) as server:
         eyes = eyes.model_copy(update={"endpoint": endpoint(server.url)})
-        told = await run(planner, make_eyes(eyes), tmp_path)
+        told = await run(planner, make_backend(eyes), tmp_path)
     outcome = told.calls[0].outcome
     if count is None:
         assert outcome.error
@@ -314,8 +314,8 @@ async def test_500_points_are_limited_and_said_to_be(backend: str) -> None:
     else:
         reply = say(json.dumps([{"point_2d": [1000 * x, 1000 * y], "label": "cone"} for x, y in _many(500)]))
     with Misbehaving(then=reply) as server:
-        spec = EyesSpec(name="eyes", backend=backend, model="m", endpoint=endpoint(server.url), coordinates="qwen3-vl")
-        eyes = make_eyes(spec)
+        spec = BackendSpec(name="eyes", backend=backend, model="m", endpoint=endpoint(server.url), coordinates="qwen3-vl")
+        eyes = make_backend(spec)
         seen = await eyes.point(frame, "cones")
         await eyes.close()
     assert 50 <= len(seen.points) <= 500

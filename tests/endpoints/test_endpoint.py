@@ -74,8 +74,8 @@ def test_keys_from_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setenv(f"SCOPE_{role}_KEY", f"{KEY}-{role}")
     settings = load_settings()
     assert KEY not in f"{settings} {settings!r}"
-    assert settings.eyes_key is not None
-    assert settings.eyes_key.get_secret_value() == f"{KEY}-EYES"
+    assert settings.perception_key is not None
+    assert settings.perception_key.get_secret_value() == f"{KEY}-EYES"
 
 
 @pytest.mark.parametrize(("total_s", "first_byte_s"), [(0.5, 0.5), (30, 30), (100, 60), (600, 300)])

@@ -12,8 +12,8 @@ from scope_ptz.agent.loop import Agent
 from scope_ptz.agent.records import Called, Run
 from scope_ptz.agent.store import NoImages
 from scope_ptz.endpoints.endpoint import Endpoint
-from scope_ptz.perception.backends import make_eyes
-from scope_ptz.perception.backends.spec import EyesSpec
+from scope_ptz.perception.backends import make_backend
+from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import Perception
 from scope_ptz.planner.base import Planner
 from scope_ptz.planner.chat.planner import ChatOptions, ChatPlanner
@@ -132,10 +132,10 @@ async def test_eyes(backend: str, tool: str) -> None:
         await (ruined_chat(PLACES, rng) if rng.random() < 0.4 else body(json.dumps(completion(Say(words)))))(x)
 
     with Misbehaving(then=moondream if backend == "moondream" else chat) as server:
-        spec = EyesSpec(name="eyes", backend=backend, model="m", endpoint=Endpoint(url=server.url, retries=0))
+        spec = BackendSpec(name="eyes", backend=backend, model="m", endpoint=Endpoint(url=server.url, retries=0))
         for _ in range(ROUNDS):
             planner = ScriptedPlanner(calls(call), answer("So."))
-            done, made = await run(planner, make_eyes(spec))
+            done, made = await run(planner, make_backend(spec))
             assert done.ended.outcome == "answered", done.ended.detail
             (made_call,) = made
             assert made_call.fault in (None, "perception")

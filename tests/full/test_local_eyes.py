@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from scope_ptz.camera.base import Frame
 from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.errors import PerceptionError
-from scope_ptz.perception.backends import make_eyes
-from scope_ptz.perception.backends.spec import EyesSpec
+from scope_ptz.perception.backends import make_backend
+from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import Perception
 from scope_ptz.perception.conformance import PerceptionConformance
 from scope_ptz.perception.coordinates import smart_resize
@@ -41,17 +41,17 @@ def server(checkpoint: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterat
 
 
 @pytest.fixture(params=["transformers_local", "openai_vision"])
-def spec(request: pytest.FixtureRequest, checkpoint: Path) -> EyesSpec:
+def spec(request: pytest.FixtureRequest, checkpoint: Path) -> BackendSpec:
     """The same model in this process and behind a server."""
-    made = EyesSpec(name="tiny", backend=request.param, model=str(checkpoint), coordinates=vision.STYLE.name)
+    made = BackendSpec(name="tiny", backend=request.param, model=str(checkpoint), coordinates=vision.STYLE.name)
     if request.param == "transformers_local":
         return made
     return made.model_copy(update={"endpoint": Endpoint(url=request.getfixturevalue("server"))})
 
 
 @asynccontextmanager
-async def opened(spec: EyesSpec) -> AsyncIterator[Perception]:
-    eyes = make_eyes(spec)
+async def opened(spec: BackendSpec) -> AsyncIterator[Perception]:
+    eyes = make_backend(spec)
     try:
         yield eyes
     finally:
@@ -60,7 +60,7 @@ async def opened(spec: EyesSpec) -> AsyncIterator[Perception]:
 
 @pytest.mark.anyio
 @pytest.mark.parametrize("corner", ["top left", "bottom right"])
-async def test_a_vision_model_sees_where_a_thing_is(spec: EyesSpec, corner: str) -> None:
+async def test_a_vision_model_sees_where_a_thing_is(spec: BackendSpec, corner: str) -> None:
     frame = vision.frame(corner)
     async with opened(spec) as eyes:
         (box,) = (await eyes.detect(frame, "square")).boxes
@@ -73,7 +73,7 @@ async def test_a_vision_model_sees_where_a_thing_is(spec: EyesSpec, corner: str)
 
 
 @pytest.mark.anyio
-async def test_a_vision_model_says_when_there_is_nothing(spec: EyesSpec) -> None:
+async def test_a_vision_model_says_when_there_is_nothing(spec: BackendSpec) -> None:
     async with opened(spec) as eyes:
         assert (await eyes.detect(vision.frame("nowhere"), "square")).boxes == ()
         assert (await eyes.query(vision.frame("nowhere"), vision.QUESTION)).text == "No."
@@ -84,7 +84,7 @@ class TestConformance(PerceptionConformance):
     present, absent = "square", "square"
 
     @pytest.fixture(autouse=True)
-    def _given(self, spec: EyesSpec) -> None:
+    def _given(self, spec: BackendSpec) -> None:
         self.spec, self.question = spec, vision.QUESTION
 
     def perception(self) -> AbstractAsyncContextManager[Perception]:
@@ -103,7 +103,7 @@ def detector(maker: str, folder: Path, threshold: float) -> Perception:
     from tests.full import tiny_eyes
 
     model = str(getattr(tiny_eyes, maker)(folder))
-    return make_eyes(EyesSpec(name=maker, backend="zero_shot", model=model, options={"threshold": threshold}))
+    return make_backend(BackendSpec(name=maker, backend="zero_shot", model=model, options={"threshold": threshold}))
 
 
 @pytest.mark.anyio
@@ -127,7 +127,7 @@ async def test_nothing_above_the_threshold_is_nothing(maker: str, tmp_path: Path
 @pytest.mark.anyio
 @pytest.mark.parametrize("backend", ["zero_shot", "transformers_local"])
 async def test_a_model_that_is_not_there_is_an_error(backend: str, tmp_path: Path) -> None:
-    eyes = make_eyes(EyesSpec(name="eyes", backend=backend, model=str(tmp_path / "nowhere")))
+    eyes = make_backend(BackendSpec(name="eyes", backend=backend, model=str(tmp_path / "nowhere")))
     with pytest.raises(PerceptionError):
         await eyes.detect(vision.frame("top left"), "square")
 

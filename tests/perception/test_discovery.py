@@ -10,7 +10,7 @@ import pytest
 
 import scope_ptz.perception.backends as backends
 from scope_ptz.errors import UnknownNameError
-from scope_ptz.perception.backends.spec import EyesSpec
+from scope_ptz.perception.backends.spec import BackendSpec
 
 ONE_FILE = """
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
@@ -36,7 +36,7 @@ def test_a_file_in_the_package_is_a_backend(tmp_path: Path, monkeypatch: pytest.
     (tmp_path / "blindfold.py").write_text(ONE_FILE)
     monkeypatch.setattr(backends, "__path__", [*backends.__path__, str(tmp_path)])
     assert "blindfold" in backends.backend_names()
-    assert backends.make_eyes(EyesSpec(name="dark", backend="blindfold")).name == "dark"
+    assert backends.make_backend(BackendSpec(name="dark", backend="blindfold")).name == "dark"
 
 
 def test_an_installed_package_may_bring_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -47,24 +47,24 @@ def test_an_installed_package_may_bring_one(tmp_path: Path, monkeypatch: pytest.
     (info / "entry_points.txt").write_text("[scope_ptz.perception]\nhooded = someones_eyes:make\n")
     monkeypatch.syspath_prepend(str(tmp_path))
     assert "hooded" in backends.backend_names()
-    assert backends.make_eyes(EyesSpec(name="dark", backend="hooded")).name == "dark"
+    assert backends.make_backend(BackendSpec(name="dark", backend="hooded")).name == "dark"
 
 
 def test_the_built_in_ones() -> None:
     assert {"moondream", "openai_vision", "transformers_local", "zero_shot", "ocr", "router"} <= set(backends.backend_names())
     with pytest.raises(UnknownNameError, match="Did you mean 'moondream'"):
-        backends.make_eyes(EyesSpec(name="x", backend="moondreem"))
+        backends.make_backend(BackendSpec(name="x", backend="moondreem"))
 
 
 def test_nothing_heavy_is_imported_before_it_is_used() -> None:
     """A backend that asks a server loads neither its HTTP client nor a model library when it is made."""
     script = """
 import sys
-from scope_ptz.perception.backends import make_eyes, backend_names
-from scope_ptz.perception.backends.spec import EyesSpec
+from scope_ptz.perception.backends import make_backend, backend_names
+from scope_ptz.perception.backends.spec import BackendSpec
 backend_names()
 for backend in ("moondream", "openai_vision"):
-    make_eyes(EyesSpec(name="x", backend=backend, endpoint={"url": "http://127.0.0.1:9/v1", "model": "m"}))
+    make_backend(BackendSpec(name="x", backend=backend, endpoint={"url": "http://127.0.0.1:9/v1", "model": "m"}))
 print(sorted({"openai", "httpx2", "torch", "transformers", "rapidocr", "onnxruntime", "json_repair"} & set(sys.modules)))
 """
     assert subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stdout.strip() == "[]"

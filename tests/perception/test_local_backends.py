@@ -13,7 +13,7 @@ from scope_ptz.errors import ConfigError, PerceptionError
 from scope_ptz.perception.backends import spec as specs
 from scope_ptz.perception.backends import transformers_local as local
 from scope_ptz.perception.backends import zero_shot
-from scope_ptz.perception.backends.spec import EyesSpec
+from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import Perception
 from scope_ptz.perception.conformance import PerceptionConformance
 from scope_ptz.perception.coordinates import convention
@@ -134,7 +134,7 @@ async def test_whatever_a_model_fails_with_is_an_error() -> None:
 
 
 def make(**options: Any) -> Perception:
-    return local.make(EyesSpec(name="eyes", backend="transformers_local", model="someone/model", options=options))
+    return local.make(BackendSpec(name="eyes", backend="transformers_local", model="someone/model", options=options))
 
 
 def test_code_of_strangers_runs_only_when_it_was_read(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,8 +10,8 @@ import pytest
 
 from scope_ptz.camera.base import Frame
 from scope_ptz.errors import PerceptionError
-from scope_ptz.perception.backends import make_eyes, ocr
-from scope_ptz.perception.backends.spec import EyesSpec
+from scope_ptz.perception.backends import make_backend, ocr
+from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import Box, Perception
 from scope_ptz.perception.conformance import PerceptionConformance
 from scope_ptz.perception.memo import Image
@@ -20,7 +20,7 @@ from tests.perception import pictures
 
 @pytest.fixture(scope="module")
 def eyes() -> Perception:
-    return make_eyes(EyesSpec(name="ocr", backend="ocr"))
+    return make_backend(BackendSpec(name="ocr", backend="ocr"))
 
 
 BOARD = pictures.board(("EXIT 14", 60, 90), ("Airport", 380, 90), ("SITE OFFICE", 60, 270))

@@ -11,8 +11,8 @@ import pytest
 from scope_ptz.camera.base import Frame
 from scope_ptz.endpoints.failures import Attempt, FailureKind
 from scope_ptz.errors import ConfigError, PerceptionError
-from scope_ptz.perception.backends import make_eyes
-from scope_ptz.perception.backends.spec import EyesSpec
+from scope_ptz.perception.backends import make_backend
+from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import ALL_SKILLS, Answer, Box, Caption, Detections, Perception, Point, Points, Skill
 from scope_ptz.perception.conformance import PerceptionConformance
 from scope_ptz.perception.router import RouterPerception
@@ -197,7 +197,7 @@ def test_made_from_a_spec() -> None:
         "answerer": {"name": "vlm", "backend": "openai_vision", "endpoint": endpoint},
         "reader": {"name": "ocr", "backend": "ocr"},
     }
-    eyes = make_eyes(EyesSpec(name="composed", backend="router", options=parts))
+    eyes = make_backend(BackendSpec(name="composed", backend="router", options=parts))
     assert isinstance(eyes, RouterPerception) and eyes.name == "composed" and eyes.skills == ALL_SKILLS
     with pytest.raises(ConfigError, match="made of nothing"):
-        make_eyes(EyesSpec(name="composed", backend="router"))
+        make_backend(BackendSpec(name="composed", backend="router"))

@@ -16,8 +16,8 @@ import pytest
 from scope_ptz.camera.base import Frame
 from scope_ptz.endpoints.endpoint import Endpoint, Timeouts
 from scope_ptz.errors import ConfigError, PerceptionError
-from scope_ptz.perception.backends import make_eyes
-from scope_ptz.perception.backends.spec import EyesSpec
+from scope_ptz.perception.backends import make_backend
+from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import Perception
 from scope_ptz.perception.conformance import PerceptionConformance
 from scope_ptz.perception.coordinates import CONVENTIONS, convention
@@ -35,14 +35,14 @@ PATIENT = Timeouts(connect_s=20.0, first_byte_s=20.0, total_s=40.0)
 HASTY = Timeouts(connect_s=20.0, first_byte_s=0.4, total_s=1.5)
 
 
-def spec(url: str, backend: str, timeouts: Timeouts = PATIENT, **more: Any) -> EyesSpec:
+def spec(url: str, backend: str, timeouts: Timeouts = PATIENT, **more: Any) -> BackendSpec:
     endpoint = Endpoint(url=url, model="a-model", key=KEY, timeouts=timeouts, retries=0)  # type: ignore[arg-type]
-    return EyesSpec(name="eyes", backend=backend, endpoint=endpoint, **more)
+    return BackendSpec(name="eyes", backend=backend, endpoint=endpoint, **more)
 
 
 @asynccontextmanager
 async def opened(url: str, backend: str, **more: Any) -> AsyncIterator[Perception]:
-    eyes = make_eyes(spec(url, backend, **more))
+    eyes = make_backend(spec(url, backend, **more))
     try:
         yield eyes
     finally:
@@ -428,7 +428,7 @@ async def test_honest_ignorance_is_marked() -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"endpoint": None}, "--eyes-url"),
+        ({"endpoint": None}, "--perception-url"),
         ({"coordinates": "furlongs"}, "qwen3-vl"),
         ({"options": {"maxpixels": 1}}, "maxpixels"),
         ({"options": {"max_tokens": "many"}}, "max_tokens"),
@@ -437,7 +437,7 @@ async def test_honest_ignorance_is_marked() -> None:
 )
 def test_wrong_specs_are_explained(change: dict[str, Any], message: str) -> None:
     with pytest.raises((ConfigError, Exception), match=message):
-        make_eyes(spec("http://127.0.0.1:9/v1", "openai_vision").model_copy(update=change))
+        make_backend(spec("http://127.0.0.1:9/v1", "openai_vision").model_copy(update=change))
 
 
 def test_written_is_the_inverse_of_reading() -> None:

@@ -43,7 +43,7 @@ def registry() -> Registry:
     return load_registry()
 
 
-@pytest.mark.parametrize(("role", "table"), [("planner", PAPER_PLANNERS), ("eyes", PAPER_EYES)])
+@pytest.mark.parametrize(("role", "table"), [("planner", PAPER_PLANNERS), ("perception", PAPER_EYES)])
 def test_the_papers_models_stand_as_in_its_table(registry: Registry, role: str, table: list[tuple[str, float, float, str]]) -> None:
     found = [
         (m.title, m.size_b, m.active_b, m.precision) for m in registry.models.values() if m.origin == "paper" and m.roles == (role,)
@@ -61,7 +61,7 @@ def test_the_papers_nineteen_pairs(registry: Registry) -> None:
     for name in pairs:
         pair = registry.pair(name)
         assert registry.model(pair.planner, "planner")
-        assert registry.model(pair.eyes, "eyes")
+        assert registry.model(pair.perception, "perception")
 
 
 def test_current_models_for_small_machines(registry: Registry) -> None:
@@ -78,7 +78,7 @@ def test_every_model_is_complete(registry: Registry) -> None:
         assert model.serve, f"{model.name} cannot be served"
         assert model.memory_for() > 0
         assert model.family
-        if "eyes" in model.roles:
+        if "perception" in model.roles:
             assert model.coordinates in {*CONVENTIONS, "pixels"}
             assert model.backend in backend_names()
         if model.thinking in ("default", "always"):
@@ -116,9 +116,9 @@ def test_models_answer_to_their_names(registry: Registry, name: str) -> None:
 
 def test_pairs_are_made_of_any_planner_and_eyes(registry: Registry) -> None:
     pair = registry.pair("qwen3.5-4b+rapidocr")
-    assert (pair.planner, pair.eyes, pair.paper_average) == ("qwen3.5-4b", "rapidocr", None)
+    assert (pair.planner, pair.perception, pair.paper_average) == ("qwen3.5-4b", "rapidocr", None)
     both = registry.pair("qwen3.5-9b")
-    assert both.planner == both.eyes == "qwen3.5-9b"
+    assert both.planner == both.perception == "qwen3.5-9b"
     with pytest.raises(ConfigError, match="planner only"):
         registry.pair("qwen3-4b")
     with pytest.raises(ConfigError, match="cannot see"):

@@ -13,12 +13,12 @@ from scope_ptz.cli.endings import ending
 from scope_ptz.cli.model_commands import doctor, models_app, profile
 from scope_ptz.cli.model_options import (
     DetectorOption,
-    EyesKeyOption,
-    EyesModelOption,
-    EyesOptions,
-    EyesUrlOption,
     PairOption,
+    PerceptionKeyOption,
+    PerceptionModelOption,
     PerceptionOption,
+    PerceptionOptions,
+    PerceptionUrlOption,
     PlannerKeyOption,
     PlannerModelOption,
     PlannerOption,
@@ -26,12 +26,12 @@ from scope_ptz.cli.model_options import (
     PlannerUrlOption,
     ReaderOption,
     TimeoutOption,
-    wishes_of,
+    model_options,
 )
 
 if TYPE_CHECKING:
     from scope_ptz.cli.asking import Asking
-    from scope_ptz.cli.choosing import Wishes
+    from scope_ptz.cli.choosing import ModelOptions
 
 app = typer.Typer(
     help="Talk to a pan-tilt-zoom camera in plain language.",
@@ -82,7 +82,7 @@ def _root(
 
 
 def _asking(
-    scene: str, viewpoint: str | None, preset: str | None, at: float | None, wishes: Wishes, runs_dir: Path | None,
+    scene: str, viewpoint: str | None, preset: str | None, at: float | None, wishes: ModelOptions, runs_dir: Path | None,
     max_steps: int, time_budget: float | None, realtime: bool | None, seed: int, as_json: bool = False,
 ) -> Asking:  # fmt: skip
     from scope_ptz.agent.records import Budgets
@@ -112,13 +112,13 @@ def ask(
     perception: PerceptionOption = None,
     pair: PairOption = None,
     planner_url: PlannerUrlOption = None,
-    eyes_url: EyesUrlOption = None,
+    perception_url: PerceptionUrlOption = None,
     planner_model: PlannerModelOption = None,
-    eyes_model: EyesModelOption = None,
+    perception_model: PerceptionModelOption = None,
     planner_key_file: PlannerKeyOption = None,
-    eyes_key_file: EyesKeyOption = None,
+    perception_key_file: PerceptionKeyOption = None,
     planner_option: PlannerOptions = None,
-    eyes_option: EyesOptions = None,
+    perception_option: PerceptionOptions = None,
     reader: ReaderOption = None,
     detector: DetectorOption = None,
     timeout: TimeoutOption = None,
@@ -133,9 +133,9 @@ def ask(
     with ending(as_json=as_json):
         from scope_ptz.cli.asking import ask as run
 
-        wishes = wishes_of(
-            planner, perception, pair, planner_url, eyes_url, planner_model, eyes_model, planner_key_file, eyes_key_file,
-            planner_option, eyes_option, reader, detector, timeout,
+        wishes = model_options(
+            planner, perception, pair, planner_url, perception_url, planner_model, perception_model, planner_key_file, perception_key_file,
+            planner_option, perception_option, reader, detector, timeout,
         )  # fmt: skip
         options = _asking(scene, viewpoint, preset, at, wishes, runs_dir, max_steps, time_budget, realtime, seed, as_json)
         sys.exit(run(instruction, options))
@@ -151,13 +151,13 @@ def chat(
     perception: PerceptionOption = None,
     pair: PairOption = None,
     planner_url: PlannerUrlOption = None,
-    eyes_url: EyesUrlOption = None,
+    perception_url: PerceptionUrlOption = None,
     planner_model: PlannerModelOption = None,
-    eyes_model: EyesModelOption = None,
+    perception_model: PerceptionModelOption = None,
     planner_key_file: PlannerKeyOption = None,
-    eyes_key_file: EyesKeyOption = None,
+    perception_key_file: PerceptionKeyOption = None,
     planner_option: PlannerOptions = None,
-    eyes_option: EyesOptions = None,
+    perception_option: PerceptionOptions = None,
     reader: ReaderOption = None,
     detector: DetectorOption = None,
     timeout: TimeoutOption = None,
@@ -171,9 +171,9 @@ def chat(
     with ending():
         from scope_ptz.cli.chatting import chat as run
 
-        wishes = wishes_of(
-            planner, perception, pair, planner_url, eyes_url, planner_model, eyes_model, planner_key_file, eyes_key_file,
-            planner_option, eyes_option, reader, detector, timeout,
+        wishes = model_options(
+            planner, perception, pair, planner_url, perception_url, planner_model, perception_model, planner_key_file, perception_key_file,
+            planner_option, perception_option, reader, detector, timeout,
         )  # fmt: skip
         options = _asking(scene, viewpoint, preset, at, wishes, runs_dir, max_steps, time_budget, realtime, seed)
         sys.exit(run(options))

@@ -16,7 +16,7 @@ from scope_ptz.agent.records import Budgets, Called, Decided, Ended, Labels, Lis
 from scope_ptz.agent.store import RunFolder
 from scope_ptz.agent.trace import TraceWriter, read_trace
 from scope_ptz.camera.base import Camera
-from scope_ptz.cli.choosing import Wishes, choose
+from scope_ptz.cli.choosing import ModelOptions, choose
 from scope_ptz.cli.display import LiveView, show_end
 from scope_ptz.cli.endings import CANCELLED, exit_code, put_json
 from scope_ptz.cli.session import Start, make_perception, make_planner, open_camera, open_scene
@@ -30,7 +30,7 @@ class Asking:
     """The options of a session."""
 
     start: Start
-    wishes: Wishes
+    wishes: ModelOptions
     runs_dir: Path
     budgets: Budgets
     seed: int

@@ -46,7 +46,7 @@ def make(
         from scope_ptz.bench.programs import Stage
         from scope_ptz.bench.tasks.files import digest_of
         from scope_ptz.bench.tasks.splits import load_split
-        from scope_ptz.cli.bench_eyes import KnownViews, equip_with_truth
+        from scope_ptz.cli.bench_perception import KnownViews, equip_with_truth
         from scope_ptz.cli.bench_show import EYES
         from scope_ptz.taskgen.audit import DRAW, QUESTIONS, Draw, drawn
 

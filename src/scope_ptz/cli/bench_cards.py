@@ -14,7 +14,7 @@ from scope_ptz.bench.engine.cards import AGENT_SOURCE, DETERMINISTIC, PRICE, eng
 from scope_ptz.bench.engine.entries import Entry, datasets, digest
 from scope_ptz.bench.engine.estimate import Price
 from scope_ptz.bench.scoring.trials import ModelCard, RunCard
-from scope_ptz.cli.choosing import Choice, EyesChoice, PlannerChoice
+from scope_ptz.cli.choosing import Choice, ResolvedPerception, ResolvedPlanner
 from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.planner.base import Planner
 
@@ -66,11 +66,11 @@ async def run_card(
     )
 
 
-async def _planner_card(choice: PlannerChoice) -> ModelCard:
+async def _planner_card(choice: ResolvedPlanner) -> ModelCard:
     return await _card(choice.name, choice.model.name if choice.model else None, choice.endpoint)
 
 
-async def _eyes_card(choice: EyesChoice) -> ModelCard:
+async def _eyes_card(choice: ResolvedPerception) -> ModelCard:
     card = await _card(choice.name, choice.model.name if choice.model else None, choice.spec.endpoint if choice.spec else None)
     return card if choice.spec is None or card.provider else card.model_copy(update={"provider": choice.spec.backend})
 

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from anyio import to_thread
 
-from scope_ptz.bench.engine.context import Equipment, ModelWish
+from scope_ptz.bench.engine.context import EvalContext, ModelRequest
 from scope_ptz.bench.engine.entries import Entry, entries_of, imported_entries
 from scope_ptz.bench.scoring.episode import Look
 from scope_ptz.camera.base import Frame, FrameOrigin
-from scope_ptz.cli.choosing import EyesChoice, PlannerChoice, Wishes, choose
+from scope_ptz.cli.choosing import ModelOptions, ResolvedPerception, ResolvedPlanner, choose
 from scope_ptz.cli.session import GROUND_TRUTH_NOTE, NOISY_NOTE, make_planner, scene_search
 from scope_ptz.errors import PerceptionError
 from scope_ptz.geometry import Equirectangular, Pose
@@ -39,7 +39,7 @@ class Aside(Planner):
         return await to_thread.run_sync(self._think, state)
 
 
-def planner_for(choice: PlannerChoice) -> Planner:
+def planner_for(choice: ResolvedPlanner) -> Planner:
     """The planner that was chosen, as the engine wants it: not blocking, its requests in the log."""
     if choice.endpoint is None:
         from scope_ptz.planner.grammar import decide
@@ -51,12 +51,12 @@ def planner_for(choice: PlannerChoice) -> Planner:
     return ChatPlanner(choice.endpoint, choice.options, client=LoggedChat(choice.endpoint))
 
 
-def eyes_for(choice: EyesChoice, scenes: Callable[[str], Scene], seed: int) -> Perception:
+def eyes_for(choice: ResolvedPerception, scenes: Callable[[str], Scene], seed: int) -> Perception:
     """The eyes that were chosen, for frames of any scene."""
     if choice.spec is not None:
-        from scope_ptz.perception.backends import make_eyes
+        from scope_ptz.perception.backends import make_backend
 
-        return make_eyes(choice.spec)
+        return make_backend(choice.spec)
     if choice.name == "ground-truth":
         return _truth(scenes)
     from scope_ptz.perception.noisy import NoisyPerception
@@ -65,7 +65,7 @@ def eyes_for(choice: EyesChoice, scenes: Callable[[str], Scene], seed: int) -> P
 
 
 def _truth(scenes: Callable[[str], Scene]) -> GroundTruthPerception:
-    from scope_ptz.cli.bench_eyes import KnownViews
+    from scope_ptz.cli.bench_perception import KnownViews
     from scope_ptz.perception.ground_truth import GroundTruthPerception
 
     return GroundTruthPerception(scenes, KnownViews().look)
@@ -75,23 +75,23 @@ def lend(
     *,
     seed: int,
     planner: Planner | None = None,
-    eyes: EyesChoice | None = None,
+    eyes: ResolvedPerception | None = None,
     judge: ServerPort | None = None,
-) -> Equipment:
-    """Equipment for an evaluation. Models that were not chosen yet are made from their names when they are wanted.
+) -> EvalContext:
+    """EvalContext for an evaluation. Models that were not chosen yet are made from their names when they are wanted.
 
     ``planner``, ``eyes`` and ``judge``: those that are chosen already; eyes that cannot be made are told of now.
     """
     scenes = Library(scene_search(load_settings()))
     seeing = eyes_for(eyes, scenes, seed) if eyes is not None else None
 
-    async def a_planner(wish: ModelWish) -> Planner:
+    async def a_planner(wish: ModelRequest) -> Planner:
         return planner or planner_for((await choose(_wishes(wish, "planner"))).planner)
 
-    async def some_eyes(wish: ModelWish) -> Perception:
+    async def some_eyes(wish: ModelRequest) -> Perception:
         return seeing or eyes_for((await choose(_wishes(wish, "eyes"))).eyes, scenes, seed)
 
-    async def a_judge(wish: ModelWish, repeat: int) -> Complete:
+    async def a_judge(wish: ModelRequest, repeat: int) -> Complete:
         return (await _judge(wish)).repeated(repeat)
 
     truth = _truth(scenes)
@@ -100,10 +100,10 @@ def lend(
         return await _count(truth, scene, look)
 
     notes = {"ground-truth": GROUND_TRUTH_NOTE, "noisy": NOISY_NOTE}
-    return Equipment(
+    return EvalContext(
         open_scene=scenes,
         make_planner=a_planner,
-        make_eyes=some_eyes,
+        make_perception=some_eyes,
         make_judge=judge_maker(judge) if judge is not None else a_judge,
         load_tasks=lambda split: tasks_of(split, scenes),
         truth=really,
@@ -112,27 +112,31 @@ def lend(
     )
 
 
-def _wishes(wish: ModelWish, role: str) -> Wishes:
+def _wishes(wish: ModelRequest, role: str) -> ModelOptions:
     """A model of the engine's own command line as options of ours: ``served``, ``key_file`` and what the backend knows."""
     given: Mapping[str, Any] = {name: value for name, value in wish.options.items() if value is not None}
     further = tuple(f"{name}={value}" for name, value in given.items() if name not in ("served", "key_file"))
     key = Path(str(given["key_file"])) if "key_file" in given else None
     served = given.get("served")
     if role == "planner":
-        return Wishes(planner=wish.name, planner_url=wish.url, planner_model=served, planner_key_file=key, planner_options=further)
-    return Wishes(perception=wish.name, eyes_url=wish.url, eyes_model=served, eyes_key_file=key, eyes_options=further)
+        return ModelOptions(
+            planner=wish.name, planner_url=wish.url, planner_model=served, planner_key_file=key, planner_options=further
+        )
+    return ModelOptions(
+        perception=wish.name, perception_url=wish.url, perception_model=served, perception_key_file=key, perception_options=further
+    )
 
 
-def judge_maker(port: ServerPort) -> Callable[[ModelWish, int], Awaitable[Complete]]:
+def judge_maker(port: ServerPort) -> Callable[[ModelRequest, int], Awaitable[Complete]]:
     """Lends one judge, whatever name it is asked for by."""
 
-    async def make(wish: ModelWish, repeat: int) -> Complete:  # noqa: ARG001 - the engine asks by name
+    async def make(wish: ModelRequest, repeat: int) -> Complete:  # noqa: ARG001 - the engine asks by name
         return port.repeated(repeat)
 
     return make
 
 
-async def _judge(wish: ModelWish) -> ServerPort:
+async def _judge(wish: ModelRequest) -> ServerPort:
     from scope_ptz.cli.bench_judge import TIMEOUT_S, open_judge
 
     options = {name: value for name, value in wish.options.items() if value is not None}
@@ -143,7 +147,7 @@ async def _judge(wish: ModelWish) -> ServerPort:
 
 async def _count(truth: GroundTruthPerception, scene: str, look: Look) -> int | None:
     """How many of what a look was asked for show in its very picture; None where that cannot be told of such a description."""
-    from scope_ptz.cli.bench_eyes import surely_named
+    from scope_ptz.cli.bench_perception import surely_named
 
     if look.viewpoint is None:
         return None

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 import anyio
 
 from scope_ptz.bench.scoring.trials import Trial
-from scope_ptz.cli.bench_judged import Ended, JudgeWish, judged, open_wished
-from scope_ptz.cli.choosing import Choice, Wishes, choose
+from scope_ptz.cli.bench_judged import Ended, JudgeOptions, judged, open_wished
+from scope_ptz.cli.choosing import Choice, ModelOptions, choose
 from scope_ptz.cli.endings import complain
 from scope_ptz.errors import ConfigError, InputError, ScopeError
 
@@ -36,7 +36,7 @@ WITH_MODELS = 8
 class RunOptions:
     """The options of `scope bench run`, as they were typed. ``concurrency``: None for what suits the models."""
 
-    wishes: Wishes
+    wishes: ModelOptions
     out: Path
     tasks: str = "core"
     categories: tuple[str, ...] = ()
@@ -54,7 +54,7 @@ class RunOptions:
     fresh: bool = False
     resume: Path | None = None
     price: Price | None = None
-    judge: JudgeWish | None = None
+    judge: JudgeOptions | None = None
 
 
 def need_engine() -> None:

@@ -85,7 +85,7 @@ async def _run(order: Order, ledger: Ledger, endpoint: Endpoint, model: str, tem
 
 def prover(scene: Scene) -> Prove:
     """Proof of single tasks by the same attempts as ``scope bench validate`` makes."""
-    from scope_ptz.cli.bench_eyes import KnownViews, equip_with_truth
+    from scope_ptz.cli.bench_perception import KnownViews, equip_with_truth
     from scope_ptz.taskgen.validation.validate import validate
 
     views = KnownViews()

@@ -135,7 +135,7 @@ async def run_by_person(task: Task, scene: Scene, folder: Path, by: str) -> Left
     from scope_ptz.agent.store import RunFolder
     from scope_ptz.agent.trace import TraceWriter
     from scope_ptz.camera.simulated import SimulatedCamera
-    from scope_ptz.cli.human_agent import HumanEyes, HumanPlanner
+    from scope_ptz.cli.human_agent import HumanPerception, HumanPlanner
     from scope_ptz.cli.human_pictures import Viewer
     from scope_ptz.settings import inline_pictures
     from scope_ptz.simulator.clock import SceneClock
@@ -146,7 +146,7 @@ async def run_by_person(task: Task, scene: Scene, folder: Path, by: str) -> Left
         await camera.go_to_preset(task.preset)
     terminal = sys.stdout if sys.stdout.isatty() else None
     viewer = Viewer(folder / "shown", terminal, inline_pictures())
-    eyes = HumanEyes(by, viewer, input, put)
+    eyes = HumanPerception(by, viewer, input, put)
     planner = HumanPlanner(by, camera, viewer, eyes, input, put)
     labels = Labels(perception_note="A person looked.")
     agent = Agent(planner, camera, eyes, RunFolder(folder), budgets=Budgets(max_steps=MAX_STEPS), labels=labels)

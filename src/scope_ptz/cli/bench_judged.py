@@ -11,14 +11,14 @@ from scope_ptz.cli.bench_rescore import AT_A_TIME, score_again
 from scope_ptz.cli.endings import complain
 
 if TYPE_CHECKING:
-    from scope_ptz.bench.engine.context import Equipment
+    from scope_ptz.bench.engine.context import EvalContext
     from scope_ptz.bench.judging.server import ServerPort
     from scope_ptz.bench.judging.tally import Tally
     from scope_ptz.bench.scoring.trials import Evaluation
 
 
 @dataclass(frozen=True, slots=True)
-class JudgeWish:
+class JudgeOptions:
     """A judge's server, and how often it judges each run."""
 
     url: str | None
@@ -38,14 +38,16 @@ class Ended:
     judged: Tally | None = None
 
 
-async def open_wished(wish: JudgeWish) -> ServerPort:
+async def open_wished(wish: JudgeOptions) -> ServerPort:
     """The port to the judge that is wished for. Raises ``InputError``."""
     from scope_ptz.cli.bench_judge import open_judge
 
     return await open_judge(wish.url, wish.model, wish.key_file, wish.timeout_s, list(wish.options))
 
 
-async def judged(log: Path, wish: JudgeWish, opened: Callable[[], Awaitable[ServerPort]], lent: Equipment, *, again: bool) -> Ended:
+async def judged(
+    log: Path, wish: JudgeOptions, opened: Callable[[], Awaitable[ServerPort]], lent: EvalContext, *, again: bool
+) -> Ended:
     """A log as it stands, when the judge has been asked about the runs that it was not asked about yet. ``again``: also about those
     on which its server failed; ``opened``: its port, which is not wanted when nothing is left to ask."""
     from scope_ptz.bench.engine.logs import read_evaluation

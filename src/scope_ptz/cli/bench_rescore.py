@@ -13,7 +13,7 @@ from scope_ptz.cli.endings import FAILED, complain, ending, put
 from scope_ptz.errors import InputError
 
 if TYPE_CHECKING:
-    from scope_ptz.bench.engine.context import Equipment
+    from scope_ptz.bench.engine.context import EvalContext
     from scope_ptz.bench.judging.server import ServerPort
     from scope_ptz.bench.judging.tally import Tally
 
@@ -106,7 +106,7 @@ def them(made: Tally) -> str:
 
 
 async def score_again(
-    log: Path, judge: ServerPort | None, lent: Equipment, *, repeats: int, more: bool = True, checks: bool = False, at_a_time: int
+    log: Path, judge: ServerPort | None, lent: EvalContext, *, repeats: int, more: bool = True, checks: bool = False, at_a_time: int
 ) -> Tally:
     """Add scores to a log; what came of the judgements. ``more``: beside those there are, not in place of what is missing."""
     from scope_ptz.bench.engine.context import EQUIPMENT

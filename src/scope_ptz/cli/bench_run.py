@@ -116,13 +116,13 @@ def run(
     perception: models.PerceptionOption = None,
     pair: models.PairOption = None,
     planner_url: models.PlannerUrlOption = None,
-    eyes_url: models.EyesUrlOption = None,
+    perception_url: models.PerceptionUrlOption = None,
     planner_model: models.PlannerModelOption = None,
-    eyes_model: models.EyesModelOption = None,
+    perception_model: models.PerceptionModelOption = None,
     planner_key_file: models.PlannerKeyOption = None,
-    eyes_key_file: models.EyesKeyOption = None,
+    perception_key_file: models.PerceptionKeyOption = None,
     planner_option: models.PlannerOptions = None,
-    eyes_option: models.EyesOptions = None,
+    perception_option: models.PerceptionOptions = None,
     reader: models.ReaderOption = None,
     detector: models.DetectorOption = None,
     timeout: models.TimeoutOption = None,
@@ -136,17 +136,17 @@ def run(
         from rich.console import Console
 
         from scope_ptz.cli.bench_evaluate import RunOptions, evaluate, need_engine
-        from scope_ptz.cli.bench_judged import JudgeWish
+        from scope_ptz.cli.bench_judged import JudgeOptions
         from scope_ptz.cli.bench_live import summary
         from scope_ptz.settings import load_settings
 
         need_engine()
-        wishes = models.wishes_of(
-            planner, perception, pair, planner_url, eyes_url, planner_model, eyes_model, planner_key_file, eyes_key_file,
-            planner_option, eyes_option, reader, detector, timeout,
+        wishes = models.model_options(
+            planner, perception, pair, planner_url, perception_url, planner_model, perception_model, planner_key_file, perception_key_file,
+            planner_option, perception_option, reader, detector, timeout,
         )  # fmt: skip
         with_judge = bool(judge_url or judge_model or load_settings().judge_url)
-        judge = JudgeWish(judge_url, judge_model, judge_key_file, judge_timeout, tuple(judge_option or ()), judge_repeats)
+        judge = JudgeOptions(judge_url, judge_model, judge_key_file, judge_timeout, tuple(judge_option or ()), judge_repeats)
         options = RunOptions(
             wishes=wishes, out=out, tasks=split, categories=tuple(category or ()), scenes=tuple(scene or ()), limit=limit,
             epochs=epochs, seed=seed, agent=agent, max_steps=max_steps, time_s=time_budget, concurrency=concurrency,

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from scope_ptz.bench.scoring.trials import Evaluation
     from scope_ptz.cli.bench_evaluate import RunOptions
-    from scope_ptz.cli.choosing import Wishes
+    from scope_ptz.cli.choosing import ModelOptions
 
 WIDE = 160
 """Characters of a window that has room for a column a category."""
@@ -47,14 +47,14 @@ def sweep(
     out: options.OutOption = options.LOGS,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object at the end.")] = False,
     planner_url: models.PlannerUrlOption = None,
-    eyes_url: models.EyesUrlOption = None,
+    perception_url: models.PerceptionUrlOption = None,
     planner_key_file: models.PlannerKeyOption = None,
-    eyes_key_file: models.EyesKeyOption = None,
+    perception_key_file: models.PerceptionKeyOption = None,
     planner_option: models.PlannerOptions = None,
-    eyes_option: models.EyesOptions = None,
+    perception_option: models.PerceptionOptions = None,
     timeout: models.TimeoutOption = None,
 ) -> None:
-    """Run pair after pair. Where servers listen stands in your models file, or is the same for all (--planner-url, --eyes-url).
+    """Run pair after pair. Where servers listen stands in your models file, or is the same for all (--planner-url, --perception-url).
 
     The same command goes on where it stopped, skips what is done, and tries again what could not be reached.
     """
@@ -65,8 +65,8 @@ def sweep(
 
         need_engine()
         names = named_pairs(pairs, paper=paper)
-        shared = models.wishes_of(
-            None, None, None, planner_url, eyes_url, None, None, planner_key_file, eyes_key_file, planner_option, eyes_option,
+        shared = models.model_options(
+            None, None, None, planner_url, perception_url, None, None, planner_key_file, perception_key_file, planner_option, perception_option,
             None, None, timeout,
         )  # fmt: skip
         each = RunOptions(
@@ -125,16 +125,16 @@ def _run_all(names: list[str], each: RunOptions, console: Console) -> dict[str, 
     return done
 
 
-def _wishes(shared: Wishes, name: str) -> Wishes:
+def _wishes(shared: ModelOptions, name: str) -> ModelOptions:
     """A pair with what is said of all. A server's address is for a model; the built-in planner and eyes have none."""
-    from scope_ptz.cli.choosing import BUILT_IN_EYES, GRAMMAR
+    from scope_ptz.cli.choosing import BUILT_IN_PERCEPTION, GRAMMAR
 
     planner, _, eyes = name.partition("+")
     wishes = replace(shared, pair=name)
     if planner == GRAMMAR:
         wishes = replace(wishes, planner_url=None, planner_key_file=None, planner_options=())
-    if eyes in BUILT_IN_EYES:
-        wishes = replace(wishes, eyes_url=None, eyes_key_file=None, eyes_options=())
+    if eyes in BUILT_IN_PERCEPTION:
+        wishes = replace(wishes, perception_url=None, perception_key_file=None, perception_options=())
     return wishes
 
 

@@ -16,41 +16,41 @@ if TYPE_CHECKING:
     from pydantic import SecretStr
 
     from scope_ptz.endpoints.endpoint import Endpoint
-    from scope_ptz.perception.backends.spec import EyesSpec
+    from scope_ptz.perception.backends.spec import BackendSpec
     from scope_ptz.planner.chat import ChatOptions
     from scope_ptz.registry import Model, Registry, Role
 
-BUILT_IN_EYES = ("ground-truth", "noisy")
+BUILT_IN_PERCEPTION = ("ground-truth", "noisy")
 GRAMMAR, CHAT = "grammar", "chat"
-CHATTING_EYES = "openai_vision"
-ASKING = ("moondream", CHATTING_EYES)
+CHAT_BACKEND = "openai_vision"
+ASKING = ("moondream", CHAT_BACKEND)
 """Backends that cannot do without a server."""
 SERVERLESS = ("ocr", "router", "transformers_local", "zero_shot")
 """Those that have no use for one. Other people's backends get an address when there is one."""
 
 
 @dataclass(frozen=True, slots=True)
-class Wishes:
+class ModelOptions:
     """Options about models and their servers, as they were typed."""
 
     planner: str | None = None
     perception: str | None = None
     pair: str | None = None
     planner_url: str | None = None
-    eyes_url: str | None = None
+    perception_url: str | None = None
     planner_model: str | None = None
-    eyes_model: str | None = None
+    perception_model: str | None = None
     planner_key_file: Path | None = None
-    eyes_key_file: Path | None = None
+    perception_key_file: Path | None = None
     planner_options: tuple[str, ...] = ()
-    eyes_options: tuple[str, ...] = ()
+    perception_options: tuple[str, ...] = ()
     reader: str | None = None
     detector: str | None = None
     timeout_s: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
-class PlannerChoice:
+class ResolvedPlanner:
     """``endpoint`` and ``options``: of a model; ``model``: what the registry knows of it."""
 
     name: str
@@ -60,37 +60,37 @@ class PlannerChoice:
 
 
 @dataclass(frozen=True, slots=True)
-class EyesChoice:
+class ResolvedPerception:
     """``spec``: of a model; ``model``: what the registry knows of it."""
 
     name: str
-    spec: EyesSpec | None = None
+    spec: BackendSpec | None = None
     model: Model | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    planner: PlannerChoice
-    eyes: EyesChoice
+    planner: ResolvedPlanner
+    eyes: ResolvedPerception
 
 
-async def choose(wishes: Wishes) -> Choice:
+async def choose(wishes: ModelOptions) -> Choice:
     """Who plans and who sees. Asks servers for their lists of models, where it has to know their names for them.
 
     Raises ``InputError`` for names, addresses and combinations that cannot be.
     """
     if not _wants_models(wishes):
-        return Choice(PlannerChoice(GRAMMAR), EyesChoice(wishes.perception or BUILT_IN_EYES[0]))
+        return Choice(ResolvedPlanner(GRAMMAR), ResolvedPerception(wishes.perception or BUILT_IN_PERCEPTION[0]))
     return await _Chooser(wishes, load_settings()).choose()
 
 
-def _wants_models(wishes: Wishes) -> bool:
-    plain = Wishes(planner=wishes.planner, perception=wishes.perception)
-    return wishes != plain or wishes.planner not in (None, GRAMMAR) or wishes.perception not in (None, *BUILT_IN_EYES)
+def _wants_models(wishes: ModelOptions) -> bool:
+    plain = ModelOptions(planner=wishes.planner, perception=wishes.perception)
+    return wishes != plain or wishes.planner not in (None, GRAMMAR) or wishes.perception not in (None, *BUILT_IN_PERCEPTION)
 
 
 class _Chooser:
-    def __init__(self, wishes: Wishes, settings: ScopeSettings) -> None:
+    def __init__(self, wishes: ModelOptions, settings: ScopeSettings) -> None:
         from scope_ptz.registry import load_registry
 
         self.wishes, self.settings = wishes, settings
@@ -104,17 +104,17 @@ class _Chooser:
                 raise InputError("Give --pair, or --planner and --perception, not both.")
             planner, eyes = read_pair(self.registry, w.pair)
         planner = planner or (CHAT if w.planner_url or w.planner_model else GRAMMAR)
-        eyes = eyes or (CHATTING_EYES if w.eyes_url or w.eyes_model else BUILT_IN_EYES[0])
+        eyes = eyes or (CHAT_BACKEND if w.perception_url or w.perception_model else BUILT_IN_PERCEPTION[0])
         both = planner == eyes
         chosen = await self._planner(planner, sees=both)
         return Choice(chosen, self._composed(await self._eyes(eyes, chosen if both else None)))
 
-    async def _planner(self, name: str, *, sees: bool) -> PlannerChoice:
+    async def _planner(self, name: str, *, sees: bool) -> ResolvedPlanner:
         w = self.wishes
         if name == GRAMMAR:
             if w.planner_url or w.planner_model or w.planner_options or w.planner_key_file:
                 raise InputError("The grammar planner has no server and no options. Leave --planner-... out, or name a model.")
-            return PlannerChoice(GRAMMAR)
+            return ResolvedPlanner(GRAMMAR)
         model = self._known(name, "planner", w.planner_url) if name != CHAT else None
         given = w.planner_url or (model.url if model else "") or self.settings.planner_url
         key = self._key(w.planner_key_file, model, given, self.settings.planner_key)
@@ -122,7 +122,7 @@ class _Chooser:
         wanted = w.planner_model or (name if model is None and name != CHAT else None)
         endpoint = await named(endpoint, wanted, model, "--planner-model")
         model = model or recognised(self.registry, endpoint.model, "planner")
-        return PlannerChoice(model.name if model else endpoint.model, endpoint, self._chat_options(model, sees=sees), model)
+        return ResolvedPlanner(model.name if model else endpoint.model, endpoint, self._chat_options(model, sees=sees), model)
 
     def _chat_options(self, model: Model | None, *, sees: bool) -> ChatOptions:
         from pydantic import ValidationError
@@ -142,49 +142,49 @@ class _Chooser:
             where = ".".join(str(part) for part in first["loc"])
             raise ConfigError(f"--planner-option {where}: {first['msg']}. Known: {', '.join(ChatOptions.model_fields)}.") from None
 
-    async def _eyes(self, name: str, same: PlannerChoice | None) -> EyesChoice:
+    async def _eyes(self, name: str, same: ResolvedPlanner | None) -> ResolvedPerception:
         w = self.wishes
-        if name in BUILT_IN_EYES:
-            if w.eyes_url or w.eyes_model or w.eyes_options or w.eyes_key_file:
-                raise InputError(f"The eyes '{name}' have no server and no options. Leave --eyes-... out, or name a model.")
-            return EyesChoice(name)
-        if same is not None and same.endpoint is not None and not (w.eyes_url or w.eyes_model):
+        if name in BUILT_IN_PERCEPTION:
+            if w.perception_url or w.perception_model or w.perception_options or w.perception_key_file:
+                raise InputError(f"The eyes '{name}' have no server and no options. Leave --perception-... out, or name a model.")
+            return ResolvedPerception(name)
+        if same is not None and same.endpoint is not None and not (w.perception_url or w.perception_model):
             return self._spec(name, same.model, same.endpoint)
         model = self._known_eyes(name)
         backend = self._backend(name, model)
-        given = w.eyes_url or (model.url if model else "") or ("" if backend in SERVERLESS else self.settings.eyes_url)
+        given = w.perception_url or (model.url if model else "") or ("" if backend in SERVERLESS else self.settings.perception_url)
         if not given and backend not in ASKING:
             return self._spec(name, model, None)
-        key = self._key(w.eyes_key_file, model, given, self.settings.eyes_key)
-        endpoint = self._endpoint(given, key, "eyes", name, model)
-        if backend == CHATTING_EYES:
-            endpoint = await named(endpoint, w.eyes_model, model, "--eyes-model")
-            model = model or recognised(self.registry, endpoint.model, "eyes")
+        key = self._key(w.perception_key_file, model, given, self.settings.perception_key)
+        endpoint = self._endpoint(given, key, "perception", name, model)
+        if backend == CHAT_BACKEND:
+            endpoint = await named(endpoint, w.perception_model, model, "--perception-model")
+            model = model or recognised(self.registry, endpoint.model, "perception")
         return self._spec(name, model, endpoint)
 
-    def _spec(self, name: str, model: Model | None, endpoint: Endpoint | None) -> EyesChoice:
-        from scope_ptz.perception.backends.spec import EyesSpec
+    def _spec(self, name: str, model: Model | None, endpoint: Endpoint | None) -> ResolvedPerception:
+        from scope_ptz.perception.backends.spec import BackendSpec
         from scope_ptz.planner.chat.families import likely_server, switch_for
 
-        options = dict(parse_options(self.wishes.eyes_options, "--eyes-option"))
+        options = dict(parse_options(self.wishes.perception_options, "--perception-option"))
         options.pop("backend", None)
         backend = self._backend(name, model)
         coordinates = options.pop("coordinates", None) or (model.coordinates if model else "generic")
-        if backend == CHATTING_EYES and endpoint is not None and "extra" not in options:
+        if backend == CHAT_BACKEND and endpoint is not None and "extra" not in options:
             quiet = switch_for(model.repo if model else endpoint.model, "off", likely_server(endpoint.url)).fields
             options |= {"extra": dict(quiet)} if quiet else {}
-        served = self.wishes.eyes_model or (endpoint.model if endpoint else "") or (model.repo if model else "")
+        served = self.wishes.perception_model or (endpoint.model if endpoint else "") or (model.repo if model else "")
         label = model.name if model else (served or name)
-        spec = EyesSpec(name=label, backend=backend, model=served, endpoint=endpoint, coordinates=coordinates, options=options)
-        return EyesChoice(label, spec, model)
+        spec = BackendSpec(name=label, backend=backend, model=served, endpoint=endpoint, coordinates=coordinates, options=options)
+        return ResolvedPerception(label, spec, model)
 
     def _backend(self, name: str, model: Model | None) -> str:
-        wanted = parse_options(self.wishes.eyes_options, "--eyes-option").get("backend")
+        wanted = parse_options(self.wishes.perception_options, "--perception-option").get("backend")
         return str(wanted or (model.backend if model else name)).replace("-", "_")
 
-    def _composed(self, eyes: EyesChoice) -> EyesChoice:
+    def _composed(self, eyes: ResolvedPerception) -> ResolvedPerception:
         """The eyes with a reader of text and a detector beside them, when these are wished for."""
-        from scope_ptz.perception.backends.spec import EyesSpec
+        from scope_ptz.perception.backends.spec import BackendSpec
 
         w = self.wishes
         parts = {"reader": w.reader, "detector": w.detector}
@@ -195,16 +195,20 @@ class _Chooser:
             raise InputError(f"--reader and --detector go with a model's eyes; '{eyes.name}' needs neither.")
         label = "+".join((eyes.name, *(part.name for part in named.values())))
         options = {"answerer": eyes.spec, **named}
-        return EyesChoice(label, EyesSpec(name=label, backend="router", options=options), eyes.model)
+        return ResolvedPerception(label, BackendSpec(name=label, backend="router", options=options), eyes.model)
 
-    def _spec_of_part(self, name: str) -> EyesSpec:
-        from scope_ptz.perception.backends.spec import EyesSpec
+    def _spec_of_part(self, name: str) -> BackendSpec:
+        from scope_ptz.perception.backends.spec import BackendSpec
 
         model = self._known_eyes(name)
         if model is None:
-            return EyesSpec(name=name, backend=name.replace("-", "_"))
-        endpoint = self._endpoint(model.url, self._key(None, model, model.url, None), "eyes", name, model) if model.url else None
-        return EyesSpec(name=model.name, backend=model.backend, model=model.repo, endpoint=endpoint, coordinates=model.coordinates)
+            return BackendSpec(name=name, backend=name.replace("-", "_"))
+        endpoint = (
+            self._endpoint(model.url, self._key(None, model, model.url, None), "perception", name, model) if model.url else None
+        )
+        return BackendSpec(
+            name=model.name, backend=model.backend, model=model.repo, endpoint=endpoint, coordinates=model.coordinates
+        )
 
     def _known(self, name: str, role: Role, url: str | None) -> Model | None:
         """The registry's entry. A name that is not in it is taken as the server's own when there is a server to ask."""
@@ -221,9 +225,11 @@ class _Chooser:
         if name.replace("-", "_") in backend_names():
             return None
         try:
-            return self.registry.model(name, "eyes")
+            return self.registry.model(name, "perception")
         except UnknownNameError as error:
-            raise UnknownNameError("perception", name, [*BUILT_IN_EYES, *self.registry.named("eyes"), *backend_names()]) from error
+            raise UnknownNameError(
+                "perception", name, [*BUILT_IN_PERCEPTION, *self.registry.named("perception"), *backend_names()]
+            ) from error
 
     def _endpoint(self, url: str, key: SecretStr | None, role: str, name: str, model: Model | None) -> Endpoint:
         from scope_ptz.endpoints.endpoint import Endpoint, Timeouts
@@ -250,12 +256,12 @@ def read_pair(registry: Registry, text: str) -> tuple[str, str]:
     Raises ``UnknownNameError`` or ``ConfigError``.
     """
     planner, plus, eyes = text.partition("+")
-    if text in registry.pairs or not plus or (planner != GRAMMAR and eyes not in BUILT_IN_EYES):
+    if text in registry.pairs or not plus or (planner != GRAMMAR and eyes not in BUILT_IN_PERCEPTION):
         pair = registry.pair(text)
-        return pair.planner, pair.eyes
+        return pair.planner, pair.perception
     return (
         planner if planner == GRAMMAR else _in(registry, planner, "planner", (GRAMMAR,)),
-        eyes if eyes in BUILT_IN_EYES else _in(registry, eyes, "eyes", BUILT_IN_EYES),
+        eyes if eyes in BUILT_IN_PERCEPTION else _in(registry, eyes, "perception", BUILT_IN_PERCEPTION),
     )
 
 

@@ -116,7 +116,9 @@ class HumanPlanner(Planner):
 
     sees = True
 
-    def __init__(self, name: str, camera: Camera, viewer: Viewer, eyes: HumanEyes, ask: Ask, tell: Callable[[str], None]) -> None:
+    def __init__(
+        self, name: str, camera: Camera, viewer: Viewer, eyes: HumanPerception, ask: Ask, tell: Callable[[str], None]
+    ) -> None:
         self.name, self._camera, self._viewer, self._eyes, self._ask, self._tell = name, camera, viewer, eyes, ask, tell
         self.left: Left | None = None
 
@@ -145,7 +147,7 @@ class HumanPlanner(Planner):
             return CallTools(calls=(meant.model_copy(update={"id": f"call-{len(state.history) + 1}"}),))
 
 
-class HumanEyes(Perception):
+class HumanPerception(Perception):
     """Asks the person. ``counts``: the next search is for a number only, not for places."""
 
     def __init__(self, name: str, viewer: Viewer, ask: Ask, tell: Callable[[str], None]) -> None:

@@ -11,12 +11,12 @@ import typer
 from scope_ptz.cli.endings import ending
 from scope_ptz.cli.model_options import (
     DetectorOption,
-    EyesKeyOption,
-    EyesModelOption,
-    EyesOptions,
-    EyesUrlOption,
     PairOption,
+    PerceptionKeyOption,
+    PerceptionModelOption,
     PerceptionOption,
+    PerceptionOptions,
+    PerceptionUrlOption,
     PlannerKeyOption,
     PlannerModelOption,
     PlannerOption,
@@ -24,7 +24,7 @@ from scope_ptz.cli.model_options import (
     PlannerUrlOption,
     ReaderOption,
     TimeoutOption,
-    wishes_of,
+    model_options,
 )
 
 models_app = typer.Typer(help="The models: list them, show one, say how it is served, list the pairs.", invoke_without_command=True)
@@ -88,13 +88,13 @@ def profile(
     planner: PlannerOption = None,
     perception: PerceptionOption = None,
     planner_url: PlannerUrlOption = None,
-    eyes_url: EyesUrlOption = None,
+    perception_url: PerceptionUrlOption = None,
     planner_model: PlannerModelOption = None,
-    eyes_model: EyesModelOption = None,
+    perception_model: PerceptionModelOption = None,
     planner_key_file: PlannerKeyOption = None,
-    eyes_key_file: EyesKeyOption = None,
+    perception_key_file: PerceptionKeyOption = None,
     planner_option: PlannerOptions = None,
-    eyes_option: EyesOptions = None,
+    perception_option: PerceptionOptions = None,
     reader: ReaderOption = None,
     detector: DetectorOption = None,
     timeout: TimeoutOption = None,
@@ -114,9 +114,9 @@ def profile(
         from scope_ptz.cli.profiling import Extent
         from scope_ptz.cli.profiling import profile as run
 
-        wishes = wishes_of(
-            planner, perception, pair, planner_url, eyes_url, planner_model, eyes_model, planner_key_file, eyes_key_file,
-            planner_option, eyes_option, reader, detector, timeout,
+        wishes = model_options(
+            planner, perception, pair, planner_url, perception_url, planner_model, perception_model, planner_key_file, perception_key_file,
+            planner_option, perception_option, reader, detector, timeout,
         )  # fmt: skip
         extent = Extent(instructions=instructions, limit=limit, frames=frames, scene=scene, prompts=prompts)
         sys.exit(run(wishes, extent, as_json=as_json))
@@ -127,23 +127,23 @@ def doctor(
     planner: PlannerOption = None,
     perception: PerceptionOption = None,
     planner_url: PlannerUrlOption = None,
-    eyes_url: EyesUrlOption = None,
+    perception_url: PerceptionUrlOption = None,
     planner_model: PlannerModelOption = None,
-    eyes_model: EyesModelOption = None,
+    perception_model: PerceptionModelOption = None,
     planner_key_file: PlannerKeyOption = None,
-    eyes_key_file: EyesKeyOption = None,
+    perception_key_file: PerceptionKeyOption = None,
     planner_option: PlannerOptions = None,
-    eyes_option: EyesOptions = None,
+    perception_option: PerceptionOptions = None,
     timeout: TimeoutOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """Say what is installed, reachable and missing; with a server's address: whether it does what SCOPE needs of it."""
     with ending(as_json=as_json):
-        wishes = wishes_of(
-            planner, perception, pair, planner_url, eyes_url, planner_model, eyes_model, planner_key_file, eyes_key_file,
-            planner_option, eyes_option, None, None, timeout,
+        wishes = model_options(
+            planner, perception, pair, planner_url, perception_url, planner_model, perception_model, planner_key_file, perception_key_file,
+            planner_option, perception_option, None, None, timeout,
         )  # fmt: skip
-        if any((pair, planner, perception, planner_url, eyes_url)):
+        if any((pair, planner, perception, planner_url, perception_url)):
             from scope_ptz.cli.server_checks import check_servers
 
             sys.exit(check_servers(wishes, as_json=as_json))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from scope_ptz.cli.choosing import Wishes
+    from scope_ptz.cli.choosing import ModelOptions
 
 _PANEL = "Models"
 
@@ -28,14 +28,16 @@ PairOption = Annotated[
 PlannerUrlOption = Annotated[
     str | None, typer.Option("--planner-url", help="Address of the planner's server, with its /v1.", rich_help_panel=_PANEL)
 ]
-EyesUrlOption = Annotated[str | None, typer.Option("--eyes-url", help="Address of the eyes' server.", rich_help_panel=_PANEL)]
+PerceptionUrlOption = Annotated[
+    str | None, typer.Option("--perception-url", help="Address of the eyes' server.", rich_help_panel=_PANEL)
+]
 PlannerModelOption = Annotated[
     str | None,
     typer.Option("--planner-model", help="What the server calls the planner (default: as it lists it).", rich_help_panel=_PANEL),
 ]
-EyesModelOption = Annotated[
+PerceptionModelOption = Annotated[
     str | None,
-    typer.Option("--eyes-model", help="What the server calls the eyes (default: as it lists them).", rich_help_panel=_PANEL),
+    typer.Option("--perception-model", help="What the server calls the eyes (default: as it lists them).", rich_help_panel=_PANEL),
 ]
 PlannerKeyOption = Annotated[
     Path | None,
@@ -43,9 +45,11 @@ PlannerKeyOption = Annotated[
         "--planner-key-file", help="File with the key of the planner's server (or SCOPE_PLANNER_KEY).", rich_help_panel=_PANEL
     ),
 ]
-EyesKeyOption = Annotated[
+PerceptionKeyOption = Annotated[
     Path | None,
-    typer.Option("--eyes-key-file", help="File with the key of the eyes' server (or SCOPE_EYES_KEY).", rich_help_panel=_PANEL),
+    typer.Option(
+        "--perception-key-file", help="File with the key of the eyes' server (or SCOPE_PERCEPTION_KEY).", rich_help_panel=_PANEL
+    ),
 ]
 PlannerOptions = Annotated[
     list[str] | None,
@@ -53,9 +57,11 @@ PlannerOptions = Annotated[
         "--planner-option", metavar="NAME=VALUE", help="thinking=on, prompt=..., summarise=true, ...", rich_help_panel=_PANEL
     ),
 ]
-EyesOptions = Annotated[
+PerceptionOptions = Annotated[
     list[str] | None,
-    typer.Option("--eyes-option", metavar="NAME=VALUE", help="coordinates=qwen3-vl, max_pixels=..., ...", rich_help_panel=_PANEL),
+    typer.Option(
+        "--perception-option", metavar="NAME=VALUE", help="coordinates=qwen3-vl, max_pixels=..., ...", rich_help_panel=_PANEL
+    ),
 ]
 ReaderOption = Annotated[
     str | None, typer.Option("--reader", help="Who reads text in place of the eyes, for example rapidocr.", rich_help_panel=_PANEL)
@@ -70,27 +76,27 @@ TimeoutOption = Annotated[
 ]
 
 
-def wishes_of(
-    planner: str | None, perception: str | None, pair: str | None, planner_url: str | None, eyes_url: str | None,
-    planner_model: str | None, eyes_model: str | None, planner_key_file: Path | None, eyes_key_file: Path | None,
-    planner_option: list[str] | None, eyes_option: list[str] | None, reader: str | None, detector: str | None,
+def model_options(
+    planner: str | None, perception: str | None, pair: str | None, planner_url: str | None, perception_url: str | None,
+    planner_model: str | None, perception_model: str | None, planner_key_file: Path | None, perception_key_file: Path | None,
+    planner_option: list[str] | None, perception_option: list[str] | None, reader: str | None, detector: str | None,
     timeout: float | None,
-) -> Wishes:  # fmt: skip
+) -> ModelOptions:  # fmt: skip
     """The options as one object."""
-    from scope_ptz.cli.choosing import Wishes
+    from scope_ptz.cli.choosing import ModelOptions
 
-    return Wishes(
+    return ModelOptions(
         planner=planner,
         perception=perception,
         pair=pair,
         planner_url=planner_url,
-        eyes_url=eyes_url,
+        perception_url=perception_url,
         planner_model=planner_model,
-        eyes_model=eyes_model,
+        perception_model=perception_model,
         planner_key_file=planner_key_file,
-        eyes_key_file=eyes_key_file,
+        perception_key_file=perception_key_file,
         planner_options=tuple(planner_option or ()),
-        eyes_options=tuple(eyes_option or ()),
+        perception_options=tuple(perception_option or ()),
         reader=reader,
         detector=detector,
         timeout_s=timeout,

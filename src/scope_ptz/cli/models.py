@@ -127,8 +127,8 @@ def list_pairs(*, as_json: bool) -> None:
     known = registry()
     rows = [
         {
-            "name": p.name, "planner": p.planner, "eyes": p.eyes, "origin": p.origin, "paper_average": p.paper_average,
-            "memory_gb": round(known.model(p.planner).memory_for() + known.model(p.eyes).memory_for(), 1),
+            "name": p.name, "planner": p.planner, "perception": p.perception, "origin": p.origin, "paper_average": p.paper_average,
+            "memory_gb": round(known.model(p.planner).memory_for() + known.model(p.perception).memory_for(), 1),
         }
         for p in known.pairs.values()
     ]  # fmt: skip
@@ -169,10 +169,10 @@ def _console() -> Console:
 
 def _role(role: str | None) -> Role | None:
     match role:
-        case None | "planner" | "eyes":
+        case None | "planner" | "perception":
             return role
         case _:
-            raise UnknownNameError("role", role, ("planner", "eyes"))
+            raise UnknownNameError("role", role, ("planner", "perception"))
 
 
 def _wanted(model: Model, role: Role | None, memory_gb: float | None) -> bool:

@@ -13,7 +13,7 @@ from scope_ptz.planner.profile import Sensitivity
 from scope_ptz.planner.profile.speed import Speed, Spread
 
 
-class EyesSpeed(BaseModel):
+class PerceptionSpeed(BaseModel):
     """Seconds by skill over frames of a scene; ``failures`` counted by kind, with the words of the first."""
 
     model_config = ConfigDict(frozen=True)
@@ -34,7 +34,7 @@ class Side(BaseModel):
     served_as: str = ""
     url: str = ""
     planner: Speed | None = None
-    eyes: EyesSpeed | None = None
+    eyes: PerceptionSpeed | None = None
     slowest_median_s: float | None = None
     meets_real_time: bool | None = None
     memory_gb: float | None = None

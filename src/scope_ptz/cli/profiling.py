@@ -15,9 +15,9 @@ from pydantic import BaseModel, ValidationError
 from rich.console import Console
 from rich.progress import Progress, TextColumn
 
-from scope_ptz.cli.choosing import EyesChoice, PlannerChoice, Wishes, choose
+from scope_ptz.cli.choosing import ModelOptions, ResolvedPerception, ResolvedPlanner, choose
 from scope_ptz.cli.endings import FAILED, put_json
-from scope_ptz.cli.profile_report import EyesSpeed, Side, show
+from scope_ptz.cli.profile_report import PerceptionSpeed, Side, show
 from scope_ptz.cli.session import Start, make_perception, make_planner, open_camera, open_scene
 from scope_ptz.endpoints.serving_facts import memory_gb, serving_facts
 from scope_ptz.errors import InputError, PerceptionError
@@ -44,7 +44,7 @@ class Extent:
     prompts: bool = False
 
 
-def profile(wishes: Wishes, extent: Extent, *, as_json: bool) -> int:
+def profile(wishes: ModelOptions, extent: Extent, *, as_json: bool) -> int:
     """Measure and print; exit code 0 whatever the verdict is, 1 when there is nothing to judge: no request of a side succeeded."""
     report: dict[str, Any] = {}
     rows = _rows(extent)
@@ -108,7 +108,7 @@ class _Line(BaseModel):
     alternatives: tuple[str, ...] = ()
 
 
-async def _planner_side(choice: PlannerChoice, rows: tuple[Row, ...]) -> Side:
+async def _planner_side(choice: ResolvedPlanner, rows: tuple[Row, ...]) -> Side:
     assert choice.endpoint is not None  # noqa: S101 - asked for only then
     planner, trials = make_planner(choice), []
     try:
@@ -134,7 +134,7 @@ async def _planner_side(choice: PlannerChoice, rows: tuple[Row, ...]) -> Side:
     )
 
 
-async def _eyes_side(choice: EyesChoice, extent: Extent) -> Side:
+async def _eyes_side(choice: ResolvedPerception, extent: Extent) -> Side:
     assert choice.spec is not None  # noqa: S101 - asked for only then
     frames = await _frames(extent.scene, extent.frames)
     eyes, _ = make_perception(choice, open_scene(extent.scene), 0)
@@ -177,7 +177,7 @@ async def _frames(scene_name: str, count: int) -> list[Frame]:
         await camera.close()
 
 
-async def _look(eyes: Perception, frames: list[Frame]) -> EyesSpeed:
+async def _look(eyes: Perception, frames: list[Frame]) -> PerceptionSpeed:
     skills: dict[str, Callable[[Frame], Awaitable[object]]] = {
         "query": lambda frame: eyes.query(frame, QUESTION),
         "caption": eyes.caption,
@@ -200,7 +200,7 @@ async def _look(eyes: Perception, frames: list[Frame]) -> EyesSpeed:
                     failures[kind] = failures.get(kind, 0) + bool(number)
                 advance(bool(number))
     by_skill = {name: spread for name, values in times.items() if (spread := Spread.of(values)) is not None}
-    return EyesSpeed(
+    return PerceptionSpeed(
         frames=len(frames),
         by_skill=by_skill,
         never_worked=tuple(name for name in times if name not in by_skill),
@@ -209,7 +209,7 @@ async def _look(eyes: Perception, frames: list[Frame]) -> EyesSpeed:
     )
 
 
-async def _sensitivity(choice: PlannerChoice, rows: tuple[Row, ...]) -> Sensitivity:
+async def _sensitivity(choice: ResolvedPlanner, rows: tuple[Row, ...]) -> Sensitivity:
     from scope_ptz.planner.chat import ChatOptions, ChatPlanner, Prompt, load_prompt
 
     assert choice.endpoint is not None  # noqa: S101 - asked for only then

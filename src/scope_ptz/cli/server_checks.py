@@ -8,7 +8,7 @@ import anyio
 from rich.console import Console
 from rich.text import Text
 
-from scope_ptz.cli.choosing import EyesChoice, PlannerChoice, Wishes, choose
+from scope_ptz.cli.choosing import ModelOptions, ResolvedPerception, ResolvedPlanner, choose
 from scope_ptz.cli.display import plain
 from scope_ptz.cli.endings import FAILED, put_json
 from scope_ptz.cli.session import DEFAULT_SCENE, Start, make_perception, open_camera, open_scene
@@ -21,7 +21,7 @@ _PRESET = "highway"
 _MARKS: dict[Verdict, tuple[str, str]] = {"ok": ("ok", "green"), "partly": ("--", "yellow"), "failed": ("!!", "bold red")}
 
 
-def check_servers(wishes: Wishes, *, as_json: bool) -> int:
+def check_servers(wishes: ModelOptions, *, as_json: bool) -> int:
     """Print every check as it ends; exit code 1 when one of them failed."""
     found: list[tuple[str, Check]] = []
     console = Console(highlight=False)
@@ -29,7 +29,7 @@ def check_servers(wishes: Wishes, *, as_json: bool) -> int:
     async def work() -> None:
         choice = await choose(wishes)
         if choice.planner.endpoint is None and choice.eyes.spec is None:
-            raise InputError("There is no server to check. Name one with --planner-url, or with --perception and --eyes-url.")
+            raise InputError("There is no server to check. Name one with --planner-url, or with --perception and --perception-url.")
         async for about, check in _checks(choice.planner, choice.eyes):
             found.append((about, check))
             if not as_json:
@@ -41,7 +41,7 @@ def check_servers(wishes: Wishes, *, as_json: bool) -> int:
     return FAILED if any(check.verdict == "failed" for _, check in found) else 0
 
 
-async def _checks(planner: PlannerChoice, eyes: EyesChoice) -> AsyncIterator[tuple[str, Check]]:
+async def _checks(planner: ResolvedPlanner, eyes: ResolvedPerception) -> AsyncIterator[tuple[str, Check]]:
     if planner.endpoint is not None:
         from scope_ptz.planner.chat.conformance import check_planning
         from scope_ptz.tools.registry import schemas
@@ -54,13 +54,13 @@ async def _checks(planner: PlannerChoice, eyes: EyesChoice) -> AsyncIterator[tup
             async for check in check_planning(planner.endpoint, schemas(), planner.options):
                 yield about, check
     if eyes.spec is not None:
-        from scope_ptz.perception.examination import check_eyes
+        from scope_ptz.perception.examination import check_perception
 
         scene = open_scene(DEFAULT_SCENE)
         camera = await open_camera(Start(preset=_PRESET), scene, realtime=False)
         perception, _ = make_perception(eyes, scene, 0)
         try:
-            async for check in check_eyes(perception, await camera.frame(), thing=THING):
+            async for check in check_perception(perception, await camera.frame(), thing=THING):
                 yield f"eyes {eyes.name}", check
         finally:
             await perception.close()

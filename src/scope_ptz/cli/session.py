@@ -11,7 +11,7 @@ from scope_ptz.settings import ScopeSettings, load_settings
 
 if TYPE_CHECKING:
     from scope_ptz.camera.simulated import SimulatedCamera
-    from scope_ptz.cli.choosing import EyesChoice, PlannerChoice
+    from scope_ptz.cli.choosing import ResolvedPerception, ResolvedPlanner
     from scope_ptz.perception.base import Perception
     from scope_ptz.planner.base import Planner
     from scope_ptz.simulator.pack import Scene
@@ -58,7 +58,7 @@ async def open_camera(start: Start, scene: Scene, *, realtime: bool) -> Simulate
     return camera
 
 
-def make_planner(choice: PlannerChoice) -> Planner:
+def make_planner(choice: ResolvedPlanner) -> Planner:
     """The planner that was chosen."""
     if choice.endpoint is None:
         from scope_ptz.planner.grammar import GrammarPlanner
@@ -69,12 +69,12 @@ def make_planner(choice: PlannerChoice) -> Planner:
     return ChatPlanner(choice.endpoint, choice.options)
 
 
-def make_perception(choice: EyesChoice, scene: Scene, seed: int) -> tuple[Perception, str]:
+def make_perception(choice: ResolvedPerception, scene: Scene, seed: int) -> tuple[Perception, str]:
     """The eyes that were chosen, and the note that says what they are. ``scene`` is shared with the camera, not read twice."""
     if choice.spec is not None:
-        from scope_ptz.perception.backends import make_eyes
+        from scope_ptz.perception.backends import make_backend
 
-        return make_eyes(choice.spec), ""
+        return make_backend(choice.spec), ""
     from scope_ptz.perception.ground_truth import GroundTruthPerception
 
     truth = GroundTruthPerception({scene.name: scene}.__getitem__)

@@ -3,15 +3,15 @@
 With pytest, subclass it and say how to make the backend and a frame; every ``test_`` method then is a test::
 
     @pytest.mark.anyio
-    class TestMyEyes(PerceptionConformance):
+    class TestMyPerception(PerceptionConformance):
         @asynccontextmanager
         async def perception(self):
-            yield MyEyes(...)
+            yield MyPerception(...)
 
         def frame(self):
             return Frame(...)
 
-Without pytest, ``await TestMyEyes().findings()`` runs all checks and names what failed.
+Without pytest, ``await TestMyPerception().findings()`` runs all checks and names what failed.
 """
 
 from __future__ import annotations

@@ -13,7 +13,7 @@ _MOST_WORDS = 120
 _MANY = 100
 
 
-async def check_eyes(eyes: Perception, frame: Frame, *, thing: str, absent: str = "purple elephant") -> AsyncIterator[Check]:
+async def check_perception(eyes: Perception, frame: Frame, *, thing: str, absent: str = "purple elephant") -> AsyncIterator[Check]:
     """Check each skill of the eyes. ``thing`` is in the frame, ``absent`` is not.
 
     That a reply became a result at all shows that it was read, and that its boxes lie in the frame.

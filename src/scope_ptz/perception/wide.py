@@ -27,7 +27,7 @@ FULL_TURN_DEG = 359.5
 R = TypeVar("R", Detections, Points)
 
 
-class WideEyes(Perception):
+class WidePerception(Perception):
     """Other eyes, shown stitched panoramas in overlapping parts when they are to find things. A part that fails fails the look:
     a count of the rest would be too low. Ordinary frames, questions and captions go through as they are.
     """

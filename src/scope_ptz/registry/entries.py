@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import AnyHttpUrl, BaseModel, ConfigDict, Field, model_validator
 
 Name = Annotated[str, Field(min_length=1, max_length=80, pattern=r"^[a-z0-9][a-z0-9._-]*$")]
-Role = Literal["planner", "eyes"]
+Role = Literal["planner", "perception"]
 Precision = Literal["fp16", "bf16", "fp8", "mxfp4", "int4", "q4", "fp32"]
 Thinking = Literal["none", "optional", "default", "always"]
 """``none``: never; ``optional``: only when asked to; ``default``: unless told not to; ``always``: only how much can be set."""
@@ -80,7 +80,7 @@ class Model(_Entry):
 
     @model_validator(mode="after")
     def _consistent(self) -> Model:
-        if "eyes" in self.roles and not self.backend:
+        if "perception" in self.roles and not self.backend:
             raise ValueError("eyes need a backend, for example 'moondream' or 'openai_vision'")
         if self.active_b > self.size_b:
             raise ValueError("active_b cannot exceed size_b")
@@ -121,6 +121,6 @@ class Pair(_Entry):
 
     name: str
     planner: str
-    eyes: str
+    perception: str
     origin: Literal["paper", "current", "yours"] = "yours"
     paper_average: float | None = None

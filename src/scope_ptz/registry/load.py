@@ -52,13 +52,13 @@ class Registry:
             return self.pairs[text]
         planner, plus, eyes = text.partition("+")
         if plus:
-            one, two = self.model(planner, "planner"), self.model(eyes, "eyes")
+            one, two = self.model(planner, "planner"), self.model(eyes, "perception")
             known = self.pairs.get(f"{one.name}+{two.name}")
-            return known or Pair(name=f"{one.name}+{two.name}", planner=one.name, eyes=two.name)
+            return known or Pair(name=f"{one.name}+{two.name}", planner=one.name, perception=two.name)
         model = self.model(text)
-        if set(model.roles) != {"planner", "eyes"}:
+        if set(model.roles) != {"planner", "perception"}:
             raise ConfigError(f"{model.name} is a {model.roles[0]} only. Give a pair: PLANNER+EYES, see `scope models pairs`.")
-        return Pair(name=model.name, planner=model.name, eyes=model.name)
+        return Pair(name=model.name, planner=model.name, perception=model.name)
 
     def server(self, name: str) -> Server:
         """A server by name. Raises ``UnknownNameError``."""
@@ -114,7 +114,7 @@ def _read(text: str, where: str) -> tuple[dict[str, Server], dict[str, Model], d
             models[name] = Model.model_validate({**given, "name": name, "title": given.get("title", name)})
         for index, given in enumerate(file.pairs):
             spot = ("pairs", index)
-            pair = Pair.model_validate({"name": f"{given.get('planner')}+{given.get('eyes')}", **given})
+            pair = Pair.model_validate({"name": f"{given.get('planner')}+{given.get('perception')}", **given})
             pairs[pair.name] = pair
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
@@ -130,7 +130,7 @@ def _check(registry: Registry, where: Path) -> None:
                 raise ConfigError(f"{where}: models.{model.name}.serve.{server}: there is no such server.")
     for pair in registry.pairs.values():
         registry.model(pair.planner, "planner")
-        registry.model(pair.eyes, "eyes")
+        registry.model(pair.perception, "perception")
 
 
 def _filled(line: str, values: Mapping[str, str]) -> str:

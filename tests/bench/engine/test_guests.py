@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from scope_ptz.bench.engine.external_agents import Desk, GuestPlanner, Reply, source_digest
+from scope_ptz.bench.engine.external_agents import ExternalPlanner, Reply, SceneDrafts, source_digest
 from scope_ptz.bench.engine.logs import open_sample, read_evaluation
 from scope_ptz.errors import PlannerError
 from scope_ptz.geometry import Limits, Pose
@@ -142,12 +142,12 @@ def told(state: State, decision: CallTools, *results: dict[str, Any]) -> State:
     return state.model_copy(update={"history": (*state.history, Exchange(outcomes=outcomes))})
 
 
-def guest(run: Callable[[Any, Desk], Any]) -> GuestPlanner:
-    return GuestPlanner(type("Agent", (), {"run": run}), "guest")
+def guest(run: Callable[[Any, SceneDrafts], Any]) -> ExternalPlanner:
+    return ExternalPlanner(type("Agent", (), {"run": run}), "guest")
 
 
 async def test_calls_that_are_awaited_together_are_one_step() -> None:
-    async def run(self: Any, desk: Desk) -> Reply:
+    async def run(self: Any, desk: SceneDrafts) -> Reply:
         one, two = await asyncio.gather(desk.call("count_objects", {"description": "a"}), desk.call("take_image"))
         return Reply(f"{one['count']} {two['file']}", "clarification")
 
@@ -161,7 +161,7 @@ async def test_calls_that_are_awaited_together_are_one_step() -> None:
 
 
 async def test_an_agent_that_fails_is_the_agents_own_failure() -> None:
-    async def run(self: Any, desk: Desk) -> str:
+    async def run(self: Any, desk: SceneDrafts) -> str:
         raise ZeroDivisionError("oops")
 
     with pytest.raises(PlannerError, match="ZeroDivisionError: oops") as failed:
@@ -170,7 +170,7 @@ async def test_an_agent_that_fails_is_the_agents_own_failure() -> None:
 
 
 async def test_an_agent_without_a_word() -> None:
-    async def run(self: Any, desk: Desk) -> str:
+    async def run(self: Any, desk: SceneDrafts) -> str:
         return " "
 
     with pytest.raises(PlannerError, match="without a word"):
@@ -180,7 +180,7 @@ async def test_an_agent_without_a_word() -> None:
 async def test_an_agent_that_is_stopped_ends() -> None:
     ended = asyncio.Event()
 
-    async def run(self: Any, desk: Desk) -> str:
+    async def run(self: Any, desk: SceneDrafts) -> str:
         try:
             await desk.call("take_image")
         finally:

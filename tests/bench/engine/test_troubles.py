@@ -58,7 +58,7 @@ def test_what_servers_did_is_told_with_the_address_and_what_to_do() -> None:
 
 def test_dead_eyes_are_named_by_the_command(scope: Scope, tmp_path: Path) -> None:
     dump_tasks(TASKS, tmp_path / "tasks.jsonl")
-    run = ("bench", "run", "--tasks", str(tmp_path / "tasks.jsonl"), "--perception", "moondream2", "--eyes-url", AWAY)
+    run = ("bench", "run", "--tasks", str(tmp_path / "tasks.jsonl"), "--perception", "moondream2", "--perception-url", AWAY)
     done = scope(*run, "--out", str(tmp_path / "logs"))
     assert f"The model server at {AWAY} cannot be reached. Start it, or check the address." in done.err
     assert "servers    failed:" in done.out and "refused" in done.out
@@ -68,7 +68,16 @@ def test_dead_eyes_are_named_by_the_command(scope: Scope, tmp_path: Path) -> Non
 
 def test_a_sweep_whose_servers_are_away_says_so(scope: Scope, tmp_path: Path) -> None:
     dump_tasks(many(1), tmp_path / "tasks.jsonl")
-    where = ("--tasks", str(tmp_path / "tasks.jsonl"), "--out", str(tmp_path / "logs"), "--planner-url", AWAY, "--eyes-url", AWAY)
+    where = (
+        "--tasks",
+        str(tmp_path / "tasks.jsonl"),
+        "--out",
+        str(tmp_path / "logs"),
+        "--planner-url",
+        AWAY,
+        "--perception-url",
+        AWAY,
+    )
     single = scope("bench", "run", "--pair", "qwen3-4b+moondream2", *where)
     assert single.code == 1 and "1 run was broken by infrastructure; the same command runs it again." in single.err
     done = scope("bench", "sweep", "--pairs", "qwen3-4b+moondream2", *where)

@@ -99,7 +99,7 @@ def test_the_papers_shares_are_shares_of_its_tasks_but_one() -> None:
 def test_the_papers_pairs_and_models_are_those_of_the_registry() -> None:
     paper, registry = load_paper(), load_registry()
     theirs = {(row.planner, row.eyes): row.average for row in paper.accuracy}
-    ours = {(pair.planner, pair.eyes): pair.paper_average for pair in registry.pairs.values() if pair.origin == "paper"}
+    ours = {(pair.planner, pair.perception): pair.paper_average for pair in registry.pairs.values() if pair.origin == "paper"}
     assert theirs == ours and len(theirs) == 19
     for model in paper.models:
         known = registry.model(model.name)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class ModelWish:
+class ModelRequest:
     """A model by name, as it was asked for: ``url`` of its server, ``options`` as the command line gives them."""
 
     name: str
@@ -47,14 +47,14 @@ class Watcher:
 
 
 @dataclass(frozen=True, slots=True)
-class Equipment:
+class EvalContext:
     """``make_judge``: a judge's port for its n-th judgement of a run; ``truth``: None where no ground truth can be had;
     ``eyes``: those that are made already."""
 
     open_scene: OpenScene
-    make_planner: Callable[[ModelWish], Awaitable[Planner]]
-    make_eyes: Callable[[ModelWish], Awaitable[Eyes]]
-    make_judge: Callable[[ModelWish, int], Awaitable[Complete]]
+    make_planner: Callable[[ModelRequest], Awaitable[Planner]]
+    make_perception: Callable[[ModelRequest], Awaitable[Eyes]]
+    make_judge: Callable[[ModelRequest, int], Awaitable[Complete]]
     load_tasks: LoadTasks
     truth: TruthOf | None = None
     watcher: Watcher = field(default_factory=Watcher)
@@ -62,10 +62,10 @@ class Equipment:
     eyes: Eyes | None = None
 
 
-EQUIPMENT: ContextVar[Equipment | None] = ContextVar("scope_equipment", default=None)
+EQUIPMENT: ContextVar[EvalContext | None] = ContextVar("scope_equipment", default=None)
 
 
-def equipment() -> Equipment:
+def equipment() -> EvalContext:
     """What was lent to the evaluation that is going on."""
     lent = EQUIPMENT.get()
     if lent is None:

@@ -3,7 +3,7 @@
     class Agent:
         sees = False
 
-        async def run(self, desk: Desk) -> str:
+        async def run(self, desk: SceneDrafts) -> str:
             seen = await desk.call("count_objects", {"description": "cars", "view": "full"})
             return f"I count {seen['count']} cars."
 
@@ -36,7 +36,7 @@ class Reply:
     kind: Literal["answered", "clarification", "refused"] = "answered"
 
 
-class Desk:
+class SceneDrafts:
     """What an agent works with: the instruction, the tools, what is known of the camera, and a way to call.
 
     ``tools``: JSON schemas in the OpenAI function format; ``presets``: names of views to go to.
@@ -63,13 +63,13 @@ class Desk:
         return self._view()
 
 
-class Guest(Protocol):
+class ExternalAgent(Protocol):
     """An agent of somebody else. ``sees`` (False where it is missing): it wants frames."""
 
-    async def run(self, desk: Desk) -> str | Reply: ...
+    async def run(self, desk: SceneDrafts) -> str | Reply: ...
 
 
-def load_guest(name: str) -> Callable[[], Guest]:
+def load_external_agent(name: str) -> Callable[[], ExternalAgent]:
     """The class ``module:Class``, looked for in the current folder too. Raises ``ConfigError``."""
     module, colon, attribute = name.partition(":")
     if not colon or not module or not attribute:
@@ -83,14 +83,14 @@ def load_guest(name: str) -> Callable[[], Guest]:
         raise ConfigError(f"The agent {name} cannot be imported: {error}.") from error
     if not callable(made) or not callable(getattr(made, "run", None)):
         raise ConfigError(f"{name} is no agent: it needs a method `async def run(self, desk)`.")
-    guest: Callable[[], Guest] = made
+    guest: Callable[[], ExternalAgent] = made
     return guest
 
 
 def source_digest(name: str) -> str:
     """Names the source of ``module:Class``: of its module, or of all Python files of its package where it is in one. Empty for
     what has no source to read. Raises ``ConfigError``."""
-    load_guest(name)
+    load_external_agent(name)
     module = sys.modules[name.partition(":")[0]]
     package = sys.modules.get(module.__name__.partition(".")[0])
     own = [Path(module.__file__)] if module.__file__ else []
@@ -105,13 +105,13 @@ def source_digest(name: str) -> str:
     return said.hexdigest()[:DIGEST_CHARS] if files or own else ""
 
 
-class GuestPlanner(Planner):
+class ExternalPlanner(Planner):
     """Another agent's loop, turned inside out: what it calls becomes this planner's decisions, what comes back its results.
 
     It lives for one run, because the other loop keeps its state where nobody sees it.
     """
 
-    def __init__(self, make: Callable[[], Guest], name: str) -> None:
+    def __init__(self, make: Callable[[], ExternalAgent], name: str) -> None:
         self.name, self.sees = name, bool(getattr(make, "sees", False))
         self._make = make
         self._wanted: list[tuple[ToolCall, asyncio.Future[dict[str, Any]]]] = []
@@ -127,7 +127,7 @@ class GuestPlanner(Planner):
         if state.view is not None:
             self._newest = base64.b64decode(state.view.data_url.partition(",")[2])
         if self._task is None:
-            self._task = asyncio.ensure_future(self._make().run(Desk(state, self._call, self._view)))
+            self._task = asyncio.ensure_future(self._make().run(SceneDrafts(state, self._call, self._view)))
             self._task.add_done_callback(lambda _: self._stirred.set())
         elif state.history:
             self._hand_over(state.history[-1].outcomes)

@@ -24,7 +24,7 @@ from inspect_ai.model import (
 )
 from inspect_ai.tool import ToolCall, ToolChoice, ToolInfo
 
-from scope_ptz.bench.engine.context import ModelWish, equipment
+from scope_ptz.bench.engine.context import ModelRequest, equipment
 from scope_ptz.bench.engine.messages import call_id, state_of
 from scope_ptz.bench.engine.wire import WIRE
 from scope_ptz.bench.judging.judge import Complete
@@ -58,7 +58,7 @@ class ScopeModel(ModelAPI):
         **options: Any,
     ) -> None:
         super().__init__(model_name, base_url, api_key, [], config or GenerateConfig())
-        self.wish = ModelWish(model_name, base_url, options)
+        self.wish = ModelRequest(model_name, base_url, options)
         self._lock = anyio.Lock()
         self._planner: Planner | None = None
         self._eyes: Eyes | None = None
@@ -75,7 +75,7 @@ class ScopeModel(ModelAPI):
         """The eyes behind this name, made when they are first wanted."""
         async with self._lock:
             if self._eyes is None:
-                self._eyes = await equipment().make_eyes(self.wish)
+                self._eyes = await equipment().make_perception(self.wish)
             return self._eyes
 
     async def judge(self, repeat: int) -> Complete:

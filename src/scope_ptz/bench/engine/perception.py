@@ -18,7 +18,7 @@ Eyes = Perception
 _Looked = TypeVar("_Looked", Caption, Answer, Detections, Points)
 
 
-class LoggedEyes(Perception):
+class LoggedPerception(Perception):
     """Eyes whose looks go through a model of the engine, which counts, limits and logs them. The look itself is theirs."""
 
     def __init__(self, model: Model, eyes: Eyes, *, pictures: bool) -> None:

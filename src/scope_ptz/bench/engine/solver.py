@@ -8,12 +8,12 @@ from inspect_ai.solver import Generate, Solver, TaskState, solver
 from scope_ptz.agent.loop import Agent
 from scope_ptz.agent.records import Budgets, Labels, Run
 from scope_ptz.agent.store import NoImages
-from scope_ptz.bench.engine.context import Equipment, equipment
+from scope_ptz.bench.engine.context import EvalContext, equipment
 from scope_ptz.bench.engine.entries import Entry
-from scope_ptz.bench.engine.external_agents import GuestPlanner, load_guest
+from scope_ptz.bench.engine.external_agents import ExternalPlanner, load_external_agent
 from scope_ptz.bench.engine.messages import Record, conversation_of
 from scope_ptz.bench.engine.models import ScopeModel
-from scope_ptz.bench.engine.perception import LoggedEyes
+from scope_ptz.bench.engine.perception import LoggedPerception
 from scope_ptz.bench.engine.pictures import KeptPictures, reference
 from scope_ptz.bench.engine.ports import LoggedPlanner, ToolLog
 from scope_ptz.bench.engine.sampling import STORE, Kept, sample_name
@@ -54,13 +54,13 @@ def scope_agent(
         planner: Planner = (
             await LoggedPlanner.of(get_model(role="planner", required=True))
             if agent == OWN_AGENT
-            else GuestPlanner(load_guest(agent), agent)
+            else ExternalPlanner(load_external_agent(agent), agent)
         )
         run = _Sample(lent, entry, planner, pictures=pictures, seed=seed)
         try:
             ended = await run.go(Budgets(max_steps=max_steps, time_s=time_s))
         finally:
-            if isinstance(planner, GuestPlanner):
+            if isinstance(planner, ExternalPlanner):
                 await planner.close()
             await run.leave(state)
         state.output = ModelOutput.from_content(planner.name, ended.ended.text)
@@ -76,7 +76,7 @@ def scope_agent(
 class _Sample:
     """One run: its camera, eyes, pictures and trace."""
 
-    def __init__(self, lent: Equipment, entry: Entry, planner: Planner, *, pictures: bool, seed: int) -> None:
+    def __init__(self, lent: EvalContext, entry: Entry, planner: Planner, *, pictures: bool, seed: int) -> None:
         self.entry, self.planner, self.seed, self.note = entry, planner, seed, lent.perception_note
         self.scene = lent.open_scene(entry.world)
         self.clock = SceneClock(entry.time_s)
@@ -89,7 +89,7 @@ class _Sample:
         model = get_model(role="eyes", required=True)
         if not isinstance(model.api, ScopeModel):
             raise ConfigError(f"The role 'eyes' wants a model of this project (scope_ptz/...), not {model}.")
-        eyes = LoggedEyes(model, await model.api.eyes(), pictures=self.pictures is not None)
+        eyes = LoggedPerception(model, await model.api.eyes(), pictures=self.pictures is not None)
         with self.clock.hold():
             await self.camera.go_to_preset(self.entry.facts.preset)
         loop = Agent(

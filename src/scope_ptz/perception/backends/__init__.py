@@ -1,6 +1,6 @@
 """Eyes that look at pixels, one file a backend.
 
-A module in this package with a function ``make(spec: EyesSpec) -> Perception`` is a backend of the module's name. Other packages
+A module in this package with a function ``make(spec: BackendSpec) -> Perception`` is a backend of the module's name. Other packages
 add theirs as entry points of the group ``scope_ptz.perception``, each naming such a function. Nothing is imported before it is
 made.
 """
@@ -13,14 +13,14 @@ from importlib.metadata import entry_points
 from pkgutil import iter_modules
 
 from scope_ptz.errors import ConfigError, UnknownNameError
-from scope_ptz.perception.backends.spec import EyesSpec
+from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import Perception
-from scope_ptz.perception.wide import WideEyes
+from scope_ptz.perception.wide import WidePerception
 
 ENTRY_POINTS = "scope_ptz.perception"
 _NO_BACKENDS = {"spec"}
 
-Maker = Callable[[EyesSpec], Perception]
+Maker = Callable[[BackendSpec], Perception]
 
 
 def backend_names() -> tuple[str, ...]:
@@ -29,13 +29,13 @@ def backend_names() -> tuple[str, ...]:
     return tuple(sorted(own | {point.name for point in entry_points(group=ENTRY_POINTS)}))
 
 
-def make_eyes(spec: EyesSpec) -> Perception:
+def make_backend(spec: BackendSpec) -> Perception:
     """The perception that a spec describes. Raises ``UnknownNameError`` and ``ConfigError``."""
     name = spec.backend.replace("-", "_")
     if name not in backend_names():
         raise UnknownNameError("perception backend", spec.backend, backend_names())
     eyes = _maker(name)(spec)
-    return eyes if eyes.sees_wide else WideEyes(eyes)
+    return eyes if eyes.sees_wide else WidePerception(eyes)
 
 
 def _maker(name: str) -> Maker:

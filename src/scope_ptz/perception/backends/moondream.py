@@ -10,7 +10,7 @@ from scope_ptz.camera.base import Frame
 from scope_ptz.endpoints.failures import Attempt, FailureKind
 from scope_ptz.endpoints.http import JsonClient
 from scope_ptz.errors import PerceptionError
-from scope_ptz.perception.backends.spec import EyesSpec, Options
+from scope_ptz.perception.backends.spec import BackendSpec, Options
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
 from scope_ptz.perception.coordinates import MAX_THINGS, convention, fit
 from scope_ptz.perception.encoding import picture_of
@@ -98,6 +98,6 @@ def _body(data_url: str, fields: dict[str, Any]) -> bytes:
     return f'{{"image_url":"{data_url}",{rest}'.encode()
 
 
-def make(spec: EyesSpec) -> Perception:
+def make(spec: BackendSpec) -> Perception:
     client = JsonClient(spec.needed_endpoint(), key_header=KEY_HEADER)
     return MoondreamPerception(client, MoondreamOptions.of(spec), spec.name)

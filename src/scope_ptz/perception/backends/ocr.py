@@ -15,7 +15,7 @@ import numpy as np
 
 from scope_ptz.camera.base import Frame
 from scope_ptz.errors import PerceptionError
-from scope_ptz.perception.backends.spec import EyesSpec, Options, need
+from scope_ptz.perception.backends.spec import BackendSpec, Options, need
 from scope_ptz.perception.base import Answer, Box, Caption, Detections, Perception, Point, Points
 from scope_ptz.perception.memo import FrameMemo, Image
 from scope_ptz.perception.reading import is_reading, text_fits, wanted_texts
@@ -163,6 +163,6 @@ def _line(corners: np.ndarray[Any, np.dtype[np.float64]], text: str, score: floa
     return Line(text, Box(x_min=low[0], y_min=low[1], x_max=high[0], y_max=high[1], label=text, score=sure))
 
 
-def make(spec: EyesSpec) -> Perception:
+def make(spec: BackendSpec) -> Perception:
     need("ocr", "rapidocr", "onnxruntime")
     return OcrPerception(RapidOcr(OcrOptions.of(spec).min_score), spec.name)

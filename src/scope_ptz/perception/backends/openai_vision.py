@@ -11,7 +11,7 @@ from scope_ptz.camera.base import Frame
 from scope_ptz.endpoints.chat import ChatClient, ChatReply
 from scope_ptz.endpoints.failures import Attempt, FailureKind
 from scope_ptz.errors import PerceptionError
-from scope_ptz.perception.backends.spec import EyesSpec, Options
+from scope_ptz.perception.backends.spec import BackendSpec, Options
 from scope_ptz.perception.base import ALL_SKILLS, Answer, Caption, Detections, Perception, Points, Skill
 from scope_ptz.perception.coordinates import Convention, convention
 from scope_ptz.perception.encoding import Picture, picture_of
@@ -141,7 +141,7 @@ def refused_fields(error: PerceptionError, sent: dict[str, Any]) -> set[str]:
     return named or ({"response_format"} & sent.keys() if error.kind == FailureKind.BAD_REQUEST else set())
 
 
-def make(spec: EyesSpec) -> Perception:
+def make(spec: BackendSpec) -> Perception:
     endpoint = spec.needed_endpoint()
     if spec.model:
         endpoint = endpoint.model_copy(update={"model": spec.model})

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from scope_ptz.errors import ConfigError
-from scope_ptz.perception.backends import make_eyes
-from scope_ptz.perception.backends.spec import EyesSpec, Options
+from scope_ptz.perception.backends import make_backend
+from scope_ptz.perception.backends.spec import BackendSpec, Options
 from scope_ptz.perception.base import Perception
 from scope_ptz.perception.router import RouterPerception
 
@@ -13,16 +13,16 @@ class RouterOptions(Options):
     """``reader`` reads text, ``detector`` finds things, ``answerer`` answers questions; ``compare``: ask two where two can, and
     record how far they agree."""
 
-    reader: EyesSpec | None = None
-    detector: EyesSpec | None = None
-    answerer: EyesSpec | None = None
+    reader: BackendSpec | None = None
+    detector: BackendSpec | None = None
+    answerer: BackendSpec | None = None
     compare: bool = True
 
 
-def make(spec: EyesSpec) -> Perception:
+def make(spec: BackendSpec) -> Perception:
     options = RouterOptions.of(spec)
     reader, detector, answerer = (
-        make_eyes(part) if part else None for part in (options.reader, options.detector, options.answerer)
+        make_backend(part) if part else None for part in (options.reader, options.detector, options.answerer)
     )
     if reader is None and detector is None and answerer is None:
         raise ConfigError(f"The eyes '{spec.name}' are made of nothing. Name a reader, a detector or an answerer.")

@@ -11,7 +11,7 @@ from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.errors import ConfigError
 
 
-class EyesSpec(BaseModel):
+class BackendSpec(BaseModel):
     """``name``: what results call the eyes; ``backend``: a module of this package or a third party's name; ``model``: as its server
     or the hub calls it; ``coordinates``: a convention of ``perception.coordinates``; ``options``: what the backend's own model of
     options reads."""
@@ -28,7 +28,7 @@ class EyesSpec(BaseModel):
     def needed_endpoint(self) -> Endpoint:
         """The endpoint, for backends that ask a server."""
         if self.endpoint is None:
-            raise ConfigError(f"The eyes '{self.name}' ask a model server. Say where it is, with --eyes-url.")
+            raise ConfigError(f"The eyes '{self.name}' ask a model server. Say where it is, with --perception-url.")
         return self.endpoint
 
     def needed_model(self) -> str:
@@ -47,7 +47,7 @@ class Options(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     @classmethod
-    def of(cls: type[_Options], spec: EyesSpec) -> _Options:
+    def of(cls: type[_Options], spec: BackendSpec) -> _Options:
         try:
             return cls.model_validate(spec.options)
         except ValidationError as error:

@@ -16,7 +16,7 @@ from pydantic import Field
 
 from scope_ptz.camera.base import Frame
 from scope_ptz.errors import ConfigError, PerceptionError
-from scope_ptz.perception.backends.spec import EyesSpec, Options, need
+from scope_ptz.perception.backends.spec import BackendSpec, Options, need
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
 from scope_ptz.perception.coordinates import Convention, convention
 from scope_ptz.perception.encoding import resized
@@ -188,7 +188,7 @@ def _device(options: LocalOptions) -> str:
     return "cuda" if torch.cuda.is_available() else "mps" if torch.backends.mps.is_available() else "cpu"
 
 
-def make(spec: EyesSpec) -> Perception:
+def make(spec: BackendSpec) -> Perception:
     need("local", "transformers", "torch")
     options, model = LocalOptions.of(spec), spec.needed_model()
     if options.family == "chat":

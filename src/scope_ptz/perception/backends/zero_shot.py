@@ -13,7 +13,7 @@ from anyio import to_thread
 
 from scope_ptz.camera.base import Frame
 from scope_ptz.errors import PerceptionError
-from scope_ptz.perception.backends.spec import EyesSpec, Options, need
+from scope_ptz.perception.backends.spec import BackendSpec, Options, need
 from scope_ptz.perception.base import Answer, Box, Caption, Detections, Perception, Point, Points
 from scope_ptz.perception.coordinates import RawThing, convention, located
 from scope_ptz.perception.memo import Image
@@ -109,7 +109,7 @@ class PipelineDetector:
             raise PerceptionError(f"The detector '{self._model}' cannot be loaded: {error}") from error
 
 
-def make(spec: EyesSpec) -> Perception:
+def make(spec: BackendSpec) -> Perception:
     need("local", "transformers", "torch")
     options = ZeroShotOptions.of(spec)
     return ZeroShotPerception(PipelineDetector(spec.needed_model(), options), options, spec.name)

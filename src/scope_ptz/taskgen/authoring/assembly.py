@@ -11,7 +11,7 @@ from scope_ptz.simulator.pack import Scene
 from scope_ptz.taskgen.authoring.descriptor import values_of
 from scope_ptz.taskgen.authoring.drafts import Draft, difficulty
 from scope_ptz.taskgen.authoring.reactions import DATASET, reactions
-from scope_ptz.taskgen.authoring.scene_drafts import Desk
+from scope_ptz.taskgen.authoring.scene_drafts import SceneDrafts
 from scope_ptz.taskgen.authoring.selection import Answered, Chosen, Selection, Shared
 
 QUOTAS: dict[Category, int] = {
@@ -49,7 +49,7 @@ class Builder:
         self.say: Say = say or (lambda _: None)
         things = [thing for scene in scenes for thing in scene.things]
         nouns = frozenset({thing.category for thing in things} | {noun for scene in scenes for noun in scene.file.absent})
-        self.desks = [Desk(scene, seed, nouns, values_of(things)) for scene in scenes]
+        self.desks = [SceneDrafts(scene, seed, nouns, values_of(things)) for scene in scenes]
         self.shared = Shared(scale=sum(self.quotas.values()) / sum(QUOTAS.values()), answered=answered)
 
     def build(self) -> Built:

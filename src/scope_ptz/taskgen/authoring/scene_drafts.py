@@ -48,7 +48,7 @@ READING = 36
 """How many views near to a text a scene is asked about."""
 
 
-class Desk:
+class SceneDrafts:
     """Drafts of a scene, in an order that the seed fixes. Places are looked at only when a category asks for them."""
 
     def __init__(self, scene: Scene, seed: int, nouns: frozenset[str], values: Values) -> None:

@@ -86,6 +86,6 @@ def _view(sight: Sight) -> View:
 
 
 def equip_with_truth(scenes: Mapping[str, Scene], views: KnownViews | None = None) -> Equip:
-    """Equipment for cameras in these scenes: eyes that know the truth, and a store that keeps nothing."""
+    """EvalContext for cameras in these scenes: eyes that know the truth, and a store that keeps nothing."""
     eyes = GroundTruthPerception(lambda name: scenes[name], (views or KnownViews()).look)
     return lambda camera: ToolContext(camera, eyes, NamesOnly())
