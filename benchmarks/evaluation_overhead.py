@@ -22,9 +22,9 @@ from scope_ptz.bench.engine.context import EvalContext, ModelRequest
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.programs import BlankCamera
 from scope_ptz.camera.simulated import SimulatedCamera
-from scope_ptz.cli.bench_equipment import lend, planner_for
 from scope_ptz.cli.bench_evaluate import RunOptions, evaluate
-from scope_ptz.cli.choosing import ModelOptions, ResolvedPerception, ResolvedPlanner
+from scope_ptz.factory.evaluation import eval_context, planner_for
+from scope_ptz.factory.models import ModelOptions, ResolvedPerception, ResolvedPlanner
 from scope_ptz.simulator.clock import SceneClock
 
 
@@ -43,7 +43,7 @@ async def bare(entries: tuple[Entry, ...], lent: EvalContext, folder: Path, *, p
 
 
 async def main(tasks: Path, *, pictures: bool) -> None:
-    lent = lend(seed=1, eyes=ResolvedPerception("ground-truth"))
+    lent = eval_context(seed=1, eyes=ResolvedPerception("ground-truth"))
     entries = lent.load_tasks(str(tasks))
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)

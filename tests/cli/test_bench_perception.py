@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from scope_ptz.cli.bench_perception import surely_named
+from scope_ptz.factory.validation_perception import surely_named
 from scope_ptz.perception.view import read_view
 from tests.perception import yard
 

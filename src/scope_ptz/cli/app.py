@@ -31,7 +31,7 @@ from scope_ptz.cli.model_options import (
 
 if TYPE_CHECKING:
     from scope_ptz.cli.asking import Asking
-    from scope_ptz.cli.choosing import ModelOptions
+    from scope_ptz.factory.models import ModelOptions
 
 app = typer.Typer(
     help="Talk to a pan-tilt-zoom camera in plain language.",
@@ -87,7 +87,7 @@ def _asking(
 ) -> Asking:  # fmt: skip
     from scope_ptz.agent.records import Budgets
     from scope_ptz.cli.asking import Asking
-    from scope_ptz.cli.session import Start
+    from scope_ptz.factory.session import Start
     from scope_ptz.settings import load_settings
 
     return Asking(
@@ -262,7 +262,7 @@ def scene_view(
     """Write what the camera sees at a pose to a picture file."""
     with ending():
         from scope_ptz.cli.scenes import view_scene
-        from scope_ptz.cli.session import Start
+        from scope_ptz.factory.session import Start
 
         view_scene(Start(name, viewpoint, preset, at), (pan, tilt, zoom), out)
 

@@ -16,11 +16,11 @@ from scope_ptz.agent.records import Budgets, Called, Decided, Ended, Labels, Lis
 from scope_ptz.agent.store import RunFolder
 from scope_ptz.agent.trace import TraceWriter, read_trace
 from scope_ptz.camera.base import Camera
-from scope_ptz.cli.choosing import ModelOptions, choose
 from scope_ptz.cli.display import LiveView, show_end
 from scope_ptz.cli.endings import CANCELLED, exit_code, put_json
-from scope_ptz.cli.session import Start, make_perception, make_planner, open_camera, open_scene
 from scope_ptz.errors import InputError
+from scope_ptz.factory.models import ModelOptions, resolve_models
+from scope_ptz.factory.session import Start, make_perception, make_planner, open_camera, open_scene
 from scope_ptz.perception.base import Perception
 from scope_ptz.planner.base import PastTurn, Planner
 
@@ -51,7 +51,7 @@ class Session:
 
     @classmethod
     async def open(cls, options: Asking) -> Session:
-        choice = await choose(options.wishes)
+        choice = await resolve_models(options.wishes)
         scene = open_scene(options.start.scene)
         planner = make_planner(choice.planner)
         perception, note = make_perception(choice.eyes, scene, options.seed)

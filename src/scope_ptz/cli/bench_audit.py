@@ -46,8 +46,8 @@ def make(
         from scope_ptz.bench.programs import Stage
         from scope_ptz.bench.tasks.files import digest_of
         from scope_ptz.bench.tasks.splits import load_split
-        from scope_ptz.cli.bench_perception import KnownViews, equip_with_truth
         from scope_ptz.cli.bench_show import EYES
+        from scope_ptz.factory.validation_perception import KnownViews, equip_with_truth
         from scope_ptz.taskgen.audit import DRAW, QUESTIONS, Draw, drawn
 
         rows = load_split(tasks)

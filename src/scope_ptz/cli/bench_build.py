@@ -44,7 +44,7 @@ def build(
                 write_card(out, card)
             sys.exit(0 if good else FAILED)
         from scope_ptz.bench.tasks.files import dump_tasks
-        from scope_ptz.cli.bench_perception import answered
+        from scope_ptz.factory.validation_perception import answered
         from scope_ptz.taskgen.authoring.assembly import build as make
         from scope_ptz.taskgen.dataset.unseen import build_unseen
 

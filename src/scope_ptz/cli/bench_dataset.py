@@ -12,9 +12,9 @@ import anyio
 from scope_ptz.bench.tasks.splits import write_manifest, write_splits
 from scope_ptz.cli.bench_build import tell_short
 from scope_ptz.cli.bench_gold import made_gold, matrix_lines
-from scope_ptz.cli.bench_perception import answered
 from scope_ptz.cli.bench_proof import prove
 from scope_ptz.cli.endings import complain, put
+from scope_ptz.factory.validation_perception import answered
 from scope_ptz.taskgen.authoring.assembly import build
 from scope_ptz.taskgen.dataset.card import GOLD, PROOF
 from scope_ptz.taskgen.dataset.unseen import build_unseen

@@ -12,9 +12,9 @@ import anyio
 
 from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.cli.bench_judged import Ended, JudgeOptions, judged, open_wished
-from scope_ptz.cli.choosing import Choice, ModelOptions, choose
 from scope_ptz.cli.endings import complain
 from scope_ptz.errors import ConfigError, InputError, ScopeError
+from scope_ptz.factory.models import ModelOptions, ResolvedPair, resolve_models
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -69,7 +69,7 @@ async def evaluate(options: RunOptions, console: Console) -> Ended:
     """Run an evaluation, or go on with it, or just read it when it is done; judge what was not judged yet."""
     from scope_ptz.bench.engine.runs import alone
 
-    choice = await choose(options.wishes)
+    choice = await resolve_models(options.wishes)
     prepared = _Prepared(options, choice)
     with alone(options.out, prepared.identity):
         before = await prepared.before()
@@ -86,17 +86,17 @@ async def evaluate(options: RunOptions, console: Console) -> Ended:
 class _Prepared:
     """An evaluation that has its tasks and its models, and has not begun."""
 
-    def __init__(self, options: RunOptions, choice: Choice) -> None:
+    def __init__(self, options: RunOptions, choice: ResolvedPair) -> None:
         from scope_ptz.bench.engine.entries import chosen, digest
         from scope_ptz.bench.engine.external_agents import source_digest
         from scope_ptz.bench.engine.runs import identity_of
-        from scope_ptz.cli.bench_equipment import lend, planner_for
+        from scope_ptz.factory.evaluation import eval_context, planner_for
 
         self.options, self.choice = options, choice
         self.agent_source = source_digest(options.agent) if options.agent != OWN_AGENT else ""
         self.judge: ServerPort | None = None
         self.planner = planner_for(choice.planner) if options.agent == OWN_AGENT else None
-        self.lent = lend(seed=options.seed, planner=self.planner, eyes=choice.eyes)
+        self.lent = eval_context(seed=options.seed, planner=self.planner, eyes=choice.eyes)
         self.entries: tuple[Entry, ...] = chosen(
             self.lent.load_tasks(options.tasks), options.categories, options.scenes, options.limit
         )
@@ -136,10 +136,10 @@ class _Prepared:
         from scope_ptz.bench.engine.context import EQUIPMENT
         from scope_ptz.bench.engine.logs import read_evaluation
         from scope_ptz.bench.engine.runs import run
-        from scope_ptz.cli.bench_equipment import judge_maker
         from scope_ptz.cli.bench_live import LiveTable
         from scope_ptz.cli.bench_troubles import troubles
-        from scope_ptz.cli.inspect_entry import bench
+        from scope_ptz.factory.evaluation import judge_maker
+        from scope_ptz.factory.inspect_plugin import bench
 
         done = tuple(t for t in read_evaluation(before[0].path).trials if t.headline != "infrastructure") if before else ()
         wanted = len(self.entries) * self.options.epochs
@@ -195,10 +195,10 @@ class _Prepared:
     async def _setting(self, judge: ServerPort | None) -> Setting:
         from inspect_ai.model import GenerateConfig, get_model
 
-        import scope_ptz.cli.inspect_entry  # noqa: F401 - the models of this project
+        import scope_ptz.factory.inspect_plugin  # noqa: F401 - the models of this project
         from scope_ptz.bench.engine.runs import Setting
-        from scope_ptz.cli.bench_cards import run_card
-        from scope_ptz.cli.bench_judging import judge_as_model
+        from scope_ptz.factory.judge_model import judge_as_model
+        from scope_ptz.factory.run_card import run_card
 
         options, choice = self.options, self.choice
         card = await run_card(
@@ -263,7 +263,7 @@ def opening_chars(planner: Planner | None) -> int | None:
     return len(prompt.text) + len(json.dumps(list(schemas())))
 
 
-def _place(choice: Choice) -> list[str]:
+def _place(choice: ResolvedPair) -> list[str]:
     """Which served models are asked. Where a server listens may change between a run and its continuation."""
     spec = choice.eyes.spec
     eyes = spec.endpoint.model if spec is not None and spec.endpoint is not None else ""

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 from scope_ptz.bench.engine.estimate import Estimate
 from scope_ptz.cli.bench_live import clock
-from scope_ptz.cli.choosing import Choice
+from scope_ptz.factory.models import ResolvedPair
 
 
-def lines(told: Estimate, choice: Choice, concurrency: int, agent: str | None = None) -> Iterator[str]:
+def lines(told: Estimate, choice: ResolvedPair, concurrency: int, agent: str | None = None) -> Iterator[str]:
     """Runs, calls, time and cost, one a line. ``agent``: the name of another one, which plans in place of the planner."""
     runs, who = f"{told.runs} run{'s' if told.runs != 1 else ''}", "this agent" if agent else "this pair"
     yield f"{runs} of {agent or choice.planner.name} + {choice.eyes.name}, {concurrency} at a time"

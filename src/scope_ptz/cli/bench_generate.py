@@ -43,7 +43,7 @@ def generate(
         import anyio
 
         from scope_ptz.bench.tasks.splits import load_split
-        from scope_ptz.cli.session import open_scene
+        from scope_ptz.factory.session import open_scene
         from scope_ptz.taskgen.generating.ledger import Ledger
         from scope_ptz.taskgen.generating.loop import Order
         from scope_ptz.taskgen.generating.operators import read_runs
@@ -85,7 +85,7 @@ async def _run(order: Order, ledger: Ledger, endpoint: Endpoint, model: str, tem
 
 def prover(scene: Scene) -> Prove:
     """Proof of single tasks by the same attempts as ``scope bench validate`` makes."""
-    from scope_ptz.cli.bench_perception import KnownViews, equip_with_truth
+    from scope_ptz.factory.validation_perception import KnownViews, equip_with_truth
     from scope_ptz.taskgen.validation.validate import validate
 
     views = KnownViews()

@@ -72,7 +72,7 @@ async def made_gold(tasks: Sequence[Task], seed: int) -> list[Gold]:
     """Gold runs of tasks: their reference programs through the tools with the ground truth for eyes, then the faults."""
     from scope_ptz.bench.programs import Stage
     from scope_ptz.bench.scoring.verdict import judge
-    from scope_ptz.cli.bench_perception import KnownViews, equip_with_truth
+    from scope_ptz.factory.validation_perception import KnownViews, equip_with_truth
     from scope_ptz.taskgen.authoring.places import preset_at
     from scope_ptz.taskgen.facts.phrasing import right_answers
     from scope_ptz.taskgen.gold.mutations import Setting

@@ -64,9 +64,9 @@ async def open_judge(
     from pydantic import ValidationError
 
     from scope_ptz.bench.judging.server import JudgeOptions, ServerPort
-    from scope_ptz.cli.choosing import parse_options
     from scope_ptz.endpoints.endpoint import Endpoint, Timeouts, key_from_file
     from scope_ptz.errors import ConfigError
+    from scope_ptz.factory.models import parse_options
     from scope_ptz.settings import load_settings
 
     settings = load_settings()

@@ -112,7 +112,7 @@ def gold_cases(gold: Path | None, tasks: str, passing: int, limit: int | None) -
     from scope_ptz.bench.scoring.verdict import judge
     from scope_ptz.bench.tasks.splits import load_split, published_folder
     from scope_ptz.cli.bench_inputs import worlds_of
-    from scope_ptz.cli.bench_perception import equip_with_truth
+    from scope_ptz.factory.validation_perception import equip_with_truth
     from scope_ptz.taskgen.facts.phrasing import right_answers
     from scope_ptz.taskgen.gold.judges import gold_case, in_turn, passing_case
     from scope_ptz.taskgen.gold.runs import EYES, read_gold

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import anyio
 
 from scope_ptz.cli.bench_inputs import worlds_of
-from scope_ptz.cli.bench_perception import KnownViews, equip_with_truth
+from scope_ptz.factory.validation_perception import KnownViews, equip_with_truth
 from scope_ptz.taskgen.validation.validate import Report, validate
 
 if TYPE_CHECKING:

@@ -49,8 +49,8 @@ def rescore(
 
         from scope_ptz.bench.judging.deciding import beside
         from scope_ptz.bench.judging.tally import Tally
-        from scope_ptz.cli.bench_equipment import lend
         from scope_ptz.cli.bench_evaluate import need_engine
+        from scope_ptz.factory.evaluation import eval_context
         from scope_ptz.settings import load_settings
 
         need_engine()
@@ -67,7 +67,7 @@ def rescore(
             try:
                 for log in logs:
                     if checks or wants_judge:
-                        lent = lend(seed=1, judge=judge)
+                        lent = eval_context(seed=1, judge=judge)
                         made = await score_again(log, judge, lent, repeats=repeats, checks=checks, at_a_time=concurrency)
                         all_made += made
                         put(f"{log}: {'checked again' if checks else ''}{', ' if checks and judge else ''}{told(judge, made)}")
@@ -111,7 +111,7 @@ async def score_again(
     """Add scores to a log; what came of the judgements. ``more``: beside those there are, not in place of what is missing."""
     from scope_ptz.bench.engine.context import EQUIPMENT
     from scope_ptz.bench.engine.rescoring import rescore as again
-    from scope_ptz.cli.bench_judging import judge_as_model
+    from scope_ptz.factory.judge_model import judge_as_model
 
     EQUIPMENT.set(lent)
 

@@ -16,8 +16,8 @@ from scope_ptz.bench.scoring.coverage import box_directions
 from scope_ptz.bench.scoring.episode import Eyes
 from scope_ptz.bench.scoring.verdict import judge
 from scope_ptz.bench.tasks.task import EvidenceView, Item, Task
-from scope_ptz.cli.bench_perception import equip_with_truth
 from scope_ptz.errors import OutputError
+from scope_ptz.factory.validation_perception import equip_with_truth
 from scope_ptz.geometry import Equirectangular, Perspective, Pose, Projection
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.views import picture

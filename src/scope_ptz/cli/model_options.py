@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from scope_ptz.cli.choosing import ModelOptions
+    from scope_ptz.factory.models import ModelOptions
 
 _PANEL = "Models"
 
@@ -83,7 +83,7 @@ def model_options(
     timeout: float | None,
 ) -> ModelOptions:  # fmt: skip
     """The options as one object."""
-    from scope_ptz.cli.choosing import ModelOptions
+    from scope_ptz.factory.models import ModelOptions
 
     return ModelOptions(
         planner=planner,

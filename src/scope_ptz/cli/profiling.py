@@ -15,12 +15,12 @@ from pydantic import BaseModel, ValidationError
 from rich.console import Console
 from rich.progress import Progress, TextColumn
 
-from scope_ptz.cli.choosing import ModelOptions, ResolvedPerception, ResolvedPlanner, choose
 from scope_ptz.cli.endings import FAILED, put_json
 from scope_ptz.cli.profile_report import PerceptionSpeed, Side, show
-from scope_ptz.cli.session import Start, make_perception, make_planner, open_camera, open_scene
 from scope_ptz.endpoints.serving_facts import memory_gb, serving_facts
 from scope_ptz.errors import InputError, PerceptionError
+from scope_ptz.factory.models import ModelOptions, ResolvedPerception, ResolvedPlanner, resolve_models
+from scope_ptz.factory.session import Start, make_perception, make_planner, open_camera, open_scene
 from scope_ptz.planner.profile import Row, Sensitivity, ask_once, load_rows, measure_sensitivity
 from scope_ptz.planner.profile.speed import Spread, speed_of
 
@@ -50,7 +50,7 @@ def profile(wishes: ModelOptions, extent: Extent, *, as_json: bool) -> int:
     rows = _rows(extent)
 
     async def work() -> None:
-        choice = await choose(wishes)
+        choice = await resolve_models(wishes)
         if choice.planner.endpoint is None and choice.eyes.spec is None:
             raise InputError("Say what to profile: a pair, or a planner or eyes with the address of its server.")
         sides = {}

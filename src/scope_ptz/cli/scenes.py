@@ -14,8 +14,8 @@ from rich.text import Text
 
 from scope_ptz.cli.cards import card, folder_bytes, markdown, megabytes
 from scope_ptz.cli.endings import put, put_json
-from scope_ptz.cli.session import Start, open_camera, open_scene, scene_search
 from scope_ptz.errors import InputError, OutputError
+from scope_ptz.factory.session import Start, open_camera, open_scene, scene_search
 from scope_ptz.geometry import Pose
 from scope_ptz.settings import has_desktop, load_settings
 from scope_ptz.simulator.pack import Scene

@@ -8,12 +8,12 @@ import anyio
 from rich.console import Console
 from rich.text import Text
 
-from scope_ptz.cli.choosing import ModelOptions, ResolvedPerception, ResolvedPlanner, choose
 from scope_ptz.cli.display import plain
 from scope_ptz.cli.endings import FAILED, put_json
-from scope_ptz.cli.session import DEFAULT_SCENE, Start, make_perception, open_camera, open_scene
 from scope_ptz.endpoints.conformance import LAST, Check, Verdict, check_chat
 from scope_ptz.errors import InputError
+from scope_ptz.factory.models import ModelOptions, ResolvedPerception, ResolvedPlanner, resolve_models
+from scope_ptz.factory.session import DEFAULT_SCENE, Start, make_perception, open_camera, open_scene
 
 THING = "traffic cone"
 """What the demo scene's home view certainly shows."""
@@ -27,7 +27,7 @@ def check_servers(wishes: ModelOptions, *, as_json: bool) -> int:
     console = Console(highlight=False)
 
     async def work() -> None:
-        choice = await choose(wishes)
+        choice = await resolve_models(wishes)
         if choice.planner.endpoint is None and choice.eyes.spec is None:
             raise InputError("There is no server to check. Name one with --planner-url, or with --perception and --perception-url.")
         async for about, check in _checks(choice.planner, choice.eyes):

@@ -14,14 +14,14 @@ from scope_ptz.bench.engine.runs import earlier
 from scope_ptz.bench.tasks.wording import facts_of
 from scope_ptz.cli.bench_evaluate import opening_chars
 from scope_ptz.cli.bench_foretelling import amount, lines
-from scope_ptz.cli.choosing import Choice, ResolvedPerception, ResolvedPlanner
 from scope_ptz.endpoints.endpoint import Endpoint
+from scope_ptz.factory.models import ResolvedPair, ResolvedPerception, ResolvedPlanner
 from scope_ptz.planner.chat import ChatPlanner
 from tests.bench.engine.making import TASKS
 
 ENTRIES = tuple(Entry(facts=facts_of(task, "mast"), world=task.world, task=task) for task in TASKS)
 ENDPOINT = Endpoint(url="http://127.0.0.1:1/v1", model="m")
-CHOICE = Choice(ResolvedPlanner("m", ENDPOINT), ResolvedPerception("moondream2"))
+CHOICE = ResolvedPair(ResolvedPlanner("m", ENDPOINT), ResolvedPerception("moondream2"))
 
 
 def test_what_was_never_run_is_guessed_and_says_so() -> None:

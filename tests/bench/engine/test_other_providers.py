@@ -13,7 +13,7 @@ from scope_ptz.bench.engine.context import EQUIPMENT
 from scope_ptz.bench.engine.logs import read_evaluation
 from scope_ptz.bench.judging.judge import ATTEMPTS
 from scope_ptz.bench.tasks.files import dump_tasks
-from scope_ptz.cli.inspect_entry import bench
+from scope_ptz.factory.inspect_plugin import bench
 from tests.bench.engine.making import counting, turning
 from tests.bench.engine.test_going_on import turner
 from tests.support.misbehaving import Misbehaving, Request, Say, good, status

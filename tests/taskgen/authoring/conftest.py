@@ -8,7 +8,7 @@ import anyio
 import pytest
 
 from scope_ptz.bench.tasks.task import Category
-from scope_ptz.cli.bench_perception import answered, equip_with_truth
+from scope_ptz.factory.validation_perception import answered, equip_with_truth
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.taskgen.authoring.assembly import Built, build
 from scope_ptz.taskgen.validation.validate import Report, validate

@@ -10,8 +10,8 @@ import pytest
 
 from scope_ptz.bench.tasks.expected import NoneThere
 from scope_ptz.bench.tasks.task import Category
-from scope_ptz.cli.bench_perception import KnownViews, equip_with_truth
 from scope_ptz.cli.bench_report import report_lines
+from scope_ptz.factory.validation_perception import KnownViews, equip_with_truth
 from scope_ptz.simulator.pack import Scene, load_scene
 from scope_ptz.taskgen.authoring.assembly import QUOTAS, Built, build
 from scope_ptz.taskgen.validation.validate import validate

@@ -16,8 +16,8 @@ import pytest
 from scope_ptz.bench.tasks.expected import Choice, NoneThere, Number, YesNo
 from scope_ptz.bench.tasks.files import dump_tasks, load_tasks
 from scope_ptz.bench.tasks.task import Task
-from scope_ptz.cli.bench_perception import equip_with_truth
 from scope_ptz.cli.bench_report import report_lines
+from scope_ptz.factory.validation_perception import equip_with_truth
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.taskgen.authoring.assembly import QUOTAS as PUBLISHED
 from scope_ptz.taskgen.authoring.assembly import Built
@@ -52,7 +52,7 @@ import sys
 from pathlib import Path
 from scope_ptz.taskgen.authoring.assembly import build
 from scope_ptz.bench.tasks.files import dump_tasks
-from scope_ptz.cli.bench_perception import answered
+from scope_ptz.factory.validation_perception import answered
 from scope_ptz.simulator.pack import Scene
 from tests.taskgen.authoring.conftest import QUOTAS
 folder, seed, out = sys.argv[1:]

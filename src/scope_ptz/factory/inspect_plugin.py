@@ -14,7 +14,7 @@ from scope_ptz.bench.engine.context import EQUIPMENT
 from scope_ptz.bench.engine.entries import chosen
 from scope_ptz.bench.engine.models import ScopeModel
 from scope_ptz.bench.engine.tasks import bench_task
-from scope_ptz.cli.bench_equipment import lend
+from scope_ptz.factory.evaluation import eval_context
 
 __all__ = ["bench", "scope_ptz"]
 
@@ -47,7 +47,7 @@ def bench(
     """
     lent = EQUIPMENT.get()
     if lent is None:
-        lent = lend(seed=seed)
+        lent = eval_context(seed=seed)
         EQUIPMENT.set(lent)
     entries = chosen(lent.load_tasks(split), _names(category), _names(scene), limit)
     options: dict[str, Any] = {"agent": agent, "pictures": pictures, "max_steps": max_steps, "time_s": time_s, "seed": seed}

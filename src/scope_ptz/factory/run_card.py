@@ -14,8 +14,8 @@ from scope_ptz.bench.engine.cards import AGENT_SOURCE, DETERMINISTIC, PRICE, eng
 from scope_ptz.bench.engine.entries import Entry, datasets, digest
 from scope_ptz.bench.engine.estimate import Price
 from scope_ptz.bench.scoring.trials import ModelCard, RunCard
-from scope_ptz.cli.choosing import Choice, ResolvedPerception, ResolvedPlanner
 from scope_ptz.endpoints.endpoint import Endpoint
+from scope_ptz.factory.models import ResolvedPair, ResolvedPerception, ResolvedPlanner
 from scope_ptz.planner.base import Planner
 
 PATIENCE_S = 10.0
@@ -23,7 +23,7 @@ PATIENCE_S = 10.0
 
 
 async def run_card(
-    choice: Choice,
+    choice: ResolvedPair,
     planner: Planner | None,
     entries: tuple[Entry, ...],
     *,

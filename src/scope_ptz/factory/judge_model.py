@@ -14,7 +14,7 @@ def judge_as_model(judge: ServerPort, at_a_time: int) -> Model:
     """The model of the engine that stands for a judge; ``at_a_time``: requests to it."""
     from inspect_ai.model import GenerateConfig, get_model
 
-    import scope_ptz.cli.inspect_entry  # noqa: F401 - makes the models of this project known
+    import scope_ptz.factory.inspect_plugin  # noqa: F401 - makes the models of this project known
 
     endpoint = judge.client.endpoint
     config = GenerateConfig(max_connections=at_a_time)

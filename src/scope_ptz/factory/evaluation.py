@@ -13,9 +13,9 @@ from scope_ptz.bench.engine.context import EvalContext, ModelRequest
 from scope_ptz.bench.engine.entries import Entry, entries_of, imported_entries
 from scope_ptz.bench.scoring.episode import Look
 from scope_ptz.camera.base import Frame, FrameOrigin
-from scope_ptz.cli.choosing import ModelOptions, ResolvedPerception, ResolvedPlanner, choose
-from scope_ptz.cli.session import GROUND_TRUTH_NOTE, NOISY_NOTE, make_planner, scene_search
 from scope_ptz.errors import PerceptionError
+from scope_ptz.factory.models import ModelOptions, ResolvedPerception, ResolvedPlanner, resolve_models
+from scope_ptz.factory.session import GROUND_TRUTH_NOTE, NOISY_NOTE, make_planner, scene_search
 from scope_ptz.geometry import Equirectangular, Pose
 from scope_ptz.planner.base import Decision, Planner, State
 from scope_ptz.settings import load_settings
@@ -51,7 +51,7 @@ def planner_for(choice: ResolvedPlanner) -> Planner:
     return ChatPlanner(choice.endpoint, choice.options, client=LoggedChat(choice.endpoint))
 
 
-def eyes_for(choice: ResolvedPerception, scenes: Callable[[str], Scene], seed: int) -> Perception:
+def perception_for(choice: ResolvedPerception, scenes: Callable[[str], Scene], seed: int) -> Perception:
     """The eyes that were chosen, for frames of any scene."""
     if choice.spec is not None:
         from scope_ptz.perception.backends import make_backend
@@ -65,13 +65,13 @@ def eyes_for(choice: ResolvedPerception, scenes: Callable[[str], Scene], seed: i
 
 
 def _truth(scenes: Callable[[str], Scene]) -> GroundTruthPerception:
-    from scope_ptz.cli.bench_perception import KnownViews
+    from scope_ptz.factory.validation_perception import KnownViews
     from scope_ptz.perception.ground_truth import GroundTruthPerception
 
     return GroundTruthPerception(scenes, KnownViews().look)
 
 
-def lend(
+def eval_context(
     *,
     seed: int,
     planner: Planner | None = None,
@@ -83,13 +83,13 @@ def lend(
     ``planner``, ``eyes`` and ``judge``: those that are chosen already; eyes that cannot be made are told of now.
     """
     scenes = Library(scene_search(load_settings()))
-    seeing = eyes_for(eyes, scenes, seed) if eyes is not None else None
+    seeing = perception_for(eyes, scenes, seed) if eyes is not None else None
 
     async def a_planner(wish: ModelRequest) -> Planner:
-        return planner or planner_for((await choose(_wishes(wish, "planner"))).planner)
+        return planner or planner_for((await resolve_models(_wishes(wish, "planner"))).planner)
 
     async def some_eyes(wish: ModelRequest) -> Perception:
-        return seeing or eyes_for((await choose(_wishes(wish, "eyes"))).eyes, scenes, seed)
+        return seeing or perception_for((await resolve_models(_wishes(wish, "eyes"))).eyes, scenes, seed)
 
     async def a_judge(wish: ModelRequest, repeat: int) -> Complete:
         return (await _judge(wish)).repeated(repeat)
@@ -147,7 +147,7 @@ async def _judge(wish: ModelRequest) -> ServerPort:
 
 async def _count(truth: GroundTruthPerception, scene: str, look: Look) -> int | None:
     """How many of what a look was asked for show in its very picture; None where that cannot be told of such a description."""
-    from scope_ptz.cli.bench_perception import surely_named
+    from scope_ptz.factory.validation_perception import surely_named
 
     if look.viewpoint is None:
         return None

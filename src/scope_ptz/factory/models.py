@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from scope_ptz.cli.served import named, recognised
 from scope_ptz.errors import ConfigError, InputError, UnknownNameError
+from scope_ptz.factory.served_names import named, recognised
 from scope_ptz.settings import ScopeSettings, load_settings
 
 if TYPE_CHECKING:
@@ -69,19 +69,19 @@ class ResolvedPerception:
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class ResolvedPair:
     planner: ResolvedPlanner
     eyes: ResolvedPerception
 
 
-async def choose(wishes: ModelOptions) -> Choice:
+async def resolve_models(wishes: ModelOptions) -> ResolvedPair:
     """Who plans and who sees. Asks servers for their lists of models, where it has to know their names for them.
 
     Raises ``InputError`` for names, addresses and combinations that cannot be.
     """
     if not _wants_models(wishes):
-        return Choice(ResolvedPlanner(GRAMMAR), ResolvedPerception(wishes.perception or BUILT_IN_PERCEPTION[0]))
-    return await _Chooser(wishes, load_settings()).choose()
+        return ResolvedPair(ResolvedPlanner(GRAMMAR), ResolvedPerception(wishes.perception or BUILT_IN_PERCEPTION[0]))
+    return await _Resolver(wishes, load_settings()).resolve()
 
 
 def _wants_models(wishes: ModelOptions) -> bool:
@@ -89,14 +89,14 @@ def _wants_models(wishes: ModelOptions) -> bool:
     return wishes != plain or wishes.planner not in (None, GRAMMAR) or wishes.perception not in (None, *BUILT_IN_PERCEPTION)
 
 
-class _Chooser:
+class _Resolver:
     def __init__(self, wishes: ModelOptions, settings: ScopeSettings) -> None:
         from scope_ptz.registry import load_registry
 
         self.wishes, self.settings = wishes, settings
         self.registry: Registry = load_registry(settings.models_file())
 
-    async def choose(self) -> Choice:
+    async def resolve(self) -> ResolvedPair:
         w = self.wishes
         planner, eyes = w.planner, w.perception
         if w.pair is not None:
@@ -107,7 +107,7 @@ class _Chooser:
         eyes = eyes or (CHAT_BACKEND if w.perception_url or w.perception_model else BUILT_IN_PERCEPTION[0])
         both = planner == eyes
         chosen = await self._planner(planner, sees=both)
-        return Choice(chosen, self._composed(await self._eyes(eyes, chosen if both else None)))
+        return ResolvedPair(chosen, self._composed(await self._eyes(eyes, chosen if both else None)))
 
     async def _planner(self, name: str, *, sees: bool) -> ResolvedPlanner:
         w = self.wishes

@@ -11,7 +11,7 @@ from scope_ptz.settings import ScopeSettings, load_settings
 
 if TYPE_CHECKING:
     from scope_ptz.camera.simulated import SimulatedCamera
-    from scope_ptz.cli.choosing import ResolvedPerception, ResolvedPlanner
+    from scope_ptz.factory.models import ResolvedPerception, ResolvedPlanner
     from scope_ptz.perception.base import Perception
     from scope_ptz.planner.base import Planner
     from scope_ptz.simulator.pack import Scene

@@ -1,0 +1,1 @@
+"""Specs to objects: cameras, planners, perception and evaluation contexts are built here and nowhere else."""
