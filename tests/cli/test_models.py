@@ -155,7 +155,7 @@ def test_a_backend_of_ones_own_gets_the_address_of_its_model_or_of_the_environme
     file = tmp_path / "mine.yaml"
     with Misbehaving() as server:
         file.write_text(
-            "models: {mine: {repo: a/b, roles: [eyes], backend: our_eyes, size_b: 1, active_b: 1, precision: bf16, context: 4096,"
+            "models: {mine: {repo: a/b, roles: [perception], backend: our_eyes, size_b: 1, active_b: 1, precision: bf16, context: 4096,"
             f" licence: MIT, url: '{server.url}'}}}}"
         )
         assert ask(scope, "--perception", "our_eyes").code == 2
