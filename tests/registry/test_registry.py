@@ -144,7 +144,7 @@ models:
       mine: {flags: "--json '{\\"a\\": {}}'"}
       vllm: {}
 pairs:
-  - {planner: my-planner, eyes: moondream2}
+  - {planner: my-planner, perception: moondream2}
 """
 
 
@@ -171,8 +171,8 @@ def test_users_add_their_own(tmp_path: Path) -> None:
         (OWN.replace("active_b: 1", "active_b: 2"), "active_b cannot exceed"),
         (OWN.replace("http://gpu:8000/v1", "gpu"), "URL"),
         (OWN.replace("vllm: {}", "vlm: {}"), "no such server"),
-        (OWN.replace("eyes: moondream2", "eyes: moondream9"), "moondream9"),
-        ("pairs: [{planner: x}]", "pairs.0.eyes"),
+        (OWN.replace("perception: moondream2", "perception: moondream9"), "moondream9"),
+        ("pairs: [{planner: x}]", "pairs.0.perception"),
         ("!!python/object/apply:os.system ['true']", "no YAML"),
     ],
 )
