@@ -109,7 +109,7 @@ def ask(instruction: str, runs: Path, *, planner: Mapping[str, str] | None = Non
             if name != "url":
                 options += ["--planner-option", f"{name}={value}"]
     if eyes:
-        options += ["--perception", "openai_vision", "--eyes-url", eyes]
+        options += ["--perception", "openai_vision", "--perception-url", eyes]
     done = run("ask", instruction, *options)
     (trace,) = runs.glob("*/trace.jsonl")
     assert done.json["outcome"], done.err
