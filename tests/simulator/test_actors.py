@@ -116,10 +116,12 @@ def test_a_soft_shadow_darkens_the_ground_and_is_no_part_of_the_actor(analytic_s
     viewpoint = scene.viewpoint("mast")
     view = _view(0.0, -8.0, 1.0)
     (appearance,) = appearances(scene, viewpoint, 4.0)
-    shadow = np.zeros_like(viewpoint.sprite_colours(appearance.sheet))
+    sprite = appearance.sprite
+    shadow = np.zeros_like(viewpoint.sprite_colour(appearance.sheet, sprite))
     shadow[..., 3] = 128
-    viewpoint._sprite_colours[appearance.sheet.number] = shadow
-    viewpoint._sprite_distances[appearance.sheet.number] = np.zeros(shadow.shape[:2], dtype=np.uint16)
+    viewpoint._sprites[appearance.sheet.number, sprite.left, sprite.top] = shadow
+    distances = viewpoint.sprite_distances(appearance.sheet)
+    viewpoint._sprite_distances[appearance.sheet.number] = np.zeros_like(distances)
     still, shaded = picture(scene, "mast", view, 8.0), picture(scene, "mast", view, 4.0)
     changed = (still != shaded).any(axis=-1)
     assert changed.any()

@@ -50,7 +50,7 @@ def test_packs_are_lean_and_undamaged(scene: Scene) -> None:
             viewpoint.pictures.colour(tile.colour)
             viewpoint.pictures.numbers(tile.ids)
         for sheet in manifest.actors:
-            viewpoint.sprite_colours(sheet)
+            viewpoint.sprite_colour(sheet, sheet.sprites[0])
 
 
 def test_presets_are_within_the_cameras_reach(scene: Scene) -> None:

@@ -171,14 +171,14 @@ def draw(
 
 def _sample(viewpoint: Viewpoint, appearance: Appearance, where: NDArray[np.float32], projection: Projection) -> NDArray[np.uint8]:
     """(H, W, 4) premultiplied colour of the sprite at the places of a map; shrunk first when it is denser than the view."""
-    colour = _crop(appearance.sprite, viewpoint.sprite_colours(appearance.sheet))
+    colour = viewpoint.sprite_colour(appearance.sheet, appearance.sprite)
     shrink = projection.density / appearance.view.focal_px
     if shrink < 0.75:
         size = max(1, round(colour.shape[1] * shrink)), max(1, round(colour.shape[0] * shrink))
         factor = np.array([size[0] / colour.shape[1], size[1] / colour.shape[0]], dtype=np.float32)
         colour = cv2.resize(colour, size, interpolation=cv2.INTER_AREA)
         where = (where + np.float32(0.5)) * factor - np.float32(0.5)
-    return np.asarray(cv2.remap(np.ascontiguousarray(colour), where, None, cv2.INTER_LINEAR, borderValue=(0, 0, 0, 0)))
+    return np.asarray(cv2.remap(colour, where, None, cv2.INTER_LINEAR, borderValue=(0, 0, 0, 0)))
 
 
 def _blend(picture: NDArray[np.uint8], premultiplied: NDArray[np.uint8], shows: NDArray[np.bool_]) -> None:

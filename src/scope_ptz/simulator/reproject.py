@@ -111,8 +111,8 @@ def atlas_map(viewpoint: Viewpoint, atlas: Atlas, projection: Projection) -> Map
                 break
             patches.append((showing.place, where, inside))
     if behind is None:
-        slot = _slot(atlas, 0, atlas.slots[0][0].width / (2 * math.pi), needed)
-        behind = _base_map(viewpoint.manifest.band, slot, Grid(projection, step))
+        scale = _scale(atlas, atlas.slots[0][0].width / (2 * math.pi), needed)
+        behind = _base_map(viewpoint.manifest.band, atlas, scale, Grid(projection, step))
     for place, where, inside in reversed(patches):
         cv2.copyTo(where, inside, behind[place])
     return behind
@@ -158,10 +158,12 @@ def step_px(projection: Projection) -> int:
     return int(min(MAX_STEP_PX, 2 ** math.floor(math.log2(max(1.0, widest)))))
 
 
-def _base_map(band: Band, slot: Slot, grid: Grid) -> Map:
+def _base_map(band: Band, atlas: Atlas, scale: int, grid: Grid) -> Map:
+    slot = atlas.slots[0][scale]
     middle, turn, tilt = _turn_and_tilt_deg(grid)
     x = slot.x - 0.5 + (wrap_pan_deg(middle) + 180.0 + turn) / 360.0 * slot.width
     y = slot.y - 0.5 + (band.top_tilt_deg - tilt) / (band.top_tilt_deg - band.bottom_tilt_deg) * slot.height
+    atlas.need_panorama_part(scale, x.min() - slot.x, x.max() - slot.x, y.min() - slot.y, y.max() - slot.y)
     where = grid.to_pixels(np.stack([x, np.clip(y, slot.y - 0.5, slot.y + slot.height - 0.5)], axis=-1))
     left, right = slot.x - 0.5, slot.x + slot.width - 0.5
     for beyond, turn_px in ((x < left, slot.width), (x > right, -slot.width)):
@@ -208,9 +210,14 @@ def _tile_map(tiles: Tiles, showing: Showing, atlas: Atlas, grid: Grid) -> tuple
 
 
 def _slot(atlas: Atlas, index: int, density: float, needed: float) -> Slot:
-    """A picture of full ``density`` (pixels per radian) at the scale that suits a view.
+    """Return the filled slot of a picture at the scale that suits a view."""
+    return atlas.need(index, _scale(atlas, density, needed))
 
-    The coarsest that is still ``OVERSAMPLING`` times as dense as the view, or the first when none is.
+
+def _scale(atlas: Atlas, density: float, needed: float) -> int:
+    """Return the scale at which a picture of full ``density`` (pixels per radian) suits a view of density ``needed``.
+
+    That is the coarsest that is still ``OVERSAMPLING`` times as dense as the view, or the first when none is.
     """
     enough = [k for k, scale in enumerate(atlas.scales) if scale.size * density >= OVERSAMPLING * needed]
-    return atlas.need(index, enough[-1] if enough else 0)
+    return enough[-1] if enough else 0

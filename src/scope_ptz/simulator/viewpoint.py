@@ -18,7 +18,7 @@ from pydantic import BaseModel, ValidationError
 from scope_ptz.errors import PackError
 from scope_ptz.simulator import layers
 from scope_ptz.simulator.atlas import Atlas, Scale
-from scope_ptz.simulator.models import FORMAT_VERSION, ActorSheet, Extent, Layer, Manifest, SceneFile, SceneViewpoint
+from scope_ptz.simulator.models import FORMAT_VERSION, ActorSheet, Extent, Layer, Manifest, SceneFile, SceneViewpoint, Sprite
 from scope_ptz.simulator.pictures import Pictures
 from scope_ptz.simulator.tiles import Tiles
 
@@ -52,7 +52,8 @@ class Viewpoint:
         self.folder, self.pictures = folder, Pictures(folder)
         self.manifest = manifest = read_json(folder / "manifest.json", Manifest)
         self.name = place.name
-        self._sprite_colours: dict[int, NDArray[np.uint8]] = {}
+        self._sprite_sheets: dict[int, NDArray[np.uint8]] = {}
+        self._sprites: dict[tuple[int, int, int], NDArray[np.uint8]] = {}
         self._sprite_distances: dict[int, NDArray[np.uint16]] = {}
         self._lock = RLock()
         if (manifest.scene, manifest.viewpoint, manifest.scene_version) != (scene.name, place.name, scene.version):
@@ -118,15 +119,30 @@ class Viewpoint:
                 self._sprite_distances[sheet.number] = self.pictures.numbers(sheet.depth)
             return self._sprite_distances[sheet.number]
 
-    def sprite_colours(self, sheet: ActorSheet) -> NDArray[np.uint8]:
-        """An actor's sheet as (H, W, 4) colour premultiplied by alpha. Read once and shared; the ground truth never needs it."""
+    def sprite_colour(self, sheet: ActorSheet, sprite: Sprite) -> NDArray[np.uint8]:
+        """Return one sprite as (h, w, 4) colour premultiplied by alpha. Computed once and shared; the ground truth never needs it.
+
+        Raises:
+            PackError: The actor's sheet has no transparency.
+        """
+        key = (sheet.number, sprite.left, sprite.top)
         with self._lock:
-            if sheet.number not in self._sprite_colours:
-                colour = self.pictures.colour(sheet.colour)
-                if colour.shape[2] != 4:
-                    raise PackError(f"{self.folder / sheet.colour.file} has no transparency: no sheet of sprites. Bake it again.")
-                self._sprite_colours[sheet.number] = _premultiplied(colour, self.sprite_distances(sheet) > 0)
-            return self._sprite_colours[sheet.number]
+            if key not in self._sprites:
+                self._sprites[key] = self._premultiplied_sprite(sheet, sprite)
+            return self._sprites[key]
+
+    def _premultiplied_sprite(self, sheet: ActorSheet, sprite: Sprite) -> NDArray[np.uint8]:
+        if sheet.number not in self._sprite_sheets:
+            colour = self.pictures.colour(sheet.colour)
+            if colour.shape[2] != 4:
+                raise PackError(f"{self.folder / sheet.colour.file} has no transparency: no sheet of sprites. Bake it again.")
+            self._sprite_sheets[sheet.number] = colour
+        colour, distances = self._sprite_sheets[sheet.number], self.sprite_distances(sheet)
+        # Edge pixels take their colour from covered pixels around them, so the crop is larger than the sprite.
+        top, left = max(0, sprite.top - EDGE_PX), max(0, sprite.left - EDGE_PX)
+        crop = slice(top, sprite.top + sprite.height + EDGE_PX), slice(left, sprite.left + sprite.width + EDGE_PX)
+        y, x = sprite.top - top, sprite.left - left
+        return np.ascontiguousarray(_premultiplied(colour[crop], distances[crop] > 0)[y : y + sprite.height, x : x + sprite.width])
 
 
 def _owners(ids: Atlas, depth: Layer) -> NDArray[np.uint16]:
@@ -138,8 +154,11 @@ def _owners(ids: Atlas, depth: Layer) -> NDArray[np.uint16]:
 
 
 def _premultiplied(colour: NDArray[np.uint8], own: NDArray[np.bool_]) -> NDArray[np.uint8]:
-    """(H, W, 4) colour times alpha. Lossy coding mixes the black of empty pixels into an actor's half-covered edge: that takes
-    its colour from the covered pixels beside it. Edges are few in a large sheet, so that only they are worked on one by one."""
+    """Return (H, W, 4) colour times alpha.
+
+    Lossy coding mixes the black of empty pixels into an actor's half-covered edge, so edge pixels take their colour from the
+    covered pixels around them. Edges are few, so only they are processed one by one.
+    """
     alpha = colour[..., 3]
     sheet = cv2.multiply(colour, cv2.merge([alpha, alpha, alpha, np.full_like(alpha, 255)]), scale=1 / 255)
     covered = own & (alpha > 250)

@@ -13,11 +13,13 @@ from scope_ptz.simulator.viewpoint import Viewpoint
 
 
 def picture(scene: Scene, viewpoint: str, projection: Projection, time_s: float) -> NDArray[np.uint8]:
-    """(H, W, 3) RGB: what a camera at a viewpoint sees at a time."""
+    """Return what a camera at a viewpoint sees at a time, as (H, W, 3) RGB."""
     here = scene.viewpoint(viewpoint)
+    actors = _in_view(scene, here, projection, time_s)
+    # Distances first: decoding instance numbers needs the most memory, colour the second most, and neither needs the other.
+    depth_m = outlined_depth_view(here, projection, id_view(here, projection)) if actors else None
     image = colour_view(here, projection)
-    if actors := _in_view(scene, here, projection, time_s):
-        depth_m = outlined_depth_view(here, projection, id_view(here, projection))
+    if depth_m is not None:
         for actor in actors:
             draw(here, projection, actor, depth_m, image, None)
     return image
