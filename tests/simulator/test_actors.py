@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from scope_ptz.geometry import AXIS_M5075_G, Perspective
-from scope_ptz.simulator.actors import appearances, extent, whereabouts
+from scope_ptz.simulator.actors import appearances, extent, path_position
 from scope_ptz.simulator.models import ActorSheet, SceneActor
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.truth import view_truth
@@ -89,10 +89,10 @@ def test_whereabouts_follow_the_waypoints() -> None:
         period_s=20.0,
         waypoints=[(2.0, 0.0, 0.0, 0.0), (4.0, 4.0, 0.0, 0.0), (8.0, 4.0, 3.0, 0.0)],
     )
-    assert whereabouts(actor, 1.0) is None
-    assert whereabouts(actor, 9.0) is None
+    assert path_position(actor, 1.0) is None
+    assert path_position(actor, 9.0) is None
     for time_s, place, walked_m in ((3.0, (2.0, 0.0, 0.0), 2.0), (23.0, (2.0, 0.0, 0.0), 2.0), (8.0, (4.0, 3.0, 0.0), 7.0)):
-        here = whereabouts(actor, time_s)
+        here = path_position(actor, time_s)
         assert here is not None
         np.testing.assert_allclose(here.position_m, place)
         assert here.walked_m == pytest.approx(walked_m)

@@ -1,4 +1,4 @@
-"""Poses, optics and projections. Pure functions of numbers; degrees outside, radians only in here."""
+"""Poses, optics and projections. Pure functions; callers use degrees, radians stay inside this package."""
 
 from scope_ptz.geometry.optics import AXIS_M5075_G, Axis, Limits, Optics
 from scope_ptz.geometry.poses import Pose, wrap_pan_deg

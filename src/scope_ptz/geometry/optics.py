@@ -1,4 +1,4 @@
-"""Zoom to field of view, and the limits of a camera's motion."""
+"""Camera optics (zoom to field of view) and limits of motion."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ Axis = Literal["pan", "tilt", "zoom"]
 class Optics:
     """The zoom curve as a table of ``(magnification, horizontal field of view in degrees)``, widest first.
 
-    Between the rows, focal length (1 / tan(hfov / 2)) is interpolated linearly in magnification: real zoom curves are close to
-    that and no formula fits all lenses (an M5075-G is 5x by name and 5.8x by its two field angles).
+    Between the rows, focal length (1 / tan(hfov / 2)) is interpolated linearly in magnification, which is close to
+    real zoom curves. No formula fits all lenses: an M5075-G is 5x by name and 5.8x by its two field angles.
     """
 
     table: tuple[tuple[float, float], ...]
@@ -41,25 +41,25 @@ class Optics:
         return [1.0 / math.tan(math.radians(h) / 2) for _, h in self.table]
 
     def focal(self, zoom: float) -> float:
-        """Focal length in units of half the image width: 1 / tan(hfov / 2)."""
+        """Return the focal length in units of half the image width: 1 / tan(hfov / 2)."""
         return float(np.interp(zoom, [z for z, _ in self.table], self._focals()))
 
     def hfov_deg(self, zoom: float) -> float:
-        """Horizontal field of view in degrees at a magnification (clamped to the table)."""
+        """Return the horizontal field of view in degrees at a magnification, clamped to the table."""
         return math.degrees(2 * math.atan(1.0 / self.focal(zoom)))
 
     def zoom_for_focal(self, focal: float) -> float:
-        """The magnification with that focal length (in half widths), clamped to the table."""
+        """Return the magnification with the given focal length (in half widths), clamped to the table."""
         return float(np.interp(focal, self._focals(), [z for z, _ in self.table]))
 
     def zoom_for_hfov(self, hfov_deg: float) -> float:
-        """The magnification that shows that horizontal field of view, clamped to the table."""
+        """Return the magnification with the given horizontal field of view, clamped to the table."""
         return self.zoom_for_focal(1.0 / math.tan(math.radians(hfov_deg) / 2))
 
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """How far a camera goes. ``pan_endless``: no stops, pan wraps."""
+    """The limits of a camera's motion. With ``pan_endless``, pan has no stops and wraps."""
 
     min_pan_deg: float = -179.0
     max_pan_deg: float = 179.0
@@ -70,9 +70,9 @@ class Limits:
     pan_endless: bool = False
 
     def clamp(self, wanted: Pose) -> tuple[Pose, tuple[Axis, ...]]:
-        """The nearest allowed pose and which of "pan", "tilt", "zoom" were cut.
+        """Return the nearest permitted pose and which of "pan", "tilt" and "zoom" were clamped.
 
-        ``wanted.pan_deg`` is taken as it is, unwrapped: 170 + 20 = 190 stops at 179 and never turns the long way round.
+        Pan is not wrapped first: 170 + 20 = 190 stops at 179 and never turns the long way round.
         """
         pan = wrap_pan_deg(wanted.pan_deg) if self.pan_endless else _cut(wanted.pan_deg, self.min_pan_deg, self.max_pan_deg)
         tilt = _cut(wanted.tilt_deg, self.min_tilt_deg, self.max_tilt_deg)
@@ -87,7 +87,7 @@ class Limits:
         return Pose(pan, tilt, zoom), tuple(cut)
 
     def at_stop(self, pose: Pose, axis: Axis) -> bool:
-        """Whether a pose is at an end of one of its axes."""
+        """Return whether a pose is at a stop of one of its axes."""
         value, low, high = {
             "pan": (pose.pan_deg, self.min_pan_deg, self.max_pan_deg),
             "tilt": (pose.tilt_deg, self.min_tilt_deg, self.max_tilt_deg),
@@ -96,7 +96,7 @@ class Limits:
         return not (axis == "pan" and self.pan_endless) and (value <= low + 1e-6 or value >= high - 1e-6)
 
     def aim_pan_deg(self, pan_deg: float) -> float:
-        """The turn-equivalent of a direction that lies within the stops if any does (a direction, not a relative move)."""
+        """Return the equivalent pan of a direction, plus or minus full turns, that lies within the stops if one does."""
         wrapped = wrap_pan_deg(pan_deg)
         for candidate in (wrapped, wrapped + 360.0, wrapped - 360.0):
             if self.min_pan_deg <= candidate <= self.max_pan_deg:
@@ -111,5 +111,5 @@ def _cut(value: float, low: float, high: float) -> float:
 AXIS_M5075_G = Optics(
     ((1.0, 71.0), (1.5, 48.1), (2.0, 35.9), (2.5, 28.5), (3.0, 23.6), (3.5, 20.2), (4.0, 17.6), (4.5, 15.6), (5.0, 14.0))
 )
-"""Horizontal field of view of the AXIS M5075-G, wide and tele ends from its data sheet; the rows between are a smooth curve
-through the two, not measurements."""
+"""Optics of the AXIS M5075-G. The fields of view at the wide and tele ends are from its data sheet; the rows between them
+interpolate a smooth curve and are not measurements."""

@@ -1,4 +1,4 @@
-"""Where a camera looks: pan, tilt, zoom."""
+"""Camera poses: pan, tilt and zoom."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 
 def wrap_pan_deg(pan_deg: float) -> float:
-    """The same direction in (-180, 180]."""
+    """Wrap a pan angle in degrees to (-180, 180]."""
     wrapped = math.fmod(pan_deg, 360.0)
     if wrapped > 180.0:
         wrapped -= 360.0
@@ -18,7 +18,7 @@ def wrap_pan_deg(pan_deg: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """Pan in degrees (positive = right, clockwise from above), tilt in degrees (positive = up), zoom as optical magnification."""
+    """A pose: pan in degrees (positive = right), tilt in degrees (positive = up), zoom as optical magnification (1 = widest)."""
 
     pan_deg: float = 0.0
     tilt_deg: float = 0.0
@@ -31,15 +31,15 @@ class Pose:
             raise ValueError(f"zoom must be positive, got {self.zoom}")
 
     def turned(self, pan_deg: float = 0.0, tilt_deg: float = 0.0) -> Pose:
-        """The pose after a relative move, not wrapped and not clamped: limits are the camera's business."""
+        """Return the pose after a relative move, neither wrapped nor clamped; the camera applies its limits."""
         return replace(self, pan_deg=self.pan_deg + pan_deg, tilt_deg=self.tilt_deg + tilt_deg)
 
     def zoomed(self, factor: float) -> Pose:
-        """The pose with ``factor`` times the magnification."""
+        """Return the pose with ``factor`` times the magnification."""
         return replace(self, zoom=self.zoom * factor)
 
     def as_dict(self) -> dict[str, float]:
-        """Rounded for people and models: hundredths of a degree, thousandths of a magnification."""
+        """Return the pose rounded for people and models: degrees to 0.01, magnification to 0.001."""
         return {
             "pan_deg": round(self.pan_deg, 2) + 0.0,
             "tilt_deg": round(self.tilt_deg, 2) + 0.0,

@@ -1,7 +1,7 @@
-"""From points of a picture to directions and back, for views and panoramas alike.
+"""Projections between points of a picture and directions, for perspective views and panoramas.
 
-Points are normalised to [0, 1] with the origin at the top-left corner of the picture (not the middle of its first pixel): pixel
-``i`` of ``n`` has its middle at ``(i + 0.5) / n``. Arrays of points have shape ``(..., 2)``, of directions ``(..., 3)``.
+Points are normalised to [0, 1] with the origin at the top-left corner of the picture, not at the centre of its first pixel: the
+centre of pixel ``i`` of ``n`` is at ``(i + 0.5) / n``. Arrays of points have shape ``(..., 2)``, of directions ``(..., 3)``.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 
 
 class Projection(Protocol):
-    """How the pixels of a picture map to directions around the camera."""
+    """The mapping between the pixels of a picture and directions around the camera."""
 
     @property
     def width(self) -> int: ...
@@ -29,20 +29,20 @@ class Projection(Protocol):
 
     @property
     def reach_deg(self) -> float:
-        """No pixel is farther than this angle from the middle of the picture."""
+        """Largest angle between the centre of the picture and any of its pixels, in degrees."""
         ...
 
     @property
     def density(self) -> float:
-        """Pixels per radian in the middle of the picture, from top to bottom."""
+        """Pixels per radian at the centre of the picture, measured vertically."""
         ...
 
     def directions(self, points: ArrayLike) -> Floats:
-        """Unit vectors (..., 3) through normalised points (..., 2)."""
+        """Return unit vectors (..., 3) through normalised points (..., 2)."""
         ...
 
     def points(self, directions: ArrayLike) -> Floats:
-        """Normalised points (..., 2) of directions (..., 3); NaN where a direction cannot appear at all (behind a lens)."""
+        """Return normalised points (..., 2) of directions (..., 3), NaN for directions behind the lens."""
         ...
 
 

@@ -12,13 +12,13 @@ Floats = NDArray[np.float64]
 
 
 def direction(pan_deg: ArrayLike, tilt_deg: ArrayLike) -> Floats:
-    """Unit vectors ``(..., 3)`` towards pan/tilt angles in degrees."""
+    """Return unit vectors ``(..., 3)`` towards pan/tilt angles in degrees."""
     pan, tilt = np.radians(pan_deg), np.radians(tilt_deg)
     return np.stack(np.broadcast_arrays(np.sin(pan) * np.cos(tilt), np.cos(pan) * np.cos(tilt), np.sin(tilt)), axis=-1)
 
 
 def pan_tilt_deg(vectors: ArrayLike) -> tuple[Floats, Floats]:
-    """Pan in (-180, 180] and tilt in [-90, 90] degrees of vectors ``(..., 3)`` of any length above zero."""
+    """Return pan in (-180, 180] and tilt in [-90, 90], in degrees, of non-zero vectors ``(..., 3)``."""
     v = np.asarray(vectors, dtype=np.float64)
     pan = np.degrees(np.arctan2(v[..., 0], v[..., 1]))
     tilt = np.degrees(np.arctan2(v[..., 2], np.hypot(v[..., 0], v[..., 1])))
@@ -26,14 +26,14 @@ def pan_tilt_deg(vectors: ArrayLike) -> tuple[Floats, Floats]:
 
 
 def angle_between_deg(a: ArrayLike, b: ArrayLike) -> Floats:
-    """Angle between vectors ``(..., 3)``, exact for small angles too (atan2 of cross and dot)."""
+    """Return the angle between vectors ``(..., 3)`` in degrees, accurate for small angles (atan2 of cross and dot product)."""
     u, v = np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)
     angle: Floats = np.degrees(np.arctan2(np.linalg.norm(np.cross(u, v), axis=-1), np.sum(u * v, axis=-1)))
     return angle
 
 
 def camera_axes(pan_deg: float, tilt_deg: float) -> Floats:
-    """Rows right, up, forward (3, 3): multiply by a direction to get its coordinates in the view of a pose."""
+    """Return the (3, 3) axes right, up, forward of a pose as rows; times a direction they give its coordinates in the view."""
     p, t = np.radians(pan_deg), np.radians(tilt_deg)
     sp, cp, st, ct = np.sin(p), np.cos(p), np.sin(t), np.cos(t)
     return np.array([[cp, -sp, 0.0], [-sp * st, -cp * st, ct], [sp * ct, cp * ct, st]])

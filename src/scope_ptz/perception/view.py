@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scope_ptz.perception.base import Box
 from scope_ptz.perception.language import words as w
 from scope_ptz.perception.language.lexicon import lexicon, singular_phrase
-from scope_ptz.simulator.actors import whereabouts
+from scope_ptz.simulator.actors import path_position
 from scope_ptz.simulator.models import Attribute, SceneActor, SceneFile, SceneInstance
 from scope_ptz.simulator.truth import Sighting, TextSighting, ViewTruth
 
@@ -187,7 +187,7 @@ def _world_box(instance: SceneInstance | SceneActor, time_s: float) -> tuple[Flo
     """Lowest and highest corner in the world; an actor's stands on its path, unturned."""
     if isinstance(instance, SceneInstance):
         return np.array(instance.box_min_m), np.array(instance.box_max_m)
-    here = whereabouts(instance, time_s)
+    here = path_position(instance, time_s)
     foot = np.zeros(3) if here is None else here.position_m
     width, depth, height = instance.size_m
     return foot - np.array([width / 2, depth / 2, 0.0]), foot + np.array([width / 2, depth / 2, height])
@@ -197,7 +197,7 @@ def _motion(instance: SceneInstance | SceneActor, time_s: float) -> str:
     """Actors move while their path does; what is baked stands still."""
     if isinstance(instance, SceneInstance):
         return "stationary"
-    now, soon = whereabouts(instance, time_s), whereabouts(instance, time_s + _STEP_S)
+    now, soon = path_position(instance, time_s), path_position(instance, time_s + _STEP_S)
     return "moving" if now and soon and abs(soon.walked_m - now.walked_m) > _STEP_M else "stationary"
 
 

@@ -1,1 +1,1 @@
-"""Worlds to look at: packs, re-projection, actors, the scene clock, and the exact ground truth of a view."""
+"""The simulator: viewpoint packs, re-projection, moving actors, the scene clock and the exact ground truth of every view."""

@@ -1,7 +1,8 @@
-"""Moving things: where they are at a time, and how their sprites are set into a picture of the still world.
+"""Moving actors: where they are at a scene time, and how their sprites are composited over the still world.
 
-A sprite is a picture of an actor rendered from the viewpoint with the actor at one point of its path. Between two such points the
-nearest sprite is turned to the true direction and scaled to the true distance. The depth layer decides per pixel what hides it.
+A sprite is a rendering of an actor from the viewpoint, with the actor at one point of its path. Between two such points, the
+nearest sprite is turned to the true direction and scaled to the true distance. The depth layer decides for each pixel whether
+something hides the actor.
 """
 
 from __future__ import annotations
@@ -23,17 +24,22 @@ from scope_ptz.simulator.viewpoint import Viewpoint
 
 TOLERANCE_M = 0.15
 TOLERANCE_SHARE = 0.01
-"""An actor is hidden where the still world is nearer than it by more than this (in metres, and as a share of the distance)."""
+"""The still world hides an actor where it is nearer by more than this: metres, plus a share of the distance."""
 
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
 class Appearance:
-    """An actor as a viewpoint sees it at one instant.
+    """An actor as seen from a viewpoint at one instant.
 
-    ``view`` is the perspective that its sprite fills; ``offset_m`` its ground point from the optical centre in the camera's own
-    frame; ``scale`` how many times larger it appears than in its sprite.
+    Attributes:
+        actor: The actor.
+        sheet: The sheet that holds its sprites.
+        sprite: The sprite to draw.
+        view: The perspective that the sprite fills.
+        offset_m: The actor's ground point relative to the optical centre, in the camera's own frame.
+        scale: How many times larger the actor appears than in its sprite.
     """
 
     actor: SceneActor
@@ -49,32 +55,32 @@ class Appearance:
 
 
 @dataclass(frozen=True, slots=True)
-class Whereabouts:
-    """Where an actor is on its path: time on it, metres gone since its start, ground point (3,) in world coordinates."""
+class PathPosition:
+    """Where an actor is on its path: path time, metres walked since its start, ground point (3,) in world coordinates."""
 
     path_s: float
     walked_m: float
     position_m: Floats
 
 
-def whereabouts(actor: SceneActor, time_s: float) -> Whereabouts | None:
-    """Where an actor is at a scene time, None while it is out of the scene."""
+def path_position(actor: SceneActor, time_s: float) -> PathPosition | None:
+    """Return where an actor is at a scene time, or None while it is outside the scene."""
     path = np.array(actor.waypoints, dtype=np.float64)
     path_s = (time_s - actor.delay_s) % actor.period_s
     if not path[0, 0] <= path_s <= path[-1, 0]:
         return None
     walked = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(path[:, 1:], axis=0), axis=-1)))
     position_m = np.array([np.interp(path_s, path[:, 0], path[:, axis]) for axis in (1, 2, 3)])
-    return Whereabouts(path_s, float(np.interp(path_s, path[:, 0], walked)), position_m)
+    return PathPosition(path_s, float(np.interp(path_s, path[:, 0], walked)), position_m)
 
 
 def appearances(scene: Scene, viewpoint: Viewpoint, time_s: float) -> list[Appearance]:
-    """The actors that are in the scene at a time and have sprites from this viewpoint, farthest first."""
+    """Return the actors in the scene at a time that have sprites from this viewpoint, farthest first."""
     return _seen(viewpoint, ((actor, time_s) for actor in scene.file.actors))
 
 
 def composited(scene: Scene, viewpoint: Viewpoint, time_s: float) -> list[Appearance]:
-    """All that is set into the picture of the still world: the actors, and what a variation of the scene holds."""
+    """Return everything that is composited over the still world: actors, and what a variation of the scene holds in place."""
     moving = ((actor, time_s) for actor in scene.file.actors)
     return _seen(viewpoint, (*moving, *((held.actor, held.time_s) for held in scene.held)))
 
@@ -84,13 +90,13 @@ def _seen(viewpoint: Viewpoint, actors: Iterable[tuple[SceneActor, float]]) -> l
     seen = [
         _appearance(viewpoint, actor, sheets[actor.number], here)
         for actor, time_s in actors
-        if actor.number in sheets and (here := whereabouts(actor, time_s)) is not None
+        if actor.number in sheets and (here := path_position(actor, time_s)) is not None
     ]
     return sorted(seen, key=lambda a: (-a.distance_m, a.actor.number))
 
 
-def _sprite(sheet: ActorSheet, here: Whereabouts) -> Sprite:
-    """The nearest place on the path, and of a thing with legs the nearest moment of its stride there."""
+def _sprite(sheet: ActorSheet, here: PathPosition) -> Sprite:
+    """Return the sprite nearest on the path and, for walkers, nearest in the phase of the stride."""
     phase = here.walked_m / sheet.stride_m % 1.0 if sheet.stride_m else 0.0
 
     def misfit(sprite: Sprite) -> tuple[float, float]:
@@ -100,13 +106,13 @@ def _sprite(sheet: ActorSheet, here: Whereabouts) -> Sprite:
     return min(sheet.sprites, key=misfit)
 
 
-def _appearance(viewpoint: Viewpoint, actor: SceneActor, sheet: ActorSheet, here: Whereabouts) -> Appearance:
+def _appearance(viewpoint: Viewpoint, actor: SceneActor, sheet: ActorSheet, here: PathPosition) -> Appearance:
     sprite = _sprite(sheet, here)
     then, now = viewpoint.offset(np.array(sprite.position_m)), viewpoint.offset(here.position_m)
     scale = float(np.linalg.norm(then) / np.linalg.norm(now))
     rendered = Perspective(sprite.pan_deg, sprite.tilt_deg, sprite.hfov_deg, sprite.width, sprite.height)
     hfov_deg = float(np.degrees(2 * np.arctan(sprite.width / 2 * scale / rendered.focal_px)))
-    # Aim so that the pixel that showed the ground point then lies in its direction now, at the new scale.
+    # Aim the view so that the sprite's ground point lies in the actor's present direction at the new scale.
     foot = rendered.points(then)
     pan, tilt = sprite.pan_deg, sprite.tilt_deg
     wanted_pan, wanted_tilt = (float(a) for a in pan_tilt_deg(now))
@@ -118,7 +124,7 @@ def _appearance(viewpoint: Viewpoint, actor: SceneActor, sheet: ActorSheet, here
 
 
 def extent(viewpoint: Viewpoint, appearance: Appearance) -> Extent:
-    """The whole silhouette of an actor now, hidden parts included."""
+    """Return the actor's present silhouette, including hidden parts."""
     own = _crop(appearance.sprite, viewpoint.sprite_distances(appearance.sheet)) > 0
     measures = measure(own.astype(np.uint16), appearance.view)
     if not len(measures.numbers):
@@ -135,7 +141,7 @@ def extent(viewpoint: Viewpoint, appearance: Appearance) -> Extent:
 
 
 def shows(appearance: Appearance, projection: Projection) -> bool:
-    """Whether an actor may show in a picture, as far as directions tell."""
+    """Return whether an actor may be inside a view, judged by directions alone."""
     return bool(Tiles([appearance.view]).in_view(projection))
 
 
@@ -147,7 +153,16 @@ def draw(
     picture: NDArray[np.uint8] | None,
     numbers: NDArray[np.uint16] | None,
 ) -> None:
-    """Set one actor into a picture and into its instance numbers, in place. ``depth_m`` (H, W) is the still world's distance."""
+    """Draw one actor into a picture and into its instance numbers, in place.
+
+    Args:
+        viewpoint: The viewpoint that holds the actor's sprites.
+        projection: Projection of the picture.
+        appearance: The actor at this instant.
+        depth_m: (H, W) distances of the still world.
+        picture: (H, W, 3) RGB to draw into, or None.
+        numbers: (H, W) instance numbers to draw into, or None.
+    """
     sprite = Tiles([appearance.view])
     showing = next(iter(sprite.in_view(projection)), None)
     if showing is None:
@@ -170,7 +185,10 @@ def draw(
 
 
 def _sample(viewpoint: Viewpoint, appearance: Appearance, where: NDArray[np.float32], projection: Projection) -> NDArray[np.uint8]:
-    """(H, W, 4) premultiplied colour of the sprite at the places of a map; shrunk first when it is denser than the view."""
+    """Return the sprite's (H, W, 4) premultiplied colour at the points of a map.
+
+    A sprite that is denser than the view is shrunk first, which prevents aliasing.
+    """
     colour = viewpoint.sprite_colour(appearance.sheet, appearance.sprite)
     shrink = projection.density / appearance.view.focal_px
     if shrink < 0.75:
@@ -182,14 +200,14 @@ def _sample(viewpoint: Viewpoint, appearance: Appearance, where: NDArray[np.floa
 
 
 def _blend(picture: NDArray[np.uint8], premultiplied: NDArray[np.uint8], shows: NDArray[np.bool_]) -> None:
-    """Lay premultiplied colour over a picture, in place, where it shows."""
+    """Blend premultiplied colour over a picture, in place, where ``shows`` is true."""
     over = cv2.bitwise_and(premultiplied, premultiplied, mask=shows.view(np.uint8))
     through = cv2.cvtColor(255 - over[..., 3], cv2.COLOR_GRAY2RGB)
     cv2.add(cv2.multiply(picture, through, scale=1 / 255), np.ascontiguousarray(over[..., :3]), dst=picture)
 
 
 def _distances(viewpoint: Viewpoint, appearance: Appearance) -> NDArray[np.float32]:
-    """(h, w) metres to the actor's own pixels of its sprite, as far as it is now; 0 where the sprite shows no actor."""
+    """Return (h, w) present distances of the sprite's pixels in metres, 0 where the sprite does not show the actor."""
     codes = _crop(appearance.sprite, viewpoint.sprite_distances(appearance.sheet))
     return np.where(codes > 0, viewpoint.depth_metres[codes] / np.float32(appearance.scale), np.float32(0.0))
 

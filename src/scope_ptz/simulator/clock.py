@@ -1,4 +1,4 @@
-"""Scene time: explicit, and only as fast as somebody watches."""
+"""The scene clock: explicit scene time, which follows the wall clock only when a person watches."""
 
 from __future__ import annotations
 
@@ -11,7 +11,10 @@ import anyio.lowlevel
 
 
 class SceneClock:
-    """Seconds of scene time. In evaluation it advances at once by what is slept; watched by a person it follows the wall clock."""
+    """A clock in seconds of scene time.
+
+    In evaluation, sleeping advances the clock at once. In real time, the clock follows the wall clock.
+    """
 
     def __init__(self, start_s: float = 0.0, *, realtime: bool = False) -> None:
         self._realtime = realtime
@@ -22,7 +25,7 @@ class SceneClock:
         self._holds = 0
 
     def now_s(self) -> float:
-        """Scene time, in which actors move; it stands still while held."""
+        """Return the scene time, which moves the actors. It stands still while held."""
         return (self._hold_since_s if self._holds else self.elapsed_s()) - self._held_s
 
     @property
@@ -30,11 +33,11 @@ class SceneClock:
         return self._holds > 0
 
     def elapsed_s(self) -> float:
-        """Time that has gone by for the camera's own motors since the clock was made, held or not."""
+        """Return the seconds that have passed for the camera's motors since the clock was created, even while held."""
         return monotonic() - self._wall_start_s if self._realtime else self._slept_s
 
     async def sleep(self, seconds: float) -> None:
-        """Let that much time go by."""
+        """Let the given number of seconds pass."""
         if self._realtime:
             await anyio.sleep(max(0.0, seconds))
         else:
@@ -43,7 +46,7 @@ class SceneClock:
 
     @contextmanager
     def hold(self) -> Iterator[None]:
-        """While this is open scene time stands still. Holds nest."""
+        """Stop scene time while the context is open. Holds may be nested."""
         if not self._holds:
             self._hold_since_s = self.elapsed_s()
         self._holds += 1

@@ -1,4 +1,7 @@
-"""How pictures of a pack lie on disk: colour lossy, instance numbers and distances exact. The file suffix names the coding."""
+"""Read and write the picture files of a pack: lossy colour, exact instance numbers and distances.
+
+The file suffix determines the coding.
+"""
 
 from __future__ import annotations
 
@@ -12,21 +15,21 @@ from PIL import Image
 from scope_ptz.errors import PackError
 
 Image.MAX_IMAGE_PIXELS = None
-"""Panoramas are larger than what Pillow suspects of being an attack; every file is checksum-verified before it is decoded."""
+"""Panoramas exceed Pillow's limit against decompression bombs. Every file is verified by checksum before it is decoded."""
 
 COLOUR_SUFFIXES = (".webp", ".avif", ".png")
 NUMBER_SUFFIXES = (".png", ".webp")
 
 
 def read_colour(path: Path) -> NDArray[np.uint8]:
-    """(H, W, 3) RGB, or (H, W, 4) straight RGBA when the picture has transparency. Not to be written into."""
+    """Return (H, W, 3) RGB, or (H, W, 4) straight RGBA when the picture has transparency. The array is read-only."""
     with _open(path, COLOUR_SUFFIXES) as image:
         mode = "RGBA" if image.has_transparency_data else "RGB"
         return np.asarray(image if image.mode == mode else image.convert(mode))
 
 
 def write_colour(path: Path, picture: NDArray[np.uint8], quality: int) -> None:
-    """Write (H, W, 3) RGB or (H, W, 4) straight RGBA. ``quality`` 0 to 100 is the coder's own scale; PNG has none."""
+    """Write (H, W, 3) RGB or (H, W, 4) straight RGBA. ``quality`` is 0 to 100 on the codec's own scale; PNG ignores it."""
     image = Image.fromarray(picture)
     match path.suffix:
         case ".webp":
@@ -40,7 +43,7 @@ def write_colour(path: Path, picture: NDArray[np.uint8], quality: int) -> None:
 
 
 def read_ids(path: Path) -> NDArray[np.uint16]:
-    """(H, W) numbers from 0 to 65535, exactly as written: instance numbers, or distance codes."""
+    """Return (H, W) numbers from 0 to 65535, exactly as written: instance numbers or distance codes."""
     if path.suffix == ".webp":
         return _read_pairs(path)
     with _open(path, NUMBER_SUFFIXES) as image:
@@ -48,8 +51,11 @@ def read_ids(path: Path) -> NDArray[np.uint16]:
 
 
 def _read_pairs(path: Path) -> NDArray[np.uint16]:
-    """Numbers of a lossless WebP. OpenCV takes half the time and less than half the memory of Pillow, which decodes a still picture
-    as an animation of one: these are the largest layers there are."""
+    """Return the numbers in a lossless WebP file.
+
+    OpenCV needs half the time and less than half the memory of Pillow, which decodes a still picture as an animation with one
+    frame. These are the largest layers of a pack.
+    """
     try:
         content = np.fromfile(path, np.uint8)
     except OSError as error:
@@ -77,9 +83,9 @@ def write_ids(path: Path, numbers: NDArray[np.uint16]) -> None:
 
 
 def encode_depth(metres: NDArray[np.floating], near_m: float, far_m: float, step: int = 1) -> NDArray[np.uint16]:
-    """Distance codes 1 to 65535, logarithmic from ``near_m`` to ``far_m``, 0 where ``metres`` is 0 or infinite (the sky).
+    """Return distance codes: 1 to 65535, logarithmic from ``near_m`` to ``far_m``, and 0 for the sky (0 or infinite metres).
 
-    ``step`` rounds codes to its multiples: files shrink, and distances lose no more than half a step.
+    ``step`` rounds codes to multiples of itself, which makes files smaller; distances change by at most half a step.
     """
     real = np.isfinite(metres) & (metres > 0)
     share = np.log(np.where(real, metres, near_m) / near_m) / np.log(far_m / near_m)
@@ -88,7 +94,7 @@ def encode_depth(metres: NDArray[np.floating], near_m: float, far_m: float, step
 
 
 def decode_depth(codes: NDArray[np.uint16], near_m: float, far_m: float) -> NDArray[np.float32]:
-    """Metres, infinite where the code is 0."""
+    """Return distances in metres, infinite where the code is 0."""
     metres = near_m * (far_m / near_m) ** ((codes.astype(np.float64) - 1) / 65534)
     return np.where(codes == 0, np.inf, metres).astype(np.float32)
 

@@ -1,4 +1,4 @@
-"""Many scenes at once: each opened once, its variations beside it, and only so much of them in memory."""
+"""A cache of scenes and their variations that limits how many viewpoints stay in memory."""
 
 from __future__ import annotations
 
@@ -7,22 +7,26 @@ from pathlib import Path
 from threading import RLock
 
 from scope_ptz.simulator.pack import Scene, find_scenes, load_scene, variation_of
-from scope_ptz.simulator.recent import Recent
+from scope_ptz.simulator.recent import RecentViewpoints
 
 OPEN_VIEWPOINTS = 2
-"""So many have their layers in memory: some hundred megabytes each once their pictures are drawn."""
+"""Viewpoints whose layers stay in memory. Each takes several hundred megabytes once its pictures are drawn."""
 
 
 class Library:
-    """Scenes by name, ``highway-works`` or ``highway-works-v7``. Variations share the layers of their scene.
+    """Scenes by name, such as ``highway-works``, or ``highway-works-v7`` for a variation.
 
-    ``open_viewpoints``: of how many viewpoints, over all scenes, the layers stay in memory. Calling it raises ``UnknownNameError``
-    when there is no such scene, and ``PackError`` when its files are damaged.
+    Variations share the layers of their scene. Calling the library with a name raises ``UnknownNameError`` when the scene does
+    not exist and ``PackError`` when its files are damaged.
+
+    Args:
+        search: Extra folders of scenes, searched before the built-in ones.
+        open_viewpoints: How many viewpoints, over all scenes, keep their layers in memory.
     """
 
     def __init__(self, search: Iterable[Path] = (), open_viewpoints: int = OPEN_VIEWPOINTS) -> None:
         self._search = tuple(search)
-        self._recent = Recent(open_viewpoints)
+        self._recent = RecentViewpoints(open_viewpoints)
         self._scenes: dict[str, Scene] = {}
         self._lock = RLock()
 

@@ -22,10 +22,10 @@ from pydantic import BaseModel, ConfigDict, Field
 from scope_ptz.geometry import Perspective
 
 FORMAT_VERSION = 1
-"""Raised when an older program could misread a pack."""
+"""Version of the pack format. It is raised when an older program could misread a pack."""
 
 INJECTED_FROM = 60000
-"""Instance numbers from here on belong to objects that were injected at run time, never to a bake."""
+"""First instance number for objects injected at run time. A bake never uses numbers from here on."""
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Vec3 = tuple[Number, Number, Number]
@@ -39,7 +39,7 @@ class Model(BaseModel):
 
 
 class SceneInstance(Model):
-    """One annotated thing. ``box_min_m``/``box_max_m``: axis-aligned world box."""
+    """One annotated object. ``box_min_m`` and ``box_max_m`` span its axis-aligned box in world coordinates."""
 
     id: str
     number: int = Field(gt=0, lt=INJECTED_FROM)
@@ -54,7 +54,7 @@ class SceneInstance(Model):
 class SceneText(Model):
     """One readable text: a flat block of letters on an instance (``parent``), in world coordinates.
 
-    A reader sees ``right`` along the line and ``up`` towards the tops of the letters; the normal is ``right x up``.
+    ``right`` points along the line of text and ``up`` towards the tops of the letters. The normal is ``right x up``.
     """
 
     id: str
@@ -85,10 +85,9 @@ class SceneViewpoint(Model):
 
 
 class SceneActor(Model):
-    """A moving thing. ``waypoints`` are ``(t_s, x, y, z)``, joined by straight lines; the path repeats every ``period_s``.
+    """A moving object. ``waypoints`` are ``(t_s, x, y, z)``, joined by straight lines; the path repeats every ``period_s``.
 
-    Outside the time between the first and the last waypoint the actor is not in the scene. ``delay_s``: the scene time at which
-    the time of its path begins.
+    The actor is in the scene between the times of its first and last waypoint. Path time begins at scene time ``delay_s``.
     """
 
     id: str
@@ -103,7 +102,7 @@ class SceneActor(Model):
 
 
 class SceneFile(Model):
-    """``scene.json``. ``start_s``: the scene time at which a visit begins, when something worth watching goes on."""
+    """The content of ``scene.json``. ``start_s`` is the scene time at which sessions start by default."""
 
     format: Literal[1] = 1
     name: Kebab
@@ -121,7 +120,7 @@ class SceneFile(Model):
 
 
 class Layer(Model):
-    """A file of a pack, relative to the viewpoint folder, with its SHA-256 in hex and its size in pixels."""
+    """A file of a pack: its path relative to the viewpoint folder, SHA-256 in hexadecimal and size in pixels."""
 
     file: str = Field(pattern=r"^[a-z0-9][a-z0-9./-]*$")
     sha256: str = Field(pattern=r"^[0-9a-f]{64}$")
@@ -130,21 +129,21 @@ class Layer(Model):
 
 
 class Band(Model):
-    """The part of the sphere that an equirectangular layer covers: all pans from -180 to 180, these tilts."""
+    """The band of the sphere that an equirectangular layer covers: all pans from -180 to 180, and these tilts."""
 
     top_tilt_deg: Number
     bottom_tilt_deg: Number
 
 
 class Depth(Layer):
-    """Value v in 1..65535 is a distance of ``near_m * (far_m / near_m) ** ((v - 1) / 65534)`` metres; 0 is the sky."""
+    """The depth layer. Code v in 1..65535 means ``near_m * (far_m / near_m) ** ((v - 1) / 65534)`` metres; 0 is the sky."""
 
     near_m: Number = Field(gt=0)
     far_m: Number = Field(gt=0)
 
 
 SUITABLE = 0.9
-"""A tile suits a view from this share of its density on."""
+"""A tile suits a view when its density is at least this share of the view's."""
 
 
 class Tile(Model):
@@ -158,18 +157,18 @@ class Tile(Model):
 
     @property
     def view(self) -> Perspective:
-        """What it shows."""
+        """The perspective view that the tile shows."""
         return Perspective(self.pan_deg, self.tilt_deg, self.hfov_deg, self.colour.width, self.colour.height)
 
     def suits(self, view: Perspective) -> bool:
-        """Whether it is about as dense as a view, or denser."""
+        """Return whether the tile is about as dense as a view, or denser."""
         return self.view.focal_px >= SUITABLE * view.focal_px
 
 
 class Extent(Model):
-    """The whole silhouette of one instance from this viewpoint, hidden parts included.
+    """The whole silhouette of one instance from this viewpoint, including hidden parts.
 
-    ``hull`` is the convex outline of the silhouette as pan/tilt directions; ``distance_m`` is to the nearest point.
+    ``hull`` is the convex outline of the silhouette as pan/tilt directions; ``distance_m`` is the distance to its nearest point.
     """
 
     number: int
@@ -179,11 +178,11 @@ class Extent(Model):
 
 
 class Sprite(Model):
-    """One picture of an actor: where it stood on its path, and the perspective view that shows it.
+    """One picture of an actor at one point of its path.
 
-    ``left, top, width, height`` (pixels) is its place in the actor's sheet, which is the whole view of
-    ``hfov_deg`` across ``width`` aimed at ``pan_deg``/``tilt_deg``. ``position_m`` is the actor's ground point then.
-    ``phase`` is where in its stride a walker was, 0 to 1; things without legs have 0.
+    ``left``, ``top``, ``width`` and ``height`` (pixels) locate it in the actor's sheet. It shows the perspective view that is
+    aimed at ``pan_deg``/``tilt_deg`` with ``hfov_deg`` across ``width``. ``position_m`` is the actor's ground point in the
+    picture. ``phase`` is the phase of a walker's stride, 0 to 1; it is 0 for everything else.
     """
 
     path_s: Number
@@ -199,12 +198,11 @@ class Sprite(Model):
 
 
 class ActorSheet(Model):
-    """Sprites of an actor as seen from this viewpoint, in order of time along the path.
+    """The sprites of an actor from this viewpoint, in order of time along the path.
 
-    ``colour`` holds straight RGBA, shadow included (black with alpha); ``depth`` the distance of the actor's own
-    pixels coded as in the depth layer, 0 where there is only shadow or nothing. A thing with legs has ``stride_m``, the
-    ground it covers in one gait cycle: sprites of several phases then share each ``path_s``, and whoever draws it takes
-    the nearest place first and the phase of the distance walked next.
+    ``colour`` holds straight RGBA including the shadow (black with alpha). ``depth`` holds the distances of the actor's own
+    pixels, coded as in the depth layer; it is 0 where the sheet shows only shadow or nothing. Walkers have ``stride_m``, the
+    distance covered in one gait cycle: several sprites, one per phase, then share each ``path_s``.
     """
 
     number: int
@@ -215,7 +213,7 @@ class ActorSheet(Model):
 
 
 class Manifest(Model):
-    """``manifest.json`` of a viewpoint pack."""
+    """The content of a viewpoint pack's ``manifest.json``."""
 
     format: Literal[1] = 1
     scene: Kebab

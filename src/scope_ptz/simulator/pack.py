@@ -1,4 +1,7 @@
-"""Finding scenes and opening their packs. Nothing is decoded before it is needed, nor used before its checksum matched."""
+"""Find scenes and open their packs.
+
+Files are decoded on first use, and only after their checksum has been verified.
+"""
 
 from __future__ import annotations
 
@@ -11,13 +14,16 @@ from threading import RLock
 
 from scope_ptz.errors import PackError, UnknownNameError
 from scope_ptz.simulator.models import SceneActor, SceneFile, SceneInstance
-from scope_ptz.simulator.recent import Recent
-from scope_ptz.simulator.variation import Held, vary
+from scope_ptz.simulator.recent import RecentViewpoints
+from scope_ptz.simulator.variation import HeldObject, vary
 from scope_ptz.simulator.viewpoint import Viewpoint, read_json
 
 
 def find_scenes(search: Iterable[Path] = ()) -> dict[str, Path]:
-    """Scene name to folder: folders with a ``scene.json`` in ``search`` and in the package; the first of a name wins."""
+    """Return scene folders by scene name: folders with a ``scene.json`` in ``search`` and in the package.
+
+    When a name occurs twice, the first folder wins.
+    """
     found: dict[str, Path] = {}
     for root in (*search, Path(str(files("scope_ptz"))) / "data" / "scenes"):
         if root.is_dir():
@@ -28,16 +34,21 @@ def find_scenes(search: Iterable[Path] = ()) -> dict[str, Path]:
 
 
 def list_scenes(search: Iterable[Path] = ()) -> list[str]:
-    """Names of the scenes that can be loaded, sorted."""
+    """Return the sorted names of the scenes that can be loaded."""
     return sorted(find_scenes(search))
 
 
-def load_scene(name: str, search: Iterable[Path] = (), recent: Recent | None = None) -> Scene:
-    """Open a scene by name, ``highway-works``, or a variation of one, ``highway-works-v7``. ``recent``: see ``Scene``.
+def load_scene(name: str, search: Iterable[Path] = (), recent: RecentViewpoints | None = None) -> Scene:
+    """Open a scene (``highway-works``) or a variation of one (``highway-works-v7``) by name.
+
+    Args:
+        name: Name of the scene or variation.
+        search: Extra folders of scenes, searched before the built-in ones.
+        recent: Limits how many viewpoints stay in memory; see ``Scene``.
 
     Raises:
-        UnknownNameError: there is no such scene.
-        PackError: its files are damaged.
+        UnknownNameError: The scene does not exist.
+        PackError: The scene's files are damaged.
     """
     folders = find_scenes(search)
     if name in folders:
@@ -49,12 +60,12 @@ def load_scene(name: str, search: Iterable[Path] = (), recent: Recent | None = N
 
 
 def variation_name(scene: str, number: int) -> str:
-    """The name under which variation ``number`` of a scene is opened."""
+    """Return the name that opens variation ``number`` of a scene."""
     return f"{scene}-v{number}"
 
 
 def variation_of(name: str) -> tuple[str, int | None]:
-    """The scene and the number that the name of a variation holds; the name and None when it is none."""
+    """Split the name of a variation into scene and number; the number is None for other names."""
     varied = _VARIED.fullmatch(name)
     return (name, None) if varied is None else (varied["scene"], int(varied["number"]))
 
@@ -63,27 +74,35 @@ _VARIED = re.compile(r"(?P<scene>.+)-v(?P<number>[1-9]\d{0,8})")
 
 
 class Scene:
-    """A scene folder: its instance table at once, its viewpoints when asked for. Safe to share between threads and cameras.
+    """A scene folder. The instance table is read at once, viewpoints on request. Safe to share between threads and cameras.
 
-    ``variation``: which one this is of the scene, if any; ``held``: what it keeps in one place that else moves. ``recent``: who
-    lets go of viewpoints when many scenes are open; without it all that were asked for stay.
+    Attributes:
+        variation: Number of the variation, None for the scene itself.
+        held: Objects that this variation keeps in one place and that otherwise move.
+
+    Args:
+        folder: The scene folder.
+        recent: Releases viewpoints when many scenes are open. Without it, every opened viewpoint stays in memory.
+
+    Raises:
+        PackError: A file is missing, damaged or inconsistent.
     """
 
-    def __init__(self, folder: Path, recent: Recent | None = None) -> None:
+    def __init__(self, folder: Path, recent: RecentViewpoints | None = None) -> None:
         self.folder = folder
         self.file = read_json(folder / "scene.json", SceneFile)
         if self.file.name != folder.name:
             raise PackError(f"{folder} holds the scene '{self.file.name}': a scene folder must bear its scene's name. Rename it.")
         self.name = self.file.name
         self.variation: int | None = None
-        self.held: tuple[Held, ...] = ()
+        self.held: tuple[HeldObject, ...] = ()
         self._viewpoints: dict[str, Viewpoint] = {}
         self._recent = recent
         self._lock = RLock()
         _check_references(self.file, folder)
 
     def varied(self, number: int) -> Scene:
-        """A variation of this scene; it shares the layers of its viewpoints."""
+        """Return a variation of this scene, which shares the layers of its viewpoints."""
         extents = {place.name: self.viewpoint(place.name).manifest.extents for place in self.file.viewpoints}
         variation = vary(self.file, number, extents)
         other = Scene(self.folder, self._recent)
@@ -94,12 +113,12 @@ class Scene:
 
     @property
     def things(self) -> list[SceneInstance | SceneActor]:
-        """Instances, then actors."""
+        """All instances, followed by all actors."""
         return [*self.file.instances, *self.file.actors]
 
     @cached_property
     def by_number(self) -> Mapping[int, SceneInstance | SceneActor]:
-        """Instances and actors by their number in the id layers."""
+        """Instances and actors by their number in the instance layers."""
         return {thing.number: thing for thing in self.things}
 
     @cached_property
@@ -109,7 +128,7 @@ class Scene:
 
     @cached_property
     def families(self) -> Mapping[str, frozenset[int]]:
-        """For each id the numbers of everything that hangs together with it: what it is a part of, and the parts of that."""
+        """For each id, the numbers of the whole object that it belongs to: its parent and all of the parent's parts."""
         parents = {i.id: i.parent for i in self.file.instances}
 
         def root(name: str) -> str:
@@ -126,7 +145,12 @@ class Scene:
         return {name: frozenset(members[top]) for name, top in roots.items()}
 
     def viewpoint(self, name: str) -> Viewpoint:
-        """One optical centre of the scene, opened once and shared."""
+        """Return one viewpoint of the scene. It is opened once and shared.
+
+        Raises:
+            UnknownNameError: The scene has no such viewpoint.
+            PackError: The viewpoint's files are damaged.
+        """
         known = {v.name: v for v in self.file.viewpoints}
         if name not in known:
             raise UnknownNameError("viewpoint", name, known)
@@ -139,13 +163,13 @@ class Scene:
             return viewpoint
 
     def release(self) -> None:
-        """Let go of the layers of all viewpoints; they are read again when they are asked for."""
+        """Release the layers of all viewpoints. They are read again on request."""
         with self._lock:
             self._viewpoints.clear()
 
 
 def _check_references(file: SceneFile, folder: Path) -> None:
-    """Every name that one table uses from another must exist, and no number may be given twice."""
+    """Check that references between the tables exist and that ids and numbers are unique."""
     things: list[SceneInstance | SceneActor] = [*file.instances, *file.actors]
     ids, numbers = {t.id for t in things}, {t.number for t in things}
     viewpoints, presets = {v.name for v in file.viewpoints}, {p.name for p in file.presets}

@@ -1,4 +1,4 @@
-"""The picture files of a viewpoint's folder, each held against its checksum and its size before it is used."""
+"""The picture files of a viewpoint folder, verified by checksum and size before use."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from scope_ptz.simulator.models import Layer
 
 
 class Pictures:
-    """Reads layers of one folder; keeps none. Raises ``PackError`` for whatever is not as it was baked."""
+    """Reads the layers of one folder without caching them. Raises ``PackError`` for files that differ from the manifest."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
 
     def colour(self, layer: Layer) -> NDArray[np.uint8]:
-        """(H, W, 3) RGB, or (H, W, 4) for the sheets of actors."""
+        """Return a colour layer as (H, W, 3) RGB, or (H, W, 4) RGBA for sprite sheets."""
         return self._sized(layer, layers.read_colour(self.checked(layer)))
 
     def numbers(self, layer: Layer) -> NDArray[np.uint16]:
-        """(H, W) instance numbers, 0 = nothing annotated; or distance codes."""
+        """Return a layer of (H, W) instance numbers (0 = not annotated) or distance codes."""
         return self._sized(layer, layers.read_ids(self.checked(layer)))
 
     def checked(self, layer: Layer) -> Path:
-        """Where a layer's file lies, its checksum being as in the manifest."""
+        """Verify the checksum of a layer's file and return its path."""
         path = (self.folder / layer.file).resolve()
         if not path.is_relative_to(self.folder.resolve()):
             raise PackError(f"{self.folder / 'manifest.json'} names a file outside its folder: {layer.file}. Do not use this pack.")

@@ -1,4 +1,4 @@
-"""Which viewpoints have their layers in memory when many scenes are in use, and which are let go of."""
+"""A limit on how many viewpoints keep their layers in memory when many scenes are in use."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from threading import Lock
 from typing import Any
 
 Opened = MutableMapping[str, Any]
-"""What one scene has open, by name."""
+"""The open viewpoints of one scene, by name."""
 
 
-class Recent:
-    """The most recently used of what several scenes have open. Safe to share between threads.
+class RecentViewpoints:
+    """A least-recently-used limit over the open viewpoints of several scenes. Safe to share between threads.
 
-    Whoever still holds a viewpoint that is let go of keeps it until done; who asks for it again has it read again.
+    A released viewpoint stays alive while something still refers to it. The next request reads it again.
     """
 
     def __init__(self, limit: int) -> None:
@@ -23,7 +23,7 @@ class Recent:
         self._used: OrderedDict[tuple[int, str], Opened] = OrderedDict()
 
     def used(self, opened: Opened, name: str) -> None:
-        """Note that ``name`` of a scene was asked for; drop the least recently used beyond the limit."""
+        """Record that viewpoint ``name`` was requested, and release the least recently used ones beyond the limit."""
         with self._lock:
             self._used[id(opened), name] = opened
             self._used.move_to_end((id(opened), name))

@@ -1,8 +1,8 @@
-"""From the stored sphere of a viewpoint to any view: one map, one look-up.
+"""Re-projection: from the stored sphere of a viewpoint to any view, by one map and one look-up.
 
-Where a pixel of the view lies on the sheet of stored pictures is computed exactly on a coarse grid and interpolated between its
-nodes; the grid is as fine as it must be for errors to stay below ``MAX_MAP_ERROR_PX``. Nothing here keeps state that could change
-a result: the same pack and projection give the same bytes.
+The map gives the position of each pixel of the view on the sheet of stored pictures. It is computed exactly at the nodes of a
+coarse grid and interpolated between them; the grid is fine enough to keep errors below ``MAX_MAP_ERROR_PX``. The same pack and
+projection always give the same bytes.
 """
 
 from __future__ import annotations
@@ -17,47 +17,56 @@ from numpy.typing import NDArray
 from scope_ptz.geometry import Equirectangular, Perspective, Projection, pan_tilt_deg, wrap_pan_deg
 from scope_ptz.simulator.atlas import Atlas, Slot
 from scope_ptz.simulator.models import Band
-from scope_ptz.simulator.tiles import Place, Showing, Tiles
+from scope_ptz.simulator.tiles import Place, TileInView, Tiles
 from scope_ptz.simulator.viewpoint import Viewpoint
 
 MAX_MAP_ERROR_PX = 0.04
-"""Largest error of an interpolated map, in pixels of the view."""
+"""Largest permitted error of an interpolated map, in pixels of the view."""
 
 MAX_STEP_PX = 32
 
 TILE_GAIN = 1.1
-"""Tiles are used from views on that need this many times the density of the panorama."""
+"""Views that need more than this many times the panorama's density use tiles."""
 
 OVERSAMPLING = 1.2
-"""Bilinear look-up in a picture this much to 1.7 times as dense as the view keeps the sharpness of a rendered view: less blurs,
-more shimmers."""
+"""Smallest density of the source relative to the view. Bilinear look-up keeps the sharpness of a rendered view when the source is
+1.2 to 1.7 times as dense as the view; a sparser source blurs and a denser one shimmers."""
 
 _AROUND = ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (-1, 1), (1, -1), (-1, -1))
-"""The eight neighbours, those above and below first: they are the likeliest to be equally far on the ground."""
+"""The eight neighbouring pixels, in the order in which they are tried."""
 
 Floats = NDArray[np.float64]
 Map = NDArray[np.float32]
 
 
 def colour_view(viewpoint: Viewpoint, projection: Projection) -> NDArray[np.uint8]:
-    """(H, W, 3) RGB: the still world through a projection."""
+    """Return the still world through a projection as (H, W, 3) RGB."""
     return _look_up(viewpoint, viewpoint.colour_atlas, projection, cv2.INTER_LINEAR)
 
 
 def id_view(viewpoint: Viewpoint, projection: Projection) -> NDArray[np.uint16]:
-    """(H, W) instance numbers of the still world, 0 where nothing is annotated."""
+    """Return the still world's (H, W) instance numbers, 0 where nothing is annotated."""
     return _look_up(viewpoint, viewpoint.id_atlas, projection, cv2.INTER_NEAREST)
 
 
 def depth_view(viewpoint: Viewpoint, projection: Projection) -> NDArray[np.float32]:
-    """(H, W) distance of the still world from the optical centre in metres, infinite for the sky."""
+    """Return the still world's (H, W) distances from the optical centre in metres, infinite for the sky."""
     codes = _look_up(viewpoint, viewpoint.depth_atlas, projection, cv2.INTER_NEAREST)
     return np.take(viewpoint.depth_metres, codes)
 
 
 def distances_m(viewpoint: Viewpoint, directions: Floats) -> tuple[NDArray[np.float32], NDArray[np.uint16]]:
-    """How far the still world is along directions (n, 3) in the camera's own frame, infinite for the sky, and which instance each
-    of these distances was measured on: those of the nearest texel of the depth layer."""
+    """Return distances along directions, and the instances on which they were measured.
+
+    Both are those of the nearest texel of the depth layer.
+
+    Args:
+        viewpoint: The viewpoint.
+        directions: (n, 3) unit vectors in the camera's own frame.
+
+    Returns:
+        (n,) metres, infinite for the sky, and (n,) instance numbers.
+    """
     viewpoint.owner_atlas.need(0)
     slot, band = viewpoint.depth_atlas.need(0), viewpoint.manifest.band
     pan_deg, tilt_deg = pan_tilt_deg(directions)
@@ -69,9 +78,10 @@ def distances_m(viewpoint: Viewpoint, directions: Floats) -> tuple[NDArray[np.fl
 
 
 def outlined_depth_view(viewpoint: Viewpoint, projection: Projection, numbers: NDArray[np.uint16]) -> NDArray[np.float32]:
-    """Like ``depth_view``, with the edges of instances where the finer ``numbers`` (H, W) of the same view have them.
+    """Like ``depth_view``, but with the edges of instances as sharp as in ``numbers``, the view's (H, W) instance numbers.
 
-    Where a distance was measured on another instance than the pixel shows, a neighbour's that was not is taken.
+    Where a distance was measured on a different instance than the pixel shows, it is replaced by a neighbour's distance that was
+    measured on the right one.
     """
     where = atlas_map(viewpoint, viewpoint.depth_atlas, projection)
     metres: NDArray[np.float32] = np.take(
@@ -98,7 +108,7 @@ def _look_up(viewpoint: Viewpoint, atlas: Atlas, projection: Projection, interpo
 
 
 def atlas_map(viewpoint: Viewpoint, atlas: Atlas, projection: Projection) -> Map:
-    """(H, W, 2): for each pixel of the view its x, y on the sheet of an atlas."""
+    """Return the (H, W, 2) position (x, y) of each pixel of the view on the sheet of an atlas."""
     needed = projection.density
     step = step_px(projection)
     patches: list[tuple[Place, Map, NDArray[np.uint8]]] = []
@@ -106,7 +116,7 @@ def atlas_map(viewpoint: Viewpoint, atlas: Atlas, projection: Projection) -> Map
     if needed > TILE_GAIN * atlas.slots[0][0].width / (2 * math.pi) and len(atlas.slots) > 1:
         for showing in viewpoint.tiles.in_view(projection):
             where, inside, filled = _tile_map(viewpoint.tiles, showing, atlas, Grid(projection, step, showing.place))
-            if filled:  # sharper ones that came before it still lie over it
+            if filled:  # sharper tiles found earlier are drawn over it
                 behind = where
                 break
             patches.append((showing.place, where, inside))
@@ -119,9 +129,9 @@ def atlas_map(viewpoint: Viewpoint, atlas: Atlas, projection: Projection) -> Map
 
 
 class Grid:
-    """Nodes ``step`` pixels apart over a part of a picture and one step beyond it, and the way back from nodes to pixels.
+    """Nodes ``step`` pixels apart that cover a part of a picture and one step beyond it.
 
-    ``x`` and ``y`` are the columns and rows of the nodes in pixels, counted from the picture's corner.
+    ``x`` and ``y`` are the columns and rows of the nodes in pixels, counted from the picture's top-left corner.
     """
 
     def __init__(self, projection: Projection, step: int, place: Place | None = None) -> None:
@@ -132,12 +142,12 @@ class Grid:
         self.y: Floats = rows.start + (np.arange(-(-(rows.stop - rows.start) // step) + 2) - 0.5) * step
 
     def directions(self) -> Floats:
-        """(rows, columns, 3) unit vectors at the nodes."""
+        """Return (rows, columns, 3) unit vectors at the nodes."""
         points = np.stack(np.meshgrid(self.x / self.projection.width, self.y / self.projection.height), axis=-1)
         return self.projection.directions(points)
 
     def to_pixels(self, nodes: Floats) -> NDArray[np.float32]:
-        """Values at nodes (rows, columns) or (rows, columns, n), bilinear between them, at the middle of each pixel of the part."""
+        """Interpolate node values, (rows, columns) or (rows, columns, n), to the centre of each pixel of the part."""
         n, (rows, columns) = self.step, self.place
         size = nodes.shape[1] * n, nodes.shape[0] * n
         fine: NDArray[np.float32] = cv2.resize(nodes.astype(np.float32), size, interpolation=cv2.INTER_LINEAR)
@@ -145,7 +155,7 @@ class Grid:
 
 
 def step_px(projection: Projection) -> int:
-    """The widest power of two that keeps ``step ** 2 / 8 * curvature`` within the error allowed."""
+    """Return the largest power of two that keeps ``step ** 2 / 8 * curvature`` within ``MAX_MAP_ERROR_PX``."""
     if isinstance(projection, Equirectangular):
         return 8
     corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.5, 0.0], [0.5, 1.0]])
@@ -169,7 +179,7 @@ def _base_map(band: Band, atlas: Atlas, scale: int, grid: Grid) -> Map:
     for beyond, turn_px in ((x < left, slot.width), (x > right, -slot.width)):
         columns = np.flatnonzero(beyond.any(axis=0))
         if columns.size:
-            # Pixels lie between nodes: none beyond the seam is outside of the columns from the node before to the node after.
+            # Pixels beyond the seam lie between the node before and the node after, so only these columns need the turn.
             first, last = max(0, (columns[0] - 2) * grid.step), (columns[-1] + 1) * grid.step
             part = where[:, first:last, 0]
             part += np.float32(turn_px) * (part < left if turn_px > 0 else part > right)
@@ -177,7 +187,7 @@ def _base_map(band: Band, atlas: Atlas, scale: int, grid: Grid) -> Map:
 
 
 def _turn_and_tilt_deg(grid: Grid) -> tuple[float, Floats, Floats]:
-    """The pan of the middle of a picture, and for each node how far it is turned from there and its tilt."""
+    """Return the pan of the picture's centre and, for each node, its turn from there and its tilt, all in degrees."""
     projection = grid.projection
     if isinstance(projection, Equirectangular):
         fall = projection.bottom_tilt_deg - projection.top_tilt_deg
@@ -186,7 +196,7 @@ def _turn_and_tilt_deg(grid: Grid) -> tuple[float, Floats, Floats]:
         )
         return projection.left_pan_deg + projection.pan_span_deg / 2, turn, tilt
     if isinstance(projection, Perspective):
-        # A ray is (right, up, focal length) in the view; only the tilt turns it, in the plane of the last two.
+        # A ray is (right, up, focal length) in the view. The tilt turns it in the plane of the last two.
         sine, cosine = math.sin(math.radians(projection.tilt_deg)), math.cos(math.radians(projection.tilt_deg))
         right, up = grid.x - projection.width / 2, (projection.height / 2 - grid.y)[:, None]
         ahead, rise = projection.focal_px * cosine - up * sine, projection.focal_px * sine + up * cosine
@@ -195,8 +205,8 @@ def _turn_and_tilt_deg(grid: Grid) -> tuple[float, Floats, Floats]:
     raise TypeError(f"no map for {type(projection).__name__}")
 
 
-def _tile_map(tiles: Tiles, showing: Showing, atlas: Atlas, grid: Grid) -> tuple[Map, NDArray[np.uint8], bool]:
-    """A tile's map over a part of the view, which pixels there it covers, and whether that is all of the view."""
+def _tile_map(tiles: Tiles, showing: TileInView, atlas: Atlas, grid: Grid) -> tuple[Map, NDArray[np.uint8], bool]:
+    """Return a tile's map over a part of the view, the mask of the pixels it covers, and whether it covers the whole view."""
     projection = grid.projection
     slot = _slot(atlas, 1 + showing.tile, tiles.views[showing.tile].focal_px, projection.density)
     nodes = tiles.points(showing, projection, grid.x, grid.y) * (slot.width, slot.height) + (slot.x - 0.5, slot.y - 0.5)

@@ -1,4 +1,4 @@
-"""Instance numbers of a picture as runs: the pixels of a row that carry one number. All measures of instances come from them."""
+"""Measurements of instances in a picture, computed from runs: consecutive pixels of a row with the same instance number."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Measures:
-    """One entry for each number that shows, in rising order.
+    """Measurements of every instance in a picture, in ascending order of instance number.
 
-    ``box`` (n, 4) and ``point`` (n, 2) are normalised, ``middle`` (n, 2) is the centroid, which may lie on something else;
-    ``pixels`` and ``solid_angle_sr`` are (n,).
+    ``pixels`` and ``solid_angle_sr`` are (n,). ``box`` (n, 4), ``middle`` (n, 2) and ``point`` (n, 2) are normalised. ``middle``
+    is the centroid, which may lie on another object; ``point`` lies on the instance itself.
     """
 
     numbers: Ints
@@ -65,7 +65,10 @@ def measure(numbers: NDArray[np.uint16], projection: Projection) -> Measures:
 
 
 class _Runs:
-    """``number``, ``row``, ``start``, ``stop`` of every run that is not 0, by number; ``first`` indexes each number's first."""
+    """``number``, ``row``, ``start`` and ``stop`` of every run with a number other than 0, sorted by number.
+
+    ``first`` holds the index of each number's first run.
+    """
 
     def __init__(self, numbers: NDArray[np.uint16]) -> None:
         height, width = numbers.shape
@@ -85,7 +88,7 @@ class _Runs:
         self.group: Ints = np.cumsum(np.diff(self.number, prepend=-1) != 0) - 1
 
     def mainland(self, width: int) -> NDArray[np.bool_]:
-        """In a picture that closes on itself, which runs belong to the larger half of a thing that lies across the seam."""
+        """Return which runs belong to the larger part of an instance that lies across the seam of a full panorama."""
         main = np.ones(len(self.number), dtype=bool)
         edges = np.intersect1d(self.number[self.start == 0], self.number[self.stop == width])
         for number in edges:
@@ -97,7 +100,7 @@ class _Runs:
         return main
 
     def nearest(self, x: Floats, y: Floats, main: NDArray[np.bool_]) -> tuple[Floats, Floats]:
-        """For each number the middle of its own pixel nearest to a point (in pixels)."""
+        """Return, for each number, the centre of its pixel nearest to a point (in pixels)."""
         if not len(self.first):
             return np.zeros(0), np.zeros(0)
         near_x = np.clip(x[self.group], self.start + 0.5, self.stop - 0.5)
@@ -107,7 +110,7 @@ class _Runs:
 
 
 def _solid_angles(projection: Projection, row: Ints, start: Ints, stop: Ints) -> Floats:
-    """Steradians of runs of pixels: integrated along the row, its middle standing for its height."""
+    """Return the solid angle of each run in steradians, integrated exactly along the row at its mid-height."""
     if isinstance(projection, Perspective):
         f = projection.focal_px
         y = row + 0.5 - projection.height / 2

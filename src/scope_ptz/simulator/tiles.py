@@ -1,4 +1,4 @@
-"""The tiles of a viewpoint as geometry: which of them a view shows, where, and how its pixels map to theirs."""
+"""Geometry of a viewpoint's tiles: which tiles a view shows, where, and how pixels map between them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from scope_ptz.geometry.sphere import camera_axes
 
 Floats = NDArray[np.float64]
 Place = tuple[slice, slice]
-"""Rows and columns of a picture."""
+"""A rectangle of a picture: rows and columns."""
 
 _BEHIND = 1e-6
 _FAR_PX = 1e5
@@ -23,11 +23,11 @@ _SHIFT = 8
 _SIDE_POINTS = 8
 
 
-class Showing(NamedTuple):
-    """A tile in a picture: which, and in which part.
+class TileInView(NamedTuple):
+    """A tile in a picture and the part of the picture in which it shows.
 
-    In a perspective picture also the turn (3, 3) from its axes to the tile's (two planes seen from one point: with it a matrix
-    leads from one to the other), and a polygon (4, 2) that lies at least a pixel inside the tile, in 1/256 pixels for OpenCV.
+    For perspective pictures, ``turn`` is the (3, 3) rotation from the picture's axes to the tile's, and ``polygon`` is a (4, 2)
+    outline at least one pixel inside the tile, in 1/256 pixels as OpenCV expects. Both are None for panoramas.
     """
 
     tile: int
@@ -36,7 +36,7 @@ class Showing(NamedTuple):
     polygon: NDArray[np.int32] | None
 
     def mask(self) -> NDArray[np.uint8] | None:
-        """(H, W) of the part: 255 inside the polygon. None without one."""
+        """Return an (H, W) mask of the part that is 255 inside the polygon, or None without a polygon."""
         if self.polygon is None:
             return None
         rows, columns = self.place
@@ -47,7 +47,7 @@ class Showing(NamedTuple):
 
 
 class Tiles:
-    """Perspective pictures around one optical centre, in order of preference: the sharpest first, then as given."""
+    """Perspective pictures around one optical centre, the sharpest first; equally sharp ones keep their order."""
 
     def __init__(self, views: Sequence[Perspective]) -> None:
         self.views = list(views)
@@ -57,8 +57,8 @@ class Tiles:
         self._reach_deg = np.array([v.reach_deg for v in views])
         self._outlines = np.array([v.directions(_OUTLINE) for v in views]).reshape(-1, len(_OUTLINE), 3)
 
-    def in_view(self, projection: Projection) -> list[Showing]:
-        """Every tile that may show in a picture."""
+    def in_view(self, projection: Projection) -> list[TileInView]:
+        """Return every tile that may show in a picture."""
         if not self.views:
             return []
         apart = angle_between_deg(self._axes[:, 2], projection.directions((0.5, 0.5)))
@@ -69,15 +69,15 @@ class Tiles:
         if isinstance(projection, Perspective):
             turns = list(self._axes[near] @ camera_axes(projection.pan_deg, projection.tilt_deg).T)
             polygons = _inset(outlines[:, ::_SIDE_POINTS] * size)
-            shown = [Showing(*fields) for fields in zip(near.tolist(), places, turns, polygons, strict=True)]
+            shown = [TileInView(*fields) for fields in zip(near.tolist(), places, turns, polygons, strict=True)]
         else:
-            shown = [Showing(i, place, None, None) for i, place in zip(near.tolist(), places, strict=True)]
+            shown = [TileInView(i, place, None, None) for i, place in zip(near.tolist(), places, strict=True)]
         return [showing for showing in shown if showing.place[0].start < showing.place[0].stop]
 
-    def points(self, showing: Showing, projection: Projection, x: Floats, y: Floats) -> Floats:
-        """Normalised points (rows, columns, 2) of a tile under the columns ``x`` and rows ``y`` (in pixels) of a picture.
+    def points(self, showing: TileInView, projection: Projection, x: Floats, y: Floats) -> Floats:
+        """Return the tile's normalised points (rows, columns, 2) under columns ``x`` and rows ``y`` (pixels) of a picture.
 
-        Far outside the tile, or behind it, they are merely far outside.
+        Points behind the tile's camera get coordinates far outside the tile.
         """
         tile = self.views[showing.tile]
         if showing.turn is not None:
@@ -97,23 +97,23 @@ class Tiles:
 
 
 def _inset(corners: Floats) -> list[NDArray[np.int32] | None]:
-    """For each quadrilateral (n, 4, 2) one that is shrunk about its middle, so that rounding never reaches beyond the tile."""
+    """Shrink quadrilaterals (n, 4, 2) about their centres, so that rounding never reaches beyond the tile."""
     middle = corners.mean(axis=1, keepdims=True)
     sides, towards = np.roll(corners, -1, axis=1) - corners, middle - corners
     across = np.abs(sides[..., 0] * towards[..., 1] - sides[..., 1] * towards[..., 0])
     away = (across / np.maximum(np.sqrt((sides**2).sum(axis=-1)), 1e-9)).min(axis=1)
     inset = middle + (corners - middle) * np.maximum(0.0, 1.0 - _INSET_PX / np.maximum(away, 1e-9))[:, None, None]
-    clear = np.abs(corners).max(axis=(1, 2)) < _FAR_PX  # false for what is not a number, too
+    clear = np.abs(corners).max(axis=(1, 2)) < _FAR_PX  # also false for NaN
     fixed = np.rint((np.where(clear[:, None, None], inset, 0.0) - 0.5) * (1 << _SHIFT)).astype(np.int32)
     return [polygon if fine else None for polygon, fine in zip(fixed, clear.tolist(), strict=True)]
 
 
 def _bounds(projection: Projection, points: Floats) -> list[Place]:
-    """For each outline (n, m, 2) of normalised points the rows and columns that it spans, empty where it misses the picture."""
+    """Return the rows and columns that each outline (n, m, 2) spans; they are empty where it misses the picture."""
     size = np.array([projection.width, projection.height])
     unclear = np.isnan(points).any(axis=(1, 2))
     if isinstance(projection, Equirectangular):
-        unclear |= np.ptp(points[..., 0], axis=1) > 0.5  # across the seam
+        unclear |= np.ptp(points[..., 0], axis=1) > 0.5  # it crosses the seam
     points = np.clip(np.where(np.isnan(points), 0.0, points), -1.0, 2.0)
     low = np.floor(points.min(axis=1) * size).astype(int) - 1
     high = np.ceil(points.max(axis=1) * size).astype(int) + 1
@@ -124,7 +124,7 @@ def _bounds(projection: Projection, points: Floats) -> list[Place]:
 
 
 def _outline() -> Floats:
-    """Points around a picture, clockwise from its first corner."""
+    """Return points around the border of a picture, clockwise from the top-left corner."""
     side = np.arange(_SIDE_POINTS) / _SIDE_POINTS
     zero, one = np.zeros_like(side), np.ones_like(side)
     return np.concatenate([np.stack(p, axis=-1) for p in ((side, zero), (one, side), (1 - side, one), (zero, 1 - side))])

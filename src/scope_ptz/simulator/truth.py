@@ -1,4 +1,4 @@
-"""What is really to be seen in a view: the one definition of "visible" and "legible" for perception and for checks."""
+"""The ground truth of a view: the only definition of "visible" and "legible", shared by perception and checks."""
 
 from __future__ import annotations
 
@@ -20,34 +20,41 @@ from scope_ptz.simulator.viewpoint import Viewpoint
 from scope_ptz.simulator.views import instance_numbers
 
 MIN_VISIBLE_PX = 100
-"""An instance is visible when it covers at least this many pixels of the frame; 10 x 10 is about what a person can name."""
+"""A visible instance covers at least this many pixels of the frame. A person can name an object of about 10 x 10 pixels."""
 
 MIN_VISIBLE_SHARE = 0.3
-"""... and when at least this share of its own silhouette is neither hidden nor cut off by the frame."""
+"""At least this share of a visible instance's silhouette is neither hidden nor cut off by the frame."""
 
 MIN_CAP_HEIGHT_PX = 14.0
-"""A text is legible when its capitals are at least this high in the frame,"""
+"""Capitals of a legible text are at least this high in the frame."""
 
 MAX_READING_ANGLE_DEG = 55.0
-"""... seen at most this far from its normal,"""
+"""A legible text is seen at most this far from its normal."""
 
 MIN_UNHIDDEN_SHARE = 0.9
-"""... and at least this share of it is inside the frame and unhidden."""
+"""At least this share of a legible text is inside the frame and not hidden."""
 
 UNOCCLUDED_SHARE = 0.95
-"""What shows this much of what the frame takes in counts as not hidden by anything: boundaries are never measured exactly."""
+"""An instance that shows at least this share of its silhouette inside the frame counts as not occluded, because boundaries are
+never measured exactly."""
 
 BoxTuple = tuple[float, float, float, float]
-"""``(x_min, y_min, x_max, y_max)``, normalised to [0, 1], origin top-left."""
+"""``(x_min, y_min, x_max, y_max)``, normalised to [0, 1], with the origin at the top left."""
 
 
 @dataclass(frozen=True, slots=True)
 class Sighting:
-    """One instance or actor of which at least one pixel shows.
+    """One instance or actor with at least one pixel in the view.
 
-    ``box`` encloses its own pixels, ``point`` lies on one of them near their middle; ``share`` is the solid angle that shows over
-    the solid angle of its whole silhouette; ``pan_deg``/``tilt_deg`` point at the middle of what shows; ``distance_m`` is to its
-    nearest point. ``cut``: it reaches beyond the frame. ``occluded``: something hides part of it.
+    Attributes:
+        box: Encloses the instance's own pixels.
+        point: A point on one of these pixels, near their centre.
+        share: Solid angle that shows divided by the solid angle of the whole silhouette.
+        pan_deg: Pan of the centre of what shows.
+        tilt_deg: Tilt of the centre of what shows.
+        distance_m: Distance to the nearest point.
+        cut: The instance reaches beyond the frame.
+        occluded: Something hides part of the instance.
     """
 
     instance: SceneInstance | SceneActor
@@ -68,7 +75,7 @@ class Sighting:
 
 @dataclass(frozen=True, slots=True)
 class TextSighting:
-    """One text of which at least a part lies in the frame, with the measures that decide whether it can be read."""
+    """One text that lies at least partly in the frame, with the measurements that decide whether it is legible."""
 
     text: SceneText
     box: BoxTuple
@@ -87,7 +94,7 @@ class TextSighting:
 
 @dataclass(frozen=True, slots=True)
 class ViewTruth:
-    """Everything that shows in a view, nearest first; ``visible`` and ``legible`` are what may be counted, described and read."""
+    """Everything that shows in a view, nearest first. Answers may use only what is ``visible`` or ``legible``."""
 
     sightings: tuple[Sighting, ...]
     texts: tuple[TextSighting, ...]
@@ -102,7 +109,7 @@ class ViewTruth:
 
 
 def view_truth(scene: Scene, viewpoint: str, projection: Projection, time_s: float) -> ViewTruth:
-    """The ground truth of a picture taken from ``viewpoint`` at scene time ``time_s`` through ``projection``."""
+    """Return the ground truth of a picture taken from ``viewpoint`` at scene time ``time_s`` through ``projection``."""
     here = scene.viewpoint(viewpoint)
     numbers = instance_numbers(scene, viewpoint, projection, time_s)
     extents = here.extents | {a.actor.number: extent(here, a) for a in composited(scene, here, time_s)}
@@ -121,7 +128,7 @@ def _sightings(
                 f"A pixel of scene '{scene.name}' shows instance {number}, which scene.json does not know. Bake it again."
             )
         if number not in extents:
-            continue  # from here it never covers as much as a pixel of the bake: nobody could call it visible
+            continue  # it covers less than one pixel of the bake from here, so it can never be visible
         extent = extents[number]
         share = min(1.0, float(seen.solid_angle_sr[k]) / max(extent.solid_angle_sr, 1e-12))
         inside = _share_inside(extent, projection)
@@ -143,11 +150,11 @@ def _sightings(
 
 
 def _share_inside(extent: Extent, projection: Projection) -> float:
-    """How much of the area of an outline lies inside the frame, 1 when nothing is cut off."""
+    """Return the share of an outline's area that lies inside the frame, 1 when nothing is cut off."""
     hull = np.array(extent.hull, dtype=np.float64).reshape(-1, 2)
     points = projection.points(direction(hull[:, 0], hull[:, 1]))
     if isinstance(projection, Equirectangular) and projection.pan_span_deg >= 360.0:
-        # The picture closes on itself: nothing is cut at its left and right edge.
+        # A full panorama cuts nothing at its left and right edges.
         points[:, 0] = 0.5
         return float(np.mean((points[:, 1] >= 0) & (points[:, 1] <= 1))) if len(points) else 1.0
     points = points[~np.isnan(points).any(axis=-1)]
@@ -168,7 +175,7 @@ def _texts(scene: Scene, viewpoint: Viewpoint, projection: Projection, numbers: 
 
 
 def _may_show(texts: Sequence[SceneText], viewpoint: Viewpoint, projection: Projection) -> NDArray[np.bool_]:
-    """Which texts face the viewpoint with their front, and whose corners do not all lie beyond one edge of the frame."""
+    """Return the texts that face the viewpoint and whose corners do not all lie beyond one edge of the frame."""
     centre, right, up = (np.array([getattr(t, name) for t in texts], dtype=np.float64) for name in ("centre_m", "right", "up"))
     half = np.array([(t.width_m / 2, t.height_m / 2) for t in texts])
     facing = np.sum(np.cross(right, up) * (viewpoint.position_m - centre), axis=-1) > 0
@@ -184,13 +191,13 @@ def _may_show(texts: Sequence[SceneText], viewpoint: Viewpoint, projection: Proj
 def _text(
     text: SceneText, family: frozenset[int], viewpoint: Viewpoint, projection: Projection, numbers: NDArray[np.uint16]
 ) -> TextSighting | None:
-    """None when no part of the text is in the frame or only its back is."""
+    """Return the sighting of a text, or None when no part of its front is in the frame."""
     centre, right, up = (np.array(v, dtype=np.float64) for v in (text.centre_m, text.right, text.up))
     towards = viewpoint.position_m - centre
     angle_deg = float(angle_between_deg(np.cross(right, up), towards))
     if angle_deg >= 90.0:
         return None
-    # One look-up per cell of a grid over the letters; the corners for the box.
+    # Sample the cells of a grid over the letters; the corners give the box.
     across, along = np.meshgrid((np.arange(24) + 0.5) / 24 - 0.5, (np.arange(8) + 0.5) / 8 - 0.5)
     cells = centre + across[..., None] * text.width_m * right + along[..., None] * text.height_m * up
     rays = viewpoint.offset(cells.reshape(-1, 3))
@@ -215,9 +222,10 @@ def _text(
 
 
 def _behind_its_own(viewpoint: Viewpoint, rays: NDArray[np.float64], shown: NDArray[np.uint16]) -> NDArray[np.bool_]:
-    """Which points of a text, as vectors (n, 3) from the optical centre, lie behind what their pixels show.
+    """Return which points of a text, as vectors (n, 3) from the optical centre, lie behind what their pixels show.
 
-    Numbers tell what else hides a text, distances that something of the same thing does: the awning of a shop the name on its door.
+    Instance numbers reveal other objects that hide a text. Distances reveal parts of the same object that do, such as a shop's
+    awning in front of the name on its door.
     """
     still_m, owners = distances_m(viewpoint, rays)
     away_m = np.linalg.norm(rays, axis=-1)

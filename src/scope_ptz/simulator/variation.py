@@ -1,7 +1,7 @@
-"""Varied worlds: the same place at another time, with its moving things elsewhere and other presets, made exactly from a number.
+"""Variations of a scene: other positions of moving objects and other presets, derived deterministically from a number.
 
-What is baked stays as it is. Moving things are set into the picture and into the truth by the same code, so that a variation
-that moves, holds or leaves them out changes both alike.
+The baked layers stay as they are. The same code composites moving objects into pictures and into the ground truth, so a
+variation that moves, holds or removes them changes both alike.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from scope_ptz.simulator.models import Attribute, Extent, SceneActor, SceneFile,
 
 MOST_START_S = 120.0
 CLEARANCE_M = 3.0
-"""Nothing is held nearer than this to the way of something that moves."""
+"""Smallest distance in metres between a held object and the path of a moving one."""
 
 _MOMENTS = 16
 _LONGER = (1.0, 1.5, 2.0)
@@ -33,8 +33,8 @@ _WINDS = ("north", "north-east", "east", "south-east", "south", "south-west", "w
 
 
 @dataclass(frozen=True, slots=True)
-class Held:
-    """A moving thing that stays for good where it is at one scene time."""
+class HeldObject:
+    """A moving object that is held where it is at one scene time."""
 
     actor: SceneActor
     time_s: float
@@ -42,17 +42,23 @@ class Held:
 
 @dataclass(frozen=True, slots=True)
 class Variation:
-    """A varied scene file. What is ``held`` stands among its instances, no longer among its actors."""
+    """A varied scene file. Objects that are ``held`` are listed with its instances instead of its actors."""
 
     file: SceneFile
-    held: tuple[Held, ...]
+    held: tuple[HeldObject, ...]
 
 
 def vary(file: SceneFile, number: int, extents: Mapping[str, Sequence[Extent]]) -> Variation:
-    """Variation ``number`` of a scene; the same number gives the same world. ``extents``: what can be seen, by viewpoint."""
+    """Return variation ``number`` of a scene. The same number always gives the same world.
+
+    Args:
+        file: The scene.
+        number: Number of the variation.
+        extents: Silhouettes of what can be seen, by viewpoint.
+    """
     rng = random.Random(f"{file.name}:{number}")
     start_s = round(rng.uniform(0.0, MOST_START_S), 1)
-    moving, held = _fates(file.actors, rng)
+    moving, held = _itineraries(file.actors, rng)
     presets = list(_presets(file, extents, rng))
     home = next(p.viewpoint for p in file.presets if p.name == file.home_preset)
     varied = file.model_copy(
@@ -68,16 +74,16 @@ def vary(file: SceneFile, number: int, extents: Mapping[str, Sequence[Extent]]) 
 
 
 def companions(actors: Sequence[SceneActor]) -> list[list[SceneActor]]:
-    """Actors that go together, such as a dog and who leads it: those of one timetable share their fate."""
+    """Group the actors that move together, such as a dog and its owner: those with the same timetable."""
     groups: dict[tuple[float, ...], list[SceneActor]] = {}
     for actor in actors:
         groups.setdefault((actor.period_s, *(round(w[0], 3) for w in actor.waypoints)), []).append(actor)
     return list(groups.values())
 
 
-def _fates(actors: Sequence[SceneActor], rng: random.Random) -> tuple[list[SceneActor], list[Held]]:
-    """Every group comes at other times, stays somewhere on its way, or is not there."""
-    moving, held = list[SceneActor](), list[Held]()
+def _itineraries(actors: Sequence[SceneActor], rng: random.Random) -> tuple[list[SceneActor], list[HeldObject]]:
+    """Decide for every group whether it comes at other times, is held somewhere on its path, or is absent."""
+    moving, held = list[SceneActor](), list[HeldObject]()
     for group in companions(actors):
         fate = rng.choices(("late", "held", "gone"), (4, 4, 2))[0]
         if fate == "held":
@@ -95,19 +101,21 @@ def _fates(actors: Sequence[SceneActor], rng: random.Random) -> tuple[list[Scene
 
 
 def _period(actor: SceneActor, rng: random.Random) -> float:
-    """As often as before or more seldom; what goes round and round goes on doing so."""
+    """Return a period as long as before or longer. Actors on a closed circuit keep theirs."""
     rests_s = actor.period_s - (actor.waypoints[-1][0] - actor.waypoints[0][0])
     longer = rng.choice(_LONGER)
     return actor.period_s if rests_s < 0.1 else round(actor.period_s * longer, 3)
 
 
-def _hold(group: Sequence[SceneActor], rng: random.Random) -> list[Held]:
+def _hold(group: Sequence[SceneActor], rng: random.Random) -> list[HeldObject]:
     share = rng.uniform(0.15, 0.85)
-    return [Held(a, round(a.delay_s + a.waypoints[0][0] + share * (a.waypoints[-1][0] - a.waypoints[0][0]), 2)) for a in group]
+    return [
+        HeldObject(a, round(a.delay_s + a.waypoints[0][0] + share * (a.waypoints[-1][0] - a.waypoints[0][0]), 2)) for a in group
+    ]
 
 
-def _place(held: Held) -> tuple[float, float, float, float]:
-    """Ground point (x, y, z) in metres and heading in radians (0 along y) of what is held."""
+def _place(held: HeldObject) -> tuple[float, float, float, float]:
+    """Return the ground point (x, y, z) in metres and the heading in radians (0 along y) of a held object."""
     path = np.array(held.actor.waypoints)
     path_s = held.time_s - held.actor.delay_s
     x, y, z = (float(np.interp(path_s, path[:, 0], path[:, axis])) for axis in (1, 2, 3))
@@ -115,23 +123,23 @@ def _place(held: Held) -> tuple[float, float, float, float]:
     return x, y, z, math.atan2(two[1] - one[1], two[2] - one[2])
 
 
-def _clear(held: Held, others: Sequence[SceneActor]) -> bool:
-    """Whether nothing that moves comes near."""
+def _clear(held: HeldObject, others: Sequence[SceneActor]) -> bool:
+    """Return whether no moving object comes near."""
     x, y, _, _ = _place(held)
     reach = CLEARANCE_M + max(held.actor.size_m[:2]) / 2
     return all(_distance(x, y, one, two) > reach for other in others for one, two in pairwise(other.waypoints))
 
 
 def _distance(x: float, y: float, one: Sequence[float], two: Sequence[float]) -> float:
-    """From a point to the straight way between two waypoints, metres on the ground."""
+    """Return the distance on the ground, in metres, from a point to the segment between two waypoints."""
     start, along = np.array(one[1:3]), np.array(two[1:3]) - np.array(one[1:3])
     length = float(along @ along)
     share = 0.0 if length == 0.0 else min(max(float((np.array([x, y]) - start) @ along) / length, 0.0), 1.0)
     return float(np.linalg.norm(np.array([x, y]) - start - share * along))
 
 
-def _standing(held: Held) -> SceneInstance:
-    """What is held as a thing of the scene. Of its state nothing is said: its picture is still that of something under way."""
+def _standing(held: HeldObject) -> SceneInstance:
+    """Return a held object as an instance of the scene. It has no state, because its sprite still shows it in motion."""
     actor, (x, y, z, heading) = held.actor, _place(held)
     width, length, height = actor.size_m
     c, s = abs(math.cos(heading)), abs(math.sin(heading))
@@ -149,7 +157,7 @@ def _standing(held: Held) -> SceneInstance:
 
 
 def _presets(file: SceneFile, extents: Mapping[str, Sequence[Extent]], rng: random.Random) -> Iterator[ScenePreset]:
-    """As many presets at each viewpoint as before, elsewhere: of some views at random the one in which most shows."""
+    """Return new presets, as many at each viewpoint as before: of several random views, the one that shows most is kept."""
     places = {place.name: place for place in file.viewpoints}
     taken = {preset.name for preset in file.presets}
     made = list(file.presets)
@@ -178,7 +186,7 @@ def _is_apart(one: ScenePreset, two: ScenePreset) -> bool:
 
 
 def _things_in(preset: ScenePreset, extents: Sequence[Extent]) -> int:
-    """How many outlines of some size have their middle well inside the view; what hides what is not asked."""
+    """Return how many sufficiently large outlines have their centre well inside the view. Occlusion is ignored."""
     view = Perspective(preset.pan_deg, preset.tilt_deg, AXIS_M5075_G.hfov_deg(preset.zoom), _WIDTH, _HEIGHT)
     large = [e for e in extents if e.hull and e.solid_angle_sr * view.focal_px**2 > _CLEAR_PX]
     if not large:
@@ -190,7 +198,7 @@ def _things_in(preset: ScenePreset, extents: Sequence[Extent]) -> int:
 
 
 def _named(preset: ScenePreset, place: SceneViewpoint) -> ScenePreset:
-    """With a name that says where from and which way, such as ``mast-south-east-close``, and the same in words."""
+    """Name a preset by viewpoint and direction, such as ``mast-south-east-close``, with a description in words."""
     wind = _WINDS[round((place.pan0_bearing_deg + preset.pan_deg) / 45) % 8]
     close, far, low = preset.zoom >= _CLOSE_ZOOM, preset.tilt_deg > _FAR_TILT_DEG, preset.tilt_deg < _LOW_TILT_DEG
     how = "-close" if close else "-far" if far else "-low" if low else ""

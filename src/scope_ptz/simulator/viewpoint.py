@@ -1,4 +1,4 @@
-"""One optical centre: its layers, read on demand and checked, and the sheets from which views are taken."""
+"""One optical centre: its layers, which are read and verified on demand, and the sheets that views are taken from."""
 
 from __future__ import annotations
 
@@ -32,21 +32,25 @@ COLOUR_SCALES = (
     Scale(2**-2.5, sharpening=0.15),
     Scale(2**-3.0),
 )
-"""Scales at which colour is kept, half an octave apart, so that no view samples its source much too finely. The first is for views
-about as dense as the stored picture or denser. Sharpening makes up for what shrinking and bilinear look-up blur; the amounts bring
-the Laplacian variance of views nearest to that of directly rendered ones."""
+"""Scales at which colour is kept, half an octave apart, so that no view undersamples its source. The first serves views that are
+about as dense as the stored picture, or denser. Sharpening compensates for the blur of shrinking and bilinear look-up; the amounts
+bring the Laplacian variance of views closest to that of directly rendered ones."""
 
 EDGE_PX = 2
-"""How far around a half-covered pixel of a sprite covered ones are looked for."""
+"""Search radius for covered pixels around a half-covered pixel of a sprite."""
 
 MIN_COVERED = 3
-"""So many of them give it its colour."""
+"""Number of covered pixels needed to recolour a half-covered one."""
 
 _File = TypeVar("_File", bound=BaseModel)
 
 
 class Viewpoint:
-    """A viewpoint folder. Layers are read on demand; each read is checked against the manifest."""
+    """A viewpoint folder. Layers are read on demand, and every read is verified against the manifest.
+
+    Raises:
+        PackError: The manifest is missing, damaged or belongs to another scene.
+    """
 
     def __init__(self, folder: Path, scene: SceneFile, place: SceneViewpoint) -> None:
         self.folder, self.pictures = folder, Pictures(folder)
@@ -65,7 +69,7 @@ class Viewpoint:
         tiles = manifest.tiles
         self.tiles = Tiles([tile.view for tile in tiles])
         colours, ids = [manifest.base, *(t.colour for t in tiles)], [manifest.ids, *(t.ids for t in tiles)]
-        # The sheets know the files and not this object: without a cycle, all goes as soon as nobody holds a viewpoint any more.
+        # The sheets refer to the files and not to this object. Without a reference cycle, memory is freed with the last reference.
         read, depth = self.pictures, manifest.depth
         self.colour_atlas = Atlas([_size(c) for c in colours], lambda i: read.colour(colours[i]), np.uint8, 3, COLOUR_SCALES)
         self.id_atlas = id_atlas = Atlas([_size(n) for n in ids], lambda i: read.numbers(ids[i]), np.uint16, 1)
@@ -86,15 +90,15 @@ class Viewpoint:
 
     @cached_property
     def extents(self) -> dict[int, Extent]:
-        """Whole silhouettes of the instances that can be seen from here, by number."""
+        """Whole silhouettes of the instances that can be seen from here, by instance number."""
         return {extent.number: extent for extent in self.manifest.extents}
 
     def offset(self, points_m: NDArray[np.float64]) -> NDArray[np.float64]:
-        """World points (..., 3) as vectors from the optical centre in the camera's own frame, metres."""
+        """Return world points (..., 3) as vectors from the optical centre, in metres in the camera's own frame."""
         return np.asarray((points_m - self.position_m) @ self.world_to_camera.T)
 
     def files(self) -> Iterator[Layer]:
-        """Every file of the pack besides the manifest."""
+        """Yield every file of the pack except the manifest."""
         manifest = self.manifest
         yield from (manifest.base, manifest.ids, manifest.depth)
         for tile in manifest.tiles:
@@ -103,17 +107,21 @@ class Viewpoint:
             yield from (sheet.colour, sheet.depth)
 
     def check_files(self) -> int:
-        """Hold every file against its checksum; the number of files. Raises ``PackError`` for the first that is not as baked."""
+        """Verify the checksum of every file and return the number of files.
+
+        Raises:
+            PackError: A file is missing or differs from the manifest.
+        """
         return len([self.pictures.checked(layer) for layer in self.files()])
 
     @cached_property
     def depth_metres(self) -> NDArray[np.float32]:
-        """(65536,) table from a distance code to metres; the sky is infinitely far."""
+        """(65536,) table from distance codes to metres; the sky is infinitely far."""
         depth = self.manifest.depth
         return layers.decode_depth(np.arange(65536).astype(np.uint16), depth.near_m, depth.far_m)
 
     def sprite_distances(self, sheet: ActorSheet) -> NDArray[np.uint16]:
-        """An actor's sheet as (H, W) distance codes, 0 where it shows no actor. Read once and shared."""
+        """Return an actor's sheet as (H, W) distance codes, 0 where it does not show the actor. Read once and shared."""
         with self._lock:
             if sheet.number not in self._sprite_distances:
                 self._sprite_distances[sheet.number] = self.pictures.numbers(sheet.depth)
@@ -146,7 +154,7 @@ class Viewpoint:
 
 
 def _owners(ids: Atlas, depth: Layer) -> NDArray[np.uint16]:
-    """As large as the depth layer: the instance on which each of its distances was measured."""
+    """Return, for each texel of the depth layer, the instance on which its distance was measured."""
     slot = ids.need(0)
     rows = slot.y + ((np.arange(depth.height) + 0.5) / depth.height * slot.height).astype(int)
     columns = slot.x + ((np.arange(depth.width) + 0.5) / depth.width * slot.width).astype(int)
@@ -182,7 +190,11 @@ def _size(layer: Layer) -> tuple[int, int]:
 
 
 def read_json(path: Path, model: type[_File]) -> _File:
-    """A validated file of a pack; ``PackError`` says what is wrong with it."""
+    """Read and validate a JSON file of a pack.
+
+    Raises:
+        PackError: The file is missing, damaged or of a newer format.
+    """
     try:
         content = json.loads(path.read_bytes())
     except OSError as error:

@@ -1,4 +1,4 @@
-"""Pictures and instance numbers of a scene at one instant: the still world with its moving actors."""
+"""Pictures and instance numbers of a scene at one instant: the still world and its moving actors."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def picture(scene: Scene, viewpoint: str, projection: Projection, time_s: float)
     """Return what a camera at a viewpoint sees at a time, as (H, W, 3) RGB."""
     here = scene.viewpoint(viewpoint)
     actors = _in_view(scene, here, projection, time_s)
-    # Distances first: decoding instance numbers needs the most memory, colour the second most, and neither needs the other.
+    # Distances before colour: decoding instance numbers needs the most memory, and then the colour is not in memory yet.
     depth_m = outlined_depth_view(here, projection, id_view(here, projection)) if actors else None
     image = colour_view(here, projection)
     if depth_m is not None:
@@ -26,7 +26,7 @@ def picture(scene: Scene, viewpoint: str, projection: Projection, time_s: float)
 
 
 def instance_numbers(scene: Scene, viewpoint: str, projection: Projection, time_s: float) -> NDArray[np.uint16]:
-    """(H, W): which instance or actor each pixel of that picture shows, 0 for none."""
+    """Return the instance or actor that each pixel of that picture shows as (H, W) numbers, 0 for none."""
     here = scene.viewpoint(viewpoint)
     numbers = id_view(here, projection)
     if actors := _in_view(scene, here, projection, time_s):
