@@ -1,0 +1,41 @@
+"""Sphinx configuration of the documentation site: `make docs` builds it into docs/_build/html."""
+
+from __future__ import annotations
+
+import sys
+from importlib.metadata import version as installed_version
+from pathlib import Path
+
+project = "SCOPE"
+author = "The SCOPE authors"
+project_copyright = "The SCOPE authors"
+release = version = installed_version("scope-ptz")
+
+sys.path.insert(0, str(Path(__file__).parent / "_ext"))
+
+extensions = [
+    "command_help",
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx.ext.viewcode",
+    "sphinx_copybutton",
+]
+source_suffix = {".md": "markdown"}
+exclude_patterns = ["_build"]
+root_doc = "index"
+nitpicky = False  # types of third-party packages have no inventory offline
+
+myst_enable_extensions = ["colon_fence", "deflist"]
+myst_heading_anchors = 4
+
+autodoc_member_order = "groupwise"
+autodoc_typehints = "description"
+autodoc_typehints_description_target = "documented_params"
+napoleon_google_docstring = True
+napoleon_numpy_docstring = False
+
+html_theme = "furo"
+html_title = f"SCOPE {release}"
+html_theme_options = {"source_repository": "", "navigation_with_keys": True}
+copybutton_exclude = ".linenos, .gp, .go"
