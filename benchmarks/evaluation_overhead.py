@@ -43,7 +43,7 @@ async def bare(entries: tuple[Entry, ...], lent: EvalContext, folder: Path, *, p
 
 
 async def main(tasks: Path, *, pictures: bool) -> None:
-    lent = eval_context(seed=1, eyes=ResolvedPerception("ground-truth"))
+    lent = eval_context(seed=1, perception=ResolvedPerception("ground-truth"))
     entries = lent.load_tasks(str(tasks))
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)

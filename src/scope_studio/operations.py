@@ -12,7 +12,7 @@ from typing import Any
 
 import bpy
 
-from scope_studio import describe, meshes, render, sprites
+from scope_studio import blend_files, describe, meshes, render, sprites
 from scope_studio.actors import Troupe
 from scope_studio.kit.core.stage import Stage, Viewpoint
 
@@ -26,6 +26,7 @@ class Studio:
         self._progress = progress
         self._stage: Stage | None = None
         self._troupe: Troupe | None = None
+        self._file_cameras: tuple[Viewpoint, ...] = ()
 
     @property
     def stage(self) -> Stage:
@@ -40,7 +41,7 @@ class Studio:
         return self._troupe
 
     def viewpoint(self, name: str) -> Viewpoint:
-        for candidate in self.stage.viewpoints:
+        for candidate in self._file_cameras or self.stage.viewpoints:
             if candidate.name == name:
                 return candidate
         raise ValueError(f"the scene has no viewpoint '{name}'")
@@ -49,7 +50,7 @@ class Studio:
         """Build a scene: the name of a module in ``scope_studio.scenes`` (kebab-case), or the path of a Python file."""
         bpy.ops.wm.read_factory_settings(use_empty=True)
         bpy.context.preferences.filepaths.use_scripts_auto_execute = False
-        self._troupe = None
+        self._troupe, self._file_cameras = None, ()
         module = _module(source)
         name = getattr(module, "NAME", Path(source).stem.replace("_", "-"))
         stage = Stage(name, getattr(module, "TITLE", name.replace("-", " ").capitalize()))
@@ -58,6 +59,13 @@ class Studio:
         bpy.context.view_layer.update()
         self._stage = stage
         return {"name": stage.name, "title": stage.title, "instances": len(stage.instances), "device": render.use_gpu() or "CPU"}
+
+    def open_file(self, path: str) -> dict[str, Any]:
+        """Open a .blend file with its embedded scripts off, and describe its cameras."""
+        description, self._file_cameras = blend_files.open_file(path)
+        self._stage = self._troupe = None
+        render.use_gpu()
+        return description
 
     def describe(self) -> dict[str, Any]:
         return describe.scene(self.stage, self.troupe)
@@ -87,8 +95,10 @@ class Studio:
         )
 
     def _cast(self, time_s: float | None) -> AbstractContextManager[None]:
-        """Actors are only built when a picture wants them."""
-        return nullcontext() if time_s is None else self.troupe.on_stage(time_s)
+        """Put the moving things where they are at a time. Actors are built when a picture first shows them."""
+        if self._file_cameras and time_s is not None:
+            blend_files.set_time(time_s)
+        return nullcontext() if self._file_cameras or time_s is None else self.troupe.on_stage(time_s)
 
 
 def _module(source: str) -> ModuleType:
@@ -106,4 +116,7 @@ def _module(source: str) -> ModuleType:
 def operations(progress: Progress) -> dict[str, Callable[..., Any]]:
     """By name."""
     studio = Studio(progress)
-    return {name: getattr(studio, name) for name in ("load_scene", "describe", "save", "meshes", "colour", "truth", "sprites")}
+    return {
+        name: getattr(studio, name)
+        for name in ("load_scene", "open_file", "describe", "save", "meshes", "colour", "truth", "sprites")
+    }

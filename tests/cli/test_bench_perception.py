@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from scope_ptz.factory.validation_perception import surely_named
+from scope_ptz.factory.validation_perception import is_plain_noun
 from scope_ptz.perception.view import read_view
 from tests.perception import yard
 
@@ -13,11 +13,11 @@ VIEW = read_view(yard.truth(), yard.SCENE, 5.0)
 
 @pytest.mark.parametrize("asked", ["cars", "the red cars", "traffic cones", "buses", "a green van", "red cars and white vans"])
 def test_colours_and_a_known_noun_are_plain(asked: str) -> None:
-    assert surely_named(VIEW, asked)
+    assert is_plain_noun(VIEW, asked)
 
 
 @pytest.mark.parametrize(
     "asked", ["flibbertigibbets", "things on wheels", "objects like cars", "total number of cars", "workers with blue helmets"]
 )
 def test_unknown_nouns_further_words_and_conditions_are_not(asked: str) -> None:
-    assert not surely_named(VIEW, asked)
+    assert not is_plain_noun(VIEW, asked)

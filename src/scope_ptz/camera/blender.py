@@ -1,4 +1,4 @@
-"""A camera in live Blender: the contract of the simulated one, every frame rendered with Cycles when it is asked for."""
+"""A camera in live Blender: Cycles renders every frame when it is requested."""
 
 from __future__ import annotations
 
@@ -12,17 +12,30 @@ from numpy.typing import NDArray
 from scope_ptz.blender.client import BlenderWorker
 from scope_ptz.blender.requests import perspective_request
 from scope_ptz.camera.base import Arrival, Camera, CameraInfo, Frame, FrameOrigin, PresetInfo
+from scope_ptz.camera.scene_presets import preset_pose, starting_preset
 from scope_ptz.errors import BlenderError, CameraError, UnknownNameError
-from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose
+from scope_ptz.geometry import AXIS_M5075_G, Limits, Optics, Perspective, Pose
 from scope_ptz.simulator.clock import SceneClock
 from scope_ptz.simulator.layers import read_colour
-from scope_ptz.simulator.models import SceneFile, ScenePreset
+from scope_ptz.simulator.models import SceneFile
 
 
 class BlenderCamera(Camera):
-    """An AXIS M5075-G in a scene that a worker has loaded. Moves take no time; the worker is the caller's to close.
+    """A pan-tilt-zoom camera in a scene that a worker has loaded. Moves take no time.
 
-    ``samples`` a pixel: 16 is what packs are baked with. The moving actors stand where they are at the clock's time.
+    Moving actors stand where they are at the clock's time. The caller closes the worker.
+
+    Args:
+        worker: The running worker, with the scene loaded.
+        scene: The scene's viewpoints and presets.
+        viewpoint: Where the camera stands; the default is the viewpoint of the home preset.
+        samples: Cycles samples for each pixel. Packs are baked with 16.
+        clock: The scene's clock.
+        width: Width of a frame in pixels.
+        height: Height of a frame in pixels.
+        optics: Fields of view by zoom; the default is the simulated camera's, an AXIS M5075-G.
+        limits: Limits of motion; the default is the simulated camera's.
+        has_truth: Whether frames say where they come from, so that the ground truth of a pack applies to them.
     """
 
     clock: SceneClock
@@ -32,20 +45,26 @@ class BlenderCamera(Camera):
         worker: BlenderWorker,
         scene: SceneFile,
         *,
+        viewpoint: str | None = None,
         samples: int = 16,
         clock: SceneClock | None = None,
         width: int = 1280,
         height: int = 720,
+        optics: Optics = AXIS_M5075_G,
+        limits: Limits | None = None,
+        has_truth: bool = True,
     ) -> None:
         self.clock = clock or SceneClock()
-        self._worker, self._scene, self._samples = worker, scene, samples
+        self._worker, self._scene, self._samples, self._has_truth = worker, scene, samples, has_truth
         self._presets = {p.name: p for p in scene.presets}
-        self._at = self._presets[scene.home_preset]
-        self._pose = _pose(self._at)
+        self._home = self._current = starting_preset(scene, viewpoint)
+        self._pose = preset_pose(self._home)
+        self._last: tuple[tuple[str, Perspective, float], NDArray[np.uint8]] | None = None
+        kind = "AXIS M5075-G" if optics is AXIS_M5075_G else "camera"
         self._info = CameraInfo(
-            name=f"AXIS M5075-G in {scene.title}, live in Blender {worker.version}",
-            limits=Limits(),
-            optics=AXIS_M5075_G,
+            name=f"{kind} in {scene.title}, live in Blender {worker.version}",
+            limits=limits or Limits(),
+            optics=optics,
             frame_width=width,
             frame_height=height,
             simulated=True,
@@ -57,8 +76,8 @@ class BlenderCamera(Camera):
 
     @property
     def viewpoint(self) -> str:
-        """Name of the optical centre that the camera is at."""
-        return self._at.viewpoint
+        """Name of the current optical centre."""
+        return self._current.viewpoint
 
     async def pose(self) -> Pose:
         return self._pose
@@ -73,22 +92,31 @@ class BlenderCamera(Camera):
     async def go_to_preset(self, name: str) -> Arrival:
         if name not in self._presets:
             raise UnknownNameError("preset", name, self._presets)
-        self._at = self._presets[name]
-        return await self.move(_pose(self._at))
+        self._current = self._presets[name]
+        return await self.move(preset_pose(self._current))
 
     async def go_home(self) -> Arrival:
-        return await self.go_to_preset(self._scene.home_preset)
+        self._current = self._home
+        return await self.move(preset_pose(self._home))
 
     async def frame(self) -> Frame:
         pose, time_s, viewpoint = self._pose, self.clock.now_s(), self.viewpoint
         hfov_deg = self._info.optics.hfov_deg(pose.zoom)
         view = Perspective(pose.pan_deg, pose.tilt_deg, hfov_deg, self._info.frame_width, self._info.frame_height)
-        image = await to_thread.run_sync(self._render, viewpoint, view, time_s)
-        origin = FrameOrigin(self._scene.name, viewpoint, pose, time_s)
+        image = await self._image(viewpoint, view, time_s)
+        origin = FrameOrigin(self._scene.name, viewpoint, pose, time_s) if self._has_truth else None
         return Frame(image=image, pose=pose, hfov_deg=hfov_deg, time_s=time_s, projection=view, origin=origin)
 
     async def stop(self) -> None:
-        """Nothing is ever under way."""
+        """Do nothing: moves take no time."""
+
+    async def _image(self, viewpoint: str, view: Perspective, time_s: float) -> NDArray[np.uint8]:
+        """Render a view, or return the last picture if nothing has changed since."""
+        key = (viewpoint, view, time_s)
+        if self._last is None or self._last[0] != key:
+            # A render takes seconds. A cancelled one is abandoned, and closing the worker ends it.
+            self._last = key, await to_thread.run_sync(self._render, viewpoint, view, time_s, abandon_on_cancel=True)
+        return self._last[1]
 
     def _render(self, viewpoint: str, view: Perspective, time_s: float) -> NDArray[np.uint8]:
         with tempfile.TemporaryDirectory() as folder:
@@ -104,9 +132,5 @@ class BlenderCamera(Camera):
             try:
                 self._worker.request("colour", parameters)
             except BlenderError as error:
-                raise CameraError(f"The live Blender camera gave no picture: {error}") from error
+                raise CameraError(f"The live Blender camera returned no picture: {error}") from error
             return read_colour(out)
-
-
-def _pose(preset: ScenePreset) -> Pose:
-    return Pose(preset.pan_deg, preset.tilt_deg, preset.zoom)

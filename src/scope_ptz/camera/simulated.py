@@ -10,6 +10,7 @@ from anyio import to_thread
 
 from scope_ptz.camera.base import Arrival, Camera, CameraInfo, Frame, FrameOrigin, PresetInfo
 from scope_ptz.camera.motion import AXIS_M5075_G_HEAD
+from scope_ptz.camera.scene_presets import preset_pose, starting_preset
 from scope_ptz.errors import UnknownNameError
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose
 from scope_ptz.simulator.clock import SceneClock
@@ -46,7 +47,7 @@ class SimulatedCamera(Camera):
         self.clock = clock or SceneClock()
         self._scene = scene
         self._presets = {p.name: p for p in scene.file.presets}
-        self._home = _home(scene, viewpoint)
+        self._home = starting_preset(scene.file, viewpoint)
         self._viewpoint = scene.viewpoint(self._home.viewpoint)
         self._info = CameraInfo(
             name=f"simulated AXIS M5075-G in {scene.file.title}",
@@ -56,7 +57,7 @@ class SimulatedCamera(Camera):
             frame_height=height,
             simulated=True,
         )
-        at_home = _pose(self._home)
+        at_home = preset_pose(self._home)
         self._motion = _Motion(at_home, at_home, 0.0)
 
     @property
@@ -110,8 +111,8 @@ class SimulatedCamera(Camera):
 
     async def _go_to(self, preset: ScenePreset) -> Arrival:
         if preset.viewpoint == self._viewpoint.name:
-            return await self.move(_pose(preset))
-        end, clamped = self._info.limits.clamp(_pose(preset))
+            return await self.move(preset_pose(preset))
+        end, clamped = self._info.limits.clamp(preset_pose(preset))
         self._viewpoint = self._scene.viewpoint(preset.viewpoint)
         self._motion = _Motion(end, end, self.clock.elapsed_s())
         await self.clock.sleep(CUT_S)
@@ -133,17 +134,3 @@ class SimulatedCamera(Camera):
             if self._motion is motion:
                 await self.stop()
             raise
-
-
-def _pose(preset: ScenePreset) -> Pose:
-    return Pose(preset.pan_deg, preset.tilt_deg, preset.zoom)
-
-
-def _home(scene: Scene, viewpoint: str | None) -> ScenePreset:
-    """The scene's home; for a camera put elsewhere the first preset of that viewpoint, or straight ahead when it has none."""
-    home = next(p for p in scene.file.presets if p.name == scene.file.home_preset)
-    if viewpoint is None or home.viewpoint == viewpoint:
-        return home
-    scene.viewpoint(viewpoint)
-    here = (p for p in scene.file.presets if p.viewpoint == viewpoint)
-    return next(here, ScenePreset(name="home", viewpoint=viewpoint, pan_deg=0.0, tilt_deg=0.0, zoom=1.0))

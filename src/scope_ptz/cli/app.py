@@ -47,6 +47,10 @@ app.add_typer(models_app, name="models")
 app.add_typer(bench_app, name="bench")
 
 SceneOption = Annotated[str, typer.Option("--scene", help="Scene to look at; see `scope scene list`.")]
+CameraOption = Annotated[
+    str | None,
+    typer.Option("--camera", help="Camera in place of --scene: blender:SCENE, blender:FILE.blend, or SCHEME:ADDRESS of a plug-in."),
+]
 ViewpointOption = Annotated[str | None, typer.Option("--viewpoint", help="Where the camera stands.")]
 PresetOption = Annotated[str | None, typer.Option("--preset", help="Preset to start at.")]
 TimeOption = Annotated[
@@ -82,16 +86,18 @@ def _root(
 
 
 def _asking(
-    scene: str, viewpoint: str | None, preset: str | None, at: float | None, wishes: ModelOptions, runs_dir: Path | None,
+    camera: str, viewpoint: str | None, preset: str | None, at: float | None, wishes: ModelOptions, runs_dir: Path | None,
     max_steps: int, time_budget: float | None, realtime: bool | None, seed: int, as_json: bool = False,
 ) -> Asking:  # fmt: skip
     from scope_ptz.agent.records import Budgets
     from scope_ptz.cli.asking import Asking
-    from scope_ptz.factory.session import Start
     from scope_ptz.settings import load_settings
 
     return Asking(
-        start=Start(scene=scene, viewpoint=viewpoint, preset=preset, time_s=at),
+        camera=camera,
+        viewpoint=viewpoint,
+        preset=preset,
+        time_s=at,
         wishes=wishes,
         runs_dir=runs_dir or load_settings().runs_dir,
         budgets=Budgets(max_steps=max_steps, time_s=time_budget),
@@ -105,6 +111,7 @@ def _asking(
 def ask(
     instruction: Annotated[str, typer.Argument(help="What the camera should do, in plain words.")],
     scene: SceneOption = "highway-works",
+    camera: CameraOption = None,
     viewpoint: ViewpointOption = None,
     preset: PresetOption = None,
     at: TimeOption = None,
@@ -137,13 +144,14 @@ def ask(
             planner, perception, pair, planner_url, perception_url, planner_model, perception_model, planner_key_file, perception_key_file,
             planner_option, perception_option, reader, detector, timeout,
         )  # fmt: skip
-        options = _asking(scene, viewpoint, preset, at, wishes, runs_dir, max_steps, time_budget, realtime, seed, as_json)
+        options = _asking(camera or scene, viewpoint, preset, at, wishes, runs_dir, max_steps, time_budget, realtime, seed, as_json)
         sys.exit(run(instruction, options))
 
 
 @app.command()
 def chat(
     scene: SceneOption = "highway-works",
+    camera: CameraOption = None,
     viewpoint: ViewpointOption = None,
     preset: PresetOption = None,
     at: TimeOption = None,
@@ -175,7 +183,7 @@ def chat(
             planner, perception, pair, planner_url, perception_url, planner_model, perception_model, planner_key_file, perception_key_file,
             planner_option, perception_option, reader, detector, timeout,
         )  # fmt: skip
-        options = _asking(scene, viewpoint, preset, at, wishes, runs_dir, max_steps, time_budget, realtime, seed)
+        options = _asking(camera or scene, viewpoint, preset, at, wishes, runs_dir, max_steps, time_budget, realtime, seed)
         sys.exit(run(options))
 
 
@@ -262,9 +270,8 @@ def scene_view(
     """Write what the camera sees at a pose to a picture file."""
     with ending():
         from scope_ptz.cli.scenes import view_scene
-        from scope_ptz.factory.session import Start
 
-        view_scene(Start(name, viewpoint, preset, at), (pan, tilt, zoom), out)
+        view_scene(name, viewpoint, preset, at, (pan, tilt, zoom), out)
 
 
 @scene_app.command("build")

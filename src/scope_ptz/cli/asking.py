@@ -19,8 +19,8 @@ from scope_ptz.camera.base import Camera
 from scope_ptz.cli.display import LiveView, show_end
 from scope_ptz.cli.endings import CANCELLED, exit_code, put_json
 from scope_ptz.errors import InputError
-from scope_ptz.factory.models import ModelOptions, resolve_models
-from scope_ptz.factory.session import Start, make_perception, make_planner, open_camera, open_scene
+from scope_ptz.factory.cameras import OpenCamera, open_camera
+from scope_ptz.factory.models import ModelOptions, make_perception, make_planner, perception_note, resolve_models
 from scope_ptz.perception.base import Perception
 from scope_ptz.planner.base import PastTurn, Planner
 
@@ -29,7 +29,10 @@ from scope_ptz.planner.base import PastTurn, Planner
 class Asking:
     """The options of a session."""
 
-    start: Start
+    camera: str
+    viewpoint: str | None
+    preset: str | None
+    time_s: float | None
     wishes: ModelOptions
     runs_dir: Path
     budgets: Budgets
@@ -46,21 +49,30 @@ class Asking:
 class Session:
     """A camera, perception and a planner that stay together for one or several runs."""
 
-    def __init__(self, options: Asking, camera: Camera, perception: Perception, planner: Planner, note: str) -> None:
-        self.options, self.camera, self.perception, self.planner, self.note = options, camera, perception, planner, note
+    def __init__(self, options: Asking, opened: OpenCamera, perception: Perception, planner: Planner, note: str) -> None:
+        self.options, self.opened, self.perception, self.planner, self.note = options, opened, perception, planner, note
+
+    @property
+    def camera(self) -> Camera:
+        return self.opened.camera
 
     @classmethod
     async def open(cls, options: Asking) -> Session:
         choice = await resolve_models(options.wishes)
-        scene = open_scene(options.start.scene)
         planner = make_planner(choice.planner)
-        perception, note = make_perception(choice.eyes, scene, options.seed)
-        camera = await open_camera(options.start, scene, realtime=options.in_real_time)
-        return cls(options, camera, perception, planner, note)
+        opened = await open_camera(
+            options.camera, viewpoint=options.viewpoint, preset=options.preset, time_s=options.time_s, realtime=options.in_real_time
+        )
+        try:
+            perception = make_perception(choice.perception, opened.scenes, options.seed)
+        except BaseException:
+            await opened.aclose()
+            raise
+        return cls(options, opened, perception, planner, perception_note(choice.perception))
 
     async def run(self, instruction: str, folder: RunFolder, listener: Listener, conversation: tuple[PastTurn, ...] = ()) -> Run:
         """One run, recorded in ``folder``."""
-        labels = Labels(perception_note=self.note, seed=self.options.seed, home_viewpoint=self.options.start.viewpoint)
+        labels = Labels(perception_note=self.note, seed=self.options.seed, home_viewpoint=self.options.viewpoint)
         agent = Agent(self.planner, self.camera, self.perception, folder, budgets=self.options.budgets, labels=labels)
         with TraceWriter(folder.trace) as trace:
 
@@ -71,7 +83,7 @@ class Session:
             return await agent.run(instruction, conversation=conversation, listener=both)
 
     async def close(self) -> None:
-        await self.camera.close()
+        await self.opened.aclose()
         await self.perception.close()
         await self.planner.close()
 

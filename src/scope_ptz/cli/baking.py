@@ -21,7 +21,7 @@ from scope_ptz.blender.tolerances import shortcomings
 from scope_ptz.blender.verify import PoseReport, draw_poses, verify
 from scope_ptz.cli.endings import FAILED
 from scope_ptz.errors import OutputError, UnknownNameError
-from scope_ptz.factory.session import open_scene
+from scope_ptz.factory.scenes import open_scene
 from scope_ptz.settings import ScopeSettings, load_settings
 
 

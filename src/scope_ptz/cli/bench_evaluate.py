@@ -96,21 +96,21 @@ class _Prepared:
         self.agent_source = source_digest(options.agent) if options.agent != OWN_AGENT else ""
         self.judge: ServerPort | None = None
         self.planner = planner_for(choice.planner) if options.agent == OWN_AGENT else None
-        self.lent = eval_context(seed=options.seed, planner=self.planner, eyes=choice.eyes)
+        self.lent = eval_context(seed=options.seed, planner=self.planner, perception=choice.perception)
         self.entries: tuple[Entry, ...] = chosen(
             self.lent.load_tasks(options.tasks), options.categories, options.scenes, options.limit
         )
-        if not options.pictures and choice.eyes.spec is not None:
-            raise InputError(f"The eyes '{choice.eyes.name}' look at pictures: leave --no-pictures out.")
+        if not options.pictures and choice.perception.spec is not None:
+            raise InputError(f"The eyes '{choice.perception.name}' look at pictures: leave --no-pictures out.")
         if not options.pictures and self.planner is not None and self.planner.sees:
             raise InputError(f"The planner '{self.planner.name}' looks at pictures: leave --no-pictures out.")
-        calm = choice.planner.endpoint is None and choice.eyes.spec is None and options.agent == OWN_AGENT
+        calm = choice.planner.endpoint is None and choice.perception.spec is None and options.agent == OWN_AGENT
         self.concurrency = 1 if options.latency else options.concurrency or ((os.cpu_count() or 1) if calm else WITH_MODELS)
         details = self.planner.details if self.planner is not None else {}
-        spec = choice.eyes.spec
+        spec = choice.perception.spec
         self.identity = identity_of(
             digest(self.entries), options.epochs, options.seed, options.agent, options.max_steps, options.time_s,
-            options.pictures, options.latency, options.variant, choice.planner.name, choice.eyes.name,
+            options.pictures, options.latency, options.variant, choice.planner.name, choice.perception.name,
             {name: value for name, value in details.items() if name != "url"},
             spec.model_dump(mode="json", exclude={"endpoint"}) if spec else None, _place(choice), self.agent_source,
         )  # fmt: skip
@@ -197,7 +197,7 @@ class _Prepared:
 
         import scope_ptz.factory.inspect_plugin  # noqa: F401 - the models of this project
         from scope_ptz.bench.engine.runs import Setting
-        from scope_ptz.factory.judge_model import judge_as_model
+        from scope_ptz.factory.judge_role import judge_as_model
         from scope_ptz.factory.run_card import run_card
 
         options, choice = self.options, self.choice
@@ -208,7 +208,7 @@ class _Prepared:
         )  # fmt: skip
         # Looks of one step are made at the same time, as many as the loop allows.
         config = GenerateConfig(max_connections=self.concurrency * 8)
-        endpoint, spec = choice.planner.endpoint, choice.eyes.spec
+        endpoint, spec = choice.planner.endpoint, choice.perception.spec
         planner = None
         if self.planner is not None:
             planner = get_model(
@@ -219,7 +219,7 @@ class _Prepared:
                 served=endpoint.model if endpoint else None,
             )
         url = spec.endpoint.url if spec is not None and spec.endpoint is not None else None
-        eyes = get_model(f"scope_ptz/{choice.eyes.name}", base_url=url, config=config, memoize=False)
+        eyes = get_model(f"scope_ptz/{choice.perception.name}", base_url=url, config=config, memoize=False)
         judging = judge_as_model(judge, self.concurrency * 2) if judge is not None else None
         return Setting(options.out, planner, eyes, judging, self.concurrency, self.identity, card)
 
@@ -244,7 +244,7 @@ class _Prepared:
             console.print(
                 f"The source of {agent} is not that of {other}: this is a new evaluation.", highlight=False, soft_wrap=True
             )
-        known = earlier(self.options.out, agent or self.choice.planner.name, self.choice.eyes.name)
+        known = earlier(self.options.out, agent or self.choice.planner.name, self.choice.perception.name)
         kept = {trial.task.id for trial in done} if self.options.epochs == 1 else set()
         left = [entry for entry in self.entries if entry.facts.id not in kept]
         told = estimate(left, self.options.epochs, self.concurrency, known, self.options.price, opening_chars(self.planner))
@@ -265,6 +265,6 @@ def opening_chars(planner: Planner | None) -> int | None:
 
 def _place(choice: ResolvedPair) -> list[str]:
     """Which served models are asked. Where a server listens may change between a run and its continuation."""
-    spec = choice.eyes.spec
+    spec = choice.perception.spec
     eyes = spec.endpoint.model if spec is not None and spec.endpoint is not None else ""
     return [choice.planner.endpoint.model if choice.planner.endpoint else "", eyes]

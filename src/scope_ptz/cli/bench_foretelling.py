@@ -12,7 +12,7 @@ from scope_ptz.factory.models import ResolvedPair
 def lines(told: Estimate, choice: ResolvedPair, concurrency: int, agent: str | None = None) -> Iterator[str]:
     """Runs, calls, time and cost, one a line. ``agent``: the name of another one, which plans in place of the planner."""
     runs, who = f"{told.runs} run{'s' if told.runs != 1 else ''}", "this agent" if agent else "this pair"
-    yield f"{runs} of {agent or choice.planner.name} + {choice.eyes.name}, {concurrency} at a time"
+    yield f"{runs} of {agent or choice.planner.name} + {choice.perception.name}, {concurrency} at a time"
     if agent:
         yield f"calls   about {told.looks} of the eyes, as the reference programs need them; the agent plans by means of its own"
     else:

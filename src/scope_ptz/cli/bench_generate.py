@@ -43,7 +43,7 @@ def generate(
         import anyio
 
         from scope_ptz.bench.tasks.splits import load_split
-        from scope_ptz.factory.session import open_scene
+        from scope_ptz.factory.scenes import open_scene
         from scope_ptz.taskgen.generating.ledger import Ledger
         from scope_ptz.taskgen.generating.loop import Order
         from scope_ptz.taskgen.generating.operators import read_runs

@@ -68,7 +68,7 @@ def import_tasks(
 def places_in(folder: Path | None, mapping: Path | None) -> Places:
     """The scenes of a folder and the built-in ones, with what a mapping file says. Raises ``InputError``."""
     from scope_ptz.errors import InputError
-    from scope_ptz.factory.session import scene_search
+    from scope_ptz.factory.scenes import scene_search
     from scope_ptz.settings import load_settings
     from scope_ptz.simulator.pack import list_scenes, load_scene
     from scope_ptz.taskgen.importing.places import PlaceMap, Places, ScenePresets, read_place_map

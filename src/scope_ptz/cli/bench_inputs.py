@@ -20,7 +20,7 @@ SceneNames = Annotated[list[str] | None, typer.Option("--scene", help="A scene t
 
 def scenes_named(names: list[str] | None) -> dict[str, Scene]:
     """Scenes by name; all there are when none is named."""
-    from scope_ptz.factory.session import open_scene, scene_search
+    from scope_ptz.factory.scenes import open_scene, scene_search
     from scope_ptz.settings import load_settings
     from scope_ptz.simulator.pack import list_scenes
 

@@ -12,9 +12,10 @@ import typer
 from scope_ptz.cli.bench_agree import AsJson, figures
 from scope_ptz.cli.bench_gold import HEADS
 from scope_ptz.cli.bench_inputs import TasksOption
-from scope_ptz.cli.bench_judge import TIMEOUT_S, JudgeKey, JudgeModel, JudgeOption, JudgeTimeout, JudgeUrl, open_judge
+from scope_ptz.cli.bench_judge import TIMEOUT_S, JudgeKey, JudgeModel, JudgeOption, JudgeTimeout, JudgeUrl
 from scope_ptz.cli.bench_rescore import judge_failed, them
 from scope_ptz.cli.endings import FAILED, complain, ending, put, put_json
+from scope_ptz.factory.judges import open_judge
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -40,7 +40,7 @@ class Ended:
 
 async def open_wished(wish: JudgeOptions) -> ServerPort:
     """The port to the judge that is wished for. Raises ``InputError``."""
-    from scope_ptz.cli.bench_judge import open_judge
+    from scope_ptz.factory.judges import open_judge
 
     return await open_judge(wish.url, wish.model, wish.key_file, wish.timeout_s, list(wish.options))
 
@@ -52,8 +52,8 @@ async def judged(
     on which its server failed; ``opened``: its port, which is not wanted when nothing is left to ask."""
     from scope_ptz.bench.engine.logs import read_evaluation
     from scope_ptz.bench.judging.tally import Tally, judged_by, wanted
-    from scope_ptz.cli.bench_judge import UnnamedJudgeError
     from scope_ptz.factory.evaluation import judge_maker
+    from scope_ptz.factory.judges import UnnamedJudgeError
     from scope_ptz.settings import load_settings
 
     evaluation = read_evaluation(log)

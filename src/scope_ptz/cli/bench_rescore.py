@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from scope_ptz.cli.bench_judge import TIMEOUT_S, JudgeKey, JudgeModel, JudgeOption, JudgeTimeout, JudgeUrl, open_judge
+from scope_ptz.cli.bench_judge import TIMEOUT_S, JudgeKey, JudgeModel, JudgeOption, JudgeTimeout, JudgeUrl
 from scope_ptz.cli.endings import FAILED, complain, ending, put
 from scope_ptz.errors import InputError
+from scope_ptz.factory.judges import open_judge
 
 if TYPE_CHECKING:
     from scope_ptz.bench.engine.context import EvalContext
@@ -111,7 +112,7 @@ async def score_again(
     """Add scores to a log; what came of the judgements. ``more``: beside those there are, not in place of what is missing."""
     from scope_ptz.bench.engine.context import EQUIPMENT
     from scope_ptz.bench.engine.rescoring import rescore as again
-    from scope_ptz.factory.judge_model import judge_as_model
+    from scope_ptz.factory.judge_role import judge_as_model
 
     EQUIPMENT.set(lent)
 

@@ -87,7 +87,7 @@ def sweep(
 
 def named_pairs(text: str | None, *, paper: bool) -> list[str]:
     """The pairs to run, each once. Raises ``InputError`` for unknown ones, before anything is run."""
-    from scope_ptz.factory.models import read_pair
+    from scope_ptz.factory.model_resolver import read_pair
     from scope_ptz.registry import load_registry
     from scope_ptz.settings import load_settings
 
@@ -127,7 +127,7 @@ def _run_all(names: list[str], each: RunOptions, console: Console) -> dict[str, 
 
 def _wishes(shared: ModelOptions, name: str) -> ModelOptions:
     """A pair with what is said of all. A server's address is for a model; the built-in planner and eyes have none."""
-    from scope_ptz.factory.models import BUILT_IN_PERCEPTION, GRAMMAR
+    from scope_ptz.factory.model_specs import BUILT_IN_PERCEPTION, GRAMMAR
 
     planner, _, eyes = name.partition("+")
     wishes = replace(shared, pair=name)

@@ -19,7 +19,7 @@ from scope_ptz import __version__
 from scope_ptz.cli.cards import folder_bytes
 from scope_ptz.cli.endings import FAILED, put_json
 from scope_ptz.errors import PackError
-from scope_ptz.factory.session import DEFAULT_SCENE, open_scene, scene_search
+from scope_ptz.factory.scenes import DEFAULT_SCENE, open_scene, scene_search
 from scope_ptz.settings import ScopeSettings, load_settings
 
 Verdict = Literal["ok", "optional", "missing"]

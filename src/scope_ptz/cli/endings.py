@@ -9,6 +9,7 @@
 from __future__ import annotations
 
 import json
+import logging
 import os
 import sys
 from collections.abc import Iterator
@@ -72,9 +73,24 @@ def complain(message: str) -> None:
     sys.stderr.write(f"scope: {message}\n")
 
 
+class _LogLines(logging.Handler):
+    """Prints the warnings of the package as lines on stderr."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        complain(record.getMessage())
+
+
+def _show_warnings() -> None:
+    logger = logging.getLogger("scope_ptz")
+    if not any(isinstance(handler, _LogLines) for handler in logger.handlers):
+        logger.addHandler(_LogLines(logging.WARNING))
+        logger.propagate = False
+
+
 @contextmanager
 def ending(*, as_json: bool = False) -> Iterator[None]:
     """Turn SCOPE's own errors and Ctrl-C into the end of the program. A closed pipe changes nothing about it."""
+    _show_warnings()
     patient = _Patient(sys.stdout)
     with redirect_stdout(cast(TextIO, patient)):
         try:

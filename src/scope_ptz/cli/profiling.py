@@ -19,8 +19,16 @@ from scope_ptz.cli.endings import FAILED, put_json
 from scope_ptz.cli.profile_report import PerceptionSpeed, Side, show
 from scope_ptz.endpoints.serving_facts import memory_gb, serving_facts
 from scope_ptz.errors import InputError, PerceptionError
-from scope_ptz.factory.models import ModelOptions, ResolvedPerception, ResolvedPlanner, resolve_models
-from scope_ptz.factory.session import Start, make_perception, make_planner, open_camera, open_scene
+from scope_ptz.factory.cameras import open_camera
+from scope_ptz.factory.models import (
+    ModelOptions,
+    ResolvedPerception,
+    ResolvedPlanner,
+    make_perception,
+    make_planner,
+    resolve_models,
+)
+from scope_ptz.factory.scenes import open_scene
 from scope_ptz.planner.profile import Row, Sensitivity, ask_once, load_rows, measure_sensitivity
 from scope_ptz.planner.profile.speed import Spread, speed_of
 
@@ -51,13 +59,13 @@ def profile(wishes: ModelOptions, extent: Extent, *, as_json: bool) -> int:
 
     async def work() -> None:
         choice = await resolve_models(wishes)
-        if choice.planner.endpoint is None and choice.eyes.spec is None:
+        if choice.planner.endpoint is None and choice.perception.spec is None:
             raise InputError("Say what to profile: a pair, or a planner or eyes with the address of its server.")
         sides = {}
         if choice.planner.endpoint is not None:
             sides["planner"] = await _planner_side(choice.planner, rows)
-        if choice.eyes.spec is not None:
-            sides["eyes"] = await _eyes_side(choice.eyes, extent)
+        if choice.perception.spec is not None:
+            sides["eyes"] = await _eyes_side(choice.perception, extent)
         report.update({role: side.model_dump() for role, side in sides.items()})
         report["real_time"] = _verdict([side.meets_real_time for side in sides.values()])
         if extent.prompts and "planner" in sides and sides["planner"].meets_real_time is not None:
@@ -137,7 +145,7 @@ async def _planner_side(choice: ResolvedPlanner, rows: tuple[Row, ...]) -> Side:
 async def _eyes_side(choice: ResolvedPerception, extent: Extent) -> Side:
     assert choice.spec is not None  # noqa: S101 - asked for only then
     frames = await _frames(extent.scene, extent.frames)
-    eyes, _ = make_perception(choice, open_scene(extent.scene), 0)
+    eyes = make_perception(choice, open_scene, 0)
     try:
         speed = await _look(eyes, frames)
     finally:
@@ -162,8 +170,8 @@ async def _frames(scene_name: str, count: int) -> list[Frame]:
     """Frames of a scene's presets, and turned on from them when more are wanted: no two alike, so that nothing is cached."""
     from scope_ptz.geometry import Pose
 
-    camera = await open_camera(Start(scene=scene_name), open_scene(scene_name), realtime=False)
-    try:
+    async with await open_camera(scene_name) as opened:
+        camera = opened.camera
         names = [preset.name for preset in await camera.presets()]
         frames = []
         for index in range(count):
@@ -173,8 +181,6 @@ async def _frames(scene_name: str, count: int) -> list[Frame]:
                 await camera.move(Pose(pose.pan_deg + 7.0 * (index // len(names)), pose.tilt_deg, pose.zoom))
             frames.append(await camera.frame())
         return frames
-    finally:
-        await camera.close()
 
 
 async def _look(eyes: Perception, frames: list[Frame]) -> PerceptionSpeed:

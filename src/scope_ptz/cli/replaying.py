@@ -17,7 +17,7 @@ from scope_ptz.cli.asking import summary
 from scope_ptz.cli.display import LiveView, plain, show_end
 from scope_ptz.cli.endings import FAILED, put_json
 from scope_ptz.errors import InputError, PackError, UnknownNameError
-from scope_ptz.factory.session import open_scene
+from scope_ptz.factory.scenes import open_scene
 from scope_ptz.simulator.clock import SceneClock
 
 _LEAD_S = 30.0

@@ -15,7 +15,8 @@ from rich.text import Text
 from scope_ptz.cli.cards import card, folder_bytes, markdown, megabytes
 from scope_ptz.cli.endings import put, put_json
 from scope_ptz.errors import InputError, OutputError
-from scope_ptz.factory.session import Start, open_camera, open_scene, scene_search
+from scope_ptz.factory.cameras import open_camera
+from scope_ptz.factory.scenes import open_scene, scene_search
 from scope_ptz.geometry import Pose
 from scope_ptz.settings import has_desktop, load_settings
 from scope_ptz.simulator.pack import Scene
@@ -93,7 +94,7 @@ async def _write_contact_sheet(scene: Scene, path: Path) -> None:
 
     from scope_ptz.agent.sheet import contact_sheet
 
-    camera = await open_camera(Start(scene.name), scene, realtime=False)
+    camera = (await open_camera(f"sim:{scene.name}")).camera
     pictures = []
     for preset in scene.file.presets:
         await camera.go_to_preset(preset.name)
@@ -102,12 +103,15 @@ async def _write_contact_sheet(scene: Scene, path: Path) -> None:
     _save(contact_sheet(scene.file.title, pictures), path)
 
 
-def view_scene(start: Start, wanted: tuple[float | None, float | None, float | None], out: Path) -> None:
+def view_scene(
+    name: str, viewpoint: str | None, preset: str | None, time_s: float | None,
+    wanted: tuple[float | None, float | None, float | None], out: Path,
+) -> None:  # fmt: skip
     """Write what the camera sees at a pose (pan, tilt in degrees, zoom; what is not given stays as at the start)."""
     from PIL import Image
 
     async def work() -> None:
-        camera = await open_camera(start, open_scene(start.scene), realtime=False)
+        camera = (await open_camera(f"sim:{name}", viewpoint=viewpoint, preset=preset, time_s=time_s)).camera
         here = await camera.pose()
         pan, tilt, zoom = (given if given is not None else now for given, now in zip(wanted, _parts(here), strict=True))
         try:

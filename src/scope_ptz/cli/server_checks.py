@@ -12,8 +12,9 @@ from scope_ptz.cli.display import plain
 from scope_ptz.cli.endings import FAILED, put_json
 from scope_ptz.endpoints.conformance import LAST, Check, Verdict, check_chat
 from scope_ptz.errors import InputError
-from scope_ptz.factory.models import ModelOptions, ResolvedPerception, ResolvedPlanner, resolve_models
-from scope_ptz.factory.session import DEFAULT_SCENE, Start, make_perception, open_camera, open_scene
+from scope_ptz.factory.cameras import open_camera
+from scope_ptz.factory.models import ModelOptions, ResolvedPerception, ResolvedPlanner, make_perception, resolve_models
+from scope_ptz.factory.scenes import DEFAULT_SCENE
 
 THING = "traffic cone"
 """What the demo scene's home view certainly shows."""
@@ -28,9 +29,9 @@ def check_servers(wishes: ModelOptions, *, as_json: bool) -> int:
 
     async def work() -> None:
         choice = await resolve_models(wishes)
-        if choice.planner.endpoint is None and choice.eyes.spec is None:
+        if choice.planner.endpoint is None and choice.perception.spec is None:
             raise InputError("There is no server to check. Name one with --planner-url, or with --perception and --perception-url.")
-        async for about, check in _checks(choice.planner, choice.eyes):
+        async for about, check in _checks(choice.planner, choice.perception):
             found.append((about, check))
             if not as_json:
                 _show(console, about, check)
@@ -56,15 +57,13 @@ async def _checks(planner: ResolvedPlanner, eyes: ResolvedPerception) -> AsyncIt
     if eyes.spec is not None:
         from scope_ptz.perception.examination import check_perception
 
-        scene = open_scene(DEFAULT_SCENE)
-        camera = await open_camera(Start(preset=_PRESET), scene, realtime=False)
-        perception, _ = make_perception(eyes, scene, 0)
-        try:
-            async for check in check_perception(perception, await camera.frame(), thing=THING):
-                yield f"eyes {eyes.name}", check
-        finally:
-            await perception.close()
-            await camera.close()
+        async with await open_camera(DEFAULT_SCENE, preset=_PRESET) as opened:
+            perception = make_perception(eyes, opened.scenes, 0)
+            try:
+                async for check in check_perception(perception, await opened.camera.frame(), thing=THING):
+                    yield f"eyes {eyes.name}", check
+            finally:
+                await perception.close()
 
 
 def _show(console: Console, about: str, check: Check) -> None:

@@ -38,7 +38,7 @@ async def run_card(
     """The card. ``planner``: for its exact prompt and sampling; None for other agents, which have ``agent_source``, the digest of
     their code; ``facts``: split, seed, epochs, ..."""
     details = planner.details if planner is not None else {}
-    spec = choice.eyes.spec
+    spec = choice.perception.spec
     sampling: dict[str, Any] = {"planner": details}
     if agent_source:
         sampling[AGENT_SOURCE] = agent_source
@@ -54,7 +54,7 @@ async def run_card(
         dataset=datasets(entries),
         dataset_digest=digest(entries),
         planner=await _planner_card(choice.planner) if planner is not None else ModelCard(name=agent),
-        perception=await _eyes_card(choice.eyes),
+        perception=await _eyes_card(choice.perception),
         agent=agent,
         variant=variant,
         sampling=sampling,

@@ -1,41 +1,55 @@
-"""Under which name a server serves the model that is wanted."""
+"""The name under which a server serves a model."""
 
 from __future__ import annotations
 
+import logging
 from typing import TYPE_CHECKING
 
-from scope_ptz.cli.endings import complain
 from scope_ptz.errors import InputError
 
 if TYPE_CHECKING:
     from scope_ptz.endpoints.endpoint import Endpoint
     from scope_ptz.registry import Model, Registry, Role
 
+_LOG = logging.getLogger(__name__)
 
-async def named(endpoint: Endpoint, wanted: str | None, model: Model | None, option: str) -> Endpoint:
-    """The endpoint with the name under which its server serves the model."""
+
+async def with_served_name(endpoint: Endpoint, name: str | None, model: Model | None, option: str) -> Endpoint:
+    """Return the endpoint with the name under which its server serves a model.
+
+    A server that serves one other model is used all the same; a warning in the log says so.
+
+    Args:
+        endpoint: The server.
+        name: The served name, None to find it in the server's list of models.
+        model: The requested model, None when the user named only a server.
+        option: The command-line option that the error message names.
+
+    Raises:
+        InputError: The server serves several models and none of them is the requested one.
+    """
     from scope_ptz.endpoints.catalogue import find_api
     from scope_ptz.endpoints.failures import ServerFailure
 
-    if wanted:
-        return endpoint.model_copy(update={"model": wanted})
+    if name:
+        return endpoint.model_copy(update={"model": name})
     likely = model.served_names() if model else ()
     try:
         endpoint, served = await find_api(endpoint)
     except ServerFailure:
-        served = ()  # A server need not have a list. One that is not there at all will be told of by the first real call.
-    by_name = {name.lower(): name for name in served}
-    match = next((by_name[name.lower()] for name in likely if name.lower() in by_name), None)
+        served = ()  # Not every server has a list. The first request reports a server that is not there.
+    by_lower_case = {name.lower(): name for name in served}
+    match = next((by_lower_case[name.lower()] for name in likely if name.lower() in by_lower_case), None)
     if match is None and len(served) == 1:
         match = served[0]
         if model is not None:
-            complain(f"note: the server at {endpoint.url} serves '{match}'; it is asked in place of {model.repo}.")
+            _LOG.warning("note: the server at %s serves '%s'; it is asked in place of %s.", endpoint.url, match, model.repo)
     if match is None and not likely and served:
         raise InputError(f"The server at {endpoint.url} serves several models. Name one with {option}: {', '.join(served[:20])}.")
     return endpoint.model_copy(update={"model": match or (likely[0] if likely else "")})
 
 
-def recognised(registry: Registry, served: str, role: Role) -> Model | None:
-    """What the registry knows of a model by the name that a server gives it."""
-    matches = (m for m in registry.models.values() if role in m.roles)
-    return next((m for m in matches if served.lower() in (n.lower() for n in m.served_names())), None)
+def registered_model(registry: Registry, served: str, role: Role) -> Model | None:
+    """Return the registry's entry for a served name, None when it lists no such model."""
+    candidates = (model for model in registry.models.values() if role in model.roles)
+    return next((model for model in candidates if served.lower() in (name.lower() for name in model.served_names())), None)

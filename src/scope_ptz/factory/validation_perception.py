@@ -70,7 +70,7 @@ def answered(draft: Draft) -> bool:
     return all(reply.known for reply in replies)
 
 
-def surely_named(view: View, asked: str) -> bool:
+def is_plain_noun(view: View, asked: str) -> bool:
     """Whether a description is so plain, colours and a noun that is known, that finding nothing means that there is none."""
     for phrase in parse_description(asked).phrases:
         spans = nouns_in(phrase.words, view.nouns)

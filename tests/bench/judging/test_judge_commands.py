@@ -18,9 +18,9 @@ from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.tasks.files import dump_tasks
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.cli.app import app
-from scope_ptz.cli.bench_judge import UnnamedJudgeError, open_judge
 from scope_ptz.errors import ConfigError, InputError
-from scope_ptz.factory.session import open_scene
+from scope_ptz.factory.judges import UnnamedJudgeError, open_judge
+from scope_ptz.factory.scenes import open_scene
 from scope_ptz.factory.validation_perception import equip_with_truth
 from scope_ptz.taskgen.authoring.places import preset_at
 from scope_ptz.taskgen.gold.judges import read_verdicts

@@ -7,44 +7,49 @@ made.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from importlib import import_module
-from importlib.metadata import entry_points
 from pkgutil import iter_modules
 
+from scope_ptz.entry_points import PERCEPTION, call_factory, find, installed, normalised
 from scope_ptz.errors import ConfigError, UnknownNameError
 from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import Perception
 from scope_ptz.perception.wide import WidePerception
 
-ENTRY_POINTS = "scope_ptz.perception"
 _NO_BACKENDS = {"spec"}
-
-Maker = Callable[[BackendSpec], Perception]
 
 
 def backend_names() -> tuple[str, ...]:
-    """Every backend that can be made, built in or installed beside."""
-    own = {m.name for m in iter_modules(__path__) if not m.name.startswith("_") and m.name not in _NO_BACKENDS}
-    return tuple(sorted(own | {point.name for point in entry_points(group=ENTRY_POINTS)}))
+    """Return the backends that can be made: the built-in ones and those of installed packages."""
+    return tuple(sorted(built_in_backends() | {entry.name for entry in installed(PERCEPTION)}))
+
+
+def built_in_backends() -> set[str]:
+    """Return the backends of this package."""
+    return {m.name for m in iter_modules(__path__) if not m.name.startswith("_") and m.name not in _NO_BACKENDS}
 
 
 def make_backend(spec: BackendSpec) -> Perception:
-    """The perception that a spec describes. Raises ``UnknownNameError`` and ``ConfigError``."""
-    name = spec.backend.replace("-", "_")
-    if name not in backend_names():
+    """Make the perception that a spec describes. A built-in backend takes precedence over a plug-in of the same name.
+
+    Raises:
+        UnknownNameError: There is no such backend.
+        ConfigError: An option is wrong, or a package is missing or broken.
+    """
+    name = normalised(spec.backend)
+    if name in built_in_backends():
+        perception = _make_built_in(name, spec)
+    elif (entry := find(PERCEPTION, name)) is not None:
+        perception = call_factory(entry, Perception, spec)  # type: ignore[type-abstract]
+    else:
         raise UnknownNameError("perception backend", spec.backend, backend_names())
-    eyes = _maker(name)(spec)
-    return eyes if eyes.sees_wide else WidePerception(eyes)
+    return perception if perception.sees_wide else WidePerception(perception)
 
 
-def _maker(name: str) -> Maker:
-    for point in entry_points(group=ENTRY_POINTS, name=name):
-        made: Maker = point.load()
-        return made
+def _make_built_in(name: str, spec: BackendSpec) -> Perception:
     try:
         module = import_module(f"{__name__}.{name}")
     except ImportError as error:
         raise ConfigError(f"The perception backend '{name}' lacks a package: {error}.") from error
-    maker: Maker = module.make
-    return maker
+    made: Perception = module.make(spec)
+    return made

@@ -1,0 +1,59 @@
+"""The cameras of a .blend file as the viewpoints, presets, limits and optics of one camera."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from scope_ptz.geometry import Limits, Optics
+from scope_ptz.simulator.models import SceneFile, ScenePreset, SceneViewpoint
+
+ZOOM_RANGE = 5.0
+"""A camera of a .blend file zooms at least this much beyond its widest field of view."""
+
+
+@dataclass(frozen=True, slots=True)
+class FileCameras:
+    """What a live camera needs to know about a .blend file.
+
+    Attributes:
+        scene: The file's cameras as viewpoints, each with one preset; home is the file's active camera. It has no instances.
+        optics: Zoom 1 is the widest field of view among the cameras.
+        limits: Pan is endless, tilt goes from straight down to straight up, and zoom reaches every camera.
+    """
+
+    scene: SceneFile
+    optics: Optics
+    limits: Limits
+
+
+def file_cameras(description: dict[str, Any]) -> FileCameras:
+    """Return the cameras of a .blend file from the result of the worker's ``open_file``."""
+    cameras = description["cameras"]
+    widest_deg = max(camera["hfov_deg"] for camera in cameras)
+    zooms = [_half_width(widest_deg) / _half_width(camera["hfov_deg"]) for camera in cameras]
+    most = max(ZOOM_RANGE, *zooms)
+    closest_deg = 2 * math.degrees(math.atan(_half_width(widest_deg) / most))
+    presets = [
+        ScenePreset(
+            name=camera["name"], viewpoint=camera["name"], pan_deg=0.0, tilt_deg=camera["tilt_deg"], zoom=zoom,
+            description=camera["title"],
+        )
+        for camera, zoom in zip(cameras, zooms, strict=True)
+    ]  # fmt: skip
+    viewpoints = [
+        SceneViewpoint(name=camera["name"], position_m=camera["position_m"], pan0_bearing_deg=camera["bearing_deg"])
+        for camera in cameras
+    ]
+    scene = SceneFile(
+        name=description["name"], title=description["title"], version="live", blender_version=description["blender_version"],
+        viewpoints=viewpoints, presets=presets, home_preset=description["active"], instances=[], texts=[],
+    )  # fmt: skip
+    limits = Limits(-180.0, 180.0, -90.0, 90.0, 1.0, most, pan_endless=True)
+    return FileCameras(scene, Optics(((1.0, widest_deg), (most, closest_deg))), limits)
+
+
+def _half_width(hfov_deg: float) -> float:
+    """Half the width of a picture at distance 1."""
+    return math.tan(math.radians(hfov_deg) / 2)

@@ -1,0 +1,25 @@
+"""A camera named in text, such as ``highway-works``, ``blender:yard.blend`` or ``axis://10.0.0.7``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True, slots=True)
+class CameraSpec:
+    """A parsed camera spec. Camera factories, those of plug-ins included, receive one.
+
+    Attributes:
+        scheme: The kind of camera, in lower case: ``sim``, ``blender``, or the name of a plug-in.
+        address: What follows the scheme, without leading slashes and without options.
+        options: ``NAME=VALUE`` pairs after a question mark: ``blender:yard.blend?samples=4``.
+    """
+
+    scheme: str
+    address: str
+    options: Mapping[str, str] = field(default_factory=dict, hash=False)
+
+    def __str__(self) -> str:
+        options = "&".join(f"{name}={value}" for name, value in self.options.items())
+        return f"{self.scheme}:{self.address}" + (f"?{options}" if options else "")

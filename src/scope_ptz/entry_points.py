@@ -1,0 +1,131 @@
+"""Entry points of installed packages: names, origins and loading, with one clear error for anything that is broken."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.metadata import EntryPoint, entry_points
+from typing import Any, TypeVar
+
+from scope_ptz.errors import ConfigError, ScopeError
+
+CAMERAS = "scope_ptz.cameras"
+PLANNERS = "scope_ptz.planners"
+PERCEPTION = "scope_ptz.perception"
+
+_Product = TypeVar("_Product")
+
+
+@dataclass(frozen=True, slots=True)
+class InstalledEntry:
+    """An entry point of one of the groups above. Reading it imports nothing.
+
+    Attributes:
+        group: The entry-point group.
+        name: The name under which the package offers its factory, with hyphens as underscores.
+        package: The distribution and its version, for example ``scope-yard 1.2``.
+        target: The factory as ``module:attribute``.
+    """
+
+    group: str
+    name: str
+    package: str
+    target: str
+    point: EntryPoint
+
+    def load(self) -> Callable[..., Any]:
+        """Import the package and return its factory.
+
+        Raises:
+            ConfigError: The import fails, or the target is not callable.
+        """
+        try:
+            factory = self.point.load()
+        except Exception as error:  # code of another package may fail in any way
+            raise ConfigError(f"The plug-in '{self.name}' ({self.package}) cannot be loaded: {one_line(error)}.") from error
+        if not callable(factory):
+            raise ConfigError(
+                f"The plug-in '{self.name}' ({self.package}) names {self.target}, which is a {type(factory).__name__} "
+                "and not a factory function."
+            )
+        made: Callable[..., Any] = factory
+        return made
+
+
+def call_factory(entry: InstalledEntry, contract: type[_Product], spec: object) -> _Product:
+    """Call a plug-in's factory and check that its product keeps the contract.
+
+    Args:
+        entry: The plug-in.
+        contract: The abstract class that the product must subclass.
+        spec: The factory's only argument.
+
+    Raises:
+        ConfigError: Loading or calling the factory fails, or it returns an object of another type.
+    """
+    factory = entry.load()
+    try:
+        product = factory(spec)
+    except ScopeError:
+        raise
+    except Exception as error:  # code of another package may fail in any way
+        raise ConfigError(f"The plug-in '{entry.name}' ({entry.package}) failed: {one_line(error)}.") from error
+    return expect_product(entry, contract, product)
+
+
+def expect_product(entry: InstalledEntry, contract: type[_Product], product: object) -> _Product:
+    """Return a factory's product if it is of the contract's type.
+
+    Raises:
+        ConfigError: It is of another type.
+    """
+    if not isinstance(product, contract):
+        raise ConfigError(
+            f"The plug-in '{entry.name}' ({entry.package}) returned a {type(product).__name__}; "
+            f"a {contract.__name__} of {contract.__module__} is needed."
+        )
+    return product
+
+
+def normalised(name: str) -> str:
+    """Return a name in the spelling in which names are compared: hyphens and underscores are the same."""
+    return name.replace("-", "_")
+
+
+def installed(group: str) -> tuple[InstalledEntry, ...]:
+    """Return the entry points of a group by name. Nothing is imported."""
+    found = [
+        InstalledEntry(group, normalised(point.name), _package(point), point.value, point) for point in entry_points(group=group)
+    ]
+    return tuple(sorted(found, key=lambda entry: (entry.name, entry.package)))
+
+
+def find(group: str, name: str) -> InstalledEntry | None:
+    """Return the entry point of a name, or None when no package offers it.
+
+    Raises:
+        ConfigError: Several installed packages offer the name.
+    """
+    wanted = normalised(name)
+    matches = [entry for entry in installed(group) if entry.name == wanted]
+    if len(matches) > 1:
+        packages = " and ".join(entry.package for entry in matches)
+        raise ConfigError(f"The packages {packages} both offer '{name}'. Uninstall one of them.")
+    return matches[0] if matches else None
+
+
+def repeated(group: str) -> frozenset[str]:
+    """Return the names that more than one package offers."""
+    counts = Counter(entry.name for entry in installed(group))
+    return frozenset(name for name, number in counts.items() if number > 1)
+
+
+def one_line(error: BaseException) -> str:
+    """Return an exception as one line of at most 200 characters, without a full stop at its end."""
+    text = " ".join(f"{type(error).__name__}: {error}".split()).rstrip(".: ")
+    return text if len(text) <= 200 else text[:197] + "..."
+
+
+def _package(point: EntryPoint) -> str:
+    return f"{point.dist.name} {point.dist.version}" if point.dist is not None else "an unknown package"

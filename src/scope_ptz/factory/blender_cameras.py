@@ -1,0 +1,117 @@
+"""Live Blender cameras: a worker process is started, opens a scene or a .blend file, and renders every frame."""
+
+from __future__ import annotations
+
+import logging
+import tempfile
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from anyio import CancelScope, to_thread
+
+from scope_ptz.blender.bake import scene_file
+from scope_ptz.blender.client import BlenderWorker
+from scope_ptz.blender.environment import is_ready, worker_command
+from scope_ptz.blender.files import FileCameras, file_cameras
+from scope_ptz.camera.blender import BlenderCamera
+from scope_ptz.camera.spec import CameraSpec
+from scope_ptz.errors import PackError, UnknownNameError
+from scope_ptz.factory.scenes import open_scene
+from scope_ptz.settings import load_settings
+from scope_ptz.simulator.clock import SceneClock
+
+if TYPE_CHECKING:
+    from scope_ptz.simulator.models import SceneFile
+    from scope_ptz.simulator.pack import Scene
+
+_LOG = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class LiveBlender:
+    """A camera and the worker that renders for it.
+
+    Attributes:
+        camera: The camera.
+        scene: The pack with the ground truth of the same scene, None where there is none.
+        release: Ends the worker.
+    """
+
+    camera: BlenderCamera
+    scene: Scene | None
+    release: Callable[[], Awaitable[None]]
+
+
+async def open_live_blender(spec: CameraSpec, *, viewpoint: str | None, time_s: float | None, realtime: bool) -> LiveBlender:
+    """Start Blender and open a scene by name, a scene's Python file, or a .blend file.
+
+    The first use installs Blender's Python module (about 400 MB); a warning in the log says so.
+
+    Raises:
+        UnknownNameError: There is no such viewpoint.
+        BlenderError: Blender cannot be started, or cannot open the scene or the file.
+    """
+    settings = load_settings()
+    program = settings.blender_python or settings.blender
+    if program is None and not is_ready(settings.cache_dir):
+        _LOG.warning("note: installing Blender's Python module, about 400 MB; this happens once.")
+    command = await to_thread.run_sync(worker_command, settings.cache_dir, program)
+    logs = tempfile.TemporaryDirectory(prefix="scope-blender-", ignore_cleanup_errors=True)
+    worker = BlenderWorker(command, Path(logs.name) / "blender.log")
+
+    async def release() -> None:
+        with CancelScope(shield=True):
+            await to_thread.run_sync(worker.close)
+            logs.cleanup()
+
+    try:
+        await to_thread.run_sync(worker.start)
+        clock = SceneClock(0.0 if time_s is None else time_s, realtime=realtime)
+        size: dict[str, Any] = {name: int(value) for name, value in spec.options.items()}
+        if spec.address.lower().endswith(".blend"):
+            cameras = await _open_file(worker, spec.address)
+            camera = BlenderCamera(
+                worker, cameras.scene, viewpoint=viewpoint, clock=clock, optics=cameras.optics, limits=cameras.limits,
+                has_truth=False, **size,
+            )  # fmt: skip
+            return LiveBlender(camera, None, release)
+        file = await _build_scene(worker, spec.address)
+        if time_s is None:
+            clock = SceneClock(file.start_s, realtime=realtime)
+        camera = BlenderCamera(worker, file, viewpoint=viewpoint, clock=clock, **size)
+        return LiveBlender(camera, _pack_of(file), release)
+    except BaseException:
+        await release()
+        raise
+
+
+async def _open_file(worker: BlenderWorker, path: str) -> FileCameras:
+    description = await to_thread.run_sync(worker.request, "open_file", {"path": _absolute(path)})
+    return file_cameras(description)
+
+
+async def _build_scene(worker: BlenderWorker, source: str) -> SceneFile:
+    if source.endswith(".py"):
+        source = _absolute(source)
+    await to_thread.run_sync(worker.request, "load_scene", {"source": source})
+    return scene_file(await to_thread.run_sync(worker.request, "describe"), "live")
+
+
+def _absolute(path: str) -> str:
+    """Return an absolute path: the worker may have another working directory."""
+    return str(Path(path).absolute())
+
+
+def _pack_of(live: SceneFile) -> Scene | None:
+    """Return the pack that holds the ground truth of a live scene, None when none was baked from the same things."""
+    try:
+        scene = open_scene(live.name)
+    except (UnknownNameError, PackError):
+        return None
+    return scene if _things(scene.file) == _things(live) else None
+
+
+def _things(file: SceneFile) -> set[tuple[str, int]]:
+    return {(i.id, i.number) for i in file.instances} | {(a.id, a.number) for a in file.actors}

@@ -1,0 +1,230 @@
+"""Cameras from specs: parse a spec, then open the camera with its clock and its ground truth."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING
+from urllib.parse import parse_qsl
+
+from scope_ptz.camera.base import Camera, Clock
+from scope_ptz.camera.spec import CameraSpec
+from scope_ptz.entry_points import CAMERAS, call_factory, expect_product, find, installed, one_line
+from scope_ptz.errors import CameraError, InputError, ScopeError, UnknownNameError
+from scope_ptz.factory.scenes import scene_search
+from scope_ptz.settings import load_settings
+
+if TYPE_CHECKING:
+    from scope_ptz.simulator.pack import Scene
+
+__all__ = ["BUILT_IN_SCHEMES", "CameraSpec", "OpenCamera", "camera_names", "open_camera", "parse_camera"]
+
+BUILT_IN_SCHEMES = ("sim", "blender")
+
+_FRAME_OPTIONS = ("width", "height")
+_OPTIONS = {"sim": _FRAME_OPTIONS, "blender": (*_FRAME_OPTIONS, "samples")}
+_BLENDER_FILES = (".blend", ".py")
+
+
+def parse_camera(text: str) -> CameraSpec:
+    """Parse a camera spec.
+
+    Args:
+        text: A scene (``highway-works`` or ``sim:highway-works``), a scene or file rendered by Blender
+            (``blender:highway-works``, ``blender:yard.blend``), or ``SCHEME:ADDRESS`` for the camera of a plug-in. Options follow
+            a question mark: ``blender:yard.blend?samples=4&width=640&height=360``.
+
+    Raises:
+        InputError: The spec is empty, its scheme or an option is unknown, a file does not exist, or it contains a password.
+    """
+    text = text.strip()
+    scheme, colon, rest = text.partition(":")
+    if not colon:
+        scheme, rest = "sim", text
+    scheme = scheme.lower()
+    address, _, query = rest.partition("?")
+    if _has_credentials(scheme, address):
+        raise InputError(
+            f"Leave user:password@ out of the camera: `{scheme}:...` ends up in traces and in the history of the shell."
+        )
+    if scheme not in BUILT_IN_SCHEMES and find(CAMERAS, scheme) is None:
+        raise InputError(_unknown_scheme(scheme, text))
+    spec = CameraSpec(scheme, address.removeprefix("//"), dict(parse_qsl(query, keep_blank_values=True)))
+    if scheme in BUILT_IN_SCHEMES:
+        _check_built_in(spec)
+    return spec
+
+
+def camera_names() -> tuple[str, ...]:
+    """Return what can be opened: each scene, the scenes that Blender can render live, and the schemes of plug-ins."""
+    from scope_ptz.blender.sources import scene_names
+    from scope_ptz.simulator.pack import list_scenes
+
+    scenes = list_scenes(scene_search(load_settings()))
+    live = [f"blender:{name}" for name in scene_names()]
+    plugins = [f"{entry.name}:ADDRESS" for entry in installed(CAMERAS) if entry.name not in BUILT_IN_SCHEMES]
+    return (*scenes, *live, "blender:FILE.blend", *plugins)
+
+
+class OpenCamera:
+    """A camera that is ready for use. Close it with ``aclose`` or use it as an async context manager.
+
+    Attributes:
+        spec: What was opened.
+        camera: The camera.
+        scene: The scene that holds the ground truth of the camera's frames, None where there is no ground truth.
+    """
+
+    def __init__(
+        self, spec: CameraSpec, camera: Camera, scene: Scene | None = None, release: Callable[[], Awaitable[None]] | None = None
+    ) -> None:
+        self.spec, self.camera, self.scene = spec, camera, scene
+        self._release = release
+
+    @property
+    def clock(self) -> Clock:
+        """The camera's clock."""
+        return self.camera.clock
+
+    @property
+    def has_truth(self) -> bool:
+        """Whether ground truth exists for the camera's frames."""
+        return self.scene is not None
+
+    @property
+    def scenes(self) -> Callable[[str], Scene] | None:
+        """A function from a scene's name to the scene, as ``make_perception`` takes it; None without ground truth."""
+        return None if self.scene is None else {self.scene.name: self.scene}.__getitem__
+
+    async def aclose(self) -> None:
+        """Close the camera and what was started for it. Closing twice is allowed."""
+        release, self._release = self._release, None
+        try:
+            await self.camera.close()
+        finally:
+            if release is not None:
+                await release()
+
+    async def __aenter__(self) -> OpenCamera:
+        return self
+
+    async def __aexit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        await self.aclose()
+
+
+async def open_camera(
+    spec: CameraSpec | str,
+    *,
+    viewpoint: str | None = None,
+    preset: str | None = None,
+    time_s: float | None = None,
+    realtime: bool = False,
+) -> OpenCamera:
+    """Open a camera.
+
+    Args:
+        spec: A parsed spec, or its text.
+        viewpoint: Where a camera in a scene stands; the default is the viewpoint of the home preset.
+        preset: The preset to start at. A preset names its viewpoint.
+        time_s: The scene time at which a camera in a scene starts; the default is the scene's own start.
+        realtime: Whether scene time follows the wall clock, for a person who watches. Otherwise moves take no wall time.
+
+    Raises:
+        InputError: The spec, the viewpoint, the preset or the combination of options is wrong.
+        PackError: The files of a scene are damaged.
+        CameraError: The camera does not answer.
+        BlenderError: Blender cannot be started, or cannot open the scene or the file.
+    """
+    if isinstance(spec, str):
+        spec = parse_camera(spec)
+    if viewpoint and preset:
+        raise InputError("Give --viewpoint or --preset, not both: a preset names its viewpoint.")
+    if spec.scheme == "sim":
+        opened = _open_simulated(spec, viewpoint, time_s, realtime=realtime)
+    elif spec.scheme == "blender":
+        from scope_ptz.factory.blender_cameras import open_live_blender
+
+        live = await open_live_blender(spec, viewpoint=viewpoint, time_s=time_s, realtime=realtime)
+        opened = OpenCamera(spec, live.camera, live.scene, live.release)
+    else:
+        opened = await _open_plugin(spec, viewpoint, time_s)
+    if preset:
+        try:
+            await opened.camera.go_to_preset(preset)
+        except BaseException:
+            await opened.aclose()
+            raise
+    return opened
+
+
+def _open_simulated(spec: CameraSpec, viewpoint: str | None, time_s: float | None, *, realtime: bool) -> OpenCamera:
+    from scope_ptz.camera.simulated import SimulatedCamera
+    from scope_ptz.factory.scenes import open_scene
+    from scope_ptz.simulator.clock import SceneClock
+
+    scene = open_scene(spec.address)
+    clock = SceneClock(scene.file.start_s if time_s is None else time_s, realtime=realtime)
+    return OpenCamera(spec, SimulatedCamera(scene, viewpoint=viewpoint, clock=clock, **frame_size(spec)), scene)
+
+
+async def _open_plugin(spec: CameraSpec, viewpoint: str | None, time_s: float | None) -> OpenCamera:
+    """Open the camera of an installed package. Its factory may be a plain or an async function."""
+    entry = find(CAMERAS, spec.scheme)
+    if entry is None:
+        raise InputError(_unknown_scheme(spec.scheme, str(spec)))
+    if viewpoint is not None or time_s is not None:
+        option = "--viewpoint" if viewpoint is not None else "--at"
+        raise InputError(f"{option} is for cameras in a scene; '{spec}' is the camera of {entry.package}. Leave it out.")
+    product = call_factory(entry, object, spec)
+    if inspect.isawaitable(product):
+        try:
+            product = await product
+        except ScopeError:
+            raise
+        except Exception as error:  # code of another package may fail in any way
+            raise CameraError(f"The camera '{spec}' ({entry.package}) cannot be opened: {one_line(error)}.") from error
+    return OpenCamera(spec, expect_product(entry, Camera, product))  # type: ignore[type-abstract]
+
+
+def frame_size(spec: CameraSpec) -> dict[str, int]:
+    """Return the width and height among the options of a spec."""
+    return {name: int(spec.options[name]) for name in _FRAME_OPTIONS if name in spec.options}
+
+
+def _has_credentials(scheme: str, address: str) -> bool:
+    """Return whether an address looks like ``user:password@host``. File names of Blender may contain both characters."""
+    if scheme in BUILT_IN_SCHEMES and not address.startswith("//"):
+        return False
+    before, at, _ = address.rpartition("@")
+    return bool(at) and ":" in before
+
+
+def _unknown_scheme(scheme: str, text: str) -> str:
+    if text.lower().endswith(_BLENDER_FILES) and len(scheme) == 1:  # a drive letter of Windows
+        return f"'{text}' is a file: write blender:{text}"
+    # The address is not repeated: with a mistyped scheme it may hold a password.
+    return str(UnknownNameError("camera scheme", scheme, [*BUILT_IN_SCHEMES, *(entry.name for entry in installed(CAMERAS))]))
+
+
+def _check_built_in(spec: CameraSpec) -> None:
+    if not spec.address:
+        raise InputError("The camera is empty. Name a scene, for example highway-works; `scope scene list` lists them.")
+    known = _OPTIONS[spec.scheme]
+    for name, value in spec.options.items():
+        if name not in known:
+            raise UnknownNameError("camera option", name, known)
+        if not value.isdecimal() or not 0 < int(value) <= 10_000:
+            raise InputError(f"The camera option {name} is a whole number from 1 to 10000, got '{value[:40]}'.")
+    is_file = spec.address.lower().endswith(_BLENDER_FILES)
+    if spec.scheme == "sim" and is_file:
+        raise InputError(f"'{spec.address}' is a file: write blender:{spec.address} to open it with Blender.")
+    if spec.scheme == "blender":
+        if is_file and not Path(spec.address).is_file():
+            raise InputError(f"There is no file {spec.address}.")
+        if not is_file:
+            from scope_ptz.blender.sources import scene_names
+
+            if spec.address not in (names := scene_names()):
+                raise UnknownNameError("scene that Blender can build", spec.address, [*names, "FILE.blend"])

@@ -1,0 +1,95 @@
+"""The judge's server, opened from options and environment."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from scope_ptz.errors import ConfigError, InputError, ScopeError
+from scope_ptz.factory.option_values import parse_options
+
+if TYPE_CHECKING:
+    from scope_ptz.bench.judging.server import ServerPort
+    from scope_ptz.endpoints.endpoint import Endpoint
+
+TIMEOUT_S = 300.0
+"""Default time for one judgement, retries included."""
+
+_LOG = logging.getLogger(__name__)
+
+
+class UnnamedJudgeError(ScopeError):
+    """A judge's server does not say what it serves, and no option names the judge."""
+
+    def __init__(self, url: str, why: str) -> None:
+        super().__init__(
+            f"The judge's server at {url} cannot be asked for its model's name, so nothing was judged: {why} "
+            "A server that has no list of models needs --judge-model (or SCOPE_JUDGE_MODEL)."
+        )
+
+
+async def open_judge(
+    url: str | None, model: str | None, key_file: Path | None, timeout_s: float, options: Iterable[str] | None = None
+) -> ServerPort:
+    """Open the port to a judge's server. The caller closes it.
+
+    Args:
+        url: Address of the server; None takes ``SCOPE_JUDGE_URL``.
+        model: The judge's served name; None takes ``SCOPE_JUDGE_MODEL``, or asks the server.
+        key_file: File with the server's key; None takes ``SCOPE_JUDGE_KEY``.
+        timeout_s: Seconds for one judgement, retries included.
+        options: ``NAME=VALUE`` options of the judge.
+
+    Returns:
+        The port. ``client.endpoint.model`` is the judge's name.
+
+    Raises:
+        InputError: No server is named, an option is wrong, or the server serves several models and none is the usual judge.
+        UnnamedJudgeError: No name is given, and the server cannot be asked for one.
+    """
+    from pydantic import ValidationError
+
+    from scope_ptz.bench.judging.server import JudgeOptions, ServerPort
+    from scope_ptz.endpoints.endpoint import Endpoint, Timeouts, key_from_file
+    from scope_ptz.settings import load_settings
+
+    settings = load_settings()
+    address = url or settings.judge_url
+    if not address:
+        raise ConfigError("No judge's server is named. Give its address with --judge-url or SCOPE_JUDGE_URL.")
+    key = key_from_file(key_file) if key_file else settings.judge_key
+    try:
+        judge_options = JudgeOptions.model_validate(parse_options(options or (), "--judge-option"))
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_input=False)[0]
+        where = ".".join(str(part) for part in first["loc"])
+        raise ConfigError(f"--judge-option {where}: {first['msg']}. Known: {', '.join(JudgeOptions.model_fields)}.") from None
+    endpoint = Endpoint(url=address, key=key, timeouts=Timeouts.within(timeout_s))
+    return ServerPort(await _with_judge_name(endpoint, model or settings.judge_model), judge_options)
+
+
+async def _with_judge_name(endpoint: Endpoint, name: str) -> Endpoint:
+    """Return the endpoint with the name under which its server serves the judge."""
+    from scope_ptz.bench.judging.judge import DEFAULT_JUDGE
+    from scope_ptz.endpoints.catalogue import find_api
+    from scope_ptz.endpoints.failures import ServerFailure
+
+    if name:
+        return endpoint.model_copy(update={"model": name})
+    try:
+        endpoint, served = await find_api(endpoint)
+    except ServerFailure as failure:  # A guessed name would mix these judgements with those of the real judge for good.
+        raise UnnamedJudgeError(endpoint.url, str(failure)) from None
+    if not served:
+        raise UnnamedJudgeError(endpoint.url, "its list of models is empty.")
+    usual = [name for name in served if DEFAULT_JUDGE in name.lower()]
+    if not usual and len(served) > 1:
+        names = ", ".join(served[:20])
+        raise InputError(
+            f"The server at {endpoint.url} serves several models and no {DEFAULT_JUDGE}. Name one with --judge-model: {names}."
+        )
+    if not usual:
+        _LOG.warning("note: the server at %s serves '%s'; it judges in place of %s.", endpoint.url, served[0], DEFAULT_JUDGE)
+    return endpoint.model_copy(update={"model": (usual or served)[0]})

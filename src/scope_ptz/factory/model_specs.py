@@ -1,0 +1,84 @@
+"""Options that name a planner and perception, and what they resolve to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from scope_ptz.endpoints.endpoint import Endpoint
+    from scope_ptz.perception.backends.spec import BackendSpec
+    from scope_ptz.planner.chat import ChatOptions
+    from scope_ptz.planner.spec import PlannerSpec
+    from scope_ptz.registry import Model
+
+GRAMMAR = "grammar"
+"""The built-in rule-based planner."""
+
+CHAT = "chat"
+"""A chat model that is known only by its server."""
+
+BUILT_IN_PERCEPTION = ("ground-truth", "noisy")
+
+
+@dataclass(frozen=True, slots=True)
+class ModelOptions:
+    """Options about planner, perception and their servers, as the user gave them."""
+
+    planner: str | None = None
+    perception: str | None = None
+    pair: str | None = None
+    planner_url: str | None = None
+    perception_url: str | None = None
+    planner_model: str | None = None
+    perception_model: str | None = None
+    planner_key_file: Path | None = None
+    perception_key_file: Path | None = None
+    planner_options: tuple[str, ...] = ()
+    perception_options: tuple[str, ...] = ()
+    reader: str | None = None
+    detector: str | None = None
+    timeout_s: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ResolvedPlanner:
+    """A planner that can be made: the grammar, a chat model, or a plug-in.
+
+    Attributes:
+        name: The name in traces and reports.
+        endpoint: The chat model's server, None for other planners.
+        options: The chat model's options, None for other planners.
+        model: The registry's entry, None for a model that it does not list.
+        plugin: What a plug-in's factory receives, None for other planners.
+    """
+
+    name: str
+    endpoint: Endpoint | None = None
+    options: ChatOptions | None = None
+    model: Model | None = None
+    plugin: PlannerSpec | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ResolvedPerception:
+    """Perception that can be made: built in, or a backend with its model.
+
+    Attributes:
+        name: The name in traces and reports.
+        spec: The backend's spec, None for built-in perception.
+        model: The registry's entry, None for a model that it does not list.
+    """
+
+    name: str
+    spec: BackendSpec | None = None
+    model: Model | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ResolvedPair:
+    """A planner and perception that can be made."""
+
+    planner: ResolvedPlanner
+    perception: ResolvedPerception

@@ -1,0 +1,31 @@
+"""``NAME=VALUE`` options."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from typing import Any
+
+from scope_ptz.errors import InputError
+
+
+def parse_options(pairs: Iterable[str], option: str) -> dict[str, Any]:
+    """Parse ``NAME=VALUE`` pairs. Values are JSON where they parse as JSON, and text otherwise.
+
+    Args:
+        pairs: The pairs as the user gave them.
+        option: The command-line option that error messages name.
+
+    Raises:
+        InputError: A pair has no name or no equals sign.
+    """
+    options: dict[str, Any] = {}
+    for pair in pairs:
+        name, equals, value = pair.partition("=")
+        if not equals or not name.strip():
+            raise InputError(f"{option} wants NAME=VALUE, got '{pair[:80]}'.")
+        try:
+            options[name.strip()] = json.loads(value)
+        except ValueError:
+            options[name.strip()] = value
+    return options

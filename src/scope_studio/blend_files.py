@@ -1,0 +1,104 @@
+"""A user's .blend file, opened without running anything that it contains, and its cameras."""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+import bpy
+from mathutils import Vector
+
+from scope_ptz.geometry.sphere import pan_tilt_deg
+from scope_studio.kit.core.stage import Viewpoint
+
+STRAIGHT_UP_DEG = 89.9
+"""Beyond this tilt a camera's bearing is read from the top of its picture, because its axis has none."""
+
+OTHER_PROJECTION_HFOV_DEG = 60.0
+"""Field of view for orthographic and panoramic cameras, which are shown in perspective."""
+
+
+def open_file(path: str) -> tuple[dict[str, Any], tuple[Viewpoint, ...]]:
+    """Open a file with its scripts and script drivers off.
+
+    Returns:
+        The description of the file and its cameras as plain data, and the cameras as viewpoints. Names are in kebab case; titles
+        are the file's own.
+    """
+    preferences = bpy.context.preferences.filepaths
+    preferences.use_scripts_auto_execute = False
+    bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
+    bpy.context.preferences.filepaths.use_scripts_auto_execute = False
+    scene = bpy.context.scene
+    scene.render.use_multiview = False  # a second eye would change the names of picture files
+    scene.cycles.shading_system = False  # shader scripts
+    bpy.context.view_layer.update()
+    objects = sorted((o for o in scene.objects if o.type == "CAMERA"), key=lambda o: o.name)
+    if not objects:
+        raise ValueError(f"{path} has no camera. Add one to its scene in Blender and save the file")
+    active = scene.camera if scene.camera in objects else objects[0]
+    cameras = [_camera(o, name, scene) for o, name in zip(objects, _kebab_names([o.name for o in objects]), strict=True)]
+    description = {
+        "name": _kebab(Path(path).stem),
+        "title": Path(path).name,
+        "blender_version": bpy.app.version_string,
+        "active": cameras[objects.index(active)]["name"],
+        "cameras": cameras,
+    }
+    return description, tuple(Viewpoint(c["name"], tuple(c["position_m"]), c["bearing_deg"], "") for c in cameras)
+
+
+def set_time(time_s: float) -> None:
+    """Show the file's animation at a time in seconds after its first frame."""
+    scene = bpy.context.scene
+    frame = scene.frame_start + time_s * scene.render.fps / scene.render.fps_base
+    scene.frame_set(math.floor(frame), subframe=frame - math.floor(frame))
+
+
+def _camera(camera: bpy.types.Object, name: str, scene: bpy.types.Scene) -> dict[str, Any]:
+    matrix = camera.matrix_world
+    axes = matrix.to_3x3().normalized()
+    bearing, tilt = _pan_tilt(axes @ Vector((0.0, 0.0, -1.0)))
+    if abs(tilt) > STRAIGHT_UP_DEG:
+        bearing, _ = _pan_tilt((axes @ Vector((0.0, 1.0, 0.0))) * -math.copysign(1.0, tilt))
+    return {
+        "name": name,
+        "title": camera.name,
+        "position_m": list(matrix.translation),
+        "bearing_deg": bearing,
+        "tilt_deg": tilt,
+        "hfov_deg": _hfov_deg(camera.data, scene.render),
+    }
+
+
+def _kebab(text: str) -> str:
+    return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-") or "camera"
+
+
+def _kebab_names(texts: list[str]) -> list[str]:
+    """Return a kebab-case name for each text; names that coincide get numbers."""
+    names: list[str] = []
+    for text in texts:
+        name, number = _kebab(text), 2
+        while name in names:
+            name, number = f"{_kebab(text)}-{number}", number + 1
+        names.append(name)
+    return names
+
+
+def _pan_tilt(direction: Vector) -> tuple[float, float]:
+    pan, tilt = pan_tilt_deg(tuple(direction))
+    return float(pan), float(tilt)
+
+
+def _hfov_deg(data: bpy.types.Camera, render: bpy.types.RenderSettings) -> float:
+    """Horizontal field of view of a camera in the file's own picture format."""
+    if data.type != "PERSP":
+        return OTHER_PROJECTION_HFOV_DEG
+    width, height = render.resolution_x * render.pixel_aspect_x, render.resolution_y * render.pixel_aspect_y
+    if data.sensor_fit == "VERTICAL" or (data.sensor_fit == "AUTO" and height > width):
+        angle = data.angle_y if data.sensor_fit == "VERTICAL" else data.angle
+        return math.degrees(2 * math.atan(math.tan(angle / 2) * width / height))
+    return math.degrees(data.angle_x)
