@@ -46,7 +46,7 @@ class InstalledEntry:
             raise ConfigError(f"The plug-in '{self.name}' ({self.package}) cannot be loaded: {one_line(error)}.") from error
         if not callable(factory):
             raise ConfigError(
-                f"The plug-in '{self.name}' ({self.package}) names {self.target}, which is a {type(factory).__name__} "
+                f"The plug-in '{self.name}' ({self.package}) names {self.target}, which is of type {type(factory).__name__} "
                 "and not a factory function."
             )
         made: Callable[..., Any] = factory
@@ -82,7 +82,7 @@ def expect_product(entry: InstalledEntry, contract: type[_Product], product: obj
     """
     if not isinstance(product, contract):
         raise ConfigError(
-            f"The plug-in '{entry.name}' ({entry.package}) returned a {type(product).__name__}; "
+            f"The plug-in '{entry.name}' ({entry.package}) returned an object of type {type(product).__name__}; "
             f"a {contract.__name__} of {contract.__module__} is needed."
         )
     return product

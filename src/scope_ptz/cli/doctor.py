@@ -62,6 +62,21 @@ def examine(settings: ScopeSettings) -> Iterator[Finding]:
     yield from _scenes(settings)
     yield _runs_dir(settings.runs_dir)
     yield _blender(settings)
+    yield from _plugins()
+
+
+def _plugins() -> Iterator[Finding]:
+    """What each installed plug-in does when it is loaded and tried."""
+    import anyio
+
+    from scope_ptz.factory.plugin_checks import check_plugin
+    from scope_ptz.factory.plugins import list_plugins
+
+    for plugin in list_plugins():
+        check = anyio.run(check_plugin, plugin)
+        verdict: Verdict = {"ok": "ok", "partly": "optional", "failed": "missing"}[check.verdict]  # type: ignore[assignment]
+        remedy = f"Update {plugin.package}, or uninstall it." if check.verdict == "failed" else ""
+        yield Finding(f"{plugin.kind} {plugin.name}", verdict, f"plug-in of {plugin.package}: {check.detail}", remedy)
 
 
 def _packages() -> Finding:

@@ -72,6 +72,15 @@ def serve(
         serve_command(name, server)
 
 
+@models_app.command("plugins")
+def plugins(as_json: JsonOption = False) -> None:
+    """List the cameras, planners and perception that installed plug-ins add."""
+    with ending(as_json=as_json):
+        from scope_ptz.cli.models import list_plugins
+
+        list_plugins(as_json=as_json)
+
+
 @models_app.command("pairs")
 def pairs(as_json: JsonOption = False) -> None:
     """List the pairs of a planner and eyes: the paper's 19, and more."""

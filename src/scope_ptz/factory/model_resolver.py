@@ -201,13 +201,15 @@ class ModelResolver:
 
     def _registered_perception(self, name: str) -> Model | None:
         """Return the registry's entry, or None for the name of a backend."""
-        from scope_ptz.perception.backends import backend_names
+        from scope_ptz.perception.backends import backend_names, built_in_backends
 
-        if normalised(name) in backend_names():
+        if normalised(name) in built_in_backends():
             return None
         try:
             return self.registry.model(name, "perception")
         except UnknownNameError as error:
+            if find(PERCEPTION, name) is not None:
+                return None
             known = [*BUILT_IN_PERCEPTION, *self.registry.named("perception"), *backend_names()]
             raise UnknownNameError("perception", name, known) from error
 

@@ -1,0 +1,91 @@
+"""Plug-ins: cameras, planners and perception that other installed packages add.
+
+A package names a factory function in its entry points, in one of three groups:
+
+========================  ==========================  ==================================================
+group                     name                        factory
+========================  ==========================  ==================================================
+``scope_ptz.cameras``     scheme of the camera spec   ``CameraSpec -> Camera``, plain or async
+``scope_ptz.planners``    value of ``--planner``      ``PlannerSpec -> Planner``
+``scope_ptz.perception``  value of ``--perception``   ``BackendSpec -> Perception``
+========================  ==========================  ==================================================
+
+Names of the project and of its model registry take precedence over plug-ins of the same name. A plug-in is imported when it is
+used or checked, so a broken one stops no other command.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from scope_ptz.entry_points import CAMERAS, PERCEPTION, PLANNERS, InstalledEntry, installed, normalised, repeated
+
+Kind = Literal["camera", "planner", "perception"]
+GROUPS: dict[Kind, str] = {"camera": CAMERAS, "planner": PLANNERS, "perception": PERCEPTION}
+
+
+@dataclass(frozen=True, slots=True)
+class Plugin:
+    """An installed plug-in, not imported yet.
+
+    Attributes:
+        kind: What it adds.
+        name: The name under which it is used.
+        package: The distribution and its version.
+        target: The factory as ``module:attribute``.
+        problem: Why the name does not lead to this plug-in, empty when it does.
+        entry: The entry point.
+    """
+
+    kind: Kind
+    name: str
+    package: str
+    target: str
+    problem: str
+    entry: InstalledEntry
+
+
+def list_plugins() -> tuple[Plugin, ...]:
+    """Return all installed plug-ins by kind and name. Nothing is imported."""
+    return tuple(plugin for kind in GROUPS for plugin in plugins_of(kind))
+
+
+def plugins_of(kind: Kind) -> tuple[Plugin, ...]:
+    """Return the installed plug-ins of one kind by name. Nothing is imported."""
+    group = GROUPS[kind]
+    entries = installed(group)
+    if not entries:
+        return ()
+    own, twice = _own_names(kind), repeated(group)
+    return tuple(
+        Plugin(kind, entry.name, entry.package, entry.target, _problem(entry, kind, own, twice), entry) for entry in entries
+    )
+
+
+def _problem(entry: InstalledEntry, kind: Kind, own: frozenset[str], twice: frozenset[str]) -> str:
+    if entry.name in own:
+        return f"its name is that of a built-in {kind}, which is used instead. Rename the entry point"
+    if entry.name in twice:
+        return "another package offers the same name. Uninstall one of them"
+    return ""
+
+
+def _own_names(kind: Kind) -> frozenset[str]:
+    """Return the names of the project and of the model registry, which plug-ins cannot take."""
+    if kind == "camera":
+        from scope_ptz.factory.cameras import BUILT_IN_SCHEMES
+
+        return frozenset(BUILT_IN_SCHEMES)
+    from scope_ptz.factory.model_specs import BUILT_IN_PERCEPTION, CHAT, GRAMMAR
+    from scope_ptz.registry import load_registry
+    from scope_ptz.settings import load_settings
+
+    registered = load_registry(load_settings().models_file()).named(kind)
+    if kind == "planner":
+        names = {GRAMMAR, CHAT, *registered}
+    else:
+        from scope_ptz.perception.backends import built_in_backends
+
+        names = {*BUILT_IN_PERCEPTION, *registered, *built_in_backends()}
+    return frozenset(normalised(name) for name in names)

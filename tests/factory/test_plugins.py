@@ -1,0 +1,187 @@
+"""Plug-ins as separately installed packages: listed, checked and used by the commands, broken ones included."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+PLUGINS = Path(__file__).parents[1] / "plugins"
+EXAMPLES = ("scope-still-camera", "scope-nudge-planner", "scope-bright-perception")
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the three example packages, built and installed without a network. uv carries its own build backend."""
+    uv = shutil.which("uv") or shutil.which("uv", path=str(Path(sys.executable).parent))
+    assert uv is not None, "uv is missing; `make test` installs it"
+    sources = tmp_path_factory.mktemp("sources") / "plugins"
+    shutil.copytree(PLUGINS, sources, ignore=shutil.ignore_patterns("__pycache__"))
+    target = tmp_path_factory.mktemp("site")
+    paths = [str(sources / name) for name in EXAMPLES]
+    install = [uv, "pip", "install", "--quiet", "--offline", "--no-deps", "--target", str(target), "--python", sys.executable]
+    subprocess.run([*install, *paths], check=True, capture_output=True, text=True)
+    return target
+
+
+def scope(site: Path, folder: Path, *arguments: str, stdin: str = "") -> subprocess.CompletedProcess[str]:
+    """Run a command in a process of its own that sees the packages in ``site``."""
+    paths = [str(site), *filter(None, [os.environ.get("PYTHONPATH")])]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths), "SCOPE_RUNS_DIR": str(folder), "COLUMNS": "200"}
+    command = [sys.executable, "-m", "scope_ptz.cli", *arguments]
+    return subprocess.run(command, env=environment, capture_output=True, text=True, input=stdin, cwd=folder, check=False)
+
+
+def write_package(site: Path, module: str, code: str, group: str, name: str, target: str | None = None) -> None:
+    """Put an installed package of one module into a folder, as an installer leaves it."""
+    (site / f"{module}.py").write_text(code)
+    info = site / f"{module}-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {module}\nVersion: 1.0\n")
+    (info / "entry_points.txt").write_text(f"[scope_ptz.{group}]\n{name} = {target or f'{module}:make'}\n")
+
+
+def test_plugins_are_listed(installed: Path, tmp_path: Path) -> None:
+    done = scope(installed, tmp_path, "models", "plugins", "--json")
+    listed = {(row["kind"], row["name"], row["package"], row["problem"]) for row in json.loads(done.stdout)}
+    assert listed == {
+        ("camera", "still", "scope-still-camera 1.0", ""),
+        ("planner", "nudge", "scope-nudge-planner 1.0", ""),
+        ("perception", "bright", "scope-bright-perception 1.0", ""),
+    }
+    models = scope(installed, tmp_path, "models").stdout
+    assert "nudge (scope-nudge-planner 1.0)" in models
+    assert "bright (scope-bright-perception 1.0)" in models
+
+
+def test_doctor_checks_plugins(installed: Path, tmp_path: Path) -> None:
+    done = scope(installed, tmp_path, "doctor", "--json")
+    found = {finding["what"]: finding for finding in json.loads(done.stdout)}
+    assert found["camera still"]["verdict"] == "ok"
+    assert found["camera still"]["detail"].endswith("still camera, 320 x 180")
+    assert found["planner nudge"]["verdict"] == "ok"
+    assert found["perception bright"]["verdict"] == "ok"
+    assert found["perception bright"]["detail"].endswith("skills: detect")
+
+
+def test_ask_uses_all_three(installed: Path, tmp_path: Path) -> None:
+    done = scope(
+        installed, tmp_path, "ask", "look for the lamp", "--camera", "still:lamp", "--planner", "nudge", "--planner-option",
+        "pan_deg=20", "--perception", "bright", "--json",
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    run = json.loads(done.stdout)
+    assert run["answer"] == "Nudged. 1 of 'lamp' in the current view (seen by bright)."
+    assert run["pose"]["pan_deg"] == 20.0
+
+
+def test_chat_uses_a_camera_of_a_plugin(installed: Path, tmp_path: Path) -> None:
+    done = scope(
+        installed, tmp_path, "chat", "--camera", "still:lamp", "--perception", "bright", stdin="pan right 10\n/pose\n/quit\n"
+    )
+    assert done.returncode == 0, done.stderr
+    assert "pan 10°" in done.stdout
+
+
+def test_a_benchmark_runs_with_a_planner_and_perception_of_plugins(installed: Path, tmp_path: Path) -> None:
+    done = scope(
+        installed,
+        tmp_path,
+        "bench",
+        "run",
+        "--limit",
+        "2",
+        "--planner",
+        "nudge",
+        "--perception",
+        "bright",
+        "--out",
+        "logs",
+        "--json",
+    )
+    assert done.returncode == 0, done.stderr
+    result: dict[str, Any] = json.loads(done.stdout)
+    assert result["pair"] == "nudge + bright"
+    assert result["runs"] == 2
+
+
+def test_ground_truth_is_refused_for_a_camera_without_it(installed: Path, tmp_path: Path) -> None:
+    done = scope(installed, tmp_path, "ask", "pan right 10", "--camera", "still:lamp")
+    assert done.returncode == 2
+    assert "this camera has none. Name a model that looks at pictures with --perception" in done.stderr
+
+
+def test_a_camera_that_does_not_open_ends_in_one_line(installed: Path, tmp_path: Path) -> None:
+    done = scope(installed, tmp_path, "ask", "pan right 10", "--camera", "still:candle", "--perception", "bright")
+    assert done.returncode == 1
+    assert done.stderr == "scope: There is no still camera 'candle'. Known: lamp.\n"
+
+
+BROKEN = {
+    "import error": ("import no_such_package", "cannot be loaded: ModuleNotFoundError"),
+    "syntax error": ("def make(:", "cannot be loaded: SyntaxError"),
+    "no factory": ("make = 3", "which is of type int and not a factory function"),
+    "wrong product": (
+        "def make(spec):\n    return 'camera'",
+        "returned an object of type str; a Camera of scope_ptz.camera.base is needed",
+    ),
+    "crash": ("def make(spec):\n    raise RuntimeError('no\\nlight')", "failed: RuntimeError: no light"),
+}
+
+
+@pytest.mark.parametrize("case", BROKEN)
+def test_a_broken_plugin_gives_one_line_and_breaks_nothing_else(case: str, tmp_path: Path) -> None:
+    code, message = BROKEN[case]
+    site = tmp_path / "site"
+    site.mkdir()
+    write_package(site, "someones_camera", f"{code}\n", "cameras", "odd")
+    done = scope(site, tmp_path, "ask", "pan right 5", "--camera", "odd:x")
+    assert done.returncode == 2
+    assert message in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert scope(site, tmp_path, "models", "plugins").returncode == 0
+
+
+def test_doctor_reports_broken_plugins(tmp_path: Path) -> None:
+    site = tmp_path / "site"
+    site.mkdir()
+    write_package(site, "someones_camera", "import no_such_package\n", "cameras", "odd")
+    write_package(site, "someones_planner", "def make(spec):\n    return object()\n", "planners", "strange")
+    write_package(site, "someones_perception", "make = 1\n", "perception", "blurred")
+    write_package(site, "someones_grammar", "make = print\n", "planners", "grammar")
+    write_package(site, "someones_ocr", "make = print\n", "perception", "ocr")
+    done = scope(site, tmp_path, "doctor", "--json")
+    assert done.returncode == 1
+    found = {finding["what"]: finding for finding in json.loads(done.stdout)}
+    assert {found[name]["verdict"] for name in ("camera odd", "perception blurred", "planner grammar", "perception ocr")} == {
+        "missing"
+    }
+    assert "ModuleNotFoundError" in found["camera odd"]["detail"]
+    assert "a Planner of scope_ptz.planner.base is needed" in found["planner strange"]["detail"]
+    assert "its name is that of a built-in planner, which is used instead" in found["planner grammar"]["detail"]
+    assert all("\n" not in finding["detail"] for finding in found.values())
+
+
+def test_a_plugin_cannot_replace_what_is_built_in(tmp_path: Path) -> None:
+    site = tmp_path / "site"
+    site.mkdir()
+    write_package(site, "someones_grammar", "import no_such_package\n", "planners", "grammar")
+    write_package(site, "someones_sim", "import no_such_package\n", "cameras", "sim")
+    done = scope(site, tmp_path, "ask", "pan right 5", "--camera", "sim:highway-works", "--planner", "grammar", "--json")
+    assert done.returncode == 0, done.stderr
+
+
+def test_two_packages_that_offer_one_name(tmp_path: Path) -> None:
+    site = tmp_path / "site"
+    site.mkdir()
+    write_package(site, "first_camera", "make = print\n", "cameras", "odd")
+    write_package(site, "second_camera", "make = print\n", "cameras", "odd")
+    done = scope(site, tmp_path, "ask", "pan right 5", "--camera", "odd:x")
+    assert done.returncode == 2
+    assert "first_camera 1.0 and second_camera 1.0 both offer 'odd'" in done.stderr
