@@ -36,8 +36,7 @@ from scope_ptz.bench.tasks.task import (
     Task,
 )
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Pose
-from scope_ptz.tools.arguments import AdjustPtz
-from scope_ptz.tools.moves import wanted_pose
+from scope_ptz.tools.adjust_ptz import AdjustPtz, requested_pose
 
 EYES = Eyes(1280, 720)
 PRESETS = {
@@ -84,7 +83,7 @@ def stand_after(at: Standing, name: str, arguments: Mapping[str, Any], said: Map
     if "pose" in said:
         return Standing(at.viewpoint, Pose(**said["pose"]))
     if name == "adjust_ptz":
-        wanted = wanted_pose(at.pose, AdjustPtz.model_validate(arguments), Limits())
+        wanted = requested_pose(at.pose, AdjustPtz.model_validate(arguments), Limits())
         return Standing(at.viewpoint, Limits().clamp(wanted)[0])
     if name == "go_to_preset":
         return PRESETS[arguments["name"]]

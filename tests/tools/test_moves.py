@@ -13,8 +13,10 @@ from hypothesis import strategies as st
 from scope_ptz.errors import ToolCallError, UnknownNameError
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.tools.context import ToolContext
+from scope_ptz.tools.get_presets import PresetsResult
 from scope_ptz.tools.registry import TOOLS, parse_call, run_tool, schemas
-from scope_ptz.tools.results import ImageResult, MoveResult, PresetsResult, Result
+from scope_ptz.tools.results import MoveResult, Result
+from scope_ptz.tools.take_image import ImageResult
 from tests.support.analytic import AnalyticCamera, AnalyticEyes, MemoryStore
 
 NAMES = [

@@ -11,7 +11,7 @@ from scope_ptz.camera.base import CameraInfo
 from scope_ptz.geometry import Perspective, Pose
 from scope_ptz.tools.context import ToolContext
 from scope_ptz.tools.registry import run_tool
-from scope_ptz.tools.results import ZoomResult
+from scope_ptz.tools.zoom_to_object import ZoomResult
 from tests.support.analytic import HEIGHT, WIDTH, AnalyticCamera, AnalyticEyes, MemoryStore, Thing, solid
 
 

@@ -18,9 +18,8 @@ from scope_ptz.errors import CameraError, OutputError, PackError, PerceptionErro
 from scope_ptz.geometry import Pose
 from scope_ptz.perception.base import Perception
 from scope_ptz.planner.base import CallTools, Exchange, ToolCall, ToolOutcome
-from scope_ptz.tools.arguments import CountObjects, QueryAnswer
 from scope_ptz.tools.context import ImageStore, ToolContext
-from scope_ptz.tools.registry import parse_call, run_tool
+from scope_ptz.tools.registry import TOOLS, ToolRegistry
 from scope_ptz.tools.results import Result
 
 MOST_AT_ONCE = 8
@@ -70,10 +69,11 @@ class Calls:
         *,
         snapshots: bool,
         sees: bool,
-        run_tool: RunTool = run_tool,
+        tools: ToolRegistry = TOOLS,
+        run_tool: RunTool | None = None,
     ) -> None:
         self._raw_camera, self._perception, self._images, self._watch, self._emit = camera, perception, images, watch, emit
-        self._snapshots, self._sees, self._run_tool = snapshots, sees, run_tool
+        self._snapshots, self._sees, self._tools, self._run_tool = snapshots, sees, tools, run_tool or tools.run
         self.camera = TimedCamera(camera, watch)
         self.pose = Pose()
         self.bad_calls = self.perception_failures = 0
@@ -83,7 +83,7 @@ class Calls:
         """Run the calls of a step in order. After one that failed the rest is not done: it was planned for another state."""
         done: dict[int, _Done] = {}
         try:
-            for batch in batches(decision.calls):
+            for batch in batches(decision.calls, self._tools):
                 await self._batch(step, decision.calls, batch, done)
                 failed = [done[index] for index in batch if done[index].outcome.error is not None]
                 if failed:
@@ -179,11 +179,11 @@ class Calls:
         )
 
 
-def batches(calls: Sequence[ToolCall]) -> Iterator[list[int]]:
+def batches(calls: Sequence[ToolCall], tools: ToolRegistry = TOOLS) -> Iterator[list[int]]:
     """The calls by index, those together that can be made at the same time: neighbours that only look, at the view of now."""
     together: list[int] = []
     for index, call in enumerate(calls):
-        if _only_looks(call):
+        if _only_reads(call, tools):
             together.append(index)
             if len(together) == MOST_AT_ONCE:
                 yield together
@@ -197,14 +197,14 @@ def batches(calls: Sequence[ToolCall]) -> Iterator[list[int]]:
         yield together
 
 
-def _only_looks(call: ToolCall) -> bool:
+def _only_reads(call: ToolCall, tools: ToolRegistry) -> bool:
     if call.problem is not None:
         return False
     try:
-        _, arguments = parse_call(call.name, call.arguments)
+        tool, arguments = tools.parse_call(call.name, call.arguments)
     except ToolCallError:
         return False
-    return isinstance(arguments, CountObjects | QueryAnswer) and arguments.view == "current"
+    return tool.only_reads(arguments)
 
 
 def in_words(error: Exception) -> str:

@@ -24,7 +24,7 @@ from scope_ptz.geometry import Pose
 from scope_ptz.perception.base import Perception
 from scope_ptz.planner.base import Briefing, CallTools, Decision, Exchange, Finish, PastTurn, Planner, State, Usage
 from scope_ptz.tools.context import ImageStore
-from scope_ptz.tools.registry import run_tool, schemas
+from scope_ptz.tools.registry import TOOLS, ToolRegistry
 
 MAX_INSTRUCTION_CHARS = 4000
 STOP_TIMEOUT_S = 5.0
@@ -43,15 +43,16 @@ class Agent:
         budgets: Budgets | None = None,
         labels: Labels | None = None,
         snapshots: bool = True,
-        run_tool: RunTool = run_tool,
+        tools: ToolRegistry = TOOLS,
+        run_tool: RunTool | None = None,
     ) -> None:
         """``snapshots``: keep the first view and the view after each move; tools keep what perception looks at in any case.
 
-        ``run_tool``: what makes the calls, for whoever wants to watch them being made.
+        ``tools``: the tools that the planner can call. ``run_tool``: runs the calls in place of ``tools.run``.
         """
         self.planner, self.camera, self.perception, self.images = planner, camera, perception, images
         self.budgets, self.labels, self.snapshots = budgets or Budgets(), labels or Labels(), snapshots
-        self.run_tool = run_tool
+        self.tools, self.run_tool = tools, run_tool
 
     async def run(self, instruction: str, *, conversation: tuple[PastTurn, ...] = (), listener: Listener = lambda _: None) -> Run:
         """Carry out an instruction.
@@ -84,6 +85,7 @@ class _Episode:
             listener,
             snapshots=agent.snapshots,
             sees=agent.planner.sees,
+            tools=agent.tools,
             run_tool=agent.run_tool,
         )
         self.camera = self.calls.camera
@@ -144,7 +146,7 @@ class _Episode:
         return Briefing(presets=presets, pose=self.start, limits=info.limits)
 
     async def _steps(self, briefing: Briefing) -> End:
-        budgets, tools = self.agent.budgets, tuple(schemas())
+        budgets, tools = self.agent.budgets, tuple(self.agent.tools.schemas())
         for self.steps in range(1, budgets.max_steps + 1):
             state = State(
                 instruction=self.instruction,

@@ -1,6 +1,6 @@
-"""Aiming on the sphere: the pose that puts a box in the middle of the frame at a wanted size.
+"""Aiming on the sphere: the pose that puts a box in the middle of the frame at a requested size.
 
-Everything goes through directions: adding image-space angles to pan and tilt is wrong off the axis and badly so at steep tilts.
+All calculations use directions. Adding angles in the image to pan and tilt is wrong off the axis, and very wrong at steep tilts.
 """
 
 from __future__ import annotations
@@ -18,20 +18,26 @@ from scope_ptz.perception.base import Box
 Floats = NDArray[np.float64]
 
 TARGET_FILL = 0.75
-"""Share of its limiting side that a framed target fills (60 to 90% is asked for)."""
+"""Share of its limiting side that a framed target fills. The paper asks for 60 to 90%."""
 
 
 @dataclass(frozen=True, slots=True)
 class Aim:
-    """A pose for framing a target: the fill of the limiting side that it aims at, and the limits that keep it from that."""
+    """A pose that frames a target.
+
+    Attributes:
+        pose: The pose, within the camera's limits.
+        fill: The requested share of the limiting side, None for a pose at a given zoom.
+        limited_by: The limits that keep the target from the middle or from the requested size.
+    """
 
     pose: Pose
-    fill_wanted: float | None
+    fill: float | None
     limited_by: tuple[Axis, ...]
 
 
 def outline(frame: Frame, box: Box, per_side: int = 9) -> Floats:
-    """Directions (4 * per_side, 3) along the border of a box in a frame."""
+    """Return directions of shape ``(4 * per_side, 3)`` along the border of a box in a frame."""
     t = np.linspace(0.0, 1.0, per_side)
     xs, ys = box.x_min + t * box.width, box.y_min + t * box.height
     low_x, high_x, low_y, high_y = (np.full(per_side, v) for v in (box.x_min, box.x_max, box.y_min, box.y_max))
@@ -40,12 +46,12 @@ def outline(frame: Frame, box: Box, per_side: int = 9) -> Floats:
 
 
 def view(info: CameraInfo, pose: Pose) -> Perspective:
-    """The camera's picture at a pose."""
+    """Return the projection of the camera's picture at a pose."""
     return Perspective(pose.pan_deg, pose.tilt_deg, info.optics.hfov_deg(pose.zoom), info.frame_width, info.frame_height)
 
 
 def spans(points: Floats) -> tuple[float, float, float, float]:
-    """Left, top, right, bottom of normalised points; infinite when some lie behind the camera."""
+    """Return left, top, right and bottom of normalised points; infinite if some lie behind the camera."""
     if np.isnan(points).any():
         return -math.inf, -math.inf, math.inf, math.inf
     (left, top), (right, bottom) = points.min(axis=0), points.max(axis=0)
@@ -53,7 +59,16 @@ def spans(points: Floats) -> tuple[float, float, float, float]:
 
 
 def measure(info: CameraInfo, pose: Pose, target: Floats) -> tuple[float, tuple[float, float]]:
-    """Fill of the limiting side and offset of the middle of a target (directions (n, 3)) seen from a pose."""
+    """Return how a target appears at a pose.
+
+    Args:
+        info: The camera.
+        pose: The pose.
+        target: Directions of shape ``(n, 3)`` along the target's outline.
+
+    Returns:
+        The share of the limiting side that the target fills, and the offset of its middle as shares of width and height.
+    """
     left, top, right, bottom = spans(view(info, pose).points(target))
     if not math.isfinite(left):
         return math.inf, (math.inf, math.inf)
@@ -61,9 +76,9 @@ def measure(info: CameraInfo, pose: Pose, target: Floats) -> tuple[float, tuple[
 
 
 def aim(info: CameraInfo, start: Pose, target: Floats, fill: float = TARGET_FILL) -> Aim:
-    """The pose within the limits that centres a target and makes it fill ``fill`` of its limiting side.
+    """Return the pose within the limits that centres a target and makes it fill ``fill`` of its limiting side.
 
-    Pan and tilt are iterated because a box turned to another view is no longer the same box: its middle moves.
+    The calculation iterates because the bounding box of a target, and so its middle, changes with the view.
     """
     middle = target.mean(axis=0)
     limits = info.limits
@@ -71,33 +86,33 @@ def aim(info: CameraInfo, start: Pose, target: Floats, fill: float = TARGET_FILL
     for _ in range(8):
         pan, tilt = (float(v) for v in pan_tilt_deg(middle))
         zoom = _zoom_for(info, Pose(pan, tilt, start.zoom), target, fill)
-        wanted = pose_towards(info, pan, tilt, zoom)
-        pose, cut = limits.clamp(wanted)
+        requested = pose_towards(info, pan, tilt, zoom)
+        pose, cut = limits.clamp(requested)
         clamped = set(cut)
-        left, top, right, bottom = spans(view(info, wanted).points(target))
+        left, top, right, bottom = spans(view(info, requested).points(target))
         if not math.isfinite(left):
             break
-        middle = view(info, wanted).directions(np.array([(left + right) / 2, (top + bottom) / 2]))
+        middle = view(info, requested).directions(np.array([(left + right) / 2, (top + bottom) / 2]))
     return Aim(pose, fill, in_order(clamped))
 
 
 def aim_at_zoom(info: CameraInfo, target: Floats, zoom: float) -> Aim:
-    """The pose within the limits that looks at the middle of a target with a given magnification."""
+    """Return the pose within the limits that looks at the middle of a target at a given magnification."""
     pan, tilt = (float(v) for v in pan_tilt_deg(target.mean(axis=0)))
     pose, clamped = info.limits.clamp(pose_towards(info, pan, tilt, zoom))
     return Aim(pose, None, clamped)
 
 
 def in_order(axes: set[Axis]) -> tuple[Axis, ...]:
-    """Axes in the order in which people name them."""
+    """Return axes in the order pan, tilt, zoom."""
     order: tuple[Axis, ...] = ("pan", "tilt", "zoom")
     return tuple(name for name in order if name in axes)
 
 
 def _zoom_for(info: CameraInfo, pose: Pose, target: Floats, fill: float) -> float:
-    """Magnification at which the target fills its share: sizes in a centred view grow in proportion to the focal length.
+    """Return the magnification at which the target fills its share. Sizes in a centred view grow with the focal length.
 
-    What lies beyond the lens's range comes out beyond the camera's limits, so that clamping tells.
+    A focal length outside the lens's range gives a zoom outside the camera's limits, so that clamping reports it.
     """
     optics = info.optics
     reached, _ = measure(info, pose, target)
@@ -112,18 +127,18 @@ def _zoom_for(info: CameraInfo, pose: Pose, target: Floats, fill: float) -> floa
 
 
 def is_cut(box: Box, margin: float = 0.004) -> bool:
-    """Whether a box touches the border of its frame: the target may go on outside."""
+    """Return whether a box touches the border of its frame, so that the target may continue outside."""
     return min(box.x_min, box.y_min, 1 - box.x_max, 1 - box.y_max) <= margin
 
 
 def nearest(info: CameraInfo, frame: Frame, boxes: tuple[Box, ...], target: Floats) -> Box | None:
-    """The box that continues a known target: the one whose middle is closest to where the target must be now."""
+    """Return the box of a known target: the one nearest to its expected place, or None if that one is too far away."""
     left, top, right, bottom = spans(frame.projection.points(target))
     if not boxes or not math.isfinite(left):
         return None
     x, y = (left + right) / 2, (top + bottom) / 2
     best = min(boxes, key=lambda b: math.hypot(b.centre[0] - x, (b.centre[1] - y) * info.frame_height / info.frame_width))
-    # What was seen before may have been a sliver of it, or it of what is seen now.
+    # The earlier box or this one may show only part of the target, so the larger of the two sets the tolerance.
     near_x, near_y = max(right - left, best.width, 0.05), max(bottom - top, best.height, 0.05)
     if abs(best.centre[0] - x) > near_x or abs(best.centre[1] - y) > near_y:
         return None
@@ -131,13 +146,13 @@ def nearest(info: CameraInfo, frame: Frame, boxes: tuple[Box, ...], target: Floa
 
 
 def pose_towards(info: CameraInfo, pan_deg: float, tilt_deg: float, zoom: float) -> Pose:
-    """The pose that looks at a direction, on the side of the pan stops where it can."""
+    """Return the pose that looks at a direction, with a pan between the stops if there is one."""
     limits = info.limits
     return Pose(pan_deg if limits.pan_endless else limits.aim_pan_deg(pan_deg), tilt_deg, zoom)
 
 
 def lookahead(previous: Floats, now: Floats, ratio: float) -> Floats:
-    """Where a middle moving from ``previous`` to ``now`` will be after ``ratio`` times that interval (unit vectors (3,))."""
+    """Extrapolate the motion from direction ``previous`` to ``now`` by ``ratio`` times their interval. Unit vectors of shape (3,)."""
     pan0, tilt0 = pan_tilt_deg(previous)
     pan1, tilt1 = pan_tilt_deg(now)
     turn = (float(pan1 - pan0) + 180.0) % 360.0 - 180.0

@@ -1,4 +1,4 @@
-"""What a tool works with: a camera, eyes, and a place for pictures."""
+"""What a tool works with: a camera, perception, and a store for pictures."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from scope_ptz.perception.base import Perception
 
 
 class ImageStore(Protocol):
-    """Keeps pictures under names that never collide; the names are relative to the run folder."""
+    """Saves pictures under unique names, which are relative to the run folder."""
 
     def save_look(self, frame: Frame) -> str:
-        """Keep a frame that perception looked at (compressed)."""
+        """Save a frame that perception received, compressed, and return its name."""
         ...
 
     def save_picture(self, frame: Frame) -> str:
-        """Keep a picture that the user asked for (lossless)."""
+        """Save a picture that the user asked for, without loss, and return its name."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class ToolContext:
-    """The two contracts and the store that all tools are written against."""
+    """The camera, the perception and the picture store of a run."""
 
     camera: Camera
     perception: Perception
@@ -31,7 +31,7 @@ class ToolContext:
 
 
 def pose_text(arrival: Arrival) -> str:
-    """Where the camera is now and what a limit cut, as the end of a sentence."""
+    """Return the camera's pose and the limits that stopped it, as the end of a sentence."""
     pose = arrival.pose.as_dict()
     text = f"the camera is at pan {pose['pan_deg']:g}, tilt {pose['tilt_deg']:g}, zoom {pose['zoom']:g}x"
     if arrival.clamped:

@@ -1,77 +1,90 @@
-"""The nine tools by name: their schemas for planners, and one guarded way to run them."""
+"""The nine tools of the paper by name. A new tool is a file of its own and one line in ``TOOLS``."""
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from pydantic import ValidationError
 
 from scope_ptz.errors import ToolCallError
-from scope_ptz.tools import arguments as args
+from scope_ptz.tools.adjust_ptz import ADJUST_PTZ
+from scope_ptz.tools.arguments import Arguments
 from scope_ptz.tools.context import ToolContext
-from scope_ptz.tools.looking import count_objects, query_answer
-from scope_ptz.tools.moves import adjust_ptz, get_presets, go_home, go_to_preset, take_image
+from scope_ptz.tools.count_objects import COUNT_OBJECTS
+from scope_ptz.tools.get_presets import GET_PRESETS
+from scope_ptz.tools.go_home import GO_HOME
+from scope_ptz.tools.go_to_preset import GO_TO_PRESET
+from scope_ptz.tools.query_answer import QUERY_ANSWER
 from scope_ptz.tools.results import Result
-from scope_ptz.tools.tracking import track_object
-from scope_ptz.tools.zooming import zoom_to_object
+from scope_ptz.tools.take_image import TAKE_IMAGE
+from scope_ptz.tools.tool import Tool
+from scope_ptz.tools.track_object import TRACK_OBJECT
+from scope_ptz.tools.zoom_to_object import ZOOM_TO_OBJECT
 
 
-@dataclass(frozen=True, slots=True)
-class Tool:
-    """A tool: its name, its validated arguments, and what it does."""
+class ToolRegistry(Mapping[str, Tool]):
+    """Tools by name, in the order in which planners see them.
 
-    name: str
-    arguments: type[args.Arguments]
-    run: Callable[[ToolContext, Any], Awaitable[Result]]
+    Args:
+        tools: The tools.
+    """
 
-    def schema(self) -> dict[str, Any]:
-        """The tool in the OpenAI function format."""
-        parameters = self.arguments.model_json_schema()
-        for prop in parameters.get("properties", {}).values():
-            prop.pop("title", None)
-        parameters.pop("title", None)
-        description = parameters.pop("description")
-        parameters.setdefault("properties", {})
-        return {
-            "type": "function",
-            "function": {"name": self.name, "description": description, "parameters": parameters},
-        }
+    def __init__(self, *tools: Tool) -> None:
+        self._tools = {tool.name: tool for tool in tools}
 
+    def __getitem__(self, name: str) -> Tool:
+        return self._tools[name]
 
-_ALL = (
-    Tool("adjust_ptz", args.AdjustPtz, adjust_ptz),
-    Tool("go_to_preset", args.GoToPreset, go_to_preset),
-    Tool("go_home", args.GoHome, go_home),
-    Tool("get_presets", args.GetPresets, get_presets),
-    Tool("take_image", args.TakeImage, take_image),
-    Tool("count_objects", args.CountObjects, count_objects),
-    Tool("query_answer", args.QueryAnswer, query_answer),
-    Tool("zoom_to_object", args.ZoomToObject, zoom_to_object),
-    Tool("track_object", args.TrackObject, track_object),
-)
-TOOLS: dict[str, Tool] = {tool.name: tool for tool in _ALL}
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._tools)
 
+    def __len__(self) -> int:
+        return len(self._tools)
 
-def schemas() -> list[dict[str, Any]]:
-    """All nine tools in the OpenAI function format, in the paper's order."""
-    return [tool.schema() for tool in _ALL]
+    @property
+    def moving(self) -> frozenset[str]:
+        """Names of the tools that can move the camera."""
+        return frozenset(name for name, tool in self._tools.items() if tool.moves)
 
+    @property
+    def perceiving(self) -> tuple[str, ...]:
+        """Names of the tools that ask perception."""
+        return tuple(name for name, tool in self._tools.items() if tool.perceives)
 
-def parse_call(name: str, arguments: Any) -> tuple[Tool, args.Arguments]:
-    """Check a call; raises ``ToolCallError`` with a message that tells a planner how to mend it."""
-    tool = TOOLS.get(name)
-    if tool is None:
-        raise ToolCallError(f"There is no tool '{str(name)[:60]}'. The tools are {', '.join(TOOLS)}.")
-    if not isinstance(arguments, dict):
-        raise ToolCallError(f"The arguments of {name} must be a JSON object, got {type(arguments).__name__}.")
-    try:
-        return tool, tool.arguments.model_validate(arguments)
-    except ValidationError as error:
-        known = ", ".join(tool.arguments.model_fields) or "no arguments"
-        problems = "; ".join(_problem(e["loc"], e["msg"]) for e in error.errors(include_url=False, include_input=False))
-        raise ToolCallError(f"Wrong arguments for {name}: {problems}. It takes {known}.") from error
+    def schemas(self) -> list[dict[str, Any]]:
+        """Return all tools in the OpenAI function format."""
+        return [tool.schema() for tool in self._tools.values()]
+
+    def parse_call(self, name: str, arguments: Any) -> tuple[Tool, Arguments]:
+        """Validate a call.
+
+        Raises:
+            ToolCallError: The name or the arguments are wrong. The message tells a planner how to correct the call.
+        """
+        tool = self._tools.get(name)
+        if tool is None:
+            raise ToolCallError(f"There is no tool '{str(name)[:60]}'. The tools are {', '.join(self._tools)}.")
+        if not isinstance(arguments, dict):
+            raise ToolCallError(f"The arguments of {name} must be a JSON object, got {type(arguments).__name__}.")
+        try:
+            return tool, tool.arguments.model_validate(arguments)
+        except ValidationError as error:
+            known = ", ".join(tool.arguments.model_fields) or "no arguments"
+            problems = "; ".join(_problem(e["loc"], e["msg"]) for e in error.errors(include_url=False, include_input=False))
+            raise ToolCallError(f"Wrong arguments for {name}: {problems}. It takes {known}.") from error
+
+    async def run(self, context: ToolContext, name: str, arguments: Any) -> Result:
+        """Validate and run a call.
+
+        Raises:
+            ToolCallError: The call is wrong. Nothing was done.
+            UnknownNameError: A preset does not exist. Nothing was done.
+            PerceptionError: The view could not be read.
+            CameraError: The camera failed.
+        """
+        tool, checked = self.parse_call(name, arguments)
+        return await tool.run(context, checked)
 
 
 def _problem(where: tuple[int | str, ...], message: str) -> str:
@@ -79,14 +92,18 @@ def _problem(where: tuple[int | str, ...], message: str) -> str:
     return f"{path}: {message}" if path else message
 
 
-async def run_tool(context: ToolContext, name: str, arguments: Any) -> Result:
-    """Check and run a call.
+TOOLS = ToolRegistry(
+    ADJUST_PTZ,
+    GO_TO_PRESET,
+    GO_HOME,
+    GET_PRESETS,
+    TAKE_IMAGE,
+    COUNT_OBJECTS,
+    QUERY_ANSWER,
+    ZOOM_TO_OBJECT,
+    TRACK_OBJECT,
+)
 
-    Raises:
-        ToolCallError: the call itself is wrong; nothing was done.
-        UnknownNameError: a preset that does not exist; nothing was done.
-        PerceptionError: the view could not be read.
-        CameraError: the camera did not do what it was told.
-    """
-    tool, checked = parse_call(name, arguments)
-    return await tool.run(context, checked)
+schemas = TOOLS.schemas
+parse_call = TOOLS.parse_call
+run_tool = TOOLS.run

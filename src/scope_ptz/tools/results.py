@@ -1,15 +1,16 @@
-"""What the nine tools give back. Every result states the pose after it and what a limit cut."""
+"""The results of tools. Every result states the pose after the call and the axes that a limit stopped."""
 
 from __future__ import annotations
 
 from pydantic import BaseModel, ConfigDict
 
 from scope_ptz.geometry import Axis, Pose
-from scope_ptz.perception.base import Box
 from scope_ptz.tools.arguments import View
 
 
 class PoseData(BaseModel):
+    """A pose as JSON data, in degrees and magnification."""
+
     model_config = ConfigDict(frozen=True)
 
     pan_deg: float
@@ -18,11 +19,18 @@ class PoseData(BaseModel):
 
     @classmethod
     def of(cls, pose: Pose) -> PoseData:
+        """Return a pose as data."""
         return cls(**pose.as_dict())
 
 
 class Result(BaseModel):
-    """``message`` is one plain sentence for the planner and the person; ``clamped`` names the axes that a limit cut."""
+    """Base of all results.
+
+    Attributes:
+        message: One plain sentence for the planner and the person.
+        pose: The camera's pose after the call.
+        clamped: The axes that a limit stopped.
+    """
 
     model_config = ConfigDict(frozen=True)
 
@@ -32,73 +40,24 @@ class Result(BaseModel):
 
 
 class MoveResult(Result):
-    """``adjust_ptz``, ``go_to_preset``, ``go_home``."""
+    """The result of ``adjust_ptz``, ``go_to_preset`` and ``go_home``.
+
+    Attributes:
+        preset: The preset that the camera went to, None for other moves.
+    """
 
     preset: str | None = None
 
 
-class PresetsResult(Result):
-    presets: tuple[str, ...]
+class PerceptionResult(Result):
+    """Base of the results that rest on perception.
 
-
-class ImageResult(Result):
-    """``file``: name of the saved picture inside the run folder."""
-
-    file: str
-
-
-class Seen(Result):
-    """Results that rest on perception: who looked, at which view, and in which saved pictures (``frames``, run-folder names)."""
+    Attributes:
+        source: The perception that answered.
+        view: The view that it received.
+        frames: File names of the saved pictures in the run folder.
+    """
 
     source: str
     view: View = "current"
     frames: tuple[str, ...] = ()
-
-
-class CountResult(Seen):
-    """Not ``complete``: there are at least so many."""
-
-    description: str
-    count: int
-    complete: bool = True
-    boxes: tuple[Box, ...] = ()
-
-
-class AnswerResult(Seen):
-    """``known`` is False when the honest answer is "I cannot tell"."""
-
-    question: str
-    answer: str
-    known: bool
-
-
-class ZoomResult(Seen):
-    """``fill``: share of its limiting side that the target fills after the move; ``offset``: of its centre from the frame's centre,
-    as shares of width and height; ``limited_by``: limits that kept the target from the middle or from its size."""
-
-    description: str
-    found: bool
-    matches: int
-    chosen: str = ""
-    fill: float | None = None
-    offset: tuple[float, float] | None = None
-    limited_by: tuple[Axis, ...] = ()
-    box: Box | None = None
-
-
-class TrackPoint(BaseModel):
-    model_config = ConfigDict(frozen=True)
-
-    time_s: float
-    pose: PoseData
-    seen: bool
-
-
-class TrackResult(Seen):
-    """``held_share``: share of the time asked for that the target was seen; ``path``: where the camera looked while following."""
-
-    description: str
-    found: bool
-    duration_s: float
-    held_share: float
-    path: tuple[TrackPoint, ...] = ()

@@ -1,7 +1,7 @@
 """The full scene: one deterministic sweep at the widest zoom, stitched into one panorama.
 
-A PTZ camera turns about its optical centre, so overlapping frames differ by a re-projection only: each block of the panorama is
-taken from the one frame whose middle is nearest, without blending, and no object is seen twice.
+A PTZ camera turns about its optical centre, so overlapping frames differ only by a re-projection. Each block of the panorama
+comes from the frame with the nearest middle, without blending, so that no object appears twice.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from scope_ptz.camera.base import Camera, CameraInfo, Frame
 from scope_ptz.errors import CameraError
 from scope_ptz.geometry import Equirectangular, Limits, Perspective, Pose
 
-_GRID_PX = 8  # Projection is computed on this grid and interpolated: under 0.02 px of error at these angles.
+_GRID_PX = 8  # The projection is computed on this grid and interpolated, with an error below 0.02 px at these angles.
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,12 +34,12 @@ class Block:
 
 
 def plan_sweep(info: CameraInfo) -> list[Block]:
-    """Poses at the widest zoom whose frames cover all pans and tilts that the camera reaches, top row first, left to right."""
+    """Return the blocks of a sweep: their frames cover all pans and tilts that the camera reaches. Top row first, left to right."""
     limits, hfov = info.limits, info.optics.hfov_deg(info.limits.min_zoom)
     half_height = math.tan(math.radians(hfov) / 2) * info.frame_height / info.frame_width
     columns = math.ceil(_pan_span_deg(limits) / (hfov * 0.85))
     step = _pan_span_deg(limits) / columns
-    # Off its axis a frame covers less height; at the edge of a column this much is left, and a degree less when tilted.
+    # A frame covers less height off its axis. This is the reach at the edge of a column, less one degree for tilted frames.
     reach = math.degrees(math.atan(half_height * math.cos(math.radians(step / 2)))) - 1.0
     top = min(limits.max_tilt_deg + reach, 30.0)
     low, high = limits.min_tilt_deg, min(limits.max_tilt_deg, top - reach)
@@ -58,12 +58,12 @@ def plan_sweep(info: CameraInfo) -> list[Block]:
 
 def _pan_span_deg(limits: Limits) -> float:
     span = limits.max_pan_deg - limits.min_pan_deg
-    # Stops at +-179 leave two degrees behind the camera that its frames cover all the same.
+    # Between stops at +-179, the frames also cover the two degrees behind the camera.
     return 360.0 if limits.pan_endless or span >= 340.0 else span
 
 
 async def sweep(camera: Camera) -> Frame:
-    """Take the sweep at one instant of scene time and stitch it; the camera is back where it was afterwards, also on failure."""
+    """Take the frames of a sweep at one instant of scene time and stitch them. The camera returns to its pose, also on failure."""
     start = await camera.pose()
     blocks = plan_sweep(camera.info)
     frames = []
@@ -72,7 +72,7 @@ async def sweep(camera: Camera) -> Frame:
             for block in blocks:
                 arrival = await camera.move(block.pose)
                 if arrival.clamped:
-                    raise CameraError(f"The sweep wants {block.pose} and the camera stops at {arrival.pose}.")
+                    raise CameraError(f"The sweep needs {block.pose} and the camera stops at {arrival.pose}.")
                 frames.append(await camera.frame())
         finally:
             await camera.move(start)
@@ -80,7 +80,7 @@ async def sweep(camera: Camera) -> Frame:
 
 
 def stitch(blocks: list[Block], frames: list[Frame], pose: Pose) -> Frame:
-    """One equirectangular frame from a sweep, at the pixel density of the middle of its frames."""
+    """Stitch the frames of a sweep into one equirectangular frame, at the pixel density in the middle of the frames."""
     first = frames[0]
     if any((f.width, f.height) != (first.width, first.height) for f in frames):
         raise CameraError("The camera changed its picture size during the sweep.")
@@ -105,7 +105,7 @@ def stitch(blocks: list[Block], frames: list[Frame], pose: Pose) -> Frame:
 def _block_maps(
     whole: Equirectangular, view: Perspective, x0: int, y0: int, x1: int, y1: int
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Source pixel of every panorama pixel of a block, interpolated from a coarse grid of exact ones."""
+    """Return the source pixel of every panorama pixel of a block, interpolated from a coarse grid of exact values."""
     columns, rows = (x1 - x0) // _GRID_PX + 2, (y1 - y0) // _GRID_PX + 2
     xs = (x0 + 0.5 + np.arange(columns) * _GRID_PX) / whole.width
     ys = (y0 + 0.5 + np.arange(rows) * _GRID_PX) / whole.height

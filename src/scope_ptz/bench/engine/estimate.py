@@ -8,8 +8,9 @@ from statistics import fmean
 
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.scoring.trials import Evaluation
+from scope_ptz.tools.registry import TOOLS
 
-_LOOKERS = frozenset({"count_objects", "query_answer", "zoom_to_object", "track_object"})
+_LOOKERS = frozenset(TOOLS.perceiving)
 TYPICAL_CALLS = 2.0
 """Of a task that has no reference program."""
 CHARS_A_TOKEN, STEP_TOKENS, SAID_TOKENS = 4.0, 100, 40

@@ -13,12 +13,13 @@ from scope_ptz.bench.scoring.trials import RunCard
 from scope_ptz.bench.scoring.verdict import MOVERS
 from scope_ptz.bench.tasks.expected import ActionOnly
 from scope_ptz.bench.tasks.task import Task
+from scope_ptz.tools.registry import TOOLS as REGISTRY
 
 SLACK_S = 0.5
 """By how much the parts of a time may exceed the whole: clocks are read one after the other."""
 BREAKING = ("camera_error", "cancelled", "planner_error")
 """Outcomes with which infrastructure ends a run; a planner's error may be its own, too."""
-LOOKERS = ("count_objects", "query_answer", "zoom_to_object", "track_object")
+LOOKERS = REGISTRY.perceiving
 MOVING = frozenset({"move", "zoom", "preset"})
 """What a task may need that changes where the camera is or looks."""
 

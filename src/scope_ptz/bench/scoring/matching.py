@@ -8,13 +8,9 @@ from typing import Any
 from scope_ptz.bench.answers.words import names_any
 from scope_ptz.bench.scoring.episode import Call
 from scope_ptz.bench.tasks.task import Argument, RequiredCall
+from scope_ptz.tools.registry import TOOLS
 
-_DEFAULTS: dict[str, dict[str, Any]] = {
-    "adjust_ptz": {"pan_deg": 0.0, "tilt_deg": 0.0},
-    "count_objects": {"view": "current"},
-    "query_answer": {"view": "current"},
-    "track_object": {"duration_s": 10.0},
-}
+_DEFAULTS: dict[str, dict[str, Any]] = {name: tool.defaults() for name, tool in TOOLS.items()}
 
 
 def arguments_of(call: Call) -> Mapping[str, Any]:

@@ -15,9 +15,10 @@ from scope_ptz.bench.scoring.episode import Episode
 from scope_ptz.bench.tasks.expected import ActionOnly
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import ScopeError
+from scope_ptz.tools.registry import TOOLS
 
 Headline = Literal["correct", "incorrect", "unscored", "infrastructure"]
-MOVERS = frozenset({"adjust_ptz", "go_to_preset", "go_home", "zoom_to_object", "track_object"})
+MOVERS = TOOLS.moving
 AGENTS_OWN_FAILURES = frozenset({"empty", "context-overflow"})
 """Ways in which a planner's server fails that are the model's doing: it said nothing, or filled its context."""
 

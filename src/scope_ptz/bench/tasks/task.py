@@ -5,12 +5,13 @@ Angles are degrees in the camera's own frame (pan positive = right, tilt positiv
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, JsonValue, TypeAdapter, model_validator
 
 from scope_ptz.bench.tasks.expected import ActionOnly, Expected, Wordings
 from scope_ptz.simulator.pack import variation_name
+from scope_ptz.tools.registry import TOOLS
 
 CANARY: Literal["SCOPE-BENCH-CANARY 6b0c2f0e-9d1e-4f6c-8a57-0e2f6a1d7c34"] = (
     "SCOPE-BENCH-CANARY 6b0c2f0e-9d1e-4f6c-8a57-0e2f6a1d7c34"
@@ -24,17 +25,10 @@ Scope = Literal["current", "full"]
 Need = Literal["move", "sweep", "zoom", "preset"]
 Stratum = Literal["core", "reaction", "paraphrase"]
 RunOutcome = Literal["answered", "clarification", "refused"]
-ToolName = Literal[
-    "adjust_ptz",
-    "go_to_preset",
-    "go_home",
-    "get_presets",
-    "take_image",
-    "count_objects",
-    "query_answer",
-    "zoom_to_object",
-    "track_object",
-]
+if TYPE_CHECKING:
+    ToolName = str
+else:
+    ToolName = Literal[tuple(TOOLS)]  # the names of the registry, so that a new tool needs no edit here
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 

@@ -8,8 +8,9 @@ from typing import Any
 
 from scope_ptz.geometry import Pose
 from scope_ptz.planner.base import PastTurn, ToolOutcome
+from scope_ptz.tools.registry import TOOLS
 
-_MOVES = frozenset({"adjust_ptz", "go_home", "go_to_preset", "zoom_to_object", "track_object"})
+_MOVES = TOOLS.moving
 
 
 @dataclass(frozen=True, slots=True)

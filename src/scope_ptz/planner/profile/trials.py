@@ -15,7 +15,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from scope_ptz.errors import PlannerError, ToolCallError
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import Briefing, CallTools, Planner, State, Usage
-from scope_ptz.tools.arguments import AdjustPtz
+from scope_ptz.tools.adjust_ptz import AdjustPtz
 from scope_ptz.tools.registry import parse_call, schemas
 
 PRESETS = ("gate", "highway")

@@ -14,8 +14,7 @@ from scope_ptz.simulator.models import ScenePreset
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.taskgen.authoring.words import degrees, times
 from scope_ptz.taskgen.facts.robust import EYES, Sight, sight
-from scope_ptz.tools.arguments import AdjustPtz
-from scope_ptz.tools.moves import wanted_pose
+from scope_ptz.tools.adjust_ptz import AdjustPtz, requested_pose
 
 _PRESET = (
     "go to the {p} preset", "switch to the {p} view", "move to the preset {p}", "select the {p} preset", "bring up the {p} view",
@@ -136,7 +135,7 @@ def preset_at(preset: ScenePreset) -> Standing:
 
 def move(at: Standing, call: ProgramCall) -> Standing | None:
     """Where an adjustment leads; None when a limit would cut it."""
-    pose, cut = EYES.limits.clamp(wanted_pose(at.pose, AdjustPtz.model_validate(call.arguments), EYES.limits))
+    pose, cut = EYES.limits.clamp(requested_pose(at.pose, AdjustPtz.model_validate(call.arguments), EYES.limits))
     return None if cut else Standing(at.viewpoint, pose)
 
 

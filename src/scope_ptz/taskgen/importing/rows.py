@@ -17,8 +17,9 @@ from scope_ptz.taskgen.importing.calls import Expectation, expected_calls
 from scope_ptz.taskgen.importing.mapping import category_of, compares_arguments, order_of, policy_of, scope_of, spelled
 from scope_ptz.taskgen.importing.places import Places
 from scope_ptz.taskgen.importing.table import Row
+from scope_ptz.tools.registry import TOOLS
 
-MOVERS = frozenset({"adjust_ptz", "go_to_preset", "go_home", "zoom_to_object", "track_object"})
+MOVERS = TOOLS.moving
 _DIFFICULTIES: dict[str, Literal["easy", "medium", "hard"]] = {
     "easy": "easy", "simple": "easy", "low": "easy", "1": "easy", "medium": "medium", "moderate": "medium", "mid": "medium",
     "normal": "medium", "2": "medium", "hard": "hard", "difficult": "hard", "high": "hard", "3": "hard",

@@ -1,40 +1,78 @@
-"""track_object: localise, correct, repeat for the time asked."""
+"""The tool ``track_object``: detect, correct the aim, and repeat for the requested time."""
 
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import Annotated
 
 import numpy as np
+from pydantic import BaseModel, ConfigDict, Field
 
 from scope_ptz.camera.base import Frame
 from scope_ptz.geometry import Axis, angle_between_deg, pan_tilt_deg
 from scope_ptz.perception.base import Box
 from scope_ptz.tools.aiming import Floats, in_order, lookahead, pose_towards
-from scope_ptz.tools.arguments import TrackObject
+from scope_ptz.tools.arguments import Arguments, Phrase
 from scope_ptz.tools.context import ToolContext
-from scope_ptz.tools.results import PoseData, TrackPoint, TrackResult
+from scope_ptz.tools.results import PerceptionResult, PoseData
+from scope_ptz.tools.tool import Tool
 
 PERIOD_S = 0.5
-"""Time between two looks: the paper's 2 Hz control loop."""
+"""Time between two detections: the paper's control loop runs at 2 Hz."""
 
 DEAD_ZONE = 0.06
-"""Offsets below this share of the frame are not corrected: it spares the motors."""
+"""Offsets below this share of the frame are not corrected, which spares the motors."""
 
 FILL_RANGE = (0.12, 0.5)
-WANTED_FILL = 0.28
-"""Outside the range the zoom is corrected: room to move on one side, enough pixels to recognise on the other."""
+TRACKING_FILL = 0.28
+"""Outside the range, the zoom is corrected to this fill: room to move around the target, and enough pixels to recognise it."""
 
 FREE_RATE_DEG_S = 25.0
 STEADY_RATE_DEG_S = 10.0
-"""How fast a target may turn out to move, unknown or beside its known motion, and still be taken for the same one."""
+"""The fastest deviation from the expected direction at which a match is still the target, before and after its motion is known."""
 
-LOST_LOOKS = 2
+LOST_DETECTIONS = 2
 LOST_ZOOM = 0.6
-"""After so many looks without the target the view is widened by this factor, once for every further one."""
+"""After this many detections without the target, each further one widens the view by this factor."""
+
+
+class TrackObject(Arguments):
+    """Keep a moving object in the middle of the view for some time."""
+
+    description: Phrase = Field(description="What to follow, for example 'the white van'.")
+    duration_s: Annotated[float, Field(gt=0, le=600, allow_inf_nan=False)] = Field(10.0, description="For how many seconds.")
+
+
+class TrackPoint(BaseModel):
+    """The camera's pose at one time of the tracking, and whether the target was seen."""
+
+    model_config = ConfigDict(frozen=True)
+
+    time_s: float
+    pose: PoseData
+    seen: bool
+
+
+class TrackResult(PerceptionResult):
+    """How long a target was in view.
+
+    Attributes:
+        description: What was followed.
+        found: Whether anything fits the description.
+        duration_s: The requested time.
+        held_share: Share of that time in which the target was seen.
+        path: Where the camera looked while it followed the target.
+    """
+
+    description: str
+    found: bool
+    duration_s: float
+    held_share: float
+    path: tuple[TrackPoint, ...] = ()
 
 
 class _Target:
-    """What is known of the target while it is followed: its size and where its middle was at the last two sightings."""
+    """The target while it is followed: its size, and the directions of its middle at the last two sightings."""
 
     def __init__(self, frame: Frame, box: Box) -> None:
         self.size_deg = _size_deg(frame, box)
@@ -43,18 +81,19 @@ class _Target:
         self.before: tuple[Floats, float] | None = None
 
     def update(self, frame: Frame, box: Box) -> None:
+        """Add a sighting."""
         self.before = (self.middle, self.time_s)
         self.size_deg, self.middle, self.time_s = _size_deg(frame, box), _middle(frame, box), frame.time_s
 
     def at(self, time_s: float) -> Floats:
-        """Where the middle will be, by the motion between the last two sightings; no guess beyond two periods."""
+        """Extrapolate the motion between the last two sightings to a time, by two periods at most."""
         if self.before is None or self.time_s <= self.before[1]:
             return self.middle
         ahead = min(max(time_s - self.time_s, 0.0), 2 * PERIOD_S)
         return lookahead(self.before[0], self.middle, ahead / (self.time_s - self.before[1]))
 
     def find(self, frame: Frame, boxes: tuple[Box, ...]) -> Box | None:
-        """The box that continues the target: the nearest to where it should be, if it could have come that far."""
+        """Return the box nearest to the expected direction, or None if the target cannot have moved that far."""
         expected = self.at(frame.time_s)
         angles = [float(angle_between_deg(_middle(frame, box), expected)) for box in boxes]
         if not angles:
@@ -74,7 +113,7 @@ def _size_deg(frame: Frame, box: Box) -> float:
 
 
 async def track_object(context: ToolContext, arguments: TrackObject) -> TrackResult:
-    """Keep an object in the middle. Of several matches the first that perception names is followed, by nearness to where it was."""
+    """Keep an object in the middle. Of several matches, the first of perception's list is followed."""
     camera, description = context.camera, arguments.description
     frame = await camera.frame()
     found = await context.perception.detect(frame, description)
@@ -93,7 +132,7 @@ async def track_object(context: ToolContext, arguments: TrackObject) -> TrackRes
     while True:
         if seen is not None:
             clamped |= set(await _correct(context, frame, seen, target))
-        elif lost >= LOST_LOOKS:
+        elif lost >= LOST_DETECTIONS:
             pose = await camera.pose()
             clamped |= set(await _turn(context, target.at(frame.time_s + PERIOD_S), pose.zoom * LOST_ZOOM)) - {"zoom"}
         left_s = arguments.duration_s - (camera.clock.now_s() - started)
@@ -113,7 +152,7 @@ async def track_object(context: ToolContext, arguments: TrackObject) -> TrackRes
 
 
 async def _correct(context: ToolContext, frame: Frame, seen: Box, target: _Target) -> tuple[Axis, ...]:
-    """Aim at where the target will be at the next look, and mind its size."""
+    """Aim at where the target will be at the next detection, and correct the zoom if the target is too small or too large."""
     info = context.camera.info
     fill = max(seen.width, seen.height)
     offset = max(abs(seen.centre[0] - 0.5), abs(seen.centre[1] - 0.5))
@@ -121,9 +160,9 @@ async def _correct(context: ToolContext, frame: Frame, seen: Box, target: _Targe
     if offset <= DEAD_ZONE and FILL_RANGE[0] <= fill <= FILL_RANGE[1]:
         return ()
     zoom = pose.zoom
-    # Zooming in before its motion is known would lose a fast target.
+    # Zooming in before the motion is known would lose a fast target.
     if fill > FILL_RANGE[1] or (fill < FILL_RANGE[0] and target.before is not None):
-        zoom = info.optics.zoom_for_focal(info.optics.focal(pose.zoom) * WANTED_FILL / max(fill, 1e-3))
+        zoom = info.optics.zoom_for_focal(info.optics.focal(pose.zoom) * TRACKING_FILL / max(fill, 1e-3))
     return await _turn(context, target.at(frame.time_s + PERIOD_S), zoom)
 
 
@@ -153,7 +192,10 @@ def _report(
 
 
 def _held_share(path: list[TrackPoint]) -> float:
-    """Share of the time during which the target was seen: each look stands for the time since the one before it."""
+    """Return the share of the time in which the target was seen. Each detection counts for the time since the previous one."""
     held = sum((now.time_s - before.time_s) for before, now in pairwise(path) if now.seen)
     span = max(path[-1].time_s, 1e-9)
     return min(held / span, 1.0) if len(path) > 1 else 1.0
+
+
+TRACK_OBJECT = Tool("track_object", TrackObject, track_object, moves=True, perceives=True)

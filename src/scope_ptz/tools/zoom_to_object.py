@@ -1,35 +1,71 @@
-"""zoom_to_object: find, aim on the sphere, look again, frame it."""
+"""The tool ``zoom_to_object``: find an object, aim at it on the sphere, check, and frame it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+from pydantic import Field
+
 from scope_ptz.camera.base import Arrival, CameraInfo, Frame
-from scope_ptz.geometry import Pose, angle_between_deg, direction
+from scope_ptz.geometry import Axis, Pose, angle_between_deg, direction
 from scope_ptz.perception.base import Box
 from scope_ptz.tools.aiming import TARGET_FILL, Aim, Floats, aim, aim_at_zoom, is_cut, measure, nearest, outline
-from scope_ptz.tools.arguments import ZoomToObject
+from scope_ptz.tools.arguments import Arguments, Phrase
 from scope_ptz.tools.context import ToolContext, pose_text
-from scope_ptz.tools.results import PoseData, ZoomResult
+from scope_ptz.tools.results import PerceptionResult, PoseData
+from scope_ptz.tools.tool import Tool
 
-MAX_LOOKS = 3
-"""Localisations per call at most."""
+MAX_DETECTIONS = 3
+"""Perception calls per tool call."""
 
 SMALL_SHARE = 0.05
-"""A target below this share of its limiting side is localised again from closer: its box is too coarse to frame by."""
+"""A target that fills less than this share of its limiting side is detected again from closer: its box is too coarse to frame it."""
 
 CLOSER_FILL = 0.45
-"""How large a small target is made for the next look."""
+"""Share of its limiting side that a small target fills for the next detection."""
 
 CUT_ZOOM = 0.4
-"""Change of magnification for the next look at a target that goes on outside the frame: room for the part not seen yet."""
+"""Factor on the zoom for the next detection of a target that the frame cuts off, so that the whole target fits."""
 
 SETTLED_OFFSET = 0.012
 SETTLED_FILL = (0.64, 0.86)
+"""A target within this offset of the middle and in this range of sizes is framed well enough."""
+
+
+class ZoomToObject(Arguments):
+    """Find an object in the current view, centre it and zoom in on it."""
+
+    description: Phrase = Field(description="What to zoom in on, for example 'the white van'.")
+
+
+class ZoomResult(PerceptionResult):
+    """A target and how it is framed.
+
+    Attributes:
+        description: What was looked for.
+        found: Whether anything fits the description.
+        matches: Number of matches in the first frame.
+        chosen: Name of the match that the camera zoomed to.
+        fill: Share of its limiting side that the target fills after the move.
+        offset: Offset of the target's middle from the frame's middle, as shares of width and height.
+        limited_by: Limits that keep the target from the middle or from its size.
+        box: The target in the last frame.
+    """
+
+    description: str
+    found: bool
+    matches: int
+    chosen: str = ""
+    fill: float | None = None
+    offset: tuple[float, float] | None = None
+    limited_by: tuple[Axis, ...] = ()
+    box: Box | None = None
 
 
 @dataclass(frozen=True, slots=True)
-class _Look:
+class _Detection:
+    """The target in one frame."""
+
     frame: Frame
     box: Box
     matches: int
@@ -43,54 +79,54 @@ class _Look:
 async def zoom_to_object(context: ToolContext, arguments: ZoomToObject) -> ZoomResult:
     """Centre an object and make it fill its share of the frame.
 
-    Of several matches the first that perception names is taken (the ground truth: the largest in view). After a move the same
-    object is found again as the match nearest to where it must now be. Nothing found: the camera stays where it was.
+    Of several matches, the first of perception's list is used; the ground truth lists the largest first. After a move, the match
+    nearest to the expected place is the same object. The camera stays where it is if nothing is found.
     """
     start = await context.camera.pose()
     first = await _locate(context, arguments.description, None)
     if isinstance(first, Frame):
         return await _nothing(context, arguments.description, first)
-    seen, looks, target = first, 1, first.target
+    last, detections, target = first, 1, first.target
     frames = [context.images.save_look(first.frame)]
     try:
         while True:
-            plan = _plan(context.camera.info, await context.camera.pose(), seen.box, target, looks)
-            unsure = plan.fill_wanted != TARGET_FILL
-            if not unsure and _framed(context, await context.camera.pose(), target, plan):
+            plan = _plan(context.camera.info, await context.camera.pose(), last.box, target, detections)
+            interim = plan.fill != TARGET_FILL
+            if not interim and _framed(context, await context.camera.pose(), target, plan):
                 break
             before = await context.camera.pose()
             arrival = await context.camera.move(plan.pose)
-            if looks == MAX_LOOKS:
+            if detections == MAX_DETECTIONS:
                 break
             again = await _locate(context, arguments.description, target)
-            looks += 1
+            detections += 1
             if isinstance(again, Frame):
-                # Lost on the second look (a blurred or odd close-up): what is known of the target still holds.
-                if unsure:
+                # A close-up can be blurred or odd, so perception may lose the target there. Its direction is still known.
+                if interim:
                     await context.camera.move(aim(context.camera.info, arrival.pose, target).pose)
                 break
-            if arrival.pose == before and again.box == seen.box:
+            if arrival.pose == before and again.box == last.box:
                 break
-            seen, target = again, again.target
+            last, target = again, again.target
     except BaseException:
         await context.camera.move(start)
         raise
     return await _report(context, arguments.description, first, target, tuple(frames))
 
 
-def _plan(info: CameraInfo, pose: Pose, box: Box, target: Floats, looks: int) -> Aim:
-    """The next move: to the final framing only when the box can be trusted to be the whole target, else to a better look."""
-    if looks < MAX_LOOKS and is_cut(box):
-        # When much of it shows already, or a second look cut it again, only the widest view is sure to hold all of it.
+def _plan(info: CameraInfo, pose: Pose, box: Box, target: Floats, detections: int) -> Aim:
+    """Return the next move: the final framing if the box shows the whole target, otherwise a pose for a better detection."""
+    if detections < MAX_DETECTIONS and is_cut(box):
+        # A large target, or one that is cut off a second time, is only sure to fit into the widest view.
         large = max(box.width, box.height) > 0.25
-        zoom = info.limits.min_zoom if looks > 1 or large else max(pose.zoom * CUT_ZOOM, info.limits.min_zoom)
+        zoom = info.limits.min_zoom if detections > 1 or large else max(pose.zoom * CUT_ZOOM, info.limits.min_zoom)
         return aim_at_zoom(info, target, zoom)
-    small = looks < MAX_LOOKS and max(box.width, box.height) < SMALL_SHARE
+    small = detections < MAX_DETECTIONS and max(box.width, box.height) < SMALL_SHARE
     return aim(info, pose, target, CLOSER_FILL if small else TARGET_FILL)
 
 
 def _framed(context: ToolContext, pose: Pose, target: Floats, plan: Aim) -> bool:
-    """Whether the camera already frames the target as well as it can."""
+    """Return whether the camera frames the target as well as it can."""
     fill, (dx, dy) = measure(context.camera.info, pose, target)
     if plan.limited_by:
         turn = angle_between_deg(_axis(pose), _axis(plan.pose))
@@ -102,17 +138,18 @@ def _axis(pose: Pose) -> Floats:
     return direction(pose.pan_deg, pose.tilt_deg)
 
 
-async def _locate(context: ToolContext, description: str, known: Floats | None) -> _Look | Frame:
-    """Look once. Gives the frame alone when the target is not in it."""
+async def _locate(context: ToolContext, description: str, known: Floats | None) -> _Detection | Frame:
+    """Detect the target in the current view. Return only the frame if the target is not in it."""
     frame = await context.camera.frame()
     found = await context.perception.detect(frame, description)
     box = nearest(context.camera.info, frame, found.boxes, known) if known is not None else None
     if known is None and found.boxes:
         box = found.boxes[0]
-    return frame if box is None else _Look(frame, box, len(found.boxes), found.source)
+    return frame if box is None else _Detection(frame, box, len(found.boxes), found.source)
 
 
 async def _nothing(context: ToolContext, description: str, frame: Frame) -> ZoomResult:
+    """Return the result for a description that nothing fits."""
     return ZoomResult(
         message=f"Nothing that fits '{description}' is in view; the camera stayed where it was.",
         pose=PoseData.of(frame.pose),
@@ -124,7 +161,7 @@ async def _nothing(context: ToolContext, description: str, frame: Frame) -> Zoom
     )
 
 
-async def _report(context: ToolContext, description: str, first: _Look, target: Floats, frames: tuple[str, ...]) -> ZoomResult:
+async def _report(context: ToolContext, description: str, first: _Detection, target: Floats, frames: tuple[str, ...]) -> ZoomResult:
     frame = await context.camera.frame()
     info = context.camera.info
     fill, offset = measure(info, frame.pose, target)
@@ -149,3 +186,6 @@ async def _report(context: ToolContext, description: str, first: _Look, target: 
         limited_by=limited,
         box=Box(x_min=low[0], y_min=low[1], x_max=high[0], y_max=high[1], label=first.box.label),
     )
+
+
+ZOOM_TO_OBJECT = Tool("zoom_to_object", ZoomToObject, zoom_to_object, moves=True, perceives=True)

@@ -17,8 +17,10 @@ from scope_ptz.errors import CameraError, PerceptionError
 from scope_ptz.geometry import Limits, Perspective, Pose, direction
 from scope_ptz.perception.base import Agreement, Box, Detections
 from scope_ptz.tools.context import ToolContext
+from scope_ptz.tools.count_objects import CountResult
+from scope_ptz.tools.query_answer import AnswerResult
 from scope_ptz.tools.registry import run_tool
-from scope_ptz.tools.results import AnswerResult, CountResult, Result
+from scope_ptz.tools.results import Result
 from scope_ptz.tools.sweep import plan_sweep, sweep
 from tests.support.analytic import HEIGHT, WIDTH, AnalyticCamera, AnalyticEyes, MemoryStore, colour_of, solid, thing_moving
 

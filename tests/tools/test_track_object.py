@@ -11,7 +11,7 @@ from scope_ptz.geometry import Limits, Pose
 from scope_ptz.perception.base import Detections
 from scope_ptz.tools.context import ToolContext
 from scope_ptz.tools.registry import run_tool
-from scope_ptz.tools.results import TrackResult
+from scope_ptz.tools.track_object import TrackResult
 from tests.support.analytic import AnalyticCamera, AnalyticEyes, MemoryStore, solid, thing_moving
 
 

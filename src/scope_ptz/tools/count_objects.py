@@ -1,0 +1,60 @@
+"""The tool ``count_objects``, on the current view or on the full scene."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from scope_ptz.perception.base import Box
+from scope_ptz.tools.arguments import Arguments, Phrase, View
+from scope_ptz.tools.context import ToolContext
+from scope_ptz.tools.observing import remarks, view_frame
+from scope_ptz.tools.results import PerceptionResult, PoseData
+from scope_ptz.tools.tool import Tool
+
+
+class CountObjects(Arguments):
+    """Count the objects that fit a description."""
+
+    description: Phrase = Field(description="What to count, for example 'traffic cones' or 'red cars'.")
+    view: View = Field("current", description="'current' = this view only, 'full' = sweep everything around the camera.")
+
+
+class CountResult(PerceptionResult):
+    """A count.
+
+    Attributes:
+        description: What was counted.
+        count: The number of matches.
+        complete: Whether the count is exact; otherwise it is a lower bound.
+        boxes: The matches.
+    """
+
+    description: str
+    count: int
+    complete: bool = True
+    boxes: tuple[Box, ...] = ()
+
+
+async def count_objects(context: ToolContext, arguments: CountObjects) -> CountResult:
+    """Count what perception detects."""
+    frame = await view_frame(context, arguments.view)
+    found = await context.perception.detect(frame, arguments.description)
+    count = len(found.boxes)
+    where = "in the full scene" if arguments.view == "full" else "in the current view"
+    number = f"{count}" if found.complete else f"At least {count}"
+    return CountResult(
+        message=f"{number} of '{arguments.description}' {where} (seen by {found.source}).{remarks(found)}",
+        pose=PoseData.of(frame.pose),
+        source=found.source,
+        view=arguments.view,
+        frames=(context.images.save_look(frame),),
+        description=arguments.description,
+        count=count,
+        complete=found.complete,
+        boxes=found.boxes,
+    )
+
+
+COUNT_OBJECTS = Tool(
+    "count_objects", CountObjects, count_objects, perceives=True, only_reads=lambda arguments: arguments.view == "current"
+)

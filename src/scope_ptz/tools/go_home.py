@@ -1,0 +1,21 @@
+"""The tool ``go_home``."""
+
+from __future__ import annotations
+
+from scope_ptz.tools.arguments import Arguments
+from scope_ptz.tools.context import ToolContext, pose_text
+from scope_ptz.tools.results import MoveResult, PoseData
+from scope_ptz.tools.tool import Tool
+
+
+class GoHome(Arguments):
+    """Return to the home view."""
+
+
+async def go_home(context: ToolContext, arguments: GoHome) -> MoveResult:  # noqa: ARG001 - tools share one signature
+    """Move to the home pose."""
+    arrival = await context.camera.go_home()
+    return MoveResult(message=f"At home; {pose_text(arrival)}.", pose=PoseData.of(arrival.pose), clamped=arrival.clamped)
+
+
+GO_HOME = Tool("go_home", GoHome, go_home, moves=True)

@@ -1,0 +1,30 @@
+"""The tool ``go_to_preset``."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from scope_ptz.tools.arguments import Arguments, Phrase
+from scope_ptz.tools.context import ToolContext, pose_text
+from scope_ptz.tools.results import MoveResult, PoseData
+from scope_ptz.tools.tool import Tool
+
+
+class GoToPreset(Arguments):
+    """Go to a named preset view."""
+
+    name: Phrase = Field(description="Name of the preset, as get_presets lists it.")
+
+
+async def go_to_preset(context: ToolContext, arguments: GoToPreset) -> MoveResult:
+    """Move to a preset."""
+    arrival = await context.camera.go_to_preset(arguments.name)
+    return MoveResult(
+        message=f"At preset {arguments.name}; {pose_text(arrival)}.",
+        pose=PoseData.of(arrival.pose),
+        clamped=arrival.clamped,
+        preset=arguments.name,
+    )
+
+
+GO_TO_PRESET = Tool("go_to_preset", GoToPreset, go_to_preset, moves=True)

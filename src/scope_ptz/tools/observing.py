@@ -1,0 +1,23 @@
+"""What ``count_objects`` and ``query_answer`` share: the frame of a view, and the remarks about an observation."""
+
+from __future__ import annotations
+
+from scope_ptz.camera.base import Frame
+from scope_ptz.perception.base import Answer, Detections
+from scope_ptz.tools.arguments import View
+from scope_ptz.tools.context import ToolContext
+from scope_ptz.tools.sweep import sweep
+
+
+async def view_frame(context: ToolContext, view: View) -> Frame:
+    """Return the current frame, or the panorama of a sweep for the full view."""
+    return await (sweep(context.camera) if view == "full" else context.camera.frame())
+
+
+def remarks(observation: Detections | Answer) -> str:
+    """Return what was corrected in an observation and a second opinion that differs, as sentences after a space."""
+    sentences = list(observation.notes)
+    agreement = observation.agreement
+    if agreement is not None and not agreement.agrees:
+        sentences.append(f"{agreement.other} sees it differently: {agreement.said}")
+    return "".join(" " + sentence.rstrip(".") + "." for sentence in sentences)

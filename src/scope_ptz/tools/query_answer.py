@@ -1,0 +1,53 @@
+"""The tool ``query_answer``, on the current view or on the full scene."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from scope_ptz.tools.arguments import Arguments, Phrase, View
+from scope_ptz.tools.context import ToolContext
+from scope_ptz.tools.observing import remarks, view_frame
+from scope_ptz.tools.results import PerceptionResult, PoseData
+from scope_ptz.tools.tool import Tool
+
+
+class QueryAnswer(Arguments):
+    """Answer a question about what the camera sees: existence, colour, text, position, state."""
+
+    question: Phrase = Field(description="The question, in plain words.")
+    view: View = Field("current", description="'current' = this view only, 'full' = sweep everything around the camera.")
+
+
+class AnswerResult(PerceptionResult):
+    """An answer.
+
+    Attributes:
+        question: The question.
+        answer: The answer.
+        known: False when perception reports that it cannot tell.
+    """
+
+    question: str
+    answer: str
+    known: bool
+
+
+async def query_answer(context: ToolContext, arguments: QueryAnswer) -> AnswerResult:
+    """Ask perception a question."""
+    frame = await view_frame(context, arguments.view)
+    answer = await context.perception.query(frame, arguments.question)
+    return AnswerResult(
+        message=f"{answer.text} (seen by {answer.source}){remarks(answer)}",
+        pose=PoseData.of(frame.pose),
+        source=answer.source,
+        view=arguments.view,
+        frames=(context.images.save_look(frame),),
+        question=arguments.question,
+        answer=answer.text,
+        known=answer.known,
+    )
+
+
+QUERY_ANSWER = Tool(
+    "query_answer", QueryAnswer, query_answer, perceives=True, only_reads=lambda arguments: arguments.view == "current"
+)

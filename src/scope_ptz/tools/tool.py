@@ -1,0 +1,55 @@
+"""A tool as the registry holds it."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+from typing import Any
+
+from scope_ptz.tools.arguments import Arguments
+from scope_ptz.tools.context import ToolContext
+from scope_ptz.tools.results import Result
+
+
+def _never(arguments: Any) -> bool:  # noqa: ARG001 - the default of a predicate
+    return False
+
+
+@dataclass(frozen=True, slots=True)
+class Tool:
+    """A tool that planners can call.
+
+    Attributes:
+        name: The name in calls.
+        arguments: The model that validates a call's arguments. Its docstring is the description that planners see.
+        run: Does what the tool does.
+        moves: Whether the tool can move the camera.
+        perceives: Whether the tool asks perception.
+        only_reads: Whether a call with given arguments only reads the current view. Neighbouring calls of this kind run at the
+            same time and share one frame.
+    """
+
+    name: str
+    arguments: type[Arguments]
+    run: Callable[[ToolContext, Any], Awaitable[Result]]
+    moves: bool = False
+    perceives: bool = False
+    only_reads: Callable[[Any], bool] = _never
+
+    def schema(self) -> dict[str, Any]:
+        """Return the tool in the OpenAI function format."""
+        parameters = self.arguments.model_json_schema()
+        for prop in parameters.get("properties", {}).values():
+            prop.pop("title", None)
+        parameters.pop("title", None)
+        description = parameters.pop("description")
+        parameters.setdefault("properties", {})
+        return {
+            "type": "function",
+            "function": {"name": self.name, "description": description, "parameters": parameters},
+        }
+
+    def defaults(self) -> dict[str, Any]:
+        """Return the arguments that have a default other than None, with their defaults."""
+        fields = self.arguments.model_fields.items()
+        return {name: field.default for name, field in fields if not field.is_required() and field.default is not None}

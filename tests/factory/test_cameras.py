@@ -1,0 +1,126 @@
+"""Camera specs: what they mean, what is refused, and what opens."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from scope_ptz.camera.simulated import SimulatedCamera
+from scope_ptz.errors import InputError, UnknownNameError
+from scope_ptz.factory.cameras import CameraSpec, camera_names, open_camera, parse_camera
+from scope_ptz.factory.models import ResolvedPerception, make_perception
+from scope_ptz.geometry import Pose
+
+SCENE = "analytic-yard"
+
+
+@pytest.fixture(autouse=True)
+def scenes(analytic_folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SCOPE_SCENES_DIR", str(analytic_folder.parent))
+
+
+def test_a_bare_name_is_a_simulated_scene() -> None:
+    assert parse_camera(f" {SCENE} ") == parse_camera(f"sim:{SCENE}") == CameraSpec("sim", SCENE)
+
+
+def test_schemes_are_read_without_regard_to_case_and_options_follow_a_question_mark() -> None:
+    spec = parse_camera("SIM:yard?width=640&height=360")
+    assert (spec.scheme, spec.address, spec.options) == ("sim", "yard", {"width": "640", "height": "360"})
+    assert parse_camera(str(spec)) == spec
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "The camera is empty"),
+        ("sim:", "The camera is empty"),
+        ("axis://10.0.0.7", "There is no camera scheme 'axis'. Known: blender, sim"),
+        ("yard.blend", "write blender:yard.blend"),
+        ("C:\\yard.blend", r"write blender:C:\\yard.blend"),
+        ("blender:missing.blend", "There is no file missing.blend"),
+        ("blender:no-such-scene", "There is no scene that Blender can build 'no-such-scene'"),
+        ("sim:yard?samples=3", "There is no camera option 'samples'"),
+        ("sim:yard?width=wide", "The camera option width is a whole number from 1 to 10000, got 'wide'"),
+        ("sim:yard?width=0", "whole number from 1"),
+    ],
+)
+def test_wrong_specs_say_what_is_wrong(text: str, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        parse_camera(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "axis://root:hunter2@10.0.0.7",
+        "rtsp://root:hun@ter2@cam/live",
+        "root:hunter2@10.0.0.7",
+        "onvif:root:hunter2@cam?x=1",
+        "sim://a:hunter2@b",
+    ],
+)
+def test_passwords_are_refused_and_not_repeated(text: str) -> None:
+    with pytest.raises(InputError) as refused:
+        parse_camera(text)
+    assert "ter2" not in str(refused.value)
+
+
+def test_a_mistyped_scheme_does_not_repeat_its_address() -> None:
+    with pytest.raises(InputError) as refused:
+        parse_camera("axi://10.0.0.7/hunter2")
+    assert "hunter2" not in str(refused.value)
+
+
+def test_what_can_be_opened_is_listed() -> None:
+    names = camera_names()
+    assert SCENE in names
+    assert "blender:highway-works" in names
+    assert "blender:FILE.blend" in names
+
+
+@pytest.mark.anyio
+async def test_a_simulated_camera_opens_with_its_truth() -> None:
+    async with await open_camera(SCENE, time_s=3.0) as opened:
+        assert isinstance(opened.camera, SimulatedCamera)
+        assert opened.has_truth
+        assert opened.scene is not None
+        assert opened.scenes is not None
+        assert opened.scenes(SCENE) is opened.scene
+        assert opened.clock.now_s() == 3.0
+        perception = make_perception(ResolvedPerception("ground-truth"), opened.scenes, 0)
+        assert (await perception.detect(await opened.camera.frame(), "box")).source == "ground-truth"
+
+
+@pytest.mark.anyio
+async def test_the_size_of_frames_is_an_option() -> None:
+    async with await open_camera(f"sim:{SCENE}?width=64&height=36") as opened:
+        assert (await opened.camera.frame()).image.shape == (36, 64, 3)
+
+
+@pytest.mark.anyio
+async def test_it_starts_at_a_preset() -> None:
+    async with await open_camera(SCENE) as opened:
+        preset = (await opened.camera.presets())[-1].name
+    async with await open_camera(SCENE, preset=preset) as opened:
+        there = await opened.camera.pose()
+        assert (await opened.camera.go_to_preset(preset)).pose == there
+        assert there != Pose()
+
+
+@pytest.mark.anyio
+async def test_wrong_starts() -> None:
+    with pytest.raises(InputError, match="--viewpoint or --preset, not both"):
+        await open_camera(SCENE, viewpoint="mast", preset="home")
+    with pytest.raises(UnknownNameError, match="preset"):
+        await open_camera(SCENE, preset="nowhere")
+    with pytest.raises(UnknownNameError, match="viewpoint"):
+        await open_camera(SCENE, viewpoint="nowhere")
+    with pytest.raises(UnknownNameError, match="scene"):
+        await open_camera("nowhere")
+
+
+@pytest.mark.parametrize("name", ["ground-truth", "noisy"])
+def test_ground_truth_needs_a_scene(name: str) -> None:
+    with pytest.raises(InputError, match=f"'{name}' reads the ground truth of a simulated scene, and this camera has none"):
+        make_perception(ResolvedPerception(name), None, 0)
