@@ -127,7 +127,7 @@ def task(
         expected=expected,
         evidence=tuple(evidence),
         behaviour=behaviour or Behaviour(),
-        reference=tuple(ProgramCall(tool=s[0], arguments=s[1]) for s in steps),  # type: ignore[arg-type]
+        reference=tuple(ProgramCall(tool=s[0], arguments=s[1]) for s in steps),
         **further,
     )
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
 from scope_ptz.blender.files import file_cameras
 
-DESCRIPTION = {
+DESCRIPTION: dict[str, Any] = {
     "name": "my-yard",
     "title": "My Yard.blend",
     "blender_version": "5.0.1",
@@ -22,7 +24,7 @@ def test_each_camera_is_a_viewpoint_with_a_preset_that_shows_its_picture() -> No
     made = file_cameras(DESCRIPTION)
     assert [viewpoint.name for viewpoint in made.scene.viewpoints] == ["wide", "tele"]
     assert made.scene.home_preset == "tele"
-    for preset, camera in zip(made.scene.presets, DESCRIPTION["cameras"], strict=True):  # type: ignore[arg-type]
+    for preset, camera in zip(made.scene.presets, DESCRIPTION["cameras"], strict=True):
         assert made.optics.hfov_deg(preset.zoom) == pytest.approx(camera["hfov_deg"])
         assert preset.tilt_deg == camera["tilt_deg"]
 

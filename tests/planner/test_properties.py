@@ -8,20 +8,10 @@ from hypothesis import strategies as st
 from scope_ptz.planner.grammar.lexicon import expand, vocabulary
 from scope_ptz.planner.grammar.numerals import read_number
 from scope_ptz.planner.plan import plan
-from scope_ptz.tools import arguments as models
+from scope_ptz.tools.registry import TOOLS
 
 PRESETS = ("gate", "highway")
-MODELS: dict[str, type[models.Arguments]] = {
-    "adjust_ptz": models.AdjustPtz,
-    "go_to_preset": models.GoToPreset,
-    "go_home": models.GoHome,
-    "get_presets": models.GetPresets,
-    "take_image": models.TakeImage,
-    "count_objects": models.CountObjects,
-    "query_answer": models.QueryAnswer,
-    "zoom_to_object": models.ZoomToObject,
-    "track_object": models.TrackObject,
-}
+MODELS = {name: tool.arguments for name, tool in TOOLS.items()}
 ONES = [
     "zero",
     "one",

@@ -152,7 +152,7 @@ def pose_towards(info: CameraInfo, pan_deg: float, tilt_deg: float, zoom: float)
 
 
 def lookahead(previous: Floats, now: Floats, ratio: float) -> Floats:
-    """Extrapolate the motion from direction ``previous`` to ``now`` by ``ratio`` times their interval. Unit vectors of shape (3,)."""
+    """Extrapolate a motion by ``ratio`` times the interval between two unit vectors of shape ``(3,)``."""
     pan0, tilt0 = pan_tilt_deg(previous)
     pan1, tilt1 = pan_tilt_deg(now)
     turn = (float(pan1 - pan0) + 180.0) % 360.0 - 180.0

@@ -19,7 +19,7 @@ MAX_DETECTIONS = 3
 """Perception calls per tool call."""
 
 SMALL_SHARE = 0.05
-"""A target that fills less than this share of its limiting side is detected again from closer: its box is too coarse to frame it."""
+"""A target that fills less than this share of its limiting side is detected again from closer, for a more exact box."""
 
 CLOSER_FILL = 0.45
 """Share of its limiting side that a small target fills for the next detection."""
