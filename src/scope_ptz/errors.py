@@ -1,18 +1,18 @@
-"""Every error that SCOPE raises on purpose.
+"""The errors of SCOPE.
 
 ScopeError
-├── InputError              what the user typed or configured is wrong (command line: exit code 2)
+├── InputError              an instruction, option or setting is wrong (exit code 2)
 │   ├── ConfigError         a setting, an option or a URL
 │   ├── UnknownNameError    a scene, viewpoint, preset, planner or tool that does not exist
 │   └── OutputError         a folder or file that cannot be written
-├── PackError               a viewpoint pack is missing, damaged or of another version (exit code 2)
-├── CameraError             the camera did not do, or does not answer
-├── PerceptionError         a frame could not be read (never to be confused with "nothing there")
-├── PlannerError            the planner failed or answered with something that is no decision
-├── ServerFailure           a model server gave no usable reply (endpoints.failures); planners and eyes turn it into the two above
+├── PackError               a pack is missing, damaged or of another version (exit code 2)
+├── CameraError             the camera fails or does not answer
+├── PerceptionError         a frame cannot be read, which differs from "nothing there"
+├── PlannerError            the planner fails, or its reply is not a decision
+├── ServerFailure           a model server gives no usable reply (endpoints.failures); becomes one of the two above
 ├── ToolCallError           a tool call with a wrong name or wrong arguments
 ├── TraceError              a trace that cannot be read or replayed
-└── BlenderError            the Blender worker is missing or failed
+└── BlenderError            the Blender worker is missing or fails
 """
 
 from __future__ import annotations
@@ -39,18 +39,18 @@ __all__ = [
 
 
 class Tried(Protocol):
-    """One request to a model server: ``kind`` is how it failed, None when it worked."""
+    """A request to a model server. ``kind`` is the kind of failure, None for a success."""
 
     @property
     def kind(self) -> str | None: ...
 
 
 class ScopeError(Exception):
-    """Root of all errors that SCOPE raises on purpose. The message says what was wrong and what to do."""
+    """Root of all errors of SCOPE. The message says what is wrong and what to do."""
 
 
 class InputError(ScopeError):
-    """What the user typed or configured is wrong."""
+    """An instruction, an option or a setting is wrong."""
 
 
 class ConfigError(InputError):
@@ -58,7 +58,7 @@ class ConfigError(InputError):
 
 
 class UnknownNameError(InputError):
-    """A name that is not known, with the names that are."""
+    """A name is unknown. The message lists the known names and suggests the closest one."""
 
     def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
         self.kind, self.name, self.known = kind, name, sorted(known)
@@ -77,14 +77,15 @@ class PackError(ScopeError):
 
 
 class CameraError(ScopeError):
-    """The camera did not do what it was told, or does not answer."""
+    """The camera fails or does not answer."""
 
 
 class _ModelError(ScopeError):
-    """An error of something that may be a model on a server.
+    """An error of a planner or perception, which may run on a model server.
 
-    ``kind``: the way in which the server failed (``endpoints.FailureKind``), None when no server did. ``attempts``: what was
-    tried (``endpoints.Attempt``).
+    Attributes:
+        kind: The server's kind of failure (``endpoints.FailureKind``), None if no server failed.
+        attempts: The requests that were made (``endpoints.Attempt``).
     """
 
     def __init__(self, *message: object, kind: str | None = None, attempts: Sequence[Tried] = ()) -> None:
@@ -93,11 +94,11 @@ class _ModelError(ScopeError):
 
 
 class PerceptionError(_ModelError):
-    """A frame could not be read. This is never the same as "nothing there"."""
+    """A frame cannot be read. This is not the same as "nothing there"."""
 
 
 class PlannerError(_ModelError):
-    """The planner failed, or answered with something that is no decision."""
+    """The planner fails, or its reply is not a decision."""
 
 
 class ToolCallError(ScopeError):
@@ -105,8 +106,8 @@ class ToolCallError(ScopeError):
 
 
 class TraceError(ScopeError):
-    """A trace that cannot be read or replayed."""
+    """A trace cannot be read or replayed."""
 
 
 class BlenderError(ScopeError):
-    """The Blender worker is missing or failed."""
+    """The Blender worker is missing or fails."""

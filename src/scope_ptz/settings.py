@@ -1,4 +1,4 @@
-"""The one place that reads the environment: variables named ``SCOPE_...``."""
+"""Settings from environment variables named ``SCOPE_...``. No other module reads the environment."""
 
 from __future__ import annotations
 
@@ -15,28 +15,28 @@ from scope_ptz.errors import ConfigError
 
 
 class ScopeSettings(BaseSettings):
-    """Defaults for every command. Options on the command line win over these."""
+    """Defaults for every command. Command-line options take precedence."""
 
     model_config = SettingsConfigDict(env_prefix="SCOPE_", extra="ignore")
 
-    runs_dir: Path = Field(default=Path("runs"), description="Where run folders are made.")
-    scenes_dir: Path | None = Field(default=None, description="A folder of scene packs beside the built-in ones.")
+    runs_dir: Path = Field(default=Path("runs"), description="Folder for run folders.")
+    scenes_dir: Path | None = Field(default=None, description="Folder with more scene packs.")
     cache_dir: Path = Field(
-        default_factory=lambda: user_cache_path("scope-ptz"), description="Where the Blender environment and unfinished bakes live."
+        default_factory=lambda: user_cache_path("scope-ptz"), description="Folder for the Blender environment and unfinished bakes."
     )
     blender_python: Path | None = Field(default=None, description="A Python interpreter that can import bpy.")
-    blender: Path | None = Field(default=None, description="A blender program to use instead of the bpy wheel.")
-    planner_key: SecretStr | None = Field(default=None, description="The key of the planner's server.")
-    perception_key: SecretStr | None = Field(default=None, description="The key of the perception server.")
-    models: Path | None = Field(default=None, description="A YAML file of models beside the built-in ones.")
-    planner_url: str = Field(default="", description="Where the planner's model server listens.")
-    perception_url: str = Field(default="", description="Where the model server of the eyes listens.")
-    judge_url: str = Field(default="", description="Where the model server of the benchmark's judge listens.")
-    judge_model: str = Field(default="", description="What that server calls the judge.")
-    judge_key: SecretStr | None = Field(default=None, description="The key of the judge's server.")
+    blender: Path | None = Field(default=None, description="A blender program to use in place of the bpy wheel.")
+    planner_key: SecretStr | None = Field(default=None, description="Key for the planner's server.")
+    perception_key: SecretStr | None = Field(default=None, description="Key for the perception server.")
+    models: Path | None = Field(default=None, description="YAML file with more models.")
+    planner_url: str = Field(default="", description="Address of the planner's server.")
+    perception_url: str = Field(default="", description="Address of the perception server.")
+    judge_url: str = Field(default="", description="Address of the judge's server.")
+    judge_model: str = Field(default="", description="Name of the judge on its server.")
+    judge_key: SecretStr | None = Field(default=None, description="Key for the judge's server.")
 
     def models_file(self) -> Path | None:
-        """The user's own models: the file that is named, or the one in the configuration folder when it is there."""
+        """Return the user's models file: the configured one, or ``models.yaml`` in the configuration folder if it exists."""
         if self.models is not None:
             return self.models
         usual = user_config_path("scope-ptz") / "models.yaml"
@@ -44,7 +44,11 @@ class ScopeSettings(BaseSettings):
 
 
 def load_settings() -> ScopeSettings:
-    """Read the environment; a wrong value raises ``ConfigError`` that names the variable."""
+    """Read the settings.
+
+    Raises:
+        ConfigError: A variable has a wrong value. The message names it.
+    """
     try:
         return ScopeSettings()
     except ValidationError as error:
@@ -54,16 +58,16 @@ def load_settings() -> ScopeSettings:
 
 
 def has_desktop() -> bool:
-    """Whether this machine has a desktop on which a picture that is opened would be seen."""
+    """Return whether this machine has a desktop that can show a picture."""
     return sys.platform in ("darwin", "win32") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
 Inline = Literal["iterm", "kitty"]
-"""Ways in which terminals show pictures among the text."""
+"""Protocols for pictures in a terminal."""
 
 
 def inline_pictures() -> Inline | None:
-    """How the terminal that the program runs in shows pictures, None when it does not say that it can."""
+    """Return the protocol by which the current terminal shows pictures, None if it announces none."""
     if os.environ.get("TERM_PROGRAM") in ("iTerm.app", "WezTerm"):
         return "iterm"
     return "kitty" if os.environ.get("KITTY_WINDOW_ID") or os.environ.get("TERM") == "xterm-kitty" else None

@@ -1,1 +1,1 @@
-"""Blender seen from the main program: its environment, the worker's client, and the bake of viewpoint packs."""
+"""Blender from the main program's side: its environment, the worker's client, and the bake of viewpoint packs."""

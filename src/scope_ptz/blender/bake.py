@@ -1,4 +1,4 @@
-"""From a scene to its frozen packs: describe, truth, extents, colour, tiles, actors, pack. Killed, it goes on where it stopped."""
+"""The bake of a scene into viewpoint packs. An interrupted bake resumes where it stopped."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ from scope_ptz.simulator.models import Extent, SceneActor, SceneFile, SceneViewp
 from scope_ptz.simulator.pack import Scene
 
 CHECKS, CHECK_SEED = 2, 1
-"""Live renders a viewpoint at the end of a bake, at the wide end and again zoomed in."""
+"""Live renders per viewpoint at the end of a bake, both at the widest zoom and zoomed in, and the seed of their poses."""
 
 
 @dataclass(frozen=True, slots=True)
 class BakedViewpoint:
-    """What came out: the folder, its weight, how many tiles it has, and the targets that no tile holds."""
+    """The result of a bake for one viewpoint: its folder, size, number of tiles, and the targets that no tile covers."""
 
     folder: Path
     weight_bytes: int
@@ -47,7 +47,7 @@ class BakedViewpoint:
 
 @dataclass(frozen=True, slots=True)
 class Baked:
-    """A scene's packs, read back whole, and how they compare with live renders."""
+    """The packs of a scene, and how they compare with live renders."""
 
     packs: tuple[BakedViewpoint, ...]
     reports: tuple[PoseReport, ...]
@@ -63,11 +63,22 @@ def bake(
     viewpoints: Sequence[str] | None = None,
     progress: Progress,
 ) -> Baked:
-    """Bake a scene into the folder ``out_dir`` (which must bear the scene's name).
+    """Bake a scene into a folder.
 
-    ``source`` is the name of a scene in ``scope_studio.scenes`` or the path of a Python file with a ``build(stage)``;
-    ``command`` starts the worker. Unfinished parts are kept under ``cache_dir``. At the end every file is read back against its
-    checksum, and some views are compared with live renders.
+    At the end, every file is checked against its checksum and some views are compared with live renders.
+
+    Args:
+        source: A scene of ``scope_studio.scenes``, or the path of a Python file with ``build(stage)``.
+        out_dir: The scene's folder, which must have the scene's name.
+        quality: Sizes and samples.
+        command: Starts the worker.
+        cache_dir: Where unfinished parts are kept.
+        viewpoints: Names of the viewpoints to bake, None for all.
+        progress: Called after every step.
+
+    Raises:
+        BlenderError: Blender fails, or the folder has another name than the scene.
+        UnknownNameError: The scene has no such viewpoint.
     """
     key = scene_key(source)
     shop = Workshop(cache_dir / "bakes", key, progress)
@@ -99,7 +110,11 @@ def bake(
 
 
 def scene_file(description: dict[str, Any], version: str) -> SceneFile:
-    """``scene.json`` from the worker's description."""
+    """Return the scene file that the worker's description makes.
+
+    Raises:
+        BlenderError: The description is not a valid scene.
+    """
     own = {k: v for k, v in description.items() if k in SceneFile.model_fields}
     try:
         return SceneFile.model_validate({"version": version, **own})

@@ -1,4 +1,4 @@
-"""Which part of the sphere a camera can ever see, and how a panorama of it is cut into strips for rendering."""
+"""The part of the sphere that a camera can see, and the strips in which a panorama of it is rendered."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from scope_ptz.geometry import Equirectangular, Limits, Optics, Perspective, pan
 from scope_ptz.simulator.models import Band
 
 ASPECTS = (16 / 9, 4 / 3)
-"""Shapes of frame that a pack serves."""
+"""Aspect ratios of the frames that a pack serves."""
 
 MARGIN_DEG = 0.8
 POLE_DEG = 7.0
-"""A band that ends this close to straight down goes all the way: a hole of that size is not worth its edge."""
+"""A band that ends within this angle of straight down is extended to the pole."""
 
 
 def reachable_band(limits: Limits, optics: Optics) -> Band:
-    """The tilts that any frame within the limits can show."""
+    """Return the range of tilts that the frames of a camera can show."""
     tops, bottoms = [], []
     hfov_deg = optics.hfov_deg(limits.min_zoom)
     side = np.linspace(0.0, 1.0, 33)
@@ -38,7 +38,7 @@ def reachable_band(limits: Limits, optics: Optics) -> Band:
 
 @dataclass(frozen=True, slots=True)
 class Strip:
-    """Rows ``first_row`` to ``last_row`` (exclusive) of a panorama, rendered ``width`` wide."""
+    """Rows ``first_row`` to ``last_row`` (exclusive) of a panorama, rendered with a width of ``width`` pixels."""
 
     first_row: int
     last_row: int
@@ -49,7 +49,7 @@ class Strip:
 
 @dataclass(frozen=True, slots=True)
 class Panorama:
-    """A panorama's size and band (whole degrees), rows as high in degrees as columns are wide."""
+    """Size and band of a panorama. The band is in whole degrees, and pixels are square in degrees."""
 
     width: int
     height: int
@@ -57,7 +57,7 @@ class Panorama:
 
     @classmethod
     def of(cls, width: int, band: Band) -> Panorama:
-        """The panorama of this width over at least this band; widths that are multiples of one another share one band."""
+        """Return the panorama of a width that covers at least a band. Multiples of a width share one band."""
         top = min(90.0, float(math.ceil(band.top_tilt_deg)))
         bottom = max(-90.0, float(math.floor(band.bottom_tilt_deg)))
         height = round((top - bottom) / 360.0 * width)
@@ -65,15 +65,15 @@ class Panorama:
 
     @property
     def projection(self) -> Equirectangular:
-        """Its geometry."""
+        """The panorama's projection."""
         return Equirectangular(-180.0, 360.0, self.band.top_tilt_deg, self.band.bottom_tilt_deg, self.width, self.height)
 
     def tilt_of_row(self, row: float) -> float:
-        """Tilt of the upper edge of a row."""
+        """Return the tilt of a row's upper edge."""
         return self.band.top_tilt_deg - row / self.height * (self.band.top_tilt_deg - self.band.bottom_tilt_deg)
 
     def strips(self, rows: int, overlap_rows: int) -> list[Strip]:
-        """Strips of about ``rows`` rows with some more on each side to blend. Towards the poles they need fewer columns."""
+        """Return strips of about ``rows`` rows, with some overlap for blending. Strips near a pole need fewer columns."""
         count = max(1, round(self.height / rows))
         edges = [round(k * self.height / count) for k in range(count + 1)]
         strips = []

@@ -1,4 +1,4 @@
-"""The main program's end of the pipe to a Blender worker."""
+"""The client of a Blender worker process."""
 
 from __future__ import annotations
 
@@ -23,7 +23,12 @@ Progress = Callable[[int, int], None]
 
 
 class BlenderWorker:
-    """One worker process. Requests are answered in turn; use from one thread at a time is enforced by a lock."""
+    """One worker process. A lock allows one request at a time.
+
+    Args:
+        command: Starts the process.
+        log_file: Receives what Blender prints.
+    """
 
     def __init__(self, command: Sequence[str], log_file: Path) -> None:
         self._command = list(command)
@@ -47,7 +52,11 @@ class BlenderWorker:
         return self._process is not None and self._process.poll() is None
 
     def start(self) -> None:
-        """Start the process and wait until Blender has come up."""
+        """Start the process and wait until Blender is ready.
+
+        Raises:
+            BlenderError: The process does not start.
+        """
         self._log_file.parent.mkdir(parents=True, exist_ok=True)
         environment = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "VIRTUAL_ENV"))}
         try:
@@ -65,7 +74,17 @@ class BlenderWorker:
     def request(
         self, op: str, params: dict[str, Any] | None = None, *, timeout_s: float = 3600.0, progress: Progress | None = None
     ) -> Any:
-        """Do one operation and return its result. Raises ``BlenderError`` on failure, crash or timeout (which ends the worker)."""
+        """Run one operation and return its result.
+
+        Args:
+            op: Name of the operation in ``scope_studio.operations``.
+            params: Its arguments, as JSON data.
+            timeout_s: Seconds after which the worker is ended.
+            progress: Called with the steps done and the total.
+
+        Raises:
+            BlenderError: The operation fails, or the worker crashes or does not answer in time.
+        """
         with self._lock:
             if self._process is None or self._process.stdin is None:
                 raise BlenderError("The Blender worker is not running.")
@@ -88,9 +107,9 @@ class BlenderWorker:
                     return reply["result"]
 
     def close(self) -> None:
-        """Ask the worker to quit; end it when it does not."""
+        """Ask the worker to quit, and end it if it is busy or does not."""
         process = self._process
-        if process is not None and process.poll() is None and process.stdin is not None:
+        if process is not None and process.poll() is None and process.stdin is not None and not self._lock.locked():
             with suppress(OSError, subprocess.TimeoutExpired):
                 process.stdin.write(json.dumps({"id": 0, "op": "quit"}) + "\n")
                 process.stdin.flush()

@@ -1,6 +1,6 @@
-"""Where Blender comes from: the user's own, or the ``bpy`` wheel in an environment made on demand.
+"""The Python that runs Blender: the user's own, or an environment with the ``bpy`` wheel, made on demand.
 
-The wheel wants Python 3.11 and NumPy 1, which is why it never shares an environment with the main program.
+The wheel needs Python 3.11 and NumPy 1, so it never shares an environment with the main program.
 """
 
 from __future__ import annotations
@@ -20,10 +20,14 @@ READY = "ready"
 
 
 def worker_command(cache_dir: Path, blender_python: Path | None = None) -> list[str]:
-    """The command that starts the worker.
+    """Return the command that starts the worker.
 
-    ``blender_python`` is the user's choice: a Python that can import ``bpy``, or the ``blender`` program itself. Without it the
-    environment under ``cache_dir`` is used, and made first when it does not exist (a download of about 400 MB).
+    Args:
+        cache_dir: Where the environment is kept. It is made on the first call, a download of about 400 MB.
+        blender_python: A Python that can import ``bpy``, or the ``blender`` program, in place of the environment.
+
+    Raises:
+        BlenderError: There is no such program, or the environment cannot be made.
     """
     script = str(Path(__file__).resolve().parents[2] / "scope_studio" / "worker.py")
     if blender_python is None:
@@ -37,18 +41,22 @@ def worker_command(cache_dir: Path, blender_python: Path | None = None) -> list[
 
 
 def environment_python(cache_dir: Path) -> Path:
-    """The Python of the environment, whether it exists or not."""
+    """Return the path of the environment's Python, which may not exist yet."""
     folder = cache_dir / f"blender-{BPY_VERSION}"
     return folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
 
 
 def is_ready(cache_dir: Path) -> bool:
-    """Whether the environment was made to the end."""
+    """Return whether the environment is complete."""
     return (cache_dir / f"blender-{BPY_VERSION}" / READY).exists()
 
 
 def ensure_environment(cache_dir: Path) -> Path:
-    """Make the environment if it is missing or half made; returns its Python."""
+    """Make the environment if it is missing or incomplete, and return its Python.
+
+    Raises:
+        BlenderError: The environment cannot be made.
+    """
     python = environment_python(cache_dir)
     if is_ready(cache_dir):
         return python

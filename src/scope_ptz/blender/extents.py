@@ -1,4 +1,4 @@
-"""The whole silhouette of every instance from a viewpoint, hidden parts included, from its triangles."""
+"""The whole silhouette of every instance from a viewpoint, hidden parts included, calculated from its triangles."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Ints = NDArray[np.int64]
 
 RASTER_PX = 512
 WIDE_DEG = 60.0
-"""Silhouettes that reach further from their middle than this are drawn on the faces of a cube."""
+"""Silhouettes that extend further than this from their middle are drawn on the faces of a cube."""
 
 NEAR_M = 1e-3
 FRACTION_BITS = 4
@@ -29,7 +29,7 @@ HULL_POINTS = 24
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """One instance: vertices (n, 3) in the camera's frame and triangles (m, 3)."""
+    """An instance: vertices of shape ``(n, 3)`` in the camera's frame and triangles of shape ``(m, 3)``."""
 
     number: int
     vertices: Floats
@@ -37,7 +37,7 @@ class Body:
 
 
 def extents(meshes: Path, viewpoint: SceneViewpoint, progress: Callable[[int, int], None]) -> list[Extent]:
-    """The extent of every instance in a file written by the worker's "meshes"."""
+    """Return the extent of every instance in a file that the worker's ``meshes`` wrote."""
     bodies = read_bodies(meshes, viewpoint)
     found = []
     for k, body in enumerate(bodies):
@@ -47,7 +47,7 @@ def extents(meshes: Path, viewpoint: SceneViewpoint, progress: Callable[[int, in
 
 
 def read_bodies(meshes: Path, viewpoint: SceneViewpoint) -> list[Body]:
-    """All instances in the frame of a viewpoint, in order of their numbers."""
+    """Return all instances in the frame of a viewpoint, ordered by number."""
     bearing = math.radians(viewpoint.pan0_bearing_deg)
     c, s = math.cos(bearing), math.sin(bearing)
     turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
@@ -72,11 +72,11 @@ def read_bodies(meshes: Path, viewpoint: SceneViewpoint) -> list[Body]:
 
 
 def extent(body: Body) -> Extent:
-    """Solid angle, convex outline and distance of one instance."""
+    """Return the solid angle, the convex outline and the distance of an instance."""
     used = body.vertices[np.unique(body.triangles)]
     rays = used / np.linalg.norm(used, axis=1, keepdims=True)
     middle = rays.mean(axis=0)
-    for _ in range(3):  # towards the middle of the smallest cone around the rays
+    for _ in range(3):  # The axis of the smallest cone around the rays.
         middle = middle / max(np.linalg.norm(middle), 1e-9)
         farthest = rays[np.argmin(rays @ middle)]
         middle = middle + 0.25 * (farthest - middle)
@@ -97,7 +97,7 @@ def _narrow_solid_angle(body: Body, axes: Floats) -> float:
     local = body.vertices @ axes.T
     flat = local[:, :2] / local[:, 2:]
     used = flat[np.unique(body.triangles)]
-    lengthwise = np.linalg.eigh(np.cov(used.T))[1]  # a leaning pole is drawn upright, so that few pixels are wasted
+    lengthwise = np.linalg.eigh(np.cov(used.T))[1]  # A leaning pole is drawn upright, which wastes fewer pixels.
     flat, used = flat @ lengthwise, used @ lengthwise
     low, high = used.min(axis=0), used.max(axis=0)
     coarse, fine = (_drawn(flat[body.triangles], low, high, side) for side in (RASTER_PX, 2 * RASTER_PX))
@@ -105,12 +105,20 @@ def _narrow_solid_angle(body: Body, axes: Floats) -> float:
 
 
 def _without_outline(coarse: float, fine: float) -> float:
-    """OpenCV fills every pixel that an outline touches: too much, but by half as much with pixels half the size."""
+    """Correct an area for OpenCV's outlines.
+
+    OpenCV fills every pixel that an outline touches, which is too much. The excess halves with pixels of half the size.
+    """
     return max(2 * fine - coarse, 0.3 * fine)
 
 
 def _drawn(triangles: Floats, low: Floats, high: Floats, side: int) -> float:
-    """Solid angle of the union of triangles (m, 3, 2) in a tangent plane, on a raster of ``side`` x ``side`` oblong pixels."""
+    """Return the solid angle of the union of triangles in a tangent plane.
+
+    Args:
+        triangles: Shape ``(m, 3, 2)``.
+        side: Width and height of the raster in pixels, which are oblong.
+    """
     pitch = np.maximum((high - low) / side, 1e-12)
     mask = np.zeros((side + 3, side + 3), dtype=np.uint8)
     fixed = np.rint(((triangles - low) / pitch + 1.0) * (1 << FRACTION_BITS)).astype(np.int32)
@@ -136,7 +144,7 @@ def _wide_solid_angle(body: Body) -> float:
 
 
 def _in_front(corners: Floats) -> Floats:
-    """Triangles (m, 3, 3), cut at a plane just in front of the eye (a quadrilateral becomes two triangles)."""
+    """Cut triangles of shape ``(m, 3, 3)`` at a plane just in front of the camera. A quadrilateral becomes two triangles."""
     ahead = corners[..., 2] > NEAR_M
     whole = corners[ahead.all(axis=1)]
     pieces = []
@@ -166,7 +174,7 @@ def _hull(rays: Floats, axes: Floats) -> list[tuple[float, float]]:
 
 
 def _nearest_m(body: Body) -> float:
-    """Distance from the origin to the nearest point of any triangle: on an edge, or inside one."""
+    """Return the distance from the origin to the nearest point of any triangle, on an edge or inside."""
     a, b, c = (body.vertices[body.triangles[:, k]] for k in range(3))
     nearest = min(_edge_distance(a, b), _edge_distance(b, c), _edge_distance(c, a))
     normal = np.cross(b - a, c - a)

@@ -55,5 +55,5 @@ def file_cameras(description: dict[str, Any]) -> FileCameras:
 
 
 def _half_width(hfov_deg: float) -> float:
-    """Half the width of a picture at distance 1."""
+    """Return half the width of a picture at distance 1."""
     return math.tan(math.radians(hfov_deg) / 2)

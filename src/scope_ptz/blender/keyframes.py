@@ -1,4 +1,4 @@
-"""Where along its path an actor is photographed, and through which view."""
+"""The places on an actor's path at which it is rendered, and the view of each picture."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from scope_ptz.geometry.sphere import camera_axes
 from scope_ptz.simulator.models import Band, SceneActor, SceneViewpoint
 
 TURN_STEP_DEG, DISTANCE_STEP = 2.5, 1.06
-"""A new picture when the actor shows itself from an angle this much different, or its distance changed by this factor."""
+"""Limits between two pictures: the change of the angle from which the actor is seen, and the factor on its distance."""
 
 GAIT_PHASES = 8
 MIN_SIDE_PX = 6.0
@@ -29,10 +29,11 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Keyframe:
-    """The actor at ``time_s`` of its path in a gait phase, seen through ``view``.
+    """A picture of an actor: its time on the path, its gait phase, and the view.
 
-    ``also_s``: other times for which this is the picture to take. Whoever draws an actor takes the picture nearest in time; near
-    a corner of the path that must not be one from beyond it, where the actor faces another way.
+    Attributes:
+        also_s: Other times that use this picture. A renderer uses the picture nearest in time, and near a corner of the path that
+            must not be a picture from beyond the corner, where the actor faces another way.
     """
 
     time_s: float
@@ -42,7 +43,7 @@ class Keyframe:
     also_s: tuple[float, ...] = ()
 
     def request(self) -> dict[str, Any]:
-        """For the worker's "sprites"."""
+        """Return the frame as the worker's ``sprites`` takes it."""
         return {
             "time_s": self.time_s,
             "phase": self.phase,
@@ -54,9 +55,9 @@ class Keyframe:
 def keyframes(
     actor: SceneActor, stride_m: float | None, viewpoint: SceneViewpoint, band: Band, sun: Floats | None, most: int
 ) -> list[Keyframe]:
-    """Pictures of an actor along its path as seen from a viewpoint, walkers in all phases at each place.
+    """Return the pictures of an actor along its path, as seen from a viewpoint. Walkers get every gait phase at each place.
 
-    No more than ``most`` unless its path has more legs than that: each has one place at least.
+    Each leg of the path has at least one place, even if that makes more than ``most`` pictures.
     """
     places = _Places.along(actor, viewpoint)
     per_place = GAIT_PHASES if stride_m else 1
@@ -75,7 +76,7 @@ def keyframes(
 
 @dataclass(frozen=True, slots=True)
 class _Places:
-    """The path, finely sampled: times (n,), positions (n, 3), bearings, and how it looks from the viewpoint."""
+    """Fine samples of the path: times of shape ``(n,)``, positions ``(n, 3)``, bearings, and angles as seen from the viewpoint."""
 
     times: Floats
     positions: Floats
@@ -98,9 +99,9 @@ class _Places:
         return cls(times, positions, bearings, bearings - seen, elevations, np.linalg.norm(offset, axis=1), leg)
 
     def distinct(self, coarseness: float) -> dict[int, list[int]]:
-        """Indices of samples that each look different from the one before, at least one a leg of the path.
+        """Return the indices of samples that differ visibly from the previous one, at least one for each leg of the path.
 
-        The values are the ends of the leg for the samples nearest to them.
+        The values are the ends of a leg, for the samples nearest to them.
         """
         chosen: dict[int, list[int]] = {}
         for leg in np.unique(self.legs):
@@ -126,7 +127,7 @@ class _Places:
 
 
 def _corners(actor: SceneActor, places: _Places, k: int, sun: Floats | None) -> Floats:
-    """Corners of the actor's box in the world, and where their shadows fall on level ground."""
+    """Return the corners of the actor's box in the world, and the points where their shadows fall on level ground."""
     bearing = math.radians(float(places.bearings_deg[k]))
     ahead, right = np.array([math.sin(bearing), math.cos(bearing), 0.0]), np.array([math.cos(bearing), -math.sin(bearing), 0.0])
     width, length, height = actor.size_m
@@ -145,7 +146,7 @@ def _corners(actor: SceneActor, places: _Places, k: int, sun: Floats | None) -> 
 
 
 def _view(corners: Floats, viewpoint: SceneViewpoint, band: Band) -> Perspective | None:
-    """The tight view of some points, or None when it leaves the band, is too small to matter or too close to be flat."""
+    """Return the tight view of some points; None if it leaves the band, is too small to matter, or too close to be flat."""
     offset = corners - np.array(viewpoint.position_m)
     aim = offset.mean(axis=0)
     for _ in range(3):

@@ -1,4 +1,4 @@
-"""From rendered parts to the files of a viewpoint folder, within the weight that a pack may have."""
+"""The files of a viewpoint folder from rendered parts, within the size limit of a pack."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from scope_ptz.simulator.layers import write_colour, write_ids
 from scope_ptz.simulator.models import ActorSheet, Depth, Extent, Layer, Manifest, SceneFile, SceneViewpoint, Tile
 
 COLOUR = ".avif"
-"""At the same structural similarity a quarter lighter than WebP."""
+"""AVIF is a quarter smaller than WebP at the same structural similarity."""
 
 NUMBERS = ".webp"
 SPRITE_CODING = 62
@@ -33,7 +33,7 @@ MANIFEST_BYTES = 400_000
 
 @dataclass(frozen=True, slots=True)
 class RenderedTile:
-    """A tile's view, its picture (H, W, 3) and its instance numbers (H, W)."""
+    """A tile's view, its picture of shape ``(H, W, 3)`` and its instance numbers ``(H, W)``."""
 
     view: Perspective
     colour: NDArray[np.uint8]
@@ -42,7 +42,7 @@ class RenderedTile:
 
 @dataclass(frozen=True, slots=True)
 class RenderedActor:
-    """An actor's number, its sheet, and the stride of a walker."""
+    """An actor's number and sheet, and the stride of a walker."""
 
     number: int
     sheet: Sheet
@@ -51,7 +51,7 @@ class RenderedActor:
 
 @dataclass(frozen=True, slots=True)
 class Rendered:
-    """Everything of a viewpoint, uncoded."""
+    """All layers of a viewpoint before encoding."""
 
     panorama: Panorama
     base: NDArray[np.uint8]
@@ -71,7 +71,7 @@ def write_pack(
     limit_bytes: int,
     step: Callable[[], None],
 ) -> Manifest:
-    """Write the folder (replacing one that is there), colour coded as finely as ``limit_bytes`` allows."""
+    """Write the folder of a viewpoint, replacing an existing one. Colour gets the best quality that ``limit_bytes`` allows."""
     fresh = folder.with_name(f".{folder.name}.new")
     shutil.rmtree(fresh, ignore_errors=True)
     (fresh / "tiles").mkdir(parents=True)
@@ -118,14 +118,14 @@ def write_pack(
 
 
 def weight_bytes(folder: Path) -> int:
-    """All files of a folder together."""
+    """Return the size of all files of a folder."""
     return sum(p.stat().st_size for p in folder.rglob("*") if p.is_file())
 
 
 def _fitting_colour(folder: Path, rendered: Rendered, quality: Quality, limit_bytes: int) -> tuple[Layer, list[Layer]]:
-    """Base and tiles in the finest codings that fit.
+    """Return base and tiles in the best encodings that fit.
 
-    Room to spare goes to the base; when room is short, the tiles give way first.
+    The base gets the spare room. If room is short, the quality of the tiles is reduced first.
     """
     room = limit_bytes - weight_bytes(folder)
     coded = (-1, -1)
@@ -142,7 +142,7 @@ def _fitting_colour(folder: Path, rendered: Rendered, quality: Quality, limit_by
 
 
 def _codings(quality: Quality) -> Iterator[tuple[int, int]]:
-    """Codings of the base and the tiles, finest first."""
+    """Yield the encodings of base and tiles, best first."""
     for base in range(FINEST_BASE_CODING, quality.base_coding, -CODING_STEP):
         yield base, quality.tile_coding
     for tile in range(quality.tile_coding, LOWEST_TILE_CODING, -CODING_STEP):
@@ -152,7 +152,7 @@ def _codings(quality: Quality) -> Iterator[tuple[int, int]]:
 
 
 def _tiles(folder: Path, tiles: list[RenderedTile], coding: int) -> list[Layer]:
-    """Coded side by side: the coder leaves Python's lock, and a pack has a hundred of them."""
+    """Encode tiles in threads: the encoder releases Python's lock, and a pack has about a hundred tiles."""
     with ThreadPoolExecutor() as pool:
         return list(pool.map(lambda k: _colour(folder, f"tiles/{k:02d}{COLOUR}", tiles[k].colour, coding), range(len(tiles))))
 
@@ -174,5 +174,5 @@ def _numbers(folder: Path, name: str, numbers: NDArray[np.uint16]) -> Layer:
 
 
 def layer_of(folder: Path, name: str, width: int, height: int) -> Layer:
-    """The manifest's entry for a file that has been written."""
+    """Return the manifest's entry for a written file."""
     return Layer(file=name, sha256=hashlib.sha256((folder / name).read_bytes()).hexdigest(), width=width, height=height)

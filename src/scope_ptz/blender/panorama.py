@@ -1,4 +1,4 @@
-"""Panoramas out of the worker: rendered in strips, joined, and freed of detail that the projection only stretches."""
+"""Panoramas from the worker: rendered in strips, joined, and smoothed where the projection stretches them."""
 
 from __future__ import annotations
 
@@ -25,7 +25,10 @@ Picture = NDArray[np.uint8]
 
 
 def render_base(worker: BlenderWorker, shop: Workshop, viewpoint: str, panorama: Panorama, samples: int) -> Picture:
-    """(H, W, 3) RGB. Each strip is a part of its own, so a killed bake loses one strip at most."""
+    """Render the base panorama of shape ``(H, W, 3)``, RGB.
+
+    Each strip is a part of its own, so an interrupted bake loses one at most.
+    """
     strips = panorama.strips(STRIP_ROWS, OVERLAP_ROWS)
     step = shop.steps(f"{viewpoint}/base", len(strips))
     pictures = []
@@ -47,12 +50,12 @@ def render_base(worker: BlenderWorker, shop: Workshop, viewpoint: str, panorama:
 
 
 def _is_plain(strip: Strip) -> bool:
-    """Sky, which has no noise, or the ground below the camera, of which each row is averaged over many pixels afterwards."""
+    """Return whether a strip needs few samples: the sky has no noise, and the ground below is averaged later."""
     return strip.bottom_tilt_deg > SKY_TILT_DEG or strip.top_tilt_deg < NADIR_TILT_DEG
 
 
 def joined(panorama: Panorama, strips: list[Strip], pictures: list[Picture]) -> Picture:
-    """The strips at full width, cross-faded where they overlap."""
+    """Return the strips at full width, cross-faded where they overlap."""
     total = np.zeros((panorama.height, panorama.width, 3), dtype=np.float32)
     weights = np.zeros((panorama.height, 1, 1), dtype=np.float32)
     for strip, picture in zip(strips, pictures, strict=True):
@@ -68,7 +71,7 @@ def joined(panorama: Panorama, strips: list[Strip], pictures: list[Picture]) -> 
 
 
 def _widened(picture: Picture, width: int) -> Picture:
-    """Stretched across, knowing that the left edge follows the right one."""
+    """Stretch a strip horizontally. Its left edge continues its right edge."""
     if picture.shape[1] == width:
         return picture
     pad = 8
@@ -81,7 +84,7 @@ def _widened(picture: Picture, width: int) -> Picture:
 
 
 def smoothed(picture: Picture, panorama: Panorama) -> Picture:
-    """Each row blurred across by as many pixels as one pixel of the equator is wide there: no view can show more than that."""
+    """Blur each row horizontally to the detail of the equator: no view can show more."""
     result = picture.copy()
     for row in range(panorama.height):
         tilt = panorama.tilt_of_row(row + 0.5)

@@ -1,4 +1,4 @@
-"""How alike two pictures of one view are, and how alike two sets of instance boxes."""
+"""Similarity of two pictures of one view, and of two sets of instance boxes."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ Mask = NDArray[np.bool_]
 
 
 def ssim(a: Picture, b: Picture, mask: Mask | None = None) -> float:
-    """Mean structural similarity on grey of two (H, W, 3) RGB pictures, over the pixels of ``mask`` when there is one.
+    """Return the mean structural similarity of two ``(H, W, 3)`` RGB pictures in grey, over the pixels of ``mask`` if given.
 
-    Wang et al., "Image quality assessment: from error visibility to structural similarity", 2004, with a uniform 7x7 window,
-    sample covariance, and the border where the window does not fit left out.
+    Wang et al., "Image quality assessment: from error visibility to structural similarity", 2004, with a uniform 7x7 window and
+    sample covariance. The border, where the window does not fit, is left out.
     """
     x, y = _grey(a), _grey(b)
     size = (WINDOW_PX, WINDOW_PX)
@@ -32,19 +32,19 @@ def ssim(a: Picture, b: Picture, mask: Mask | None = None) -> float:
 
 
 def sharpness(picture: Picture, mask: Mask | None = None) -> float:
-    """Variance of the Laplacian of the grey picture, over the pixels of ``mask`` when there is one."""
+    """Return the variance of the Laplacian of the grey picture, over the pixels of ``mask`` if given."""
     return float(_inside(np.asarray(cv2.Laplacian(_grey(picture), cv2.CV_64F)), mask).var())
 
 
 def _inside(values: NDArray[np.float64], mask: Mask | None) -> NDArray[np.float64]:
-    """Values more than half a window from the border, those of the mask only."""
+    """Return the values more than half a window from the border, limited to the mask."""
     border = WINDOW_PX // 2
     inner = (slice(border, -border), slice(border, -border))
     return values[inner] if mask is None else values[inner][mask[inner]]
 
 
 def box_ious(a: NDArray[np.uint16], b: NDArray[np.uint16], min_pixels: int) -> dict[int, float]:
-    """Intersection over union of the boxes of every instance with more than ``min_pixels`` in ``b`` (the reference), by number."""
+    """Return the intersection over union of boxes by number, for instances with more than ``min_pixels`` in the reference ``b``."""
     numbers, counts = np.unique(b[b > 0], return_counts=True)
     return {int(n): _iou(_box(a == n), _box(b == n)) for n, count in zip(numbers, counts, strict=True) if count > min_pixels}
 

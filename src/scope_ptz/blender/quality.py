@@ -1,4 +1,4 @@
-"""How good a bake is made, and what it may weigh."""
+"""Quality settings and size limits of a bake."""
 
 from __future__ import annotations
 
@@ -7,25 +7,25 @@ from dataclasses import dataclass
 from scope_ptz.errors import UnknownNameError
 
 PACK_BYTES = 6_600_000
-"""All layers of one viewpoint together."""
+"""Limit for all layers of one viewpoint."""
 
 NEAR_M, FAR_M = 0.3, 20000.0
-"""Range of the depth coding."""
+"""Range of the depth encoding in metres."""
 
 WIDER_DENSITY_PX_PER_DEG = 34.0
-"""Enough for views at 1.7x, half of what a view at 3.5x wants."""
+"""Density for views at 1.7x, half of what a view at 3.5x needs."""
 
 DEPTH_STEP = 48
-"""Distances are rounded to this many codes: 0.8%, far less than what separates an actor from what it walks behind."""
+"""Distances are rounded to this many codes, 0.8%, far less than the distance between an actor and what hides it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Quality:
-    """Sizes in pixels, samples a pixel, most cells of the sphere that get tiles, and the colour coder's own scale.
+    """Settings of a bake: sizes in pixels, samples per pixel, numbers of tiles, and the colour encoder's own quality scale.
 
-    Beside the sharp tiles there are ``wider_tiles`` at about a third of their density, where most things are, so that what lies
-    beside a sharp tile is not at once as soft as the panorama. ``check_samples`` and ``check_width`` are those of the live renders
-    that a finished pack is compared with, and ``judged`` says whether it must hold the tolerances.
+    ``wider_tiles`` have about a third of the density of the sharp tiles and cover the busiest areas, so that the surroundings of a
+    sharp tile are not as soft as the panorama. ``check_samples`` and ``check_width`` are for the live renders with which a finished
+    pack is compared. ``judged`` says whether the pack must meet the tolerances.
     """
 
     name: str
@@ -47,7 +47,11 @@ class Quality:
 
 
 def named_quality(name: str) -> Quality:
-    """One of ``QUALITIES``; ``UnknownNameError`` when there is none of that name."""
+    """Return the quality of a name.
+
+    Raises:
+        UnknownNameError: There is no such quality.
+    """
     if name not in QUALITIES:
         raise UnknownNameError("quality", name, QUALITIES)
     return QUALITIES[name]

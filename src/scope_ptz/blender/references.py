@@ -1,4 +1,4 @@
-"""Live renders kept as files, so that packs can be held against them where there is no Blender."""
+"""Live renders as files, so that packs can be compared with them without Blender."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from scope_ptz.simulator.layers import read_colour, read_ids, write_colour, writ
 
 INDEX = "references.json"
 QUALITY = 97
-"""The pictures are kept nearly as they were rendered: what coding loses here would be blamed on the pack."""
+"""Encoding quality of the pictures: high, because losses would count against the pack."""
 
 Reference = tuple[str, Pose, NDArray[np.uint8], NDArray[np.uint16]]
-"""Viewpoint, pose, picture (H, W, 3) and instance numbers (H, W)."""
+"""Viewpoint, pose, picture of shape ``(H, W, 3)`` and instance numbers ``(H, W)``."""
 
 
 def keep_reference(folder: Path, viewpoint: str, pose: Pose, colour: NDArray[np.uint8], ids: NDArray[np.uint16]) -> None:
@@ -33,7 +33,7 @@ def keep_reference(folder: Path, viewpoint: str, pose: Pose, colour: NDArray[np.
 
 
 def references(folder: Path) -> Iterator[Reference]:
-    """The live renders of a folder, in the order in which they were kept."""
+    """Yield the live renders of a folder, in the order in which they were added."""
     for entry in json.loads((folder / INDEX).read_text()):
         name = entry["name"]
         yield entry["viewpoint"], Pose(*entry["pose"]), read_colour(folder / f"{name}.webp"), read_ids(folder / f"{name}-ids.webp")

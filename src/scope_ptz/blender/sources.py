@@ -1,4 +1,4 @@
-"""What a scene is built from: the modules of the studio that its code imports, so that a bake depends on those and on no others."""
+"""The source files of a scene: its own module and the studio modules that it imports. A bake depends on these only."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ STUDIO = Path(__file__).resolve().parents[2] / "scope_studio"
 
 
 def scene_key(source: str) -> str:
-    """A name for the present state of a scene's code: its own module and everything in the studio that it imports, however far."""
+    """Return a key for the current state of a scene's code: its module and all studio modules that it imports, also indirectly."""
     own = scene_file(source)
     digest = sha256()
     for path in [own, *sorted(_reach(own))]:
@@ -21,7 +21,11 @@ def scene_key(source: str) -> str:
 
 
 def scene_file(source: str) -> Path:
-    """The Python file of a scene, which need not exist: ``source`` is a path that ends in ``.py``, or the name of a scene."""
+    """Return the Python file of a scene, which may not exist.
+
+    Args:
+        source: A path that ends in ``.py``, or the name of a scene.
+    """
     if source.endswith(".py"):
         return Path(source)
     place = STUDIO / "scenes" / source.replace("-", "_")
@@ -30,12 +34,12 @@ def scene_file(source: str) -> Path:
 
 
 def scene_names() -> list[str]:
-    """Names of the scenes that can be built from code."""
+    """Return the names of the scenes that can be built from code."""
     return sorted(f.parent.name.replace("_", "-") for f in (STUDIO / "scenes").glob("*/__init__.py"))
 
 
 def _reach(start: Path) -> set[Path]:
-    """Studio modules imported by a file, directly or through one another; without the file itself."""
+    """Return the studio modules that a file imports, also indirectly, without the file itself."""
     found: set[Path] = set()
     waiting = [start]
     while waiting:

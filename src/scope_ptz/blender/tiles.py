@@ -1,4 +1,4 @@
-"""Where zooming pays: which parts of the sphere get sharper pictures, decided from the scene itself."""
+"""The parts of the sphere that get sharper pictures, chosen from the scene."""
 
 from __future__ import annotations
 
@@ -14,37 +14,37 @@ from scope_ptz.simulator.models import SceneFile, SceneText, SceneViewpoint
 
 CELL_PAN_DEG, CELL_TILT_DEG = 6.0, 4.0
 WIDER_PAN_DEG, WIDER_TILT_DEG = 30.0, 20.0
-"""Cells of the wider tiles."""
+"""Size of the cells of the wider tiles."""
 
 OVERLAP_DEG = 0.15
-"""A tile reaches this far beyond its cell, so that neighbours leave no seam."""
+"""A tile extends this far beyond its cell, so that neighbours leave no seam."""
 
 MOST_JOINED, JOINED_TO_DEG = 3, 35.0
-"""So many cells in a row are rendered as one, in rows this close to the horizon."""
+"""Number of cells in a row that are rendered as one, and the tilt up to which rows are joined."""
 
 GRID_DEG = 0.25
-"""Resolution of the map of what must be covered."""
+"""Resolution of the map of directions to cover."""
 
 WIDE_FOCAL_PX, TELE_FOCAL_PX = 897.0, 5212.0
-"""Focal lengths of a 1280 pixel wide frame at both ends of the zoom."""
+"""Focal lengths of a frame 1280 pixels wide, at both ends of the zoom."""
 
 SMALL_SIDE_PX = 60.0
-"""An instance whose longer side is less than this at the wide end is one to zoom in on,"""
+"""An instance is a target for zooming if its longer side is below this at the widest zoom."""
 
 MIN_TELE_SIDE_PX, MIN_TELE_AREA_PX = 12.0, 70.0
-"""... if at the tele end its shorter side and its area are enough for it to be counted."""
+"""An instance is a target only if its shorter side and its area reach this at the closest zoom, so that it can be counted."""
 
 SMALL_CAPS_PX = 20.0
 MIN_TELE_CAPS_PX = 12.0
 MAX_READING_ANGLE_DEG = 58.0
-"""Texts are taken a little more generously than they are judged legible."""
+"""Limit on the reading angle of texts, a little more generous than that of legibility."""
 
 Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """Something that must lie in tiles: directions (n, 2) as pan/tilt in degrees."""
+    """A thing that tiles must cover: directions of shape ``(n, 2)``, pan and tilt in degrees."""
 
     name: str
     directions: NDArray[np.float64]
@@ -52,7 +52,7 @@ class Target:
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """A patch of the sphere between two pans and two tilts."""
+    """A part of the sphere between two pans and two tilts."""
 
     pan_deg: float
     tilt_deg: float
@@ -60,7 +60,7 @@ class Cell:
     span_tilt_deg: float
 
     def view(self, density_px_per_deg: float) -> Perspective:
-        """The smallest upright perspective picture that shows the cell and a little more, with this density in its middle."""
+        """Return the smallest upright perspective view that shows the cell with its overlap, with this density in its middle."""
         edge = np.linspace(-0.5, 0.5, 17)
         pans, tilts = np.meshgrid(edge * (self.span_pan_deg + 2 * OVERLAP_DEG), edge * (self.span_tilt_deg + 2 * OVERLAP_DEG))
         axes = Perspective(self.pan_deg, self.tilt_deg, 90.0, 2, 2)
@@ -72,7 +72,14 @@ class Cell:
 
 
 def targets(scene: SceneFile, viewpoint: SceneViewpoint, ids: NDArray[np.uint16], projection: Equirectangular) -> list[Target]:
-    """Every text and every small instance that can be read or counted after zooming in. ``ids`` is the panorama's id layer."""
+    """Return every text and every small instance that can be read or counted after zooming in.
+
+    Args:
+        scene: The scene.
+        viewpoint: Where the camera stands.
+        ids: Instance numbers of the panorama.
+        projection: The panorama's projection.
+    """
     found = []
     rows, columns = np.nonzero(ids)
     numbers = ids[rows, columns]
@@ -107,7 +114,7 @@ def _is_small(points: NDArray[np.float64], projection: Equirectangular) -> bool:
 
 
 def _text_directions(text: SceneText, viewpoint: SceneViewpoint) -> NDArray[np.float64] | None:
-    """Directions of a text's block when it needs zoom and repays it; None otherwise. Whether something hides it is not asked."""
+    """Return the directions of a text that needs zoom and is legible with it, otherwise None. Occlusion is ignored."""
     centre, right, up = (np.array(v) for v in (text.centre_m, text.right, text.up))
     towards = np.array(viewpoint.position_m) - centre
     distance = float(np.linalg.norm(towards))
@@ -124,7 +131,7 @@ def _text_directions(text: SceneText, viewpoint: SceneViewpoint) -> NDArray[np.f
 
 
 def cover(wanted: Sequence[Target]) -> list[Cell]:
-    """Whole cells of a grid that hold every target. The grid is shifted to where it needs the fewest."""
+    """Return the grid cells that hold every target. The grid is shifted to where it needs the fewest cells."""
     if not wanted:
         return []
     needed = _needed(wanted)
@@ -133,7 +140,13 @@ def cover(wanted: Sequence[Target]) -> list[Cell]:
 
 
 def busiest(ids: NDArray[np.uint16], projection: Equirectangular, most: int) -> list[Cell]:
-    """The ``most`` wide cells of a grid that hold the most outlines of things. ``ids`` is the panorama's id layer."""
+    """Return the ``most`` wide grid cells with the longest outlines of things.
+
+    Args:
+        ids: Instance numbers of the panorama.
+        projection: The panorama's projection.
+        most: Number of cells.
+    """
     outlines = _outlines(ids, projection)
     everywhere = np.ones_like(outlines, dtype=bool)
     best: list[Cell] = []
@@ -148,7 +161,7 @@ def busiest(ids: NDArray[np.uint16], projection: Equirectangular, most: int) -> 
 
 
 def covers(views: Sequence[Perspective], target: Target) -> bool:
-    """Whether every direction of a target lies in at least one of the views."""
+    """Return whether every direction of a target lies in at least one of the views."""
     return bool(np.any([_inside(view, target) for view in views], axis=0).all()) if views else False
 
 
@@ -158,7 +171,7 @@ def _inside(view: Perspective, target: Target) -> Mask:
 
 
 def most_useful(cells: Sequence[Cell], wanted: Sequence[Target], most: int) -> list[Cell]:
-    """The ``most`` cells that show parts of the most targets, in their old order."""
+    """Return the ``most`` cells that show parts of the most targets, in their previous order."""
     views = [cell.view(1.0) for cell in cells]
     shown = [sum(bool(_inside(view, target).any()) for target in wanted) for view in views]
     kept = sorted(sorted(range(len(cells)), key=lambda k: (-int(shown[k]), k))[:most])
@@ -166,9 +179,9 @@ def most_useful(cells: Sequence[Cell], wanted: Sequence[Target], most: int) -> l
 
 
 def in_rows(cells: Sequence[Cell]) -> list[Cell]:
-    """The same parts of the sphere in fewer pieces: neighbours in a row become one, so that less is spent on starting renders.
+    """Join neighbouring cells of a row, which saves render starts.
 
-    Rows far from the horizon are left alone: there a long cell fills its picture badly.
+    Rows far from the horizon are not joined: a long cell fills its picture badly there.
     """
     found: list[Cell] = []
     length = 0
@@ -188,7 +201,7 @@ def in_rows(cells: Sequence[Cell]) -> list[Cell]:
 
 
 def _needed(wanted: Sequence[Target]) -> Mask:
-    """(720, 1440) map of the sphere, row 0 at tilt -90, column 0 at pan -180."""
+    """Return a map of the directions to cover, of shape ``(720, 1440)``; row 0 is tilt -90, column 0 is pan -180."""
     grid = np.zeros((round(180 / GRID_DEG), round(360 / GRID_DEG)), dtype=bool)
     for target in wanted:
         rows = np.clip(((target.directions[:, 1] + 90) / GRID_DEG).astype(int), 0, grid.shape[0] - 1)
@@ -197,7 +210,7 @@ def _needed(wanted: Sequence[Target]) -> Mask:
 
 
 def _outlines(ids: NDArray[np.uint16], projection: Equirectangular) -> NDArray[np.float64]:
-    """(720, 1440) like ``_needed``: how long the outlines are that the panorama, which goes all the way round, shows there."""
+    """Return a map like that of ``_needed`` with the length of the outlines in the full-circle panorama."""
     edge = np.zeros(ids.shape, dtype=bool)
     edge[:, 1:] = ids[:, 1:] != ids[:, :-1]
     edge[1:] |= ids[1:] != ids[:-1]
@@ -205,7 +218,7 @@ def _outlines(ids: NDArray[np.uint16], projection: Equirectangular) -> NDArray[n
     tilts = projection.top_tilt_deg - (rows + 0.5) / projection.height * (projection.top_tilt_deg - projection.bottom_tilt_deg)
     pans = (columns + 0.5) / projection.width * 360.0
     bins = [round(180 / GRID_DEG), round(360 / GRID_DEG)]
-    weights = np.cos(np.radians(tilts))  # near the poles a pixel is less wide
+    weights = np.cos(np.radians(tilts))  # Pixels near the poles are narrower.
     return np.histogram2d(tilts, pans, bins=bins, range=[[-90.0, 90.0], [0.0, 360.0]], weights=weights)[0]
 
 
@@ -233,7 +246,7 @@ def _cells(needed: Mask, shift_deg: float, span_pan_deg: float, span_tilt_deg: f
 
 
 def _best_starts(columns: Mask, span_deg: float) -> list[float]:
-    """Left edges (degrees from pan -180) of the grid columns that are needed, for the grid offset that needs the fewest."""
+    """Return the left edges of the needed grid columns, in degrees from pan -180, for the grid offset that needs the fewest."""
     places = np.flatnonzero(columns) * GRID_DEG
     best: list[float] = []
     for offset in np.arange(0.0, span_deg, GRID_DEG):

@@ -1,4 +1,4 @@
-"""How alike a pack and live renders must be, and what falls short of it."""
+"""Tolerances between a pack and live renders, and the ones that a comparison misses."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from statistics import mean
 from scope_ptz.blender.verify import PoseReport
 
 WIDE_SSIM_MEAN, WIDE_SSIM_MIN = 0.93, 0.88
-"""At the wide end, whole views."""
+"""Similarity of whole views at the widest zoom."""
 
 TILE_SSIM_MIN, TILE_SHARPNESS_MIN = 0.90, 0.60
-"""Zoomed in, the part of a view that lies in tiles."""
+"""Similarity and sharpness of zoomed views, in the part that tiles cover."""
 
 WIDE_IOU_MEAN, TELE_IOU_MEAN = 0.97, 0.93
-"""Boxes of instances over 400 pixels."""
+"""Overlap of the boxes of instances over 400 pixels, at the widest zoom and zoomed in."""
 
 
 def shortcomings(reports: Sequence[PoseReport]) -> list[str]:
-    """In words, every tolerance that a comparison misses; empty when all hold."""
+    """Return a sentence for every tolerance that a comparison misses."""
     wide = [r for r in reports if r.pose.zoom == 1.0]
     tiled = [r for r in reports if r.pose.zoom > 1.0 and r.tile_share > 0]
     found = []

@@ -1,4 +1,4 @@
-"""Whether a pack shows what Blender shows: re-projected views against live renders of the same poses, drawn by seed."""
+"""Comparison of a pack with live Blender: re-projected views against live renders of the same poses, drawn by seed."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.reproject import colour_view, id_view
 
 SEED_OF_LIVE = 7
-"""Not the seed that packs are baked with: equal noise would flatter."""
+"""Seed of the live renders. It differs from the seed of bakes, because equal noise would improve the similarity."""
 
 MIN_BOX_PIXELS = 400
 
 FOLIAGE = ("tree", "bush", "hedge", "planter", "flower bed", "hanging basket")
-"""Categories of things made of leaves."""
+"""Categories of plants, where re-projection is hardest."""
 
 
 @dataclass(frozen=True, slots=True)
 class PoseReport:
-    """One pose: how alike the pictures are, how sharp the pack's is against the live one, the mean IoU of boxes (None: no boxes).
+    """The comparison of one pose: similarity of pictures, relative sharpness of the pack, mean IoU of boxes (None without boxes).
 
-    ``tile_share`` is the part of the view that lies in tiles dense enough for it; where it is above 0 and the zoom above 1,
-    similarity and sharpness are those of that part.
+    ``tile_share`` is the part of the view in tiles that are dense enough for it. If it is above 0 and the zoom above 1, similarity
+    and sharpness refer to that part.
     """
 
     viewpoint: str
@@ -49,10 +49,10 @@ class PoseReport:
 
 
 def draw_poses(scene: Scene, seed: int, wide: int, zoomed: int, viewpoints: Sequence[str] | None = None) -> list[tuple[str, Pose]]:
-    """``wide`` poses at the wide end and ``zoomed`` ones on tiles, at 2x to 5x in equal steps; viewpoints in turn.
+    """Draw ``wide`` poses at the widest zoom and ``zoomed`` ones on tiles, at 2x to 5x in equal steps, over all viewpoints in turn.
 
-    Every second pair of poses goes where re-projection has it hardest: to a sign, to foliage, steeply down at the ground. The
-    others are anywhere: at the wide end over all pans and tilts, zoomed in on any tile.
+    Every second pair of poses is at a hard place: a sign, foliage, or the ground far below. The others are anywhere: over all pans
+    and tilts at the widest zoom, on any tile when zoomed in.
     """
     rng, limits = random.Random(seed), Limits()
     names = [v.name for v in scene.file.viewpoints] if viewpoints is None else viewpoints
@@ -79,7 +79,7 @@ def draw_poses(scene: Scene, seed: int, wide: int, zoomed: int, viewpoints: Sequ
 
 
 def _hard(scene: Scene, viewpoint: str, turn: int, rng: random.Random, limits: Limits) -> tuple[float, float] | None:
-    """Pan and tilt of a sign, of foliage or of bare ground in turn; None at every second turn and where there is no such thing."""
+    """Return pan and tilt of a sign, foliage or bare ground in turn; None for every second pair and where there is none."""
     place = next(v for v in scene.file.viewpoints if v.name == viewpoint)
     kind = turn // 2 % 3
     if turn % 2:
@@ -100,7 +100,7 @@ def _hard(scene: Scene, viewpoint: str, turn: int, rng: random.Random, limits: L
 
 
 def compare(scene: Scene, viewpoint: str, pose: Pose, colour: NDArray[np.uint8], ids: NDArray[np.uint16]) -> PoseReport:
-    """The pack's view of a pose against a live render (H, W, 3) and its instance numbers (H, W)."""
+    """Compare the pack's view of a pose with a live render of shape ``(H, W, 3)`` and its instance numbers."""
     height, width = ids.shape
     view = Perspective(pose.pan_deg, pose.tilt_deg, AXIS_M5075_G.hfov_deg(pose.zoom), width, height)
     here = scene.viewpoint(viewpoint)
@@ -129,9 +129,10 @@ def verify(
     height: int = 720,
     keep: Path | None = None,
 ) -> list[PoseReport]:
-    """Compare each pose; the worker must have the scene loaded. Moving actors are left out on both sides.
+    """Compare each pose. The worker must have the scene loaded. Moving actors are left out on both sides.
 
-    ``keep``: a folder for the live renders, so that later packs can be compared without Blender (``references.py``).
+    Args:
+        keep: A folder for the live renders, so that later packs can be compared without Blender.
     """
     reports = []
     with TemporaryDirectory() as folder:
@@ -158,7 +159,7 @@ def _live(
 
 
 def _in_tiles(tiles: Sequence[Tile], view: Perspective) -> NDArray[np.bool_]:
-    """(H, W): which pixels of a view lie in a tile that is dense enough for it."""
+    """Return a mask of shape ``(H, W)``: the pixels of a view that lie in a tile that is dense enough for it."""
     x, y = np.meshgrid((np.arange(view.width) + 0.5) / view.width, (np.arange(view.height) + 0.5) / view.height)
     directions = view.directions(np.stack([x, y], axis=-1))
     inside = np.zeros((view.height, view.width), dtype=bool)

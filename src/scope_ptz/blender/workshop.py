@@ -1,4 +1,4 @@
-"""The unfinished bake on disk: every part is a file named by what it depends on, so that a killed bake goes on where it stopped."""
+"""The parts of an unfinished bake on disk. Each is a file named by its inputs, so that an interrupted bake resumes."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from typing import Any, Protocol
 
 
 class Progress(Protocol):
-    """Told after every step: which part, how much of it is done, and how long the part has taken so far."""
+    """Called after every step with the part, the steps done, the total, and the seconds so far."""
 
     def __call__(self, part: str, done: int, total: int, seconds: float) -> None: ...
 
 
 class Workshop:
-    """A folder of parts for one state of a scene."""
+    """A folder with the parts of one state of a scene."""
 
     def __init__(self, root: Path, scene_key: str, progress: Progress) -> None:
         self.folder = root / scene_key
@@ -25,7 +25,7 @@ class Workshop:
         self._progress = progress
 
     def part(self, name: str, suffix: str, parameters: dict[str, Any], produce: Callable[[Path], None]) -> Path:
-        """The finished file of a part, made by ``produce`` (to a path that it is given) unless it is there already."""
+        """Return the finished file of a part. If it is missing, ``produce`` writes it to the path that it receives."""
         stamp = digest(json.dumps([name, parameters], sort_keys=True))[:12]
         path = self.folder / f"{name.replace('/', '-')}-{stamp}{suffix}"
         if not path.exists():
@@ -35,7 +35,7 @@ class Workshop:
         return path
 
     def steps(self, part: str, total: int) -> Callable[[], None]:
-        """A counter to call after each step of a part."""
+        """Return a function to call after each step of a part."""
         started, done = time.monotonic(), 0
         self._progress(part, 0, total, 0.0)
 
@@ -47,11 +47,11 @@ class Workshop:
         return step
 
     def follow(self, part: str) -> Callable[[int, int], None]:
-        """The same for work that counts itself."""
+        """Return a progress function for an operation that counts its own steps."""
         started = time.monotonic()
         return lambda done, total: self._progress(part, done, total, time.monotonic() - started)
 
 
 def digest(content: str | bytes) -> str:
-    """SHA-256 in hex."""
+    """Return the SHA-256 digest in hex."""
     return hashlib.sha256(content.encode() if isinstance(content, str) else content).hexdigest()

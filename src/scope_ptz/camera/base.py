@@ -16,7 +16,16 @@ from scope_ptz.geometry import Axis, Limits, Optics, Pose, Projection
 
 @dataclass(frozen=True, slots=True)
 class CameraInfo:
-    """What a planner and a tool may know of a camera before it moves."""
+    """What is known about a camera before it moves.
+
+    Attributes:
+        name: The camera's name, as traces show it.
+        limits: Limits of pan, tilt and zoom.
+        optics: Field of view by zoom.
+        frame_width: Width of a frame in pixels.
+        frame_height: Height of a frame in pixels.
+        simulated: Whether the pictures are computed.
+    """
 
     name: str
     limits: Limits
@@ -28,7 +37,10 @@ class CameraInfo:
 
 @dataclass(frozen=True, slots=True)
 class FrameOrigin:
-    """Where a simulated frame comes from. Only ``world`` and the ground-truth perception read it; real cameras have none."""
+    """Where a simulated frame comes from.
+
+    Only the simulator and ground-truth perception read it; frames of real cameras have none.
+    """
 
     scene: str
     viewpoint: str
@@ -38,9 +50,15 @@ class FrameOrigin:
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """One picture with the geometry to map any of its pixels to a direction.
+    """A picture with the geometry that maps any of its pixels to a direction.
 
-    ``image`` is ``(H, W, 3) uint8`` RGB, read-only. For a stitched panorama ``pose`` is the camera's pose when the sweep began.
+    Attributes:
+        image: Read-only array of shape ``(H, W, 3)``, uint8, RGB.
+        pose: The camera's pose; for a stitched panorama the pose at the start of the sweep.
+        hfov_deg: Horizontal field of view in degrees.
+        time_s: Scene time in seconds.
+        projection: The mapping between pixels and directions.
+        origin: Where a simulated frame comes from, None for real cameras.
     """
 
     image: NDArray[np.uint8]
@@ -74,55 +92,66 @@ class PresetInfo:
 
 @dataclass(frozen=True, slots=True)
 class Arrival:
-    """Where a move ended, and which of "pan", "tilt", "zoom" a limit cut."""
+    """Where a move ended, and the axes that a limit stopped."""
 
     pose: Pose
     clamped: tuple[Axis, ...] = field(default=())
 
 
 class Clock(Protocol):
-    """Time as the camera's world knows it, in seconds."""
+    """The time of the camera's world, in seconds."""
 
     def now_s(self) -> float: ...
 
     async def sleep(self, seconds: float) -> None:
-        """Let that much time of the camera's world go by."""
+        """Wait for this much time of the camera's world."""
         ...
 
 
 class Camera(ABC):
-    """A pan-tilt-zoom camera. All methods raise ``CameraError`` when the camera does not do what it was told."""
+    """A pan-tilt-zoom camera. All methods raise ``CameraError`` when the camera fails.
+
+    Attributes:
+        clock: The time of the camera's world.
+    """
 
     clock: Clock
 
     @property
     @abstractmethod
     def info(self) -> CameraInfo:
-        """Limits, optics, name, frame size."""
+        """Name, limits, optics and frame size."""
 
     @abstractmethod
     async def pose(self) -> Pose:
-        """Where the camera looks now."""
+        """Return the current pose."""
 
     @abstractmethod
     async def move(self, pose: Pose) -> Arrival:
-        """Go to an absolute pose within the limits; returns when settled. ``pose.pan_deg`` is not wrapped before it is clamped."""
+        """Go to an absolute pose within the limits and return when the picture has settled.
+
+        ``pose.pan_deg`` is clamped without being wrapped first: 190 stops at 179 and never turns the long way.
+        """
 
     @abstractmethod
     async def presets(self) -> list[PresetInfo]:
-        """The named poses, in a stable order."""
+        """Return the presets in a stable order."""
 
     @abstractmethod
     async def go_to_preset(self, name: str) -> Arrival:
-        """Go to a named pose. In a simulated scene this may change the optical centre. Unknown names raise ``UnknownNameError``."""
+        """Go to a preset. In a simulated scene this may change the optical centre.
+
+        Raises:
+            UnknownNameError: There is no such preset.
+        """
 
     @abstractmethod
     async def go_home(self) -> Arrival:
-        """Go to the home pose, known from the start."""
+        """Go to the home pose."""
 
     @abstractmethod
     async def frame(self) -> Frame:
-        """A picture taken now."""
+        """Take a picture."""
 
     @abstractmethod
     async def stop(self) -> None:
@@ -133,5 +162,8 @@ class Camera(ABC):
 
     @contextmanager
     def hold_time(self) -> Iterator[None]:
-        """While this is open nothing in a simulated world moves, so that a sweep sees one instant. Real time cannot be held."""
+        """Return a context in which nothing in a simulated world moves, so that a sweep sees one instant.
+
+        Real time cannot be held.
+        """
         yield

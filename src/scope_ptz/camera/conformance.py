@@ -1,6 +1,6 @@
-"""What every camera must do, as checks that any ``Camera`` can be put through.
+"""The conformance suite of the ``Camera`` contract.
 
-With pytest, subclass it and say how to make the camera; every ``test_`` method then is a test::
+With pytest, subclass it and make the camera; every ``test_`` method is a test::
 
     @pytest.mark.anyio
     class TestMyCamera(CameraConformance):
@@ -8,7 +8,7 @@ With pytest, subclass it and say how to make the camera; every ``test_`` method 
         async def camera(self):
             yield MyCamera(...)
 
-Without pytest, ``await TestMyCamera().findings()`` runs all checks and names what failed.
+Without pytest, ``await TestMyCamera().findings()`` runs all checks and returns the failures.
 """
 
 from __future__ import annotations
@@ -27,21 +27,21 @@ from scope_ptz.geometry import Perspective, Pose, wrap_pan_deg
 
 
 class CameraConformance(ABC):
-    """Checks against the ``Camera`` contract. Tolerances may be widened for real motors and encoders."""
+    """Checks of the ``Camera`` contract. Widen the tolerances for real motors and encoders."""
 
     angle_tolerance_deg: float = 0.05
     zoom_tolerance: float = 0.02
     field_tolerance: float = 0.02
-    """How far the field of view of a frame may differ from the zoom table, as a share."""
+    """Allowed difference between a frame's field of view and the zoom table, as a share."""
     same_picture_mean_difference: float = 2.0
-    """Mean difference (of 255) allowed between two pictures of one pose; noise and moving things count."""
+    """Allowed mean difference (of 255) between two pictures of one pose, for noise and moving things."""
 
     @abstractmethod
     def camera(self) -> AbstractAsyncContextManager[Camera]:
-        """A camera ready for use, released afterwards."""
+        """Open a camera and release it afterwards."""
 
     async def findings(self) -> dict[str, str]:
-        """Run all checks; name and reason of each that failed."""
+        """Run all checks and return name and reason of each failure."""
         failed = {}
         for name in sorted(n for n in dir(self) if n.startswith("test_")):
             try:
@@ -222,7 +222,7 @@ class CameraConformance(ABC):
 
 
 def _poses(info: CameraInfo) -> list[Pose]:
-    """Four poses well within the limits and far from each other."""
+    """Return four poses well within the limits and far from each other."""
     limits = info.limits
     shares = ((0.5, 0.6, 0.0), (0.8, 0.4, 0.7), (0.2, 0.8, 0.3), (0.55, 0.2, 1.0))
     return [

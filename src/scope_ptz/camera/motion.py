@@ -1,4 +1,4 @@
-"""How a pan-tilt-zoom head gets from one pose to another: each axis speeds up, cruises, slows down."""
+"""The motion of a pan-tilt-zoom head: each axis accelerates, runs at its top speed, and brakes."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from scope_ptz.geometry import Pose
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """One motor: top speed in units/s and acceleration in units/s^2."""
+    """A motor: its top speed in units/s and its acceleration in units/s²."""
 
     speed: float
     acceleration: float
 
     def duration_s(self, distance: float) -> float:
-        """Time from rest to rest."""
+        """Return the time from rest to rest."""
         d = abs(distance)
         if d < self.speed**2 / self.acceleration:
             return 2 * math.sqrt(d / self.acceleration)
         return d / self.speed + self.speed / self.acceleration
 
     def travelled(self, distance: float, time_s: float) -> float:
-        """How far along ``distance`` (signed) the motor is after ``time_s``."""
+        """Return the signed way along ``distance`` after ``time_s``."""
         d, total = abs(distance), self.duration_s(distance)
         t = min(max(time_s, 0.0), total)
         if t >= total:
@@ -40,7 +40,7 @@ class Drive:
 
 @dataclass(frozen=True, slots=True)
 class Head:
-    """The motors of a camera. Zoom runs in octaves (a doubling of magnification), as operators see it."""
+    """The motors of a camera. Zoom is in octaves (doublings of magnification), which matches how operators perceive it."""
 
     pan: Drive
     tilt: Drive
@@ -48,13 +48,13 @@ class Head:
     settle_s: float
 
     def duration_s(self, start: Pose, end: Pose) -> float:
-        """Time until all axes stand still and the picture has settled; nothing to do takes no time."""
+        """Return the time until all axes stand still and the picture has settled; 0 if nothing moves."""
         pan, tilt, octaves = _distances(start, end)
         moving = max(self.pan.duration_s(pan), self.tilt.duration_s(tilt), self.zoom.duration_s(octaves))
         return moving + self.settle_s if moving > 0 else 0.0
 
     def at(self, start: Pose, end: Pose, time_s: float) -> Pose:
-        """The pose ``time_s`` after the move began; exactly ``end`` once all axes have arrived."""
+        """Return the pose ``time_s`` after the start of a move, exactly ``end`` once all axes have arrived."""
         pan, tilt, octaves = _distances(start, end)
         if time_s >= self.duration_s(start, end) - self.settle_s:
             return end
@@ -70,4 +70,4 @@ def _distances(start: Pose, end: Pose) -> tuple[float, float, float]:
 
 
 AXIS_M5075_G_HEAD = Head(pan=Drive(100.0, 400.0), tilt=Drive(100.0, 400.0), zoom=Drive(1.5, 6.0), settle_s=0.1)
-"""Pan speed from the data sheet; tilt, zoom, acceleration and settling are plausible, not measured."""
+"""The pan speed is from the data sheet. Tilt, zoom, acceleration and settling time are estimates."""

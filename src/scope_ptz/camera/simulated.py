@@ -1,4 +1,4 @@
-"""A simulated camera: looks at the stored sphere of a viewpoint, and moves as a motorised head does."""
+"""A simulated camera: it shows the stored sphere of a viewpoint and moves like a motorised head."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.views import picture
 
 TICK_S = 0.05
-"""While moving, how often the camera looks whether it was told something else."""
+"""Interval at which a moving camera checks for a new command."""
 
 CUT_S = 0.5
-"""Time to switch to another optical centre, as to another camera of an installation."""
+"""Time of a switch to another optical centre, like a switch between two cameras of an installation."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,10 +33,17 @@ class _Motion:
 
 
 class SimulatedCamera(Camera):
-    """An AXIS M5075-G in a scene. ``viewpoint``: where it stands; by default where the scene's home preset is.
+    """An AXIS M5075-G in a scene. Many cameras can share one scene.
 
-    The same scene may be shared by many cameras. Poses move on the clock given: at once in evaluation (scene time still goes
-    by), in real time while a person watches.
+    Moves take the time of a real head on the given clock: at once in evaluation, where only scene time passes, and in real time for
+    a person who watches.
+
+    Args:
+        scene: The scene.
+        viewpoint: Where the camera stands; the default is the viewpoint of the scene's home preset.
+        clock: The scene's clock.
+        width: Width of a frame in pixels.
+        height: Height of a frame in pixels.
     """
 
     clock: SceneClock
@@ -66,7 +73,7 @@ class SimulatedCamera(Camera):
 
     @property
     def viewpoint(self) -> str:
-        """Name of the optical centre that the camera is at."""
+        """Name of the current optical centre."""
         return self._viewpoint.name
 
     async def pose(self) -> Pose:
@@ -119,9 +126,9 @@ class SimulatedCamera(Camera):
         return Arrival(end, clamped)
 
     async def _run(self, motion: _Motion) -> None:
-        """Until settled, stopped, or told to go elsewhere. A move that is cancelled stops where it is.
+        """Move until the picture has settled or another command arrives. A cancelled move stops where it is.
 
-        While time is held no time goes by for the head either: a watched sweep takes as long as its pictures.
+        While time is held, moves take no time: a watched sweep takes only as long as its pictures.
         """
         if self.clock.held:
             motion = _Motion(motion.end, motion.end, motion.since_s)

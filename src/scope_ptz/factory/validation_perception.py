@@ -1,4 +1,4 @@
-"""The eyes of validation: the ground truth of blank frames, each view read once."""
+"""Perception for validation: the ground truth of blank frames, with each view read once."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from scope_ptz.tools.context import ToolContext
 
 
 class NamesOnly:
-    """Gives pictures names and keeps none of them."""
+    """An image store that returns names and saves nothing."""
 
     def __init__(self) -> None:
         self._taken = 0
@@ -40,7 +40,7 @@ class NamesOnly:
 
 
 class KnownViews:
-    """The truth of views, remembered: while no actor is in view, a view looks the same at all times."""
+    """The ground truth of views, cached. A view without actors has the same truth at all times."""
 
     def __init__(self, limit: int = 400) -> None:
         self._limit = limit
@@ -57,8 +57,10 @@ class KnownViews:
 
 
 def answered(draft: Draft) -> bool:
-    """Whether the ground-truth perception can answer what the reference program asks of a view, and not otherwise than the draft
-    expects; what is asked of a close-up is left to the proof."""
+    """Return whether ground-truth perception can answer the questions of a draft's reference program, in agreement with the draft.
+
+    Questions about a close-up are left to the proof.
+    """
     sight = draft.place.sight
     asked = [str(call.arguments["question"]) for call in draft.looks if call.tool == "query_answer"]
     if draft.looks_closer or not asked:
@@ -71,7 +73,7 @@ def answered(draft: Draft) -> bool:
 
 
 def is_plain_noun(view: View, asked: str) -> bool:
-    """Whether a description is so plain, colours and a noun that is known, that finding nothing means that there is none."""
+    """Return whether a description is only colours and a known noun, so that an empty result means that there is none."""
     for phrase in parse_description(asked).phrases:
         spans = nouns_in(phrase.words, view.nouns)
         plain = any(end == len(phrase.words) and set(phrase.words[:start]) <= COLOURS for start, end in spans)
@@ -86,6 +88,6 @@ def _view(sight: Sight) -> View:
 
 
 def equip_with_truth(scenes: Mapping[str, Scene], views: KnownViews | None = None) -> Equip:
-    """EvalContext for cameras in these scenes: eyes that know the truth, and a store that keeps nothing."""
+    """Return a maker of tool contexts with ground-truth perception and a store that saves nothing."""
     eyes = GroundTruthPerception(lambda name: scenes[name], (views or KnownViews()).look)
     return lambda camera: ToolContext(camera, eyes, NamesOnly())

@@ -1,8 +1,7 @@
-"""Eyes that look at pixels, one file a backend.
+"""Perception backends that read pixels, one file each.
 
 A module in this package with a function ``make(spec: BackendSpec) -> Perception`` is a backend of the module's name. Other packages
-add theirs as entry points of the group ``scope_ptz.perception``, each naming such a function. Nothing is imported before it is
-made.
+add backends by entry points of the group ``scope_ptz.perception`` that name such a function. A backend is imported when it is made.
 """
 
 from __future__ import annotations
