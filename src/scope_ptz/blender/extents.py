@@ -117,6 +117,8 @@ def _drawn(triangles: Floats, low: Floats, high: Floats, side: int) -> float:
 
     Args:
         triangles: Shape ``(m, 3, 2)``.
+        low: Lower corner of the raster.
+        high: Upper corner of the raster.
         side: Width and height of the raster in pixels, which are oblong.
     """
     pitch = np.maximum((high - low) / side, 1e-12)

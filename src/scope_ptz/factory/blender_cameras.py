@@ -14,7 +14,7 @@ from anyio import CancelScope, to_thread
 from scope_ptz.blender.bake import scene_file
 from scope_ptz.blender.client import BlenderWorker
 from scope_ptz.blender.environment import is_ready, worker_command
-from scope_ptz.blender.files import FileCameras, file_cameras
+from scope_ptz.blender.file_cameras import FileCameras, file_cameras
 from scope_ptz.camera.blender import BlenderCamera
 from scope_ptz.camera.spec import CameraSpec
 from scope_ptz.errors import PackError, UnknownNameError

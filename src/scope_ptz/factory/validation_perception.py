@@ -89,5 +89,5 @@ def _view(sight: Sight) -> View:
 
 def equip_with_truth(scenes: Mapping[str, Scene], views: KnownViews | None = None) -> Equip:
     """Return a maker of tool contexts with ground-truth perception and a store that saves nothing."""
-    eyes = GroundTruthPerception(lambda name: scenes[name], (views or KnownViews()).look)
-    return lambda camera: ToolContext(camera, eyes, NamesOnly())
+    perception = GroundTruthPerception(lambda name: scenes[name], (views or KnownViews()).look)
+    return lambda camera: ToolContext(camera, perception, NamesOnly())

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from scope_ptz.blender.files import file_cameras
+from scope_ptz.blender.file_cameras import file_cameras
 
 DESCRIPTION: dict[str, Any] = {
     "name": "my-yard",
