@@ -8,8 +8,8 @@ import bpy
 import numpy as np
 from mathutils import Vector
 
-from scope_studio.actors import Troupe
 from scope_studio.kit.core.stage import Instance, Stage
+from scope_studio.troupe import Troupe
 
 
 def scene(stage: Stage, troupe: Troupe) -> dict[str, Any]:

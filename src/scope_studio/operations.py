@@ -13,8 +13,8 @@ from typing import Any
 import bpy
 
 from scope_studio import describe, meshes, render, sprites
-from scope_studio.actors import Troupe
 from scope_studio.kit.core.stage import Stage, Viewpoint
+from scope_studio.troupe import Troupe
 
 Progress = Callable[[int, int], None]
 

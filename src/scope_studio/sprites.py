@@ -11,8 +11,8 @@ import bpy
 import numpy as np
 
 from scope_studio import render
-from scope_studio.actors import Troupe, show
 from scope_studio.kit.core.stage import Stage, Viewpoint
+from scope_studio.troupe import Troupe, show
 
 GROUND_M = 60.0
 """Side of the plane that catches the shadow."""

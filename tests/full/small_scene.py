@@ -7,10 +7,10 @@ import random
 import bpy
 
 from scope_studio.kit.core import mesh
+from scope_studio.kit.core.lettering import letters
 from scope_studio.kit.core.shading import Shader
 from scope_studio.kit.core.stage import ActorPath, Built, Stage, TextMark
 from scope_studio.kit.light import sky
-from scope_studio.kit.signs.lettering import letters
 
 NAME, TITLE = "small-yard", "Small yard"
 

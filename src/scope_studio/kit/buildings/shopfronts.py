@@ -12,11 +12,12 @@ from random import Random
 import bpy
 
 from scope_studio.kit.core.finishes import PALETTE, paint
+from scope_studio.kit.core.lettering import extent
 from scope_studio.kit.core.shading import Shader, plain
-from scope_studio.kit.core.solid import Solid, rounded
+from scope_studio.kit.core.shapes import rounded
+from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.signs.faces import write
-from scope_studio.kit.signs.lettering import extent
 
 SILL_M = 0.60
 """Height of the display shelf behind the glass."""

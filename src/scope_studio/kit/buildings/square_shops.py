@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import random
 
-import bpy
-
-from scope_studio.kit.buildings.townhouses import block
-from scope_studio.kit.core.finishes import PALETTE, glass, glow, lens, paint, sheet
-from scope_studio.kit.core.shading import Shader, plain
+from scope_studio.kit.core.finishes import PALETTE, glass, glow, lens, paint, sheet, stripes
+from scope_studio.kit.core.lettering import extent
+from scope_studio.kit.core.shading import plain
+from scope_studio.kit.core.shapes import block
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
-from scope_studio.kit.signs.lettering import extent
 
 
 def front(width: float, colour: str, *, height: float = 3.4, seed: int = 0) -> Built:
@@ -86,29 +84,6 @@ def sign_board(
         s.box((width - 0.08, 0.012, 0.02), (0, 0.055, z), paint(ink, dirt=0.1), 0.003)
     s.text(text, min(cap, (width - 0.4) / extent(text, 1.0)), (0, 0.054, 0), paint(ink, dirt=0.06))
     return s.built()
-
-
-def stripes(name: str, first: str, second: str, pitch_m: float) -> bpy.types.Material:
-    """Canvas striped across the local x axis; plain when both colours are the same. A third of the light comes through."""
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
-    s = Shader(name)
-    p = s.object_coords()
-    x, _, _ = s.xyz(p)
-    mask = s.math("GREATER_THAN", s.math("PINGPONG", s.math("ADD", x, 50.0 * pitch_m), pitch_m), pitch_m / 2)
-    stain = s.ramp(s.noise(p, 1.7, 5.0), 0.5, 0.75, 0.0, 0.22)
-    base = s.mix(stain, s.mix(mask, PALETTE[first], PALETTE[second]), (0.16, 0.14, 0.11))
-    s.surface(base_color=base, roughness=0.9, normal=s.bump(s.noise(p, 5.0, 4.0), 0.3, 0.02))
-    through = s.node("ShaderNodeBsdfTranslucent")
-    s.feed(through.inputs["Color"], base)
-    mixed = s.node("ShaderNodeMixShader")
-    mixed.inputs[0].default_value = 0.32
-    s.tree.links.new(s.bsdf.outputs[0], mixed.inputs[1])
-    s.tree.links.new(through.outputs[0], mixed.inputs[2])
-    output = next(n for n in s.tree.nodes if n.type == "OUTPUT_MATERIAL")
-    s.tree.links.new(mixed.outputs[0], output.inputs["Surface"])
-    return s.material
 
 
 def awning(width: float, first: str, second: str, *, reach: float = 1.6, text: str | None = None, open: bool = True) -> Built:  # noqa: A002

@@ -6,11 +6,12 @@ import random
 
 import bpy
 
-from scope_studio.kit.buildings.buildings import cladding_material, tile_material
-from scope_studio.kit.buildings.townhouses import SLATE, ashlar, block
+from scope_studio.kit.buildings.townhouses import SLATE
+from scope_studio.kit.buildings.wall_materials import ashlar, cladding_material, tile_material
 from scope_studio.kit.core.finishes import glass, paint, steel, timber
 from scope_studio.kit.core.shading import Shader, plain
-from scope_studio.kit.core.solid import Solid, arc
+from scope_studio.kit.core.shapes import arc, block
+from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
 CENTRE_M = 14.4

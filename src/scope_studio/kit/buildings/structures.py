@@ -9,31 +9,12 @@ from itertools import pairwise
 import bpy
 from mathutils import Vector
 
+from scope_studio.kit.buildings.wall_materials import concrete_material
 from scope_studio.kit.core.mesh import Point, box, from_data, join, text, tube
 from scope_studio.kit.core.shading import Shader, plain
 from scope_studio.kit.core.stage import Built, TextMark
 
 Rgb = tuple[float, float, float]
-
-
-def concrete_material(name: str = "structural concrete", tone: Rgb = (0.36, 0.345, 0.315)) -> bpy.types.Material:
-    """Board-marked concrete with rain streaks, lifts every 1.2 m and dirt near the ground."""
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
-    s = Shader(name)
-    p = s.object_coords()
-    _, _, z = s.xyz(p)
-    blotch = s.noise(p, 0.7, detail=7.0, roughness=0.62)
-    streak = s.noise(s.scaled(p, (2.6, 2.6, 0.10)), 1.0, detail=5.0, roughness=0.6)
-    fine = s.noise(p, 14.0, detail=3.0)
-    colour = s.mix(s.ramp(blotch, 0.28, 0.72), tuple(c * 0.72 for c in tone), tone)
-    colour = s.mix(s.ramp(streak, 0.50, 0.72, 0.0, 0.60), colour, (0.085, 0.082, 0.074))
-    joint = s.ramp(s.math("PINGPONG", z, 0.6), 0.004, 0.016, 0.45, 0.0)
-    colour = s.mix(joint, colour, (0.12, 0.115, 0.10))
-    low = s.math("ADD", z, s.math("MULTIPLY", blotch, 1.2))
-    colour = s.mix(s.ramp(low, 0.6, 1.3, 0.55, 0.0), colour, (0.10, 0.095, 0.075))
-    return s.surface(base_color=colour, roughness=0.88, normal=s.bump(s.math("ADD", fine, blotch), 0.15, 0.01))
 
 
 def overbridge(*, span_m: float, width_m: float = 9.0, deck_m: float = 6.9, number: str = "", banner: Sequence[str] = ()) -> Built:

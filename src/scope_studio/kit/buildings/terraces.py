@@ -11,10 +11,11 @@ from random import Random
 
 import bpy
 
-from scope_studio.kit.buildings.masonry import roofing, trim, wall
+from scope_studio.kit.buildings.wet_masonry import roofing, trim, wall
 from scope_studio.kit.core.finishes import paint
 from scope_studio.kit.core.shading import Shader, plain
-from scope_studio.kit.core.solid import Solid, arc
+from scope_studio.kit.core.shapes import arc
+from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
 GROUND_M = 3.55

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import bpy
 
-from scope_studio.kit.buildings.buildings import tile_material
+from scope_studio.kit.buildings.wall_materials import tile_material
 from scope_studio.kit.core.finishes import glass, paint
-from scope_studio.kit.core.mesh import Point
-from scope_studio.kit.core.shading import Shader, plain
+from scope_studio.kit.core.shading import plain
+from scope_studio.kit.core.shapes import block
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
@@ -48,56 +48,6 @@ class House:
     @property
     def eaves_m(self) -> float:
         return self.ground_m + (self.storeys - 1) * self.storey_m
-
-
-def stucco(name: str, colour: Rgb) -> bpy.types.Material:
-    """Painted render: trowel marks, rain streaks under edges, damp near the ground."""
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
-    s = Shader(name)
-    p = s.object_coords()
-    _, _, z = s.xyz(p)
-    patch = s.ramp(s.noise(p, 0.5, 6.0, 0.6), 0.35, 0.72, 0.0, 0.28)
-    base = s.mix(patch, colour, tuple(c * 0.62 for c in colour))
-    streak = s.ramp(s.noise(s.scaled(p, (5.0, 5.0, 0.22)), 1.0, 5.0), 0.52, 0.80, 0.0, 0.45)
-    base = s.mix(streak, base, tuple(c * 0.45 for c in colour))
-    damp = s.math("MULTIPLY", s.ramp(z, 0.0, 1.1, 0.75, 0.0), s.ramp(s.noise(p, 1.6, 5.0), 0.3, 0.65))
-    base = s.mix(damp, base, (0.12, 0.105, 0.085))
-    trowel = s.noise(p, 9.0, 6.0, 0.65)
-    return s.surface(base_color=base, roughness=0.88, normal=s.bump(trowel, 0.22, 0.01))
-
-
-def ashlar(name: str, colour: Rgb, block: tuple[float, float] = (0.72, 0.36)) -> bpy.types.Material:
-    """Dressed stone in courses, each block of its own tone."""
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
-    s = Shader(name)
-    p = s.object_coords()
-    x, y, z = s.xyz(p)
-    plane = s.node("ShaderNodeCombineXYZ")
-    s.feed(plane.inputs[0], s.math("ADD", x, y))
-    s.feed(plane.inputs[1], z)
-    stones = s.node("ShaderNodeTexBrick")
-    s.feed(stones.inputs["Vector"], plane.outputs[0])
-    for key, value in {"Scale": 1.0, "Mortar Size": 0.007, "Brick Width": block[0], "Row Height": block[1]}.items():
-        stones.inputs[key].default_value = value
-    s.feed(stones.inputs["Color1"], colour)
-    s.feed(stones.inputs["Color2"], tuple(c * 0.80 for c in colour))
-    s.feed(stones.inputs["Mortar"], tuple(c * 0.42 for c in colour))
-    soot = s.ramp(s.noise(s.scaled(p, (1.4, 1.4, 0.35)), 1.0, 6.0, 0.62), 0.44, 0.80, 0.0, 0.55)
-    base = s.mix(soot, stones.outputs["Color"], tuple(c * 0.38 for c in colour))
-    grain = s.noise(p, 30.0, 4.0, 0.7)
-    height = s.math("SUBTRACT", s.math("MULTIPLY", grain, 0.3), stones.outputs["Fac"])
-    return s.surface(base_color=base, roughness=0.88, normal=s.bump(height, 0.5, 0.012))
-
-
-def block(s: Solid, size: Point, centre: Point, material: bpy.types.Material) -> None:
-    """A plain box of six faces: enough for what no camera comes near."""
-    x, y, z = (v / 2 for v in size)
-    points = [(centre[0] + a * x, centre[1] + b * y, centre[2] + c * z) for a in (-1, 1) for b in (-1, 1) for c in (-1, 1)]
-    s.add(points, [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)], material)
 
 
 def wall_with_openings(

@@ -11,12 +11,12 @@ from itertools import pairwise
 
 import bpy
 
-from scope_studio.kit.buildings.buildings import cladding_material
-from scope_studio.kit.core.finishes import concrete, glass, paint, steel
+from scope_studio.kit.buildings.wall_materials import cladding_material
+from scope_studio.kit.core.finishes import concrete, glass, paint, pane, steel
 from scope_studio.kit.core.shading import Shader, plain
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
-from scope_studio.kit.yard.lights import lit_lens
+from scope_studio.kit.light.glow import glowing_face, lit_lens
 
 DOCK_SILL_M, DOCK_WIDE_M, DOCK_TALL_M = 1.20, 2.9, 3.0
 Opening = tuple[float, float, float, float]
@@ -171,40 +171,6 @@ def letters(body: str, cap: float, *, lit: bool = True) -> Built:
     for z in (-cap * 0.22, cap * 0.22):
         s.box((width, 0.05, 0.06), (0, 0.05, z), steel(dark=True), 0.0)
     return s.built()
-
-
-def glowing_face(colour: str, strength: float) -> bpy.types.Material:
-    """The translucent face of a lit sign."""
-    rgb = {
-        "white": (0.95, 0.97, 1.0),
-        "blue": (0.08, 0.28, 0.95),
-        "green": (0.05, 0.75, 0.25),
-        "red": (0.9, 0.06, 0.04),
-        "amber": (1.0, 0.45, 0.05),
-    }
-    name = f"sign glow {colour} {strength:g}"
-    return bpy.data.materials.get(name) or Shader(name).surface(
-        base_color=rgb[colour], emission_color=rgb[colour], emission_strength=strength, roughness=0.5
-    )
-
-
-def pane(tint: float = 0.25) -> bpy.types.Material:
-    """Clear glass as a camera sees it: mostly see-through, the rest a mirror."""
-    name = f"pane {tint:.2f}"
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
-    s = Shader(name)
-    clear, mirror = s.node("ShaderNodeBsdfTransparent"), s.node("ShaderNodeBsdfGlossy")
-    clear.inputs["Color"].default_value = (0.86, 0.92, 0.92, 1.0)
-    mirror.inputs["Roughness"].default_value = 0.03
-    both = s.node("ShaderNodeMixShader")
-    both.inputs[0].default_value = tint
-    s.tree.links.new(clear.outputs[0], both.inputs[1])
-    s.tree.links.new(mirror.outputs[0], both.inputs[2])
-    output = next(n for n in s.tree.nodes if n.type == "OUTPUT_MATERIAL")
-    s.tree.links.new(both.outputs[0], output.inputs["Surface"])
-    return s.material
 
 
 def window(*, wide: float = 1.5, tall: float = 1.3, lit: bool = True, blind: float = 0.0, seed: int = 0) -> Built:

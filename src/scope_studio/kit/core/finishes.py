@@ -189,3 +189,45 @@ def cloth(colour: str, roughness: float = 0.9) -> bpy.types.Material:
         return s.surface(base_color=soiled(s, PALETTE[colour], 0.25), roughness=roughness, normal=s.bump(creases, 0.6, 0.02))
 
     return _shared(f"cloth {colour} {roughness:.2f}", make)
+
+
+def pane(tint: float = 0.25) -> bpy.types.Material:
+    """Clear glass as a camera sees it: mostly see-through, the rest a mirror."""
+    name = f"pane {tint:.2f}"
+    found = bpy.data.materials.get(name)
+    if found is not None:
+        return found
+    s = Shader(name)
+    clear, mirror = s.node("ShaderNodeBsdfTransparent"), s.node("ShaderNodeBsdfGlossy")
+    clear.inputs["Color"].default_value = (0.86, 0.92, 0.92, 1.0)
+    mirror.inputs["Roughness"].default_value = 0.03
+    both = s.node("ShaderNodeMixShader")
+    both.inputs[0].default_value = tint
+    s.tree.links.new(clear.outputs[0], both.inputs[1])
+    s.tree.links.new(mirror.outputs[0], both.inputs[2])
+    output = next(n for n in s.tree.nodes if n.type == "OUTPUT_MATERIAL")
+    s.tree.links.new(both.outputs[0], output.inputs["Surface"])
+    return s.material
+
+
+def stripes(name: str, first: str, second: str, pitch_m: float) -> bpy.types.Material:
+    """Canvas striped across the local x axis; plain when both colours are the same. A third of the light comes through."""
+    found = bpy.data.materials.get(name)
+    if found is not None:
+        return found
+    s = Shader(name)
+    p = s.object_coords()
+    x, _, _ = s.xyz(p)
+    mask = s.math("GREATER_THAN", s.math("PINGPONG", s.math("ADD", x, 50.0 * pitch_m), pitch_m), pitch_m / 2)
+    stain = s.ramp(s.noise(p, 1.7, 5.0), 0.5, 0.75, 0.0, 0.22)
+    base = s.mix(stain, s.mix(mask, PALETTE[first], PALETTE[second]), (0.16, 0.14, 0.11))
+    s.surface(base_color=base, roughness=0.9, normal=s.bump(s.noise(p, 5.0, 4.0), 0.3, 0.02))
+    through = s.node("ShaderNodeBsdfTranslucent")
+    s.feed(through.inputs["Color"], base)
+    mixed = s.node("ShaderNodeMixShader")
+    mixed.inputs[0].default_value = 0.32
+    s.tree.links.new(s.bsdf.outputs[0], mixed.inputs[1])
+    s.tree.links.new(through.outputs[0], mixed.inputs[2])
+    output = next(n for n in s.tree.nodes if n.type == "OUTPUT_MATERIAL")
+    s.tree.links.new(mixed.outputs[0], output.inputs["Surface"])
+    return s.material

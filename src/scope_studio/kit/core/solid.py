@@ -10,9 +10,9 @@ from contextlib import contextmanager
 import bpy
 from mathutils import Matrix, Vector
 
+from scope_studio.kit.core.lettering import letters
 from scope_studio.kit.core.mesh import Point
 from scope_studio.kit.core.stage import Built, TextMark
-from scope_studio.kit.signs.lettering import letters
 
 READER = {
     "+Y": ((-1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
@@ -273,18 +273,3 @@ class Solid:
 
     def built(self) -> Built:
         return Built.of(self.name, [self.object()], self.texts)
-
-
-def arc(centre: tuple[float, float], radius: float, start_deg: float, stop_deg: float, steps: int = 8) -> list[tuple[float, float]]:
-    """Points of a circular arc in a plane, both ends included."""
-    angles = [math.radians(start_deg + (stop_deg - start_deg) * k / steps) for k in range(steps + 1)]
-    return [(centre[0] + radius * math.cos(a), centre[1] + radius * math.sin(a)) for a in angles]
-
-
-def rounded(
-    width: float, height: float, radius: float, centre: tuple[float, float] = (0.0, 0.0), steps: int = 5
-) -> list[tuple[float, float]]:
-    """Outline of a rectangle with rounded corners, anticlockwise."""
-    u, v = width / 2 - radius, height / 2 - radius
-    corners = [(u, v, 0), (-u, v, 90), (-u, -v, 180), (u, -v, 270)]
-    return [p for cu, cv, a in corners for p in arc((centre[0] + cu, centre[1] + cv), radius, a, a + 90, steps)]

@@ -7,12 +7,12 @@ from collections.abc import Sequence
 
 import bpy
 
-from scope_studio.kit.buildings.townhouses import ashlar
+from scope_studio.kit.buildings.wall_materials import ashlar
 from scope_studio.kit.core.finishes import paint
+from scope_studio.kit.core.lettering import extent
 from scope_studio.kit.core.shading import Shader, plain
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
-from scope_studio.kit.signs.lettering import extent
 
 
 def fountain_basin(radius: float = 3.0) -> Built:

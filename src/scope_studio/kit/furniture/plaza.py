@@ -6,15 +6,14 @@ import math
 import random
 from collections.abc import Sequence
 
-from scope_studio.kit.buildings.square_shops import stripes
-from scope_studio.kit.buildings.townhouses import block
-from scope_studio.kit.core.finishes import PALETTE, glass, glow, lens, paint, sheet, steel, timber
+from scope_studio.kit.core.finishes import PALETTE, glass, glow, lens, paint, sheet, steel, stripes, timber
+from scope_studio.kit.core.lettering import extent
 from scope_studio.kit.core.shading import plain
+from scope_studio.kit.core.shapes import block
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
-from scope_studio.kit.furniture.market import flowers
+from scope_studio.kit.furniture.stalls import flowers
 from scope_studio.kit.signs.faces import arrow, board, disc, flat, write
-from scope_studio.kit.signs.lettering import extent
 
 
 def lantern_post(*, arms: int = 2, colour: str = "dark green", height: float = 4.4, lit: bool = False) -> Built:

@@ -13,8 +13,9 @@ from dataclasses import dataclass
 import bpy
 
 from scope_studio.kit.core.finishes import sheet, steel
-from scope_studio.kit.core.solid import Solid, rounded
-from scope_studio.kit.signs.lettering import extent
+from scope_studio.kit.core.lettering import extent
+from scope_studio.kit.core.shapes import rounded
+from scope_studio.kit.core.solid import Solid
 
 PROUD_M = 0.0035
 """How far lettering stands off its board: enough for no two surfaces to fight at any distance."""

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from scope_studio.kit.core.finishes import concrete, glow, lens, paint, steel
+from scope_studio.kit.core.lettering import extent
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.signs.faces import Panel, panel_face
-from scope_studio.kit.signs.lettering import extent
 
 TRUSS_M = (1.1, 1.3)
 """Depth along the road and height of the truss."""

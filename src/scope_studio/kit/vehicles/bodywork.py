@@ -11,10 +11,9 @@ import bpy
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
-from scope_studio.kit.core import shading
+from scope_studio.kit.core import lettering, shading
 from scope_studio.kit.core.parts import Flat, Parts, Point
 from scope_studio.kit.core.stage import Built, TextMark
-from scope_studio.kit.signs import lettering
 from scope_studio.kit.vehicles import paintwork as pw
 from scope_studio.kit.vehicles import wheels
 

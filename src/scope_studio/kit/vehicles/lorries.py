@@ -14,10 +14,7 @@ from scope_studio.kit.vehicles import bodywork as bw
 from scope_studio.kit.vehicles import fittings, wheels
 from scope_studio.kit.vehicles import lorry_chassis as chassis
 from scope_studio.kit.vehicles import paintwork as pw
-from scope_studio.kit.vehicles.coach import coach
 from scope_studio.kit.vehicles.paintwork import Patch
-
-__all__ = ["box_lorry", "coach", "tanker", "tipper"]
 
 
 def _box_parts() -> Parts:

@@ -12,9 +12,6 @@ from scope_studio.kit.core.stage import Built
 from scope_studio.kit.vehicles import bodywork as bw
 from scope_studio.kit.vehicles import fittings, wheels
 from scope_studio.kit.vehicles import paintwork as pw
-from scope_studio.kit.vehicles.excavator import excavator
-
-__all__ = ["dumper", "excavator", "roller"]
 
 
 def roller(colour: str, *, number: str) -> Built:

@@ -6,13 +6,13 @@ import math
 
 import bpy
 
-from scope_studio.kit.buildings.townhouses import block
 from scope_studio.kit.core.finishes import clear_glass, glow, lens, paint, sheet, steel
+from scope_studio.kit.core.lettering import extent
 from scope_studio.kit.core.shading import Shader, plain
+from scope_studio.kit.core.shapes import block
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.signs.faces import board, write
-from scope_studio.kit.signs.lettering import extent
 from scope_studio.kit.vehicles import paintwork
 
 LENGTH_M = 19.6

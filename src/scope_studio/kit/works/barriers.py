@@ -11,7 +11,8 @@ import math
 from collections.abc import Sequence
 
 from scope_studio.kit.core.finishes import concrete, glow, lens, paint, rubber, sheet, steel
-from scope_studio.kit.core.solid import Solid, rounded
+from scope_studio.kit.core.shapes import rounded
+from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
 FENCE_PANEL_M = (3.45, 2.0)

@@ -6,10 +6,10 @@ import math
 from collections.abc import Sequence
 
 from scope_studio.kit.core.finishes import concrete, glow, lens, paint, rubber, sheet, steel
+from scope_studio.kit.core.lettering import extent
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.signs.faces import INK, board, disc, flat, stroke, write
-from scope_studio.kit.signs.lettering import extent
 from scope_studio.kit.signs.stands import posts_at
 
 FENCE_M = 3.0

@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 import random
 
-from scope_studio.kit.buildings.warehouse import glowing_face, pane
-from scope_studio.kit.core.finishes import concrete, glow, lens, paint, rubber, sheet, steel
+from scope_studio.kit.core.finishes import concrete, glow, lens, paint, pane, rubber, sheet, steel
 from scope_studio.kit.core.shading import plain
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
+from scope_studio.kit.light.glow import glowing_face, lit_lens
 from scope_studio.kit.signs.faces import board, write
-from scope_studio.kit.yard.lights import lit_lens
 
 GATEHOUSE_M = (3.0, 2.4, 2.7)
 

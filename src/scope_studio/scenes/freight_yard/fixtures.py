@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from scope_studio.kit.core.stage import Built, Stage
-from scope_studio.kit.furniture import furniture
+from scope_studio.kit.furniture import roadside
 from scope_studio.kit.light import dusk
 from scope_studio.kit.vehicles import cycles
 from scope_studio.kit.yard import safety as yard_safety
 from scope_studio.kit.yard import shelters as yard_shelters
-from scope_studio.scenes.freight_yard import ground as ground
+from scope_studio.scenes.freight_yard import ground
 from scope_studio.scenes.freight_yard.stock import Moulds
 
 GATEHOUSE = (3.0, -39.0)
@@ -80,7 +80,7 @@ def _gate(stage: Stage) -> None:
         colour="green",
         material="steel",
     )
-    stage.place(furniture.cctv_pole(6.4), "camera pole", "camera pole", (11.6, -42.6, 0), 320, colour="grey", height_m=6.4)
+    stage.place(roadside.cctv_pole(6.4), "camera pole", "camera pole", (11.6, -42.6, 0), 320, colour="grey", height_m=6.4)
 
 
 def _fences(stage: Stage) -> None:
@@ -157,7 +157,7 @@ def _shelters(stage: Stage) -> None:
         )
     dusk.pool((-26.0, -7.9, 1.5), 25, dusk.LED, size_m=1.2, aim=(0, -1, -0.4))
     cabinet = stage.place(
-        furniture.cabinet(colour="green"),
+        roadside.cabinet(colour="green"),
         "cabinet",
         "green electrical cabinet",
         (-22.4, -7.4, 0),

@@ -6,10 +6,10 @@ import random
 from collections.abc import Callable
 
 from scope_studio.kit.core.stage import Built, Stage
-from scope_studio.kit.works import works
+from scope_studio.kit.works import barriers, equipment, materials
 from scope_studio.kit.yard import containers
+from scope_studio.kit.yard import goods as yard_goods
 from scope_studio.kit.yard import safety as yard_safety
-from scope_studio.kit.yard import stock as yard_stock
 
 STACKS = (
     # feet, x, y, then from the ground up: (colour, code, livery)
@@ -101,7 +101,7 @@ def _goods(stage: Stage) -> None:
     moulds = Moulds()
     for n, (x, y, count) in enumerate(((25.6, 25.0, 9), (27.2, 25.4, 12), (25.8, 22.6, 5), (-27.9, 10.6, 7))):
         stage.place(
-            moulds.get(f"stack {count}", lambda count=count, n=n: yard_stock.pallet_stack(count, seed=n)),
+            moulds.get(f"stack {count}", lambda count=count, n=n: yard_goods.pallet_stack(count, seed=n)),
             "pallet stack",
             "stack of empty pallets",
             (x, y, 0),
@@ -121,14 +121,14 @@ def _goods(stage: Stage) -> None:
     ]
     for n, (kind, label, wrapped, x, y, bearing) in enumerate(loads):
         facts = {"label": label.lower()} if label else {}
-        built = yard_stock.pallet_load(kind, label=label, wrapped=wrapped, seed=n)
+        built = yard_goods.pallet_load(kind, label=label, wrapped=wrapped, seed=n)
         stage.place(
             built, "pallet", f"pallet of {kind}", (x, y, 0), bearing, load=kind, wrapped="yes" if wrapped else "no", **facts
         )
     for k in range(11):
         colour = "red" if k in (3, 7, 8) else "blue"
         fallen = k == 10
-        built = moulds.get(f"drum {colour}", lambda colour=colour: yard_stock.steel_drum(colour))
+        built = moulds.get(f"drum {colour}", lambda colour=colour: yard_goods.steel_drum(colour))
         where = (15.8 + 0.72 * k, 8.4, 0.0) if not fallen else (24.2, 7.3, 0.29)
         stage.place(
             built,
@@ -143,7 +143,7 @@ def _goods(stage: Stage) -> None:
         )
     for n, (x, y) in enumerate(((35.0, 21.6), (36.5, 21.7), (35.1, 20.2))):
         stage.place(
-            yard_stock.tank(f"TANK {n + 4}"),
+            yard_goods.tank(f"TANK {n + 4}"),
             "liquid container",
             "white liquid container",
             (x, y, 0),
@@ -153,7 +153,7 @@ def _goods(stage: Stage) -> None:
         )
     for n, (x, y, count) in enumerate(((33.2, 26.0, 5), (34.5, 26.2, 3), (33.9, 24.8, 2))):
         stage.place(
-            yard_stock.tyre_stack(count, seed=n), "tyre stack", "stack of tyres", (x, y, 0), 40 * n, tyres=count, colour="black"
+            yard_goods.tyre_stack(count, seed=n), "tyre stack", "stack of tyres", (x, y, 0), 40 * n, tyres=count, colour="black"
         )
     for n, (x, y, bearing, opened) in enumerate(
         (
@@ -165,7 +165,7 @@ def _goods(stage: Stage) -> None:
         )
     ):
         stage.place(
-            yard_stock.carton(seed=n, open=opened),
+            yard_goods.carton(seed=n, open=opened),
             "box",
             "cardboard box",
             (x, y, 0.004),
@@ -173,25 +173,25 @@ def _goods(stage: Stage) -> None:
             material="cardboard",
             state="open" if opened else "closed",
         )
-    stage.place(yard_stock.carton(seed=7), "box", "cardboard box", (18.15, -24.0, 0.43), 34, material="cardboard", state="closed")
+    stage.place(yard_goods.carton(seed=7), "box", "cardboard box", (18.15, -24.0, 0.43), 34, material="cardboard", state="closed")
 
 
 def _gear(stage: Stage) -> None:
     rows: list[tuple[Built, str, str, float, float, float, dict[str, str]]] = [
-        (yard_stock.gas_cage(), "gas cage", "cage of gas cylinders", 30.6, 27.6, 180, {"material": "steel", "state": "closed"}),
-        (works.skip("yellow"), "skip", "yellow skip", 45.0, 24.0, 95, {"colour": "yellow", "state": "full"}),
-        (works.skip("blue", full=False), "skip", "blue skip", 41.0, 26.2, 88, {"colour": "blue", "state": "empty"}),
-        (works.cable_drum(1.6), "cable drum", "wooden cable drum", 39.2, 19.0, 30, {"material": "timber"}),
-        (works.cable_drum(1.2), "cable drum", "wooden cable drum", 37.6, 17.4, 75, {"material": "timber"}),
-        (works.pipe_stack("grey", length=5.0), "pipe stack", "stack of grey pipes", 44.5, 14.0, 10, {"colour": "grey"}),
+        (yard_goods.gas_cage(), "gas cage", "cage of gas cylinders", 30.6, 27.6, 180, {"material": "steel", "state": "closed"}),
+        (equipment.skip("yellow"), "skip", "yellow skip", 45.0, 24.0, 95, {"colour": "yellow", "state": "full"}),
+        (equipment.skip("blue", full=False), "skip", "blue skip", 41.0, 26.2, 88, {"colour": "blue", "state": "empty"}),
+        (materials.cable_drum(1.6), "cable drum", "wooden cable drum", 39.2, 19.0, 30, {"material": "timber"}),
+        (materials.cable_drum(1.2), "cable drum", "wooden cable drum", 37.6, 17.4, 75, {"material": "timber"}),
+        (materials.pipe_stack("grey", length=5.0), "pipe stack", "stack of grey pipes", 44.5, 14.0, 10, {"colour": "grey"}),
         (yard_safety.spill_kit(), "spill kit", "yellow spill kit", 27.4, 28.9, 180, {"colour": "yellow"}),
-        (works.fire_extinguisher(), "fire extinguisher", "red fire extinguisher", 18.9, 29.6, 180, {"colour": "red"}),
-        (works.fire_extinguisher(), "fire extinguisher", "red fire extinguisher", -6.6, -9.6, 200, {"colour": "red"}),
-        (yard_stock.ladder(), "ladder", "aluminium ladder", -28.4, 30.0, 180, {"material": "aluminium"}),
+        (materials.fire_extinguisher(), "fire extinguisher", "red fire extinguisher", 18.9, 29.6, 180, {"colour": "red"}),
+        (materials.fire_extinguisher(), "fire extinguisher", "red fire extinguisher", -6.6, -9.6, 200, {"colour": "red"}),
+        (yard_goods.ladder(), "ladder", "aluminium ladder", -28.4, 30.0, 180, {"material": "aluminium"}),
         (yard_safety.hydrant(), "fire hydrant", "red fire hydrant", -12.9, -8.4, 180, {"colour": "red"}),
-        (works.generator("green"), "generator", "green generator", 45.6, 7.0, 92, {"colour": "green"}),
+        (equipment.generator("green"), "generator", "green generator", 45.6, 7.0, 92, {"colour": "green"}),
         (
-            works.wheelbarrow("green", load=False),
+            equipment.wheelbarrow("green", load=False),
             "wheelbarrow",
             "green wheelbarrow",
             42.0,
@@ -212,7 +212,7 @@ def _gear(stage: Stage) -> None:
     ):
         facts = {"label": label.lower()} if label else {}
         stage.place(
-            yard_stock.wheelie_bin(colour, open=opened, label=label),
+            yard_goods.wheelie_bin(colour, open=opened, label=label),
             "wheelie bin",
             f"{colour} wheelie bin",
             (x, y, 0),
@@ -250,7 +250,7 @@ def _guards(stage: Stage) -> None:
         )
     for k in range(4):
         stage.place(
-            moulds.get("block", lambda: works.concrete_barrier(3.0)),
+            moulds.get("block", lambda: barriers.concrete_barrier(3.0)),
             "barrier",
             "concrete barrier",
             (14.4, -31.5 + 3.15 * k, 0),
@@ -262,7 +262,7 @@ def _guards(stage: Stage) -> None:
     for k in range(3):
         colour = ("red", "white")[k % 2]
         stage.place(
-            moulds.get(colour, lambda colour=colour: works.water_barrier(colour)),
+            moulds.get(colour, lambda colour=colour: barriers.water_barrier(colour)),
             "barrier",
             f"{colour} water-filled barrier",
             (1.2 + 1.6 * k, 25.6, 0),
@@ -284,10 +284,10 @@ def _guards(stage: Stage) -> None:
     ]
     for k, (x, y) in enumerate(cones):
         stage.place(
-            moulds.get("cone", works.cone), "traffic cone", "traffic cone", (x, y, 0), 25 * k, colour="orange", state="upright"
+            moulds.get("cone", barriers.cone), "traffic cone", "traffic cone", (x, y, 0), 25 * k, colour="orange", state="upright"
         )
     stage.place(
-        moulds.get("cone", works.cone),
+        moulds.get("cone", barriers.cone),
         "traffic cone",
         "fallen traffic cone",
         (13.3, -18.2, 0.17),

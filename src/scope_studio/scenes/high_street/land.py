@@ -6,15 +6,16 @@ import math
 import random
 
 from scope_studio.kit.buildings import shopfronts
-from scope_studio.kit.buildings.clocks import dial
-from scope_studio.kit.buildings.masonry import roofing, trim, wall
 from scope_studio.kit.buildings.terraces import DEPTH_M, Terrace, terrace
+from scope_studio.kit.buildings.wet_masonry import roofing, trim, wall
 from scope_studio.kit.core.finishes import paint
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built, Stage
-from scope_studio.kit.furniture import town_furniture
-from scope_studio.kit.nature import vegetation, wet_ground
-from scope_studio.kit.nature.markings import Stencil
+from scope_studio.kit.furniture import traditional
+from scope_studio.kit.furniture.clocks import dial
+from scope_studio.kit.ground import wet_street
+from scope_studio.kit.ground.markings import Stencil
+from scope_studio.kit.nature import vegetation
 from scope_studio.scenes.high_street.plan import (
     EAST_FRONT,
     EAST_KERB,
@@ -32,11 +33,11 @@ END_X = 84.0
 
 
 def build(stage: Stage) -> None:
-    stage.put(wet_ground.carriageway(260.0, _gutters()), (0, 0, 0))
+    stage.put(wet_street.carriageway(260.0, _gutters()), (0, 0, 0))
     for colour, bars in _paint().items():
-        stage.put(wet_ground.markings(bars, colour), (0, 0, 0))
+        stage.put(wet_street.markings(bars, colour), (0, 0, 0))
     for outline in _blocks():
-        stage.put(wet_ground.footway(outline), (0, 0, 0))
+        stage.put(wet_street.footway(outline), (0, 0, 0))
     _zigzags(stage)
     _cross_streets(stage)
     _town_hall(stage)
@@ -111,7 +112,7 @@ def _corner(x: float, y: float, radius: float, start_deg: float) -> list[tuple[f
 def _zigzags(stage: Stage) -> None:
     """The zebra's white zigzag lines at both kerbs, and the words BUS STOP on the road."""
     s = Solid("zigzags")
-    white = wet_ground.road_paint("white")
+    white = wet_street.road_paint("white")
     for x in (WEST_KERB + 0.62, 0.0, EAST_KERB - 0.55):
         for y0, sign in ((ZEBRA[0] - 0.6, -1), (ZEBRA[1] + 0.6, 1)):
             for k in range(4):
@@ -243,18 +244,18 @@ def _gables(stage: Stage) -> None:
             s.text(line, (0.55, 0.42, 0.34)[k], (0, 0.02, 0.85 - 0.85 * k), paint(ink, dirt=0.6, roughness=0.8))
         name = "painted advertisement on a gable"
         stage.place(
-            s.built(), "wall sign", name, (x, ROW_END, wet_ground.KERB_M + 6.0), 0, lettering=ink, says=" ".join(lines).lower()
+            s.built(), "wall sign", name, (x, ROW_END, wet_street.KERB_M + 6.0), 0, lettering=ink, says=" ".join(lines).lower()
         )
-    lamp = town_furniture.street_lamp(lit=True)
+    lamp = traditional.street_lamp(lit=True)
     far = FAR_FRONT - 3.4
     spots = [(side * x, sign * far) for sign in (-1, 1) for side in (-1, 1) for x in (19.0, 45.0)]
     for k, (x, y) in enumerate(spots):
         built = lamp if k == 0 else lamp.copy()
-        stage.place(built, "lamp post", "street lamp", (x, y, wet_ground.KERB_M), 0, colour="dark green", state="lit")
+        stage.place(built, "lamp post", "street lamp", (x, y, wet_street.KERB_M), 0, colour="dark green", state="lit")
     tree = vegetation.tree(vegetation.BIRCH, 71, detail=0.55)
     for k, (x, y) in enumerate(((-9.5, -60.6), (13.5, -60.6), (-31.0, 60.6), (29.0, 60.6), (58.0, -60.6))):
         built = tree if k == 0 else tree.copy()
-        here = (x, y, wet_ground.KERB_M)
+        here = (x, y, wet_street.KERB_M)
         stage.place(built, "tree", "birch tree", here, 70.0 * k, scale=0.62 + 0.05 * (k % 2), colour="green", species="birch")
 
 

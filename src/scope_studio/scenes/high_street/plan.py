@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from scope_studio.kit.nature.wet_ground import KERB_M
+from scope_studio.kit.ground.wet_street import KERB_M
 
 WEST_KERB, EAST_KERB = -3.2, 5.4
 """The carriageway; its eastern 2.2 m are parking bays."""

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from scope_studio.kit.buildings import shop_trade, shopfronts
+from scope_studio.kit.buildings import shopfronts
 from scope_studio.kit.buildings.terraces import Terrace, terrace
 from scope_studio.kit.core.stage import Built, Stage
+from scope_studio.kit.furniture import shop_displays
 from scope_studio.scenes.high_street.plan import EAST_FRONT, ROW_END, WEST_FRONT, Plot
 
 
@@ -185,13 +186,13 @@ def _front(stage: Stage, shop: Shop, plot: Plot, building: str) -> str:
     _notices(stage, shop, plot, ident)
     if shop.awning:
         first, second, out = shop.awning
-        made = shop_trade.awning(shop.width_m - 0.5, first, second, open=out)
+        made = shop_displays.awning(shop.width_m - 0.5, first, second, open=out)
         stage.place(
             made, "awning", f"{first} and {second} awning", plot.at(0, 0.24, 2.80), bearing, parent=ident,
             colour=first, pattern="striped", state="open" if out else "rolled up",
         )  # fmt: skip
     if shop.hanging:
-        board = shop_trade.hanging_sign(shop.hanging, shop.colour, shop.ink)
+        board = shop_displays.hanging_sign(shop.hanging, shop.colour, shop.ink)
         x = shop.hanging_side * (shop.width_m / 2 - 0.35)
         stage.place(board, "hanging sign", f"{name} hanging sign", plot.at(x, 0.0, 4.0), bearing, parent=ident, colour=shop.colour)
     return ident

@@ -6,11 +6,7 @@ import bpy
 
 from scope_studio.kit.core.stage import Stage
 from scope_studio.kit.light import sky
-from scope_studio.scenes.highway_works import land as highway_land
-from scope_studio.scenes.highway_works import plants as highway_plants
-from scope_studio.scenes.highway_works import road as highway_road
-from scope_studio.scenes.highway_works import site as highway_site
-from scope_studio.scenes.highway_works import traffic as highway_traffic
+from scope_studio.scenes.highway_works import land, plants, road, site, traffic
 
 NAME = "highway-works"
 TITLE = "Highway works"
@@ -25,11 +21,11 @@ def build(stage: Stage) -> None:
     """Build the whole scene in an empty Blender file and fill in the stage."""
     stage.start_s = 10.0  # the saloon, the van and the walking worker are all in the home view then
     sky.setup(bpy.context.scene)
-    highway_traffic.build(stage)
-    highway_site.build(stage)
-    highway_road.build(stage)
-    highway_land.build(stage)
-    highway_plants.build(stage)  # last: lettering slows down with every object that the file already holds
+    traffic.build(stage)
+    site.build(stage)
+    road.build(stage)
+    land.build(stage)
+    plants.build(stage)  # last: lettering slows down with every object that the file already holds
     _cameras(stage)
     stage.absent = list(ABSENT)
     stage.finish = sky.finish_materials

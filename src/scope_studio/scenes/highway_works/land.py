@@ -8,15 +8,15 @@ from itertools import pairwise
 
 import bpy
 
-from scope_studio.kit.buildings import buildings, structures
+from scope_studio.kit.buildings import detached, structures
 from scope_studio.kit.core.mesh import from_data
 from scope_studio.kit.core.shading import Shader
 from scope_studio.kit.core.stage import Stage
-from scope_studio.kit.nature import ground, markings
+from scope_studio.kit.ground import highway, markings, terrain
 
 Height = Callable[[float, float], float]
 
-ROAD = ground.Carriageway(
+ROAD = highway.Carriageway(
     lines=(
         markings.Line(2.15, 0.20),
         markings.Line(5.5, 0.13, 2.0, 7.0),
@@ -40,15 +40,15 @@ DECK_M = 6.9
 
 
 def build(stage: Stage) -> None:
-    height = ground.hills(ROAD)
+    height = terrain.hills(ROAD)
     bare = [
         (COMPOUND[0] - 2, COMPOUND[1] + 1.5, COMPOUND[2] - 2, COMPOUND[3] + 1),
         (-38.0, -27.0, 2.0, 17.0),
         (-38.0, -15.0, 12.0, 21.0),
         (-24.0, -15.0, 18.0, 56.0),
     ]
-    stage.put(ground.terrain(ROAD, bare), (0, 0, 0))
-    stage.put(ground.carriageways(ROAD), (0, 0, 0))
+    stage.put(terrain.terrain(ROAD, bare), (0, 0, 0))
+    stage.put(highway.carriageways(ROAD), (0, 0, 0))
     _bridge(stage)
     _yard()
     _buildings(stage, height)
@@ -80,7 +80,7 @@ def _buildings(stage: Stage, height: Height) -> None:
     white, dark = (0.62, 0.63, 0.62), (0.05, 0.07, 0.09)
     sheds = [
         (
-            buildings.shed(
+            detached.shed(
                 width_m=46,
                 depth_m=30,
                 height_m=9.5,
@@ -95,7 +95,7 @@ def _buildings(stage: Stage, height: Height) -> None:
             "blue warehouse",
         ),
         (
-            buildings.shed(
+            detached.shed(
                 width_m=38,
                 depth_m=26,
                 height_m=8.0,
@@ -110,7 +110,7 @@ def _buildings(stage: Stage, height: Height) -> None:
             "grey warehouse",
         ),
         (
-            buildings.shed(
+            detached.shed(
                 width_m=30, depth_m=22, height_m=7.0, colour=(0.10, 0.20, 0.13), trim=dark, lettering="COLDSTORE 3", docks=3
             ),
             (112.0, -52.0),
@@ -132,13 +132,13 @@ def _buildings(stage: Stage, height: Height) -> None:
     ]
     for k, (x, y, bearing, brick, roof, door) in enumerate(houses):
         colour = "buff" if brick is buff else "red"
-        built = buildings.house(brick=brick, roof=roof, door=door, seed=k)
+        built = detached.house(brick=brick, roof=roof, door=door, seed=k)
         stage.place(
             built, "building", f"{colour} brick house", (x, y, height(x, y)), bearing, colour=colour, material="brick", kind="house"
         )
     x, y = -128.0, -62.0
     stage.place(
-        buildings.barn(), "building", "timber barn", (x, y, height(x, y)), 60, colour="brown", material="timber", kind="barn"
+        detached.barn(), "building", "timber barn", (x, y, height(x, y)), 60, colour="brown", material="timber", kind="barn"
     )
     _power_line(stage, height)
 

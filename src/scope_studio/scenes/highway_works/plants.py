@@ -7,12 +7,13 @@ import random
 
 from scope_studio.kit.buildings import structures
 from scope_studio.kit.core.stage import Built, Stage
-from scope_studio.kit.nature import ground, vegetation
+from scope_studio.kit.ground import terrain
+from scope_studio.kit.nature import vegetation
 from scope_studio.scenes.highway_works.land import ROAD, Height
 
 
 def build(stage: Stage) -> None:
-    height = ground.hills(ROAD)
+    height = terrain.hills(ROAD)
     _near_trees(stage, height)
     _boundaries(stage, height)
     _countryside(stage, height)

@@ -6,14 +6,7 @@ import bpy
 
 from scope_studio.kit.core.stage import Stage
 from scope_studio.kit.light import sky
-from scope_studio.scenes.station_square import beyond as station_square_beyond
-from scope_studio.scenes.station_square import furniture as station_square_furniture
-from scope_studio.scenes.station_square import ground as station_square_ground
-from scope_studio.scenes.station_square import life as station_square_life
-from scope_studio.scenes.station_square import market as station_square_market
-from scope_studio.scenes.station_square import people as station_square_people
-from scope_studio.scenes.station_square import town as station_square_town
-from scope_studio.scenes.station_square import traffic as station_square_traffic
+from scope_studio.scenes.station_square import beyond, fixtures, ground, life, market, people, town, traffic
 
 NAME = "station-square"
 TITLE = "Station square"
@@ -50,15 +43,15 @@ def build(stage: Stage) -> None:
     sky.setup(
         bpy.context.scene, sun_bearing_deg=128.0, sun_elevation_deg=31.0, sun_strength=5.6, sky_strength=0.72, cloud_cover=0.25
     )
-    station_square_town.build(stage)
-    station_square_beyond.church(stage)
-    station_square_traffic.build(stage)
-    station_square_furniture.build(stage)
-    station_square_life.build(stage)
-    station_square_market.build(stage)
-    station_square_people.build(stage)
-    station_square_ground.build(stage)
-    station_square_beyond.build(stage)  # last: everything else slows down with each object that the file already holds
+    town.build(stage)
+    beyond.church(stage)
+    traffic.build(stage)
+    fixtures.build(stage)
+    life.build(stage)
+    market.build(stage)
+    people.build(stage)
+    ground.build(stage)
+    beyond.build(stage)  # last: everything else slows down with each object that the file already holds
     _cameras(stage)
     stage.absent = list(ABSENT)
     stage.finish = sky.finish_materials

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import random
 
-from scope_studio.kit.buildings import buildings, townhouses
+from scope_studio.kit.buildings import townhouses, wall_materials
 from scope_studio.kit.buildings.townhouses import CLAY, SLATE, House
 from scope_studio.kit.core.finishes import paint
 from scope_studio.kit.core.solid import Solid
@@ -91,8 +91,8 @@ def _trees(stage: Stage, rng: random.Random) -> None:
 def church(stage: Stage) -> None:
     """A stone tower with louvred belfry, battlements and a spire above the roofs to the north-west."""
     s = Solid("church tower")
-    stone = townhouses.ashlar("church stone", (0.40, 0.36, 0.29))
-    slate = buildings.tile_material("church slate", SLATE)
+    stone = wall_materials.ashlar("church stone", (0.40, 0.36, 0.29))
+    slate = wall_materials.tile_material("church slate", SLATE)
     s.box((7.0, 7.0, 24.0), (0, 0, 12.0), stone, 0.05)
     for x in (-3.5, 3.5):
         for y in (-3.5, 3.5):

@@ -9,8 +9,8 @@ import bpy
 from scope_studio.kit.core.mesh import from_data
 from scope_studio.kit.core.shading import Shader
 from scope_studio.kit.core.stage import Stage
-from scope_studio.kit.furniture import furniture
-from scope_studio.kit.nature import paving
+from scope_studio.kit.furniture import roadside
+from scope_studio.kit.ground import paving
 
 ROAD_M = -0.10
 """Height of the carriageways; the square and the pavements are at 0."""
@@ -79,7 +79,7 @@ def _tracks(stage: Stage) -> None:
 def _covers(stage: Stage) -> None:
     for text, x, y in (("WATER", 5.4, -9.2), ("GAS", -9.6, 1.4), ("WATER", 18.2, 17.3), ("TELECOM", 7.2, -26.9)):
         stage.place(paving.manhole_cover(text), "manhole cover", "round manhole cover", (x, y, 0.002), 0, material="iron")
-    grate = furniture.drain()
+    grate = roadside.drain()
     for k, (x, y) in enumerate(
         ((-22.0, -12.2), (2.0, -12.2), (24.0, -4.0), (24.0, 9.0), (32.0, 2.0), (-6.0, -25.1), (16.0, -25.1))
     ):

@@ -5,10 +5,11 @@ from __future__ import annotations
 import random
 
 from scope_studio.kit.core.stage import Built, Stage
-from scope_studio.kit.nature import birds, paving, vegetation
+from scope_studio.kit.ground import paving
+from scope_studio.kit.nature import birds, vegetation
 from scope_studio.kit.people import luggage
 from scope_studio.kit.vehicles import cycles
-from scope_studio.scenes.station_square.furniture import PLATFORM_TOP_M, TREES
+from scope_studio.scenes.station_square.fixtures import PLATFORM_TOP_M, TREES
 from scope_studio.scenes.station_square.market import Moulds
 
 

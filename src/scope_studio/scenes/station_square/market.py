@@ -6,9 +6,8 @@ import math
 import random
 from collections.abc import Callable
 
-from scope_studio.kit.buildings import cafe
 from scope_studio.kit.core.stage import Built, Stage
-from scope_studio.kit.furniture import market
+from scope_studio.kit.furniture import cafe, stalls
 
 FACING = 150.0
 """Bearing that the stalls' fronts face."""
@@ -133,7 +132,7 @@ def build(stage: Stage) -> None:
     _flowers(stage, moulds)
     x, y = EMPTY_STALL
     empty = stage.place(
-        market.stall("grey", table=True, rolled=True),
+        stalls.stall("grey", table=True, rolled=True),
         "market stall",
         "empty market stall",
         (x, y, 0),
@@ -143,13 +142,13 @@ def build(stage: Stage) -> None:
     )
     cx, cy = spot(EMPTY_STALL, 0.4, 0.5)
     stage.place(
-        market.price_card("BACK AT\nNOON", cap=0.09), "notice", "notice on the empty stall", (cx, cy, 0.82), FACING, parent=empty
+        stalls.price_card("BACK AT\nNOON", cap=0.09), "notice", "notice on the empty stall", (cx, cy, 0.82), FACING, parent=empty
     )
     for k, (right, out) in enumerate(((-2.2, -0.6), (-2.2, 0.1), (2.3, -0.9))):
         x, y = spot(EMPTY_STALL, right, out)
         for level in range(3 if k == 0 else 1):
             stage.place(
-                moulds.get("empty crate", market.crate),
+                moulds.get("empty crate", stalls.crate),
                 "crate",
                 "empty crate",
                 (x, y, 0.165 * level),
@@ -168,7 +167,7 @@ def _stall(
     striped = first != second
     colour = f"{first} and {second}" if striped else first
     own = stage.place(
-        market.stall(first, second, sign=sign),
+        stalls.stall(first, second, sign=sign),
         "market stall",
         f"{colour} market stall",
         (*place, 0.0),
@@ -182,10 +181,10 @@ def _stall(
         row, column = divmod(k, 5)
         right, out = -1.17 + 0.585 * column, 0.70 - 0.42 * row
         x, y = spot(place, right, out)
-        z = market.COUNTER_M + 0.145 - (out - 0.35) * math.tan(math.radians(14))
+        z = stalls.COUNTER_M + 0.145 - (out - 0.35) * math.tan(math.radians(14))
         colour = "timber" if kind not in ("fish", "salmon", "prawns") else "white"
         built = moulds.get(
-            f"{kind} {k % 2}", lambda kind=kind, k=k, colour=colour: market.produce_crate(kind, seed=k % 2, colour=colour)
+            f"{kind} {k % 2}", lambda kind=kind, k=k, colour=colour: stalls.produce_crate(kind, seed=k % 2, colour=colour)
         )
         crate = stage.place(
             built, "crate", f"crate of {kind}", (x, y, z), FACING, lean_deg=(-14, 0), parent=own, contents=kind, state="full"
@@ -193,14 +192,14 @@ def _stall(
         if card:
             cx, cy = spot(place, right, out - 0.19)
             stage.place(
-                market.price_card(card, cap=0.068, colour="yellow" if k % 3 == 1 else "white"), "price card",
+                stalls.price_card(card, cap=0.068, colour="yellow" if k % 3 == 1 else "white"), "price card",
                 f"price card for {card.split(chr(10))[0].lower()}", (cx, cy, z + 0.06), FACING, parent=crate,
             )  # fmt: skip
     for k, right in enumerate((-1.0, 0.2, 1.1)):  # stock under and behind the counter
         if (k + len(sign)) % 2:
             x, y = spot(place, right, -1.35)
             stage.place(
-                moulds.get("empty crate", market.crate),
+                moulds.get("empty crate", stalls.crate),
                 "crate",
                 "empty crate",
                 (x, y, 0.0),
@@ -233,12 +232,12 @@ def _flowers(stage: Stage, moulds: Moulds) -> None:
         right, out = -1.15 + 0.56 * column + 0.1 * row, 1.55 - 0.45 * row if row < 2 else 0.55
         x, y = spot(place, right, out if row < 2 else 0.45)
         z = 0.0 if row < 2 else 0.90
-        built = moulds.get(f"bucket {bloom}", lambda bloom=bloom: market.flower_bucket(bloom))
+        built = moulds.get(f"bucket {bloom}", lambda bloom=bloom: stalls.flower_bucket(bloom))
         stage.place(built, "flower bucket", f"bucket of {bloom} flowers", (x, y, z), 40.0 * k, colour=bloom)
     for text, right in (("ROSES\n5.00", -0.6), ("TULIPS\n3.50", 0.5)):
         x, y = spot(place, right, 0.75)
         stage.place(
-            market.price_card(text, cap=0.068),
+            stalls.price_card(text, cap=0.068),
             "price card",
             f"price card for {text.split(chr(10))[0].lower()}",
             (x, y, 0.84),
@@ -247,16 +246,16 @@ def _flowers(stage: Stage, moulds: Moulds) -> None:
 
 
 def _carts(stage: Stage, moulds: Moulds) -> None:
-    stage.place(market.hand_cart("green"), "hand cart", "green hand cart", (-1.4, 18.2, 0.0), 205, colour="green", state="loaded")
+    stage.place(stalls.hand_cart("green"), "hand cart", "green hand cart", (-1.4, 18.2, 0.0), 205, colour="green", state="loaded")
     rng = random.Random("cart")
     for k, kind in enumerate(("cabbages", "apples", "potatoes")):
         b = math.radians(205)
         out = 0.55 - 0.42 * k
         stage.place(
-            moulds.get(f"{kind} 0", lambda kind=kind: market.produce_crate(kind)), "crate", f"crate of {kind}",
+            moulds.get(f"{kind} 0", lambda kind=kind: stalls.produce_crate(kind)), "crate", f"crate of {kind}",
             (-1.4 + out * math.sin(b), 18.2 + out * math.cos(b), 0.64), 205 + rng.uniform(-5, 5), contents=kind, state="full",
         )  # fmt: skip
-    stage.place(market.hand_cart("red"), "hand cart", "red hand cart", (-26.2, 9.6, 0.0), 70, colour="red", state="empty")
+    stage.place(stalls.hand_cart("red"), "hand cart", "red hand cart", (-26.2, 9.6, 0.0), 70, colour="red", state="empty")
 
 
 def _terrace(stage: Stage, moulds: Moulds) -> None:

@@ -6,12 +6,13 @@ import math
 
 import bpy
 
-from scope_studio.kit.buildings import buildings, clocks, square_shops, station, townhouses
+from scope_studio.kit.buildings import square_shops, station, townhouses, wall_materials
 from scope_studio.kit.buildings.townhouses import CLAY, SLATE, House
 from scope_studio.kit.core.finishes import paint
+from scope_studio.kit.core.lettering import extent
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Stage
-from scope_studio.kit.signs.lettering import extent
+from scope_studio.kit.furniture import clocks
 
 STATION_Y = 27.0
 WEST_X, EAST_X, SOUTH_Y = -36.0, 37.0, -30.0
@@ -61,16 +62,16 @@ def _station(stage: Stage) -> None:
 
 def walls() -> dict[str, bpy.types.Material]:
     return {
-        "cream": townhouses.stucco("stucco cream", (0.58, 0.50, 0.36)),
-        "white": townhouses.stucco("stucco white", (0.64, 0.62, 0.57)),
-        "ochre": townhouses.stucco("stucco ochre", (0.52, 0.34, 0.14)),
-        "pink": townhouses.stucco("stucco pink", (0.53, 0.31, 0.25)),
-        "blue": townhouses.stucco("stucco blue", (0.30, 0.38, 0.44)),
-        "green": townhouses.stucco("stucco green", (0.33, 0.38, 0.28)),
-        "stone": townhouses.ashlar("town stone", (0.43, 0.37, 0.28)),
-        "grey stone": townhouses.ashlar("bank stone", (0.40, 0.385, 0.355), (0.95, 0.45)),
-        "red brick": buildings.brick_material("town red brick", (0.27, 0.090, 0.055)),
-        "buff brick": buildings.brick_material("town buff brick", (0.38, 0.285, 0.17)),
+        "cream": wall_materials.stucco("stucco cream", (0.58, 0.50, 0.36)),
+        "white": wall_materials.stucco("stucco white", (0.64, 0.62, 0.57)),
+        "ochre": wall_materials.stucco("stucco ochre", (0.52, 0.34, 0.14)),
+        "pink": wall_materials.stucco("stucco pink", (0.53, 0.31, 0.25)),
+        "blue": wall_materials.stucco("stucco blue", (0.30, 0.38, 0.44)),
+        "green": wall_materials.stucco("stucco green", (0.33, 0.38, 0.28)),
+        "stone": wall_materials.ashlar("town stone", (0.43, 0.37, 0.28)),
+        "grey stone": wall_materials.ashlar("bank stone", (0.40, 0.385, 0.355), (0.95, 0.45)),
+        "red brick": wall_materials.brick_material("town red brick", (0.27, 0.090, 0.055)),
+        "buff brick": wall_materials.brick_material("town buff brick", (0.38, 0.285, 0.17)),
     }
 
 

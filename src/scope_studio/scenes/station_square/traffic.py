@@ -9,8 +9,8 @@ from itertools import pairwise
 from scope_studio.kit.core.finishes import glow, paint
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import ActorPath, Built, Stage
-from scope_studio.kit.people import people, stances
-from scope_studio.kit.vehicles import cycles, tram, vehicles
+from scope_studio.kit.people import characters, stances
+from scope_studio.kit.vehicles import cars, cycles, tram
 from scope_studio.scenes.station_square.ground import ROAD_M, TRACKS
 
 FIRST_ACTOR = 9001
@@ -20,20 +20,20 @@ TAXIS = [("black", "RM19 TXA", -4.6, "lit"), ("silver", "LK70 CBD", 1.2, "unlit"
 """Colour, plate, y on the rank, state of the roof sign."""
 
 PARKED: list[tuple[Callable[..., Built], str, str, str, float, float, float]] = [
-    (vehicles.hatchback, "hatchback", "red", "GX68 LOM", 31.4, -6.4, 180.0),
-    (vehicles.suv, "SUV", "white", "TY21 NEB", 31.4, 16.4, 180.0),
-    (vehicles.hatchback, "hatchback", "blue", "PD17 WKU", 24.6, -24.3, 270.0),
-    (vehicles.saloon, "saloon", "dark red", "HN65 RJF", -22.0, -24.3, 270.0),
-    (vehicles.suv, "SUV", "dark green", "CE70 ZQA", -29.4, -24.3, 270.0),
-    (vehicles.hatchback, "hatchback", "yellow", "AO18 SVT", 17.8, -24.3, 270.0),
+    (cars.hatchback, "hatchback", "red", "GX68 LOM", 31.4, -6.4, 180.0),
+    (cars.suv, "SUV", "white", "TY21 NEB", 31.4, 16.4, 180.0),
+    (cars.hatchback, "hatchback", "blue", "PD17 WKU", 24.6, -24.3, 270.0),
+    (cars.saloon, "saloon", "dark red", "HN65 RJF", -22.0, -24.3, 270.0),
+    (cars.suv, "SUV", "dark green", "CE70 ZQA", -29.4, -24.3, 270.0),
+    (cars.hatchback, "hatchback", "yellow", "AO18 SVT", 17.8, -24.3, 270.0),
 ]
 
 DOWN_THE_STREET: list[tuple[Callable[..., Built], str, str, str, float]] = [
-    (vehicles.saloon, "saloon", "grey", "EJ18 PYT", 51.0),
-    (vehicles.hatchback, "hatchback", "orange", "NR14 LKV", 57.2),
-    (vehicles.suv, "SUV", "black", "BU22 ODA", 69.5),
-    (vehicles.hatchback, "hatchback", "white", "YC16 FHM", -52.0),
-    (vehicles.saloon, "saloon", "silver", "MT71 ESG", -64.5),
+    (cars.saloon, "saloon", "grey", "EJ18 PYT", 51.0),
+    (cars.hatchback, "hatchback", "orange", "NR14 LKV", 57.2),
+    (cars.suv, "SUV", "black", "BU22 ODA", 69.5),
+    (cars.hatchback, "hatchback", "white", "YC16 FHM", -52.0),
+    (cars.saloon, "saloon", "silver", "MT71 ESG", -64.5),
 ]
 """Cars parked farther along the street: colour, plate, x."""
 
@@ -73,7 +73,7 @@ def taxi_sign(lit: bool) -> Built:
 def _taxis(stage: Stage) -> None:
     for k, (colour, plate, y, sign) in enumerate(TAXIS):
         cab = stage.place(
-            vehicles.saloon(colour, plate=plate),
+            cars.saloon(colour, plate=plate),
             "taxi",
             f"{colour} taxi",
             (25.2, y, ROAD_M),
@@ -124,7 +124,7 @@ def _parked(stage: Stage) -> None:
             facing="west",
             area="street",
         )
-    van = vehicles.van("blue", plate="WJ69 FDC", lettering="FENWICK\nBAKERS")
+    van = cars.van("blue", plate="WJ69 FDC", lettering="FENWICK\nBAKERS")
     stage.place(
         van,
         "van",
@@ -160,7 +160,7 @@ def timed(corners: list[tuple[float, float]], speed_mps: float, start_s: float =
 
 
 def _moving_taxi() -> Built:
-    cab = vehicles.saloon("yellow", plate="SD20 KWN")
+    cab = cars.saloon("yellow", plate="SD20 KWN")
     sign = taxi_sign(True)
     sign.root.parent = cab.root
     sign.root.location = (0.0, -0.25, TAXI_ROOF_M)
@@ -169,7 +169,7 @@ def _moving_taxi() -> Built:
 
 def _rider() -> Built:
     bike = cycles.bicycle("red", kind="town", basket=True, crank_deg=70.0)
-    person = people.pedestrian(top="light blue", trousers="denim", seed=733, stance=stances.riding(70.0))
+    person = characters.pedestrian(top="light blue", trousers="denim", seed=733, stance=stances.riding(70.0))
     person.root.parent = bike.root
     return Built(bike.root, [*bike.objects, *person.objects], [])
 

@@ -10,7 +10,7 @@ from scope_studio.kit.core.mesh import from_data
 from scope_studio.kit.core.shading import Shader, Value
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
-from scope_studio.kit.nature.markings import Stencil
+from scope_studio.kit.ground.markings import Stencil
 
 KERB_M = 0.12
 """Height of the footways above the road."""

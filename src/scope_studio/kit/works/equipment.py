@@ -9,7 +9,7 @@ from scope_studio.kit.core.finishes import concrete, glass, glow, granular, lens
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.signs.faces import board, write
-from scope_studio.kit.works.stock import heap
+from scope_studio.kit.works.materials import heap
 
 
 def wheel(s: Solid, x: float, y: float, radius: float, width: float) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from scope_studio.kit.buildings import docks, warehouse
 from scope_studio.kit.core.stage import Stage
 from scope_studio.kit.light import dusk
-from scope_studio.kit.yard import lights as yard_lights
+from scope_studio.kit.yard import lamps as yard_lamps
 
 FRONT_Y = 30.0
 MIDDLE_X = -1.0
@@ -76,12 +76,12 @@ def _warehouse(stage: Stage) -> None:
         kind="level door",
     )
     for x in (-21.0, -9.0, 12.0, 25.0):
-        flood = yard_lights.floodlight()
+        flood = yard_lamps.floodlight()
         stage.place(flood, "floodlight", "lit floodlight", (x, FRONT_Y, 7.25), 180, parent=main, state="lit", light="white")
         dusk.pool((x, FRONT_Y - 0.75, 7.15), 480, dusk.LED, size_m=0.45, aim=(0, -1.0, -0.62), spread_deg=95)
     for x, z, kind, lit in ((18.2, 4.9, "sodium", True), (26.4, 4.9, "sodium", True), (-27.6, 5.6, "sodium", False)):
         stage.place(
-            yard_lights.wall_pack(kind=kind, lit=lit),
+            yard_lamps.wall_pack(kind=kind, lit=lit),
             "wall lamp",
             "wall lamp",
             (x, FRONT_Y, z),
@@ -192,7 +192,7 @@ def _office(stage: Stage) -> None:
         material="steel",
     )
     stage.place(
-        yard_lights.wall_pack(kind="warm"),
+        yard_lamps.wall_pack(kind="warm"),
         "wall lamp",
         "wall lamp",
         (OFFICE_X - 1.3, OFFICE_Y, 2.9),

@@ -12,9 +12,6 @@ from scope_studio.kit.vehicles import fittings as shared
 from scope_studio.kit.vehicles import paintwork as pw
 from scope_studio.kit.vehicles import wheels
 from scope_studio.kit.vehicles.car_models import HATCHBACK, PICKUP, SALOON, SUV, VAN, Cabin, CarModel
-from scope_studio.kit.vehicles.paintwork import PAINTS
-
-__all__ = ["PAINTS", "hatchback", "pickup", "saloon", "suv", "van"]
 
 
 def _body(model: CarModel) -> Parts:

@@ -9,12 +9,12 @@ from random import Random
 import bpy
 
 from scope_studio.kit.core.finishes import PALETTE, paint, steel, timber
+from scope_studio.kit.core.lettering import extent
 from scope_studio.kit.core.mesh import Point
 from scope_studio.kit.core.shading import Shader, plain
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.signs.faces import write
-from scope_studio.kit.signs.lettering import extent
 
 
 def _stripes(first: str, second: str) -> bpy.types.Material:

@@ -6,14 +6,14 @@ import itertools
 import math
 from collections.abc import Sequence
 
-from scope_studio.kit.buildings.clocks import dial
-from scope_studio.kit.buildings.shop_trade import blooms
 from scope_studio.kit.core.finishes import clear_glass, glow, lens, paint, sheet, steel, timber
+from scope_studio.kit.core.lettering import extent
 from scope_studio.kit.core.shading import plain
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
+from scope_studio.kit.furniture.clocks import dial
+from scope_studio.kit.furniture.shop_displays import blooms
 from scope_studio.kit.signs.faces import write
-from scope_studio.kit.signs.lettering import extent
 
 
 def post_box() -> Built:

@@ -7,12 +7,11 @@ from collections.abc import Sequence
 
 import bpy
 
-from scope_studio.kit.buildings.square_shops import stripes
-from scope_studio.kit.core.finishes import concrete, paint, steel, timber
+from scope_studio.kit.core.finishes import concrete, paint, steel, stripes, timber
+from scope_studio.kit.core.lettering import extent
 from scope_studio.kit.core.shading import Shader, plain
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
-from scope_studio.kit.signs.lettering import extent
 
 TABLE_M = 0.74
 """Height of a table top."""

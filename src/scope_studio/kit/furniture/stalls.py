@@ -8,12 +8,11 @@ from collections.abc import Callable
 
 import bpy
 
-from scope_studio.kit.buildings.square_shops import stripes
-from scope_studio.kit.core.finishes import PALETTE, paint, sheet, steel, timber
+from scope_studio.kit.core.finishes import PALETTE, paint, sheet, steel, stripes, timber
+from scope_studio.kit.core.lettering import extent
 from scope_studio.kit.core.shading import plain
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
-from scope_studio.kit.signs.lettering import extent
 
 CRATE_M = (0.56, 0.38, 0.16)
 """Width, depth and height of a produce crate."""

@@ -8,9 +8,9 @@ import numpy as np
 from mathutils import Vector
 
 from scope_studio.kit.core.finishes import glow, lens, paint
+from scope_studio.kit.core.lettering import extent, letters
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built, TextMark
-from scope_studio.kit.signs.lettering import extent, letters
 from scope_studio.kit.signs.stands import posts_at
 
 

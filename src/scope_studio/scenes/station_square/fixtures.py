@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from scope_studio.kit.buildings import clocks, station
+from scope_studio.kit.buildings import station
 from scope_studio.kit.core.finishes import paint, steel
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Stage
-from scope_studio.kit.furniture import fountain, furniture, plaza
-from scope_studio.kit.nature import paving
-from scope_studio.kit.people import luggage, people
+from scope_studio.kit.furniture import clocks, fountain, plaza, roadside, street
+from scope_studio.kit.ground import paving
+from scope_studio.kit.people import characters, luggage
 from scope_studio.kit.vehicles import tram
 from scope_studio.scenes.station_square.market import Moulds
 
@@ -61,7 +61,7 @@ def _fountain(stage: Stage) -> None:
         parent=basin,
         material="stone",
     )
-    figure = fountain.bronze(people.pedestrian(top="grey", trousers="black", pose="point", seed=904))
+    figure = fountain.bronze(characters.pedestrian(top="grey", trousers="black", pose="point", seed=904))
     stage.place(
         figure,
         "statue",
@@ -79,10 +79,10 @@ def _fountain(stage: Stage) -> None:
 def _seats_and_bins(stage: Stage, moulds: Moulds) -> None:
     for k, (x, y, bearing, name) in enumerate(BENCHES):
         state = "occupied" if k in (0, 3, 5) else "empty"
-        stage.place(moulds.get("bench", furniture.bench), "bench", name, (x, y, 0), bearing, material="timber", state=state)
+        stage.place(moulds.get("bench", street.bench), "bench", name, (x, y, 0), bearing, material="timber", state=state)
     for x, y in ((15.6, -8.8), (17.2, 9.6), (-11.2, 20.8), (-26.2, -7.8), (6.4, 11.2)):
-        stage.place(moulds.get("bin", furniture.bin), "litter bin", "green litter bin", (x, y, 0), 200, colour="green")
-    stage.place(furniture.bin(colour="red"), "litter bin", "red litter bin", (11.0, 4.4, 0), 205, colour="red")
+        stage.place(moulds.get("bin", street.bin), "litter bin", "green litter bin", (x, y, 0), 200, colour="green")
+    stage.place(street.bin(colour="red"), "litter bin", "red litter bin", (11.0, 4.4, 0), 205, colour="red")
     stage.place(plaza.post_box(), "post box", "red post box", (12.0, 3.7, 0), 212, colour="red", material="iron")
     for k, (colour, word) in enumerate((("blue", "PAPER"), ("green", "GLASS"), ("yellow", "CANS"))):
         stage.place(
@@ -99,7 +99,7 @@ def _rows(stage: Stage, moulds: Moulds) -> None:
     """Bollards, planters, lanterns."""
     for k in range(12):
         stage.place(
-            moulds.get("bollard", furniture.bollard),
+            moulds.get("bollard", roadside.bollard),
             "bollard",
             "black bollard",
             (22.9, -9.6 + 2.6 * k, 0),
@@ -110,7 +110,7 @@ def _rows(stage: Stage, moulds: Moulds) -> None:
     for k in range(11):
         x = -11.6 + 2.9 * k
         stage.place(
-            moulds.get("bollard", furniture.bollard), "bollard", "black bollard", (x, -11.2, 0), 0, colour="black", row="street"
+            moulds.get("bollard", roadside.bollard), "bollard", "black bollard", (x, -11.2, 0), 0, colour="black", row="street"
         )
     tints = [("red", "yellow"), ("pink", "white"), ("yellow", "purple"), ("red", "white")]
     spots = [

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 
 from scope_studio.kit.core.stage import Built, Stage
-from scope_studio.kit.people import people
+from scope_studio.kit.people import characters
 from scope_studio.kit.people.stances import reaching, sitting
-from scope_studio.kit.vehicles import artics, forklift, lorries, motorcycle, vehicles
-from scope_studio.kit.yard.stock import pallet_load
-from scope_studio.scenes.freight_yard import ground as ground
-from scope_studio.scenes.freight_yard.buildings import DOCK_X, FRONT_Y
+from scope_studio.kit.vehicles import artics, cars, forklift, lorries, motorcycle
+from scope_studio.kit.yard.goods import pallet_load
+from scope_studio.scenes.freight_yard import ground
+from scope_studio.scenes.freight_yard.premises import DOCK_X, FRONT_Y
 
 SEAM_Y = FRONT_Y - 0.55
 """Where the rear of a docked lorry is."""
@@ -235,7 +235,7 @@ def _trailers(stage: Stage) -> None:
 
 
 def _cars(stage: Stage) -> None:
-    makers = {"hatchback": vehicles.hatchback, "saloon": vehicles.saloon, "suv": vehicles.suv, "pickup": vehicles.pickup}
+    makers = {"hatchback": cars.hatchback, "saloon": cars.saloon, "suv": cars.suv, "pickup": cars.pickup}
     for row, y, bearing in (
         (ground.ROW_A, ground.ROW_A_Y, 0.0),
         (ground.ROW_B, ground.ROW_B_Y, 180.0),
@@ -250,13 +250,13 @@ def _cars(stage: Stage) -> None:
             facing = "north" if abs(turned % 360) < 20 or turned % 360 > 340 else "south"
             facts = {"colour": colour, "plate": plate, "state": "parked", "bay": number, "facing": facing}
             if body == "van":
-                made = vehicles.van(colour, plate=plate, lettering="NORTHGATE\nFREIGHT")
+                made = cars.van(colour, plate=plate, lettering="NORTHGATE\nFREIGHT")
                 stage.place(made, "van", f"{colour} van", (x, y + 0.1, 0), turned, lettering="northgate freight", **facts)
                 continue
             category = "pickup truck" if body == "pickup" else "car"
             noun = {"suv": "SUV", "pickup": "pickup truck"}.get(body, body)
             stage.place(makers[body](colour, plate=plate), category, f"{colour} {noun}", (x, y, 0), turned, kind=body, **facts)
-    patrol = vehicles.van("white", plate="OB69 JNS", lettering="ARGUS\nSECURITY", roof_beacon=True)
+    patrol = cars.van("white", plate="OB69 JNS", lettering="ARGUS\nSECURITY", roof_beacon=True)
     stage.place(
         patrol,
         "van",
@@ -298,7 +298,7 @@ def _cars(stage: Stage) -> None:
 def driver(vest: str, helmet: str, seed: int) -> Built:
     """Someone at the wheel of a forklift, hips at the origin's height of its seat."""
     pose = reaching(sitting(0.46, seed=seed), left=(-0.13, 0.44, 0.86), right=(0.13, 0.46, 0.84))
-    return people.worker(vest=vest, helmet=helmet, stance=pose, seed=seed)
+    return characters.worker(vest=vest, helmet=helmet, stance=pose, seed=seed)
 
 
 def _forklifts(stage: Stage) -> None:

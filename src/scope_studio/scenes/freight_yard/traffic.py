@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from scope_studio.kit.core.stage import ActorPath, Built, Stage
 from scope_studio.kit.nature import wildlife
-from scope_studio.kit.people import people
+from scope_studio.kit.people import characters
 from scope_studio.kit.people.poses import walking
 from scope_studio.kit.people.stances import reaching
-from scope_studio.kit.vehicles import forklift, vehicles
-from scope_studio.kit.yard.stock import pallet_load
-from scope_studio.scenes.freight_yard import ground as ground
-from scope_studio.scenes.freight_yard.vehicles import driver
+from scope_studio.kit.vehicles import cars, forklift
+from scope_studio.kit.yard.goods import pallet_load
+from scope_studio.scenes.freight_yard import ground
+from scope_studio.scenes.freight_yard.parked_vehicles import driver
 
 FIRST_ACTOR = 9001
 """Number of the first actor in the ID layer: far above those of the instances."""
@@ -31,7 +31,7 @@ def _loaded_forklift(_phase: float) -> Built:
 
 def _guard(phase: float) -> Built:
     pose = reaching(walking(phase), right=(0.20, 0.34, 1.12))
-    return people.pedestrian(top="navy", trousers="black", hair="black", stance=pose, holding="torch", seed=4)
+    return characters.pedestrian(top="navy", trousers="black", hair="black", stance=pose, holding="torch", seed=4)
 
 
 def build(stage: Stage) -> None:
@@ -60,7 +60,7 @@ def build(stage: Stage) -> None:
             FIRST_ACTOR + 1,
             "van",
             "white van",
-            lambda _phase: vehicles.van("white", plate="OB69 JNR", lettering="Brightwell\nCOURIERS"),
+            lambda _phase: cars.van("white", plate="OB69 JNR", lettering="Brightwell\nCOURIERS"),
             [
                 (0.0, -36.0, -56.0, 0.0),
                 (4.0, -8.0, -56.0, 0.0),

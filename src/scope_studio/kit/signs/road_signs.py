@@ -6,28 +6,11 @@ import math
 from collections.abc import Sequence
 
 from scope_studio.kit.core.finishes import paint, sheet, steel
+from scope_studio.kit.core.lettering import extent
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.signs.faces import INK, Panel, arrow, board, disc, flat, panel_face, stroke, write
-from scope_studio.kit.signs.gantry import Signal, gantry
-from scope_studio.kit.signs.lettering import extent
-from scope_studio.kit.signs.matrix import variable_message
 from scope_studio.kit.signs.stands import frame_stand, posts_at
-
-__all__ = [
-    "Panel",
-    "Signal",
-    "gantry",
-    "lane_closed",
-    "marker_post",
-    "panel",
-    "project_board",
-    "round_limit",
-    "triangle",
-    "variable_message",
-    "warning_plate",
-    "works_access",
-]
 
 
 def panel(

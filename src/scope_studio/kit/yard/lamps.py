@@ -4,22 +4,11 @@ from __future__ import annotations
 
 import math
 
-import bpy
-
 from scope_studio.kit.core.finishes import concrete, glass, lens, paint, sheet, steel
-from scope_studio.kit.core.shading import Shader
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.light import dusk
-
-
-def lit_lens(kind: str, strength: float = 5.0) -> bpy.types.Material:
-    """The glowing lens of a lamp: "sodium", "led" or "warm"."""
-    rgb = {"sodium": dusk.SODIUM, "led": dusk.LED, "warm": dusk.WARM}[kind]
-    name = f"lit lens {kind} {strength:g}"
-    return bpy.data.materials.get(name) or Shader(name).surface(
-        base_color=rgb, emission_color=rgb, emission_strength=strength, roughness=0.4
-    )
+from scope_studio.kit.light.glow import lit_lens
 
 
 def mast(height: float = 10.0, *, kind: str = "led", heads: int = 2, lit: bool = True, number: str = "") -> Built:

@@ -7,13 +7,13 @@ import random
 
 import bpy
 
-from scope_studio.kit.buildings.buildings import cladding_material
-from scope_studio.kit.buildings.warehouse import glowing_face
+from scope_studio.kit.buildings.wall_materials import cladding_material
 from scope_studio.kit.core.finishes import concrete, glow, paint, steel
 from scope_studio.kit.core.mesh import from_data
 from scope_studio.kit.core.shading import Shader, plain
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
+from scope_studio.kit.light.glow import glowing_face
 
 Rgb = tuple[float, float, float]
 

@@ -6,29 +6,12 @@ import random
 
 import bpy
 
-from scope_studio.kit.buildings.structures import concrete_material
+from scope_studio.kit.buildings.wall_materials import brick_material, cladding_material, concrete_material, tile_material
 from scope_studio.kit.core.mesh import Point, box, from_data, text
 from scope_studio.kit.core.shading import Shader, plain
 from scope_studio.kit.core.stage import Built, TextMark
 
 Rgb = tuple[float, float, float]
-
-
-def cladding_material(name: str, colour: Rgb, pitch_m: float = 0.2) -> bpy.types.Material:
-    """Profiled metal sheet with vertical ribs, dirt below and rain marks."""
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
-    s = Shader(name)
-    p = s.object_coords()
-    x, y, z = s.xyz(p)
-    rib = s.math("PINGPONG", s.math("ADD", x, y), pitch_m / 2)
-    wave = s.ramp(rib, pitch_m * 0.12, pitch_m * 0.30)
-    tint = s.mix(wave, tuple(c * 0.72 for c in colour), colour)
-    stain = s.noise(s.scaled(p, (1.5, 1.5, 0.12)), 1.0, detail=5.0)
-    tint = s.mix(s.ramp(stain, 0.5, 0.75, 0.0, 0.4), tint, tuple(c * 0.45 for c in colour))
-    tint = s.mix(s.ramp(z, 0.0, 1.2, 0.4, 0.0), tint, (0.10, 0.09, 0.075))
-    return s.surface(base_color=tint, roughness=0.48, metallic=0.0, normal=s.bump(wave, 0.5, 0.03))
 
 
 def shed(
@@ -109,41 +92,6 @@ def shed(
         parts.append(letters)
         marks.append(mark)
     return Built.of("shed", parts, marks)
-
-
-def brick_material(name: str, colour: Rgb) -> bpy.types.Material:
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
-    s = Shader(name)
-    x, y, z = s.xyz(s.object_coords())
-    plane = s.node("ShaderNodeCombineXYZ")
-    s.feed(plane.inputs[0], s.math("ADD", x, y))
-    s.feed(plane.inputs[1], z)
-    brick = s.node("ShaderNodeTexBrick")
-    s.feed(brick.inputs["Vector"], plane.outputs[0])
-    for key, value in {"Scale": 1.0, "Mortar Size": 0.006, "Brick Width": 0.225, "Row Height": 0.075, "Bias": -0.2}.items():
-        brick.inputs[key].default_value = value
-    s.feed(brick.inputs["Color1"], colour)
-    s.feed(brick.inputs["Color2"], tuple(c * 0.62 for c in colour))
-    s.feed(brick.inputs["Mortar"], (0.30, 0.28, 0.25))
-    blotch = s.noise(s.object_coords(), 0.8, detail=5.0)
-    tint = s.mix(s.ramp(blotch, 0.4, 0.75, 0.0, 0.45), brick.outputs["Color"], (0.11, 0.085, 0.07))
-    return s.surface(base_color=tint, roughness=0.9)
-
-
-def tile_material(name: str, colour: Rgb) -> bpy.types.Material:
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
-    s = Shader(name)
-    p = s.object_coords()
-    _, _, z = s.xyz(p)
-    course = s.ramp(s.math("PINGPONG", z, 0.09), 0.005, 0.05)
-    blotch = s.noise(p, 1.6, detail=6.0)
-    tint = s.mix(s.ramp(blotch, 0.3, 0.7), tuple(c * 0.6 for c in colour), colour)
-    tint = s.mix(course, tuple(c * 0.5 for c in colour), tint)
-    return s.surface(base_color=tint, roughness=0.85, normal=s.bump(course, 0.5, 0.03))
 
 
 def house(*, brick: Rgb, roof: Rgb, door: Rgb, width_m: float = 10.0, depth_m: float = 7.5, seed: int = 0) -> Built:

@@ -19,9 +19,7 @@ from scope_studio.kit.core.stage import Built
 from scope_studio.kit.core.volumes import Skin, normals
 from scope_studio.kit.people import clothing, figure, heads
 from scope_studio.kit.people.hand_props import HOLDABLE, hold
-from scope_studio.kit.people.poses import STRIDE_M, Joints, Pose, named, solve
-
-__all__ = ["STRIDE_M", "pedestrian", "worker"]
+from scope_studio.kit.people.poses import Joints, Pose, named, solve
 
 
 @dataclass(frozen=True)
