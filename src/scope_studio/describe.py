@@ -8,11 +8,11 @@ import bpy
 import numpy as np
 from mathutils import Vector
 
+from scope_studio.actor_bodies import ActorBodies
 from scope_studio.kit.core.stage import Instance, Stage
-from scope_studio.troupe import Troupe
 
 
-def scene(stage: Stage, troupe: Troupe) -> dict[str, Any]:
+def scene(stage: Stage, actor_bodies: ActorBodies) -> dict[str, Any]:
     """Instances with world boxes, texts in world coordinates, viewpoints, presets, actors, absences."""
     bpy.context.view_layer.update()
     depsgraph = bpy.context.evaluated_depsgraph_get()
@@ -54,7 +54,7 @@ def scene(stage: Stage, troupe: Troupe) -> dict[str, Any]:
                 "attributes": a.attributes,
                 "waypoints": [list(w) for w in a.waypoints],
                 "period_s": a.period_s,
-                "size_m": list(troupe.size_m(a)),
+                "size_m": list(actor_bodies.size_m(a)),
             }
             for a in stage.actors
         ],

@@ -13,8 +13,8 @@ from typing import Any
 import bpy
 
 from scope_studio import describe, meshes, render, sprites
+from scope_studio.actor_bodies import ActorBodies
 from scope_studio.kit.core.stage import Stage, Viewpoint
-from scope_studio.troupe import Troupe
 
 Progress = Callable[[int, int], None]
 
@@ -25,7 +25,7 @@ class Studio:
     def __init__(self, progress: Progress) -> None:
         self._progress = progress
         self._stage: Stage | None = None
-        self._troupe: Troupe | None = None
+        self._actor_bodies: ActorBodies | None = None
 
     @property
     def stage(self) -> Stage:
@@ -34,10 +34,10 @@ class Studio:
         return self._stage
 
     @property
-    def troupe(self) -> Troupe:
-        if self._troupe is None:
-            self._troupe = Troupe(self.stage)
-        return self._troupe
+    def actor_bodies(self) -> ActorBodies:
+        if self._actor_bodies is None:
+            self._actor_bodies = ActorBodies(self.stage)
+        return self._actor_bodies
 
     def viewpoint(self, name: str) -> Viewpoint:
         for candidate in self.stage.viewpoints:
@@ -49,7 +49,7 @@ class Studio:
         """Build a scene: the name of a module in ``scope_studio.scenes`` (kebab-case), or the path of a Python file."""
         bpy.ops.wm.read_factory_settings(use_empty=True)
         bpy.context.preferences.filepaths.use_scripts_auto_execute = False
-        self._troupe = None
+        self._actor_bodies = None
         module = _module(source)
         name = getattr(module, "NAME", Path(source).stem.replace("_", "-"))
         stage = Stage(name, getattr(module, "TITLE", name.replace("-", " ").capitalize()))
@@ -60,7 +60,7 @@ class Studio:
         return {"name": stage.name, "title": stage.title, "instances": len(stage.instances), "device": render.use_gpu() or "CPU"}
 
     def describe(self) -> dict[str, Any]:
-        return describe.scene(self.stage, self.troupe)
+        return describe.scene(self.stage, self.actor_bodies)
 
     def save(self, path: str) -> None:
         """Write the scene as a .blend file to look at in Blender."""
@@ -73,22 +73,22 @@ class Studio:
         self, viewpoint: str, projection: dict[str, float], samples: int, seed: int, out: str, time_s: float | None = None
     ) -> None:
         """A denoised picture (8-bit PNG). With ``time_s``, moving actors stand where they are at that time."""
-        with self._cast(time_s):
+        with self._actors_shown(time_s):
             render.colour(self.viewpoint(viewpoint), projection, samples, seed, Path(out))
 
     def truth(self, viewpoint: str, projection: dict[str, float], out: str, time_s: float | None = None) -> None:
         """Instance numbers (uint16) and distances in metres (float32, 0 = sky) of the same picture, as one .npz file."""
-        with self._cast(time_s):
+        with self._actors_shown(time_s):
             render.truth(self.viewpoint(viewpoint), projection, Path(out))
 
     def sprites(self, actor: str, viewpoint: str, frames: list[dict[str, Any]], samples: int, out_dir: str) -> None:
         sprites.render_frames(
-            self.stage, self.troupe, actor, self.viewpoint(viewpoint), frames, samples, Path(out_dir), self._progress
+            self.stage, self.actor_bodies, actor, self.viewpoint(viewpoint), frames, samples, Path(out_dir), self._progress
         )
 
-    def _cast(self, time_s: float | None) -> AbstractContextManager[None]:
+    def _actors_shown(self, time_s: float | None) -> AbstractContextManager[None]:
         """Actors are only built when a picture wants them."""
-        return nullcontext() if time_s is None else self.troupe.on_stage(time_s)
+        return nullcontext() if time_s is None else self.actor_bodies.shown_at(time_s)
 
 
 def _module(source: str) -> ModuleType:

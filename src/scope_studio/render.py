@@ -72,11 +72,11 @@ def truth_arrays(viewpoint: Viewpoint, projection: dict[str, float]) -> tuple[np
     depth = next(v for k, v in channels.items() if k.endswith("Depth.Z")).astype(np.float32)
     sky = depth > SKY_M
     if projection["kind"] == "perspective":
-        depth = depth * _slant(projection)
+        depth = depth * _ray_lengths(projection)
     return ids, np.where(sky, 0.0, depth).astype(np.float32)
 
 
-def _slant(projection: dict[str, float]) -> np.ndarray:
+def _ray_lengths(projection: dict[str, float]) -> np.ndarray:
     """Distance along a pixel's ray for one metre along the optical axis."""
     width, height = int(projection["width"]), int(projection["height"])
     focal = width / 2 / math.tan(math.radians(projection["hfov_deg"]) / 2)

@@ -11,8 +11,8 @@ import bpy
 import numpy as np
 
 from scope_studio import render
+from scope_studio.actor_bodies import ActorBodies, show
 from scope_studio.kit.core.stage import Stage, Viewpoint
-from scope_studio.troupe import Troupe, show
 
 GROUND_M = 60.0
 """Side of the plane that catches the shadow."""
@@ -20,7 +20,7 @@ GROUND_M = 60.0
 
 def render_frames(
     stage: Stage,
-    troupe: Troupe,
+    actor_bodies: ActorBodies,
     actor_id: str,
     viewpoint: Viewpoint,
     frames: list[dict[str, Any]],
@@ -30,11 +30,11 @@ def render_frames(
 ) -> None:
     """For frame k (``time_s``, ``phase``, ``position_m``, ``projection``) write ``k.png`` (RGBA) and ``k.npz`` (distances)."""
     actor = next(a for a in stage.actors if a.id == actor_id)
-    with _alone() as ground:
+    with _only_shadows() as ground:
         for k, frame in enumerate(frames):
             picture = out_dir / f"{k:03d}.png"
             if not picture.with_suffix(".npz").exists():
-                built = troupe.stand(actor, frame["time_s"], frame["phase"])
+                built = actor_bodies.stand(actor, frame["time_s"], frame["phase"])
                 if built is None:
                     raise ValueError(f"{actor_id} is not in the scene at {frame['time_s']} s")
                 ground.location = frame["position_m"]
@@ -53,7 +53,7 @@ def render_frames(
 
 
 @contextmanager
-def _alone() -> Iterator[bpy.types.Object]:
+def _only_shadows() -> Iterator[bpy.types.Object]:
     """Everything that can be seen is hidden, save a plane that only catches shadows."""
     hidden = [o for o in bpy.data.objects if o.type not in {"LIGHT", "CAMERA"} and not o.hide_render]
     for obj in hidden:

@@ -124,7 +124,7 @@ class ActorPath:
     stride_m: float | None = None
 
 
-def _leave(*, spare: tuple[str, ...] = ()) -> None:
+def _leave(*, skip: tuple[str, ...] = ()) -> None:
     """Materials stay as they are."""
 
 
@@ -132,7 +132,7 @@ class Stage:
     """Collects what a scene module builds. Ids are ``category-NN`` in order of placement, and never change afterwards.
 
     ``finish`` is the last step for materials: called once after the scene is built, and again for each moving thing that is built
-    later, with the names of the materials to leave alone (``spare``). Haze, for instance, goes on here.
+    later, with the names of the materials to leave alone (``skip``). Haze, for instance, goes on here.
     """
 
     def __init__(self, name: str, title: str) -> None:

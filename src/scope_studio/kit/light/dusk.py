@@ -122,14 +122,14 @@ def pool(
     lamp.visible_camera = False
 
 
-def finish_materials(*, visibility_m: float = 1500.0, spare: tuple[str, ...] = ()) -> None:
+def finish_materials(*, visibility_m: float = 1500.0, skip: tuple[str, ...] = ()) -> None:
     """Last step of a scene: evening haze on every material, unlit lamps unlit, and no mesh sampled as a lamp.
 
-    ``visibility_m`` is the distance at which 63% of a thing's light is replaced by haze. Materials named in ``spare``
+    ``visibility_m`` is the distance at which 63% of a thing's light is replaced by haze. Materials named in ``skip``
     stay as they are.
     """
     for material in bpy.data.materials:
-        if material.name in spare or material.node_tree is None:
+        if material.name in skip or material.node_tree is None:
             continue
         material.cycles.emission_sampling = "NONE"
         if material.name.startswith(DIMMED):

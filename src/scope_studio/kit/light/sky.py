@@ -97,14 +97,14 @@ def _clouds(s: Shader, x: Value, y: Value, height: Value, clear: Value, cover: f
     return s.mix(mask, clear, body)
 
 
-def finish_materials(*, visibility_m: float = 3600.0, spare: tuple[str, ...] = ()) -> None:
+def finish_materials(*, visibility_m: float = 3600.0, skip: tuple[str, ...] = ()) -> None:
     """Last step of a scene: aerial haze on every material, and no mesh sampled as a lamp (which would only add noise).
 
-    ``visibility_m`` is the distance at which 63% of a thing's light is replaced by haze. Materials named in ``spare``
+    ``visibility_m`` is the distance at which 63% of a thing's light is replaced by haze. Materials named in ``skip``
     stay as they are.
     """
     for material in bpy.data.materials:
-        if material.name in spare or material.node_tree is None:
+        if material.name in skip or material.node_tree is None:
             continue
         material.cycles.emission_sampling = "NONE"
         _add_haze(material.node_tree, visibility_m)

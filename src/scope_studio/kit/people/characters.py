@@ -23,7 +23,7 @@ from scope_studio.kit.people.poses import Joints, Pose, named, solve
 
 
 @dataclass(frozen=True)
-class _Looks:
+class _Appearance:
     """What nature gave: drawn from the seed."""
 
     height_m: float
@@ -35,14 +35,14 @@ class _Looks:
     stubble: bool
 
 
-def _looks(random: Random, hair: str | None, woman_share: float) -> _Looks:
+def _looks(random: Random, hair: str | None, woman_share: float) -> _Appearance:
     woman = random.random() < woman_share
     height = random.gauss(1.67, 0.04) if woman else random.gauss(1.78, 0.045)
     tone = random.choices(range(6), (30, 26, 16, 12, 10, 6))[0]
     usual = ["black"] if tone >= 3 else ["black", "brown", "brown", "light brown", "blond", "ginger", "grey"]
     style = random.choice(["long", "tail", "bun"]) if woman else random.choice(["short", "short", "crop"])
     girth = random.uniform(0.96, 1.10) if woman else random.uniform(0.98, 1.30)
-    return _Looks(
+    return _Appearance(
         min(1.90, max(1.60, height)),
         girth,
         woman,
@@ -58,7 +58,7 @@ def _wear(s: Solid, skin: Skin, material: object, rest: np.ndarray | None = None
     s.add(points.tolist(), faces, material, None if rest is None else rest.tolist())
 
 
-def _head(s: Solid, joints: Joints, looks: _Looks, covered: bool) -> None:
+def _head(s: Solid, joints: Joints, looks: _Appearance, covered: bool) -> None:
     skin = heads.face(woman=looks.woman, stout=0.9 + 0.12 * (looks.girth - 0.95) / 0.25)
     _wear(s, heads.place(skin, joints.head), clothing.skin(looks.tone, looks.hair, stubble=looks.stubble), skin[0])
     if looks.hair is None or looks.hair == "bald":
@@ -109,7 +109,7 @@ class _Outfit:
     helmet: str | None
 
 
-def _dress(s: Solid, joints: Joints, random: Random, looks: _Looks, outfit: _Outfit, curls: tuple[float, float]) -> None:
+def _dress(s: Solid, joints: Joints, random: Random, looks: _Appearance, outfit: _Outfit, curls: tuple[float, float]) -> None:
     """Clothes and hands."""
     seed = random.uniform(0, 50)
     vest = outfit.vest
@@ -170,7 +170,7 @@ def _person(
     pose: str,
     phase: float,
     random: Random,
-    looks: _Looks,
+    looks: _Appearance,
     outfit: _Outfit,
     holding: str | None,
     own_stance: Pose | None = None,

@@ -78,8 +78,8 @@ def arrow_board(direction: str = "left", *, lit: bool = True) -> Built:
     shaft = [(0.75 - 0.215 * i, 0.0) for i in range(8)]
     head = [(-0.75 + 0.17 * i, side * 0.16 * i) for i in range(1, 4) for side in (-1, 1)]
     lamps = {(round(u, 3), round(v, 3)) for u, v in shaft + head}
-    spare = {(0.75 - 0.17 * i, side * 0.16 * i) for i in range(1, 4) for side in (-1, 1)}
-    for u, v in sorted(lamps | spare):
+    tip = {(0.75 - 0.17 * i, side * 0.16 * i) for i in range(1, 4) for side in (-1, 1)}
+    for u, v in sorted(lamps | tip):
         bright = glow("amber", 6.0) if lit and (u, v) in lamps else lens("black")
         s.lathe([(0.072, 0.0), (0.072, 0.03), (0.066, 0.03)], paint("black"), (sign * u, 0.835, 2.35 + v), "Y", 18)
         s.lathe([(0.062, 0.012), (0.055, 0.030), (0.025, 0.042)], bright, (sign * u, 0.835, 2.35 + v), "Y", 18)

@@ -160,7 +160,7 @@ def _neighbours(stage: Stage) -> None:
 
 def _trees(stage: Stage) -> None:
     rng = random.Random("yard trees")
-    moulds: dict[tuple[str, int], Built] = {}
+    prototypes: dict[tuple[str, int], Built] = {}
     species = {
         "lime": vegetation.LIME,
         "birch": vegetation.BIRCH,
@@ -190,7 +190,11 @@ def _trees(stage: Stage) -> None:
     for name, seed, x, y in rows:
         key = (name, seed)
         detail = 0.55 if abs(x) < 50 else 0.35
-        built = moulds[key].copy() if key in moulds else moulds.setdefault(key, vegetation.tree(species[name], seed, detail=detail))
+        built = (
+            prototypes[key].copy()
+            if key in prototypes
+            else prototypes.setdefault(key, vegetation.tree(species[name], seed, detail=detail))
+        )
         stage.place(
             built,
             "tree",
@@ -213,9 +217,9 @@ def _far(stage: Stage, height) -> None:
     hedge = vegetation.hedge(14.0, seed=3, detail=0.3)
     used: set[int] = set()
 
-    def strew(mould: Built, x: float, y: float, bearing: float, scale: float) -> None:
-        built = mould.copy() if id(mould) in used else mould
-        used.add(id(mould))
+    def strew(prototype: Built, x: float, y: float, bearing: float, scale: float) -> None:
+        built = prototype.copy() if id(prototype) in used else prototype
+        used.add(id(prototype))
         stage.put(built, (x, y, height(x, y) - 0.1), bearing, scale=scale)
 
     for x in range(-180, 190, 14):

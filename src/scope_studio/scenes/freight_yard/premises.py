@@ -94,12 +94,12 @@ def _warehouse(stage: Stage) -> None:
 
 
 def _docks(stage: Stage) -> None:
-    moulds: dict[str, docks.Built] = {}
+    prototypes: dict[str, docks.Built] = {}
 
     def get(key: str, make) -> docks.Built:
-        if key in moulds:
-            return moulds[key].copy()
-        return moulds.setdefault(key, make())
+        if key in prototypes:
+            return prototypes[key].copy()
+        return prototypes.setdefault(key, make())
 
     for k, (x, state, light) in enumerate(zip(DOCK_X, DOCK_STATES, DOCK_LIGHTS, strict=True), start=1):
         where = (x, FRONT_Y, 0.0)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Callable
 
+from scope_studio.kit.core.prototypes import Prototypes
 from scope_studio.kit.core.stage import Built, Stage
 from scope_studio.kit.works import barriers, equipment, materials
 from scope_studio.kit.yard import containers
@@ -36,18 +36,6 @@ STACKS = (
     (20, 41.0, -26.7, (("light grey", "ORTU 226190 4", None),)),
     (40, 40.0, 0.5, (("dark green", "TSLU 187734 1", "TESSALINE"),)),
 )
-
-
-class Moulds:
-    """Builds each kind of thing once and hands out linked copies."""
-
-    def __init__(self) -> None:
-        self._made: dict[str, Built] = {}
-
-    def get(self, key: str, make: Callable[[], Built]) -> Built:
-        if key in self._made:
-            return self._made[key].copy()
-        return self._made.setdefault(key, make())
 
 
 def build(stage: Stage) -> None:
@@ -98,10 +86,10 @@ def _containers(stage: Stage) -> None:
 
 
 def _goods(stage: Stage) -> None:
-    moulds = Moulds()
+    prototypes = Prototypes()
     for n, (x, y, count) in enumerate(((25.6, 25.0, 9), (27.2, 25.4, 12), (25.8, 22.6, 5), (-27.9, 10.6, 7))):
         stage.place(
-            moulds.get(f"stack {count}", lambda count=count, n=n: yard_goods.pallet_stack(count, seed=n)),
+            prototypes.get(f"stack {count}", lambda count=count, n=n: yard_goods.pallet_stack(count, seed=n)),
             "pallet stack",
             "stack of empty pallets",
             (x, y, 0),
@@ -128,7 +116,7 @@ def _goods(stage: Stage) -> None:
     for k in range(11):
         colour = "red" if k in (3, 7, 8) else "blue"
         fallen = k == 10
-        built = moulds.get(f"drum {colour}", lambda colour=colour: yard_goods.steel_drum(colour))
+        built = prototypes.get(f"drum {colour}", lambda colour=colour: yard_goods.steel_drum(colour))
         where = (15.8 + 0.72 * k, 8.4, 0.0) if not fallen else (24.2, 7.3, 0.29)
         stage.place(
             built,
@@ -225,7 +213,7 @@ def _gear(stage: Stage) -> None:
 
 def _guards(stage: Stage) -> None:
     """Bollards, concrete blocks and cones."""
-    moulds = Moulds()
+    prototypes = Prototypes()
     bollards = [
         (19.2, 28.9),
         (24.8, 28.9),
@@ -240,7 +228,7 @@ def _guards(stage: Stage) -> None:
     bollards += [(-20.7 + 2.6 * k, -11.2) for k in range(3)] + [(-9.9, 3.2), (-12.5, 3.2), (28.6, 29.2)]
     for x, y in bollards:
         stage.place(
-            moulds.get("bollard", yard_safety.yard_bollard),
+            prototypes.get("bollard", yard_safety.yard_bollard),
             "bollard",
             "yellow bollard",
             (x, y, 0),
@@ -250,7 +238,7 @@ def _guards(stage: Stage) -> None:
         )
     for k in range(4):
         stage.place(
-            moulds.get("block", lambda: barriers.concrete_barrier(3.0)),
+            prototypes.get("block", lambda: barriers.concrete_barrier(3.0)),
             "barrier",
             "concrete barrier",
             (14.4, -31.5 + 3.15 * k, 0),
@@ -262,7 +250,7 @@ def _guards(stage: Stage) -> None:
     for k in range(3):
         colour = ("red", "white")[k % 2]
         stage.place(
-            moulds.get(colour, lambda colour=colour: barriers.water_barrier(colour)),
+            prototypes.get(colour, lambda colour=colour: barriers.water_barrier(colour)),
             "barrier",
             f"{colour} water-filled barrier",
             (1.2 + 1.6 * k, 25.6, 0),
@@ -284,10 +272,16 @@ def _guards(stage: Stage) -> None:
     ]
     for k, (x, y) in enumerate(cones):
         stage.place(
-            moulds.get("cone", barriers.cone), "traffic cone", "traffic cone", (x, y, 0), 25 * k, colour="orange", state="upright"
+            prototypes.get("cone", barriers.cone),
+            "traffic cone",
+            "traffic cone",
+            (x, y, 0),
+            25 * k,
+            colour="orange",
+            state="upright",
         )
     stage.place(
-        moulds.get("cone", barriers.cone),
+        prototypes.get("cone", barriers.cone),
         "traffic cone",
         "fallen traffic cone",
         (13.3, -18.2, 0.17),

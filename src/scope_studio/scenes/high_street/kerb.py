@@ -33,10 +33,10 @@ def build(stage: Stage) -> None:
 
 
 def _lamps(stage: Stage) -> None:
-    moulds: dict[bool, Built] = {}
+    prototypes: dict[bool, Built] = {}
     hung: dict[int, Built] = {}
     for k, (x, y, lit) in enumerate(LAMPS):
-        built = moulds[lit].copy() if lit in moulds else moulds.setdefault(lit, traditional.street_lamp(lit=lit))
+        built = prototypes[lit].copy() if lit in prototypes else prototypes.setdefault(lit, traditional.street_lamp(lit=lit))
         post = stage.place(
             built, "lamp post", "street lamp", (x, y, KERB_M), 90, colour="dark green", state="lit" if lit else "unlit"
         )

@@ -162,7 +162,7 @@ def _cross_streets(stage: Stage) -> None:
 
 
 class _Row:
-    """Places houses, copying each mould after its first use."""
+    """Places houses, copying each prototype after its first use."""
 
     def __init__(self, stage: Stage) -> None:
         self._stage = stage
@@ -263,12 +263,12 @@ def _behind(stage: Stage) -> None:
     """Trees over the back gardens, hedges at the ends of the streets, the land beyond."""
     rng = random.Random("behind")
     species = (vegetation.OAK, vegetation.LIME, vegetation.COPPER, vegetation.BIRCH, vegetation.POPLAR)
-    moulds = [vegetation.tree(sp, 60 + k, detail=0.16) for k, sp in enumerate(species)]
-    fresh = set(range(len(moulds)))
+    prototypes = [vegetation.tree(sp, 60 + k, detail=0.16) for k, sp in enumerate(species)]
+    fresh = set(range(len(prototypes)))
 
     def strew(x: float, y: float, scale: float) -> None:
-        k = rng.choices(range(len(moulds)), weights=(5, 5, 1, 3, 2))[0]
-        built = moulds[k] if k in fresh else moulds[k].copy()
+        k = rng.choices(range(len(prototypes)), weights=(5, 5, 1, 3, 2))[0]
+        built = prototypes[k] if k in fresh else prototypes[k].copy()
         fresh.discard(k)
         stage.put(built, (x, y, 0.1), rng.uniform(0, 360), scale=scale)
 

@@ -121,10 +121,6 @@ def plots() -> dict[int, Plot]:
     return made
 
 
-def by_number(number: int) -> Shop:
-    return next(s for s in (*WEST, *EAST) if s.number == number)
-
-
 def door_x(shop: Shop) -> float:
     return shop.door_side * (shop.width_m - 2.0)
 

@@ -30,10 +30,10 @@ def _row(
 ) -> None:
     """Wares in a row on the display shelf of a number's window; equal ones are linked copies."""
     plot = plots()[number]
-    moulds: dict[str, Built] = {}
+    prototypes: dict[str, Built] = {}
     for k, x in enumerate(xs):
         make, category, name, facts = wares[k % len(wares)]
-        built = moulds[name].copy() if name in moulds else moulds.setdefault(name, make())
+        built = prototypes[name].copy() if name in prototypes else prototypes.setdefault(name, make())
         shift = 0.06 * ((k * 7) % 3 - 1)
         stage.place(
             built,

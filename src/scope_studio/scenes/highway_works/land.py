@@ -145,13 +145,13 @@ def _buildings(stage: Stage, height: Height) -> None:
 
 def _power_line(stage: Stage, height: Height) -> None:
     """Three pylons that cross the road far to the south, with sagging wires."""
-    mould = structures.pylon()
+    prototype = structures.pylon()
     feet = [(-430.0, -160.0), (-185.0, -205.0), (75.0, -252.0), (330.0, -300.0)]
     bearing = math.degrees(math.atan2(-(feet[1][1] - feet[0][1]), feet[1][0] - feet[0][0]))
     points: list[tuple[float, float, float]] = []
     faces: list[tuple[int, ...]] = []
     for k, (x, y) in enumerate(feet):
-        built = mould if k == 0 else mould.copy()
+        built = prototype if k == 0 else prototype.copy()
         stage.place(built, "pylon", "electricity pylon", (x, y, height(x, y) - 0.3), bearing + 90, colour="grey", material="steel")
     across = (math.sin(math.radians(bearing + 180)), math.cos(math.radians(bearing + 180)))
     for (x0, y0), (x1, y1) in pairwise(feet):

@@ -33,7 +33,7 @@ def _near_trees(stage: Stage, height: Height) -> None:
             vegetation.BUSH,
         )
     }
-    moulds: dict[tuple[str, int], Built] = {}
+    prototypes: dict[tuple[str, int], Built] = {}
     rows = [
         ("lime", 0, 24.5, 24.0),
         ("birch", 0, 23.5, 33.5),
@@ -67,7 +67,7 @@ def _near_trees(stage: Stage, height: Height) -> None:
     rng = random.Random("near trees")
     for name, seed, x, y in rows:
         key = (name, seed)
-        built = moulds[key].copy() if key in moulds else moulds.setdefault(key, vegetation.tree(kinds[name], seed))
+        built = prototypes[key].copy() if key in prototypes else prototypes.setdefault(key, vegetation.tree(kinds[name], seed))
         category = "bush" if name == "bush" else "tree"
         noun = {"lime": "lime tree", "birch": "birch tree", "oak": "oak tree", "pine": "pine tree", "poplar": "poplar tree"}.get(
             name, name
@@ -134,9 +134,9 @@ def _countryside(stage: Stage, height: Height) -> None:
     hedgerow = vegetation.hedge(16.0, seed=9, detail=0.16)
     fresh = {id(m) for m in [*far, scrub, hedgerow]}
 
-    def strew(mould: Built, x: float, y: float, bearing: float, scale: float) -> None:
-        built = mould if id(mould) in fresh else mould.copy()
-        fresh.discard(id(mould))
+    def strew(prototype: Built, x: float, y: float, bearing: float, scale: float) -> None:
+        built = prototype if id(prototype) in fresh else prototype.copy()
+        fresh.discard(id(prototype))
         stage.put(built, (x, y, height(x, y) - 0.1), bearing, scale=scale)
 
     def any_tree() -> Built:
@@ -186,16 +186,16 @@ def _grass(stage: Stage) -> None:
     mown = [vegetation.grass_patch(2.0, blades=1700, height_m=0.075, seed=10 + k) for k in range(2)]
     used: set[int] = set()
 
-    def strew(moulds: list[Built], x: float, y: float) -> None:
-        mould = rng.choice(moulds)
-        built = mould.copy() if id(mould) in used else mould
-        used.add(id(mould))
+    def strew(prototypes: list[Built], x: float, y: float) -> None:
+        prototype = rng.choice(prototypes)
+        built = prototype.copy() if id(prototype) in used else prototype
+        used.add(id(prototype))
         stage.put(built, (x, y, -0.03), 90 * rng.randrange(4) + rng.uniform(-8, 8), scale=rng.uniform(0.95, 1.2))
 
-    def row(moulds: list[Built], x: float, y: float, share: float = 1.0) -> None:
+    def row(prototypes: list[Built], x: float, y: float, share: float = 1.0) -> None:
         if rng.random() < share:
             wide = 0.25 if share == 1.0 else 0.9
-            strew(moulds, x + rng.uniform(-wide, wide), y + rng.uniform(-0.4, 0.4))
+            strew(prototypes, x + rng.uniform(-wide, wide), y + rng.uniform(-0.4, 0.4))
 
     for y in range(-60, 76, 2):
         if not 8 < y < 58:

@@ -253,11 +253,11 @@ def _small_signs(stage: Stage) -> None:
 
 
 def _guardrails(stage: Stage) -> None:
-    length, mould = 108.0, roadside.guardrail(108.0)
+    length, prototype = 108.0, roadside.guardrail(108.0)
     fresh = True
     for x, bearing in ((-0.95, 180.0), (0.95, 0.0)):
         for k in range(4):
-            built = mould if fresh else mould.copy()
+            built = prototype if fresh else prototype.copy()
             fresh = False
             stage.place(
                 built, "guardrail", "steel guardrail", (x, -162.0 + length * k, 0.07), bearing, material="steel", colour="grey"
@@ -270,9 +270,9 @@ def _guardrails(stage: Stage) -> None:
 
 
 def _lamps(stage: Stage) -> None:
-    mould = roadside.lamp_post(12.0, 2)
+    prototype = roadside.lamp_post(12.0, 2)
     for k, y in enumerate((-154.0, -118.0, -82.0, -46.0, -10.0, 26.0, 62.0, 112.0, 148.0)):
-        built = mould if k == 0 else mould.copy()
+        built = prototype if k == 0 else prototype.copy()
         stage.place(built, "lamp post", "double-armed lamp post", (0, y, 0.07), 90, colour="grey", state="unlit", arms=2)
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 import random
-from collections.abc import Callable
 
+from scope_studio.kit.core.prototypes import Prototypes
 from scope_studio.kit.core.stage import Built, Stage
 from scope_studio.kit.people import characters
 from scope_studio.kit.vehicles import excavator, machines
@@ -34,24 +34,11 @@ def build(stage: Stage) -> None:
     _materials(stage)
 
 
-class Moulds:
-    """Builds each kind of thing once and hands out linked copies."""
-
-    def __init__(self) -> None:
-        self._made: dict[str, Built] = {}
-
-    def get(self, key: str, make: Callable[[], Built]) -> Built:
-        if key in self._made:
-            return self._made[key].copy()
-        self._made[key] = make()
-        return self._made[key]
-
-
 def _cones(stage: Stage) -> None:
-    moulds, rng = Moulds(), random.Random("cones")
+    prototypes, rng = Prototypes(), random.Random("cones")
     for k, (x, y) in enumerate(TAPER + CONES + RESERVE_CONES):
         part = "taper" if k < len(TAPER) else "lane closure" if x < -2 else "reserve repair"
-        built = moulds.get("cone", lambda: barriers.cone(1.0))
+        built = prototypes.get("cone", lambda: barriers.cone(1.0))
         lean = (rng.uniform(-2.5, 2.5), rng.uniform(-2.5, 2.5))
         stage.place(
             built,
@@ -67,10 +54,10 @@ def _cones(stage: Stage) -> None:
 
 
 def _barriers(stage: Stage) -> None:
-    moulds = Moulds()
+    prototypes = Prototypes()
     for k in range(14):
         colour = ("red", "white")[k % 2]
-        built = moulds.get(colour, lambda colour=colour: barriers.water_barrier(colour))
+        built = prototypes.get(colour, lambda colour=colour: barriers.water_barrier(colour))
         stage.place(
             built,
             "barrier",
@@ -82,7 +69,7 @@ def _barriers(stage: Stage) -> None:
             kind="water-filled",
         )
     for k in range(3):
-        built = moulds.get("concrete", lambda: barriers.concrete_barrier(3.0))
+        built = prototypes.get("concrete", lambda: barriers.concrete_barrier(3.0))
         stage.place(
             built,
             "barrier",
@@ -94,7 +81,7 @@ def _barriers(stage: Stage) -> None:
             kind="concrete",
         )
     for x, lit in ((-10.4, True), (-12.9, False)):
-        built = moulds.get(f"board {lit}", lambda lit=lit: barriers.barrier_board(lit=lit))
+        built = prototypes.get(f"board {lit}", lambda lit=lit: barriers.barrier_board(lit=lit))
         stage.place(
             built,
             "barrier",
@@ -106,12 +93,12 @@ def _barriers(stage: Stage) -> None:
             kind="board",
         )
     for x in (-10.6, -12.8, -15.0):
-        built = moulds.get("foot", barriers.chapter8_barrier)
+        built = prototypes.get("foot", barriers.chapter8_barrier)
         stage.place(
             built, "barrier", "orange pedestrian barrier", (x, -5.8, 0), 0, colour="orange", material="plastic", kind="pedestrian"
         )
     for k in range(5):
-        built = moulds.get("drum", barriers.drum)
+        built = prototypes.get("drum", barriers.drum)
         stage.place(
             built,
             "drum",
@@ -153,12 +140,12 @@ def _crew(stage: Stage) -> None:
 
 def _fence(stage: Stage) -> None:
     """Mesh panels round the compound, with a gap for the gate in the north side."""
-    moulds = Moulds()
+    prototypes = Prototypes()
     width = FENCE_PANEL_M[0] + 0.06
     west, east, south, north = COMPOUND
 
     def panel(x: float, y: float, bearing: float, plate: tuple[str, ...] = ()) -> None:
-        built = moulds.get("-".join(plate), lambda: barriers.mesh_fence_panel(plate))
+        built = prototypes.get("-".join(plate), lambda: barriers.mesh_fence_panel(plate))
         facts = {"plate": " ".join(plate).lower()} if plate else {}
         stage.place(built, "fence panel", "mesh fence panel", (x, y, 0), bearing, material="steel", **facts)
 
@@ -257,10 +244,10 @@ def _compound(stage: Stage) -> None:
 
 
 def _materials(stage: Stage) -> None:
-    moulds = Moulds()
+    prototypes = Prototypes()
     for x, y, bearing in ((-29.4, -9.0, 8), (-29.2, -11.0, 2), (-31.2, -9.6, 95), (-20.2, 33.0, 12), (-20.6, 35.2, 4)):
         stage.place(
-            moulds.get("kerbs", materials.pallet_of_kerbs),
+            prototypes.get("kerbs", materials.pallet_of_kerbs),
             "pallet",
             "pallet of kerb stones",
             (x, y, 0),
@@ -270,7 +257,12 @@ def _materials(stage: Stage) -> None:
         )
     for x, y, bearing in ((-33.4, -17.6, 30), (-32.0, -18.6, 18)):
         stage.place(
-            moulds.get("cement", materials.cement_bags), "pallet", "pallet of cement bags", (x, y, 0), bearing, load="cement bags"
+            prototypes.get("cement", materials.cement_bags),
+            "pallet",
+            "pallet of cement bags",
+            (x, y, 0),
+            bearing,
+            load="cement bags",
         )
     for colour, x, y, bearing, length in (
         ("orange", -27.6, -15.2, 78, 6.0),

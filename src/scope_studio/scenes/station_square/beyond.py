@@ -24,7 +24,7 @@ def build(stage: Stage) -> None:
         House(8.5, w["white"], 2, 3, shutters="green", seed=53, roof=CLAY, door="red"),
         House(9.5, w["stone"], 4, 3, seed=54, storey_m=2.9, dormers=2, door="black"),
     ]
-    moulds = [townhouses.town_house(h) for h in kinds]
+    prototypes = [townhouses.town_house(h) for h in kinds]
     used: set[int] = set()
     rng = random.Random("beyond")
 
@@ -41,7 +41,7 @@ def build(stage: Stage) -> None:
             k += rng.choice((1, 2, 3))
 
     def _lay(index: int, x: float, y: float, bearing: float) -> None:
-        built: Built = moulds[index].copy() if index in used else moulds[index]
+        built: Built = prototypes[index].copy() if index in used else prototypes[index]
         used.add(index)
         stage.put(built, (x, y, 0.0), bearing)
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from scope_studio.kit.buildings import station
 from scope_studio.kit.core.finishes import paint, steel
+from scope_studio.kit.core.prototypes import Prototypes
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Stage
 from scope_studio.kit.furniture import clocks, fountain, plaza, roadside, street
 from scope_studio.kit.ground import paving
 from scope_studio.kit.people import characters, luggage
 from scope_studio.kit.vehicles import tram
-from scope_studio.scenes.station_square.market import Moulds
 
 FOUNTAIN = (1.2, 6.2)
 MAST = (4.0, -8.0)
@@ -40,10 +40,10 @@ TREES = [
 
 
 def build(stage: Stage) -> None:
-    moulds = Moulds()
+    prototypes = Prototypes()
     _fountain(stage)
-    _seats_and_bins(stage, moulds)
-    _rows(stage, moulds)
+    _seats_and_bins(stage, prototypes)
+    _rows(stage, prototypes)
     _kiosk(stage)
     _signs(stage)
     _tram_stop(stage)
@@ -76,12 +76,12 @@ def _fountain(stage: Stage) -> None:
     )
 
 
-def _seats_and_bins(stage: Stage, moulds: Moulds) -> None:
+def _seats_and_bins(stage: Stage, prototypes: Prototypes) -> None:
     for k, (x, y, bearing, name) in enumerate(BENCHES):
         state = "occupied" if k in (0, 3, 5) else "empty"
-        stage.place(moulds.get("bench", street.bench), "bench", name, (x, y, 0), bearing, material="timber", state=state)
+        stage.place(prototypes.get("bench", street.bench), "bench", name, (x, y, 0), bearing, material="timber", state=state)
     for x, y in ((15.6, -8.8), (17.2, 9.6), (-11.2, 20.8), (-26.2, -7.8), (6.4, 11.2)):
-        stage.place(moulds.get("bin", street.bin), "litter bin", "green litter bin", (x, y, 0), 200, colour="green")
+        stage.place(prototypes.get("bin", street.bin), "litter bin", "green litter bin", (x, y, 0), 200, colour="green")
     stage.place(street.bin(colour="red"), "litter bin", "red litter bin", (11.0, 4.4, 0), 205, colour="red")
     stage.place(plaza.post_box(), "post box", "red post box", (12.0, 3.7, 0), 212, colour="red", material="iron")
     for k, (colour, word) in enumerate((("blue", "PAPER"), ("green", "GLASS"), ("yellow", "CANS"))):
@@ -95,11 +95,11 @@ def _seats_and_bins(stage: Stage, moulds: Moulds) -> None:
         )
 
 
-def _rows(stage: Stage, moulds: Moulds) -> None:
+def _rows(stage: Stage, prototypes: Prototypes) -> None:
     """Bollards, planters, lanterns."""
     for k in range(12):
         stage.place(
-            moulds.get("bollard", roadside.bollard),
+            prototypes.get("bollard", roadside.bollard),
             "bollard",
             "black bollard",
             (22.9, -9.6 + 2.6 * k, 0),
@@ -110,7 +110,7 @@ def _rows(stage: Stage, moulds: Moulds) -> None:
     for k in range(11):
         x = -11.6 + 2.9 * k
         stage.place(
-            moulds.get("bollard", roadside.bollard), "bollard", "black bollard", (x, -11.2, 0), 0, colour="black", row="street"
+            prototypes.get("bollard", roadside.bollard), "bollard", "black bollard", (x, -11.2, 0), 0, colour="black", row="street"
         )
     tints = [("red", "yellow"), ("pink", "white"), ("yellow", "purple"), ("red", "white")]
     spots = [
@@ -128,7 +128,7 @@ def _rows(stage: Stage, moulds: Moulds) -> None:
     for k, (x, y) in enumerate(spots):
         first, second = tints[k % 4]
         stage.place(
-            moulds.get(f"planter {k % 4}", lambda a=first, b=second, k=k: plaza.planter(a, b, seed=k)),
+            prototypes.get(f"planter {k % 4}", lambda a=first, b=second, k=k: plaza.planter(a, b, seed=k)),
             "planter",
             f"planter with {first} flowers",
             (x, y, 0),
@@ -149,7 +149,7 @@ def _rows(stage: Stage, moulds: Moulds) -> None:
         (-74.0, -11.0, 0),
     ):
         stage.place(
-            moulds.get("lantern", plaza.lantern_post),
+            prototypes.get("lantern", plaza.lantern_post),
             "lamp post",
             "green lamp post",
             (x, y, 0),

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 import random
-from collections.abc import Callable
 
-from scope_studio.kit.core.stage import Built, Stage
+from scope_studio.kit.core.prototypes import Prototypes
+from scope_studio.kit.core.stage import Stage
 from scope_studio.kit.furniture import cafe, stalls
 
 FACING = 150.0
@@ -113,23 +113,11 @@ def spot(place: tuple[float, float], right: float, out: float, bearing: float = 
     return place[0] - right * math.cos(b) + out * math.sin(b), place[1] + right * math.sin(b) + out * math.cos(b)
 
 
-class Moulds:
-    """First use builds, later uses are linked copies."""
-
-    def __init__(self) -> None:
-        self._made: dict[str, Built] = {}
-
-    def get(self, key: str, make: Callable[[], Built]) -> Built:
-        if key in self._made:
-            return self._made[key].copy()
-        return self._made.setdefault(key, make())
-
-
 def build(stage: Stage) -> None:
-    moulds = Moulds()
+    prototypes = Prototypes()
     for sign, canvas, place, goods in STALLS:
-        _stall(stage, moulds, sign, canvas, place, goods)
-    _flowers(stage, moulds)
+        _stall(stage, prototypes, sign, canvas, place, goods)
+    _flowers(stage, prototypes)
     x, y = EMPTY_STALL
     empty = stage.place(
         stalls.stall("grey", table=True, rolled=True),
@@ -148,7 +136,7 @@ def build(stage: Stage) -> None:
         x, y = spot(EMPTY_STALL, right, out)
         for level in range(3 if k == 0 else 1):
             stage.place(
-                moulds.get("empty crate", stalls.crate),
+                prototypes.get("empty crate", stalls.crate),
                 "crate",
                 "empty crate",
                 (x, y, 0.165 * level),
@@ -156,12 +144,12 @@ def build(stage: Stage) -> None:
                 state="empty",
                 material="timber",
             )
-    _carts(stage, moulds)
-    _terrace(stage, moulds)
+    _carts(stage, prototypes)
+    _terrace(stage, prototypes)
 
 
 def _stall(
-    stage: Stage, moulds: Moulds, sign: str, canvas: tuple[str, ...], place: tuple[float, float], goods: list[Goods]
+    stage: Stage, prototypes: Prototypes, sign: str, canvas: tuple[str, ...], place: tuple[float, float], goods: list[Goods]
 ) -> None:
     first, second = canvas
     striped = first != second
@@ -183,7 +171,7 @@ def _stall(
         x, y = spot(place, right, out)
         z = stalls.COUNTER_M + 0.145 - (out - 0.35) * math.tan(math.radians(14))
         colour = "timber" if kind not in ("fish", "salmon", "prawns") else "white"
-        built = moulds.get(
+        built = prototypes.get(
             f"{kind} {k % 2}", lambda kind=kind, k=k, colour=colour: stalls.produce_crate(kind, seed=k % 2, colour=colour)
         )
         crate = stage.place(
@@ -199,7 +187,7 @@ def _stall(
         if (k + len(sign)) % 2:
             x, y = spot(place, right, -1.35)
             stage.place(
-                moulds.get("empty crate", stalls.crate),
+                prototypes.get("empty crate", stalls.crate),
                 "crate",
                 "empty crate",
                 (x, y, 0.0),
@@ -224,7 +212,7 @@ def _sells(sign: str) -> str:
     return next(value for key, value in words.items() if key in sign)
 
 
-def _flowers(stage: Stage, moulds: Moulds) -> None:
+def _flowers(stage: Stage, prototypes: Prototypes) -> None:
     place = STALLS[3][2]
     for k in range(14):
         bloom = BLOOMS[(k * 5 + k // 6) % 6]
@@ -232,7 +220,7 @@ def _flowers(stage: Stage, moulds: Moulds) -> None:
         right, out = -1.15 + 0.56 * column + 0.1 * row, 1.55 - 0.45 * row if row < 2 else 0.55
         x, y = spot(place, right, out if row < 2 else 0.45)
         z = 0.0 if row < 2 else 0.90
-        built = moulds.get(f"bucket {bloom}", lambda bloom=bloom: stalls.flower_bucket(bloom))
+        built = prototypes.get(f"bucket {bloom}", lambda bloom=bloom: stalls.flower_bucket(bloom))
         stage.place(built, "flower bucket", f"bucket of {bloom} flowers", (x, y, z), 40.0 * k, colour=bloom)
     for text, right in (("ROSES\n5.00", -0.6), ("TULIPS\n3.50", 0.5)):
         x, y = spot(place, right, 0.75)
@@ -245,20 +233,20 @@ def _flowers(stage: Stage, moulds: Moulds) -> None:
         )
 
 
-def _carts(stage: Stage, moulds: Moulds) -> None:
+def _carts(stage: Stage, prototypes: Prototypes) -> None:
     stage.place(stalls.hand_cart("green"), "hand cart", "green hand cart", (-1.4, 18.2, 0.0), 205, colour="green", state="loaded")
     rng = random.Random("cart")
     for k, kind in enumerate(("cabbages", "apples", "potatoes")):
         b = math.radians(205)
         out = 0.55 - 0.42 * k
         stage.place(
-            moulds.get(f"{kind} 0", lambda kind=kind: stalls.produce_crate(kind)), "crate", f"crate of {kind}",
+            prototypes.get(f"{kind} 0", lambda kind=kind: stalls.produce_crate(kind)), "crate", f"crate of {kind}",
             (-1.4 + out * math.sin(b), 18.2 + out * math.cos(b), 0.64), 205 + rng.uniform(-5, 5), contents=kind, state="full",
         )  # fmt: skip
     stage.place(stalls.hand_cart("red"), "hand cart", "red hand cart", (-26.2, 9.6, 0.0), 70, colour="red", state="empty")
 
 
-def _terrace(stage: Stage, moulds: Moulds) -> None:
+def _terrace(stage: Stage, prototypes: Prototypes) -> None:
     """Eight tables in two files, three chairs at each, parasols between."""
     rng = random.Random("terrace")
     taken = {(0, 0, 0), (0, 0, 1), (1, 0, 2), (0, 1, 1), (1, 2, 0), (1, 2, 1), (0, 3, 0), (1, 3, 2), (1, 3, 0)}
@@ -266,7 +254,7 @@ def _terrace(stage: Stage, moulds: Moulds) -> None:
         for column, x in enumerate(TERRACE_COLUMNS):
             mine = sorted(seat for c, r, seat in taken if (c, r) == (column, row))
             table = stage.place(
-                moulds.get("table", cafe.table),
+                prototypes.get("table", cafe.table),
                 "table",
                 "round café table",
                 (x, y, 0.0),
@@ -278,7 +266,7 @@ def _terrace(stage: Stage, moulds: Moulds) -> None:
                 at, bearing = seat_place(column, row, seat)
                 tint = "dark green" if column == 0 else "red"
                 stage.place(
-                    moulds.get(f"chair {tint}", lambda tint=tint: cafe.chair(tint)),
+                    prototypes.get(f"chair {tint}", lambda tint=tint: cafe.chair(tint)),
                     "chair",
                     f"{tint.removeprefix('dark ')} café chair",
                     (*at, 0.0),
@@ -290,7 +278,7 @@ def _terrace(stage: Stage, moulds: Moulds) -> None:
             for k in range(len(mine) or rng.randrange(2)):
                 a = rng.uniform(0, 6.28)
                 stage.place(
-                    moulds.get("cup", cafe.cup),
+                    prototypes.get("cup", cafe.cup),
                     "cup",
                     "white coffee cup",
                     (x + 0.2 * math.cos(a + 2.2 * k), y + 0.2 * math.sin(a + 2.2 * k), cafe.TABLE_M),

@@ -15,7 +15,7 @@ GAIT_PHASES = 8
 """Bodies of a walker: enough that a stride looks even."""
 
 
-class Troupe:
+class ActorBodies:
     """The bodies of all actors, hidden unless they are on stage."""
 
     def __init__(self, stage: Stage) -> None:
@@ -29,7 +29,7 @@ class Troupe:
         if key not in self._bodies:
             finished = tuple(m.name for m in bpy.data.materials)
             built = actor.build(index / GAIT_PHASES)
-            self._stage.finish(spare=finished)
+            self._stage.finish(skip=finished)
             for obj in built.objects:
                 obj[INSTANCE_PROP] = actor.id
                 obj.pass_index = actor.number
@@ -51,7 +51,7 @@ class Troupe:
         return built
 
     @contextmanager
-    def on_stage(self, time_s: float) -> Iterator[None]:
+    def shown_at(self, time_s: float) -> Iterator[None]:
         """Everyone who is in the scene at that time is, until the end of the block."""
         standing = [built for actor in self._stage.actors if (built := self.stand(actor, time_s)) is not None]
         bpy.context.view_layer.update()
