@@ -1,4 +1,4 @@
-"""Moving actors inside Blender: built when first wanted, and stood on their paths at a given time."""
+"""Bodies of moving actors: built on first use, then placed on their paths at a given time."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ import numpy as np
 from scope_studio.kit.core.stage import INSTANCE_PROP, ActorPath, Built, Stage
 
 GAIT_PHASES = 8
-"""Bodies of a walker: enough that a stride looks even."""
+"""Number of bodies of a walking actor, one for each phase of its gait."""
 
 
 class ActorBodies:
-    """The bodies of all actors, hidden unless they are on stage."""
+    """The bodies of all actors of a stage. A body is hidden in renders except while it is shown."""
 
     def __init__(self, stage: Stage) -> None:
         self._stage = stage
         self._bodies: dict[tuple[str, int], Built] = {}
 
     def body(self, actor: ActorPath, phase: float) -> Built:
-        """The body for a gait phase in [0, 1), rounded to one of ``GAIT_PHASES``."""
+        """Return the body for a gait phase in [0, 1), rounded to one of ``GAIT_PHASES``. Build it on first use."""
         index = round(phase * GAIT_PHASES) % GAIT_PHASES if actor.stride_m else 0
         key = (actor.id, index)
         if key not in self._bodies:
@@ -38,7 +38,11 @@ class ActorBodies:
         return self._bodies[key]
 
     def stand(self, actor: ActorPath, time_s: float, phase: float | None = None) -> Built | None:
-        """Put the actor where it is at a scene time and show it; None when it is not in the scene then."""
+        """Place the actor where it is at a scene time and show it.
+
+        Returns:
+            The body, or None when the actor is not in the scene at that time.
+        """
         t = time_s % actor.period_s
         if not actor.waypoints[0][0] <= t <= actor.waypoints[-1][0]:
             return None
@@ -52,7 +56,7 @@ class ActorBodies:
 
     @contextmanager
     def shown_at(self, time_s: float) -> Iterator[None]:
-        """Everyone who is in the scene at that time is, until the end of the block."""
+        """Show every actor that is in the scene at that time, until the end of the block."""
         standing = [built for actor in self._stage.actors if (built := self.stand(actor, time_s)) is not None]
         bpy.context.view_layer.update()
         try:
@@ -62,7 +66,7 @@ class ActorBodies:
                 show(built, False)
 
     def size_m(self, actor: ActorPath) -> tuple[float, float, float]:
-        """Width, length and height of the actor's largest body."""
+        """Return the width, length and height of the actor's body in metres."""
         built = self.body(actor, 0.0)
         self._stage.put(built, (0.0, 0.0, 0.0), 0.0)
         bpy.context.view_layer.update()
@@ -72,7 +76,7 @@ class ActorBodies:
 
 
 def along(actor: ActorPath, t: float) -> tuple[tuple[float, float, float], float, float]:
-    """Position, bearing in degrees and metres walked since the first waypoint, at a time within the path."""
+    """Return the actor's position (m), bearing (degrees) and distance walked (m) at a time on its path."""
     walked = 0.0
     last = len(actor.waypoints) - 2
     for k, (a, b) in enumerate(zip(actor.waypoints, actor.waypoints[1:], strict=False)):
@@ -86,6 +90,9 @@ def along(actor: ActorPath, t: float) -> tuple[tuple[float, float, float], float
 
 
 def show(built: Built, on: bool) -> None:
-    """In renders. The viewport does not matter in a worker, but an object hidden there keeps Cycles from syncing it too."""
+    """Show or hide a thing in renders.
+
+    The viewport's own visibility flag must stay on: Cycles does not export objects that are hidden there.
+    """
     for obj in built.objects:
         obj.hide_render = not on

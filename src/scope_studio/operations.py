@@ -1,4 +1,4 @@
-"""What the worker can be asked to do. Every operation takes and returns plain JSON values; pictures go to files."""
+"""Operations that the worker offers. Each takes and returns plain JSON values; images go to files."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Progress = Callable[[int, int], None]
 
 
 class Studio:
-    """The one scene that is loaded."""
+    """The scene that is currently loaded, and the operations on it."""
 
     def __init__(self, progress: Progress) -> None:
         self._progress = progress
@@ -29,24 +29,31 @@ class Studio:
 
     @property
     def stage(self) -> Stage:
+        """The stage of the loaded scene. Raises RuntimeError when no scene is loaded."""
         if self._stage is None:
             raise RuntimeError("no scene is loaded")
         return self._stage
 
     @property
     def actor_bodies(self) -> ActorBodies:
+        """The bodies of the scene's actors."""
         if self._actor_bodies is None:
             self._actor_bodies = ActorBodies(self.stage)
         return self._actor_bodies
 
     def viewpoint(self, name: str) -> Viewpoint:
+        """Return the viewpoint with this name."""
         for candidate in self.stage.viewpoints:
             if candidate.name == name:
                 return candidate
         raise ValueError(f"the scene has no viewpoint '{name}'")
 
     def load_scene(self, source: str) -> dict[str, Any]:
-        """Build a scene: the name of a module in ``scope_studio.scenes`` (kebab-case), or the path of a Python file."""
+        """Build a scene.
+
+        Args:
+            source: name of a module in ``scope_studio.scenes`` (kebab-case), or path of a Python file.
+        """
         bpy.ops.wm.read_factory_settings(use_empty=True)
         bpy.context.preferences.filepaths.use_scripts_auto_execute = False
         self._actor_bodies = None
@@ -60,39 +67,42 @@ class Studio:
         return {"name": stage.name, "title": stage.title, "instances": len(stage.instances), "device": render.use_gpu() or "CPU"}
 
     def describe(self) -> dict[str, Any]:
+        """Return the description of the loaded scene; see ``describe.scene``."""
         return describe.scene(self.stage, self.actor_bodies)
 
     def save(self, path: str) -> None:
-        """Write the scene as a .blend file to look at in Blender."""
+        """Write the scene as a .blend file, for inspection in Blender."""
         bpy.ops.wm.save_as_mainfile(filepath=path, compress=True)
 
     def meshes(self, out: str) -> None:
+        """Write the triangles of all instances to an .npz file; see ``meshes.write``."""
         meshes.write(self.stage, Path(out))
 
     def colour(
         self, viewpoint: str, projection: dict[str, float], samples: int, seed: int, out: str, time_s: float | None = None
     ) -> None:
-        """A denoised picture (8-bit PNG). With ``time_s``, moving actors stand where they are at that time."""
+        """Render a denoised image (8-bit PNG). With ``time_s``, moving actors are shown where they are at that time."""
         with self._actors_shown(time_s):
             render.colour(self.viewpoint(viewpoint), projection, samples, seed, Path(out))
 
     def truth(self, viewpoint: str, projection: dict[str, float], out: str, time_s: float | None = None) -> None:
-        """Instance numbers (uint16) and distances in metres (float32, 0 = sky) of the same picture, as one .npz file."""
+        """Write instance numbers (uint16) and distances in metres (float32, 0 = sky) of the same view as one .npz file."""
         with self._actors_shown(time_s):
             render.truth(self.viewpoint(viewpoint), projection, Path(out))
 
     def sprites(self, actor: str, viewpoint: str, frames: list[dict[str, Any]], samples: int, out_dir: str) -> None:
+        """Render the sprites of a moving actor; see ``sprites.render_frames``."""
         sprites.render_frames(
             self.stage, self.actor_bodies, actor, self.viewpoint(viewpoint), frames, samples, Path(out_dir), self._progress
         )
 
     def _actors_shown(self, time_s: float | None) -> AbstractContextManager[None]:
-        """Actors are only built when a picture wants them."""
+        """Show the actors if a time is given. Otherwise do nothing, so that they are not built needlessly."""
         return nullcontext() if time_s is None else self.actor_bodies.shown_at(time_s)
 
 
 def _module(source: str) -> ModuleType:
-    """A scene's module: ``build(stage)``, and if it likes ``NAME`` (kebab-case) and ``TITLE``."""
+    """Import a scene's module. It has ``build(stage)`` and, optionally, ``NAME`` (kebab-case) and ``TITLE``."""
     if not source.endswith(".py"):
         return importlib.import_module(f"scope_studio.scenes.{source.replace('-', '_')}")
     spec = importlib.util.spec_from_file_location("scope_user_scene", source)
@@ -104,6 +114,6 @@ def _module(source: str) -> ModuleType:
 
 
 def operations(progress: Progress) -> dict[str, Callable[..., Any]]:
-    """By name."""
+    """Return the operations by name."""
     studio = Studio(progress)
     return {name: getattr(studio, name) for name in ("load_scene", "describe", "save", "meshes", "colour", "truth", "sprites")}

@@ -1,4 +1,4 @@
-"""What closes an evening horizon: sheds and flats with lit windows, silos, a chimney with aircraft lights, lights on the hills."""
+"""Lit buildings on an evening horizon: sheds and flats with windows, silos, a chimney with aircraft lights, distant lights."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Rgb = tuple[float, float, float]
 
 
 def lit_glass(tint: str, strength: float = 0.8) -> bpy.types.Material:
-    """A lit window some way off: brighter above, with the shadow of what stands on the sill; "warm", "cool" or "dim"."""
+    """Return a lit window at a distance, "warm", "cool" or "dim": brighter above, with shadows of things on the sill."""
     name = f"lit window {tint} {strength:g}"
     found = bpy.data.materials.get(name)
     if found is not None:
@@ -36,7 +36,7 @@ def lit_glass(tint: str, strength: float = 0.8) -> bpy.types.Material:
 def _panes(
     s: Solid, width: float, y: float, rows: list[float], rng: random.Random, lit: float, wide: float, tall: float, pitch: float
 ) -> None:
-    """Rows of windows on the face ``y`` (towards +y), some of them lit."""
+    """Add rows of windows on the face ``y`` (towards +y), some of them lit."""
     dark = plain("evening glass", (0.020, 0.026, 0.036), 0.06)
     frame = plain("far frame", (0.10, 0.105, 0.11), 0.6)
     count = int((width - 1.0) / pitch)
@@ -61,7 +61,7 @@ def industrial(
     seed: int = 0,
     doors: int = 2,
 ) -> Built:
-    """An industrial shed with roller doors, a strip of windows on its front (+y) and its name in lit letters."""
+    """Build an industrial shed with roller doors, a strip of windows on its front (+y) and its name in lit letters."""
     s = Solid("industrial shed")
     rng = random.Random(f"shed {seed}")
     tag = f"{colour[0]:.2f} {colour[1]:.2f} {colour[2]:.2f}"
@@ -103,7 +103,7 @@ def industrial(
 def flats(
     *, width: float = 22.0, depth: float = 12.0, floors: int = 5, colour: Rgb = (0.20, 0.14, 0.11), lit: float = 0.45, seed: int = 0
 ) -> Built:
-    """A block of flats with windows on all four sides."""
+    """Build a block of flats with windows on all four sides."""
     s = Solid("block of flats")
     rng = random.Random(f"flats {seed}")
     height = 2.9 * floors + 0.8
@@ -117,7 +117,7 @@ def flats(
 
 
 def chimney(height: float = 46.0) -> Built:
-    """A tapered concrete stack with bands near the top and red lights for aircraft on two levels."""
+    """Build a tapered concrete stack with bands near the top and red aircraft lights on two levels."""
     s = Solid("chimney")
     body, red = concrete(), paint("dark red", dirt=0.4)
     s.lathe([(2.2, 0.0), (1.35, height * 0.82)], body, steps=28)
@@ -138,7 +138,7 @@ def chimney(height: float = 46.0) -> Built:
 
 
 def silos(count: int = 3, *, height: float = 17.0, lettering: str = "") -> Built:
-    """Steel silos in a row along x with a gantry on top, an elevator leg, and a red light."""
+    """Build steel silos in a row along x, with a gantry on top, an elevator leg and a red light."""
     s = Solid("silos")
     skin = steel()
     for k in range(count):
@@ -160,7 +160,7 @@ def silos(count: int = 3, *, height: float = 17.0, lettering: str = "") -> Built
 
 
 def glimmer(points: list[tuple[float, float, float]], *, seed: int = 0) -> Built:
-    """Far lights of a town, one small glowing block at each point."""
+    """Build the distant lights of a town: one small emissive block at each point."""
     rng = random.Random(f"glimmer {seed}")
     parts = []
     for k, (rgb, strength) in enumerate((((1.0, 0.58, 0.22), 3.5), ((1.0, 0.82, 0.58), 3.0), ((0.85, 0.92, 1.0), 3.0))):

@@ -1,4 +1,4 @@
-"""Shop fronts of a market square with dark plate glass, sign boards, awnings with lettered valances, a pharmacy's cross."""
+"""Shop fronts of a market square: dark plate glass, sign boards, awnings with lettered valances, a pharmacy's cross."""
 
 from __future__ import annotations
 
@@ -13,9 +13,11 @@ from scope_studio.kit.core.stage import Built
 
 
 def front(width: float, colour: str, *, height: float = 3.4, seed: int = 0) -> Built:
-    """A timber shop front 0.3 m deep before y = 0: pilasters, stall risers, plate glass with goods behind, transoms.
+    """Build a timber shop front, 0.3 m deep, in front of y = 0.
 
-    The middle is left dark, 1.1 m wide, for a ``shop_door``."""
+    It has pilasters, stall risers, transoms, and plate glass with goods behind. A dark gap 1.1 m wide in the middle is left for
+    a ``shop_door``.
+    """
     s = Solid("shop front")
     rng = random.Random(f"shop front {seed}")
     wood = paint(colour, dirt=0.18, roughness=0.4)
@@ -41,7 +43,7 @@ def front(width: float, colour: str, *, height: float = 3.4, seed: int = 0) -> B
 
 
 def _display(s: Solid, x: float, w: float, y: float, rng: random.Random) -> None:
-    """Posters and the pale shapes of goods, flat behind the glass line."""
+    """Add posters and the pale outlines of goods, flat behind the glass."""
     tints = ("cream", "light blue", "dark red", "beige", "pink", "green", "yellow", "light grey")
     u = -w / 2 + 0.3
     while u < w / 2 - 0.3:
@@ -56,7 +58,10 @@ def _display(s: Solid, x: float, w: float, y: float, rng: random.Random) -> None
 
 
 def shop_door(colour: str, *, open: bool = False, notice: str | None = None) -> Built:  # noqa: A002
-    """A half-glazed door 1.0 x 2.2 m, hinged at x = 0.5; ``open`` turns it outwards. ``notice`` is a card on the glass."""
+    """Build a half-glazed door, 1.0 x 2.2 m, hinged at x = 0.5.
+
+    ``open`` turns it outwards. ``notice`` is the text of a card on the glass.
+    """
     s = Solid("shop door")
     wood = paint(colour, dirt=0.12, roughness=0.3)
     with s.at(0.5, 0.0, 0.0, turn=-100.0 if open else 0.0):
@@ -77,7 +82,7 @@ def shop_door(colour: str, *, open: bool = False, notice: str | None = None) -> 
 def sign_board(
     text: str, width: float, *, colour: str = "dark green", ink: str = "cream", cap: float = 0.30, height: float = 0.56
 ) -> Built:
-    """A shop's name board, its back at y = 0, centred on the origin."""
+    """Build a shop's name board, centred on the origin, with its back at y = 0."""
     s = Solid("shop sign")
     s.box((width, 0.05, height), (0, 0.025, 0), paint(colour, dirt=0.15, roughness=0.35), 0.012)
     for z in (-height / 2 + 0.04, height / 2 - 0.04):
@@ -87,7 +92,7 @@ def sign_board(
 
 
 def awning(width: float, first: str, second: str, *, reach: float = 1.6, text: str | None = None, open: bool = True) -> Built:  # noqa: A002
-    """A canvas awning hung at the origin, sloping down by 0.7 m over ``reach``, with a lettered valance; or rolled up."""
+    """Build a canvas awning hung at the origin: sloping down by 0.7 m over ``reach`` with a lettered valance, or rolled up."""
     s = Solid("awning")
     cloth = stripes(f"canvas {first} {second}", first, second, 0.42)
     iron = paint("dark grey", dirt=0.15)
@@ -115,7 +120,7 @@ def awning(width: float, first: str, second: str, *, reach: float = 1.6, text: s
 
 
 def pharmacy_cross(size: float = 0.9, *, lit: bool = True) -> Built:
-    """A green cross on a bracket, read from both sides (+x and -x); its wall is the plane y = 0."""
+    """Build a green cross on a bracket, readable from both sides (+x and -x). Its wall is the plane y = 0."""
     s = Solid("pharmacy cross")
     s.rod((0, 0, 0), (0, 0.5, 0), 0.03, paint("dark grey"))
     arm, cy = size / 3, 0.5 + size / 2

@@ -1,7 +1,7 @@
-"""Town houses for terraces: walls with real window openings, shutters, cornices, slate roofs with dormers and chimneys.
+"""Town houses for terraces: real window openings, shutters, cornices, slate roofs with dormers and chimneys.
 
-A house faces north with its front wall in the plane y = 0, so that rows are laid along a building line; the body lies
-towards -y."""
+A house faces north with its front wall in the plane y = 0, so that rows follow a building line. Its body extends towards -y.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ CLAY: Rgb = (0.27, 0.105, 0.062)
 
 @dataclass(frozen=True)
 class House:
-    """What a town house looks like; sizes in metres. ``shutters`` is a paint colour or None."""
+    """Parameters of a town house, sizes in metres. ``shutters`` is a paint colour or None."""
 
     width: float
     wall: bpy.types.Material
@@ -47,6 +47,7 @@ class House:
 
     @property
     def eaves_m(self) -> float:
+        """Height of the eaves in metres."""
         return self.ground_m + (self.storeys - 1) * self.storey_m
 
 
@@ -58,7 +59,10 @@ def wall_with_openings(
     openings: list[tuple[float, float, float, float]],
     material: bpy.types.Material,
 ) -> None:
-    """A wall band in the plane y = 0 facing +y, with openings (centre x, width, low z, high z) of one height, and reveals."""
+    """Add a wall band in the plane y = 0 that faces +y, with openings and their reveals.
+
+    ``openings`` are (centre x, width, low z, high z), all with the same heights.
+    """
     low, high = (openings[0][2], openings[0][3]) if openings else (z0, z0)
 
     def quad(xa: float, xb: float, za: float, zb: float) -> None:
@@ -78,7 +82,7 @@ def wall_with_openings(
 
 
 def sash(s: Solid, x: float, w: float, za: float, zb: float, rng: random.Random, *, frame: str = "white") -> None:
-    """Glazing and bars of a sash window set back in its opening; now and then a blind or curtains."""
+    """Add the glazing and bars of a sash window, set back in its opening. Some windows have a blind or curtains."""
     wood = paint(frame, dirt=0.12, roughness=0.5)
     y, mid = -REVEAL_M + 0.03, (za + zb) / 2
     block(s, (w, 0.02, zb - za), (x, -REVEAL_M + 0.005, mid), glass())
@@ -98,7 +102,7 @@ def sash(s: Solid, x: float, w: float, za: float, zb: float, rng: random.Random,
 
 
 def shutter_pair(s: Solid, x: float, w: float, za: float, zb: float, colour: str) -> None:
-    """Louvred shutters folded back on the wall beside a window."""
+    """Add louvred shutters, folded back on the wall beside a window."""
     skin = paint(colour, dirt=0.25, roughness=0.5)
     leaf = w / 2 - 0.02
     for sign in (-1, 1):
@@ -115,7 +119,7 @@ def shutter_pair(s: Solid, x: float, w: float, za: float, zb: float, colour: str
 
 
 def town_house(h: House) -> Built:
-    """The house without what stands in front of its ground floor (see the module "square_shops")."""
+    """Build a house without the shop in front of its ground floor; ``square_shops`` has those."""
     rng = random.Random(f"town house {h.seed}")
     s = Solid("town house")
     trim, tile = paint(h.trim, dirt=0.35, roughness=0.8), tile_material(f"roof {h.roof[0]:.2f}", h.roof)
@@ -159,7 +163,7 @@ def town_house(h: House) -> Built:
 
 
 def _ground_floor(s: Solid, h: House, centres: list[float], rng: random.Random) -> None:
-    """Windows and a street door when the house has no shop."""
+    """Add windows and a street door to a house without a shop."""
     if h.door is None:
         wall_with_openings(s, h.width, 0.0, h.ground_m, [], h.wall)
         return
@@ -185,7 +189,7 @@ def _ground_floor(s: Solid, h: House, centres: list[float], rng: random.Random) 
 
 
 def _balcony(s: Solid, x: float, w: float, low: float) -> None:
-    """An iron balconette before a window."""
+    """Add an iron balconette in front of a window."""
     iron = paint("black", dirt=0.15)
     s.box((w + 0.5, 0.40, 0.08), (x, 0.2, low - 0.12), paint("light grey", dirt=0.4, roughness=0.9), 0.015)
     for z in (low - 0.02, low + 0.80):

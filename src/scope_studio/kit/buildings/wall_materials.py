@@ -1,4 +1,4 @@
-"""Materials of walls and roofs."""
+"""Materials of walls and roofs: metal cladding, concrete, brick, tiles, render, dressed stone."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Rgb = tuple[float, float, float]
 
 
 def cladding_material(name: str, colour: Rgb, pitch_m: float = 0.2) -> bpy.types.Material:
-    """Profiled metal sheet with vertical ribs, dirt below and rain marks."""
+    """Return profiled metal sheet with vertical ribs, rain marks, and dirt near the ground."""
     found = bpy.data.materials.get(name)
     if found is not None:
         return found
@@ -27,6 +27,7 @@ def cladding_material(name: str, colour: Rgb, pitch_m: float = 0.2) -> bpy.types
 
 
 def brick_material(name: str, colour: Rgb) -> bpy.types.Material:
+    """Return brickwork in running bond with pale mortar and stains."""
     found = bpy.data.materials.get(name)
     if found is not None:
         return found
@@ -48,6 +49,7 @@ def brick_material(name: str, colour: Rgb) -> bpy.types.Material:
 
 
 def tile_material(name: str, colour: Rgb) -> bpy.types.Material:
+    """Return roof tiles in courses."""
     found = bpy.data.materials.get(name)
     if found is not None:
         return found
@@ -62,7 +64,7 @@ def tile_material(name: str, colour: Rgb) -> bpy.types.Material:
 
 
 def concrete_material(name: str = "structural concrete", tone: Rgb = (0.36, 0.345, 0.315)) -> bpy.types.Material:
-    """Board-marked concrete with rain streaks, lifts every 1.2 m and dirt near the ground."""
+    """Return board-marked concrete with rain streaks, lifts every 1.2 m and dirt near the ground."""
     found = bpy.data.materials.get(name)
     if found is not None:
         return found
@@ -82,7 +84,7 @@ def concrete_material(name: str = "structural concrete", tone: Rgb = (0.36, 0.34
 
 
 def stucco(name: str, colour: Rgb) -> bpy.types.Material:
-    """Painted render: trowel marks, rain streaks under edges, damp near the ground."""
+    """Return painted render with trowel marks, rain streaks under edges, and damp near the ground."""
     found = bpy.data.materials.get(name)
     if found is not None:
         return found
@@ -100,7 +102,7 @@ def stucco(name: str, colour: Rgb) -> bpy.types.Material:
 
 
 def ashlar(name: str, colour: Rgb, block: tuple[float, float] = (0.72, 0.36)) -> bpy.types.Material:
-    """Dressed stone in courses, each block of its own tone."""
+    """Return dressed stone in courses, each block with its own tone. ``block`` is the width and height of a block in metres."""
     found = bpy.data.materials.get(name)
     if found is not None:
         return found

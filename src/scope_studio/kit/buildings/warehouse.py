@@ -1,7 +1,8 @@
-"""A distribution warehouse: a clad front with dock openings over a lit hall, canopy, office wing with rooms behind its windows.
+"""A distribution warehouse: clad front with dock openings, lit hall, canopy, and an office wing with rooms behind its windows.
 
-Fronts face +y, with the outer face of the wall on y = 0; the building reaches back to negative y. Positions along the front are
-x; a person who looks at the front sees +x on the left."""
+Fronts face +y, with the outer face of the wall on y = 0; the building extends towards -y. Positions along the front are x,
+which grows to the left for someone who looks at the front.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +34,7 @@ def wall(
     material: bpy.types.Material,
     depth: float = 0.22,
 ) -> None:
-    """A wall on y = 0 from ``x0`` to ``x1`` with rectangular holes, cut into upright strips at the edges of the openings."""
+    """Add a wall on y = 0 from ``x0`` to ``x1`` with rectangular holes. It is cut into upright strips at the edges of the holes."""
     cuts = sorted({x0, x1, *(x for a, b, _, _ in openings for x in (a, b) if x0 < x < x1)})
     for a, b in pairwise(cuts):
         holes = sorted((c, d) for p, q, c, d in openings if p < (a + b) / 2 < q)
@@ -54,8 +55,10 @@ def shell(
     band: tuple[float, float, float],
     ramp_to: float,
 ) -> Built:
-    """The warehouse: front with openings, plain other sides, parapet, a low roof with roof lights and vents, and the hall
-    inside (floor at dock height, at yard level where x is below ``ramp_to``; back wall 13 m behind the front)."""
+    """Build the warehouse: front with openings, other walls, parapet, low roof with roof lights and vents, and the hall inside.
+
+    The hall's floor is at dock height, but at yard level where x is below ``ramp_to``. Its back wall is 13 m behind the front.
+    """
     s = Solid("warehouse")
     skin, trim = cladding_material("warehouse cladding", colour, 0.25), plain("warehouse band", band, 0.45)
     w, h = width / 2, height
@@ -75,7 +78,7 @@ def shell(
 
 
 def _roof(s: Solid, w: float, depth: float, h: float) -> None:
-    """Two shallow slopes of sheet with glowing roof lights, vents and a smoke stack of plant."""
+    """Add two shallow roof slopes with emissive roof lights, smoke vents and plant."""
     sheet_, glowing = cladding_material("warehouse roof", (0.20, 0.21, 0.22), 0.33), roof_light()
     rise = 1.3
     for y0, y1, z0, z1 in ((-0.2, -depth / 2, h, h + rise), (-depth / 2, -depth, h + rise, h)):
@@ -104,7 +107,7 @@ def _roof(s: Solid, w: float, depth: float, h: float) -> None:
 
 
 def roof_light() -> bpy.types.Material:
-    """Translucent roof sheet over a lit hall."""
+    """Return translucent roof sheet over a lit hall."""
     found = bpy.data.materials.get("roof light")
     if found is not None:
         return found
@@ -119,7 +122,7 @@ def roof_light() -> bpy.types.Material:
 
 
 def _hall(s: Solid, w: float, h: float, ramp_to: float) -> None:
-    """What shows through the open docks: slab, lamps, racking with cartons, a back wall."""
+    """Add what is visible through the open docks: floor, lamps, racking with cartons, and a back wall."""
     rng = random.Random("hall")
     pale, deep = plain("hall wall", (0.42, 0.43, 0.42), 0.8), -13.0
     s.box((w - 0.3 - ramp_to, 12.8, DOCK_SILL_M), ((ramp_to + w - 0.3) / 2, deep / 2 - 0.1, DOCK_SILL_M / 2), concrete(), 0.0)
@@ -149,7 +152,7 @@ def _hall(s: Solid, w: float, h: float, ramp_to: float) -> None:
 
 
 def canopy(width: float, reach: float = 3.2, height: float = 5.0) -> Built:
-    """A steel canopy over the docks, fascia forward, on brackets."""
+    """Build a steel canopy on brackets over the docks, with its fascia at the front edge."""
     s = Solid("canopy")
     s.box((width, reach, 0.14), (0, reach / 2, height), cladding_material("canopy sheet", (0.30, 0.32, 0.34), 0.3), 0.01)
     s.box((width + 0.1, 0.08, 0.42), (0, reach, height), paint("blue", dirt=0.3), 0.01)
@@ -164,7 +167,7 @@ def canopy(width: float, reach: float = 3.2, height: float = 5.0) -> Built:
 
 
 def letters(body: str, cap: float, *, lit: bool = True) -> Built:
-    """Flat-cut letters on a rail, glowing white when lit; the wall behind is y = 0, their middle z = 0."""
+    """Build flat-cut letters on a rail, emissive white when lit. The wall behind is y = 0, their middle is z = 0."""
     s = Solid("wall letters")
     face = glowing_face("white", 1.5) if lit else paint("white", dirt=0.25)
     width, _ = s.text(body, cap, (0, 0.12, 0), face, facing="+Y")
@@ -174,9 +177,11 @@ def letters(body: str, cap: float, *, lit: bool = True) -> Built:
 
 
 def window(*, wide: float = 1.5, tall: float = 1.3, lit: bool = True, blind: float = 0.0, seed: int = 0) -> Built:
-    """A framed window with a shallow room behind it: lit walls, a ceiling lamp, a desk with a screen, shelves; or a dark one.
+    """Build a framed window, either dark or with a shallow lit room behind it.
 
-    Its wall is y = 0 with a hole cut for it; ``blind`` is the share of the height that a blind covers."""
+    The room has a ceiling lamp, shelves, and a desk with a screen. The wall is y = 0, with a hole cut for the window. ``blind``
+    is the share of the height that a blind covers.
+    """
     s = Solid("window")
     rng = random.Random(f"window {seed}")
     frame = paint("dark grey", dirt=0.2)
@@ -229,7 +234,7 @@ def _room_wall(warm: tuple[float, float, float]) -> bpy.types.Material:
 
 
 def wing(*, width: float, depth: float, height: float, openings: Sequence[Opening], colour: tuple[float, float, float]) -> Built:
-    """An office wing with openings for windows in its front (y = 0), flat roof, parapet and plinth."""
+    """Build an office wing with openings for windows in its front (y = 0), flat roof, parapet and plinth."""
     s = Solid("office")
     skin = office_panel(colour)
     wall(s, -width / 2, width / 2, 0.0, height, openings, skin)
@@ -247,7 +252,7 @@ def wing(*, width: float, depth: float, height: float, openings: Sequence[Openin
 
 
 def office_panel(colour: tuple[float, float, float]) -> bpy.types.Material:
-    """Flat composite panels, 1.2 m wide, with dark joints and rain marks."""
+    """Return flat composite panels, 1.2 m wide, with dark joints and rain marks."""
     found = bpy.data.materials.get("office panel")
     if found is not None:
         return found
@@ -267,7 +272,7 @@ def office_panel(colour: tuple[float, float, float]) -> bpy.types.Material:
 
 
 def door(*, glazed: bool = True, lit: bool = True, tall: float = 2.2, wide: float = 1.1) -> Built:
-    """A personnel door on y = 0, standing on z = 0, with a light room behind it when glazed and lit."""
+    """Build a personnel door on y = 0, standing on z = 0. When glazed and lit, it has a bright room behind it."""
     s = Solid("door")
     frame = paint("dark grey", dirt=0.2)
     for x in (-wide / 2 - 0.05, wide / 2 + 0.05):
@@ -285,7 +290,7 @@ def door(*, glazed: bool = True, lit: bool = True, tall: float = 2.2, wide: floa
 
 
 def glowing_room() -> bpy.types.Material:
-    """A lit lobby seen through a door: bright above, floor shading below, blurred furniture."""
+    """Return the image of a lit lobby behind a door: bright above, darker at the floor, with blurred furniture."""
     found = bpy.data.materials.get("glowing lobby")
     if found is not None:
         return found

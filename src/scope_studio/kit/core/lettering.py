@@ -1,7 +1,8 @@
-"""Lettering as meshes, with exact cap heights: Blender's built-in sans at two weights.
+"""Lettering as meshes with exact cap heights, in two weights of Blender's built-in sans serif font.
 
-The other Latin faces that Blender carries will not do: Inter's contours overlap, which spoils the filling of K, R and
-A, and Noto Sans CJK takes 15 s to load."""
+Blender's other Latin fonts are unsuitable: the contours of Inter overlap, which spoils the filling of K, R and A, and Noto Sans
+CJK takes 15 s to load.
+"""
 
 from __future__ import annotations
 
@@ -12,16 +13,15 @@ import bpy
 from scope_studio.kit.core.mesh import Point
 
 EMBOLDEN = ((-0.040, -0.026), (-0.040, 0.026), (0.040, -0.026), (0.040, 0.026))
-"""Shifts, in cap heights, of the copies that together make the bold: outline offsets break counters."""
+"""Shifts, in cap heights, of the copies that together make the bold weight. Offsetting the outline would break the counters."""
 
 
 def letters(
     body: str, cap_height_m: float, *, bold: bool = True, spacing: float | None = None
 ) -> tuple[list[Point], list[tuple[int, ...]]]:
-    """Flat letters in the xy plane, baseline of the (single) line on y = 0, starting near x = 0. Returns points and
-    faces.
+    """Return points and faces of flat letters in the xy plane, with the line's baseline on y = 0 and its start near x = 0.
 
-    The copies of a bold lie a twentieth of a millimetre apart in z.
+    The copies that make the bold weight lie 0.05 mm apart in z.
     """
     outline, polygons = _outline(body, _spacing(bold, spacing))
     points: list[Point] = []
@@ -36,7 +36,7 @@ def letters(
 
 
 def extent(body: str, cap_height_m: float, *, bold: bool = True, spacing: float | None = None) -> float:
-    """Width of a line in metres."""
+    """Return the width of a line in metres."""
     xs = [x for x, _, _ in letters(body, cap_height_m, bold=bold, spacing=spacing)[0]]
     return max(xs) - min(xs) if xs else 0.0
 
@@ -47,7 +47,7 @@ def _spacing(bold: bool, spacing: float | None) -> float:
 
 @cache
 def _outline(body: str, spacing: float) -> tuple[list[tuple[float, float]], list[tuple[int, ...]]]:
-    """Letters of cap height 1."""
+    """Return points and faces of a line with cap height 1."""
     points, faces = _filled(body, spacing)
     cap = max(y for _, y in _filled("H", 1.0)[0])
     return [(x / cap, y / cap) for x, y in points], faces

@@ -1,4 +1,4 @@
-"""Café terrace: tables, chairs, parasols, cups and a chalk menu board."""
+"""Furniture of a café terrace: tables, chairs, parasols, cups and a chalk menu board."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SEAT_M = 0.45
 
 
 def table(colour: str = "light grey", *, radius: float = 0.36) -> Built:
-    """A round pedestal table with a metal-edged top."""
+    """Build a round pedestal table with a metal-edged top."""
     s = Solid("café table")
     iron = paint("black", dirt=0.2)
     s.lathe([(radius - 0.004, TABLE_M - 0.028), (radius, TABLE_M - 0.022), (radius, TABLE_M - 0.004), (radius - 0.006, TABLE_M)],
@@ -46,7 +46,7 @@ def table(colour: str = "light grey", *, radius: float = 0.36) -> Built:
 
 
 def chair(colour: str = "dark green") -> Built:
-    """A slatted bistro chair; its sitter looks towards +y, its hips over the origin."""
+    """Build a slatted bistro chair. A person sits on it facing +y, with the hips over the origin."""
     s = Solid("café chair")
     metal, wood = paint(colour, dirt=0.15, roughness=0.35), paint(colour, dirt=0.1, roughness=0.5)
     for sign in (-1, 1):
@@ -66,7 +66,7 @@ def chair(colour: str = "dark green") -> Built:
 
 
 def parasol(first: str, second: str | None = None, *, open: bool = True, text: str | None = None) -> Built:  # noqa: A002
-    """A square-ish market parasol, 2.9 m across and 2.75 m high, on a concrete foot; folded when not ``open``."""
+    """Build a nearly square market parasol on a concrete foot, 2.9 m across and 2.75 m high. It is folded when not ``open``."""
     s = Solid("parasol")
     cloth = stripes(f"parasol {first} {second or first}", first, second or first, 0.7)
     s.box((0.55, 0.55, 0.10), (0, 0, 0.05), concrete(light=False), 0.03)
@@ -113,7 +113,7 @@ def parasol(first: str, second: str | None = None, *, open: bool = True, text: s
 
 
 def cup(colour: str = "white") -> Built:
-    """A coffee cup on its saucer, standing on z = 0."""
+    """Build a coffee cup on its saucer, standing on z = 0."""
     s = Solid("cup")
     china = paint(colour, dirt=0.0, roughness=0.15)
     s.lathe([(0.035, 0.0), (0.075, 0.012), (0.078, 0.016), (0.03, 0.008)], china, steps=24)
@@ -124,7 +124,7 @@ def cup(colour: str = "white") -> Built:
 
 
 def menu_board(lines: Sequence[str], *, cap: float = 0.062) -> Built:
-    """A chalk A-board, 0.65 x 1.1 m, written on both its faces (+y and -y). The first line is the heading."""
+    """Build a chalk A-board, 0.65 x 1.1 m, with the same text on both faces (+y and -y). The first line is the heading."""
     s = Solid("menu board")
     slate = _slate()
     chalk = [plain(f"chalk {k}", c, 0.95) for k, c in enumerate(((0.80, 0.79, 0.74), (0.80, 0.66, 0.30), (0.62, 0.74, 0.80)))]

@@ -1,4 +1,4 @@
-"""Clocks: a large dial for a gable, and a double-faced clock on an ornate post."""
+"""Clocks: a large dial for a wall or gable, and a double-faced clock on an ornate post."""
 
 from __future__ import annotations
 
@@ -11,7 +11,10 @@ from scope_studio.kit.core.stage import Built
 
 
 def dial(s: Solid, radius: float, hour: int, minute: int, *, rim: str = "black", lift: float = 0.0) -> None:
-    """A clock face in the plane y = ``lift`` towards +y: minute track, hour batons, four numerals, hands at the time."""
+    """Add a clock face in the plane y = ``lift`` towards +y.
+
+    It has a minute track, hour batons, four numerals, and hands at the given time.
+    """
     face, ink = plain("clock face", (0.78, 0.77, 0.72), 0.4), paint("black", dirt=0.0)
     s.lathe([(radius * 1.08, lift - 0.10), (radius * 1.10, lift + 0.02), (radius * 1.02, lift + 0.035), (radius, lift - 0.004)],
             paint(rim, dirt=0.12, roughness=0.3), (0, 0, 0), "Y", 48)  # fmt: skip
@@ -36,14 +39,17 @@ def dial(s: Solid, radius: float, hour: int, minute: int, *, rim: str = "black",
 
 
 def wall_clock(radius: float, hour: int, minute: int, *, rim: str = "black") -> Built:
-    """A clock on a wall: its centre at the origin, the face 0.1 m before y = 0, towards +y."""
+    """Build a wall clock centred on the origin. Its face looks towards +y and lies 0.1 m in front of y = 0."""
     s = Solid("wall clock")
     dial(s, radius, hour, minute, rim=rim, lift=0.10)
     return s.built()
 
 
 def post_clock(hour: int, minute: int, *, colour: str = "dark green", height: float = 3.6) -> Built:
-    """A street clock with faces towards +y and -y on a fluted column, 0.84 m across; ``height`` of its centre in metres."""
+    """Build a street clock, 0.84 m across, with faces towards +y and -y on a fluted column.
+
+    ``height`` is the height of its centre in metres.
+    """
     s = Solid("post clock")
     body = paint(colour, dirt=0.2, roughness=0.35)
     gold = paint("yellow", dirt=0.1, roughness=0.3)

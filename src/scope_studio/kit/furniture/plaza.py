@@ -1,4 +1,4 @@
-"""What stands about on a town square: lanterns, planters, post box, ticket machine, finger post, map, flags, kiosk."""
+"""Furniture of a town square: lanterns, planters, post box, ticket machine, finger post, map, flags, kiosk."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from scope_studio.kit.signs.faces import arrow, board, disc, flat, write
 
 
 def lantern_post(*, arms: int = 2, colour: str = "dark green", height: float = 4.4, lit: bool = False) -> Built:
-    """A cast lamp post with ``arms`` lanterns (1 on top, 2 on a cross arm)."""
+    """Build a cast lamp post with 1 lantern on top, or 2 on a cross arm."""
     s = Solid("lantern post")
     iron = paint(colour, dirt=0.2, roughness=0.35)
     s.lathe(
@@ -62,7 +62,7 @@ def lantern_post(*, arms: int = 2, colour: str = "dark green", height: float = 4
 
 
 def planter(bloom: str = "red", second: str = "yellow", *, side: float = 0.95, seed: int = 0) -> Built:
-    """A square timber planter full of flowers."""
+    """Build a square timber planter full of flowers."""
     s = Solid("planter")
     rng = random.Random(f"planter {seed}")
     wood = timber(fresh=False)
@@ -80,7 +80,7 @@ def planter(bloom: str = "red", second: str = "yellow", *, side: float = 0.95, s
 
 
 def post_box(*, hours: str = "9.30 AM") -> Built:
-    """A red cast-iron pillar box, 1.6 m, its slot and collection plate towards +y."""
+    """Build a red cast-iron pillar box, 1.6 m high, with slot and collection plate towards +y."""
     s = Solid("post box")
     red = paint("red", dirt=0.15, roughness=0.3)
     s.lathe([(0.28, 0.0), (0.28, 0.16)], paint("black", dirt=0.3), steps=40)
@@ -101,7 +101,7 @@ def post_box(*, hours: str = "9.30 AM") -> Built:
 
 
 def recycling_bin(colour: str, word: str) -> Built:
-    """A steel recycling bin, 0.5 x 0.5 x 1.25 m, with a round opening and a label towards +y."""
+    """Build a steel recycling bin, 0.5 x 0.5 x 1.25 m, with a round opening and a label towards +y."""
     s = Solid("recycling bin")
     body = paint(colour, dirt=0.25, roughness=0.4)
     s.box((0.52, 0.50, 0.06), (0, 0, 0.03), paint("black"), 0.01)
@@ -115,7 +115,7 @@ def recycling_bin(colour: str, word: str) -> Built:
 
 
 def ticket_machine(*, lit: bool = True) -> Built:
-    """A ticket machine, 0.75 x 0.55 x 1.85 m: screen, slots, keypad towards +y, lettered head."""
+    """Build a ticket machine, 0.75 x 0.55 x 1.85 m, with lettered head, and screen, slots and keypad towards +y."""
     s = Solid("ticket machine")
     body = paint("blue", dirt=0.15, roughness=0.35)
     s.box((0.75, 0.50, 1.60), (0, 0, 0.80), body, 0.02)
@@ -132,7 +132,10 @@ def ticket_machine(*, lit: bool = True) -> Built:
 
 
 def finger_post(fingers: Sequence[tuple[str, float]], *, colour: str = "dark green", height: float = 3.1) -> Built:
-    """A sign post with lettered fingers: (text, bearing in degrees that the finger points to), topmost first."""
+    """Build a sign post with lettered fingers, topmost first.
+
+    Each finger is (text, bearing in degrees that it points to).
+    """
     s = Solid("finger post")
     iron = paint(colour, dirt=0.2, roughness=0.35)
     s.lathe(
@@ -161,7 +164,7 @@ def finger_post(fingers: Sequence[tuple[str, float]], *, colour: str = "dark gre
 
 
 def map_board(title: str = "TOWN MAP") -> Built:
-    """A town plan on two posts, 1.3 x 1.5 m, facing +y: streets, blocks, a park, a river and a red "you are here"."""
+    """Build a town plan on two posts, 1.3 x 1.5 m, facing +y, with streets, blocks, a park, a river and a "you are here" mark."""
     s = Solid("map board")
     rng = random.Random(title)
     for x in (-0.66, 0.66):
@@ -203,7 +206,7 @@ def map_board(title: str = "TOWN MAP") -> Built:
 
 
 def flagpole(*, height: float = 7.5, colours: tuple[str, ...] = ("blue", "white", "red"), seed: int = 0) -> Built:
-    """A white pole with a flag of upright stripes that streams towards +x, rippling."""
+    """Build a white pole with a flag of vertical stripes that streams towards +x."""
     s = Solid("flagpole")
     rng = random.Random(f"flag {seed}")
     s.lathe(
@@ -238,7 +241,10 @@ def flagpole(*, height: float = 7.5, colours: tuple[str, ...] = ("blue", "white"
 
 
 def news_kiosk(name: str = "NEWS", *, colour: str = "dark green") -> Built:
-    """An octagonal-fronted kiosk, 2.6 x 2.1 x 3.1 m: counter and racks of papers towards +y, lettered fascia on four sides."""
+    """Build a newspaper kiosk, 2.6 x 2.1 x 3.1 m, with angled front corners.
+
+    Counter and racks of papers face +y; the fascia is lettered on four sides.
+    """
     s = Solid("kiosk")
     wood = paint(colour, dirt=0.18, roughness=0.35)
     inside = plain("kiosk inside", (0.05, 0.045, 0.04), 0.9)
@@ -279,7 +285,7 @@ def news_kiosk(name: str = "NEWS", *, colour: str = "dark green") -> Built:
 
 
 def headline_board(paper: str, lines: Sequence[str], *, cap: float = 0.085) -> Built:
-    """A wire-fronted newspaper bill on an A-frame, 0.62 x 0.95 m, facing +y."""
+    """Build a wire-fronted newspaper bill on an A-frame, 0.62 x 0.95 m, facing +y."""
     s = Solid("headline board")
     with s.at(0, 0.18, 0.0, pitch=12.0):
         s.box((0.66, 0.03, 0.98), (0, 0, 0.52), paint("red", dirt=0.25), 0.01)
@@ -298,7 +304,7 @@ def headline_board(paper: str, lines: Sequence[str], *, cap: float = 0.085) -> B
 
 
 def no_entry() -> Built:
-    """A red disc with a white bar on a post, 2.9 m, facing +y."""
+    """Build a no-entry sign on a post, 2.9 m high, facing +y: a red disc with a white bar."""
     s = Solid("no entry sign")
     s.rod((0, -0.05, 0), (0, -0.05, 2.9), 0.035, steel())
     with s.at(0, 0, 2.55):
@@ -311,7 +317,7 @@ def no_entry() -> Built:
 def post_sign(
     lines: Sequence[str], *, background: str = "blue", cap: float = 0.10, height: float = 2.2, pointer: str | None = None
 ) -> Built:
-    """A small sign on a post, as wide as its lines need, facing +y; the first line is larger."""
+    """Build a small sign on a post, as wide as its lines need, facing +y. The first line is larger."""
     s = Solid(f"{background} sign")
     caps = [cap * (1.5 if k == 0 else 0.8) for k in range(len(lines))]
     wide = max(extent(line, c) for line, c in zip(lines, caps, strict=True)) + 0.22

@@ -1,7 +1,6 @@
-"""Roadside furniture: lighting columns, guardrail, noise barrier, camera pole, emergency phone, cabinets, drains,
-chevrons.
+"""Roadside furniture: lamp posts, guardrail, noise barrier, camera mast, emergency phone, cabinets, drains, chevrons.
 
-Things that run along a road (guardrail, noise barrier) run along y; their traffic face is +x.
+Things that follow a road (guardrail, noise barrier) run along y and have their traffic face towards +x.
 """
 
 from __future__ import annotations
@@ -15,7 +14,7 @@ from scope_studio.kit.signs.faces import board
 
 
 def lamp_post(height: float = 10.0, arms: int = 1, *, lit: bool = False) -> Built:
-    """Galvanised column with one or two outreach arms (towards +y, and -y) and flat LED lanterns."""
+    """Build a galvanised column with flat LED lanterns on one arm (towards +y) or two (also towards -y)."""
     s = Solid("lamp post")
     s.lathe([(0.20, 0.0), (0.20, 0.02)], steel(dark=True), steps=8)
     s.lathe([(0.105, 0.02), (0.105, 1.35), (0.085, 1.42), (0.055, height - 0.9), (0.05, height - 0.85)], steel(), steps=20)
@@ -35,7 +34,10 @@ def lamp_post(height: float = 10.0, arms: int = 1, *, lit: bool = False) -> Buil
 
 
 def guardrail(length: float = 4.0, *, double: bool = False) -> Built:
-    """W-beam safety barrier along y on posts every 2 m, beam face towards +x (``double``: both sides), 0.75 m high."""
+    """Build a W-beam safety barrier along y, 0.75 m high, on posts every 2 m.
+
+    The beam faces +x; with ``double``, beams are on both sides.
+    """
     s = Solid("guardrail")
     wave = [
         (0.0, -0.155),
@@ -73,8 +75,7 @@ def guardrail(length: float = 4.0, *, double: bool = False) -> Built:
 
 
 def noise_barrier(length: float = 4.0, height: float = 3.0, *, material: str = "timber") -> Built:
-    """Noise barrier along y: steel posts every 4 m, "timber" boards or "concrete" planks between them, concrete
-    plinth."""
+    """Build a noise barrier along y: concrete plinth, steel posts every 4 m, and "timber" or "concrete" planks between them."""
     s = Solid("noise barrier")
     bays = max(1, round(length / 4.0))
     step = length / bays
@@ -105,7 +106,7 @@ def noise_barrier(length: float = 4.0, height: float = 3.0, *, material: str = "
 
 
 def cctv_pole(height: float = 8.0) -> Built:
-    """Camera mast with a dome camera on a bracket towards +y, a fixed bullet camera and an equipment box."""
+    """Build a camera mast with a dome camera on a bracket towards +y, a fixed bullet camera and an equipment box."""
     s = Solid("camera pole")
     s.lathe([(0.24, 0.0), (0.24, 0.025)], steel(dark=True), steps=8)
     s.lathe([(0.12, 0.025), (0.115, 1.2), (0.075, height), (0.05, height + 0.03)], steel(), steps=20)
@@ -127,7 +128,7 @@ def cctv_pole(height: float = 8.0) -> Built:
 
 
 def emergency_phone(number: str = "174") -> Built:
-    """Orange roadside telephone with SOS on its faces and its own number."""
+    """Build an orange roadside telephone with SOS on its faces and its own number."""
     s = Solid("emergency phone")
     orange = paint("orange", dirt=0.22, roughness=0.35)
     s.box((0.50, 0.44, 0.06), (0, 0, 0.03), concrete(), 0.01)
@@ -145,7 +146,7 @@ def emergency_phone(number: str = "174") -> Built:
 
 
 def cabinet(*, open: bool = False, colour: str = "light grey") -> Built:  # noqa: A002
-    """Roadside equipment cabinet, 1.2 x 0.4 x 1.3 m, doors towards +y; open shows shelves of equipment."""
+    """Build a roadside equipment cabinet, 1.2 x 0.4 x 1.3 m, with doors towards +y. When open, it shows shelves of equipment."""
     s = Solid("roadside cabinet")
     body = paint(colour, dirt=0.36)
     s.box((1.30, 0.48, 0.10), (0, 0, 0.05), concrete(light=False), 0.01)
@@ -183,7 +184,7 @@ def cabinet(*, open: bool = False, colour: str = "light grey") -> Built:  # noqa
 
 
 def drain() -> Built:
-    """Cast-iron gully grate, 0.5 x 0.5 m, in a frame flush with the road (15 mm proud)."""
+    """Build a cast-iron gully grate, 0.5 x 0.5 m, in a frame that stands 15 mm above the road."""
     s = Solid("drain")
     s.box((0.56, 0.56, 0.01), (0, 0, 0.004), lens("black"), 0.0)
     iron = steel(dark=True)
@@ -197,7 +198,7 @@ def drain() -> Built:
 
 
 def chevron_board(width: float = 1.6, *, direction: str = "right") -> Built:
-    """Black board with white chevrons that point to the reader's right or left, on two posts, facing +y."""
+    """Build a black board on two posts, facing +y, with white chevrons that point to the reader's right or left."""
     s = Solid("chevron board")
     height = 0.55
     with s.at(0, 0, 0.75 + height / 2):
@@ -223,7 +224,7 @@ def chevron_board(width: float = 1.6, *, direction: str = "right") -> Built:
 
 
 def bollard(*, colour: str = "black") -> Built:
-    """Cast street bollard, 1.0 m, with a reflective band."""
+    """Build a cast street bollard, 1.0 m high, with a reflective band."""
     s = Solid("bollard")
     body = paint(colour, dirt=0.3)
     s.lathe(

@@ -1,4 +1,4 @@
-"""What shopkeepers put out: awnings, projecting signs, pavement boards, crates of fruit, buckets of flowers."""
+"""Things that shopkeepers put out: awnings, projecting signs, pavement boards, crates of fruit, buckets of flowers."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def _stripes(first: str, second: str) -> bpy.types.Material:
 
 
 def awning(width_m: float, first: str, second: str = "white", *, out_m: float = 1.35, open: bool = True) -> Built:  # noqa: A002
-    """A striped shop awning, its roller at the origin on the wall; shut, only the roll and the valance show."""
+    """Build a striped shop awning with its roller at the origin on the wall. When shut, only the roll and the valance show."""
     s = Solid(f"{first} awning")
     cloth, metal = _stripes(first, second), paint("dark grey", dirt=0.2)
     w = width_m / 2
@@ -58,7 +58,7 @@ def awning(width_m: float, first: str, second: str = "white", *, out_m: float = 
 
 
 def _valance(s: Solid, w: float, y: float, z: float, cloth: bpy.types.Material) -> None:
-    """The scalloped front edge."""
+    """Add the scalloped front edge."""
     count = max(4, round(2 * w / 0.22))
     step = 2 * w / count
     for k in range(count):
@@ -70,7 +70,10 @@ def _valance(s: Solid, w: float, y: float, z: float, cloth: bpy.types.Material) 
 
 
 def hanging_sign(lines: Sequence[str], colour: str, ink: str, *, cap_m: float = 0.10) -> Built:
-    """A projecting sign on an iron bracket: the wall is at the origin, the board hangs over +y with a face on either side."""
+    """Build a projecting sign on an iron bracket.
+
+    The wall is at the origin. The board hangs over +y and has the lines on both sides.
+    """
     s = Solid(f"{lines[0]} hanging sign")
     iron = paint("black", dirt=0.15)
     wide = max(0.55, max(extent(line, cap_m) for line in lines) + 0.18)
@@ -95,7 +98,7 @@ def hanging_sign(lines: Sequence[str], colour: str, ink: str, *, cap_m: float = 
 
 
 def a_board(lines: Sequence[str], colour: str, ink: str, *, cap_m: float = 0.075) -> Built:
-    """A folding pavement board with the same lines on its two faces, 0.62 x 1.05 m, facing +y and -y."""
+    """Build a folding pavement board, 0.62 x 1.05 m, with the same lines on its two faces (+y and -y)."""
     s = Solid(f"{lines[0]} A-board")
     frame, lean = timber(fresh=False), 11.0
     for turn in (0, 180):
@@ -125,7 +128,10 @@ FRUIT: dict[str, tuple[tuple[float, float, float], float]] = {
 
 
 def crate(load: str | None = None, *, colour: str | None = None) -> Built:
-    """A slatted crate, 0.55 x 0.38 x 0.24 m, long side along x, empty or heaped with a ``FRUIT``; timber or plastic."""
+    """Build a slatted crate of timber or plastic, 0.55 x 0.38 x 0.24 m, with its long side along x.
+
+    It is empty or heaped with a kind of ``FRUIT``.
+    """
     s = Solid(f"crate of {load}" if load else "empty crate")
     body = timber() if colour is None else paint(colour, dirt=0.2, roughness=0.5)
     for x in (-0.265, 0.265):
@@ -168,7 +174,7 @@ PETALS = {
 def blooms(
     s: Solid, colours: Sequence[str], spread_m: float, low: float, high: float, count: int, seed: int, *, ball: bool = False
 ) -> None:
-    """Flower heads among leaves between two heights; ``ball`` lets them trail over an edge instead of standing up."""
+    """Add flower heads among leaves between two heights. ``ball`` makes them trail over an edge instead of standing up."""
     rng = Random(f"blooms {seed} {colours}")
     green = [plain("flower leaf 0", (0.085, 0.190, 0.040), 0.6), plain("flower leaf 1", (0.15, 0.27, 0.07), 0.6)]
     for k in range(count * 6):
@@ -200,7 +206,7 @@ def _leaf(s: Solid, at: Point, size: float, turn: float, lift: float, material: 
 
 
 def _flower(s: Solid, at: Point, size: float, turn: float, material: bpy.types.Material) -> None:
-    """Five petals around a raised middle."""
+    """Add five petals around a raised middle."""
     x, y, z = at
     for j in range(5):
         b = turn + 2 * math.pi * j / 5
@@ -215,7 +221,7 @@ def _flower(s: Solid, at: Point, size: float, turn: float, material: bpy.types.M
 
 
 def flower_bucket(colours: Sequence[str], *, seed: int = 0) -> Built:
-    """A zinc bucket of cut flowers, 0.7 m high."""
+    """Build a zinc bucket of cut flowers, 0.7 m high."""
     s = Solid(f"bucket of {colours[0]} flowers")
     s.lathe([(0.11, 0.0), (0.115, 0.01), (0.15, 0.30), (0.158, 0.305), (0.15, 0.31), (0.13, 0.28)], steel(), steps=20)
     blooms(s, colours, 0.19, 0.30, 0.70, 40, seed)
@@ -223,7 +229,7 @@ def flower_bucket(colours: Sequence[str], *, seed: int = 0) -> Built:
 
 
 def price_card(item: str, price: str) -> Built:
-    """A handwritten-size card on a stick, facing +y: what it is and what it costs."""
+    """Build a small handwritten card on a stick, facing +y, with an item and its price."""
     s = Solid(f"{item} price card")
     s.rod((0, 0, 0), (0, 0, 0.16), 0.004, steel(), sides=6)
     wide = max(extent(item, 0.032), extent(price, 0.05)) + 0.05

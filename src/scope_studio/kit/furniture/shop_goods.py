@@ -1,4 +1,4 @@
-"""What stands in shop windows: bread, cakes, books, teapots, hams, bottles, lamps, dressed figures."""
+"""Goods in shop windows: bread, cakes, books, teapots, hams, bottles, lamps, dressed mannequins."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Rgb = tuple[float, float, float]
 
 
 def _ware(name: str, colour: Rgb, roughness: float = 0.5, glow: float = 0.16) -> bpy.types.Material:
-    """A ware under the lamps of a shop window: it gives back a little more light than falls on it from the street."""
+    """Return the material of goods under shop window lamps. It emits slightly more light than it receives from the street."""
     full = f"ware {name}"
     found = bpy.data.materials.get(full)
     if found is not None:
@@ -28,7 +28,7 @@ def _ware(name: str, colour: Rgb, roughness: float = 0.5, glow: float = 0.16) ->
 
 
 def loaf(seed: int = 0) -> Built:
-    """A crusty loaf with slashes, 0.30 m along x."""
+    """Build a crusty loaf with slashes, 0.30 m along x."""
     s, rng = Solid("loaf of bread"), Random(f"loaf {seed}")
     v = Volume()
     half = rng.uniform(0.09, 0.13)
@@ -42,7 +42,7 @@ def loaf(seed: int = 0) -> Built:
 
 
 def cake(colour: str = "pink") -> Built:
-    """A two-tier iced cake on a stand with cherries, 0.36 m high."""
+    """Build a two-tier iced cake with cherries on a stand, 0.36 m high."""
     s = Solid(f"{colour} cake")
     china, icing = _ware("china", (0.62, 0.62, 0.60), 0.15), _ware(f"icing {colour}", PALETTE[colour], 0.45)
     s.lathe([(0.08, 0.0), (0.03, 0.02), (0.025, 0.08), (0.16, 0.10), (0.165, 0.11)], china, steps=24)
@@ -57,7 +57,7 @@ def cake(colour: str = "pink") -> Built:
 
 
 def ham() -> Built:
-    """A ham on its hook; the hook's top is at the origin."""
+    """Build a ham on its hook. The top of the hook is at the origin."""
     s = Solid("ham")
     s.tube([(0, 0, 0), (0, 0, -0.10), (0.02, 0, -0.13), (0, 0, -0.15)], 0.005, steel(), sides=6)
     v = Volume()
@@ -69,7 +69,7 @@ def ham() -> Built:
 
 
 def bottle(colour: str = "green") -> Built:
-    """A chemist's round jar or bottle with a label and stopper, 0.34 m."""
+    """Build a chemist's round jar or bottle with label and stopper, 0.34 m high."""
     s = Solid(f"{colour} bottle")
     glass = _ware(f"bottle {colour}", PALETTE[colour], 0.08, 0.25)
     s.lathe(
@@ -81,7 +81,7 @@ def bottle(colour: str = "green") -> Built:
 
 
 def book(colour: str = "red", *, seed: int = 0) -> Built:
-    """A book standing open towards +y, its cover facing out, 0.26 m high."""
+    """Build a book that stands open, 0.26 m high, with its cover towards +y."""
     s, rng = Solid(f"{colour} book"), Random(f"book {seed}")
     cover, page = _ware(f"book {colour}", PALETTE[colour], 0.4), _ware("pages", (0.66, 0.63, 0.54), 0.8)
     tall, wide = rng.uniform(0.23, 0.28), rng.uniform(0.155, 0.19)
@@ -95,7 +95,7 @@ def book(colour: str = "red", *, seed: int = 0) -> Built:
 
 
 def teapot(colour: str = "blue") -> Built:
-    """A round teapot, spout towards +x, 0.2 m."""
+    """Build a round teapot, 0.2 m, with its spout towards +x."""
     s = Solid(f"{colour} teapot")
     china = _ware(f"teapot {colour}", PALETTE[colour], 0.1)
     s.lathe([(0.06, 0.0), (0.095, 0.03), (0.105, 0.08), (0.085, 0.13), (0.05, 0.15)], china, steps=24)
@@ -106,7 +106,7 @@ def teapot(colour: str = "blue") -> Built:
 
 
 def table_lamp(colour: str = "cream", *, lit: bool = True) -> Built:
-    """A lamp with a turned foot and a cloth shade, 0.5 m."""
+    """Build a lamp with a turned foot and a cloth shade, 0.5 m high."""
     s = Solid(f"{colour} lamp")
     foot = _ware("lamp foot", (0.30, 0.16, 0.06), 0.3)
     s.lathe([(0.08, 0.0), (0.08, 0.02), (0.02, 0.04), (0.045, 0.12), (0.03, 0.20), (0.012, 0.24), (0.012, 0.32)], foot, steps=20)
@@ -116,7 +116,7 @@ def table_lamp(colour: str = "cream", *, lit: bool = True) -> Built:
 
 
 def mannequin(colour: str = "red", *, dress: bool = True) -> Built:
-    """A headless dressmaker's figure on a stand in a dress, or a coat when ``dress`` is false, 1.55 m."""
+    """Build a headless dressmaker's figure on a stand, 1.55 m high. It wears a dress, or a coat when ``dress`` is false."""
     s = Solid(f"mannequin in {colour}")
     s.lathe([(0.17, 0.0), (0.17, 0.02), (0.02, 0.03), (0.016, 0.75)], _ware("stand", (0.25, 0.15, 0.07), 0.3), steps=20)
     v = Volume()

@@ -1,4 +1,4 @@
-"""Market: stalls under canvas, crates of produce, price cards, hand carts. Customers stand towards +y."""
+"""Market stalls: canvas, crates of produce, price cards, flowers, hand carts. Customers stand towards +y."""
 
 from __future__ import annotations
 
@@ -22,8 +22,11 @@ COUNTER_M = 0.78
 
 
 def stall(first: str, second: str | None = None, *, sign: str | None = None, table: bool = True, rolled: bool = False) -> Built:
-    """A stall 3.0 x 2.2 m: steel poles, a ridged canopy (plain, or striped with ``second``), a sloping counter with a
-    skirt, a name board under the canopy's front edge. ``rolled`` leaves the frame without its canvas."""
+    """Build a stall, 3.0 x 2.2 m: steel poles, ridged canopy, sloping counter with a skirt, and a name board.
+
+    The canopy is plain, or striped with ``second``. The name board hangs under its front edge. ``rolled`` leaves the frame
+    without canvas.
+    """
     s = Solid("market stall")
     pole, w, d = steel(), 1.5, 1.1
     cloth = stripes(f"canvas {first} {second or first}", first, second or first, 0.5)
@@ -67,7 +70,7 @@ def stall(first: str, second: str | None = None, *, sign: str | None = None, tab
 
 
 def _canopy(s: Solid, cloth: bpy.types.Material, w: float, d: float) -> None:
-    """Canvas over the ridge, sagging between the poles, with a scalloped valance front and back."""
+    """Add canvas over the ridge that sags between the poles, with a scalloped valance front and back."""
     n, rows = 24, [(-d, 2.30), (-d * 0.5, 2.53), (0.0, 2.82), (d * 0.5, 2.53), (d, 2.30)]
     points = []
     for y, z in rows:
@@ -93,7 +96,7 @@ def _canopy(s: Solid, cloth: bpy.types.Material, w: float, d: float) -> None:
 
 
 def crate(colour: str = "timber") -> Built:
-    """An empty slatted crate, standing on z = 0; "timber" or a paint colour."""
+    """Build an empty slatted crate, standing on z = 0, in "timber" or a paint colour."""
     s = Solid("crate")
     _crate(s, colour)
     return s.built()
@@ -189,11 +192,11 @@ PRODUCE: dict[str, tuple[Maker, float]] = {
     "lettuces": (_leafy(0.080, (0.17, 0.33, 0.045), (0.28, 0.43, 0.085), "lettuce"), 0.140),
     "cheeses": (_ball(0.085, (0.66, 0.42, 0.08), (0.62, 0.50, 0.26), squash=0.5, name="cheese"), 0.165),
 }
-"""What fills a crate, and how far apart its pieces lie (m)."""
+"""Kinds of produce: the pieces that fill a crate, and their spacing (m)."""
 
 
 def produce_crate(kind: str, *, seed: int = 0, colour: str = "timber") -> Built:
-    """A crate heaped with one kind of ``PRODUCE``."""
+    """Build a crate heaped with one kind of ``PRODUCE``."""
     s = Solid(f"crate of {kind}")
     rng = random.Random(f"{kind} {seed}")
     _crate(s, colour)
@@ -218,7 +221,10 @@ def produce_crate(kind: str, *, seed: int = 0, colour: str = "timber") -> Built:
 
 
 def price_card(text: str, *, cap: float = 0.055, colour: str = "white") -> Built:
-    """A card on a stick: a word and a price on one or two lines (split at the newline); the foot of the stick at the origin."""
+    """Build a card on a stick with a word and a price, on one line or two (split at the newline).
+
+    The foot of the stick is at the origin.
+    """
     s = Solid("price card")
     lines = text.split("\n")
     width = max(extent(line, cap) for line in lines) + 0.07
@@ -232,7 +238,7 @@ def price_card(text: str, *, cap: float = 0.055, colour: str = "white") -> Built
 
 
 def flower_bucket(bloom: str, *, seed: int = 0) -> Built:
-    """A zinc bucket of cut flowers, 0.6 m high; ``bloom`` is a colour of the palette."""
+    """Build a zinc bucket of cut flowers, 0.6 m high. ``bloom`` is a colour of the palette."""
     s = Solid(f"bucket of {bloom} flowers")
     rng = random.Random(f"bucket {bloom} {seed}")
     s.lathe([(0.105, 0.0), (0.135, 0.28), (0.145, 0.285), (0.130, 0.275), (0.12, 0.24)], steel(), steps=20)
@@ -241,7 +247,7 @@ def flower_bucket(bloom: str, *, seed: int = 0) -> Built:
 
 
 def flowers(s: Solid, rng: random.Random, bloom: str, *, count: int, reach: float, low: float, high: float) -> None:
-    """A round bunch: stems, leaves and six-petalled heads."""
+    """Add a round bunch of flowers: stems, leaves and six-petalled heads."""
     stem = plain("flower stem", (0.055, 0.14, 0.030), 0.7)
     colour = PALETTE[bloom]
     petals = [plain(f"petal {bloom} {k}", tuple(min(1.0, c * f) for c in colour), 0.7) for k, f in enumerate((1.0, 0.8, 1.25))]
@@ -282,7 +288,7 @@ def flowers(s: Solid, rng: random.Random, bloom: str, *, count: int, reach: floa
 
 
 def hand_cart(colour: str = "green") -> Built:
-    """A two-wheeled market barrow with spoked wheels, 1.9 m long, resting on its legs, handles towards -y."""
+    """Build a two-wheeled market barrow, 1.9 m long, with spoked wheels. It rests on its legs with the handles towards -y."""
     s = Solid("hand cart")
     wood, iron = paint(colour, dirt=0.35, roughness=0.6), paint("black", dirt=0.25)
     s.box((0.95, 1.5, 0.04), (0, 0.1, 0.62), timber(fresh=False), 0.008)

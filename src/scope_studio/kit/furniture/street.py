@@ -1,4 +1,4 @@
-"""Street furniture: bench, bin, bus shelter, bicycle."""
+"""Common street furniture: bench, litter bin, bus shelter."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from scope_studio.kit.signs.faces import board, write
 
 
 def bin(*, colour: str = "dark green") -> Built:  # noqa: A001
-    """Litter bin: a slatted drum with a hooded top, 1.1 m."""
+    """Build a litter bin, 1.1 m high: a slatted drum with a hooded top."""
     s = Solid("litter bin")
     body = paint(colour, dirt=0.3)
     s.lathe(
@@ -30,7 +30,7 @@ def bin(*, colour: str = "dark green") -> Built:  # noqa: A001
 
 
 def bench() -> Built:
-    """Timber slat bench, 1.8 m, on cast ends; sitters look towards +y."""
+    """Build a timber slat bench, 1.8 m long, on cast ends. People sit on it facing +y."""
     s = Solid("bench")
     iron = paint("black", dirt=0.25)
     for x in (-0.78, 0.78):
@@ -48,7 +48,7 @@ def bench() -> Built:
 
 
 def bus_shelter(name: str = "MARKET STREET", *, route: str = "7") -> Built:
-    """Glazed bus shelter, 4.0 x 1.5 m, open towards +y, with a name board on the roof edge, a seat and a stop flag."""
+    """Build a glazed bus shelter, 4.0 x 1.5 m, open towards +y, with a seat, a stop flag, and a name board on the roof edge."""
     s = Solid("bus shelter")
     metal = paint("dark grey", dirt=0.25)
     pane = clear_glass()

@@ -1,4 +1,4 @@
-"""Furniture of a town street: pillar box, telephone kiosk, lamp standards with baskets, planters, signals."""
+"""Traditional British street furniture: pillar box, telephone kiosk, lamp standards, planters, signals, fingerposts."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from scope_studio.kit.signs.faces import write
 
 
 def post_box() -> Built:
-    """A cast-iron pillar box, 1.65 m, its slot and collection plate towards +y."""
+    """Build a cast-iron pillar box, 1.65 m high, with slot and collection plate towards +y."""
     s = Solid("post box")
     red, black = paint("red", dirt=0.14, roughness=0.24), paint("black", dirt=0.3)
     s.lathe([(0.275, 0.0), (0.275, 0.22), (0.255, 0.25)], black, steps=36)
@@ -37,7 +37,7 @@ def post_box() -> Built:
 
 
 def phone_box() -> Built:
-    """A telephone kiosk, 0.92 m square and 2.45 m high: glazed doors, domed roof, an opal fascia on each side."""
+    """Build a telephone kiosk, 0.92 m square and 2.45 m high, with glazed doors, domed roof, and an opal fascia on each side."""
     s = Solid("phone box")
     red = paint("red", dirt=0.14, roughness=0.24)
     s.box((0.96, 0.96, 0.10), (0, 0, 0.05), paint("dark grey"), 0.01)
@@ -64,7 +64,7 @@ def phone_box() -> Built:
 
 
 def street_lamp(height_m: float = 5.2, *, lit: bool = False) -> Built:
-    """A fluted lamp standard with a four-sided lantern and two arms for baskets along x at 3.3 m."""
+    """Build a fluted lamp standard with a four-sided lantern, and two arms for baskets along x at 3.3 m."""
     s = Solid("street lamp")
     iron = paint("dark green", dirt=0.15)
     s.lathe([(0.22, 0.0), (0.22, 0.10), (0.17, 0.16), (0.14, 0.75), (0.17, 0.80), (0.10, 0.90), (0.075, 1.05)], iron, steps=20)
@@ -96,7 +96,7 @@ def street_lamp(height_m: float = 5.2, *, lit: bool = False) -> Built:
 
 
 def hanging_basket(colours: Sequence[str], *, seed: int = 0) -> Built:
-    """A basket of trailing flowers; the hook is at the origin, the basket hangs 0.45 m below."""
+    """Build a basket of trailing flowers that hangs 0.45 m below its hook, which is at the origin."""
     s = Solid("hanging basket")
     for k in range(3):
         a = 2 * math.pi * k / 3
@@ -108,7 +108,7 @@ def hanging_basket(colours: Sequence[str], *, seed: int = 0) -> Built:
 
 
 def planter(colours: Sequence[str], *, seed: int = 0, width_m: float = 1.1) -> Built:
-    """A timber trough of flowers along x."""
+    """Build a timber trough of flowers along x."""
     s = Solid("planter")
     for z in (0.08, 0.20, 0.32, 0.44):
         for y in (-0.24, 0.24):
@@ -124,7 +124,7 @@ def planter(colours: Sequence[str], *, seed: int = 0, width_m: float = 1.1) -> B
 
 
 def parking_meter(title: str = "PAY HERE") -> Built:
-    """A pay-and-display machine, 1.7 m, its face towards +y."""
+    """Build a pay-and-display machine, 1.7 m high, facing +y."""
     s = Solid("parking meter")
     body = paint("dark grey", dirt=0.2)
     s.box((0.30, 0.26, 1.45), (0, 0, 0.72), body, 0.02)
@@ -143,7 +143,7 @@ def parking_meter(title: str = "PAY HERE") -> Built:
 
 
 def traffic_signal(state: str) -> Built:
-    """A signal on a post, facing +y; ``state`` is "red", "amber" or "green"."""
+    """Build a signal on a post, facing +y. ``state`` is "red", "amber" or "green"."""
     s = Solid("traffic light")
     s.lathe([(0.16, 0.0), (0.16, 0.02), (0.057, 0.03), (0.057, 3.35), (0.03, 3.38)], paint("light grey", dirt=0.25), steps=18)
     black = paint("black", dirt=0.12)
@@ -162,7 +162,7 @@ def traffic_signal(state: str) -> Built:
 
 
 def belisha_beacon(*, lit: bool = True) -> Built:
-    """A zebra crossing's post in black and white with an amber globe, 3.1 m."""
+    """Build the beacon of a zebra crossing, 3.1 m high: a black and white post with an amber globe."""
     s = Solid("belisha beacon")
     black, white = paint("black", dirt=0.15), paint("white", dirt=0.2)
     s.lathe([(0.12, 0.0), (0.12, 0.02)], steel(dark=True), steps=14)
@@ -175,7 +175,7 @@ def belisha_beacon(*, lit: bool = True) -> Built:
 
 
 def bracket_clock(hour: int, minute: int, *, radius_m: float = 0.42) -> Built:
-    """A drum clock on a bracket over +y with a face on either side (towards +x and -x)."""
+    """Build a drum clock on a bracket over +y, with a face on either side (towards +x and -x)."""
     s = Solid("clock")
     iron = paint("black", dirt=0.15)
     reach = radius_m + 0.28
@@ -190,7 +190,7 @@ def bracket_clock(hour: int, minute: int, *, radius_m: float = 0.42) -> Built:
 
 
 def fingerpost(arms: Sequence[tuple[str, float]], *, colour: str = "dark green") -> Built:
-    """A signpost, 3.1 m, with one arm for each (place, bearing it points to in degrees), lettered on both sides."""
+    """Build a signpost, 3.1 m high, with one arm for each (place, bearing in degrees), lettered on both sides."""
     s = Solid("signpost")
     iron = paint(colour, dirt=0.15)
     s.lathe([(0.10, 0.0), (0.10, 0.05), (0.05, 0.12), (0.045, 2.95), (0.07, 3.0), (0.07, 3.05), (0.01, 3.14)], iron, steps=16)

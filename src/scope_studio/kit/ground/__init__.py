@@ -1,1 +1,1 @@
-"""Ground."""
+"""Ground: a dual carriageway, terrain, paving, wet streets, and road markings."""

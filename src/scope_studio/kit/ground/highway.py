@@ -1,4 +1,4 @@
-"""Ground: a dual carriageway, its verges, and a terrain of fields and low hills out to the horizon."""
+"""A dual carriageway with its central reserve."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from scope_studio.kit.ground import markings
 
 @dataclass(frozen=True)
 class Carriageway:
-    """A straight dual road along +y that bends away in the distance. Offsets are from the middle of the central reserve."""
+    """A straight dual road along +y that bends in the distance. Offsets are measured from the middle of the central reserve."""
 
     reserve_m: float = 1.55
     edge_m: float = 15.5
@@ -30,7 +30,7 @@ class Carriageway:
     patches: Sequence[markings.Patch] = field(default_factory=tuple)
 
     def centre_x(self, y: float) -> float:
-        """Where the middle of the road is at ``y``: it bends left to the north and right to the south."""
+        """Return the x coordinate of the road's middle at ``y``. The road bends left in the north and right in the south."""
         beyond = max(0.0, abs(y) - self.straight_m)
         return -math.copysign(1.0, y) * beyond * beyond / (2 * self.radius_m)
 
@@ -38,7 +38,7 @@ class Carriageway:
 def strip(
     name: str, road: Carriageway, u0: float, u1: float, z: float, material: bpy.types.Material, *, crown_m: float = 0.0
 ) -> bpy.types.Object:
-    """A ribbon along the road between two offsets, with road coordinates (u, v in metres) in its UV map."""
+    """Create a ribbon along the road between two offsets, with road coordinates (u, v in metres) in its UV map."""
     half = road.length_m
     near = np.arange(-road.straight_m, road.straight_m + 1, 10.0)
     far = np.arange(road.straight_m + 10, half + 1, 15.0)
@@ -53,7 +53,7 @@ def strip(
 
 
 def carriageways(road: Carriageway) -> Built:
-    """Both carriageways with paint, and the hardened reserve between them."""
+    """Build both carriageways with their paint, and the hardened reserve between them."""
     asphalt = asphalt_material(road)
     concrete = slab_material()
     parts = [
@@ -70,7 +70,7 @@ def carriageways(road: Carriageway) -> Built:
 
 
 def asphalt_material(road: Carriageway) -> bpy.types.Material:
-    """Worn asphalt: aggregate, mottling, wheel tracks, oil, seams, cracks, patches and paint, all in road coordinates."""
+    """Return worn asphalt with aggregate, wheel tracks, oil, seams, cracks, patches and paint, in road coordinates."""
     s = Shader("asphalt carriageway")
     uv = s.node("ShaderNodeUVMap", uv_map="road").outputs[0]
     u, v, _ = s.xyz(uv)
@@ -110,7 +110,7 @@ def asphalt_material(road: Carriageway) -> bpy.types.Material:
 
 
 def _cracks(s: Shader, uv: Value) -> Value:
-    """Thin wandering cracks, dense in a few weathered stretches and absent elsewhere."""
+    """Return thin irregular cracks, dense in a few weathered stretches and absent elsewhere."""
     warp = s.noise(uv, 0.9, detail=5.0)
     made = s.node("ShaderNodeVectorMath", operation="ADD")
     s.feed(made.inputs[0], s.scaled(uv, (1.0, 0.6, 1.0)))
@@ -150,7 +150,7 @@ def _patches(
 
 
 def slab_material() -> bpy.types.Material:
-    """Weathered concrete hardening with joints every 5 m, stains and weeds in the joints."""
+    """Return weathered concrete hardening with joints every 5 m, stains, and weeds in the joints."""
     s = Shader("reserve concrete")
     uv = s.node("ShaderNodeUVMap", uv_map="road").outputs[0]
     u, v, _ = s.xyz(uv)

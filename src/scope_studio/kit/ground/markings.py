@@ -1,4 +1,4 @@
-"""Road paint and pavement history as shader masks over road coordinates: always sharp, with worn and ragged edges."""
+"""Road paint and pavement repairs as shader masks over road coordinates, so that edges stay sharp at any distance."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scope_studio.kit.core.shading import Shader, Value
 
 @dataclass(frozen=True)
 class Line:
-    """A longitudinal line at ``offset_m`` from the centre, on both sides of it. ``mark_m`` 0 means solid."""
+    """A longitudinal line at ``offset_m`` from the centre, on both sides of it. A ``mark_m`` of 0 means a solid line."""
 
     offset_m: float
     width_m: float = 0.15
@@ -20,7 +20,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Patch:
-    """A rectangle of other pavement: ``u`` across the road, ``v`` along it, both in metres.
+    """A rectangle of different pavement: ``u`` across the road, ``v`` along it, both in metres.
 
     ``kind`` is "repair" (old dark patch with sealed joints), "fresh" (new black asphalt), or "milled" (planed off).
     """
@@ -34,7 +34,7 @@ class Patch:
 
 @dataclass(frozen=True)
 class Stencil:
-    """A painted rectangle such as one bar of a hatch or a stop line."""
+    """A painted rectangle, such as one bar of a hatched area or a stop line."""
 
     u0: float
     u1: float
@@ -43,7 +43,7 @@ class Stencil:
 
 
 def paint(s: Shader, u: Value, v: Value, lines: Sequence[Line], stencils: Sequence[Stencil] = ()) -> Value:
-    """1 where there is paint: lines with edges ragged by millimetres and wear that eats holes."""
+    """Return 1 where there is paint. Its edges are ragged by millimetres, and wear makes holes in it."""
     place = _vector(s, u, v)
     ragged = s.ramp(s.noise(place, 9.0, detail=3.0), 0.3, 0.7, -0.014, 0.014)
     across = s.math("ADD", s.math("ABSOLUTE", u), ragged)
@@ -62,7 +62,7 @@ def paint(s: Shader, u: Value, v: Value, lines: Sequence[Line], stencils: Sequen
 
 
 def inside(s: Shader, u: Value, v: Value, patch: Patch, soft_m: float = 0.01, grow_m: float = 0.0) -> Value:
-    """1 inside the rectangle grown by ``grow_m``."""
+    """Return 1 inside the rectangle, grown by ``grow_m``."""
     across = s.band(u, patch.u0 - grow_m, patch.u1 + grow_m, soft_m)
     return s.math("MULTIPLY", across, s.band(v, patch.v0 - grow_m, patch.v1 + grow_m, soft_m))
 

@@ -1,4 +1,4 @@
-"""Town ground: stone slabs with bands of setts, sett carriageways, kerbs, tram rails, covers and tree grates."""
+"""Town ground: stone slabs with bands of setts, sett carriageways, kerbs, tram rails, manhole covers and tree grates."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from scope_studio.kit.core.stage import Built
 
 Rgb = tuple[float, float, float]
 Area = tuple[float, float, float, float]
-"""West, east, south, north edges in metres."""
+"""West, east, south and north edges in metres."""
 
 
 def _courses(
     s: Shader, where: Value, size: tuple[float, float], joint_m: float, low: Rgb, high: Rgb, joint: Rgb
 ) -> tuple[Value, Value]:
-    """Bonded rectangular stones, each of its own tone: colour, and 1 in the joints."""
+    """Return bonded rectangular stones, each with its own tone: the colour, and a mask that is 1 in the joints."""
     made = s.node("ShaderNodeTexBrick")
     s.feed(made.inputs["Vector"], where)
     settings = {"Scale": 1.0, "Mortar Size": joint_m, "Mortar Smooth": 0.35, "Brick Width": size[0], "Row Height": size[1]}
@@ -32,7 +32,7 @@ def _courses(
 
 
 def _wobbly(s: Shader, p: Value, amount_m: float, scale: float) -> Value:
-    """Positions shifted by a little noise, so that courses are laid by hand."""
+    """Return positions shifted by a little noise, so that courses look laid by hand."""
     noise = s.node("ShaderNodeTexNoise")
     s.feed(noise.inputs["Vector"], p)
     noise.inputs["Scale"].default_value = scale
@@ -44,7 +44,7 @@ def _wobbly(s: Shader, p: Value, amount_m: float, scale: float) -> Value:
 
 
 def _worn(s: Shader, p: Value, colour: Value, joints: Value, grain: float = 0.35) -> bpy.types.Material:
-    """Stone under years of feet: blotches, spills, gum, grit in the joints, and a bump of joints and pitting."""
+    """Return the material of worn stone: blotches, spills, chewing gum, grit in the joints, and a bump of joints and pits."""
     _x, _y, _ = s.xyz(p)
     broad = s.noise(p, 0.16, 7.0, 0.62)
     colour = s.mix(s.ramp(broad, 0.40, 0.72, 0.0, 0.42), colour, (0.085, 0.078, 0.068))
@@ -63,7 +63,7 @@ def _worn(s: Shader, p: Value, colour: Value, joints: Value, grain: float = 0.35
 
 
 def slab_material(name: str = "square paving", *, pitch_m: float = 7.2) -> bpy.types.Material:
-    """Buff and grey stone slabs in a grid of dark sett bands ``pitch_m`` apart; world coordinates."""
+    """Return buff and grey stone slabs in a grid of dark sett bands, ``pitch_m`` apart, in world coordinates."""
     found = bpy.data.materials.get(name)
     if found is not None:
         return found
@@ -82,7 +82,7 @@ def slab_material(name: str = "square paving", *, pitch_m: float = 7.2) -> bpy.t
 
 
 def flag_material(name: str = "pavement flags") -> bpy.types.Material:
-    """Grey concrete and stone flags of a pavement."""
+    """Return the grey concrete and stone flags of a pavement."""
     found = bpy.data.materials.get(name)
     if found is not None:
         return found
@@ -93,7 +93,7 @@ def flag_material(name: str = "pavement flags") -> bpy.types.Material:
 
 
 def sett_material(name: str = "street setts", *, turn_deg: float = 0.0) -> bpy.types.Material:
-    """Granite setts of a carriageway, polished and darkened along its wheel tracks."""
+    """Return the granite setts of a carriageway, polished and darkened along its wheel tracks."""
     found = bpy.data.materials.get(name)
     if found is not None:
         return found
@@ -116,7 +116,7 @@ def _blend(s: Shader, factor: Value, a: Value, b: Value) -> Value:
 
 
 def floor(name: str, areas: list[Area], z: float, material: bpy.types.Material) -> Built:
-    """Level rectangles of one surface."""
+    """Build level rectangles of one surface."""
     points, faces = [], []
     for west, east, south, north in areas:
         base = len(points)
@@ -126,6 +126,7 @@ def floor(name: str, areas: list[Area], z: float, material: bpy.types.Material) 
 
 
 def kerb_material() -> bpy.types.Material:
+    """Return the granite of kerb stones."""
     found = bpy.data.materials.get("granite kerb")
     if found is not None:
         return found
@@ -140,7 +141,7 @@ def kerb_material() -> bpy.types.Material:
 
 
 def kerbs(lines: list[tuple[tuple[float, float], tuple[float, float]]], *, drop_m: float = 0.10) -> Built:
-    """Kerb stones 0.16 m wide along axis-parallel lines; their tops at z = 0.005, their faces ``drop_m`` down."""
+    """Build kerb stones, 0.16 m wide, along axis-parallel lines. Their tops lie at z = 0.005, their faces reach ``drop_m`` down."""
     s = Solid("kerbs")
     for (x0, y0), (x1, y1) in lines:
         size = (abs(x1 - x0) + 0.16, abs(y1 - y0) + 0.16, drop_m + 0.05)
@@ -149,7 +150,7 @@ def kerbs(lines: list[tuple[tuple[float, float], tuple[float, float]]], *, drop_
 
 
 def tram_rail(length_m: float) -> Built:
-    """One grooved rail along x, its head level with z = 0.004."""
+    """Build one grooved rail along x, with its head at z = 0.004."""
     s = Solid("tram rail")
     bright, dark = steel(), lens("black")
     s.box((length_m, 0.16, 0.01), (0, 0, -0.003), steel(dark=True), 0.0)
@@ -160,7 +161,7 @@ def tram_rail(length_m: float) -> Built:
 
 
 def manhole_cover(text: str = "WATER") -> Built:
-    """Round cast-iron cover, 0.62 m, with a chequered face."""
+    """Build a round cast-iron cover, 0.62 m in diameter, with a chequered face."""
     s = Solid("manhole cover")
     iron = steel(dark=True)
     s.lathe([(0.37, -0.01), (0.37, 0.006), (0.33, 0.007)], iron, steps=40)
@@ -176,7 +177,7 @@ def manhole_cover(text: str = "WATER") -> Built:
 
 
 def tree_grate(side_m: float = 1.5) -> Built:
-    """Square cast-iron grate with rings of slots, round an opening for a trunk."""
+    """Build a square cast-iron grate with rings of slots around an opening for the trunk."""
     s = Solid("tree grate")
     iron = steel(dark=True)
     half = side_m / 2

@@ -1,4 +1,4 @@
-"""Terrain."""
+"""Land around a highway: verges, fields, and low hills out to the horizon."""
 
 from __future__ import annotations
 
@@ -14,7 +14,11 @@ from scope_studio.kit.ground.highway import Carriageway
 
 
 def terrain(road: Carriageway, bare: Sequence[tuple[float, float, float, float]], *, extent_m: float = 3200.0) -> Built:
-    """The land: flat beside the road, rolling fields beyond, hills at the horizon. ``bare`` lists worn (x0, x1, y0, y1) yards."""
+    """Build the land: flat beside the road, rolling fields beyond, hills at the horizon.
+
+    Args:
+        bare: worn yards as (x0, x1, y0, y1) in metres.
+    """
     rings = [0.0, 20.0, 40.0, 60.0, 80.0, 100.0, 125.0, 150.0]
     while rings[-1] < extent_m:
         rings.append(rings[-1] * 1.07)
@@ -35,7 +39,10 @@ def terrain(road: Carriageway, bare: Sequence[tuple[float, float, float, float]]
 
 
 def hills(road: Carriageway) -> Callable[[float, float], float]:
-    """Height of the land in metres above the road: 0 near the road, up to about 90 m of hills at 2 to 3 km."""
+    """Return the height of the land above the road as a function of x and y (m).
+
+    It is 0 near the road and rises to about 90 m at a distance of 2 to 3 km.
+    """
 
     def height(x: float, y: float) -> float:
         r = math.hypot(x, y)
@@ -56,7 +63,7 @@ def _smooth(value: float, low: float, high: float) -> float:
 
 
 def land_material(road: Carriageway, bare: Sequence[tuple[float, float, float, float]]) -> bpy.types.Material:
-    """Mown verges and yards near the road, a patchwork of fields with dark hedgerows and woods beyond."""
+    """Return mown verges and yards near the road, and a patchwork of fields with hedgerows and woods beyond."""
     s = Shader("land")
     p = s.position()
     x, y, _ = s.xyz(p)

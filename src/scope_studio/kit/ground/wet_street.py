@@ -1,4 +1,4 @@
-"""Streets after rain: wet asphalt with puddles and paint, paved footways with kerbs."""
+"""Streets after rain: wet asphalt with puddles and paint, and paved footways with kerbs."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Outline = Sequence[tuple[float, float]]
 
 
 def carriageway(half_m: float, gutters: Sequence[Stencil]) -> Built:
-    """One sheet of asphalt on z = 0, ``half_m`` to all sides; water stands along the ``gutters``."""
+    """Build one sheet of asphalt on z = 0 that extends ``half_m`` to all sides. Water stands along the ``gutters``."""
     h = half_m
     sheet = from_data("asphalt", [(-h, -h, 0), (h, -h, 0), (h, h, 0), (-h, h, 0)], [(0, 1, 2, 3)], _asphalt(gutters))
     return Built.of("asphalt", [sheet])
@@ -54,7 +54,7 @@ def _asphalt(gutters: Sequence[Stencil]) -> bpy.types.Material:
 
 
 def _patchwork(s: Shader, p: Value, fine: Value) -> Value:
-    """Trenches of newer, blacker asphalt: the cells of a stretched Chebyshev Voronoi, few of them."""
+    """Return trenches of newer, darker asphalt: a few cells of a stretched Chebyshev Voronoi pattern."""
     cell = s.node("ShaderNodeTexVoronoi", distance="CHEBYCHEV")
     s.feed(cell.inputs["Vector"], s.scaled(p, (0.30, 0.085, 0.0)))
     cell.inputs["Scale"].default_value = 1.0
@@ -62,7 +62,7 @@ def _patchwork(s: Shader, p: Value, fine: Value) -> Value:
 
 
 def markings(bars: Sequence[Stencil], colour: str) -> Built:
-    """Worn road paint, "white" or "yellow", over rectangles in world coordinates (u = x, v = y)."""
+    """Build worn road paint, "white" or "yellow", over rectangles in world coordinates (u = x, v = y)."""
     points, faces = [], []
     for bar in bars:
         n = len(points)
@@ -72,7 +72,7 @@ def markings(bars: Sequence[Stencil], colour: str) -> Built:
 
 
 def road_paint(colour: str) -> bpy.types.Material:
-    """Thermoplastic paint under a film of water; worn spots let the asphalt through."""
+    """Return thermoplastic paint under a film of water. Asphalt shows through where it is worn."""
     found = bpy.data.materials.get(f"road paint {colour}")
     if found is not None:
         return found
@@ -95,7 +95,7 @@ def _edges(s: Shader, gutters: Sequence[Stencil], x: Value, y: Value) -> Value:
 
 
 def footway(outline: Outline, *, slab: tuple[float, float] = (0.60, 0.45)) -> Built:
-    """Paving over a convex outline (anticlockwise), its top at ``KERB_M``, with granite kerbs all round."""
+    """Build paving over a convex outline (anticlockwise), with its top at ``KERB_M`` and granite kerbs all round."""
     s = Solid("footway")
     ring = [(x, y, KERB_M) for x, y in outline]
     s.add(ring, [tuple(range(len(ring)))], _paving(slab))
@@ -112,7 +112,7 @@ def footway(outline: Outline, *, slab: tuple[float, float] = (0.60, 0.45)) -> Bu
 
 
 def _inset(outline: Outline, by_m: float) -> list[tuple[float, float]]:
-    """The convex outline moved inwards."""
+    """Return the convex outline moved inwards."""
     made = []
     n = len(outline)
     for i in range(n):
@@ -126,7 +126,7 @@ def _inset(outline: Outline, by_m: float) -> list[tuple[float, float]]:
 
 
 def _paving(slab: tuple[float, float]) -> bpy.types.Material:
-    """Concrete flags in running bond: wet, blotched, gum-spotted, a few rocking ones with water in the joints."""
+    """Return wet concrete flags in running bond, with blotches, chewing gum, and water in the joints of a few loose ones."""
     s = Shader(f"wet paving {slab[0]:.2f}")
     p = s.position()
     brick = s.node("ShaderNodeTexBrick")

@@ -1,4 +1,4 @@
-"""Materials of lit lamps and signs."""
+"""Emissive materials of lit lamps and illuminated signs."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from scope_studio.kit.light import dusk
 
 
 def glowing_face(colour: str, strength: float) -> bpy.types.Material:
-    """The translucent face of a lit sign."""
+    """Return the translucent face of an illuminated sign."""
     rgb = {
         "white": (0.95, 0.97, 1.0),
         "blue": (0.08, 0.28, 0.95),
@@ -24,7 +24,7 @@ def glowing_face(colour: str, strength: float) -> bpy.types.Material:
 
 
 def lit_lens(kind: str, strength: float = 5.0) -> bpy.types.Material:
-    """The glowing lens of a lamp: "sodium", "led" or "warm"."""
+    """Return the emissive lens of a lamp: "sodium", "led" or "warm"."""
     rgb = {"sodium": dusk.SODIUM, "led": dusk.LED, "warm": dusk.WARM}[kind]
     name = f"lit lens {kind} {strength:g}"
     return bpy.data.materials.get(name) or Shader(name).surface(

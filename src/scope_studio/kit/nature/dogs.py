@@ -1,4 +1,4 @@
-"""Dogs."""
+"""Dogs, standing or walking, with or without a lead."""
 
 from __future__ import annotations
 
@@ -20,11 +20,16 @@ COATS = {
     "brown": ((0.075, 0.034, 0.016), (0.13, 0.065, 0.03)),
     "white": ((0.55, 0.53, 0.49), (0.68, 0.66, 0.62)),
 }
-"""Coat colours of a dog, by plain name."""
+"""Darkest and lightest coat colours of a dog, by plain colour name."""
 
 
 def dog(colour: str = "black", *, phase: float | None = None, lead_to: Point | None = None, collar: str = "red") -> Built:
-    """A dog like a labrador, facing +y, 0.55 m at the shoulder. ``phase`` walks it; ``lead_to`` is the holding hand."""
+    """Build a labrador-like dog facing +y, 0.55 m at the shoulder.
+
+    Args:
+        phase: gait phase in [0, 1) of a walking dog; None for a standing one.
+        lead_to: position of the hand that holds the lead; None for no lead.
+    """
     s = Solid(f"{colour} dog")
     v = Volume()
     v.ellipsoid((0, 0.17, 0.43), (0.112, 0.18, 0.135))

@@ -1,8 +1,9 @@
-"""People: road workers and pedestrians of varied height, build, skin and hair, in relaxed poses or walking.
+"""Road workers and pedestrians of varied height, build, skin and hair, in relaxed poses or walking.
 
-A person stands at the origin facing +y, about 45 thousand points in one object. Looks and small asymmetries come from
-``seed``; everything else can be asked for. ``phase`` in [0, 1) is the gait phase of the poses "walk" and "carry"; one
-cycle covers ``STRIDE_M`` times the person's height over 1.77 m."""
+A person stands at the origin facing +y, with about 45,000 points in one object. Appearance and small asymmetries are drawn from
+``seed``; everything else is a parameter. ``phase`` in [0, 1) is the gait phase of the poses "walk" and "carry". One cycle
+covers ``STRIDE_M`` times the person's height over 1.77 m.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +25,7 @@ from scope_studio.kit.people.poses import Joints, Pose, named, solve
 
 @dataclass(frozen=True)
 class _Appearance:
-    """What nature gave: drawn from the seed."""
+    """Physical features of a person, drawn from the seed."""
 
     height_m: float
     girth: float
@@ -69,7 +70,7 @@ def _head(s: Solid, joints: Joints, looks: _Appearance, covered: bool) -> None:
 
 
 def _helmet(s: Solid, joints: Joints, colour: str) -> None:
-    """Safety helmet: dome with a ridge, short brim all round, long peak in front, badge."""
+    """Add a safety helmet: dome with a ridge, short brim, long peak in front, badge."""
     shell = paint(colour, dirt=0.16, roughness=0.30)
     saved = s.frame
     s.frame = (
@@ -97,7 +98,7 @@ def _helmet(s: Solid, joints: Joints, colour: str) -> None:
 
 @dataclass(frozen=True)
 class _Outfit:
-    """What is worn; ``vest`` and ``helmet`` make a worker."""
+    """Clothes of a person. ``vest`` and ``helmet`` make a worker."""
 
     top: str
     legs: str
@@ -110,7 +111,7 @@ class _Outfit:
 
 
 def _dress(s: Solid, joints: Joints, random: Random, looks: _Appearance, outfit: _Outfit, curls: tuple[float, float]) -> None:
-    """Clothes and hands."""
+    """Add clothes and hands."""
     seed = random.uniform(0, 50)
     vest = outfit.vest
     loose = random.uniform(0.004, 0.012)
@@ -157,12 +158,12 @@ def _dress(s: Solid, joints: Joints, random: Random, looks: _Appearance, outfit:
 
 
 def _limb(along: np.ndarray) -> np.ndarray:
-    """Rest coordinates of a limb: only the position along it matters."""
+    """Return the rest coordinates of a limb. Only the position along it matters."""
     return np.column_stack([np.zeros((len(along), 2)), along])
 
 
 IN_HAND = {"shovel": "shovel", "phone": "phone", "clipboard": "clipboard", "carry": "box", "kneel": "trowel"}
-"""What a pose holds unless told otherwise."""
+"""What a pose holds by default."""
 
 
 def _person(
@@ -203,10 +204,14 @@ def worker(
     stance: Pose | None = None,
     seed: int = 0,
 ) -> Built:
-    """A road worker in a high-visibility vest ("orange" or "yellow"); ``helmet`` a colour or None.
+    """Build a road worker in a high-visibility vest ("orange" or "yellow").
 
-    ``pose``: stand, walk, point, carry, kneel, shovel, phone, clipboard. ``holding`` overrides what the pose puts in
-    the hands; ``stance`` is a pose of the caller's own in place of a named one."""
+    Args:
+        helmet: a colour, or None.
+        pose: stand, walk, point, carry, kneel, shovel, phone or clipboard.
+        holding: replaces what the pose holds by default.
+        stance: the caller's own pose, instead of a named one.
+    """
     random = Random(f"worker {seed}")
     looks = _looks(random, None, 0.15)
     legs = trousers or random.choice(["navy", "dark grey", f"hi-vis {vest}", "khaki", "navy"])
@@ -229,8 +234,11 @@ def pedestrian(
     stance: Pose | None = None,
     seed: int = 0,
 ) -> Built:
-    """A passer-by in everyday clothes; colours by plain name, drawn from the seed when not given. ``stance`` is a pose
-    of the caller's own in place of a named one."""
+    """Build a passer-by in everyday clothes.
+
+    Colours have plain names and are drawn from the seed when not given. ``stance`` is the caller's own pose, instead of a named
+    one.
+    """
     random = Random(f"pedestrian {seed}")
     looks = _looks(random, hair, 0.5)
     upper = top or random.choice(["dark red", "navy", "grey", "green", "beige", "light blue", "black", "purple", "yellow"])

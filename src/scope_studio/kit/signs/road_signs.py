@@ -1,4 +1,4 @@
-"""Road signs on posts and stands. Fronts face +y; every readable line is a ``TextMark``."""
+"""Road signs on posts and stands. Fronts face +y, and every readable line is a ``TextMark``."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def panel(
     route: str | None = None,
     route_background: str | None = None,
 ) -> Built:
-    """A roadside sign whose lower edge is ``post_height`` above the ground; see ``Panel`` for the layout."""
+    """Build a roadside sign whose lower edge is ``post_height`` above the ground; see ``Panel`` for the layout."""
     s = Solid(f"{background} sign")
     with s.at(0, 0, post_height + height / 2):
         panel_face(s, Panel(lines, width, height, background, cap_height, align, arrows, route, route_background))
@@ -37,7 +37,7 @@ def panel(
 
 
 def round_limit(text: str = "50", *, diameter: float = 0.75, post_height: float = 2.1) -> Built:
-    """Speed limit: black figures in a red ring."""
+    """Build a speed limit sign: black figures in a red ring."""
     s = Solid(f"{text} speed limit sign")
     r = diameter / 2
     with s.at(0, 0, post_height + r):
@@ -56,7 +56,7 @@ def _circle(r: float, sides: int = 48) -> list[tuple[float, float]]:
 
 
 def _rounded_triangle(side: float, corner: float) -> list[tuple[float, float]]:
-    """Equilateral, point up, centred on its centroid."""
+    """Return an equilateral triangle with round corners that points up, centred on its centroid."""
     points = []
     inner = side - 2 * math.sqrt(3) * corner
     for k in range(3):
@@ -69,7 +69,7 @@ def _rounded_triangle(side: float, corner: float) -> list[tuple[float, float]]:
 
 
 def _digger(s: Solid, k: float) -> None:
-    """The "man at work" pictogram, about 2k wide and high around the origin."""
+    """Add the "man at work" pictogram, about 2k wide and high, around the origin."""
     ink = sheet("black", dirt=0.05)
     disc(s, -0.10 * k, 0.62 * k, 0.15 * k, ink)
     stroke(s, [(-0.20 * k, 0.36 * k), (-0.40 * k, -0.10 * k)], 0.26 * k, ink)
@@ -99,9 +99,9 @@ def triangle(
     stand: str = "frame",
     post_height: float = 1.9,
 ) -> Built:
-    """Warning triangle with a "works" or "exclamation" symbol and an optional ``plate`` of words below.
+    """Build a warning triangle with a "works" or "exclamation" symbol and an optional ``plate`` of words below.
 
-    ``stand``: "frame" (temporary, on the ground) or "post".
+    ``stand`` is "frame" (temporary, on the ground) or "post".
     """
     s = Solid("road works sign" if symbol == "works" else "warning sign")
     plate_h = 0.0 if plate is None else 0.26
@@ -141,7 +141,10 @@ def triangle(
 
 
 def lane_closed(lanes: int = 3, closed: Sequence[int] = (0,), distance: str | None = "400 m", *, stand: str = "frame") -> Built:
-    """Lane diagram on white: an arrow for each open lane, a red T for each closed one (0 = the reader's left)."""
+    """Build a lane diagram on white: an arrow for each open lane, a red T for each closed one.
+
+    ``closed`` counts lanes from the reader's left, starting at 0.
+    """
     s = Solid("lane closed sign")
     width, height = 0.32 * lanes + 0.30, 1.05
     low, plate_h = (0.35 if stand == "frame" else 1.8), (0.30 if distance else 0.0)
@@ -167,7 +170,7 @@ def lane_closed(lanes: int = 3, closed: Sequence[int] = (0,), distance: str | No
 
 
 def works_access(lines: Sequence[str] = ("WORKS", "ACCESS"), *, direction: str | None = "left", stand: str = "frame") -> Built:
-    """White on red: where site traffic leaves the road."""
+    """Build the sign where site traffic leaves the road, white on red."""
     s = Solid("works access sign")
     low, height = (0.35 if stand == "frame" else 1.7), 0.22 + 0.24 * len(lines)
     width = max(extent(line, 0.15) for line in lines) + (0.62 if direction else 0.25)
@@ -186,8 +189,11 @@ def works_access(lines: Sequence[str] = ("WORKS", "ACCESS"), *, direction: str |
 def project_board(
     lines: Sequence[str], *, width: float = 3.0, height: float = 2.2, background: str = "blue", post_height: float = 0.8
 ) -> Built:
-    """Large information board. The first line is the title on a coloured band, the second large, the last two small
-    print, the rest body."""
+    """Build a large information board.
+
+    The first line is the title on a coloured band, the second is large, the last two are small print, and the rest is body
+    text.
+    """
     s = Solid("project board")
     with s.at(0, 0, post_height + height / 2):
         board(s, width, height, "white", border=background, edge=0.03)
@@ -251,7 +257,7 @@ def project_board(
 
 
 def marker_post(number: str, *, kind: str = "kilometre") -> Built:
-    """White edge post, 1.05 m, with a reflector and a small number plate facing +y."""
+    """Build a white edge post, 1.05 m high, with a reflector and a small number plate facing +y."""
     s = Solid("marker post")
     s.prism([(-0.06, -0.05), (0.06, -0.05), (0.05, 0.05), (-0.05, 0.05)], (0.0, 1.05), paint("white", dirt=0.5), "XY")
     s.prism(
@@ -270,8 +276,10 @@ def marker_post(number: str, *, kind: str = "kilometre") -> Built:
 def warning_plate(
     text: str, *, background: str = "yellow", cap_height: float = 0.06, posts: bool = True, post_height: float = 1.1
 ) -> Built:
-    """Small plate, one line a newline, its lower edge at ``post_height``; on a short post, or bare for fixing to
-    something."""
+    """Build a small plate with one line of text for each newline, its lower edge at ``post_height``.
+
+    It stands on a short post, or is bare, to be fixed to something.
+    """
     s = Solid("warning plate")
     lines = text.split("\n")
     width = max(extent(t, cap_height) for t in lines) + 1.8 * cap_height

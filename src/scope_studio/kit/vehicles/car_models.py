@@ -1,4 +1,7 @@
-"""The shapes of the cars and vans: sections, windows, printed details. Metres; y forward, wheelbase centred on 0."""
+"""Shapes of the car models: sections, windows, printed details.
+
+Lengths are in metres. y points forward, and the wheelbase is centred on 0.
+"""
 
 from __future__ import annotations
 
@@ -13,8 +16,7 @@ from scope_studio.kit.vehicles.paintwork import AMBER, GAP, REAR_LAMP, TRIM, Pat
 
 @dataclass(frozen=True)
 class Cabin:
-    """What is seen through the windows: seats between ``front_y`` (dashboard) and ``rear_y`` below the ``belt_z``
-    line."""
+    """The visible interior: seats between ``front_y`` (dashboard) and ``rear_y``, below the ``belt_z`` line."""
 
     front_y: float
     rear_y: float
@@ -27,7 +29,7 @@ class Cabin:
 
 @dataclass(frozen=True)
 class CarModel:
-    """Everything that distinguishes one car from another. Metres; y forward, wheelbase centred on 0."""
+    """The shape of one car model. Lengths are in metres; y points forward, and the wheelbase is centred on 0."""
 
     name: str
     stations: list[Station]

@@ -48,7 +48,7 @@ def _body(model: CarModel) -> Parts:
 
 
 def _pillar(parts: Parts, surface: bw.Surface, y: float, width: float, belt_z: float, sign: int) -> None:
-    """A black door pillar laid over the side glass."""
+    """Add a black door pillar over the side glass."""
     heights = [belt_z + 0.05 + 0.055 * k for k in range(14)]
     edge = [(surface.side(y, z) + 0.005, z) for z in heights]
     edge = [e for e in edge if e[0] > 0.62]
@@ -58,7 +58,7 @@ def _pillar(parts: Parts, surface: bw.Surface, y: float, width: float, belt_z: f
 
 
 def _interior(parts: Parts, cabin: Cabin) -> None:
-    """Floor, door linings, dashboard, steering wheel on the right, and seats with head rests."""
+    """Add floor, door linings, dashboard, a steering wheel on the right, and seats with head rests."""
     lining = shading.plain("vehicle lining", (0.035, 0.035, 0.036), 0.9)
     cloth = shading.plain("vehicle seat cloth", (0.12, 0.12, 0.125), 0.9)
     length, middle = cabin.front_y - cabin.rear_y, (cabin.front_y + cabin.rear_y) / 2
@@ -93,7 +93,7 @@ def _interior(parts: Parts, cabin: Cabin) -> None:
 
 
 def _arch_lip(parts: Parts, surface: bw.Surface, y: float, radius: float, sign: int, *, flared: bool) -> None:
-    """The rolled edge of a wheel arch, or a black flare over it."""
+    """Add the rolled edge of a wheel arch, or a black flare over it."""
     reach = radius + (0.085 if flared else 0.060)
     path = []
     for k in range(25):
@@ -150,17 +150,17 @@ def _car(
 
 
 def saloon(colour: str, *, plate: str) -> Built:
-    """A four-door saloon, 4.8 m long."""
+    """Build a four-door saloon, 4.8 m long."""
     return _car(SALOON, colour, plate)
 
 
 def hatchback(colour: str, *, plate: str) -> Built:
-    """A five-door hatchback, 4.1 m long."""
+    """Build a five-door hatchback, 4.1 m long."""
     return _car(HATCHBACK, colour, plate)
 
 
 def suv(colour: str, *, plate: str) -> Built:
-    """A tall five-door SUV with black arches and roof rails, 4.5 m long."""
+    """Build a tall five-door SUV with black arches and roof rails, 4.5 m long."""
     rails = Parts()
     for sign in (-1, 1):
         path = [
@@ -176,7 +176,7 @@ def suv(colour: str, *, plate: str) -> Built:
 
 
 def van(colour: str, *, plate: str, lettering: str | None, roof_beacon: bool = False) -> Built:
-    """A high-roof panel van, 5.5 m long, with lettering (lines separated by newlines) on both sides."""
+    """Build a high-roof panel van, 5.5 m long, with lettering (lines separated by newlines) on both sides."""
     surface = bw.Surface(bw.body_mesh(VAN.name, lambda: _body(VAN)))
     letters: list[bw.Lettering] = []
     if lettering:
@@ -197,6 +197,6 @@ def _light_bar(y: float, z: float, width: float) -> Parts:
 
 
 def pickup(colour: str, *, plate: str, beacon: bool = False) -> Built:
-    """A double-cab pickup with an open load bed, 5.2 m long; ``beacon`` adds an orange light bar on the roof."""
+    """Build a double-cab pickup with an open load bed, 5.2 m long. ``beacon`` adds an orange light bar on the roof."""
     surface = bw.Surface(bw.body_mesh(PICKUP.name, lambda: _body(PICKUP)))
     return _car(PICKUP, colour, plate, fittings=_light_bar(-0.1, surface.top(0.0, -0.1), 1.0) if beacon else None)

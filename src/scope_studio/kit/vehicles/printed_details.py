@@ -1,4 +1,4 @@
-"""Lamps, grilles and door gaps as patches printed on a car's paint: always sharp, and free of geometry."""
+"""Lamps, grilles and door gaps as patches printed on a car's paint. They need no geometry and are sharp at any zoom."""
 
 from __future__ import annotations
 
@@ -7,8 +7,10 @@ from scope_studio.kit.vehicles.paintwork import AMBER, TRIM, Patch
 
 
 def headlamp(x: tuple[float, float], y: float, z: tuple[float, float], rise: float = 0.0) -> list[Patch]:
-    """A wrap-round headlamp from ``x`` outwards and from ``y`` forwards: dark housing, two lenses, daylight strip,
-    indicator."""
+    """Return a wrap-round headlamp from ``x`` outwards and from ``y`` forwards.
+
+    It has a dark housing, two lenses, a daylight strip and an indicator.
+    """
     (x0, x1), (z0, z1) = x, z
     size = (z1 - z0) * 0.78
     low = z0 + rise * x0 + (z1 - z0 - size) * 0.7
@@ -36,7 +38,7 @@ def headlamp(x: tuple[float, float], y: float, z: tuple[float, float], rise: flo
 
 
 def rear_lamp(x: tuple[float, float], y: float, z: tuple[float, float]) -> list[Patch]:
-    """A wrap-round rear lamp: dark red cover with lit strips, reversing lamp and indicator."""
+    """Return a wrap-round rear lamp: dark red cover with lit strips, reversing lamp and indicator."""
     (x0, x1), (z0, z1) = x, z
     third = (z1 - z0) / 3
     return [
@@ -69,7 +71,7 @@ def rear_lamp(x: tuple[float, float], y: float, z: tuple[float, float]) -> list[
 
 
 def grille(x: float, y: float, z: tuple[float, float], bars: int) -> list[Patch]:
-    """A black opening of half width ``x`` with bright bars and a badge."""
+    """Return a black opening of half width ``x`` with bright bars and a badge."""
     z0, z1 = z
     step = (z1 - z0) / (bars + 1)
     bright = [
@@ -88,7 +90,7 @@ def grille(x: float, y: float, z: tuple[float, float], bars: int) -> list[Patch]
 
 
 def intake(x: float, y: float, z: tuple[float, float]) -> list[Patch]:
-    """The bumper's lower opening and round fog lamps beside it."""
+    """Return the bumper's lower opening with round fog lamps beside it."""
     fog = (z[0] + 0.01, z[0] + 0.10)
     return [
         Patch(TRIM, x=(-1, x), y=(y, 9), z=z, roughness=0.7),
@@ -98,6 +100,7 @@ def intake(x: float, y: float, z: tuple[float, float]) -> list[Patch]:
 
 
 def door_patches(doors: list[float], bottom: float, top: float, slant: float = 0.0) -> list[Patch]:
+    """Return the gaps around the doors."""
     lines = [pw.upright_gap(y, (bottom, top), y_per_z=slant) for y in doors]
     lines.append(pw.level_gap(bottom, (doors[-1], doors[0])))
     return lines

@@ -1,7 +1,7 @@
 """Traffic cones, drums, barriers, mesh fencing and the site gate.
 
-Pieces that are put side by side (boards, water barriers, fence panels, the gate) span x and show their front to +y; the
-cast barrier, which is laid along a lane, runs along y.
+Pieces that are placed side by side (boards, water barriers, fence panels, the gate) span x and have their front towards +y. The
+cast barrier is laid along a lane and runs along y.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ FENCE_PANEL_M = (3.45, 2.0)
 
 
 def cone(height: float = 0.75) -> Built:
-    """Orange traffic cone with two white reflective sleeves on a black rubber base; ``height`` 0.75 or 1.0 m."""
+    """Build an orange traffic cone with two white reflective sleeves on a black rubber base. ``height`` is 0.75 or 1.0 m."""
     s = Solid("cone")
     k = height / 0.75
     orange, white = paint("orange", dirt=0.34, roughness=0.46), sheet("white", dirt=0.30)
@@ -48,7 +48,7 @@ def cone(height: float = 0.75) -> Built:
 
 
 def drum() -> Built:
-    """Channelizer drum: an orange barrel, 1.0 m high, with white bands, on a rubber ring."""
+    """Build a channelizer drum: an orange barrel, 1.0 m high, with white bands, on a rubber ring."""
     s = Solid("drum")
     orange, white = paint("orange", dirt=0.34, roughness=0.46), sheet("white", dirt=0.26)
     s.lathe([(0.36, 0.0), (0.37, 0.02), (0.36, 0.07), (0.30, 0.085)], rubber(), steps=36)
@@ -82,7 +82,7 @@ def drum() -> Built:
 
 
 def delineator() -> Built:
-    """Flexible orange post, 1.0 m, with two white bands, on a black foot."""
+    """Build a flexible orange post, 1.0 m high, with two white bands, on a black foot."""
     s = Solid("delineator post")
     s.lathe([(0.20, 0.0), (0.20, 0.03), (0.17, 0.055), (0.07, 0.075)], rubber(), steps=24)
     orange, white = paint("orange", dirt=0.34), sheet("white")
@@ -93,7 +93,7 @@ def delineator() -> Built:
 
 
 def _stripes(s: Solid, width: float, height: float, x0: float, y: float, z: float, count: int, depth: float = 0.03) -> None:
-    """A plank of alternating red and white reflective blocks, on both faces."""
+    """Add a plank of alternating red and white reflective blocks on both faces."""
     step = width / count
     for i in range(count):
         s.box(
@@ -105,7 +105,7 @@ def _stripes(s: Solid, width: float, height: float, x0: float, y: float, z: floa
 
 
 def barrier_board(*, lit: bool = True) -> Built:
-    """Red and white plank barrier, 2.0 m wide and 1.05 m high, on folding feet, with two amber lamps."""
+    """Build a red and white plank barrier on folding feet, 2.0 m wide and 1.05 m high, with two amber lamps."""
     s = Solid("barrier board")
     for z in (0.92, 0.52):
         _stripes(s, 2.0, 0.24, -1.0, 0.0, z, 8)
@@ -119,7 +119,7 @@ def barrier_board(*, lit: bool = True) -> Built:
 
 
 def lamp(s: Solid, x: float, y: float, z: float, lit: bool, colour: str = "amber") -> None:
-    """A road-works lamp: yellow battery box, round lens facing both ways; ``z`` is its foot."""
+    """Add a road-works lamp: yellow battery box with a round lens that faces both ways. ``z`` is the height of its foot."""
     s.box((0.15, 0.09, 0.13), (x, y, z + 0.065), paint("yellow", dirt=0.35), 0.012)
     s.lathe(
         [(0.05, -0.045), (0.088, -0.038), (0.092, 0.0), (0.088, 0.038), (0.05, 0.045)],
@@ -138,8 +138,10 @@ def lamp(s: Solid, x: float, y: float, z: float, lit: bool, colour: str = "amber
 
 
 def water_barrier(colour: str = "red") -> Built:
-    """Plastic water-filled barrier, 1.5 m long and 0.9 m high, with interlocking ends; ``colour`` "red", "white" or
-    "orange"."""
+    """Build a water-filled plastic barrier, 1.5 m long and 0.9 m high, with interlocking ends.
+
+    ``colour`` is "red", "white" or "orange".
+    """
     s = Solid(f"{colour} water barrier")
     body = paint(colour, dirt=0.36, roughness=0.42)
     half = [
@@ -189,8 +191,10 @@ def water_barrier(colour: str = "red") -> Built:
 
 
 def concrete_barrier(length: float = 3.0) -> Built:
-    """Cast safety barrier (New Jersey profile), 0.81 m high, ``length`` metres along y, with drain slots, loops and
-    reflectors."""
+    """Build a cast safety barrier (New Jersey profile), 0.81 m high and ``length`` metres long, along y.
+
+    It has drain slots, lifting loops and reflectors.
+    """
     s = Solid("concrete barrier")
     half = [(0.290, 0.0), (0.300, 0.01), (0.300, 0.075), (0.175, 0.255), (0.095, 0.77), (0.08, 0.80), (0.06, 0.81)]
     ring = half + [(-x, z) for x, z in half[::-1]]
@@ -216,8 +220,10 @@ def concrete_barrier(length: float = 3.0) -> Built:
 
 
 def chapter8_barrier() -> Built:
-    """Orange plastic pedestrian barrier, 2.0 x 1.0 m, with a red and white reflective board along the top and
-    swivelling feet."""
+    """Build an orange plastic pedestrian barrier, 2.0 x 1.0 m.
+
+    It has a red and white reflective board along the top, and swivelling feet.
+    """
     s = Solid("pedestrian barrier")
     orange = paint("orange", dirt=0.3, roughness=0.45)
     for x in (-0.97, 0.97):
@@ -244,7 +250,7 @@ def chapter8_barrier() -> Built:
 
 
 def wire_mesh(s: Solid, width: float, low: float, high: float, cx: float = 0.0, *, pitch: float = 0.11) -> None:
-    """Welded wires in the plane y = 0: close verticals, wider horizontals."""
+    """Add welded wires in the plane y = 0: close verticals, wider horizontals."""
     count = round(width / pitch)
     for i in range(1, count):
         x = cx - width / 2 + width * i / count
@@ -256,14 +262,14 @@ def wire_mesh(s: Solid, width: float, low: float, high: float, cx: float = 0.0, 
 
 
 def frame(s: Solid, width: float, low: float, high: float, cx: float = 0.0, radius: float = 0.02) -> None:
-    """A rectangular tube frame with a middle rail."""
+    """Add a rectangular tube frame with a middle rail."""
     a, b = cx - width / 2, cx + width / 2
     s.tube([(a, 0, low), (b, 0, low), (b, 0, high), (a, 0, high)], radius, steel(), closed=True)
     s.rod((a, 0, (low + high) / 2), (b, 0, (low + high) / 2), radius * 0.8, steel())
 
 
 def mesh_fence_panel(plate: Sequence[str] = ()) -> Built:
-    """Temporary site fence panel in block feet; ``plate`` gives the lines of a small sign cable-tied to it."""
+    """Build a temporary site fence panel in block feet. ``plate`` gives the lines of a small sign that is tied to it."""
     s = Solid("mesh fence panel")
     width, height = FENCE_PANEL_M
     frame(s, width - 0.04, 0.16, height)
@@ -280,7 +286,10 @@ def mesh_fence_panel(plate: Sequence[str] = ()) -> Built:
 
 
 def gate(open: bool = False) -> Built:  # noqa: A002
-    """Double site gate, 6.2 m between posts, 2.2 m high; closed across x, or both leaves swung back towards -y."""
+    """Build a double site gate, 6.2 m between posts and 2.2 m high.
+
+    It is closed across x, or has both leaves swung back towards -y.
+    """
     s = Solid("site gate")
     leaf = 3.0
     for sign in (-1, 1):

@@ -1,5 +1,4 @@
-"""Site plant and accommodation: arrow board, light tower, generator, toilet, cabin, skip, compactor, barrow. Fronts
-face +y."""
+"""Site equipment: arrow board, light tower, generator, toilet, cabin, skip, compactor, wheelbarrow. Fronts face +y."""
 
 from __future__ import annotations
 
@@ -13,7 +12,7 @@ from scope_studio.kit.works.materials import heap
 
 
 def wheel(s: Solid, x: float, y: float, radius: float, width: float) -> None:
-    """A small road wheel with its axle along x, standing on the ground."""
+    """Add a small road wheel that stands on the ground, with its axle along x."""
     half = width / 2
     tyre = [
         (radius * 0.62, -half),
@@ -39,7 +38,7 @@ def wheel(s: Solid, x: float, y: float, radius: float, width: float) -> None:
 
 
 def _trailer(s: Solid, width: float, length: float, colour: str) -> None:
-    """Chassis along y with a draw bar towards -y, two wheels under mudguards, corner jacks and tail lamps."""
+    """Add a chassis along y with a draw bar towards -y, two wheels under mudguards, corner jacks and tail lamps."""
     body = paint(colour, dirt=0.35)
     for x in (-width * 0.36, width * 0.36):
         s.box((0.08, length, 0.10), (x, 0, 0.48), body, 0.01)
@@ -62,8 +61,10 @@ def _trailer(s: Solid, width: float, length: float, colour: str) -> None:
 
 
 def arrow_board(direction: str = "left", *, lit: bool = True) -> Built:
-    """Trailer with a black board of lamps that show an arrow to the reader's left or right, on red and white stripes,
-    facing +y."""
+    """Build a trailer with a black board whose lamps show an arrow to the reader's left or right, facing +y.
+
+    The board stands on red and white stripes.
+    """
     s = Solid("arrow board")
     _trailer(s, 1.6, 1.9, "orange")
     s.box((0.95, 0.70, 0.40), (0, -0.30, 0.74), paint("orange", dirt=0.3), 0.03)
@@ -78,8 +79,8 @@ def arrow_board(direction: str = "left", *, lit: bool = True) -> Built:
     shaft = [(0.75 - 0.215 * i, 0.0) for i in range(8)]
     head = [(-0.75 + 0.17 * i, side * 0.16 * i) for i in range(1, 4) for side in (-1, 1)]
     lamps = {(round(u, 3), round(v, 3)) for u, v in shaft + head}
-    tip = {(0.75 - 0.17 * i, side * 0.16 * i) for i in range(1, 4) for side in (-1, 1)}
-    for u, v in sorted(lamps | tip):
+    unlit = {(0.75 - 0.17 * i, side * 0.16 * i) for i in range(1, 4) for side in (-1, 1)}
+    for u, v in sorted(lamps | unlit):
         bright = glow("amber", 6.0) if lit and (u, v) in lamps else lens("black")
         s.lathe([(0.072, 0.0), (0.072, 0.03), (0.066, 0.03)], paint("black"), (sign * u, 0.835, 2.35 + v), "Y", 18)
         s.lathe([(0.062, 0.012), (0.055, 0.030), (0.025, 0.042)], bright, (sign * u, 0.835, 2.35 + v), "Y", 18)
@@ -94,7 +95,7 @@ def arrow_board(direction: str = "left", *, lit: bool = True) -> Built:
 
 
 def light_tower(*, lit: bool = False) -> Built:
-    """Mobile lighting mast, 7.5 m: trailer with engine housing, telescopic mast, four floodlights."""
+    """Build a mobile lighting mast, 7.5 m high: trailer with engine housing, telescopic mast, four floodlights."""
     s = Solid("light tower")
     _trailer(s, 1.5, 2.0, "yellow")
     s.box((1.05, 1.65, 0.95), (0, 0.0, 1.02), paint("yellow", dirt=0.34), 0.06)
@@ -115,7 +116,7 @@ def light_tower(*, lit: bool = False) -> Built:
 
 
 def generator(colour: str = "green") -> Built:
-    """Silenced generator on skids, 2.2 x 1.0 x 1.3 m, with louvres, control panel and exhaust."""
+    """Build a silenced generator on skids, 2.2 x 1.0 x 1.3 m, with louvres, control panel and exhaust."""
     s = Solid("generator")
     body = paint(colour, dirt=0.34)
     for y in (-0.35, 0.35):
@@ -140,7 +141,7 @@ def generator(colour: str = "green") -> Built:
 
 
 def portable_toilet(colour: str = "blue") -> Built:
-    """Portable toilet, 1.1 x 1.1 x 2.3 m, white domed roof, ribbed walls, door with sign towards +y."""
+    """Build a portable toilet, 1.1 x 1.1 x 2.3 m: white domed roof, ribbed walls, door with sign towards +y."""
     s = Solid("portable toilet")
     body, trim = paint(colour, dirt=0.30, roughness=0.45), paint("white", dirt=0.32)
     for x in (-0.38, 0.38):
@@ -170,8 +171,10 @@ def portable_toilet(colour: str = "blue") -> Built:
 
 
 def site_cabin(colour: str = "light grey", text: str = "SITE OFFICE") -> Built:
-    """Steel site cabin, 6.0 x 2.4 x 2.7 m, corrugated walls, door, two barred windows, steps and a name board towards
-    +y."""
+    """Build a steel site cabin, 6.0 x 2.4 x 2.7 m.
+
+    It has corrugated walls, a door, two barred windows, steps, and a name board towards +y.
+    """
     s = Solid("site cabin")
     wall, trim = paint(colour, dirt=0.30), paint("dark grey", dirt=0.3)
     for x in (-2.6, 0.0, 2.6):
@@ -223,7 +226,7 @@ def site_cabin(colour: str = "light grey", text: str = "SITE OFFICE") -> Built:
 
 
 def skip(colour: str = "yellow", *, full: bool = True) -> Built:
-    """Builder's skip, 3.4 x 1.8 x 1.4 m, with lifting lugs and, when full, rubble and timber."""
+    """Build a builder's skip, 3.4 x 1.8 x 1.4 m, with lifting lugs and, when full, rubble and timber."""
     s = Solid(f"{colour} skip")
     body = paint(colour, dirt=0.55, roughness=0.5)
     side = [(-1.0, 0.10), (1.0, 0.10), (1.72, 0.85), (1.72, 1.35), (-1.72, 1.35), (-1.72, 0.85)]
@@ -275,7 +278,7 @@ def skip(colour: str = "yellow", *, full: bool = True) -> Built:
 
 
 def plate_compactor() -> Built:
-    """Vibrating plate with engine, water tank and handle towards -y."""
+    """Build a vibrating plate with engine and water tank, and a handle towards -y."""
     s = Solid("plate compactor")
     yellow = paint("yellow", dirt=0.45)
     s.prism(
@@ -305,7 +308,7 @@ def plate_compactor() -> Built:
 
 
 def wheelbarrow(colour: str = "green", *, load: bool = True) -> Built:
-    """Builder's wheelbarrow, wheel towards +y, optionally with sand."""
+    """Build a builder's wheelbarrow with its wheel towards +y, optionally with sand."""
     s = Solid("wheelbarrow")
     body = paint(colour, dirt=0.45)
     low, high = (

@@ -1,4 +1,4 @@
-"""Materials and small tools of a site: heaps, pipes, kerbs, bags, cable drums, hand tools, cans."""
+"""Building materials and small tools of a site: heaps, pipes, kerbs, bags, cable drums, hand tools, cans."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def heap(
     seed: float,
     square: bool = False,
 ) -> None:
-    """A noisy mound on z = 0: round, or filling a rectangle of half sizes ``radii`` when ``square``."""
+    """Add an irregular mound on z = 0. It is round, or fills a rectangle of half sizes ``radii`` when ``square``."""
     rings, steps = 22, 56
     points = [(0.0, 0.0, height * (0.97 if not square else 1.0))]
     for i in range(1, rings + 1):
@@ -43,7 +43,7 @@ def heap(
 
 
 def sand_pile(radius: float = 1.6) -> Built:
-    """A heap of building sand with a few lumps."""
+    """Build a heap of building sand with a few lumps."""
     s = Solid("sand pile")
     heap(
         s,
@@ -56,7 +56,7 @@ def sand_pile(radius: float = 1.6) -> Built:
 
 
 def gravel_pile(radius: float = 1.8) -> Built:
-    """A heap of crushed stone, strays around its foot."""
+    """Build a heap of crushed stone with stray stones around its foot."""
     s = Solid("gravel pile")
     stone = granular("gravel", (0.11, 0.11, 0.115), (0.40, 0.39, 0.38), 34.0)
     heap(s, stone, (radius, radius * 0.9), radius * 0.52, seed=7.0)
@@ -84,7 +84,7 @@ def _pallet(s: Solid) -> None:
 
 
 def pallet_of_kerbs() -> Built:
-    """Concrete kerb stones, strapped on a pallet."""
+    """Build concrete kerb stones strapped on a pallet."""
     s = Solid("pallet of kerbs")
     _pallet(s)
     for layer in range(3):
@@ -105,7 +105,7 @@ def pallet_of_kerbs() -> Built:
 
 
 def pipe_stack(colour: str = "orange", *, length: float = 6.0) -> Built:
-    """A pyramid of ten drain pipes along y between timber stakes."""
+    """Build a pyramid of ten drain pipes along y between timber stakes."""
     s = Solid("pipe stack")
     r, skin = 0.16, paint(colour, dirt=0.30, roughness=0.35)
     for row in range(4):
@@ -140,7 +140,7 @@ def pipe_stack(colour: str = "orange", *, length: float = 6.0) -> Built:
 
 
 def cement_bags() -> Built:
-    """Paper bags of cement on a pallet, plump and a little skewed, one layer short."""
+    """Build paper bags of cement on a pallet, plump and slightly skewed, one layer short."""
     s = Solid("cement bags")
     _pallet(s)
     paper = cloth("light grey", 0.85)
@@ -154,7 +154,7 @@ def cement_bags() -> Built:
 
 
 def _bag(s: Solid, material: bpy.types.Material) -> None:
-    """A stuffed bag, 0.38 x 0.47 x 0.115 m."""
+    """Add a stuffed bag, 0.38 x 0.47 x 0.115 m."""
     n, m = 12, 14
     points = []
     for side in (1, -1):
@@ -169,7 +169,7 @@ def _bag(s: Solid, material: bpy.types.Material) -> None:
 
 
 def cable_drum(diameter: float = 1.4) -> Built:
-    """Timber cable drum with black cable wound on it, its axle along x."""
+    """Build a timber cable drum with black cable wound on it, its axle along x."""
     s = Solid("cable drum")
     r, half = diameter / 2, diameter * 0.34
     for side in (-1, 1):
@@ -205,7 +205,7 @@ def cable_drum(diameter: float = 1.4) -> Built:
 
 
 def shovel_standing() -> Built:
-    """A shovel stuck upright, leaning a little."""
+    """Build a shovel that stands upright in the ground, leaning slightly."""
     s = Solid("shovel")
     with s.at(0, 0, 0, pitch=-9, roll=4):
         s.prism(
@@ -221,7 +221,7 @@ def shovel_standing() -> Built:
 
 
 def broom() -> Built:
-    """A yard broom standing on its bristles, as if leaning on something behind it (-y)."""
+    """Build a yard broom that stands on its bristles and leans on something behind it (-y)."""
     s = Solid("broom")
     with s.at(0, 0, 0, pitch=12):
         s.box((0.46, 0.07, 0.07), (0, 0, 0.04), paint("dark red", roughness=0.9), 0.015)
@@ -231,7 +231,7 @@ def broom() -> Built:
 
 
 def fuel_can(colour: str = "red") -> Built:
-    """20-litre fuel can with pressed sides and triple handle."""
+    """Build a 20-litre fuel can with pressed sides and triple handle."""
     s = Solid(f"{colour} fuel can")
     skin = paint(colour, dirt=0.35)
     s.box((0.345, 0.165, 0.44), (0, 0, 0.22), skin, 0.035)
@@ -245,7 +245,7 @@ def fuel_can(colour: str = "red") -> Built:
 
 
 def fire_extinguisher() -> Built:
-    """Red extinguisher, 0.55 m, with hose and label towards +y."""
+    """Build a red extinguisher, 0.55 m high, with its hose and label towards +y."""
     s = Solid("fire extinguisher")
     red = paint("red", dirt=0.15, roughness=0.25)
     s.lathe([(0.078, 0.0), (0.082, 0.02), (0.082, 0.40), (0.07, 0.445), (0.035, 0.465), (0.025, 0.49)], red, steps=28)
@@ -259,7 +259,7 @@ def fire_extinguisher() -> Built:
 
 
 def toolbox(colour: str = "red") -> Built:
-    """Cantilever steel toolbox with a tube handle, 0.5 m."""
+    """Build a cantilever steel toolbox, 0.5 m long, with a tube handle."""
     s = Solid(f"{colour} toolbox")
     skin = paint(colour, dirt=0.35)
     s.box((0.50, 0.22, 0.20), (0, 0, 0.10), skin, 0.010)

@@ -10,7 +10,7 @@ from scope_studio.kit.core.stage import Built
 
 
 def scaffolding(width_m: float, lifts: int = 3, *, depth_m: float = 1.1, first_m: float = 2.6) -> Built:
-    """Tube scaffolding along x before a wall on y = 0: boarded lifts with guard rails, braces, base plates."""
+    """Build tube scaffolding along x in front of a wall on y = 0: boarded lifts with guard rails, braces, base plates."""
     s = Solid("scaffolding")
     tube, r = steel(), 0.024
     bays = max(2, round(width_m / 2.0))
@@ -41,7 +41,7 @@ def scaffolding(width_m: float, lifts: int = 3, *, depth_m: float = 1.1, first_m
 
 
 def ladder(length_m: float = 5.0, lean_deg: float = 14.0) -> Built:
-    """An aluminium ladder along x-wide rungs, its feet at the origin, leaning back towards -y."""
+    """Build an aluminium ladder with its rungs along x and its feet at the origin, leaning back towards -y."""
     s = Solid("ladder")
     metal = steel()
     with s.at(pitch=lean_deg):
@@ -53,7 +53,7 @@ def ladder(length_m: float = 5.0, lean_deg: float = 14.0) -> Built:
 
 
 def open_manhole() -> Built:
-    """A round manhole with its frame, a dark shaft, and the cast cover lying beside it (towards +x)."""
+    """Build a round manhole with its frame and a dark shaft. The cast cover lies beside it (towards +x)."""
     s = Solid("open manhole")
     iron = steel(dark=True)
     n = 32

@@ -1,4 +1,4 @@
-"""The floor of a freight yard: asphalt and jointed concrete, damp in places, and painted markings laid on it as thin shapes."""
+"""The floor of a freight yard: asphalt and jointed concrete, damp in places, with painted markings as thin shapes on it."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
 Rect = tuple[float, float, float, float]
-"""West, east, south, north, metres."""
+"""West, east, south and north edges in metres."""
 
 PAINT_M = 0.004
-"""How far markings stand off the floor."""
+"""Height of markings above the floor."""
 
 
 def asphalt(name: str = "yard asphalt", *, tone: float = 1.0) -> bpy.types.Material:
-    """Worn yard asphalt: aggregate, oil drips, tyre scuffs, repairs' seams, cracks, and damp hollows that mirror the sky."""
+    """Return worn yard asphalt: aggregate, oil drips, tyre scuffs, repair seams, cracks, and damp hollows that mirror the sky."""
     found = bpy.data.materials.get(name)
     if found is not None:
         return found
@@ -42,7 +42,7 @@ def asphalt(name: str = "yard asphalt", *, tone: float = 1.0) -> bpy.types.Mater
 
 
 def slabs(name: str = "yard concrete", *, joint_m: float = 6.0) -> bpy.types.Material:
-    """Brushed concrete bays with sealed joints, rust and oil stains, and the dark arcs of turning tyres."""
+    """Return brushed concrete bays with sealed joints, rust and oil stains, and the dark arcs of turning tyres."""
     found = bpy.data.materials.get(name)
     if found is not None:
         return found
@@ -79,7 +79,7 @@ def _cracks(s: Shader, p: Value) -> Value:
 
 
 def _damp(s: Shader, p: Value, colour: Value, blotch: Value, height: Value) -> bpy.types.Material:
-    """Finish a floor: hollows hold water, darker and smoother than the dry crown; the rest is merely moist."""
+    """Return the finished floor material. Hollows hold water and are darker and smoother than the rest, which is only moist."""
     hollow = s.noise(p, 0.13, detail=4.0, roughness=0.55)
     wet = s.ramp(s.math("ADD", hollow, s.math("MULTIPLY", s.math("SUBTRACT", blotch, 0.5), 0.22)), 0.57, 0.63)
     moist = s.ramp(hollow, 0.40, 0.60)
@@ -95,7 +95,7 @@ def _damp(s: Shader, p: Value, colour: Value, blotch: Value, height: Value) -> b
 
 
 def paint(colour: str) -> bpy.types.Material:
-    """Road paint, "white", "yellow" or "green", scuffed through to the floor and never quite clean."""
+    """Return road paint, "white", "yellow" or "green", worn through to the floor in places and slightly dirty."""
     found = bpy.data.materials.get(f"yard paint {colour}")
     if found is not None:
         return found
@@ -111,21 +111,21 @@ def paint(colour: str) -> bpy.types.Material:
 
 
 def floor(name: str, rect: Rect, material: bpy.types.Material, z: float = 0.0) -> Built:
-    """A flat rectangle of paving."""
+    """Build a flat rectangle of paving."""
     west, east, south, north = rect
     points = [(west, south, z), (east, south, z), (east, north, z), (west, north, z)]
     return Built.of(name, [from_data(name, points, [(0, 1, 2, 3)], material)])
 
 
 def flat(s: Solid, outline: Sequence[tuple[float, float]], material: bpy.types.Material, z: float = PAINT_M) -> None:
-    """One shape of paint, as a single upward face."""
+    """Add one shape of paint, as a single upward face."""
     area = sum(outline[i - 1][0] * outline[i][1] - outline[i][0] * outline[i - 1][1] for i in range(len(outline)))
     ring = list(outline) if area > 0 else list(outline)[::-1]
     s.add([(x, y, z) for x, y in ring], [tuple(range(len(ring)))], material)
 
 
 def line(s: Solid, a: tuple[float, float], b: tuple[float, float], width: float, material: bpy.types.Material) -> None:
-    """A painted line."""
+    """Add a painted line."""
     dx, dy = b[0] - a[0], b[1] - a[1]
     length = math.hypot(dx, dy)
     nx, ny = -dy / length * width / 2, dx / length * width / 2
@@ -133,7 +133,7 @@ def line(s: Solid, a: tuple[float, float], b: tuple[float, float], width: float,
 
 
 def arrow(colour: str = "white", *, length: float = 4.0, turn: str = "ahead") -> Built:
-    """A lane arrow along +y: "ahead", "left" or "right"."""
+    """Build a lane arrow along +y: "ahead", "left" or "right"."""
     s = Solid("painted arrow")
     ink = paint(colour)
     half = length / 2
@@ -151,7 +151,7 @@ def arrow(colour: str = "white", *, length: float = 4.0, turn: str = "ahead") ->
 
 
 def hatch(width: float, depth: float, *, colour: str = "yellow", pitch: float = 1.0) -> Built:
-    """A keep-clear box: a border with diagonal bars, centred on the origin."""
+    """Build a keep-clear box, centred on the origin: a border with diagonal bars."""
     s = Solid("hatched zone")
     ink, w, d = paint(colour), width / 2, depth / 2
     for a, b in (((-w, -d), (w, -d)), ((w, -d), (w, d)), ((w, d), (-w, d)), ((-w, d), (-w, -d))):
@@ -168,7 +168,7 @@ def hatch(width: float, depth: float, *, colour: str = "yellow", pitch: float = 
 
 
 def words(lines: Sequence[str], cap: float, *, colour: str = "white") -> Built:
-    """Lettering on the floor, read by someone looking along +y."""
+    """Build lettering on the floor, for a reader who looks along +y."""
     s = Solid("painted words")
     for k, body in enumerate(lines):
         s.text(body, cap, (0, (len(lines) / 2 - k - 0.5) * cap * 1.5, PAINT_M), paint(colour), facing="+Z", bold=True)
@@ -176,7 +176,7 @@ def words(lines: Sequence[str], cap: float, *, colour: str = "white") -> Built:
 
 
 def bay(number: str, *, width: float = 2.5, depth: float = 5.0, cap: float = 0.62, colour: str = "white") -> Built:
-    """A parking bay, its head at +y: its patch of floor, lines on three sides, and the number near its mouth."""
+    """Build a parking bay with its head at +y: a patch of floor, lines on three sides, and the number near its open end."""
     s = Solid(f"bay {number}")
     w, d = width / 2, depth / 2
     flat(s, [(-w, -d), (w, -d), (w, d), (-w, d)], asphalt("bay asphalt", tone=0.82), PAINT_M / 2)

@@ -1,4 +1,4 @@
-"""What stands about a freight yard: pallets bare and loaded, steel drums, cages, tyres, tanks, bins."""
+"""Goods and containers in a freight yard: pallets, steel drums, gas cages, tyres, tanks, bins, cartons."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PALLET_M = 0.144
 
 
 def lay_pallet(s: Solid, *, fresh: bool = False) -> None:
-    """A 1.2 x 1.0 m pallet on z = 0 of the current frame."""
+    """Add a 1.2 x 1.0 m pallet on z = 0 of the current frame."""
     wood = timber(fresh=fresh)
     for k in range(3):
         s.box((1.2, 0.10, 0.022), (0, -0.44 + 0.44 * k, 0.011), wood, 0.003)
@@ -31,7 +31,7 @@ def lay_pallet(s: Solid, *, fresh: bool = False) -> None:
 
 
 def pallet_stack(count: int = 8, *, seed: int = 0) -> Built:
-    """Empty pallets, one on another, a little askew."""
+    """Build a stack of empty pallets, slightly askew."""
     s = Solid("pallet stack")
     rng = random.Random(f"stack {seed}")
     for k in range(count):
@@ -41,7 +41,10 @@ def pallet_stack(count: int = 8, *, seed: int = 0) -> Built:
 
 
 def pallet_load(kind: str = "cartons", *, label: str | None = None, seed: int = 0, wrapped: bool = True) -> Built:
-    """A loaded pallet: "cartons", "sacks" or "crates"; ``label`` is the text of its sheet, towards +y; ``wrapped`` in film."""
+    """Build a loaded pallet: "cartons", "sacks" or "crates".
+
+    ``label`` is the text of its sheet, towards +y. ``wrapped`` adds stretch film.
+    """
     s = Solid(f"pallet of {kind}")
     rng = random.Random(f"load {kind} {seed}")
     lay_pallet(s)
@@ -88,7 +91,7 @@ def pallet_load(kind: str = "cartons", *, label: str | None = None, seed: int = 
 
 
 def _film() -> bpy.types.Material:
-    """Stretch film: clear, with bright creases."""
+    """Return clear stretch film with bright creases."""
     found = bpy.data.materials.get("stretch film")
     if found is not None:
         return found
@@ -98,7 +101,7 @@ def _film() -> bpy.types.Material:
 
 
 def steel_drum(colour: str = "blue", *, label: bool = True) -> Built:
-    """A 200-litre steel drum with rolling hoops, bungs and a hazard label."""
+    """Build a 200-litre steel drum with rolling hoops, bungs and a hazard label."""
     s = Solid(f"{colour} drum")
     skin = paint(colour, dirt=0.40)
     profile = [(0.286, 0.0), (0.292, 0.02), (0.285, 0.03)]
@@ -115,7 +118,7 @@ def steel_drum(colour: str = "blue", *, label: bool = True) -> Built:
 
 
 def gas_cage() -> Built:
-    """A mesh cage with eight gas cylinders and its warning sign, 1.9 x 1.0 x 1.9 m, doors towards +y."""
+    """Build a mesh cage with eight gas cylinders and its warning sign, 1.9 x 1.0 x 1.9 m, with doors towards +y."""
     s = Solid("gas cage")
     frame = steel()
     for x in (-0.95, 0.95):
@@ -146,7 +149,7 @@ def gas_cage() -> Built:
 
 
 def tyre_stack(count: int = 5, *, seed: int = 0) -> Built:
-    """Lorry tyres in a pile."""
+    """Build a pile of lorry tyres."""
     s = Solid("tyre stack")
     rng = random.Random(f"tyres {seed}")
     for k in range(count):
@@ -174,7 +177,7 @@ def tyre_stack(count: int = 5, *, seed: int = 0) -> Built:
 
 
 def tank(label: str = "LOAD 7") -> Built:
-    """A 1000-litre liquid container: milky tank in a tube cage on a pallet, tap and label towards +y."""
+    """Build a 1000-litre liquid container: a milky tank in a tube cage on a pallet, with tap and label towards +y."""
     s = Solid("intermediate bulk container")
     milk = plain("milky plastic", (0.62, 0.64, 0.60), 0.35)
     lay_pallet(s)
@@ -195,7 +198,7 @@ def tank(label: str = "LOAD 7") -> Built:
 
 
 def wheelie_bin(colour: str = "green", *, open: bool = False, label: str | None = None) -> Built:  # noqa: A002
-    """A 1100-litre wheeled bin, lid shut or thrown back."""
+    """Build an 1100-litre wheeled bin with its lid shut or thrown back."""
     s = Solid(f"{colour} wheelie bin")
     skin = paint(colour, dirt=0.38, roughness=0.45)
     low, high = (
@@ -239,7 +242,7 @@ def wheelie_bin(colour: str = "green", *, open: bool = False, label: str | None 
 
 
 def carton(*, seed: int = 0, open: bool = False) -> Built:  # noqa: A002
-    """A cardboard box, 0.5 m, taped shut or with its flaps up."""
+    """Build a cardboard box, 0.5 m, taped shut or with its flaps up."""
     s = Solid("cardboard box")
     rng = random.Random(f"carton {seed}")
     skin = plain(f"loose carton {seed % 2}", ((0.36, 0.235, 0.125), (0.42, 0.29, 0.17))[seed % 2], 0.85)
@@ -255,7 +258,7 @@ def carton(*, seed: int = 0, open: bool = False) -> Built:  # noqa: A002
 
 
 def ladder(length: float = 3.6) -> Built:
-    """An aluminium ladder leaning on something behind it (-y): its foot at y = 0.75, its head at y = -0.05."""
+    """Build an aluminium ladder that leans on something behind it (-y), with its foot at y = 0.75 and its head at y = -0.05."""
     s = Solid("ladder")
     pale = plain("ladder alloy", (0.50, 0.51, 0.52), 0.35, 0.7)
     foot, head = 0.75, -0.05
