@@ -33,8 +33,9 @@ class Foot:
 
 @dataclass(frozen=True)
 class Arm:
-    """Either swing angles (``forward``, ``out``, ``bend`` in degrees), or a ``hand`` position to reach in the upright body's
-    frame.
+    """The position of an arm.
+
+    Either swing angles (``forward``, ``out``, ``bend`` in degrees), or a ``hand`` to reach, in the upright body's frame.
     """
 
     forward: float = 4.0

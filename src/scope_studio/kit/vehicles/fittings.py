@@ -59,7 +59,7 @@ def chrome() -> bpy.types.Material:
 
 
 def worn_steel() -> bpy.types.Material:
-    """Return the material of steel worn bright by use."""
+    """Return worn steel with rust."""
     found = bpy.data.materials.get("machine worn steel")
     if found is not None:
         return found

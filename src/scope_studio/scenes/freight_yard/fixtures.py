@@ -1,4 +1,4 @@
-"""Freight yard: the gate and its house, fences, shelters, charging points, plates of the bays."""
+"""Freight yard: gate and gatehouse, fences, shelters, charging points, number plates of the bays."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ GATEHOUSE = (3.0, -39.0)
 
 
 def build(stage: Stage) -> None:
+    """Place everything that is fixed in the yard."""
     _gate(stage)
     _fences(stage)
     _shelters(stage)
@@ -84,7 +85,7 @@ def _gate(stage: Stage) -> None:
 
 
 def _fences(stage: Stage) -> None:
-    """One annotated run a side; the cut panel in the west is its own."""
+    """Place the fences, one annotated run for each side. The cut panel in the west is an instance of its own."""
     prototype = yard_safety.chain_link()
     step = yard_safety.FENCE_M
     fresh = [True]

@@ -8,13 +8,13 @@ from scope_studio.kit.yard import floor as yard_floor
 from scope_studio.kit.yard import lamps as yard_lamps
 
 WEST, EAST, SOUTH, NORTH = -58.0, 50.0, -46.0, 30.0
-"""Fence lines, and the face of the warehouse."""
+"""Fence lines in the west, east and south; the face of the warehouse in the north."""
 IN_X, OUT_X = -1.2, 7.2
-"""Lanes through the gate: entering traffic keeps left."""
+"""Lanes through the gate. Entering traffic keeps left."""
 
 BAY_M = 2.6
 ROW_A = [(-45.4 + BAY_M * k, str(12 + k)) for k in range(12)]
-"""Middle and number of each bay, nose to the north."""
+"""Middle (x) and number of each bay. Cars park with the nose to the north."""
 ROW_B = [(-45.4 + BAY_M * k, str(24 + k)) for k in range(12)]
 ROW_A_Y, ROW_B_Y = -14.5, -26.5
 VISITORS = [(-44.0 + 2.8 * k, str(36 + k)) for k in range(5)]
@@ -38,6 +38,7 @@ MASTS = (
 
 
 def build(stage: Stage) -> None:
+    """Place floor, markings, bays and lamps."""
     _paving(stage)
     _markings(stage)
     _bays(stage)
@@ -102,7 +103,7 @@ def _stop_line() -> yard_floor.Built:
 
 
 def _walkway() -> yard_floor.Built:
-    """A green pedestrian strip between white lines."""
+    """Return a green pedestrian strip between white lines."""
     s = yard_floor.Solid("walkway")
     yard_floor.flat(s, [(-0.7, -17.0), (0.7, -17.0), (0.7, 17.0), (-0.7, 17.0)], yard_floor.paint("green"), 0.003)
     for x in (-0.75, 0.75):
@@ -111,7 +112,7 @@ def _walkway() -> yard_floor.Built:
 
 
 def _lanes() -> yard_floor.Built:
-    """Unannotated lines: lane edges, dashes, dock approach lines."""
+    """Return the lines that are not annotated: lane edges, dashes, dock approach lines."""
     s = yard_floor.Solid("lane lines")
     white, yellow = yard_floor.paint("white"), yard_floor.paint("yellow")
     for y in range(-38, 6, 5):
@@ -148,7 +149,7 @@ OCCUPIED = {
     "25": "green", "26": "yellow", "28": "silver", "29": "dark red", "31": "white", "33": "orange", "34": "grey", "37": "blue",
     "39": "beige", "61": "", "63": "", "64": "",
 }  # fmt: skip
-"""Number of each bay that is taken, and the colour of its car."""
+"""Number of each occupied bay, and the colour of the car in it."""
 
 
 def _masts(stage: Stage) -> None:

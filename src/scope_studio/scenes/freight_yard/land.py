@@ -1,4 +1,4 @@
-"""Freight yard: the road outside, trees, neighbours, and the town out to the hills."""
+"""Freight yard: the road outside, trees, neighbours, and the town between the yard and the hills."""
 
 from __future__ import annotations
 
@@ -15,11 +15,12 @@ from scope_studio.kit.vehicles import cars
 from scope_studio.kit.yard import floor as yard_floor
 
 ROAD = highway.Carriageway(edge_m=-1.0, straight_m=900.0)
-"""Only its level strip is used: the land rises to hills away from it."""
+"""Only its level strip is used, away from which the land rises to hills."""
 STREET_Y = -58.0
 
 
 def build(stage: Stage) -> None:
+    """Place the surroundings of the yard."""
     height = terrain.hills(ROAD)
     stage.put(terrain.terrain(ROAD, []), (0, 0, -0.02))
     _street(stage)
@@ -208,7 +209,7 @@ def _trees(stage: Stage) -> None:
 
 
 def _far(stage: Stage, height) -> None:
-    """Unannotated: tree lines, blocks of flats and lights, thinning out to the hills."""
+    """Place tree lines, blocks of flats and lights that become sparser towards the hills. They are not annotated."""
     rng = random.Random("far town")
     kinds = [
         vegetation.tree(sp, 7 + k, detail=0.12)

@@ -1,4 +1,4 @@
-"""Freight yard: lorries at the docks, trailers in their bays, cars, forklifts."""
+"""Freight yard: parked vehicles: lorries at the docks, trailers in their bays, cars, forklifts."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scope_studio.scenes.freight_yard import ground
 from scope_studio.scenes.freight_yard.premises import DOCK_X, FRONT_Y
 
 SEAM_Y = FRONT_Y - 0.55
-"""Where the rear of a docked lorry is."""
+"""Position of the rear of a docked lorry."""
 
 MAKES = {
     "12": ("hatchback", "LD19 KRA"), "13": ("saloon", "MV70 TSE"), "15": ("hatchback", "YK18 BOW"), "16": ("suv", "PN22 FGH"),
@@ -22,10 +22,11 @@ MAKES = {
     "31": ("van", "GU19 NGF"), "33": ("hatchback", "FY68 JAM"), "34": ("pickup", "AK72 TOW"), "37": ("saloon", "WR66 VIS"),
     "39": ("suv", "DS21 HAT"),
 }  # fmt: skip
-"""Body and number plate of the car in each taken bay."""
+"""Body and number plate of the car in each occupied bay."""
 
 
 def build(stage: Stage) -> None:
+    """Place the parked vehicles."""
     _docked(stage)
     _trailers(stage)
     _cars(stage)
@@ -41,7 +42,7 @@ def _combination(
     facts: dict[str, object],
     trailer_facts: dict[str, object],
 ) -> None:
-    """A tractor and its trailer facing south, the trailer's rear at ``rear_y``."""
+    """Place a tractor and its trailer facing south, with the trailer's rear at ``rear_y``."""
     nose_y = rear_y - artics.TRAILER_M
     king_y = nose_y + artics.KINGPIN_M
     name = str(trailer_facts.pop("name"))
@@ -124,7 +125,7 @@ def _docked(stage: Stage) -> None:
 
 
 def _waiting(stage: Stage) -> None:
-    """Lorries by the southern fence, waiting for a dock."""
+    """Place lorries that wait by the southern fence for a dock."""
     rows = [
         (
             lorries.tanker("dark red", plate="NU70 HKD", lettering="PETRONELL"),
@@ -296,7 +297,7 @@ def _cars(stage: Stage) -> None:
 
 
 def driver(vest: str, helmet: str, seed: int) -> Built:
-    """Someone at the wheel of a forklift, hips at the origin's height of its seat."""
+    """Build a forklift driver, with the hips at the origin and at seat height."""
     pose = reaching(sitting(0.46, seed=seed), left=(-0.13, 0.44, 0.86), right=(0.13, 0.46, 0.84))
     return characters.worker(vest=vest, helmet=helmet, stance=pose, seed=seed)
 
@@ -348,6 +349,6 @@ def _forklifts(stage: Stage) -> None:
 
 
 def _turned(x: float, y: float, bearing_deg: float) -> tuple[float, float]:
-    """A point of a thing's own frame, in world axes."""
+    """Rotate a point from a thing's own frame to world axes."""
     b = math.radians(bearing_deg)
     return x * math.cos(b) + y * math.sin(b), -x * math.sin(b) + y * math.cos(b)

@@ -1,4 +1,4 @@
-"""Freight yard: those who work, wait and visit there."""
+"""Freight yard: workers, drivers and visitors who stay where they are."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from scope_studio.scenes.freight_yard.fixtures import GATEHOUSE
 
 
 def build(stage: Stage) -> None:
+    """Place the workers and the other people."""
     _crew(stage)
     _others(stage)
 

@@ -1,4 +1,4 @@
-"""Freight yard: the warehouse with its docks and office, and what is fixed to it."""
+"""Freight yard: the warehouse with its docks and office, and the things fixed to it."""
 
 from __future__ import annotations
 
@@ -18,13 +18,14 @@ OFFICE_X, OFFICE_Y, OFFICE_M = -38.0, 27.0, (16.0, 24.0, 7.2)
 
 
 def build(stage: Stage) -> None:
+    """Place the warehouse, its docks and its office."""
     _warehouse(stage)
     _docks(stage)
     _office(stage)
 
 
 def _local(x: float) -> float:
-    """World x to position along the warehouse's front, as its own builder counts it."""
+    """Convert a world x to the position along the warehouse's front that its builder uses."""
     return MIDDLE_X - x
 
 

@@ -1,4 +1,4 @@
-"""Freight yard: container stacks, and the goods and gear that stand about."""
+"""Freight yard: container stacks, and the goods and equipment around them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scope_studio.kit.yard import goods as yard_goods
 from scope_studio.kit.yard import safety as yard_safety
 
 STACKS = (
-    # feet, x, y, then from the ground up: (colour, code, livery)
+    # feet, x, y, then (colour, code, livery) of each container from the ground up
     (20, 20.5, -14.5, (("blue", "KVRU 482915 3", "KESTREL"), ("dark red", "TSLU 610382 7", None))),
     (
         20,
@@ -39,6 +39,7 @@ STACKS = (
 
 
 def build(stage: Stage) -> None:
+    """Place containers, goods, equipment and bollards."""
     _containers(stage)
     _goods(stage)
     _gear(stage)
@@ -212,7 +213,7 @@ def _gear(stage: Stage) -> None:
 
 
 def _guards(stage: Stage) -> None:
-    """Bollards, concrete blocks and cones."""
+    """Place bollards, concrete blocks and cones."""
     prototypes = Prototypes()
     bollards = [
         (19.2, 28.9),

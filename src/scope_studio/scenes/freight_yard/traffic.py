@@ -1,7 +1,8 @@
-"""Freight yard: what moves. A forklift that shuttles, a van that drives in, a guard on his round, a fox on hers."""
+"""Freight yard: moving actors: a shuttling forklift, an arriving van, a patrolling guard and a fox."""
 
 from __future__ import annotations
 
+from scope_studio.kit.core.paths import closed_loop
 from scope_studio.kit.core.stage import ActorPath, Built, Stage
 from scope_studio.kit.nature import wildlife
 from scope_studio.kit.people import characters
@@ -13,11 +14,11 @@ from scope_studio.scenes.freight_yard import ground
 from scope_studio.scenes.freight_yard.parked_vehicles import driver
 
 FIRST_ACTOR = 9001
-"""Number of the first actor in the ID layer: far above those of the instances."""
+"""Number of the first actor in the instance-number layer, far above the numbers of the instances."""
 
 
 def _loaded_forklift(_phase: float) -> Built:
-    """The shuttling forklift with its driver and load, as one body."""
+    """Return the shuttling forklift with its driver and load as one body."""
     truck = forklift.forklift("orange", number="5", fork_m=0.30)
     for part, (x, y, z) in (
         (driver("yellow", "blue", 17), (0.0, forklift.SEAT[1], forklift.SEAT[2] - 0.46)),
@@ -35,6 +36,7 @@ def _guard(phase: float) -> Built:
 
 
 def build(stage: Stage) -> None:
+    """Add the actors with their paths."""
     stage.actors = [
         ActorPath(
             "moving-forklift-01",
@@ -42,7 +44,7 @@ def build(stage: Stage) -> None:
             "forklift",
             "orange forklift",
             _loaded_forklift,
-            _loop(
+            closed_loop(
                 [(21.4, 25.0), (21.2, 15.5), (18.5, 11.8), (2.0, 10.6), (-1.5, 11.8), (1.0, 13.6), (17.0, 14.2), (20.0, 17.0)], 1.9
             ),
             40.0,
@@ -80,7 +82,7 @@ def build(stage: Stage) -> None:
             "security guard",
             "security guard with a torch",
             _guard,
-            _loop([(-7.0, -29.0), (-7.0, -13.0), (-9.6, -11.0), (-9.6, -26.0)], 1.25),
+            closed_loop([(-7.0, -29.0), (-7.0, -13.0), (-9.6, -11.0), (-9.6, -26.0)], 1.25),
             60.0,
             {"top": "navy", "holding": "torch", "state": "walking"},
             stride_m=1.32,
@@ -107,12 +109,3 @@ def build(stage: Stage) -> None:
     for actor in stage.actors:
         if actor.id in ("moving-guard-01", "moving-forklift-01"):
             actor.period_s = actor.waypoints[-1][0]
-
-
-def _loop(corners: list[tuple[float, float]], speed_mps: float) -> list[tuple[float, float, float, float]]:
-    """A closed way through the corners at an even speed."""
-    way, t = [(0.0, *corners[0], 0.0)], 0.0
-    for (x0, y0), (x1, y1) in zip(corners, corners[1:] + corners[:1], strict=True):
-        t += ((x1 - x0) ** 2 + (y1 - y0) ** 2) ** 0.5 / speed_mps
-        way.append((t, x1, y1, 0.0))
-    return way

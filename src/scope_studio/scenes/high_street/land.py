@@ -1,4 +1,4 @@
-"""High street: roads, footways and their paint, the houses that close every direction, trees behind the roofs."""
+"""High street: roads, footways and their paint, houses that close the view in every direction, trees behind the roofs."""
 
 from __future__ import annotations
 
@@ -29,10 +29,11 @@ from scope_studio.scenes.high_street.plan import (
 )
 
 END_X = 84.0
-"""Where the cross streets are closed by a house."""
+"""Where a house closes each cross street."""
 
 
 def build(stage: Stage) -> None:
+    """Place ground, houses and trees."""
     stage.put(wet_street.carriageway(260.0, _gutters()), (0, 0, 0))
     for colour, bars in _paint().items():
         stage.put(wet_street.markings(bars, colour), (0, 0, 0))
@@ -102,7 +103,7 @@ def _blocks() -> list[list[tuple[float, float]]]:
 
 
 def _corner(x: float, y: float, radius: float, start_deg: float) -> list[tuple[float, float]]:
-    """A quarter circle that rounds the corner (x, y) of a convex outline, anticlockwise from ``start_deg``."""
+    """Return a quarter circle that rounds the corner (x, y) of a convex outline, anticlockwise from ``start_deg``."""
     cx = x - radius if start_deg in (270, 0) else x + radius
     cy = y + radius if start_deg in (270, 180) else y - radius
     angles = [math.radians(start_deg + 90 * k / 8) for k in range(9)]
@@ -110,7 +111,7 @@ def _corner(x: float, y: float, radius: float, start_deg: float) -> list[tuple[f
 
 
 def _zigzags(stage: Stage) -> None:
-    """The zebra's white zigzag lines at both kerbs, and the words BUS STOP on the road."""
+    """Place the white zigzag lines of the zebra crossing at both kerbs, and the words BUS STOP on the road."""
     s = Solid("zigzags")
     white = wet_street.road_paint("white")
     for x in (WEST_KERB + 0.62, 0.0, EAST_KERB - 0.55):
@@ -147,7 +148,7 @@ DOORS = ("green", "blue", "black", "dark green", "navy", "white")
 
 
 def _cross_streets(stage: Stage) -> None:
-    """Terraced houses along Church Road and Mill Lane, as linked copies of six."""
+    """Place terraced houses along Church Road and Mill Lane, as linked copies of six."""
     row = _Row(stage)
     for sign in (1, -1):
         far_bearing, near_bearing = (180.0, 0.0) if sign > 0 else (0.0, 180.0)
@@ -162,7 +163,7 @@ def _cross_streets(stage: Stage) -> None:
 
 
 class _Row:
-    """Places houses, copying each prototype after its first use."""
+    """Places houses, as linked copies after the first use of each prototype."""
 
     def __init__(self, stage: Stage) -> None:
         self._stage = stage
@@ -171,7 +172,7 @@ class _Row:
         self._count = 0
 
     def run(self, start: float, side: int, stop: float, y: float, bearing: float, *, seed: int) -> None:
-        """Houses from x = ``start`` outwards to ``side`` until ``stop``."""
+        """Place houses from x = ``start`` outwards in direction ``side`` until ``stop``."""
         order = random.Random(f"row {seed}")
         x, last = start, -1
         while abs(x) < stop:
@@ -182,6 +183,7 @@ class _Row:
             x += side * width
 
     def house(self, plot: Plot, pick: int | None = None) -> None:
+        """Place the house number ``pick`` on a plot."""
         pick = self._count % len(HOUSES) if pick is None else pick
         spec = HOUSES[pick]
         built = self._moulds[pick].copy() if pick in self._moulds else self._moulds.setdefault(pick, terrace(spec))
@@ -203,7 +205,7 @@ class _Row:
 
 
 def _town_hall(stage: Stage) -> None:
-    """The town hall that closes the street in the north, with its clock tower."""
+    """Place the town hall, with its clock tower, at the northern end of the street."""
     spec = Terrace(14.0, ("stone", "honey"), 3, 5, parapet=True, bars=2, shop=False, seed=41, lit=frozenset({(1, 2), (0, 0)}))
     plot = Plot(1.0, FAR_FRONT - 0.3, 180.0)
     hall = stage.place(
@@ -234,7 +236,7 @@ def _town_hall(stage: Stage) -> None:
 
 
 def _gables(stage: Stage) -> None:
-    """Old painted advertisements on the gable walls at Church Road, and what stands along the cross streets."""
+    """Place faded painted advertisements on the gable walls at Church Road, and the furniture of the cross streets."""
     for x, lines, ink in (
         (-11.9, ("OAKES HARDWARE", "HOME AND GARDEN", "SINCE 1888"), "cream"),
         (14.1, ("DRINK", "FENWICK TEA", "FULL WEIGHT"), "navy"),
@@ -260,7 +262,7 @@ def _gables(stage: Stage) -> None:
 
 
 def _behind(stage: Stage) -> None:
-    """Trees over the back gardens, hedges at the ends of the streets, the land beyond."""
+    """Place trees over the back gardens, hedges at the ends of the streets, and the land beyond."""
     rng = random.Random("behind")
     species = (vegetation.OAK, vegetation.LIME, vegetation.COPPER, vegetation.BIRCH, vegetation.POPLAR)
     prototypes = [vegetation.tree(sp, 60 + k, detail=0.16) for k, sp in enumerate(species)]

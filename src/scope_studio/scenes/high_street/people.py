@@ -32,6 +32,7 @@ STANDING: tuple[tuple[float, float, float, str, int, str | None, str], ...] = (
 
 
 def build(stage: Stage) -> None:
+    """Place people, dogs and pigeons."""
     _walkers(stage)
     _pairs(stage)
     _sitters(stage)
@@ -132,7 +133,7 @@ def _sitters(stage: Stage) -> None:
 
 
 def _indoors(stage: Stage) -> None:
-    """Shopkeepers and customers behind glass."""
+    """Place shopkeepers and customers behind glass."""
     for number, x, y, bearing, seed, who in (
         (3, 1.4, -1.6, 0, 81, "butcher"), (9, -1.6, -1.7, 10, 82, "baker"), (6, -1.0, -1.5, 30, 83, "hairdresser"), (5, 1.8,
         -1.4, -20, 84, "customer"),

@@ -1,4 +1,4 @@
-"""High street: the two rows of shops, front by front."""
+"""High street: the two rows of shops."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ from scope_studio.scenes.high_street.plan import EAST_FRONT, ROW_END, WEST_FRONT
 
 @dataclass(frozen=True)
 class Shop:
-    """One house of the rows. ``noun`` is what a person calls the shop; "" makes it a dwelling with a front door."""
+    """One house of the rows.
+
+    ``noun`` is what a person calls the shop; an empty string makes it a dwelling with a front door.
+    """
 
     number: int
     width_m: float
@@ -111,7 +114,7 @@ EAST: tuple[Shop, ...] = (
 
 
 def plots() -> dict[int, Plot]:
-    """The plot of each house number."""
+    """Return the plot of each house number."""
     made: dict[int, Plot] = {}
     for row, x, bearing in ((WEST, WEST_FRONT, 90.0), (EAST, EAST_FRONT, 270.0)):
         y = -ROW_END
@@ -122,11 +125,16 @@ def plots() -> dict[int, Plot]:
 
 
 def door_x(shop: Shop) -> float:
+    """Return the x of the door's middle in the frame of the shop front."""
     return shop.door_side * (shop.width_m - 2.0)
 
 
 def build(stage: Stage) -> dict[int, str]:
-    """Both rows; returns the instance id of each number's shop (or of the house)."""
+    """Place both rows.
+
+    Returns:
+        The instance id of each number's shop or house.
+    """
     where = plots()
     return {shop.number: _house(stage, shop, where[shop.number]) for shop in (*WEST, *EAST)}
 
@@ -195,7 +203,7 @@ def _front(stage: Stage, shop: Shop, plot: Plot, building: str) -> str:
 
 
 def _notices(stage: Stage, shop: Shop, plot: Plot, ident: str) -> None:
-    """The open or closed sign on the door, and the card of opening hours beside it."""
+    """Place the open or closed sign on the door, and the card with opening hours beside it."""
     bearing = plot.bearing_deg
     if shop.open is not None:
         word, tint = ("OPEN", "green") if shop.open else ("CLOSED", "red")

@@ -1,4 +1,4 @@
-"""Highway works: everything that grows, and the fences among it."""
+"""Highway works: trees, hedges and grass, and the fences among them."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from scope_studio.scenes.highway_works.land import ROAD, Height
 
 
 def build(stage: Stage) -> None:
+    """Place all plants."""
     height = terrain.hills(ROAD)
     _near_trees(stage, height)
     _boundaries(stage, height)
@@ -86,7 +87,7 @@ def _near_trees(stage: Stage, height: Height) -> None:
 
 
 def _boundaries(stage: Stage, height: Height) -> None:
-    """Timber fences along the highway boundary, hedges behind them. Unannotated: they run on for ever."""
+    """Place timber fences along the highway boundary and hedges behind them. They have no visible ends and are not annotated."""
     fence = structures.post_and_rail(9.0)
     first = True
     for x, spans in ((27.5, ((-190, 64), (106, 190))), (-21.2, ((106, 190), (-190, -50)))):
@@ -124,7 +125,7 @@ def _boundaries(stage: Stage, height: Height) -> None:
 
 
 def _countryside(stage: Stage, height: Height) -> None:
-    """Woods that close the road's vanishing points, hedgerow trees in the fields, woods on the hills."""
+    """Place woods at the road's vanishing points and on the hills, and hedgerow trees in the fields."""
     rng = random.Random("countryside")
     species = (vegetation.OAK, vegetation.LIME, vegetation.POPLAR, vegetation.PINE, vegetation.COPPER)
     far = [vegetation.tree(sp, 7 + k, detail=0.14) for k, sp in enumerate(species)] + [
@@ -180,7 +181,7 @@ def _countryside(stage: Stage, height: Height) -> None:
 
 
 def _grass(stage: Stage) -> None:
-    """Real blades wherever a camera can look closely: the verges near both viewpoints."""
+    """Place grass blades where a camera can look closely: on the verges near the viewpoints."""
     rng = random.Random("grass")
     long = [vegetation.grass_patch(2.0, blades=1500, height_m=0.17, seed=k, flowers=4 * (k == 0)) for k in range(3)]
     mown = [vegetation.grass_patch(2.0, blades=1700, height_m=0.075, seed=10 + k) for k in range(2)]

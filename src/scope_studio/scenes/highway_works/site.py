@@ -15,16 +15,20 @@ from scope_studio.scenes.highway_works.land import COMPOUND
 
 GATE_X = -33.0
 LINE_X = -9.3
-"""The line of cones and barriers between the works and the traffic."""
+"""Line of cones and barriers between the works and the traffic."""
 
 TAPER = [(-15.1 + 5.8 * k / 9, -79.0 + 4.2 * k) for k in range(10)]
 CONES = [(LINE_X, y) for y in (-35.0, -28.5, -22.0, -15.5, -9.0, -2.5, 7.2, 10.8, 27.0, 31.0)]
 RESERVE_CONES = [(-1.72, y) for y in (9.2, 11.3, 13.5)]
-"""Cones beside the works, and by a damaged guardrail. From the mast, steps of 15 degrees to the right from the highway preset
-bring in two, four and seven of them, none near the edge of a frame or half hidden."""
+"""Cones on the central reserve, beside the works and a damaged guardrail.
+
+Seen from the mast, pan steps of 15 degrees to the right from the preset "highway" show two, four and seven of them. None of
+them is near the edge of a frame or half hidden.
+"""
 
 
 def build(stage: Stage) -> None:
+    """Place the works and the compound."""
     _cones(stage)
     _barriers(stage)
     _machines(stage)
@@ -139,7 +143,7 @@ def _crew(stage: Stage) -> None:
 
 
 def _fence(stage: Stage) -> None:
-    """Mesh panels round the compound, with a gap for the gate in the north side."""
+    """Place mesh panels around the compound, with a gap for the gate in the north side."""
     prototypes = Prototypes()
     width = FENCE_PANEL_M[0] + 0.06
     west, east, south, north = COMPOUND

@@ -1,23 +1,24 @@
-"""Highway works: traffic in the open lanes, vehicles parked at the works and in the freight yard, and what moves."""
+"""Highway works: vehicles in the open lanes, at the works and in the freight yard, and all moving actors."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
+from scope_studio.kit.core.paths import closed_loop
 from scope_studio.kit.core.stage import ActorPath, Built, Stage
 from scope_studio.kit.people import characters
 from scope_studio.kit.vehicles import cars, coach, lorries
 
 LANE_1, LANE_2, LANE_3 = 10.75, 7.25, 3.75
-"""Distances of the lane centres from the middle of the road. The moving vehicles have a lane to themselves on either side."""
+"""Distances of the lane centres from the middle of the road. In both directions, moving vehicles have one lane of their own."""
 
 FIRST_ACTOR = 9001
-"""Number of the first actor in the ID layer: far above those of the instances."""
+"""Number of the first actor in the instance-number layer, far above the numbers of the instances."""
 
 Car = Callable[..., Built]
 
 CARS: list[tuple[Car, str, str, float, float]] = [
-    # northbound, lane 3 (and lane 1 before the taper); lane 2 belongs to the moving car
+    # northbound, lane 3 (and lane 1 before the taper); lane 2 is for the moving car
     (cars.hatchback, "red", "KV19 RTO", -LANE_3, 38.5),
     (cars.saloon, "silver", "MB68 WLN", -LANE_3, 21.0),
     (cars.suv, "black", "OE21 HXD", -LANE_3, 66.0),
@@ -39,6 +40,7 @@ NOUNS: dict[Car, str] = {cars.saloon: "saloon", cars.hatchback: "hatchback", car
 
 
 def build(stage: Stage) -> None:
+    """Place the standing vehicles and add the actors with their paths."""
     _cars(stage)
     _heavy(stage)
     _yard(stage)
@@ -47,7 +49,7 @@ def build(stage: Stage) -> None:
 
 
 def _course(x: float) -> tuple[float, dict[str, str | int]]:
-    """Bearing and attributes of a vehicle driving at ``x``."""
+    """Return bearing and attributes of a vehicle driving at ``x``."""
     lane = 1 + round((LANE_1 - abs(x)) / 3.5)
     heading = "north" if x < 0 else "south"
     return (0.0 if x < 0 else 180.0), {"state": "moving", "facing": heading, "lane": lane, "carriageway": f"{heading}bound"}
@@ -141,7 +143,7 @@ def _heavy(stage: Stage) -> None:
 
 
 def _yard(stage: Stage) -> None:
-    """Staff cars nosed up to the bays, lorries backed on to the docks."""
+    """Place staff cars in their bays, and lorries at the docks."""
     bays = [
         (cars.hatchback, "white", "YT14 BNA", -31.2),
         (cars.saloon, "red", "LO12 FKS", -26.0),
@@ -274,7 +276,7 @@ def _actors(stage: Stage) -> None:
             "worker",
             "walking worker",
             lambda phase: characters.worker(vest="yellow", helmet="blue", trousers="navy", pose="walk", phase=phase, seed=71),
-            _loop([(-13.2, -1.0), (-13.2, 16.6), (-9.95, 17.2), (-9.95, 22.0), (-13.2, 23.4)], 1.3),
+            closed_loop([(-13.2, -1.0), (-13.2, 16.6), (-9.95, 17.2), (-9.95, 22.0), (-13.2, 23.4)], 1.3),
             41.0,
             {"vest": "yellow", "helmet": "blue", "state": "walking", "area": "works"},
             stride_m=1.32,
@@ -283,12 +285,3 @@ def _actors(stage: Stage) -> None:
     for actor in stage.actors:
         if actor.stride_m:
             actor.period_s = actor.waypoints[-1][0]
-
-
-def _loop(corners: list[tuple[float, float]], speed_mps: float) -> list[tuple[float, float, float, float]]:
-    """A closed walk through the corners at an even speed."""
-    way, t = [(0.0, *corners[0], 0.0)], 0.0
-    for (x0, y0), (x1, y1) in zip(corners, corners[1:] + corners[:1], strict=True):
-        t += ((x1 - x0) ** 2 + (y1 - y0) ** 2) ** 0.5 / speed_mps
-        way.append((t, x1, y1, 0.0))
-    return way

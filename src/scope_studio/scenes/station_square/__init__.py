@@ -1,4 +1,4 @@
-"""Scene "station-square": the forecourt of a town's railway station on a market morning."""
+"""Station square: the forecourt of a town's railway station on a market morning."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ ABSENT = (
     "train",
     "tent",
 )
-"""Things that a person might ask for and that are not there."""
+"""Things that a person might ask for but that are not in the scene."""
 
 
 def build(stage: Stage) -> None:
-    """Build the whole scene in an empty Blender file and fill in the stage."""
-    stage.start_s = 27.0  # the cyclist, the traveller and the dog are in the home view then
+    """Build the whole scene in an empty Blender file and fill the stage."""
+    stage.start_s = 27.0  # the cyclist, the traveller and the dog are in the home view at that time
     sky.setup(
         bpy.context.scene, sun_bearing_deg=128.0, sun_elevation_deg=31.0, sun_strength=5.6, sky_strength=0.72, cloud_cover=0.25
     )
@@ -51,7 +51,7 @@ def build(stage: Stage) -> None:
     market.build(stage)
     people.build(stage)
     ground.build(stage)
-    beyond.build(stage)  # last: everything else slows down with each object that the file already holds
+    beyond.build(stage)  # last, because building is slower the more objects the file holds
     _cameras(stage)
     stage.absent = list(ABSENT)
     stage.finish = sky.finish_materials

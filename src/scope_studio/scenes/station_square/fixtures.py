@@ -1,4 +1,4 @@
-"""Station square: the fountain, what stands on the paving, signs, the tram stop."""
+"""Station square: the fountain, street furniture, signs, and the tram stop."""
 
 from __future__ import annotations
 
@@ -40,6 +40,7 @@ TREES = [
 
 
 def build(stage: Stage) -> None:
+    """Place everything that is fixed in the square."""
     prototypes = Prototypes()
     _fountain(stage)
     _seats_and_bins(stage, prototypes)
@@ -96,7 +97,7 @@ def _seats_and_bins(stage: Stage, prototypes: Prototypes) -> None:
 
 
 def _rows(stage: Stage, prototypes: Prototypes) -> None:
-    """Bollards, planters, lanterns."""
+    """Place bollards, planters and lanterns."""
     for k in range(12):
         stage.place(
             prototypes.get("bollard", roadside.bollard),

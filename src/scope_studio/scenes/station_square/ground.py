@@ -1,4 +1,4 @@
-"""Station square: paving, carriageways, tram tracks, covers, and the country round the town."""
+"""Station square: paving, carriageways, tram tracks, covers, and the country around the town."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scope_studio.kit.furniture import roadside
 from scope_studio.kit.ground import paving
 
 ROAD_M = -0.10
-"""Height of the carriageways; the square and the pavements are at 0."""
+"""Height of the carriageways. The square and the pavements are at 0."""
 SQUARE = (-36.0, 23.5, -11.8, 40.0)
 APPROACH = (23.5, 32.5)
 STREET = (-25.5, -11.8)
@@ -22,6 +22,7 @@ TRACKS = (-14.0, -17.4)
 
 
 def build(stage: Stage) -> None:
+    """Place paving, tracks, covers and the land beyond."""
     _surfaces(stage)
     _tracks(stage)
     _covers(stage)
@@ -87,7 +88,7 @@ def _covers(stage: Stage) -> None:
 
 
 def _hills() -> None:
-    """Farmland out to wooded hills; a ring mesh, so that no direction ends."""
+    """Create farmland that rises to wooded hills: a ring mesh that closes the view in every direction."""
     s = Shader("far country")
     p = s.position()
     fields = s.voronoi(s.scaled(p, (0.006, 0.0085, 0.0)), 1.0, output="Color")

@@ -1,4 +1,4 @@
-"""Station square: bicycles, luggage left standing, trees, pigeons."""
+"""Station square: bicycles, luggage, trees, pigeons."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from scope_studio.scenes.station_square.fixtures import PLATFORM_TOP_M, TREES
 
 
 def build(stage: Stage) -> None:
+    """Place bicycles, luggage, trees and pigeons."""
     prototypes = Prototypes()
     _bicycles(stage, prototypes)
     _luggage(stage)

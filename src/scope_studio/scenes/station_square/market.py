@@ -1,4 +1,4 @@
-"""Station square: the market stalls with what they sell, and the café's terrace."""
+"""Station square: the market stalls with their goods, and the café's terrace."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from scope_studio.kit.core.stage import Stage
 from scope_studio.kit.furniture import cafe, stalls
 
 FACING = 150.0
-"""Bearing that the stalls' fronts face."""
+"""Bearing that the fronts of the stalls face."""
 
 Goods = tuple[str, str | None]
-"""What a crate holds, and the text of its price card (lines split at the newline)."""
+"""Contents of a crate, and the text of its price card (lines split at the newline)."""
 
 Stall = tuple[str, tuple[str, ...], tuple[float, float], list[Goods]]
 
@@ -108,12 +108,16 @@ TERRACE_COLUMNS = (-32.2, -28.9)
 
 
 def spot(place: tuple[float, float], right: float, out: float, bearing: float = FACING) -> tuple[float, float]:
-    """World position ``right`` metres to the reader's right along a front and ``out`` before its middle."""
+    """Return the world position of a point at a front.
+
+    ``right`` is measured to the reader's right along the front, ``out`` in front of it (m).
+    """
     b = math.radians(bearing)
     return place[0] - right * math.cos(b) + out * math.sin(b), place[1] + right * math.sin(b) + out * math.cos(b)
 
 
 def build(stage: Stage) -> None:
+    """Place the stalls and the terrace."""
     prototypes = Prototypes()
     for sign, canvas, place, goods in STALLS:
         _stall(stage, prototypes, sign, canvas, place, goods)
@@ -247,7 +251,7 @@ def _carts(stage: Stage, prototypes: Prototypes) -> None:
 
 
 def _terrace(stage: Stage, prototypes: Prototypes) -> None:
-    """Eight tables in two files, three chairs at each, parasols between."""
+    """Place eight tables in two columns, with three chairs each, and parasols between them."""
     rng = random.Random("terrace")
     taken = {(0, 0, 0), (0, 0, 1), (1, 0, 2), (0, 1, 1), (1, 2, 0), (1, 2, 1), (0, 3, 0), (1, 3, 2), (1, 3, 0)}
     for row, y in enumerate(TERRACE_ROWS):
@@ -307,7 +311,7 @@ def _terrace(stage: Stage, prototypes: Prototypes) -> None:
 
 
 def seat_place(column: int, row: int, seat: int) -> tuple[tuple[float, float], float]:
-    """Where a chair of the terrace stands, and the bearing that its sitter looks along."""
+    """Return the position of a chair of the terrace, and the bearing that its sitter faces."""
     x, y = TERRACE_COLUMNS[column], TERRACE_ROWS[row]
     towards = (20.0, 140.0, 260.0)[seat] + 25.0 * ((row + column) % 2)
     b = math.radians(towards)

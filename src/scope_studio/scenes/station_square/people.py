@@ -1,4 +1,4 @@
-"""Station square: vendors, customers, travellers, people at café tables and on benches; and those who walk about."""
+"""Station square: vendors, customers, travellers, people at café tables and on benches, and walking people."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from scope_studio.scenes.station_square.fixtures import BENCHES, PLATFORM_TOP_M
 from scope_studio.scenes.station_square.market import FACING, STALLS, seat_place, spot
 
 TRAIL: tuple[float, float, float] = (0.24, -0.16, 0.86)
-"""Where a walker's right hand holds the handle of a case that rolls behind."""
+"""Position of a walker's right hand on the handle of a case that rolls behind."""
 
 VENDORS = ["white", "green", "dark green", "purple", "navy", "cream", "brown", "red"]
 CUSTOMERS: list[tuple[int, float, float, str, str, str | None]] = [
@@ -23,7 +23,7 @@ CUSTOMERS: list[tuple[int, float, float, str, str, str | None]] = [
     (5, -0.3, 1.7, "green", "stand", "bag"), (6, 0.8, 1.7, "light blue", "point", None), (7, 0.0, 1.9, "black", "stand", None),
     (7, 0.9, 2.3, "orange", "stand", None),
 ]  # fmt: skip
-"""Stall, place before it (right, out), coat, pose, what is held."""
+"""Stall, place in front of it (right, out), coat, pose, what is held."""
 
 STROLLERS: list[tuple[float, float, float, str, str, str | None, str]] = [
     (3.3, 22.6, 160, "navy", "stand", None, "waiting by the station"),
@@ -60,6 +60,7 @@ SITTERS: list[tuple[int, int, int, str, str]] = [
 
 
 def build(stage: Stage) -> None:
+    """Place the people and add the actors with their paths."""
     _market(stage)
     _strollers(stage)
     _sitters(stage)
@@ -137,7 +138,7 @@ def _sitters(stage: Stage) -> None:
 
 
 def _companions(stage: Stage) -> None:
-    """A man with a dog on a lead, a woman with a pram, two travellers with cases."""
+    """Place a man with a dog on a lead, a woman with a pram, and two travellers with cases."""
     _person(
         stage, (5.6, 3.2, 0), 140, "dog walker in grey", "grey", 460, stance=stances.leading(None, seed=3), activity="walking a dog"
     )
@@ -158,7 +159,7 @@ def _companions(stage: Stage) -> None:
 
 
 def _free_walk(phase: float) -> Pose:
-    """A walk whose right hand is free to hold."""
+    """Return a walk whose right hand is free to hold something."""
     return replace(walking(phase), twist=0.0)
 
 
@@ -170,7 +171,7 @@ def _with_case(phase: float) -> Built:
 
 
 def _walkers() -> list[ActorPath]:
-    """A traveller from the station to the western passage, a passer-by to the trains, and a dog that trots about alone."""
+    """Return the actors: a traveller from the station, a passer-by on the way to the trains, and a dog that trots alone."""
     traveller = [(0.4, 31.5), (0.3, 24.0), (-3.6, 19.6), (-14.0, 16.4), (-24.0, 17.4), (-31.0, 18.8), (-37.0, 18.9), (-42.0, 19.0)]
     commuter = [
         (47.5, 6.0),

@@ -1,4 +1,4 @@
-"""Station square: the station, and the buildings round the square with their shops."""
+"""Station square: the station, and the buildings around the square with their shops."""
 
 from __future__ import annotations
 
@@ -27,6 +27,7 @@ DEPARTURES = [
 
 
 def build(stage: Stage) -> None:
+    """Place the station and the buildings."""
     _station(stage)
     _rows(stage)
 
@@ -61,6 +62,7 @@ def _station(stage: Stage) -> None:
 
 
 def walls() -> dict[str, bpy.types.Material]:
+    """Return the wall materials by colour name."""
     return {
         "cream": wall_materials.stucco("stucco cream", (0.58, 0.50, 0.36)),
         "white": wall_materials.stucco("stucco white", (0.64, 0.62, 0.57)),
@@ -95,7 +97,10 @@ def _house(stage: Stage, h: House, place: tuple[float, float, float], colour: st
 
 
 def _local(place: tuple[float, float, float], right: float, out: float) -> tuple[float, float]:
-    """World position of a point ``right`` metres to a reader's right along a front and ``out`` before it."""
+    """Return the world position of a point at a front.
+
+    ``right`` is measured to the reader's right along the front, ``out`` in front of it (m).
+    """
     x, y, bearing = place
     b = math.radians(bearing)
     return x - right * math.cos(b) + out * math.sin(b), y + right * math.sin(b) + out * math.cos(b)
@@ -120,7 +125,7 @@ def shop(
     awning_open: bool = True,
     seed: int = 0,
 ) -> None:
-    """A shop front with its sign, door and awning, each an instance, before the house at ``place``."""
+    """Place a shop front with its sign, door and awning, each an instance, in front of the house at ``place``."""
     bearing = place[2]
     x, y = _local(place, 0.0, 0.0)
     front = stage.place(

@@ -1,4 +1,4 @@
-"""Station square: the standing tram, taxis, parked vehicles, and the vehicles that move."""
+"""Station square: the standing tram, taxis, parked vehicles, and the moving vehicles."""
 
 from __future__ import annotations
 
@@ -39,6 +39,7 @@ DOWN_THE_STREET: list[tuple[Callable[..., Built], str, str, str, float]] = [
 
 
 def build(stage: Stage) -> None:
+    """Place the standing vehicles. ``actors`` returns the moving ones."""
     _tram(stage)
     _taxis(stage)
     _parked(stage)
@@ -62,7 +63,7 @@ def _tram(stage: Stage) -> None:
 
 
 def taxi_sign(lit: bool) -> Built:
-    """The sign on a cab's roof."""
+    """Build the sign for the roof of a taxi."""
     s = Solid("taxi sign")
     s.box((0.62, 0.16, 0.19), (0, 0, 0.10), glow("yellow", 1.3) if lit else paint("cream", dirt=0.1, roughness=0.3), 0.03)
     for facing, y in (("+Y", 0.0815), ("-Y", -0.0815)):
@@ -140,18 +141,18 @@ def _parked(stage: Stage) -> None:
 
 
 def _bend(centre: tuple[float, float], radius: float, start: float, stop: float, steps: int = 7) -> list[tuple[float, float]]:
-    """Points of an arc; bearings in degrees clockwise from north."""
+    """Return the points of an arc. Bearings are in degrees clockwise from north."""
     angles = [math.radians(start + (stop - start) * k / steps) for k in range(steps + 1)]
     return [(centre[0] + radius * math.sin(a), centre[1] + radius * math.cos(a)) for a in angles]
 
 
 def _ground(x: float, y: float) -> float:
-    """Height of the paving there: carriageways lie lower."""
+    """Return the height of the paving. Carriageways lie lower."""
     return ROAD_M if y < -11.9 or 23.6 < x < 32.4 else 0.0
 
 
 def timed(corners: list[tuple[float, float]], speed_mps: float, start_s: float = 0.0) -> list[tuple[float, float, float, float]]:
-    """Way points at an even speed, on the ground."""
+    """Return way points (t_s, x, y, z) at constant speed, on the ground."""
     way, t = [(start_s, *corners[0], _ground(*corners[0]))], start_s
     for (x0, y0), (x1, y1) in pairwise(corners):
         t += math.hypot(x1 - x0, y1 - y0) / speed_mps
@@ -175,7 +176,7 @@ def _rider() -> Built:
 
 
 def actors() -> list[ActorPath]:
-    """The taxi that passes along the street, and the cyclist who crosses the square."""
+    """Return the taxi that passes along the street, and the cyclist who crosses the square."""
     taxi = [
         (-40.2, -58.0),
         (-40.2, -28.0),
