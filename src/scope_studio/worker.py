@@ -6,32 +6,32 @@ It is run by its path, with Blender's own Python or as ``blender --background --
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import os
 import sys
 import traceback
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 MARK = "@scope "
 
 
 def adopt_packages() -> None:
-    """Make ``scope_ptz`` and ``scope_studio`` importable by their location.
+    """Make ``scope_studio`` and ``scope_ptz`` importable by their location.
 
-    The folder that contains them is not put on the path: it may hold another NumPy, for example. ``scope_ptz`` is only needed
-    for its pure ``geometry`` package.
+    The folder that contains them is not put on the path, because it may hold another NumPy, for example. Their ``__init__``
+    modules are not run: ``scope_ptz`` imports packages there that Blender's Python does not have, and only its pure
+    ``geometry`` package is needed here.
     """
-    for name in ("scope_ptz", "scope_studio"):
+    for name in ("scope_studio", "scope_ptz"):
         home = Path(__file__).resolve().parents[1] / name
-        spec = importlib.util.spec_from_file_location(name, home / "__init__.py", submodule_search_locations=[str(home)])
-        if spec is None or spec.loader is None:
+        if not home.is_dir():
             raise ImportError(f"no package at {home}")
-        module = importlib.util.module_from_spec(spec)
+        module = ModuleType(name)
+        module.__path__ = [str(home)]
         sys.modules[name] = module
-        spec.loader.exec_module(module)
 
 
 class Channel:

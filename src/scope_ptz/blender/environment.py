@@ -11,6 +11,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+from scope_ptz.blender.sources import studio_folder
 from scope_ptz.errors import BlenderError
 
 BPY_VERSION = "5.0.1"
@@ -25,7 +26,7 @@ def worker_command(cache_dir: Path, blender_python: Path | None = None) -> list[
     ``blender_python`` is the user's choice: a Python that can import ``bpy``, or the ``blender`` program itself. Without it the
     environment under ``cache_dir`` is used, and made first when it does not exist (a download of about 400 MB).
     """
-    script = str(Path(__file__).resolve().parents[2] / "scope_studio" / "worker.py")
+    script = str(studio_folder() / "worker.py")
     if blender_python is None:
         return [str(ensure_environment(cache_dir)), script]
     program = shutil.which(str(blender_python))
