@@ -52,7 +52,7 @@ class Studio:
         """Build a scene.
 
         Args:
-            source: name of a module in ``scope_studio.scenes`` (kebab-case), or path of a Python file.
+            source: Name of a module in ``scope_studio.scenes`` (kebab-case), or path of a Python file.
         """
         bpy.ops.wm.read_factory_settings(use_empty=True)
         bpy.context.preferences.filepaths.use_scripts_auto_execute = False

@@ -15,7 +15,7 @@ from scope_ptz.geometry.sphere import camera_axes
 from scope_studio.kit.core.stage import Viewpoint
 
 GPU_INTERFACES = ("OPTIX", "CUDA", "HIP", "METAL", "ONEAPI")
-"""In order of preference."""
+"""Compute interfaces in order of preference."""
 
 SKY_M = 1e9
 """Depths from this value on are sky: Cycles reports 1e10 where a ray hits nothing."""

@@ -1,4 +1,4 @@
-"""A yard with boxes, cones, a sign and a cart that drives by: enough of a scene to test the bake on, built in a moment."""
+"""A small yard with crates, cones, a sign and a moving cart. It builds quickly and has everything that a test bake needs."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ COLOURS = {"red": (0.6, 0.03, 0.02), "blue": (0.03, 0.1, 0.5), "white": (0.8, 0.
 
 
 def build(stage: Stage) -> None:
-    """Fill the stage."""
+    """Build the yard and fill the stage."""
     sky.setup(bpy.context.scene)
     rng = random.Random(5)
     _ground(stage)

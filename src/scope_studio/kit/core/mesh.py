@@ -134,8 +134,8 @@ def text(
     """Create flat lettering and its text mark.
 
     Args:
-        facing: direction towards the reader: "-Y", "+Y", "+X", "-X" or "+Z".
-        centre: middle of the block when ``align`` is "CENTER", its left edge when it is "LEFT".
+        facing: Direction towards the reader: "-Y", "+Y", "+X", "-X" or "+Z".
+        centre: Middle of the block when ``align`` is "CENTER", its left edge when it is "LEFT".
 
     The size in the mark is measured from the generated letters.
     """

@@ -14,7 +14,7 @@ class Prototypes:
         self._built: dict[str, Built] = {}
 
     def get(self, key: str, make: Callable[[], Built]) -> Built:
-        """Return the thing of this key: built by ``make`` on the first call, a linked copy on later calls."""
+        """Return the thing for this key: built by ``make`` on the first call, a linked copy on later calls."""
         if key in self._built:
             return self._built[key].copy()
         self._built[key] = make()

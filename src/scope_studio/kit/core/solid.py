@@ -237,7 +237,7 @@ class Solid:
         """Add one line of lettering towards ``facing``, with its exact text mark.
 
         Args:
-            centre: point at mid-height of the capitals; at the middle, left or right edge of the line, depending on ``align``.
+            centre: Point at mid-height of the capitals; at the middle, left or right edge of the line, depending on ``align``.
 
         Returns:
             Width and height of the letters in metres.

@@ -130,10 +130,11 @@ def _leave(*, skip: tuple[str, ...] = ()) -> None:
 
 
 class Stage:
-    """Collects what a scene module builds. Ids are ``category-NN`` in order of placement and never change afterwards.
+    """Collects the things that a scene module builds.
 
-    ``finish`` is the last step for materials, for example haze. It is called once after the scene is built, and again for each
-    moving thing that is built later; ``skip`` then names the materials that are finished already.
+    Ids are ``category-NN`` in order of placement and never change afterwards. ``finish`` is the last step for materials, for
+    example haze. It is called once after the scene is built, and again for each moving thing that is built later; ``skip`` then
+    names the materials that are finished already.
     """
 
     def __init__(self, name: str, title: str) -> None:
@@ -165,9 +166,9 @@ class Stage:
         """Place a built thing in the world and annotate it.
 
         Args:
-            name: the plain English noun phrase that a person would use ("white van").
-            attributes: facts worth asking about, such as colour, material, state ("open", "lit", "parked") or facing. Values
-        are short lower-case strings, numbers or booleans.
+            name: The plain English noun phrase that a person would use ("white van").
+            attributes: Facts worth asking about, such as colour, material, state ("open", "lit", "parked") or facing. Values
+                are short lower-case strings, numbers or booleans.
 
         Returns:
             The instance id.

@@ -118,7 +118,7 @@ def crease(
     """Return the skin displaced by folded noise, which looks like cloth.
 
     Args:
-        amount: metres, an array (n,) of metres, or a function of the points (n, 3) that returns either.
+        amount: Metres, an array (n,) of metres, or a function of the points (n, 3) that returns either.
     """
     points, faces = skin
     size = amount(points) if callable(amount) else amount

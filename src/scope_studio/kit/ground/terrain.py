@@ -17,7 +17,7 @@ def terrain(road: Carriageway, bare: Sequence[tuple[float, float, float, float]]
     """Build the land: flat beside the road, rolling fields beyond, hills at the horizon.
 
     Args:
-        bare: worn yards as (x0, x1, y0, y1) in metres.
+        bare: Worn yards as (x0, x1, y0, y1) in metres.
     """
     rings = [0.0, 20.0, 40.0, 60.0, 80.0, 100.0, 125.0, 150.0]
     while rings[-1] < extent_m:

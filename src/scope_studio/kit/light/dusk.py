@@ -128,8 +128,8 @@ def finish_materials(*, visibility_m: float = 1500.0, skip: tuple[str, ...] = ()
     """Finish the scene's materials: add evening haze, turn off unlit lamps, and sample no mesh as a lamp.
 
     Args:
-        visibility_m: distance at which 63% of a thing's light is replaced by haze.
-        skip: names of materials that stay as they are.
+        visibility_m: Distance at which 63% of a thing's light is replaced by haze.
+        skip: Names of materials that stay as they are.
     """
     for material in bpy.data.materials:
         if material.name in skip or material.node_tree is None:

@@ -101,8 +101,8 @@ def finish_materials(*, visibility_m: float = 3600.0, skip: tuple[str, ...] = ()
     """Finish the scene's materials: add aerial haze, and sample no mesh as a lamp, which would only add noise.
 
     Args:
-        visibility_m: distance at which 63% of a thing's light is replaced by haze.
-        skip: names of materials that stay as they are.
+        visibility_m: Distance at which 63% of a thing's light is replaced by haze.
+        skip: Names of materials that stay as they are.
     """
     for material in bpy.data.materials:
         if material.name in skip or material.node_tree is None:

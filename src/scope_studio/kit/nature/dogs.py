@@ -27,8 +27,8 @@ def dog(colour: str = "black", *, phase: float | None = None, lead_to: Point | N
     """Build a labrador-like dog facing +y, 0.55 m at the shoulder.
 
     Args:
-        phase: gait phase in [0, 1) of a walking dog; None for a standing one.
-        lead_to: position of the hand that holds the lead; None for no lead.
+        phase: Gait phase in [0, 1) of a walking dog; None for a standing one.
+        lead_to: Position of the hand that holds the lead; None for no lead.
     """
     s = Solid(f"{colour} dog")
     v = Volume()

@@ -207,10 +207,10 @@ def worker(
     """Build a road worker in a high-visibility vest ("orange" or "yellow").
 
     Args:
-        helmet: a colour, or None.
-        pose: stand, walk, point, carry, kneel, shovel, phone or clipboard.
-        holding: replaces what the pose holds by default.
-        stance: the caller's own pose, instead of a named one.
+        helmet: A colour, or None.
+        pose: "stand", "walk", "point", "carry", "kneel", "shovel", "phone" or "clipboard".
+        holding: Replaces what the pose holds by default.
+        stance: The caller's own pose, instead of a named one.
     """
     random = Random(f"worker {seed}")
     looks = _looks(random, None, 0.15)

@@ -57,10 +57,10 @@ def trunk(
     """Return the body of a garment, and the upright (rest) coordinates of its points.
 
     Args:
-        swell: distance of the cloth from the body (m).
-        low: height of the hem.
+        swell: Distance of the cloth from the body (m).
+        low: Height of the hem.
         neck: "collar", "hood" or None.
-        flare: extra looseness of the folds at the hem (m).
+        flare: Extra looseness of the folds at the hem (m).
     """
     upright = Joints(Matrix.Identity(4), Matrix.Identity(4), Matrix.Identity(4), [])
     v = Volume()
@@ -94,7 +94,7 @@ def trunk(
 def sleeves(joints: Joints, *, loose: float, seed: float) -> tuple[Skin, np.ndarray]:
     """Return both sleeves, and the distance of each point from the shoulder along the arm (m).
 
-    ``loose`` adds cloth (m).
+    ``loose`` is extra cloth (m).
     """
     v = Volume()
     for i in range(2):

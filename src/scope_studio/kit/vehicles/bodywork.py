@@ -55,8 +55,8 @@ def shell(
 
     Args:
         creases: (row, strength, first station, last station).
-        bulge: how far the front and rear ends bow outwards.
-        cutters: solids to subtract (wheel arches). The cut faces keep the material of the cutter.
+        bulge: How far the front and rear ends bow outwards.
+        cutters: Solids to subtract (wheel arches). The cut faces keep the material of the cutter.
     """
     bm = bmesh.new()
     crease = bm.edges.layers.float.new("crease_edge")

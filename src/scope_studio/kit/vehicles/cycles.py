@@ -60,9 +60,9 @@ def bicycle(
     """Build an upright bicycle heading +y.
 
     Args:
-        basket: add a wicker basket in front.
-        front_wheel: without it, the bicycle stands on its fork ends.
-        crank_deg: angle of the right pedal forward of the top.
+        basket: Add a wicker basket in front.
+        front_wheel: Without it, the bicycle stands on its fork ends.
+        crank_deg: Angle of the right pedal forward of the top.
     """
     s = Solid(f"{colour} bicycle")
     model, painted = KINDS[kind], paint(colour, dirt=0.12, roughness=0.25)

@@ -159,10 +159,10 @@ def excavator(
     """Build a 20-tonne tracked excavator with its tracks along y, 3.9 m long.
 
     Args:
-        boom_deg: elevation of the boom's foot.
-        stick_deg, bucket_deg: elevations of stick and bucket. Negative values point down; values below -90 point back towards
-    the cab.
-        slew_deg: rotation of the upper works, clockwise as seen from above.
+        boom_deg: Elevation of the boom's foot.
+        stick_deg, bucket_deg: Elevations of stick and bucket. Negative values point down; values below -90 point back towards
+            the cab.
+        slew_deg: Rotation of the upper works, clockwise as seen from above.
     """
     parts = Parts()
     parts.slot(pw.paint_slot())

@@ -70,8 +70,8 @@ def container(
     """Build one container.
 
     Args:
-        code: owner letters, serial number and check digit, lettered on the doors, both sides and the blind end.
-        livery: the owner's name in tall letters along the sides.
+        code: Owner letters, serial number and check digit, lettered on the doors, both sides and the blind end.
+        livery: The owner's name in tall letters along the sides.
         doors: "closed" or "open" (swung back along the sides).
         load: "cartons" or None.
     """

@@ -182,8 +182,8 @@ def notice(
     On a wall, its back is at y = 0 and its middle at z = 0. On posts, its lower edge is at ``post_height``.
 
     Args:
-        header: colour of a band at the top: "red", "yellow", "blue" or "green".
-        symbol: pictogram on the band: "warning", "forbidden", "flt", "camera", "people" or "bolt".
+        header: Colour of a band at the top: "red", "yellow", "blue" or "green".
+        symbol: Pictogram on the band: "warning", "forbidden", "flt", "camera", "people" or "bolt".
     """
     s = Solid("notice")
     width = max(extent(t, cap) for t in lines) + 2.2 * cap
