@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from scope_studio.kit.buildings import docks, warehouse
+from scope_studio.kit.buildings import docks, offices, warehouse
 from scope_studio.kit.core.stage import Stage
 from scope_studio.kit.light import dusk
 from scope_studio.kit.yard import lamps as yard_lamps
@@ -153,14 +153,14 @@ def _office(stage: Stage) -> None:
     wide, depth, tall = OFFICE_M
     columns = [-6.2, -3.7, -1.2, 1.3, 3.8, 6.3]
     openings = [(x - 0.8, x + 0.8, z - 0.7, z + 0.7) for x in columns for z in (1.8, 5.0) if not (x == 1.3 and z < 2)]
-    shell = warehouse.wing(width=wide, depth=depth, height=tall, openings=openings, colour=(0.46, 0.47, 0.48))
+    shell = offices.wing(width=wide, depth=depth, height=tall, openings=openings, colour=(0.46, 0.47, 0.48))
     office = stage.place(
         shell, "building", "two-storey office", (OFFICE_X, OFFICE_Y, 0), 180, colour="grey", kind="office", floors=2
     )
     lit = {(-6.2, 5.0), (-3.7, 1.8), (-1.2, 5.0), (3.8, 1.8), (3.8, 5.0), (6.3, 1.8), (-6.2, 1.8)}
     for n, (x, z) in enumerate((x, z) for x in columns for z in (1.8, 5.0) if not (x == 1.3 and z < 2)):
         on = (x, z) in lit
-        pane = warehouse.window(wide=1.6, tall=1.4, lit=on, blind=0.45 if n in (2, 7) else 0.0, seed=n)
+        pane = offices.window(wide=1.6, tall=1.4, lit=on, blind=0.45 if n in (2, 7) else 0.0, seed=n)
         stage.place(
             pane,
             "window",
@@ -172,7 +172,7 @@ def _office(stage: Stage) -> None:
             floor="upper" if z > 3 else "ground",
         )
     stage.place(
-        warehouse.door(),
+        offices.door(),
         "door",
         "glazed office door",
         (OFFICE_X - 1.3, OFFICE_Y, 0),
@@ -183,7 +183,7 @@ def _office(stage: Stage) -> None:
         lit="inside",
     )
     stage.place(
-        warehouse.door(glazed=False),
+        offices.door(glazed=False),
         "door",
         "blue staff door",
         (16.6, FRONT_Y, 0),

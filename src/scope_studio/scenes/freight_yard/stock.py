@@ -6,7 +6,7 @@ import random
 
 from scope_studio.kit.core.prototypes import Prototypes
 from scope_studio.kit.core.stage import Built, Stage
-from scope_studio.kit.works import barriers, equipment, materials
+from scope_studio.kit.works import barriers, equipment, materials, site_units
 from scope_studio.kit.yard import containers
 from scope_studio.kit.yard import goods as yard_goods
 from scope_studio.kit.yard import safety as yard_safety
@@ -168,8 +168,8 @@ def _goods(stage: Stage) -> None:
 def _gear(stage: Stage) -> None:
     rows: list[tuple[Built, str, str, float, float, float, dict[str, str]]] = [
         (yard_goods.gas_cage(), "gas cage", "cage of gas cylinders", 30.6, 27.6, 180, {"material": "steel", "state": "closed"}),
-        (equipment.skip("yellow"), "skip", "yellow skip", 45.0, 24.0, 95, {"colour": "yellow", "state": "full"}),
-        (equipment.skip("blue", full=False), "skip", "blue skip", 41.0, 26.2, 88, {"colour": "blue", "state": "empty"}),
+        (site_units.skip("yellow"), "skip", "yellow skip", 45.0, 24.0, 95, {"colour": "yellow", "state": "full"}),
+        (site_units.skip("blue", full=False), "skip", "blue skip", 41.0, 26.2, 88, {"colour": "blue", "state": "empty"}),
         (materials.cable_drum(1.6), "cable drum", "wooden cable drum", 39.2, 19.0, 30, {"material": "timber"}),
         (materials.cable_drum(1.2), "cable drum", "wooden cable drum", 37.6, 17.4, 75, {"material": "timber"}),
         (materials.pipe_stack("grey", length=5.0), "pipe stack", "stack of grey pipes", 44.5, 14.0, 10, {"colour": "grey"}),

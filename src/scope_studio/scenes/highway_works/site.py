@@ -9,8 +9,8 @@ from scope_studio.kit.core.prototypes import Prototypes
 from scope_studio.kit.core.stage import Built, Stage
 from scope_studio.kit.people import characters
 from scope_studio.kit.vehicles import excavator, machines
-from scope_studio.kit.works import barriers, equipment, materials
-from scope_studio.kit.works.barriers import FENCE_PANEL_M
+from scope_studio.kit.works import barriers, equipment, fencing, materials, site_units
+from scope_studio.kit.works.fencing import FENCE_PANEL_M
 from scope_studio.scenes.highway_works.land import COMPOUND
 
 GATE_X = -33.0
@@ -149,7 +149,7 @@ def _fence(stage: Stage) -> None:
     west, east, south, north = COMPOUND
 
     def panel(x: float, y: float, bearing: float, plate: tuple[str, ...] = ()) -> None:
-        built = prototypes.get("-".join(plate), lambda: barriers.mesh_fence_panel(plate))
+        built = prototypes.get("-".join(plate), lambda: fencing.mesh_fence_panel(plate))
         facts = {"plate": " ".join(plate).lower()} if plate else {}
         stage.place(built, "fence panel", "mesh fence panel", (x, y, 0), bearing, material="steel", **facts)
 
@@ -164,7 +164,7 @@ def _fence(stage: Stage) -> None:
     line(west, south, east, south, 0, {3: ("DANGER", "KEEP OUT")})
     line(west, north, GATE_X - 3.2, north, 180, {1: ("SITE TRAFFIC", "10 MPH")})
     line(GATE_X + 3.2, north, east, north, 180, {})
-    stage.place(barriers.gate(open=True), "gate", "site gate", (GATE_X, north, 0), 0, state="open", material="steel")
+    stage.place(fencing.gate(open=True), "gate", "site gate", (GATE_X, north, 0), 0, state="open", material="steel")
 
 
 def _compound(stage: Stage) -> None:
@@ -176,7 +176,7 @@ def _compound(stage: Stage) -> None:
     ):
         noun = colour.replace("light ", "")
         stage.place(
-            equipment.site_cabin(colour, text),
+            site_units.site_cabin(colour, text),
             "cabin",
             f"{noun} site cabin",
             (x, y, z),
@@ -187,7 +187,7 @@ def _compound(stage: Stage) -> None:
         )
     for colour, x, bearing in (("blue", -37.4, 140), ("green", -38.9, 150)):
         stage.place(
-            equipment.portable_toilet(colour),
+            site_units.portable_toilet(colour),
             "portable toilet",
             f"{colour} portable toilet",
             (x, 2.2, 0),
@@ -196,8 +196,8 @@ def _compound(stage: Stage) -> None:
             state="closed",
         )
     rows: list[tuple[Built, str, str, float, float, float, dict[str, str]]] = [
-        (equipment.skip("yellow"), "skip", "yellow skip", -28.0, -21.0, 70, {"colour": "yellow", "state": "full"}),
-        (equipment.skip("blue", full=False), "skip", "blue skip", -24.6, -18.2, 10, {"colour": "blue", "state": "empty"}),
+        (site_units.skip("yellow"), "skip", "yellow skip", -28.0, -21.0, 70, {"colour": "yellow", "state": "full"}),
+        (site_units.skip("blue", full=False), "skip", "blue skip", -24.6, -18.2, 10, {"colour": "blue", "state": "empty"}),
         (equipment.generator("green"), "generator", "green generator", -38.6, -19.0, 95, {"colour": "green"}),
         (
             equipment.light_tower(lit=False),

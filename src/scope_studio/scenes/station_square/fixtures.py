@@ -10,6 +10,7 @@ from scope_studio.kit.core.stage import Stage
 from scope_studio.kit.furniture import clocks, fountain, plaza, roadside, street
 from scope_studio.kit.ground import paving
 from scope_studio.kit.people import characters, luggage
+from scope_studio.kit.signs import town_signs
 from scope_studio.kit.vehicles import tram
 
 FOUNTAIN = (1.2, 6.2)
@@ -214,10 +215,10 @@ def _signs(stage: Stage) -> None:
         ("River Walk 600 m", 110.0),
         ("Station", 2.0),
     ]
-    stage.place(plaza.finger_post(fingers), "signpost", "wayfinding signpost", (0.8, -2.6, 0), 0, colour="green")
-    stage.place(plaza.map_board(), "map board", "town map board", (8.2, 9.0, 0), 196, colour="green")
+    stage.place(town_signs.finger_post(fingers), "signpost", "wayfinding signpost", (0.8, -2.6, 0), 0, colour="green")
+    stage.place(town_signs.map_board(), "map board", "town map board", (8.2, 9.0, 0), 196, colour="green")
     stage.place(
-        plaza.post_sign(["TAXIS", "RANK FOR 3 CABS"], background="blue"),
+        town_signs.post_sign(["TAXIS", "RANK FOR 3 CABS"], background="blue"),
         "sign",
         "taxi rank sign",
         (23.1, 9.4, 0),
@@ -225,7 +226,7 @@ def _signs(stage: Stage) -> None:
         colour="blue",
     )
     stage.place(
-        plaza.post_sign(["LOADING ONLY", "7 AM TO 11 AM"], background="white"),
+        town_signs.post_sign(["LOADING ONLY", "7 AM TO 11 AM"], background="white"),
         "sign",
         "loading sign",
         (33.4, 9.6, 0),
@@ -233,7 +234,7 @@ def _signs(stage: Stage) -> None:
         colour="white",
     )
     stage.place(
-        plaza.post_sign(["P", "30 MINUTES", "NO RETURN"], background="blue"),
+        town_signs.post_sign(["P", "30 MINUTES", "NO RETURN"], background="blue"),
         "sign",
         "parking sign",
         (33.4, -2.0, 0),
@@ -241,15 +242,15 @@ def _signs(stage: Stage) -> None:
         colour="blue",
     )
     stage.place(
-        plaza.post_sign(["CAR PARK", "84 SPACES"], background="blue", pointer="right"),
+        town_signs.post_sign(["CAR PARK", "84 SPACES"], background="blue", pointer="right"),
         "sign",
         "car park sign",
         (22.9, 21.8, 0),
         200,
         colour="blue",
     )
-    stage.place(plaza.no_entry(), "no entry sign", "no entry sign", (23.0, -11.5, 0), 205, colour="red")
-    stage.place(plaza.no_entry(), "no entry sign", "no entry sign", (-37.0, -25.9, 0), 20, colour="red")
+    stage.place(town_signs.no_entry(), "no entry sign", "no entry sign", (23.0, -11.5, 0), 205, colour="red")
+    stage.place(town_signs.no_entry(), "no entry sign", "no entry sign", (-37.0, -25.9, 0), 20, colour="red")
     for k, (x, lit) in enumerate(((-6.2, True), (-7.4, False))):
         facts = {"state": "working" if lit else "out of order", "screen": "lit" if lit else "unlit"}
         machine = stage.place(

@@ -7,7 +7,7 @@ import random
 
 from scope_studio.kit.core.prototypes import Prototypes
 from scope_studio.kit.core.stage import Stage
-from scope_studio.kit.furniture import cafe, stalls
+from scope_studio.kit.furniture import cafe, produce, stalls
 
 FACING = 150.0
 """Bearing that the fronts of the stalls face."""
@@ -134,13 +134,13 @@ def build(stage: Stage) -> None:
     )
     cx, cy = spot(EMPTY_STALL, 0.4, 0.5)
     stage.place(
-        stalls.price_card("BACK AT\nNOON", cap=0.09), "notice", "notice on the empty stall", (cx, cy, 0.82), FACING, parent=empty
+        produce.price_card("BACK AT\nNOON", cap=0.09), "notice", "notice on the empty stall", (cx, cy, 0.82), FACING, parent=empty
     )
     for k, (right, out) in enumerate(((-2.2, -0.6), (-2.2, 0.1), (2.3, -0.9))):
         x, y = spot(EMPTY_STALL, right, out)
         for level in range(3 if k == 0 else 1):
             stage.place(
-                prototypes.get("empty crate", stalls.crate),
+                prototypes.get("empty crate", produce.crate),
                 "crate",
                 "empty crate",
                 (x, y, 0.165 * level),
@@ -176,7 +176,7 @@ def _stall(
         z = stalls.COUNTER_M + 0.145 - (out - 0.35) * math.tan(math.radians(14))
         colour = "timber" if kind not in ("fish", "salmon", "prawns") else "white"
         built = prototypes.get(
-            f"{kind} {k % 2}", lambda kind=kind, k=k, colour=colour: stalls.produce_crate(kind, seed=k % 2, colour=colour)
+            f"{kind} {k % 2}", lambda kind=kind, k=k, colour=colour: produce.produce_crate(kind, seed=k % 2, colour=colour)
         )
         crate = stage.place(
             built, "crate", f"crate of {kind}", (x, y, z), FACING, lean_deg=(-14, 0), parent=own, contents=kind, state="full"
@@ -184,14 +184,14 @@ def _stall(
         if card:
             cx, cy = spot(place, right, out - 0.19)
             stage.place(
-                stalls.price_card(card, cap=0.068, colour="yellow" if k % 3 == 1 else "white"), "price card",
+                produce.price_card(card, cap=0.068, colour="yellow" if k % 3 == 1 else "white"), "price card",
                 f"price card for {card.split(chr(10))[0].lower()}", (cx, cy, z + 0.06), FACING, parent=crate,
             )  # fmt: skip
     for k, right in enumerate((-1.0, 0.2, 1.1)):  # stock under and behind the counter
         if (k + len(sign)) % 2:
             x, y = spot(place, right, -1.35)
             stage.place(
-                prototypes.get("empty crate", stalls.crate),
+                prototypes.get("empty crate", produce.crate),
                 "crate",
                 "empty crate",
                 (x, y, 0.0),
@@ -229,7 +229,7 @@ def _flowers(stage: Stage, prototypes: Prototypes) -> None:
     for text, right in (("ROSES\n5.00", -0.6), ("TULIPS\n3.50", 0.5)):
         x, y = spot(place, right, 0.75)
         stage.place(
-            stalls.price_card(text, cap=0.068),
+            produce.price_card(text, cap=0.068),
             "price card",
             f"price card for {text.split(chr(10))[0].lower()}",
             (x, y, 0.84),
@@ -244,7 +244,7 @@ def _carts(stage: Stage, prototypes: Prototypes) -> None:
         b = math.radians(205)
         out = 0.55 - 0.42 * k
         stage.place(
-            prototypes.get(f"{kind} 0", lambda kind=kind: stalls.produce_crate(kind)), "crate", f"crate of {kind}",
+            prototypes.get(f"{kind} 0", lambda kind=kind: produce.produce_crate(kind)), "crate", f"crate of {kind}",
             (-1.4 + out * math.sin(b), 18.2 + out * math.cos(b), 0.64), 205 + rng.uniform(-5, 5), contents=kind, state="full",
         )  # fmt: skip
     stage.place(stalls.hand_cart("red"), "hand cart", "red hand cart", (-26.2, 9.6, 0.0), 70, colour="red", state="empty")
