@@ -1,1 +1,4 @@
-"""What runs inside Blender: the object kit, the scenes, and the bake. Nothing in the main program imports this package."""
+"""Procedural modelling inside Blender: object kit, scenes, render worker.
+
+The main program finds this package by its location and starts its worker; it never imports it.
+"""

@@ -1,4 +1,4 @@
-"""The scene as plain data: what ``scene.json`` says of it."""
+"""The description of a scene as plain data, from which ``scene.json`` is written."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ import bpy
 import numpy as np
 from mathutils import Vector
 
-from scope_studio.actors import Troupe
+from scope_studio.actor_bodies import ActorBodies
 from scope_studio.kit.core.stage import Instance, Stage
 
 
-def scene(stage: Stage, troupe: Troupe) -> dict[str, Any]:
-    """Instances with world boxes, texts in world coordinates, viewpoints, presets, actors, absences."""
+def scene(stage: Stage, actor_bodies: ActorBodies) -> dict[str, Any]:
+    """Describe a scene: instances with world boxes, texts in world coordinates, viewpoints, presets, actors, absent things."""
     bpy.context.view_layer.update()
     depsgraph = bpy.context.evaluated_depsgraph_get()
     corners: dict[str, np.ndarray] = {}
@@ -54,7 +54,7 @@ def scene(stage: Stage, troupe: Troupe) -> dict[str, Any]:
                 "attributes": a.attributes,
                 "waypoints": [list(w) for w in a.waypoints],
                 "period_s": a.period_s,
-                "size_m": list(troupe.size_m(a)),
+                "size_m": list(actor_bodies.size_m(a)),
             }
             for a in stage.actors
         ],
@@ -116,7 +116,7 @@ def _texts(instance: Instance) -> list[dict[str, Any]]:
 
 
 def _sun() -> list[float] | None:
-    """Unit vector towards the sun, for the length of shadows; None when the scene has none."""
+    """Return the unit vector towards the sun, or None when the scene has no sun. Shadow lengths depend on it."""
     for obj in bpy.data.objects:
         if obj.type == "LIGHT" and obj.data.type == "SUN":
             return _rounded(obj.matrix_world.to_quaternion() @ Vector((0, 0, 1)), 6)

@@ -1,4 +1,4 @@
-"""The triangles of every annotated instance, for silhouettes that no renderer shows: those of hidden things too."""
+"""Export of the triangles of every annotated instance, from which complete silhouettes are computed, hidden parts included."""
 
 from __future__ import annotations
 
@@ -11,9 +11,10 @@ from scope_studio.kit.core.stage import Stage
 
 
 def write(stage: Stage, out: Path) -> None:
-    """An .npz with the distinct meshes (``vertices-K`` (n, 3) float32, ``triangles-K`` (m, 3) int32) and where they stand.
+    """Write the distinct meshes and their placements as an .npz file.
 
-    ``uses`` (k, 2) int32 holds instance number and mesh; ``matrices`` (k, 4, 4) float64 the world transforms.
+    Arrays: ``vertices-K`` (n, 3) float32 and ``triangles-K`` (m, 3) int32 for each mesh K; ``uses`` (k, 2) int32 with instance
+    number and mesh number; ``matrices`` (k, 4, 4) float64 with the world transform of each use.
     """
     bpy.context.view_layer.update()
     depsgraph = bpy.context.evaluated_depsgraph_get()

@@ -1,4 +1,4 @@
-"""What the worker can be asked to do. Every operation takes and returns plain JSON values; pictures go to files."""
+"""Operations that the worker offers. Each takes and returns plain JSON values; images go to files."""
 
 from __future__ import annotations
 
@@ -13,44 +13,51 @@ from typing import Any
 import bpy
 
 from scope_studio import blend_files, describe, meshes, render, sprites
-from scope_studio.actors import Troupe
+from scope_studio.actor_bodies import ActorBodies
 from scope_studio.kit.core.stage import Stage, Viewpoint
 
 Progress = Callable[[int, int], None]
 
 
 class Studio:
-    """The one scene that is loaded."""
+    """The scene that is currently loaded, and the operations on it."""
 
     def __init__(self, progress: Progress) -> None:
         self._progress = progress
         self._stage: Stage | None = None
-        self._troupe: Troupe | None = None
+        self._actor_bodies: ActorBodies | None = None
         self._file_cameras: tuple[Viewpoint, ...] = ()
 
     @property
     def stage(self) -> Stage:
+        """The stage of the loaded scene. Raises RuntimeError when no scene is loaded."""
         if self._stage is None:
             raise RuntimeError("no scene is loaded")
         return self._stage
 
     @property
-    def troupe(self) -> Troupe:
-        if self._troupe is None:
-            self._troupe = Troupe(self.stage)
-        return self._troupe
+    def actor_bodies(self) -> ActorBodies:
+        """The bodies of the scene's actors."""
+        if self._actor_bodies is None:
+            self._actor_bodies = ActorBodies(self.stage)
+        return self._actor_bodies
 
     def viewpoint(self, name: str) -> Viewpoint:
+        """Return the viewpoint with this name."""
         for candidate in self._file_cameras or self.stage.viewpoints:
             if candidate.name == name:
                 return candidate
         raise ValueError(f"the scene has no viewpoint '{name}'")
 
     def load_scene(self, source: str) -> dict[str, Any]:
-        """Build a scene: the name of a module in ``scope_studio.scenes`` (kebab-case), or the path of a Python file."""
+        """Build a scene.
+
+        Args:
+            source: Name of a module in ``scope_studio.scenes`` (kebab-case), or path of a Python file.
+        """
         bpy.ops.wm.read_factory_settings(use_empty=True)
         bpy.context.preferences.filepaths.use_scripts_auto_execute = False
-        self._troupe, self._file_cameras = None, ()
+        self._actor_bodies, self._file_cameras = None, ()
         module = _module(source)
         name = getattr(module, "NAME", Path(source).stem.replace("_", "-"))
         stage = Stage(name, getattr(module, "TITLE", name.replace("-", " ").capitalize()))
@@ -63,46 +70,49 @@ class Studio:
     def open_file(self, path: str) -> dict[str, Any]:
         """Open a .blend file with its embedded scripts off, and describe its cameras."""
         description, self._file_cameras = blend_files.open_file(path)
-        self._stage = self._troupe = None
+        self._stage = self._actor_bodies = None
         render.use_gpu()
         return description
 
     def describe(self) -> dict[str, Any]:
-        return describe.scene(self.stage, self.troupe)
+        """Return the description of the loaded scene; see ``describe.scene``."""
+        return describe.scene(self.stage, self.actor_bodies)
 
     def save(self, path: str) -> None:
-        """Write the scene as a .blend file to look at in Blender."""
+        """Write the scene as a .blend file, for inspection in Blender."""
         bpy.ops.wm.save_as_mainfile(filepath=path, compress=True)
 
     def meshes(self, out: str) -> None:
+        """Write the triangles of all instances to an .npz file; see ``meshes.write``."""
         meshes.write(self.stage, Path(out))
 
     def colour(
         self, viewpoint: str, projection: dict[str, float], samples: int, seed: int, out: str, time_s: float | None = None
     ) -> None:
-        """A denoised picture (8-bit PNG). With ``time_s``, moving actors stand where they are at that time."""
-        with self._cast(time_s):
+        """Render a denoised image (8-bit PNG). With ``time_s``, moving actors are shown where they are at that time."""
+        with self._actors_shown(time_s):
             render.colour(self.viewpoint(viewpoint), projection, samples, seed, Path(out))
 
     def truth(self, viewpoint: str, projection: dict[str, float], out: str, time_s: float | None = None) -> None:
-        """Instance numbers (uint16) and distances in metres (float32, 0 = sky) of the same picture, as one .npz file."""
-        with self._cast(time_s):
+        """Write instance numbers (uint16) and distances in metres (float32, 0 = sky) of the same view as one .npz file."""
+        with self._actors_shown(time_s):
             render.truth(self.viewpoint(viewpoint), projection, Path(out))
 
     def sprites(self, actor: str, viewpoint: str, frames: list[dict[str, Any]], samples: int, out_dir: str) -> None:
+        """Render the sprites of a moving actor; see ``sprites.render_frames``."""
         sprites.render_frames(
-            self.stage, self.troupe, actor, self.viewpoint(viewpoint), frames, samples, Path(out_dir), self._progress
+            self.stage, self.actor_bodies, actor, self.viewpoint(viewpoint), frames, samples, Path(out_dir), self._progress
         )
 
-    def _cast(self, time_s: float | None) -> AbstractContextManager[None]:
-        """Put the moving things where they are at a time. Actors are built when a picture first shows them."""
+    def _actors_shown(self, time_s: float | None) -> AbstractContextManager[None]:
+        """Place the moving actors for a scene time. Without a time do nothing, so that they are not built needlessly."""
         if self._file_cameras and time_s is not None:
             blend_files.set_time(time_s)
-        return nullcontext() if self._file_cameras or time_s is None else self.troupe.on_stage(time_s)
+        return nullcontext() if self._file_cameras or time_s is None else self.actor_bodies.shown_at(time_s)
 
 
 def _module(source: str) -> ModuleType:
-    """A scene's module: ``build(stage)``, and if it likes ``NAME`` (kebab-case) and ``TITLE``."""
+    """Import a scene's module. It has ``build(stage)`` and, optionally, ``NAME`` (kebab-case) and ``TITLE``."""
     if not source.endswith(".py"):
         return importlib.import_module(f"scope_studio.scenes.{source.replace('-', '_')}")
     spec = importlib.util.spec_from_file_location("scope_user_scene", source)
@@ -114,7 +124,7 @@ def _module(source: str) -> ModuleType:
 
 
 def operations(progress: Progress) -> dict[str, Callable[..., Any]]:
-    """By name."""
+    """Return the operations by name."""
     studio = Studio(progress)
     return {
         name: getattr(studio, name)

@@ -1,4 +1,4 @@
-"""Cycles renders of one optical centre: denoised colour, and exact instance numbers with distances."""
+"""Cycles renders from one optical centre: denoised colour images, and exact instance numbers with distances."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from scope_ptz.geometry.sphere import camera_axes
 from scope_studio.kit.core.stage import Viewpoint
 
 GPU_INTERFACES = ("OPTIX", "CUDA", "HIP", "METAL", "ONEAPI")
-"""In order of preference."""
+"""Compute interfaces in order of preference."""
 
 SKY_M = 1e9
-"""Cycles reports 1e10 where a ray meets nothing."""
+"""Depths from this value on are sky: Cycles reports 1e10 where a ray hits nothing."""
 
 
 def colour(viewpoint: Viewpoint, projection: dict[str, float], samples: int, seed: int, out: Path, *, alpha: bool = False) -> None:
-    """A denoised picture as the scene's view transform shows it, 8-bit PNG."""
+    """Render a denoised image with the scene's view transform and write it as an 8-bit PNG."""
     scene = _prepare(viewpoint, projection, samples, seed)
     scene.cycles.use_denoising = samples > 1
     scene.cycles.denoiser = "OPENIMAGEDENOISE"
@@ -40,14 +40,14 @@ def colour(viewpoint: Viewpoint, projection: dict[str, float], samples: int, see
 
 
 def truth(viewpoint: Viewpoint, projection: dict[str, float], out: Path) -> None:
-    """One sample in the middle of each pixel, written as .npz: ``ids`` uint16 and ``depth`` float32 metres, 0 = sky."""
+    """Render one sample at the centre of each pixel and write ``ids`` (uint16) and ``depth`` (float32, metres, 0 = sky) as .npz."""
     ids, depth = truth_arrays(viewpoint, projection)
     with out.open("wb") as file:
         np.savez(file, ids=ids, depth=depth)
 
 
 def truth_arrays(viewpoint: Viewpoint, projection: dict[str, float]) -> tuple[np.ndarray, np.ndarray]:
-    """Instance numbers (H, W) uint16 and distances (H, W) float32 in metres, 0 = sky."""
+    """Return instance numbers (H, W) uint16 and distances (H, W) float32 in metres, 0 = sky."""
     scene = _prepare(viewpoint, projection, 1, 0)
     scene.cycles.use_denoising = False
     scene.cycles.pixel_filter_type = "BOX"
@@ -72,12 +72,12 @@ def truth_arrays(viewpoint: Viewpoint, projection: dict[str, float]) -> tuple[np
     depth = next(v for k, v in channels.items() if k.endswith("Depth.Z")).astype(np.float32)
     sky = depth > SKY_M
     if projection["kind"] == "perspective":
-        depth = depth * _slant(projection)
+        depth = depth * _ray_lengths(projection)
     return ids, np.where(sky, 0.0, depth).astype(np.float32)
 
 
-def _slant(projection: dict[str, float]) -> np.ndarray:
-    """Distance along a pixel's ray for one metre along the optical axis."""
+def _ray_lengths(projection: dict[str, float]) -> np.ndarray:
+    """Return, for each pixel, the distance along its ray per metre along the optical axis, as an array (H, W)."""
     width, height = int(projection["width"]), int(projection["height"])
     focal = width / 2 / math.tan(math.radians(projection["hfov_deg"]) / 2)
     x = (np.arange(width) + 0.5 - width / 2) / focal
@@ -86,7 +86,11 @@ def _slant(projection: dict[str, float]) -> np.ndarray:
 
 
 def use_gpu() -> str | None:
-    """Let Cycles render on graphics cards when Blender finds any; the kind of interface used, or None for the CPU."""
+    """Let Cycles render on the graphics cards that Blender finds.
+
+    Returns:
+        The name of the compute interface, or None when rendering stays on the CPU.
+    """
     cycles = bpy.context.preferences.addons["cycles"].preferences
     for interface in GPU_INTERFACES:
         try:
@@ -164,7 +168,10 @@ def _render(scene: bpy.types.Scene, out: Path) -> None:
 
 
 def _read_exr(path: Path) -> dict[str, Any]:
-    """Channel name -> (H, W) float array. Blender programs carry OpenImageIO, the bpy wheel's environment OpenEXR."""
+    """Read an EXR file as channel name -> (H, W) float array.
+
+    Blender programs ship OpenImageIO; the environment of the bpy wheel has OpenEXR instead.
+    """
     try:
         import OpenEXR
     except ImportError:

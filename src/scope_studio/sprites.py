@@ -1,4 +1,4 @@
-"""Pictures of a moving actor alone: its body and the shadow that it throws on flat ground."""
+"""Sprites of a moving actor: images of its body alone, with the shadow that it casts on flat ground."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ import bpy
 import numpy as np
 
 from scope_studio import render
-from scope_studio.actors import Troupe, show
+from scope_studio.actor_bodies import ActorBodies, show
 from scope_studio.kit.core.stage import Stage, Viewpoint
 
 GROUND_M = 60.0
-"""Side of the plane that catches the shadow."""
+"""Side length of the plane that catches the shadow."""
 
 
 def render_frames(
     stage: Stage,
-    troupe: Troupe,
+    actor_bodies: ActorBodies,
     actor_id: str,
     viewpoint: Viewpoint,
     frames: list[dict[str, Any]],
@@ -28,13 +28,17 @@ def render_frames(
     out_dir: Path,
     progress: Callable[[int, int], None],
 ) -> None:
-    """For frame k (``time_s``, ``phase``, ``position_m``, ``projection``) write ``k.png`` (RGBA) and ``k.npz`` (distances)."""
+    """Render one sprite for each frame.
+
+    Frame k (keys ``time_s``, ``phase``, ``position_m``, ``projection``) is written as ``k.png`` (RGBA) and ``k.npz``
+    (distances). Frames that exist already are skipped.
+    """
     actor = next(a for a in stage.actors if a.id == actor_id)
-    with _alone() as ground:
+    with _only_shadows() as ground:
         for k, frame in enumerate(frames):
             picture = out_dir / f"{k:03d}.png"
             if not picture.with_suffix(".npz").exists():
-                built = troupe.stand(actor, frame["time_s"], frame["phase"])
+                built = actor_bodies.stand(actor, frame["time_s"], frame["phase"])
                 if built is None:
                     raise ValueError(f"{actor_id} is not in the scene at {frame['time_s']} s")
                 ground.location = frame["position_m"]
@@ -53,8 +57,8 @@ def render_frames(
 
 
 @contextmanager
-def _alone() -> Iterator[bpy.types.Object]:
-    """Everything that can be seen is hidden, save a plane that only catches shadows."""
+def _only_shadows() -> Iterator[bpy.types.Object]:
+    """Hide every visible object and yield a plane that only catches shadows."""
     hidden = [o for o in bpy.data.objects if o.type not in {"LIGHT", "CAMERA"} and not o.hide_render]
     for obj in hidden:
         obj.hide_render = True

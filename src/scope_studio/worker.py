@@ -1,33 +1,37 @@
-"""The Blender side of the pipe: reads requests as JSON lines, does them, answers in JSON lines.
+"""The Blender side of the pipe: reads requests as JSON lines, executes them, and replies in JSON lines.
 
-Run by its path, with Blender's own Python or as ``blender --background --python worker.py``. Every answer starts with ``MARK``,
-so that whatever Blender prints cannot be mistaken for one; its own output goes to the error stream.
+It is run by its path, with Blender's own Python or as ``blender --background --python worker.py``. Every reply starts with
+``MARK``, which distinguishes replies from Blender's own output. That output goes to stderr.
 """
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import os
 import sys
 import traceback
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 MARK = "@scope "
 
 
 def adopt_packages() -> None:
-    """Make ``scope_ptz`` and ``scope_studio`` importable without putting their neighbours (another NumPy, perhaps) on the path."""
-    for name in ("scope_ptz", "scope_studio"):
+    """Make ``scope_studio`` and ``scope_ptz`` importable by their location.
+
+    The folder that contains them is not put on the path, because it may hold another NumPy, for example. Their ``__init__``
+    modules are not run: ``scope_ptz`` imports packages there that Blender's Python does not have, and only its pure
+    ``geometry`` package is needed here.
+    """
+    for name in ("scope_studio", "scope_ptz"):
         home = Path(__file__).resolve().parents[1] / name
-        spec = importlib.util.spec_from_file_location(name, home / "__init__.py", submodule_search_locations=[str(home)])
-        if spec is None or spec.loader is None:
+        if not home.is_dir():
             raise ImportError(f"no package at {home}")
-        module = importlib.util.module_from_spec(spec)
+        module = ModuleType(name)
+        module.__path__ = [str(home)]
         sys.modules[name] = module
-        spec.loader.exec_module(module)
 
 
 class Channel:
@@ -40,11 +44,12 @@ class Channel:
         self._number = 0
 
     def send(self, message: dict[str, Any]) -> None:
+        """Write one message as a marked JSON line."""
         self._out.write(f"{MARK}{json.dumps(message)}\n")
         self._out.flush()
 
     def serve(self, operations: dict[str, Callable[..., Any]]) -> None:
-        """Answer requests until the pipe closes or one says "quit"."""
+        """Answer requests until the pipe closes or a "quit" request arrives."""
         for line in self._in:
             request = json.loads(line)
             if request["op"] == "quit":
@@ -52,19 +57,19 @@ class Channel:
             self._number = request["id"]
             try:
                 result = operations[request["op"]](**request["params"])
-            except Exception as error:  # whatever went wrong in Blender is the answer
+            except Exception as error:  # any failure in Blender is reported to the caller
                 traceback.print_exc()
                 self.send({"id": self._number, "error": f"{type(error).__name__}: {error}"})
             else:
                 self.send({"id": self._number, "result": result})
 
     def progress(self, done: int, total: int) -> None:
-        """How far the operation under way has come."""
+        """Report how many steps of the current operation are done."""
         self.send({"id": self._number, "progress": [done, total]})
 
 
 def main() -> None:
-    """Announce the Blender version, then serve."""
+    """Send the Blender version, then serve requests."""
     channel = Channel()
     import bpy
 
@@ -81,4 +86,4 @@ if __name__ == "__main__":
     from scope_studio.worker import main as adopted_main
 
     adopted_main()
-    os._exit(0)  # Blender's own teardown can hang or crash with nothing left to save
+    os._exit(0)  # Blender's teardown can hang or crash, and nothing is left to save

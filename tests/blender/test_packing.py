@@ -1,5 +1,6 @@
 """From rendered parts to files: the workshop, layer codings, sheets of sprites, and a pack within its weight."""
 
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -139,12 +140,24 @@ def test_the_key_follows_what_the_scene_imports_and_nothing_else(tmp_path: Path,
     (studio / "kit" / "plastic.py").write_text("colour = 'red'\n")
     (studio / "kit" / "boats.py").write_text("length_m = 7\n")
     (studio / "scenes" / "my_road.py").write_text("from scope_studio.kit.cones import cone\n")
-    monkeypatch.setattr(sources, "STUDIO", studio)
+    monkeypatch.setattr(sources, "studio_folder", lambda: studio)
     before = scene_key("my-road")
     (studio / "kit" / "boats.py").write_text("length_m = 8\n")
     assert scene_key("my-road") == before
     (studio / "kit" / "plastic.py").write_text("colour = 'blue'\n")
     assert scene_key("my-road") != before
+
+
+def test_the_modelling_package_is_found_without_importing_it() -> None:
+    assert (sources.studio_folder() / "worker.py").is_file()
+    assert "scope_studio" not in sys.modules
+    assert "highway-works" in sources.scene_names()
+
+
+def test_a_missing_modelling_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    with pytest.raises(BlenderError, match="scope-studio is not installed"):
+        sources.scene_names()
 
 
 def sprite_frames(folder: Path) -> list[Keyframe]:

@@ -1,4 +1,4 @@
-"""A yard with boxes, cones, a sign and a cart that drives by: enough of a scene to test the bake on, built in a moment."""
+"""A small yard with crates, cones, a sign and a moving cart. It builds quickly and has everything that a test bake needs."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ import random
 import bpy
 
 from scope_studio.kit.core import mesh
+from scope_studio.kit.core.lettering import letters
 from scope_studio.kit.core.shading import Shader
 from scope_studio.kit.core.stage import ActorPath, Built, Stage, TextMark
 from scope_studio.kit.light import sky
-from scope_studio.kit.signs.lettering import letters
 
 NAME, TITLE = "small-yard", "Small yard"
 
@@ -18,7 +18,7 @@ COLOURS = {"red": (0.6, 0.03, 0.02), "blue": (0.03, 0.1, 0.5), "white": (0.8, 0.
 
 
 def build(stage: Stage) -> None:
-    """Fill the stage."""
+    """Build the yard and fill the stage."""
     sky.setup(bpy.context.scene)
     rng = random.Random(5)
     _ground(stage)

@@ -11,6 +11,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+from scope_ptz.blender.sources import studio_folder
 from scope_ptz.errors import BlenderError
 
 BPY_VERSION = "5.0.1"
@@ -29,7 +30,7 @@ def worker_command(cache_dir: Path, blender_python: Path | None = None) -> list[
     Raises:
         BlenderError: There is no such program, or the environment cannot be made.
     """
-    script = str(Path(__file__).resolve().parents[2] / "scope_studio" / "worker.py")
+    script = str(studio_folder() / "worker.py")
     if blender_python is None:
         return [str(ensure_environment(cache_dir)), script]
     program = shutil.which(str(blender_python))

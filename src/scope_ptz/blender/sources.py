@@ -1,17 +1,34 @@
-"""The source files of a scene: its own module and the studio modules that it imports. A bake depends on these only."""
+"""The source files that a scene is built from. A bake depends on these and on no others."""
 
 from __future__ import annotations
 
 import ast
+import importlib.util
 from hashlib import sha256
 from pathlib import Path
 
+from scope_ptz.errors import BlenderError
+
 PACKAGE = "scope_studio"
-STUDIO = Path(__file__).resolve().parents[2] / "scope_studio"
+
+
+def studio_folder() -> Path:
+    """Return the folder of the ``scope_studio`` package, which is found without importing it.
+
+    Raises:
+        BlenderError: The package is not installed.
+    """
+    spec = importlib.util.find_spec(PACKAGE)
+    if spec is None or not spec.submodule_search_locations:
+        raise BlenderError("scope-studio is not installed: building and rendering scenes needs it. Install it beside scope-ptz.")
+    return Path(next(iter(spec.submodule_search_locations)))
 
 
 def scene_key(source: str) -> str:
-    """Return a key for the current state of a scene's code: its module and all studio modules that it imports, also indirectly."""
+    """Return a name for the current state of a scene's code: its name and a digest.
+
+    The digest covers the scene's own module and every module of ``scope_studio`` that it imports, directly or indirectly.
+    """
     own = scene_file(source)
     digest = sha256()
     for path in [own, *sorted(_reach(own))]:
@@ -21,25 +38,25 @@ def scene_key(source: str) -> str:
 
 
 def scene_file(source: str) -> Path:
-    """Return the Python file of a scene, which may not exist.
+    """Return the Python file of a scene, which need not exist.
 
     Args:
-        source: A path that ends in ``.py``, or the name of a scene.
+        source: A path that ends in ``.py``, or the name of a built-in scene.
     """
     if source.endswith(".py"):
         return Path(source)
-    place = STUDIO / "scenes" / source.replace("-", "_")
+    place = studio_folder() / "scenes" / source.replace("-", "_")
     single = place.with_suffix(".py")
     return single if single.is_file() else place / "__init__.py"
 
 
 def scene_names() -> list[str]:
     """Return the names of the scenes that can be built from code."""
-    return sorted(f.parent.name.replace("_", "-") for f in (STUDIO / "scenes").glob("*/__init__.py"))
+    return sorted(f.parent.name.replace("_", "-") for f in (studio_folder() / "scenes").glob("*/__init__.py"))
 
 
 def _reach(start: Path) -> set[Path]:
-    """Return the studio modules that a file imports, also indirectly, without the file itself."""
+    """Return the ``scope_studio`` modules that a file imports, directly or indirectly, without the file itself."""
     found: set[Path] = set()
     waiting = [start]
     while waiting:
@@ -63,5 +80,5 @@ def _imports(path: Path) -> set[Path]:
 def _module(name: str) -> Path | None:
     if not name.startswith(PACKAGE + "."):
         return None
-    place = STUDIO.joinpath(*name.removeprefix(PACKAGE + ".").split("."))
+    place = studio_folder().joinpath(*name.removeprefix(PACKAGE + ".").split("."))
     return next((p for p in (place.with_suffix(".py"), place / "__init__.py") if p.is_file()), None)

@@ -1,1 +1,1 @@
-"""The scenes, each one module with a ``build(stage)`` function."""
+"""The built-in scenes. Each is a package with a ``build(stage)`` function, ``NAME`` and ``TITLE``."""

@@ -1,1 +1,1 @@
-"""Buildings, shop fronts and what belongs to their walls."""
+"""Buildings, their shop fronts and wall materials, bridges and other structures, and lit buildings on a distant skyline."""

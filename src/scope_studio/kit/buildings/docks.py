@@ -19,7 +19,7 @@ def roller_door(
     sill: float = DOCK_SILL_M,
     colour: str = "light grey",
 ) -> Built:
-    """A roller door in its guides, "closed", "half open" or "open"."""
+    """Build a roller door in its guides: "closed", "half open" or "open"."""
     s = Solid("roller door")
     skin = paint(colour, dirt=0.30)
     low = sill + tall * OPEN_SHARE[state]
@@ -35,7 +35,7 @@ def roller_door(
 
 
 def shelter() -> Built:
-    """The padded frame that a trailer backs against, with yellow guide stripes, and rubber buffers below."""
+    """Build the padded frame that a trailer backs against, with yellow guide stripes, and rubber buffers below."""
     s = Solid("dock shelter")
     pad, yellow = rubber(), sheet("yellow", dirt=0.4)
     w, low, tall = DOCK_WIDE_M / 2, DOCK_SILL_M - 0.15, DOCK_TALL_M + 0.35
@@ -50,7 +50,7 @@ def shelter() -> Built:
 
 
 def leveller(*, lowered: bool = True) -> Built:
-    """A hinged steel dock plate in the sill, its lip hanging down or, raised, standing proud."""
+    """Build a hinged steel dock plate in the sill. Its lip hangs down, or stands proud when the plate is raised."""
     s = Solid("dock leveller")
     z = DOCK_SILL_M
     s.box((2.0, 2.2, 0.04), (0, -1.12, z - 0.02 if lowered else z + 0.10), steel(dark=True), 0.004)
@@ -65,7 +65,10 @@ def leveller(*, lowered: bool = True) -> Built:
 
 
 def signal(state: str) -> Built:
-    """A red over green dock traffic light on a grey backing, "red", "green" or "unlit"; its back on y = 0, middle at z = 0."""
+    """Build a dock traffic light, red over green, on a grey backing.
+
+    ``state`` is "red", "green" or "unlit". The back is at y = 0 and the middle at z = 0.
+    """
     s = Solid("dock light")
     s.box((0.30, 0.10, 0.62), (0, 0.05, 0), paint("dark grey", dirt=0.2), 0.02)
     for colour, z, brightness in (("red", 0.15, 6.0), ("green", -0.15, 14.0)):
@@ -82,7 +85,7 @@ def signal(state: str) -> Built:
 
 
 def number(value: str) -> Built:
-    """A large dock number on a blue board over the door; its back on y = 0, middle at z = 0."""
+    """Build a large dock number on a blue board. Its back is at y = 0 and its middle at z = 0."""
     s = Solid("dock number")
     with s.at(0, 0.02, 0):
         board(s, 1.20, 1.40, "blue", back=False)
@@ -91,7 +94,7 @@ def number(value: str) -> Built:
 
 
 def wheel_guides(length: float = 8.0) -> Built:
-    """Two yellow floor tubes that steer a trailer's wheels, running out along +y."""
+    """Build two yellow floor tubes along +y that guide a trailer's wheels."""
     s = Solid("wheel guides")
     yellow = paint("yellow", dirt=0.55)
     for side in (-1, 1):

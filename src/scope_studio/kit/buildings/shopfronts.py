@@ -1,6 +1,6 @@
-"""Shop fronts: pilasters, display windows that are looked through, fascias, doors of shops and houses.
+"""Shop fronts with transparent display windows: pilasters, glass, fascias, and doors of shops and houses.
 
-Everything shares the frame of the building that it belongs to: the wall line is y = 0, the street lies towards +y.
+Everything shares the frame of its building: the wall line is y = 0, and the street lies towards +y.
 """
 
 from __future__ import annotations
@@ -12,11 +12,12 @@ from random import Random
 import bpy
 
 from scope_studio.kit.core.finishes import PALETTE, paint
+from scope_studio.kit.core.lettering import extent
 from scope_studio.kit.core.shading import Shader, plain
-from scope_studio.kit.core.solid import Solid, rounded
+from scope_studio.kit.core.shapes import rounded
+from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.signs.faces import write
-from scope_studio.kit.signs.lettering import extent
 
 SILL_M = 0.60
 """Height of the display shelf behind the glass."""
@@ -26,9 +27,10 @@ INSIDE_M = 2.6
 
 @dataclass(frozen=True)
 class Front:
-    """A shop front ``width_m`` wide with its door's middle at ``door_x`` (x grows to the left of a person who looks at it).
+    """A shop front ``width_m`` wide, with the middle of its door at ``door_x``.
 
-    ``room`` is the colour of the walls inside; ``lit`` says whether the lamps inside are on.
+    For someone who looks at the front, x grows to the left. ``room`` is the colour of the walls inside; ``lit`` turns on the
+    lamps inside.
     """
 
     width_m: float
@@ -40,7 +42,7 @@ class Front:
 
 
 def shop_front(spec: Front) -> Built:
-    """Woodwork, glass and the room behind, as one thing; the door and the fascia are built apart."""
+    """Build the woodwork, the glass and the room behind as one thing. Door and fascia are built separately."""
     s = Solid("shop front")
     wood = paint(spec.colour, dirt=0.10, roughness=0.34)
     w = spec.width_m / 2
@@ -94,7 +96,7 @@ def _doorway(s: Solid, spec: Front, wood: bpy.types.Material) -> None:
 
 
 def _room(s: Solid, spec: Front) -> None:
-    """The room behind the glass: five inside faces and a row of ceiling lamps."""
+    """Add the room behind the glass: five inside faces and a row of ceiling lamps."""
     w, d, z1 = spec.width_m / 2 - 0.06, -INSIDE_M, 2.74
     walls = _inside(f"{spec.room} {spec.lit}", PALETTE[spec.room], 0.42 if spec.lit else 0.03)
     floor = _inside(f"floor {spec.lit}", (0.16, 0.105, 0.065), 0.25 if spec.lit else 0.02)
@@ -122,7 +124,7 @@ STOCK = ("red", "navy", "cream", "green", "white", "amber", "brown", "light blue
 
 
 def _stock(s: Solid, half_m: float, y: float, rng: Random) -> None:
-    """Boxes, jars and packets that fill the shelves on the back wall, in runs of a kind."""
+    """Fill the shelves on the back wall with runs of similar boxes, jars and packets."""
     for z in (0.77, 1.27, 1.77, 2.22):
         x = -half_m
         while x < half_m - 0.3:
@@ -138,7 +140,7 @@ def _stock(s: Solid, half_m: float, y: float, rng: Random) -> None:
 
 
 def _inside(name: str, colour: tuple[float, float, float], glow: float) -> bpy.types.Material:
-    """Indoor surfaces shine a little of their own accord: cheaper and cleaner than lamps behind glass."""
+    """Return an indoor surface that is slightly emissive. This renders faster and with less noise than lamps behind glass."""
     full = f"inside {name}"
     found = bpy.data.materials.get(full)
     if found is not None:
@@ -150,7 +152,7 @@ def _inside(name: str, colour: tuple[float, float, float], glow: float) -> bpy.t
 
 
 def shop_glass() -> bpy.types.Material:
-    """A clean pane: mostly see-through, with the street's reflection growing at grazing angles."""
+    """Return a clean, mostly transparent pane whose reflection of the street grows at grazing angles."""
     found = bpy.data.materials.get("shop glass")
     if found is not None:
         return found
@@ -169,7 +171,7 @@ def shop_glass() -> bpy.types.Material:
 
 
 def _tiles(colour: str) -> bpy.types.Material:
-    """Glazed tiles below a shop window."""
+    """Return glazed tiles, as below a shop window."""
     name = f"glazed tiles {colour}"
     found = bpy.data.materials.get(name)
     if found is not None:
@@ -182,7 +184,10 @@ def _tiles(colour: str) -> bpy.types.Material:
 
 
 def fascia(width_m: float, name: str, colour: str, ink: str, *, small: str | None = None, cap_m: float = 0.27) -> Built:
-    """The board over a shop with its name, and if wanted a smaller line at the right end; z as on the building."""
+    """Build the board over a shop with its name and, optionally, a smaller line at the right end.
+
+    Heights are those on the building.
+    """
     s = Solid(f"{name} sign")
     board = width_m - 2 * PILASTER_M - 0.04
     s.box((board, 0.10, 0.52), (0, 0.08, 3.085), paint(colour, dirt=0.15, roughness=0.30), 0.012)
@@ -203,7 +208,7 @@ def fascia(width_m: float, name: str, colour: str, ink: str, *, small: str | Non
 
 
 def shop_door(colour: str, *, number: str | None = None) -> Built:
-    """A half-glazed shop door, its foot's middle at the origin, shut; the number stands on the glass."""
+    """Build a closed, half-glazed shop door with the middle of its foot at the origin. The number is on the glass."""
     s = Solid(f"{colour} door")
     wood = paint(colour, dirt=0.16, roughness=0.28)
     for x in (-0.42, 0.42):
@@ -223,7 +228,7 @@ def shop_door(colour: str, *, number: str | None = None) -> Built:
 
 
 def house_door(colour: str, *, number: str | None = None) -> Built:
-    """A six-panel front door with knocker, letter plate and number, its foot's middle at the origin."""
+    """Build a six-panel front door with knocker, letter plate and number, with the middle of its foot at the origin."""
     s = Solid(f"{colour} door")
     wood = paint(colour, dirt=0.12, roughness=0.22)
     s.box((0.96, 0.045, 2.02), (0, 0, 1.01), wood, 0.006)
@@ -242,7 +247,10 @@ def house_door(colour: str, *, number: str | None = None) -> Built:
 
 
 def plate(lines: Sequence[str], cap_m: float, colour: str, ink: str, *, border: bool = True, pad: float = 0.6) -> Built:
-    """A flat sign on a wall or pane with centred lines, its middle at the origin, facing +y: name plates, cards, boards."""
+    """Build a flat sign for a wall or pane, such as a name plate or a card, with centred lines.
+
+    Its middle is at the origin and it faces +y.
+    """
     s = Solid(f"{lines[0]} sign")
     wide = max(extent(line, cap_m) for line in lines) + cap_m * 2 * pad
     tall = cap_m * (1.55 * len(lines) - 0.55 + 2 * pad)

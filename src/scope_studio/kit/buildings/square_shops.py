@@ -1,23 +1,23 @@
-"""Shop fronts of a market square with dark plate glass, sign boards, awnings with lettered valances, a pharmacy's cross."""
+"""Shop fronts of a market square: dark plate glass, sign boards, awnings with lettered valances, a pharmacy's cross."""
 
 from __future__ import annotations
 
 import random
 
-import bpy
-
-from scope_studio.kit.buildings.townhouses import block
-from scope_studio.kit.core.finishes import PALETTE, glass, glow, lens, paint, sheet
-from scope_studio.kit.core.shading import Shader, plain
+from scope_studio.kit.core.finishes import PALETTE, glass, glow, lens, paint, sheet, stripes
+from scope_studio.kit.core.lettering import extent
+from scope_studio.kit.core.shading import plain
+from scope_studio.kit.core.shapes import block
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
-from scope_studio.kit.signs.lettering import extent
 
 
 def front(width: float, colour: str, *, height: float = 3.4, seed: int = 0) -> Built:
-    """A timber shop front 0.3 m deep before y = 0: pilasters, stall risers, plate glass with goods behind, transoms.
+    """Build a timber shop front, 0.3 m deep, in front of y = 0.
 
-    The middle is left dark, 1.1 m wide, for a ``shop_door``."""
+    It has pilasters, stall risers, transoms, and plate glass with goods behind. A dark gap 1.1 m wide in the middle is left for
+    a ``shop_door``.
+    """
     s = Solid("shop front")
     rng = random.Random(f"shop front {seed}")
     wood = paint(colour, dirt=0.18, roughness=0.4)
@@ -43,7 +43,7 @@ def front(width: float, colour: str, *, height: float = 3.4, seed: int = 0) -> B
 
 
 def _display(s: Solid, x: float, w: float, y: float, rng: random.Random) -> None:
-    """Posters and the pale shapes of goods, flat behind the glass line."""
+    """Add posters and the pale outlines of goods, flat behind the glass."""
     tints = ("cream", "light blue", "dark red", "beige", "pink", "green", "yellow", "light grey")
     u = -w / 2 + 0.3
     while u < w / 2 - 0.3:
@@ -58,7 +58,10 @@ def _display(s: Solid, x: float, w: float, y: float, rng: random.Random) -> None
 
 
 def shop_door(colour: str, *, open: bool = False, notice: str | None = None) -> Built:  # noqa: A002
-    """A half-glazed door 1.0 x 2.2 m, hinged at x = 0.5; ``open`` turns it outwards. ``notice`` is a card on the glass."""
+    """Build a half-glazed door, 1.0 x 2.2 m, hinged at x = 0.5.
+
+    ``open`` turns it outwards. ``notice`` is the text of a card on the glass.
+    """
     s = Solid("shop door")
     wood = paint(colour, dirt=0.12, roughness=0.3)
     with s.at(0.5, 0.0, 0.0, turn=-100.0 if open else 0.0):
@@ -79,7 +82,7 @@ def shop_door(colour: str, *, open: bool = False, notice: str | None = None) -> 
 def sign_board(
     text: str, width: float, *, colour: str = "dark green", ink: str = "cream", cap: float = 0.30, height: float = 0.56
 ) -> Built:
-    """A shop's name board, its back at y = 0, centred on the origin."""
+    """Build a shop's name board, centred on the origin, with its back at y = 0."""
     s = Solid("shop sign")
     s.box((width, 0.05, height), (0, 0.025, 0), paint(colour, dirt=0.15, roughness=0.35), 0.012)
     for z in (-height / 2 + 0.04, height / 2 - 0.04):
@@ -88,31 +91,8 @@ def sign_board(
     return s.built()
 
 
-def stripes(name: str, first: str, second: str, pitch_m: float) -> bpy.types.Material:
-    """Canvas striped across the local x axis; plain when both colours are the same. A third of the light comes through."""
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
-    s = Shader(name)
-    p = s.object_coords()
-    x, _, _ = s.xyz(p)
-    mask = s.math("GREATER_THAN", s.math("PINGPONG", s.math("ADD", x, 50.0 * pitch_m), pitch_m), pitch_m / 2)
-    stain = s.ramp(s.noise(p, 1.7, 5.0), 0.5, 0.75, 0.0, 0.22)
-    base = s.mix(stain, s.mix(mask, PALETTE[first], PALETTE[second]), (0.16, 0.14, 0.11))
-    s.surface(base_color=base, roughness=0.9, normal=s.bump(s.noise(p, 5.0, 4.0), 0.3, 0.02))
-    through = s.node("ShaderNodeBsdfTranslucent")
-    s.feed(through.inputs["Color"], base)
-    mixed = s.node("ShaderNodeMixShader")
-    mixed.inputs[0].default_value = 0.32
-    s.tree.links.new(s.bsdf.outputs[0], mixed.inputs[1])
-    s.tree.links.new(through.outputs[0], mixed.inputs[2])
-    output = next(n for n in s.tree.nodes if n.type == "OUTPUT_MATERIAL")
-    s.tree.links.new(mixed.outputs[0], output.inputs["Surface"])
-    return s.material
-
-
 def awning(width: float, first: str, second: str, *, reach: float = 1.6, text: str | None = None, open: bool = True) -> Built:  # noqa: A002
-    """A canvas awning hung at the origin, sloping down by 0.7 m over ``reach``, with a lettered valance; or rolled up."""
+    """Build a canvas awning hung at the origin: sloping down by 0.7 m over ``reach`` with a lettered valance, or rolled up."""
     s = Solid("awning")
     cloth = stripes(f"canvas {first} {second}", first, second, 0.42)
     iron = paint("dark grey", dirt=0.15)
@@ -140,7 +120,7 @@ def awning(width: float, first: str, second: str, *, reach: float = 1.6, text: s
 
 
 def pharmacy_cross(size: float = 0.9, *, lit: bool = True) -> Built:
-    """A green cross on a bracket, read from both sides (+x and -x); its wall is the plane y = 0."""
+    """Build a green cross on a bracket, readable from both sides (+x and -x). Its wall is the plane y = 0."""
     s = Solid("pharmacy cross")
     s.rod((0, 0, 0), (0, 0.5, 0), 0.03, paint("dark grey"))
     arm, cy = size / 3, 0.5 + size / 2

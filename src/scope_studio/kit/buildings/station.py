@@ -6,15 +6,16 @@ import random
 
 import bpy
 
-from scope_studio.kit.buildings.buildings import cladding_material, tile_material
-from scope_studio.kit.buildings.townhouses import SLATE, ashlar, block
+from scope_studio.kit.buildings.townhouses import SLATE
+from scope_studio.kit.buildings.wall_materials import ashlar, cladding_material, tile_material
 from scope_studio.kit.core.finishes import glass, paint, steel, timber
 from scope_studio.kit.core.shading import Shader, plain
-from scope_studio.kit.core.solid import Solid, arc
+from scope_studio.kit.core.shapes import arc, block
+from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
 CENTRE_M = 14.4
-"""Width of the gabled centre, which stands ``PROJECTION_M`` before the wings."""
+"""Width of the gabled centre, which projects from the wings by ``PROJECTION_M``."""
 PROJECTION_M = 1.6
 WING_M = 16.0
 WING_EAVES_M = 6.6
@@ -38,9 +39,10 @@ def arch_panel(
     depth: float = 0.45,
     rise: float | None = None,
 ) -> None:
-    """A wall panel centred on x = 0, from ``z0`` to ``z1``, front face at y = 0, with an arched opening from ``z0`` up.
+    """Add a wall panel centred on x = 0 with an arched opening, from ``z0`` to ``z1``, with its front face at y = 0.
 
-    ``rise`` is the arch's height above its springing; a semicircle when not given."""
+    The opening starts at ``z0``. ``rise`` is the height of the arch above its springing; None means a semicircle.
+    """
     lift = (half if rise is None else rise) / half
     curve = [(u, spring + (v - spring) * lift) for u, v in arc((0.0, spring), half, 0, 180, 16)]
     w = width / 2
@@ -50,7 +52,7 @@ def arch_panel(
 def arch_trim(
     s: Solid, half: float, spring: float, material: bpy.types.Material, *, proud: float = 0.07, band: float = 0.28
 ) -> None:
-    """Voussoirs round an arch, with a keystone."""
+    """Add the voussoirs of an arch, with a keystone."""
     outer, inner = arc((0, spring), half + band, 0, 180, 14), arc((0, spring), half - 0.01, 0, 180, 14)
     for k in range(14):
         gap = 0.006
@@ -63,7 +65,10 @@ def arch_trim(
 
 
 def station_house(name: str) -> Built:
-    """The building without its doors, clock and board: 46 m wide, front of the centre in the plane y = 0, facing +y."""
+    """Build the station without its doors, clock and board.
+
+    It is 46 m wide and faces +y; the front of the centre is the plane y = 0.
+    """
     s = Solid("station building")
     stone = ashlar("station stone", (0.46, 0.375, 0.255))
     pale = ashlar("station dressings", (0.56, 0.50, 0.39), (1.2, 0.6))
@@ -126,7 +131,7 @@ def _centre(s: Solid, stone: bpy.types.Material, pale: bpy.types.Material, slate
 
 
 def _round_headed_window(s: Solid, half: float, tall: float, pale: bpy.types.Material) -> None:
-    """A narrow window with an arched head, printed proud of a wall: stone surround, glass, bars."""
+    """Add a narrow window with an arched head, in relief on a wall: stone surround, glass, bars."""
     s.box((2 * half + 0.5, 0.12, 0.12), (0, 0.04, -0.06), pale, 0.02)
     outline = [(half, 0.0), *arc((0, tall), half, 0, 180, 12), (-half, 0.0)]
     grown = [(half + 0.16, 0.0), *arc((0, tall), half + 0.16, 0, 180, 12), (-half - 0.16, 0.0)]
@@ -178,7 +183,7 @@ def _wing(s: Solid, side: int, stone: bpy.types.Material, pale: bpy.types.Materi
 
 
 def _canopy(s: Solid) -> None:
-    """A lean-to of ribbed metal on iron columns with brackets, a pierced timber valance along its edge."""
+    """Add a lean-to of ribbed metal on iron columns with brackets, with a pierced timber valance along its edge."""
     iron, valance = paint("dark green", dirt=0.2, roughness=0.35), paint("cream", dirt=0.2, roughness=0.5)
     reach, high, low, w = 3.6, 4.75, 4.15, WING_M - 0.6
     sheet_roof = cladding_material("canopy sheet", (0.30, 0.33, 0.34), 0.30)
@@ -203,7 +208,7 @@ def _canopy(s: Solid) -> None:
 
 
 def _train_shed(s: Solid) -> None:
-    """The arched roof over the platforms behind, with its glazed lantern."""
+    """Add the arched roof over the platforms behind, with its glazed lantern."""
     skin = cladding_material("train shed", (0.20, 0.225, 0.235), 0.45)
     hoop = [(-28.0 + 14.0 * u, 5.0 + 8.6 * v) for u, v in arc((0, 0), 1.0, 0, 180, 18)]
     s.prism([(-14.0, 0.0), *hoop, (-42.0, 0.0)], (-34.0, 34.0), skin, "YZ")
@@ -212,7 +217,7 @@ def _train_shed(s: Solid) -> None:
 
 
 def double_door(colour: str = "dark green", *, open: bool = True) -> Built:  # noqa: A002
-    """A pair of part-glazed doors filling an opening 2.7 m wide and 2.6 m high; ``open`` folds them back inside (-y)."""
+    """Build a pair of part-glazed doors for an opening 2.7 m wide and 2.6 m high. ``open`` folds them inwards (-y)."""
     s = Solid("station door")
     wood = paint(colour, dirt=0.15, roughness=0.35)
     for sign in (-1, 1):
@@ -232,7 +237,10 @@ def double_door(colour: str = "dark green", *, open: bool = True) -> Built:  # n
 def departures_board(
     rows: list[tuple[str, str, str]], *, width: float = 3.3, cap: float = 0.125, title: str = "DEPARTURES"
 ) -> Built:
-    """A wall board of (time, destination, platform) in amber on black; its back at y = 0, its middle at the origin."""
+    """Build a wall board with rows of (time, destination, platform) in amber on black.
+
+    Its back is at y = 0 and its middle at the origin.
+    """
     s = Solid("departures board")
     pitch = cap * 1.9
     height = pitch * (len(rows) + 2.3)
@@ -261,7 +269,7 @@ def _amber() -> bpy.types.Material:
 
 
 def luggage_trolley() -> Built:
-    """A flat porter's trolley with a timber deck and a curved handle, 1.5 m."""
+    """Build a flat porter's trolley, 1.5 m long, with a timber deck and a curved handle."""
     s = Solid("luggage trolley")
     iron = paint("dark green", dirt=0.25)
     s.box((0.72, 1.3, 0.05), (0, 0, 0.42), timber(), 0.01)

@@ -9,6 +9,7 @@ from itertools import pairwise
 import bpy
 from mathutils import Vector
 
+from scope_studio.kit.buildings.wall_materials import concrete_material
 from scope_studio.kit.core.mesh import Point, box, from_data, join, text, tube
 from scope_studio.kit.core.shading import Shader, plain
 from scope_studio.kit.core.stage import Built, TextMark
@@ -16,30 +17,11 @@ from scope_studio.kit.core.stage import Built, TextMark
 Rgb = tuple[float, float, float]
 
 
-def concrete_material(name: str = "structural concrete", tone: Rgb = (0.36, 0.345, 0.315)) -> bpy.types.Material:
-    """Board-marked concrete with rain streaks, lifts every 1.2 m and dirt near the ground."""
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
-    s = Shader(name)
-    p = s.object_coords()
-    _, _, z = s.xyz(p)
-    blotch = s.noise(p, 0.7, detail=7.0, roughness=0.62)
-    streak = s.noise(s.scaled(p, (2.6, 2.6, 0.10)), 1.0, detail=5.0, roughness=0.6)
-    fine = s.noise(p, 14.0, detail=3.0)
-    colour = s.mix(s.ramp(blotch, 0.28, 0.72), tuple(c * 0.72 for c in tone), tone)
-    colour = s.mix(s.ramp(streak, 0.50, 0.72, 0.0, 0.60), colour, (0.085, 0.082, 0.074))
-    joint = s.ramp(s.math("PINGPONG", z, 0.6), 0.004, 0.016, 0.45, 0.0)
-    colour = s.mix(joint, colour, (0.12, 0.115, 0.10))
-    low = s.math("ADD", z, s.math("MULTIPLY", blotch, 1.2))
-    colour = s.mix(s.ramp(low, 0.6, 1.3, 0.55, 0.0), colour, (0.10, 0.095, 0.075))
-    return s.surface(base_color=colour, roughness=0.88, normal=s.bump(s.math("ADD", fine, blotch), 0.15, 0.01))
-
-
 def overbridge(*, span_m: float, width_m: float = 9.0, deck_m: float = 6.9, number: str = "", banner: Sequence[str] = ()) -> Built:
-    """A two-span concrete road bridge along x, its pier at the origin; a number plate and a banner on both faces.
+    """Build a two-span concrete road bridge along x, with its pier at the origin.
 
-    ``deck_m`` is the height of the road surface on it. Abutments stand at both ends of ``span_m``.
+    A number plate and a banner are on both faces. ``deck_m`` is the height of the road surface on the bridge. Abutments stand
+    at both ends of ``span_m``.
     """
     concrete = concrete_material()
     half, edge = span_m / 2, width_m / 2
@@ -97,7 +79,7 @@ def _piers(edge: float, under: float, concrete: bpy.types.Material) -> list[bpy.
 
 
 def _abutments(half: float, edge: float, deck_m: float, under: float, concrete: bpy.types.Material) -> list[bpy.types.Object]:
-    """Bank seats on paved slopes, and wing walls that hold the embankments."""
+    """Add bank seats on paved slopes, and wing walls that retain the embankments."""
     parts = []
     for side in (-1, 1):
         parts.append(box("bank seat", (1.4, 2 * edge - 0.2, 2.2), (side * (half + 0.4), 0, under - 1.3), concrete, bevel_m=0.05))
@@ -119,7 +101,7 @@ def _abutments(half: float, edge: float, deck_m: float, under: float, concrete: 
 
 
 def paving_material() -> bpy.types.Material:
-    """Square concrete setts, 0.3 m, on a slope."""
+    """Return square concrete setts of 0.3 m, for a slope."""
     s = Shader("slope paving")
     _, y, z = s.xyz(s.object_coords())
     joint = s.math("MINIMUM", s.math("PINGPONG", y, 0.15), s.math("PINGPONG", s.math("MULTIPLY", z, 1.7), 0.15))
@@ -146,7 +128,7 @@ def _rails(span_m: float, edge: float, deck_m: float) -> list[bpy.types.Object]:
 def _banner(
     lines: Sequence[str], side: int, facing: str, edge: float, deck_m: float
 ) -> tuple[list[bpy.types.Object], list[TextMark]]:
-    """A tied vinyl sheet on the parapet; ``side`` -1 is the south face."""
+    """Add a tied vinyl sheet on the parapet. ``side`` -1 is the south face."""
     y = side * (edge + 0.145)
     x = -side * 9.0
     width = max(len(line) for line in lines) * 0.27 + 0.9
@@ -163,7 +145,10 @@ def _banner(
 
 
 def approach(*, length_m: float, width_m: float, height_m: float, side: int, grass: bpy.types.Material) -> Built:
-    """An embankment carrying the bridge's road from x = 0 at ``height_m`` down to the ground, towards +x (side 1) or -x."""
+    """Build an embankment for the bridge's road, from ``height_m`` at x = 0 down to the ground.
+
+    It runs towards +x for ``side`` 1 and towards -x for -1.
+    """
     steps, edge = 14, width_m / 2
     points: list[Point] = []
     for i in range(steps + 1):
@@ -194,7 +179,7 @@ def approach(*, length_m: float, width_m: float, height_m: float, side: int, gra
 
 
 def pylon(height_m: float = 30.0) -> Built:
-    """A lattice transmission tower, arms across x."""
+    """Build a lattice transmission tower with its arms across x."""
     bars: list[Bar] = []
 
     def half(z: float) -> float:
@@ -222,7 +207,7 @@ Bar = tuple[Point, Point, float]
 
 
 def lattice(name: str, bars: Sequence[Bar], material: bpy.types.Material) -> bpy.types.Object:
-    """Square bars as one mesh."""
+    """Create one mesh of square bars."""
     points: list[Point] = []
     faces: list[tuple[int, ...]] = []
     for start, end, radius in bars:
@@ -236,7 +221,7 @@ def lattice(name: str, bars: Sequence[Bar], material: bpy.types.Material) -> bpy
 
 
 def post_and_rail(length_m: float = 9.0) -> Built:
-    """A timber boundary fence along x: posts every 1.8 m, four rails."""
+    """Build a timber boundary fence along x: posts every 1.8 m, four rails."""
     s = Shader("weathered timber")
     grain = s.noise(s.scaled(s.object_coords(), (0.6, 9, 9)), 2.0, detail=5.0)
     wood = s.surface(base_color=s.mix(grain, (0.085, 0.068, 0.050), (0.23, 0.20, 0.165)), roughness=0.9)

@@ -1,6 +1,6 @@
 """Terraced buildings of an old street: sash windows above a shop or a house front, pitched roofs, chimneys, gutters.
 
-A building faces +y with its front wall on y = 0 and reaches back to y = -depth; neighbours stand wall to wall along x.
+A building faces +y with its front wall on y = 0 and reaches back to y = -depth. Neighbours stand wall to wall along x.
 """
 
 from __future__ import annotations
@@ -11,10 +11,11 @@ from random import Random
 
 import bpy
 
-from scope_studio.kit.buildings.masonry import roofing, trim, wall
+from scope_studio.kit.buildings.wet_masonry import roofing, trim, wall
 from scope_studio.kit.core.finishes import paint
 from scope_studio.kit.core.shading import Shader, plain
-from scope_studio.kit.core.solid import Solid, arc
+from scope_studio.kit.core.shapes import arc
+from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
 GROUND_M = 3.55
@@ -25,9 +26,10 @@ WHITE = (0.66, 0.655, 0.62)
 
 @dataclass(frozen=True)
 class Terrace:
-    """One building of a row. ``wall`` is (kind, colour) of ``masonry.wall``; ``lit`` are (floor, column) of lit windows.
+    """One building of a row.
 
-    ``shop`` leaves the ground floor of the front open for a shop front; otherwise it has windows and a door opening.
+    ``wall`` is (kind, colour) of ``wet_masonry.wall``. ``lit`` lists (floor, column) of lit windows. ``shop`` leaves the ground
+    floor of the front open for a shop front; otherwise it has windows and a door opening.
     """
 
     width_m: float
@@ -45,11 +47,12 @@ class Terrace:
 
     @property
     def eaves_m(self) -> float:
+        """Height of the eaves in metres."""
         return GROUND_M + STOREY_M * (self.storeys - 1) + 0.15
 
 
 def terrace(spec: Terrace) -> Built:
-    """The building as one mesh."""
+    """Build the terraced building as one mesh."""
     s = Solid(f"{spec.wall[1]} {spec.wall[0]} building")
     rng = Random(f"terrace {spec.seed} {spec.width_m}")
     face = wall(*spec.wall)
@@ -98,7 +101,7 @@ def _house_holes(spec: Terrace) -> list[Hole]:
 
 
 def _pierced(s: Solid, width: float, low: float, high: float, holes: list[Hole], face: bpy.types.Material) -> None:
-    """The front wall as a grid of quads with holes, and the 0.13 m reveals of the holes."""
+    """Add the front wall as a grid of quads with holes, and the reveals of the holes, 0.13 m deep."""
     xs = sorted({-width / 2, width / 2, *(x - w / 2 for x, _, w, *_ in holes), *(x + w / 2 for x, _, w, *_ in holes)})
     zs = sorted({low, high, *(z for _, z, *_ in holes), *(z + h for _, z, _, h, *_ in holes)})
     zs = [z for z in zs if low <= z <= high]
@@ -118,7 +121,7 @@ def _pierced(s: Solid, width: float, low: float, high: float, holes: list[Hole],
 
 
 def _shell(s: Solid, spec: Terrace, face: bpy.types.Material) -> None:
-    """Side walls with their gables, and the back."""
+    """Add side walls with their gables, and the back wall."""
     w, d, h = spec.width_m / 2, DEPTH_M, spec.eaves_m
     top = h + (0.75 if spec.parapet else 0.0)
     ridge = h + _rise(spec)
@@ -138,7 +141,7 @@ def _rise(spec: Terrace) -> float:
 
 
 def _sash(s: Solid, x: float, z: float, w: float, h: float, spec: Terrace, rng: Random, *, lit: bool) -> None:
-    """A sash window in its hole: box frame, two sashes, glazing bars, curtains or a blind, sill and lintel."""
+    """Add a sash window in its hole: box frame, two sashes, glazing bars, curtains or a blind, sill and lintel."""
     joinery = trim((0.66, 0.66, 0.63))
     back = -0.115
     pane = lit_pane() if lit else dark_pane()
@@ -205,7 +208,7 @@ def _dressing(s: Solid, x: float, z: float, w: float, h: float, back: float, rng
 
 
 def _front_door(s: Solid, x: float, w: float, h: float) -> None:
-    """The surround and fanlight of a house door; the door itself is the scene's."""
+    """Add the surround and fanlight of a house door. The scene places the door itself."""
     frame = trim()
     s.add([(x - w / 2, -0.12, 0), (x + w / 2, -0.12, 0), (x + w / 2, -0.12, h), (x - w / 2, -0.12, h)], [(1, 0, 3, 2)], dark_pane())
     for side in (-1, 1):
@@ -216,12 +219,12 @@ def _front_door(s: Solid, x: float, w: float, h: float) -> None:
 
 
 def dark_pane() -> bpy.types.Material:
-    """Window glass of an unlit room: reflections over the dark."""
+    """Return the window glass of an unlit room: reflections on a dark surface."""
     return plain("unlit pane", (0.016, 0.018, 0.020), 0.03)
 
 
 def lit_pane() -> bpy.types.Material:
-    """Window of a lit room: a lamp's warm glow, brightest below the middle."""
+    """Return the window of a lit room: warm lamplight, brightest below the middle."""
     found = bpy.data.materials.get("lit pane")
     if found is not None:
         return found
@@ -288,7 +291,7 @@ def _chimney(s: Solid, spec: Terrace, rng: Random) -> None:
 
 
 def _rainwater(s: Solid, spec: Terrace) -> None:
-    """Gutter along the eaves and a downpipe at the party wall."""
+    """Add a gutter along the eaves and a downpipe at the party wall."""
     black = paint("black", dirt=0.25)
     w, h = spec.width_m / 2, spec.eaves_m
     if not spec.parapet:

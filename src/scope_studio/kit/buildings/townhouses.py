@@ -1,7 +1,7 @@
-"""Town houses for terraces: walls with real window openings, shutters, cornices, slate roofs with dormers and chimneys.
+"""Town houses for terraces: real window openings, shutters, cornices, slate roofs with dormers and chimneys.
 
-A house faces north with its front wall in the plane y = 0, so that rows are laid along a building line; the body lies
-towards -y."""
+A house faces north with its front wall in the plane y = 0, so that rows follow a building line. Its body extends towards -y.
+"""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import bpy
 
-from scope_studio.kit.buildings.buildings import tile_material
+from scope_studio.kit.buildings.wall_materials import tile_material
 from scope_studio.kit.core.finishes import glass, paint
-from scope_studio.kit.core.mesh import Point
-from scope_studio.kit.core.shading import Shader, plain
+from scope_studio.kit.core.shading import plain
+from scope_studio.kit.core.shapes import block
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
@@ -26,7 +26,7 @@ CLAY: Rgb = (0.27, 0.105, 0.062)
 
 @dataclass(frozen=True)
 class House:
-    """What a town house looks like; sizes in metres. ``shutters`` is a paint colour or None."""
+    """Parameters of a town house, sizes in metres. ``shutters`` is a paint colour or None."""
 
     width: float
     wall: bpy.types.Material
@@ -47,57 +47,8 @@ class House:
 
     @property
     def eaves_m(self) -> float:
+        """Height of the eaves in metres."""
         return self.ground_m + (self.storeys - 1) * self.storey_m
-
-
-def stucco(name: str, colour: Rgb) -> bpy.types.Material:
-    """Painted render: trowel marks, rain streaks under edges, damp near the ground."""
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
-    s = Shader(name)
-    p = s.object_coords()
-    _, _, z = s.xyz(p)
-    patch = s.ramp(s.noise(p, 0.5, 6.0, 0.6), 0.35, 0.72, 0.0, 0.28)
-    base = s.mix(patch, colour, tuple(c * 0.62 for c in colour))
-    streak = s.ramp(s.noise(s.scaled(p, (5.0, 5.0, 0.22)), 1.0, 5.0), 0.52, 0.80, 0.0, 0.45)
-    base = s.mix(streak, base, tuple(c * 0.45 for c in colour))
-    damp = s.math("MULTIPLY", s.ramp(z, 0.0, 1.1, 0.75, 0.0), s.ramp(s.noise(p, 1.6, 5.0), 0.3, 0.65))
-    base = s.mix(damp, base, (0.12, 0.105, 0.085))
-    trowel = s.noise(p, 9.0, 6.0, 0.65)
-    return s.surface(base_color=base, roughness=0.88, normal=s.bump(trowel, 0.22, 0.01))
-
-
-def ashlar(name: str, colour: Rgb, block: tuple[float, float] = (0.72, 0.36)) -> bpy.types.Material:
-    """Dressed stone in courses, each block of its own tone."""
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
-    s = Shader(name)
-    p = s.object_coords()
-    x, y, z = s.xyz(p)
-    plane = s.node("ShaderNodeCombineXYZ")
-    s.feed(plane.inputs[0], s.math("ADD", x, y))
-    s.feed(plane.inputs[1], z)
-    stones = s.node("ShaderNodeTexBrick")
-    s.feed(stones.inputs["Vector"], plane.outputs[0])
-    for key, value in {"Scale": 1.0, "Mortar Size": 0.007, "Brick Width": block[0], "Row Height": block[1]}.items():
-        stones.inputs[key].default_value = value
-    s.feed(stones.inputs["Color1"], colour)
-    s.feed(stones.inputs["Color2"], tuple(c * 0.80 for c in colour))
-    s.feed(stones.inputs["Mortar"], tuple(c * 0.42 for c in colour))
-    soot = s.ramp(s.noise(s.scaled(p, (1.4, 1.4, 0.35)), 1.0, 6.0, 0.62), 0.44, 0.80, 0.0, 0.55)
-    base = s.mix(soot, stones.outputs["Color"], tuple(c * 0.38 for c in colour))
-    grain = s.noise(p, 30.0, 4.0, 0.7)
-    height = s.math("SUBTRACT", s.math("MULTIPLY", grain, 0.3), stones.outputs["Fac"])
-    return s.surface(base_color=base, roughness=0.88, normal=s.bump(height, 0.5, 0.012))
-
-
-def block(s: Solid, size: Point, centre: Point, material: bpy.types.Material) -> None:
-    """A plain box of six faces: enough for what no camera comes near."""
-    x, y, z = (v / 2 for v in size)
-    points = [(centre[0] + a * x, centre[1] + b * y, centre[2] + c * z) for a in (-1, 1) for b in (-1, 1) for c in (-1, 1)]
-    s.add(points, [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)], material)
 
 
 def wall_with_openings(
@@ -108,7 +59,10 @@ def wall_with_openings(
     openings: list[tuple[float, float, float, float]],
     material: bpy.types.Material,
 ) -> None:
-    """A wall band in the plane y = 0 facing +y, with openings (centre x, width, low z, high z) of one height, and reveals."""
+    """Add a wall band in the plane y = 0 that faces +y, with openings and their reveals.
+
+    ``openings`` are (centre x, width, low z, high z), all with the same heights.
+    """
     low, high = (openings[0][2], openings[0][3]) if openings else (z0, z0)
 
     def quad(xa: float, xb: float, za: float, zb: float) -> None:
@@ -128,7 +82,7 @@ def wall_with_openings(
 
 
 def sash(s: Solid, x: float, w: float, za: float, zb: float, rng: random.Random, *, frame: str = "white") -> None:
-    """Glazing and bars of a sash window set back in its opening; now and then a blind or curtains."""
+    """Add the glazing and bars of a sash window, set back in its opening. Some windows have a blind or curtains."""
     wood = paint(frame, dirt=0.12, roughness=0.5)
     y, mid = -REVEAL_M + 0.03, (za + zb) / 2
     block(s, (w, 0.02, zb - za), (x, -REVEAL_M + 0.005, mid), glass())
@@ -148,7 +102,7 @@ def sash(s: Solid, x: float, w: float, za: float, zb: float, rng: random.Random,
 
 
 def shutter_pair(s: Solid, x: float, w: float, za: float, zb: float, colour: str) -> None:
-    """Louvred shutters folded back on the wall beside a window."""
+    """Add louvred shutters, folded back on the wall beside a window."""
     skin = paint(colour, dirt=0.25, roughness=0.5)
     leaf = w / 2 - 0.02
     for sign in (-1, 1):
@@ -165,7 +119,7 @@ def shutter_pair(s: Solid, x: float, w: float, za: float, zb: float, colour: str
 
 
 def town_house(h: House) -> Built:
-    """The house without what stands in front of its ground floor (see the module "square_shops")."""
+    """Build a house without the shop in front of its ground floor; ``square_shops`` has those."""
     rng = random.Random(f"town house {h.seed}")
     s = Solid("town house")
     trim, tile = paint(h.trim, dirt=0.35, roughness=0.8), tile_material(f"roof {h.roof[0]:.2f}", h.roof)
@@ -209,7 +163,7 @@ def town_house(h: House) -> Built:
 
 
 def _ground_floor(s: Solid, h: House, centres: list[float], rng: random.Random) -> None:
-    """Windows and a street door when the house has no shop."""
+    """Add windows and a street door to a house without a shop."""
     if h.door is None:
         wall_with_openings(s, h.width, 0.0, h.ground_m, [], h.wall)
         return
@@ -235,7 +189,7 @@ def _ground_floor(s: Solid, h: House, centres: list[float], rng: random.Random) 
 
 
 def _balcony(s: Solid, x: float, w: float, low: float) -> None:
-    """An iron balconette before a window."""
+    """Add an iron balconette in front of a window."""
     iron = paint("black", dirt=0.15)
     s.box((w + 0.5, 0.40, 0.08), (x, 0.2, low - 0.12), paint("light grey", dirt=0.4, roughness=0.9), 0.015)
     for z in (low - 0.02, low + 0.80):

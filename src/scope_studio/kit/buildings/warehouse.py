@@ -1,7 +1,8 @@
-"""A distribution warehouse: a clad front with dock openings over a lit hall, canopy, office wing with rooms behind its windows.
+"""A distribution warehouse: clad front with dock openings, lit hall, and canopy.
 
-Fronts face +y, with the outer face of the wall on y = 0; the building reaches back to negative y. Positions along the front are
-x; a person who looks at the front sees +x on the left."""
+Fronts face +y, with the outer face of the wall on y = 0; the building extends towards -y. Positions along the front are x,
+which grows to the left for someone who looks at the front.
+"""
 
 from __future__ import annotations
 
@@ -11,12 +12,12 @@ from itertools import pairwise
 
 import bpy
 
-from scope_studio.kit.buildings.buildings import cladding_material
-from scope_studio.kit.core.finishes import concrete, glass, paint, steel
+from scope_studio.kit.buildings.wall_materials import cladding_material
+from scope_studio.kit.core.finishes import concrete, paint, steel
 from scope_studio.kit.core.shading import Shader, plain
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
-from scope_studio.kit.yard.lights import lit_lens
+from scope_studio.kit.light.glow import glowing_face, lit_lens
 
 DOCK_SILL_M, DOCK_WIDE_M, DOCK_TALL_M = 1.20, 2.9, 3.0
 Opening = tuple[float, float, float, float]
@@ -33,7 +34,7 @@ def wall(
     material: bpy.types.Material,
     depth: float = 0.22,
 ) -> None:
-    """A wall on y = 0 from ``x0`` to ``x1`` with rectangular holes, cut into upright strips at the edges of the openings."""
+    """Add a wall on y = 0 from ``x0`` to ``x1`` with rectangular holes. It is cut into upright strips at the edges of the holes."""
     cuts = sorted({x0, x1, *(x for a, b, _, _ in openings for x in (a, b) if x0 < x < x1)})
     for a, b in pairwise(cuts):
         holes = sorted((c, d) for p, q, c, d in openings if p < (a + b) / 2 < q)
@@ -54,8 +55,10 @@ def shell(
     band: tuple[float, float, float],
     ramp_to: float,
 ) -> Built:
-    """The warehouse: front with openings, plain other sides, parapet, a low roof with roof lights and vents, and the hall
-    inside (floor at dock height, at yard level where x is below ``ramp_to``; back wall 13 m behind the front)."""
+    """Build the warehouse: front with openings, other walls, parapet, low roof with roof lights and vents, and the hall inside.
+
+    The hall's floor is at dock height, but at yard level where x is below ``ramp_to``. Its back wall is 13 m behind the front.
+    """
     s = Solid("warehouse")
     skin, trim = cladding_material("warehouse cladding", colour, 0.25), plain("warehouse band", band, 0.45)
     w, h = width / 2, height
@@ -75,7 +78,7 @@ def shell(
 
 
 def _roof(s: Solid, w: float, depth: float, h: float) -> None:
-    """Two shallow slopes of sheet with glowing roof lights, vents and a smoke stack of plant."""
+    """Add two shallow roof slopes with emissive roof lights, smoke vents and plant."""
     sheet_, glowing = cladding_material("warehouse roof", (0.20, 0.21, 0.22), 0.33), roof_light()
     rise = 1.3
     for y0, y1, z0, z1 in ((-0.2, -depth / 2, h, h + rise), (-depth / 2, -depth, h + rise, h)):
@@ -104,7 +107,7 @@ def _roof(s: Solid, w: float, depth: float, h: float) -> None:
 
 
 def roof_light() -> bpy.types.Material:
-    """Translucent roof sheet over a lit hall."""
+    """Return translucent roof sheet over a lit hall."""
     found = bpy.data.materials.get("roof light")
     if found is not None:
         return found
@@ -119,7 +122,7 @@ def roof_light() -> bpy.types.Material:
 
 
 def _hall(s: Solid, w: float, h: float, ramp_to: float) -> None:
-    """What shows through the open docks: slab, lamps, racking with cartons, a back wall."""
+    """Add what is visible through the open docks: floor, lamps, racking with cartons, and a back wall."""
     rng = random.Random("hall")
     pale, deep = plain("hall wall", (0.42, 0.43, 0.42), 0.8), -13.0
     s.box((w - 0.3 - ramp_to, 12.8, DOCK_SILL_M), ((ramp_to + w - 0.3) / 2, deep / 2 - 0.1, DOCK_SILL_M / 2), concrete(), 0.0)
@@ -149,7 +152,7 @@ def _hall(s: Solid, w: float, h: float, ramp_to: float) -> None:
 
 
 def canopy(width: float, reach: float = 3.2, height: float = 5.0) -> Built:
-    """A steel canopy over the docks, fascia forward, on brackets."""
+    """Build a steel canopy on brackets over the docks, with its fascia at the front edge."""
     s = Solid("canopy")
     s.box((width, reach, 0.14), (0, reach / 2, height), cladding_material("canopy sheet", (0.30, 0.32, 0.34), 0.3), 0.01)
     s.box((width + 0.1, 0.08, 0.42), (0, reach, height), paint("blue", dirt=0.3), 0.01)
@@ -164,168 +167,10 @@ def canopy(width: float, reach: float = 3.2, height: float = 5.0) -> Built:
 
 
 def letters(body: str, cap: float, *, lit: bool = True) -> Built:
-    """Flat-cut letters on a rail, glowing white when lit; the wall behind is y = 0, their middle z = 0."""
+    """Build flat-cut letters on a rail, emissive white when lit. The wall behind is y = 0, their middle is z = 0."""
     s = Solid("wall letters")
     face = glowing_face("white", 1.5) if lit else paint("white", dirt=0.25)
     width, _ = s.text(body, cap, (0, 0.12, 0), face, facing="+Y")
     for z in (-cap * 0.22, cap * 0.22):
         s.box((width, 0.05, 0.06), (0, 0.05, z), steel(dark=True), 0.0)
     return s.built()
-
-
-def glowing_face(colour: str, strength: float) -> bpy.types.Material:
-    """The translucent face of a lit sign."""
-    rgb = {
-        "white": (0.95, 0.97, 1.0),
-        "blue": (0.08, 0.28, 0.95),
-        "green": (0.05, 0.75, 0.25),
-        "red": (0.9, 0.06, 0.04),
-        "amber": (1.0, 0.45, 0.05),
-    }
-    name = f"sign glow {colour} {strength:g}"
-    return bpy.data.materials.get(name) or Shader(name).surface(
-        base_color=rgb[colour], emission_color=rgb[colour], emission_strength=strength, roughness=0.5
-    )
-
-
-def pane(tint: float = 0.25) -> bpy.types.Material:
-    """Clear glass as a camera sees it: mostly see-through, the rest a mirror."""
-    name = f"pane {tint:.2f}"
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
-    s = Shader(name)
-    clear, mirror = s.node("ShaderNodeBsdfTransparent"), s.node("ShaderNodeBsdfGlossy")
-    clear.inputs["Color"].default_value = (0.86, 0.92, 0.92, 1.0)
-    mirror.inputs["Roughness"].default_value = 0.03
-    both = s.node("ShaderNodeMixShader")
-    both.inputs[0].default_value = tint
-    s.tree.links.new(clear.outputs[0], both.inputs[1])
-    s.tree.links.new(mirror.outputs[0], both.inputs[2])
-    output = next(n for n in s.tree.nodes if n.type == "OUTPUT_MATERIAL")
-    s.tree.links.new(both.outputs[0], output.inputs["Surface"])
-    return s.material
-
-
-def window(*, wide: float = 1.5, tall: float = 1.3, lit: bool = True, blind: float = 0.0, seed: int = 0) -> Built:
-    """A framed window with a shallow room behind it: lit walls, a ceiling lamp, a desk with a screen, shelves; or a dark one.
-
-    Its wall is y = 0 with a hole cut for it; ``blind`` is the share of the height that a blind covers."""
-    s = Solid("window")
-    rng = random.Random(f"window {seed}")
-    frame = paint("dark grey", dirt=0.2)
-    for x in (-wide / 2, wide / 2):
-        s.box((0.07, 0.16, tall + 0.07), (x, -0.06, 0), frame, 0.005)
-    for z in (-tall / 2, tall / 2):
-        s.box((wide, 0.16, 0.07), (0, -0.06, z), frame, 0.005)
-    s.box((0.05, 0.08, tall), (0, -0.06, 0), frame, 0.004)
-    s.box((wide + 0.2, 0.14, 0.05), (0, 0.05, -tall / 2 - 0.05), paint("light grey", dirt=0.4), 0.008)
-    if not lit:
-        s.box((wide, 0.02, tall), (0, -0.07, 0), glass(), 0.0)
-        return s.built()
-    s.box((wide, 0.01, tall), (0, -0.07, 0), pane(0.12), 0.0)
-    deep, warm = 2.2, rng.choice([(0.95, 0.76, 0.50), (0.86, 0.84, 0.74), (0.80, 0.86, 0.90)])
-    room = _room_wall(warm)
-    a, b, low, high = -wide / 2 - 0.3, wide / 2 + 0.3, -tall / 2 - 0.6, tall / 2 + 0.25
-    corners = [(x, y, z) for y in (-0.12, -deep) for x, z in ((a, low), (b, low), (b, high), (a, high))]
-    s.add(corners, [(4, 5, 6, 7), (0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4)], room)
-    s.add(corners, [(3, 7, 6, 2)], lit_lens("warm", 0.9))
-    s.box((0.9, 0.25, 0.02), (0, -deep * 0.55, high - 0.03), lit_lens("led", 3.0), 0.0)
-    dark = plain("room furniture", (0.06, 0.05, 0.045), 0.7)
-    s.box((wide * 0.7, 0.6, 0.05), (rng.uniform(-0.1, 0.1), -0.8, -tall / 2 + 0.05), dark, 0.01)
-    x = rng.uniform(-0.4, 0.4)
-    s.box((0.55, 0.03, 0.34), (x, -0.75, -tall / 2 + 0.35), dark, 0.005)
-    s.box((0.5, 0.004, 0.29), (x, -0.765, -tall / 2 + 0.35), glowing_face("blue", 0.9), 0.0)
-    for k in range(rng.randrange(2, 5)):
-        s.box((0.16, 0.25, rng.uniform(0.3, 0.9)), (a + 0.25 + 0.28 * k, -deep + 0.2, low + 0.9), dark, 0.01)
-    s.box(
-        (rng.uniform(0.4, 0.8), 0.02, 0.5),
-        (rng.uniform(-0.2, 0.4), -deep + 0.03, 0.25),
-        plain("room board", (0.30, 0.32, 0.36), 0.6),
-        0.0,
-    )
-    if blind:
-        cover = plain("room blind", (0.50, 0.46, 0.38), 0.8)
-        for k in range(int(tall * blind / 0.07)):
-            s.box((wide - 0.06, 0.012, 0.055), (0, -0.13, tall / 2 - 0.05 - 0.07 * k), cover, 0.0)
-    return s.built()
-
-
-def _room_wall(warm: tuple[float, float, float]) -> bpy.types.Material:
-    name = f"room wall {warm[0]:.2f}"
-    found = bpy.data.materials.get(name)
-    if found is not None:
-        return found
-    s = Shader(name)
-    z = s.xyz(s.object_coords())[2]
-    shade = s.ramp(s.math("ADD", z, s.math("MULTIPLY", s.noise(s.object_coords(), 1.2), 0.5)), -1.2, 1.2, 0.28, 0.75)
-    return s.surface(base_color=tuple(c * 0.5 for c in warm), roughness=0.9, emission_color=warm, emission_strength=shade)
-
-
-def wing(*, width: float, depth: float, height: float, openings: Sequence[Opening], colour: tuple[float, float, float]) -> Built:
-    """An office wing with openings for windows in its front (y = 0), flat roof, parapet and plinth."""
-    s = Solid("office")
-    skin = office_panel(colour)
-    wall(s, -width / 2, width / 2, 0.0, height, openings, skin)
-    for x in (-width / 2, width / 2):
-        s.box((0.22, depth, height), (x, -depth / 2, height / 2), skin, 0.0)
-    s.box((width, 0.22, height), (0, -depth, height / 2), skin, 0.0)
-    s.box((width, depth, 0.15), (0, -depth / 2, height - 0.2), concrete(light=False), 0.0)
-    for y in (0.02, -depth - 0.02):
-        s.box((width + 0.3, 0.34, 0.30), (0, y, height), paint("blue", dirt=0.3), 0.01)
-    for x in (-width / 2, width / 2):
-        s.box((0.34, depth, 0.30), (x, -depth / 2, height), paint("blue", dirt=0.3), 0.01)
-    s.box((width + 0.08, 0.05, 0.30), (0, 0.02, 0.15), concrete(light=False), 0.0)
-    s.box((1.6, 1.0, 0.8), (width * 0.2, -depth * 0.5, height + 0.4), paint("light grey", dirt=0.4), 0.03)
-    return s.built()
-
-
-def office_panel(colour: tuple[float, float, float]) -> bpy.types.Material:
-    """Flat composite panels, 1.2 m wide, with dark joints and rain marks."""
-    found = bpy.data.materials.get("office panel")
-    if found is not None:
-        return found
-    s = Shader("office panel")
-    p = s.object_coords()
-    x, y, z = s.xyz(p)
-    joint = s.math(
-        "MAXIMUM",
-        *(
-            s.ramp(s.math("PINGPONG", axis, size / 2), 0.006, 0.014, 1.0, 0.0)
-            for axis, size in ((s.math("ADD", x, y), 1.2), (z, 1.05))
-        ),
-    )
-    stain = s.ramp(s.noise(s.scaled(p, (1.5, 1.5, 0.15)), 1.0, detail=5.0), 0.5, 0.75, 0.0, 0.35)
-    tint = s.mix(stain, colour, tuple(c * 0.45 for c in colour))
-    return s.surface(base_color=s.mix(joint, tint, (0.03, 0.03, 0.03)), roughness=0.45)
-
-
-def door(*, glazed: bool = True, lit: bool = True, tall: float = 2.2, wide: float = 1.1) -> Built:
-    """A personnel door on y = 0, standing on z = 0, with a light room behind it when glazed and lit."""
-    s = Solid("door")
-    frame = paint("dark grey", dirt=0.2)
-    for x in (-wide / 2 - 0.05, wide / 2 + 0.05):
-        s.box((0.10, 0.16, tall + 0.1), (x, 0.02, tall / 2), frame, 0.006)
-    s.box((wide + 0.2, 0.16, 0.10), (0, 0.02, tall + 0.05), frame, 0.006)
-    if glazed:
-        s.box((wide, 0.02, tall), (0, 0.02, tall / 2), glowing_room() if lit else glass(), 0.0)
-        for z in (0.12, tall * 0.48, tall - 0.06):
-            s.box((wide, 0.07, 0.10), (0, 0.04, z), frame, 0.006)
-        s.rod((wide * 0.36, 0.10, 0.85), (wide * 0.36, 0.10, 1.35), 0.018, steel())
-    else:
-        s.box((wide, 0.05, tall), (0, 0.04, tall / 2), paint("blue", dirt=0.35), 0.006)
-        s.rod((wide * 0.2, 0.10, 1.0), (wide * 0.38, 0.10, 1.0), 0.014, steel())
-    return s.built()
-
-
-def glowing_room() -> bpy.types.Material:
-    """A lit lobby seen through a door: bright above, floor shading below, blurred furniture."""
-    found = bpy.data.materials.get("glowing lobby")
-    if found is not None:
-        return found
-    s = Shader("glowing lobby")
-    x, _, z = s.xyz(s.object_coords())
-    tone = s.mix(s.ramp(z, 0.2, 2.2), (0.42, 0.33, 0.22), (1.0, 0.88, 0.66))
-    shape = s.math("MULTIPLY", s.band(x, -0.42, 0.05, 0.04), s.band(z, 0.0, 0.95, 0.05))
-    tone = s.mix(s.math("MULTIPLY", shape, 0.75), tone, (0.06, 0.045, 0.035))
-    return s.surface(base_color=(0.02, 0.02, 0.02), roughness=0.1, emission_color=tone, emission_strength=0.75)

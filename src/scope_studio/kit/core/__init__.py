@@ -1,1 +1,1 @@
-"""Meshes, materials and the stage: what every object is made with."""
+"""Modelling tools: meshes, solids, lettering, shaders, common materials, and the stage that scenes are placed on."""

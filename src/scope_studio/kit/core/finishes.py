@@ -1,8 +1,9 @@
-"""Finishes of made things: painted metal, plastic, galvanised steel, reflective sheet, concrete, rubber, wood, lamps.
+"""Materials of manufactured things: painted metal, plastic, steel, reflective sheet, concrete, rubber, wood, canvas, lamps.
 
-Each function returns one material per colour, made on first use. Dirt and wear come from object coordinates (things
-are modelled standing on z = 0, so splash dirt sits low) shifted by the object's random number, so that linked copies
-are not identical."""
+Each function returns one material per colour, made on first use. Dirt and wear depend on object coordinates: objects are
+modelled standing on z = 0, so splashes stay near the ground. The coordinates are shifted by the object's random number, so that
+linked copies differ.
+"""
 
 from __future__ import annotations
 
@@ -41,7 +42,7 @@ PALETTE: dict[str, Colour] = {
     "denim": (0.040, 0.075, 0.16),
     "silver": (0.52, 0.53, 0.54),
 }
-"""Plain colour names -> linear RGB."""
+"""Linear RGB of the plain colour names."""
 
 DIRT: Colour = (0.085, 0.070, 0.052)
 
@@ -52,7 +53,7 @@ def _shared(name: str, make: Callable[[Shader], bpy.types.Material]) -> bpy.type
 
 
 def _coords(s: Shader) -> Value:
-    """Object coordinates, offset per object."""
+    """Return object coordinates with an offset that differs between objects."""
     made = s.node("ShaderNodeVectorMath", operation="ADD")
     s.feed(made.inputs[0], s.object_coords())
     s.feed(made.inputs[1], s.math("MULTIPLY", s.random(), 37.0))
@@ -60,7 +61,7 @@ def _coords(s: Shader) -> Value:
 
 
 def soiled(s: Shader, colour: Value, amount: float, splash_m: float = 0.35) -> Value:
-    """``colour`` under grime: patches, rain streaks, and splash near the ground."""
+    """Return ``colour`` with dirt: patches, rain streaks, and splashes near the ground."""
     where = _coords(s)
     patches = s.ramp(s.noise(where, 3.2, 6.0, 0.62), 0.48, 0.80, 0.0, amount)
     streaks = s.ramp(s.noise(s.scaled(where, (22.0, 22.0, 0.9)), 1.0, 3.0), 0.55, 0.85, 0.0, amount * 0.7)
@@ -70,7 +71,7 @@ def soiled(s: Shader, colour: Value, amount: float, splash_m: float = 0.35) -> V
 
 
 def paint(colour: str, *, dirt: float = 0.30, roughness: float = 0.38) -> bpy.types.Material:
-    """Painted metal or moulded plastic."""
+    """Return the material of painted metal or moulded plastic."""
 
     def make(s: Shader) -> bpy.types.Material:
         fade = s.mix(s.ramp(s.noise(_coords(s), 5.0, 4.0), 0.35, 0.7, 0.0, 0.10), PALETTE[colour], (0.6, 0.6, 0.58))
@@ -81,7 +82,7 @@ def paint(colour: str, *, dirt: float = 0.30, roughness: float = 0.38) -> bpy.ty
 
 
 def steel(*, dark: bool = False) -> bpy.types.Material:
-    """Galvanised steel with its spangle, weathered to a dull grey."""
+    """Return weathered galvanised steel, with its spangle."""
 
     def make(s: Shader) -> bpy.types.Material:
         where = _coords(s)
@@ -95,7 +96,7 @@ def steel(*, dark: bool = False) -> bpy.types.Material:
 
 
 def sheet(colour: str, *, dirt: float = 0.16) -> bpy.types.Material:
-    """Retroreflective sheeting: even, slightly glowing colour with a faint cell pattern, grimy along the streaks."""
+    """Return retroreflective sheeting: an even, slightly emissive colour with a faint cell pattern and dirt streaks."""
 
     def make(s: Shader) -> bpy.types.Material:
         cells = s.ramp(s.voronoi(s.object_coords(), 160.0, "DISTANCE_TO_EDGE"), 0.0, 0.12, 0.90, 1.0)
@@ -107,7 +108,7 @@ def sheet(colour: str, *, dirt: float = 0.16) -> bpy.types.Material:
 
 
 def glow(colour: str, strength: float = 6.0) -> bpy.types.Material:
-    """A lit lamp."""
+    """Return the emissive material of a lit lamp."""
     c = PALETTE[colour]
     return _shared(
         f"glow {colour} {strength:g}",
@@ -116,26 +117,27 @@ def glow(colour: str, strength: float = 6.0) -> bpy.types.Material:
 
 
 def lens(colour: str) -> bpy.types.Material:
-    """An unlit lamp behind coloured plastic, or dark glass."""
+    """Return the material of an unlit lamp behind coloured plastic, or of dark glass."""
     return _shared(f"lens {colour}", lambda s: s.surface(base_color=PALETTE[colour], roughness=0.08, coat_weight=0.6))
 
 
 def glass() -> bpy.types.Material:
-    """Dark glazing, opaque: what a camera outside sees by day."""
+    """Return dark, opaque glazing, as windows look from outside by day."""
     return _shared("glazing", lambda s: s.surface(base_color=(0.018, 0.021, 0.023), roughness=0.04))
 
 
 def clear_glass() -> bpy.types.Material:
-    """Clear panes: faintly green, mostly see-through."""
+    """Return clear, mostly transparent glass with a green tint."""
     return _shared("clear pane", lambda s: s.surface(base_color=(0.55, 0.62, 0.60), roughness=0.04, alpha=0.22))
 
 
 def rubber() -> bpy.types.Material:
+    """Return dirty black rubber."""
     return _shared("rubber", lambda s: s.surface(base_color=soiled(s, (0.018, 0.018, 0.018), 0.5, 0.2), roughness=0.75))
 
 
 def concrete(*, light: bool = True) -> bpy.types.Material:
-    """Cast concrete: blotches, air holes, stains from the top."""
+    """Return cast concrete with blotches, air holes and stains from the top."""
 
     def make(s: Shader) -> bpy.types.Material:
         where = _coords(s)
@@ -151,7 +153,7 @@ def concrete(*, light: bool = True) -> bpy.types.Material:
 
 
 def timber(*, fresh: bool = True) -> bpy.types.Material:
-    """Sawn softwood, grain along the local x axis."""
+    """Return sawn softwood with the grain along the local x axis."""
 
     def make(s: Shader) -> bpy.types.Material:
         where = s.scaled(_coords(s), (2.0, 26.0, 26.0))
@@ -167,7 +169,7 @@ def timber(*, fresh: bool = True) -> bpy.types.Material:
 
 
 def granular(name: str, low: Colour, high: Colour, grain_scale: float) -> bpy.types.Material:
-    """Loose material: sand, gravel, spoil."""
+    """Return loose material such as sand, gravel or soil."""
 
     def make(s: Shader) -> bpy.types.Material:
         where = s.object_coords()
@@ -181,7 +183,7 @@ def granular(name: str, low: Colour, high: Colour, grain_scale: float) -> bpy.ty
 
 
 def cloth(colour: str, roughness: float = 0.9) -> bpy.types.Material:
-    """Woven or tarpaulin-like stuff with creases."""
+    """Return woven or tarpaulin-like cloth with creases."""
 
     def make(s: Shader) -> bpy.types.Material:
         where = _coords(s)
@@ -189,3 +191,45 @@ def cloth(colour: str, roughness: float = 0.9) -> bpy.types.Material:
         return s.surface(base_color=soiled(s, PALETTE[colour], 0.25), roughness=roughness, normal=s.bump(creases, 0.6, 0.02))
 
     return _shared(f"cloth {colour} {roughness:.2f}", make)
+
+
+def pane(tint: float = 0.25) -> bpy.types.Material:
+    """Return clear glass that transmits most of the light and mirrors the share ``tint``."""
+    name = f"pane {tint:.2f}"
+    found = bpy.data.materials.get(name)
+    if found is not None:
+        return found
+    s = Shader(name)
+    clear, mirror = s.node("ShaderNodeBsdfTransparent"), s.node("ShaderNodeBsdfGlossy")
+    clear.inputs["Color"].default_value = (0.86, 0.92, 0.92, 1.0)
+    mirror.inputs["Roughness"].default_value = 0.03
+    both = s.node("ShaderNodeMixShader")
+    both.inputs[0].default_value = tint
+    s.tree.links.new(clear.outputs[0], both.inputs[1])
+    s.tree.links.new(mirror.outputs[0], both.inputs[2])
+    output = next(n for n in s.tree.nodes if n.type == "OUTPUT_MATERIAL")
+    s.tree.links.new(both.outputs[0], output.inputs["Surface"])
+    return s.material
+
+
+def stripes(name: str, first: str, second: str, pitch_m: float) -> bpy.types.Material:
+    """Return canvas striped across the local x axis. It is plain when both colours are equal, and a third of the light passes."""
+    found = bpy.data.materials.get(name)
+    if found is not None:
+        return found
+    s = Shader(name)
+    p = s.object_coords()
+    x, _, _ = s.xyz(p)
+    mask = s.math("GREATER_THAN", s.math("PINGPONG", s.math("ADD", x, 50.0 * pitch_m), pitch_m), pitch_m / 2)
+    stain = s.ramp(s.noise(p, 1.7, 5.0), 0.5, 0.75, 0.0, 0.22)
+    base = s.mix(stain, s.mix(mask, PALETTE[first], PALETTE[second]), (0.16, 0.14, 0.11))
+    s.surface(base_color=base, roughness=0.9, normal=s.bump(s.noise(p, 5.0, 4.0), 0.3, 0.02))
+    through = s.node("ShaderNodeBsdfTranslucent")
+    s.feed(through.inputs["Color"], base)
+    mixed = s.node("ShaderNodeMixShader")
+    mixed.inputs[0].default_value = 0.32
+    s.tree.links.new(s.bsdf.outputs[0], mixed.inputs[1])
+    s.tree.links.new(through.outputs[0], mixed.inputs[2])
+    output = next(n for n in s.tree.nodes if n.type == "OUTPUT_MATERIAL")
+    s.tree.links.new(mixed.outputs[0], output.inputs["Surface"])
+    return s.material

@@ -1,4 +1,4 @@
-"""Meshes from numbers: boxes, lathes, lofts, tubes, text."""
+"""Mesh objects from numbers: boxes, surfaces of revolution, tubes, text."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def from_data(
     *,
     smooth: bool = False,
 ) -> bpy.types.Object:
-    """An object from vertices and polygons, linked to the scene."""
+    """Create an object from vertices and polygons and link it to the scene."""
     mesh = bpy.data.meshes.new(name)
     mesh.from_pydata(list(points), [], [list(f) for f in faces])
     mesh.update()
@@ -37,7 +37,7 @@ def from_data(
 def box(
     name: str, size: Point, centre: Point, material: bpy.types.Material | None = None, *, bevel_m: float = 0.01, segments: int = 2
 ) -> bpy.types.Object:
-    """A box with bevelled edges; ``size`` and ``centre`` in metres."""
+    """Create a box with bevelled edges; ``size`` and ``centre`` in metres."""
     mesh = bpy.data.meshes.new(name)
     bm = bmesh.new()
     bmesh.ops.create_cube(bm, size=1.0)
@@ -63,7 +63,7 @@ def lathe(
     steps: int = 32,
     axis: str = "Z",
 ) -> bpy.types.Object:
-    """A surface of revolution from ``(radius, height)`` pairs about ``axis`` through the origin ("Z", or "X" for wheels)."""
+    """Create a surface of revolution from ``(radius, height)`` pairs about ``axis`` through the origin ("Z", or "X" for wheels)."""
     points: list[Point] = []
     for radius, height in profile:
         for k in range(steps):
@@ -83,7 +83,7 @@ def lathe(
 def tube(
     name: str, path: Sequence[Point], radius_m: float, material: bpy.types.Material | None = None, *, sides: int = 8
 ) -> bpy.types.Object:
-    """A round tube along a path, as a mesh."""
+    """Create a round tube along a path, as a mesh."""
     curve = bpy.data.curves.new(name, "CURVE")
     curve.dimensions = "3D"
     curve.bevel_depth = radius_m
@@ -112,7 +112,7 @@ def to_mesh(obj: bpy.types.Object) -> bpy.types.Object:
 
 
 def join(name: str, parts: Sequence[bpy.types.Object]) -> bpy.types.Object:
-    """Join meshes into one object (fewer objects render and export faster). The parts are consumed."""
+    """Join meshes into one object, which renders and exports faster. The parts are consumed."""
     with bpy.context.temp_override(active_object=parts[0], selected_editable_objects=list(parts), selected_objects=list(parts)):
         bpy.ops.object.join()
     parts[0].name = name
@@ -131,9 +131,13 @@ def text(
     align: str = "CENTER",
     thickness_m: float = 0.002,
 ) -> tuple[bpy.types.Object, TextMark]:
-    """Flat lettering with its mark. ``facing`` is the direction towards the reader: "-Y", "+Y", "+X", "-X" or "+Z".
+    """Create flat lettering and its text mark.
 
-    The mark's size is measured from the made letters; ``centre`` is the middle of the block for "CENTER", its left edge for "LEFT".
+    Args:
+        facing: Direction towards the reader: "-Y", "+Y", "+X", "-X" or "+Z".
+        centre: Middle of the block when ``align`` is "CENTER", its left edge when it is "LEFT".
+
+    The size in the mark is measured from the generated letters.
     """
     curve = bpy.data.curves.new(name, "FONT")
     curve.body = body

@@ -1,4 +1,4 @@
-"""One mesh from many simple solids: vehicles and machines are assembled here into a single Blender object."""
+"""One mesh from many simple solids. Vehicles and machines are assembled with it into a single Blender object."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _AXES = {
 
 
 class Parts:
-    """Collects polygons with materials. ``matrix`` is the frame in which the next parts are added."""
+    """A collection of polygons with materials. ``matrix`` is the frame in which further parts are added."""
 
     def __init__(self) -> None:
         self.matrix = Matrix.Identity(4)
@@ -31,7 +31,7 @@ class Parts:
         self._smooth: list[bool] = []
 
     def slot(self, material: bpy.types.Material) -> int:
-        """The slot number of a material, added on first use."""
+        """Return the slot number of a material. It is added on first use."""
         if material not in self.materials:
             self.materials.append(material)
         return self.materials.index(material)
@@ -44,7 +44,7 @@ class Parts:
         *,
         smooth: bool = False,
     ) -> None:
-        """Polygons in the current frame; ``faces`` index ``points``, anticlockwise seen from outside."""
+        """Add polygons in the current frame. ``faces`` index ``points``, anticlockwise as seen from outside."""
         base, slot = len(self._points), self.slot(material)
         flipped = self.matrix.determinant() < 0
         self._points += [self.matrix @ Vector(p) for p in points]
@@ -55,7 +55,7 @@ class Parts:
             self._smooth.append(smooth)
 
     def mesh(self, mesh: bpy.types.Mesh) -> None:
-        """Everything of an existing mesh, with its materials."""
+        """Add all polygons of an existing mesh, with its materials."""
         points = [tuple(v.co) for v in mesh.vertices]
         base = len(self._points)
         self._points += [self.matrix @ Vector(p) for p in points]
@@ -66,7 +66,7 @@ class Parts:
             self._smooth.append(polygon.use_smooth)
 
     def box(self, size: Point, centre: Point, material: bpy.types.Material, *, bevel_m: float = 0.01) -> None:
-        """A box with chamfered edges."""
+        """Add a box with chamfered edges."""
         half = [s / 2 for s in size]
         cut = min(bevel_m, min(half) * 0.6)
         points: list[Point] = []
@@ -115,8 +115,10 @@ class Parts:
         segments: int = 1,
         smooth: bool = False,
     ) -> None:
-        """An outline extruded along ``axis`` from ``low`` to ``high``; the outline is (y, z), (x, z) or (x, y) for
-        X, Y, Z."""
+        """Add an outline extruded along ``axis`` from ``low`` to ``high``.
+
+        The outline is (y, z), (x, z) or (x, y) for axis X, Y or Z.
+        """
         bm = bmesh.new()
         place = _AXES[axis]
         face = bm.faces.new([bm.verts.new(place(a, b, low)) for a, b in outline])
@@ -141,8 +143,7 @@ class Parts:
         smooth: bool = True,
         caps: bool = True,
     ) -> None:
-        """A surface of revolution from ``(radius, height)`` pairs about ``axis`` through ``centre``, closed by
-        ``caps``."""
+        """Add a surface of revolution from ``(radius, height)`` pairs about ``axis`` through ``centre``, closed by ``caps``."""
         place = _AXES[axis]
         points: list[Point] = []
         for radius, height in profile:
@@ -175,7 +176,7 @@ class Parts:
         axis: str = "X",
         steps: int = 24,
     ) -> None:
-        """A short cylinder with a small chamfer."""
+        """Add a short cylinder with a small chamfer."""
         cut = min(0.006, radius * 0.2, abs(high - low) * 0.3)
         self.lathe(
             [(radius - cut, low), (radius, low + cut), (radius, high - cut), (radius - cut, high)],
@@ -191,7 +192,7 @@ class Parts:
         sides: int = 8,
         closed: bool = False,
     ) -> None:
-        """A round (or, with 4 sides, square) tube along a path."""
+        """Add a round tube along a path. With 4 sides it is square."""
         line = [Vector(p) for p in path]
         count = len(line)
         points: list[Point] = []
@@ -218,7 +219,7 @@ class Parts:
         self.add(points, faces, material, smooth=sides > 4)
 
     def build(self, name: str) -> bpy.types.Mesh:
-        """The assembled mesh datablock."""
+        """Return the assembled mesh datablock."""
         made = bpy.data.meshes.new(name)
         made.from_pydata([tuple(p) for p in self._points], [], self._faces)
         for material in self.materials:

@@ -1,4 +1,4 @@
-"""A small vocabulary for writing Cycles materials as expressions instead of node plumbing."""
+"""Cycles materials written as expressions: each method of ``Shader`` adds one node."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 import bpy
 
-Value = Any  # a socket, a number, a 3- or 4-tuple
+Value = Any  # a socket, a number, or a tuple of 3 or 4 numbers
 
 
 class Shader:
@@ -18,13 +18,14 @@ class Shader:
         self.bsdf = next(n for n in self.tree.nodes if n.type == "BSDF_PRINCIPLED")
 
     def node(self, kind: str, **settings: Any) -> bpy.types.Node:
+        """Add a node of this kind and set its properties."""
         made = self.tree.nodes.new(kind)
         for key, value in settings.items():
             setattr(made, key, value)
         return made
 
     def feed(self, socket: bpy.types.NodeSocket, value: Value) -> None:
-        """Link a socket or set a constant (3-tuples are widened for colour sockets)."""
+        """Link a socket to an input, or set a constant. Tuples of 3 are extended by alpha 1 for colour inputs."""
         if value is None:
             return
         if isinstance(value, bpy.types.NodeSocket):
@@ -35,29 +36,32 @@ class Shader:
             socket.default_value = value
 
     def surface(self, **inputs: Value) -> bpy.types.Material:
-        """Feed the principled BSDF by input name with underscores (``base_color``, ``normal``) and return the material."""
+        """Set inputs of the principled BSDF by name with underscores (``base_color``, ``normal``) and return the material."""
         by_name = {s.name.lower().replace(" ", "_"): s for s in self.bsdf.inputs}
         for key, value in inputs.items():
             self.feed(by_name[key], value)
         return self.material
 
     def object_coords(self) -> bpy.types.NodeSocket:
+        """Return the object coordinates of the shading point."""
         return self.node("ShaderNodeTexCoord").outputs["Object"]
 
     def position(self) -> bpy.types.NodeSocket:
-        """World position of the shading point."""
+        """Return the world position of the shading point."""
         return self.node("ShaderNodeNewGeometry").outputs["Position"]
 
     def random(self) -> bpy.types.NodeSocket:
-        """A random number in [0, 1) for each object, so that linked copies differ a little."""
+        """Return a random number in [0, 1) for each object, so that linked copies differ."""
         return self.node("ShaderNodeObjectInfo").outputs["Random"]
 
     def xyz(self, vector: Value) -> tuple[Value, Value, Value]:
+        """Return the three components of a vector."""
         made = self.node("ShaderNodeSeparateXYZ")
         self.feed(made.inputs[0], vector)
         return made.outputs[0], made.outputs[1], made.outputs[2]
 
     def scaled(self, vector: Value, scale: tuple[float, float, float], offset: tuple[float, float, float] = (0, 0, 0)) -> Value:
+        """Return the vector scaled by component and shifted."""
         made = self.node("ShaderNodeMapping")
         self.feed(made.inputs["Vector"], vector)
         made.inputs["Scale"].default_value = scale
@@ -65,6 +69,7 @@ class Shader:
         return made.outputs[0]
 
     def noise(self, vector: Value, scale: float, detail: float = 4.0, roughness: float = 0.55, distortion: float = 0.0) -> Value:
+        """Return fractal noise in [0, 1]."""
         made = self.node("ShaderNodeTexNoise")
         self.feed(made.inputs["Vector"], vector)
         for key, value in {"Scale": scale, "Detail": detail, "Roughness": roughness, "Distortion": distortion}.items():
@@ -72,12 +77,14 @@ class Shader:
         return made.outputs[0]
 
     def voronoi(self, vector: Value, scale: float, feature: str = "F1", output: str = "Distance") -> Value:
+        """Return a Voronoi feature such as the distance to the nearest cell centre."""
         made = self.node("ShaderNodeTexVoronoi", feature=feature)
         self.feed(made.inputs["Vector"], vector)
         made.inputs["Scale"].default_value = scale
         return made.outputs[output]
 
     def math(self, operation: str, a: Value, b: Value = None, *, clamp: bool = False) -> Value:
+        """Return the result of a scalar operation."""
         made = self.node("ShaderNodeMath", operation=operation, use_clamp=clamp)
         self.feed(made.inputs[0], a)
         self.feed(made.inputs[1], b)
@@ -86,18 +93,18 @@ class Shader:
     def ramp(
         self, value: Value, low: float, high: float, to_low: float = 0.0, to_high: float = 1.0, *, smooth: bool = True
     ) -> Value:
-        """Map ``low..high`` to ``to_low..to_high``, clamped: the building brick of masks."""
+        """Map ``low..high`` to ``to_low..to_high``, clamped. Most masks are built from it."""
         made = self.node("ShaderNodeMapRange", interpolation_type="SMOOTHSTEP" if smooth else "LINEAR")
         for index, number in enumerate([value, low, high, to_low, to_high]):
             self.feed(made.inputs[index], number)
         return made.outputs[0]
 
     def band(self, value: Value, low: float, high: float, soft: float = 0.002) -> Value:
-        """1 where ``low < value < high``, 0 elsewhere, with a soft edge."""
+        """Return 1 where ``low < value < high`` and 0 elsewhere, with soft edges."""
         return self.math("MULTIPLY", self.ramp(value, low - soft, low + soft), self.ramp(value, high - soft, high + soft, 1.0, 0.0))
 
     def mix(self, factor: Value, a: Value, b: Value, blend: str = "MIX") -> Value:
-        """Colour mix: ``a`` where the factor is 0, ``b`` where it is 1."""
+        """Mix two colours: ``a`` where the factor is 0, ``b`` where it is 1."""
         made = self.node("ShaderNodeMix", data_type="RGBA", blend_type=blend)
         self.feed(made.inputs[0], factor)
         self.feed(made.inputs[6], a)
@@ -105,6 +112,7 @@ class Shader:
         return made.outputs[2]
 
     def bump(self, height: Value, strength: float = 0.3, distance: float = 0.01) -> Value:
+        """Return the normal of a surface that is displaced by ``height``."""
         made = self.node("ShaderNodeBump")
         made.inputs["Strength"].default_value = strength
         made.inputs["Distance"].default_value = distance
@@ -113,7 +121,7 @@ class Shader:
 
 
 def plain(name: str, colour: tuple[float, float, float], roughness: float = 0.5, metallic: float = 0.0) -> bpy.types.Material:
-    """A material of one colour, shared by name."""
+    """Return a material of one colour, shared by name."""
     found = bpy.data.materials.get(name)
     if found is not None:
         return found

@@ -1,5 +1,4 @@
-"""One thing, one mesh: a builder that gathers primitives with their materials and texts, and makes a single object of
-them."""
+"""A builder that collects primitives with their materials and texts and makes a single mesh object of them."""
 
 from __future__ import annotations
 
@@ -10,9 +9,9 @@ from contextlib import contextmanager
 import bpy
 from mathutils import Matrix, Vector
 
+from scope_studio.kit.core.lettering import letters
 from scope_studio.kit.core.mesh import Point
 from scope_studio.kit.core.stage import Built, TextMark
-from scope_studio.kit.signs.lettering import letters
 
 READER = {
     "+Y": ((-1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
@@ -27,7 +26,7 @@ SHARP_ANGLE = math.radians(38)
 
 
 class Solid:
-    """Gathers geometry under a movable frame. Materials become slots in order of first use."""
+    """Geometry collected under a movable frame. Materials become slots in order of first use."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -50,7 +49,7 @@ class Solid:
         pitch: float = 0.0,
         roll: float = 0.0,
     ) -> Iterator[None]:
-        """Work in a frame moved to ``(x, y, z)`` and rotated (degrees) about z, then x (pitch), then y (roll)."""
+        """Work in a frame that is moved to ``(x, y, z)`` and rotated (degrees) about z, then x (pitch), then y (roll)."""
         saved = self.frame
         rotation = Matrix.Rotation(math.radians(turn), 4, "Z")
         rotation @= Matrix.Rotation(math.radians(pitch), 4, "X") @ Matrix.Rotation(math.radians(roll), 4, "Y")
@@ -67,8 +66,10 @@ class Solid:
         material: bpy.types.Material,
         rest: Sequence[Point] | None = None,
     ) -> None:
-        """Raw polygons in the current frame; ``rest`` gives each point a value of the "rest" attribute, for shader
-        masks."""
+        """Add polygons in the current frame.
+
+        ``rest`` gives each point a value of the "rest" attribute, which shaders use for masks.
+        """
         if material not in self.slots:
             self.slots.append(material)
         base, slot = len(self.points), self.slots.index(material)
@@ -79,13 +80,13 @@ class Solid:
             self.rest.update((base + i, tuple(r)) for i, r in enumerate(rest))
 
     def box(self, size: Point, centre: Point, material: bpy.types.Material, chamfer: float = 0.006) -> None:
-        """A box with chamfered edges."""
+        """Add a box with chamfered edges."""
         half = [s / 2 for s in size]
         cut = min(chamfer, 0.4 * min(size))
         signs = [(sx, sy, sz) for sx in (-1, 1) for sy in (-1, 1) for sz in (-1, 1)]
         points, index = [], {}
         for sign in signs:
-            for axis in range(3):  # the corner point that lies on the face normal to ``axis``
+            for axis in range(3):  # the corner point on the face that is normal to ``axis``
                 index[sign, axis] = len(points)
                 points.append(tuple(centre[k] + sign[k] * (half[k] - (0 if k == axis else cut)) for k in range(3)))
         faces: list[tuple[int, ...]] = []
@@ -104,7 +105,7 @@ class Solid:
                     ring.append(index[tuple(sign), axis])
                 face(ring, tuple(s if k == axis else 0 for k in range(3)))
             for su in (-1, 1):
-                for sv in (-1, 1):  # the edge along ``axis`` between the faces normal to u and v
+                for sv in (-1, 1):  # the edge along ``axis``, between the faces that are normal to u and v
                     low, high = [0, 0, 0], [0, 0, 0]
                     low[axis], low[u], low[v] = -1, su, sv
                     high[axis], high[u], high[v] = 1, su, sv
@@ -122,7 +123,7 @@ class Solid:
         axis: str = "Z",
         steps: int = 24,
     ) -> None:
-        """A surface of revolution from ``(radius, height)`` pairs, listed from bottom to top, capped at both ends."""
+        """Add a surface of revolution from ``(radius, height)`` pairs, listed from bottom to top, capped at both ends."""
         place = {"Z": lambda u, v, h: (u, v, h), "Y": lambda u, v, h: (v, h, u), "X": lambda u, v, h: (h, u, v)}[axis]
         points = []
         for radius, height in profile:
@@ -149,7 +150,7 @@ class Solid:
         radius_b: float | None = None,
         sides: int = 10,
     ) -> None:
-        """A straight round bar, tapered when ``radius_b`` is given."""
+        """Add a straight round bar, tapered when ``radius_b`` is given."""
         self.tube([a, b], radius, material, sides=sides, radius_b=radius_b)
 
     def tube(
@@ -162,7 +163,7 @@ class Solid:
         radius_b: float | None = None,
         closed: bool = False,
     ) -> None:
-        """A round tube along a path, mitred at the corners."""
+        """Add a round tube along a path, mitred at the corners."""
         line = [Vector(p) for p in path]
         count = len(line)
         ring_points: list[Point] = []
@@ -207,7 +208,7 @@ class Solid:
         material: bpy.types.Material,
         plane: str = "XZ",
     ) -> None:
-        """A polygon (convex or not) extruded between two depths along the axis that ``plane`` leaves out."""
+        """Add a polygon (convex or not) extruded between two depths along the axis that is normal to ``plane``."""
         place = {"XZ": lambda u, v, d: (u, d, v), "XY": lambda u, v, d: (u, v, d), "YZ": lambda u, v, d: (d, u, v)}[plane]
         count = len(outline)
         area = sum(outline[i - 1][0] * outline[i][1] - outline[i][0] * outline[i - 1][1] for i in range(count))
@@ -233,9 +234,14 @@ class Solid:
         spacing: float | None = None,
         mark: bool = True,
     ) -> tuple[float, float]:
-        """One line of lettering towards ``facing``; its mark is exact. ``centre`` is where the mid-height of the
-        capitals lies, at the middle, left or right edge of the line as ``align`` says. Returns the width and height
-        of the letters in metres."""
+        """Add one line of lettering towards ``facing``, with its exact text mark.
+
+        Args:
+            centre: Point at mid-height of the capitals; at the middle, left or right edge of the line, depending on ``align``.
+
+        Returns:
+            Width and height of the letters in metres.
+        """
         flat, faces = letters(body, cap_height_m, bold=bold, spacing=spacing)
         xs, ys = [p[0] for p in flat], [p[1] for p in flat]
         low, high = min(xs), max(xs)
@@ -255,7 +261,7 @@ class Solid:
         return width, height
 
     def object(self) -> bpy.types.Object:
-        """The mesh object, linked to the scene; smooth with sharp edges by angle."""
+        """Create the mesh object, linked to the scene and smooth-shaded with sharp edges by angle."""
         mesh = bpy.data.meshes.new(self.name)
         mesh.from_pydata(self.points, [], self.faces)
         for material in self.slots:
@@ -272,19 +278,5 @@ class Solid:
         return obj
 
     def built(self) -> Built:
+        """Create the object and return it with its texts."""
         return Built.of(self.name, [self.object()], self.texts)
-
-
-def arc(centre: tuple[float, float], radius: float, start_deg: float, stop_deg: float, steps: int = 8) -> list[tuple[float, float]]:
-    """Points of a circular arc in a plane, both ends included."""
-    angles = [math.radians(start_deg + (stop_deg - start_deg) * k / steps) for k in range(steps + 1)]
-    return [(centre[0] + radius * math.cos(a), centre[1] + radius * math.sin(a)) for a in angles]
-
-
-def rounded(
-    width: float, height: float, radius: float, centre: tuple[float, float] = (0.0, 0.0), steps: int = 5
-) -> list[tuple[float, float]]:
-    """Outline of a rectangle with rounded corners, anticlockwise."""
-    u, v = width / 2 - radius, height / 2 - radius
-    corners = [(u, v, 0), (-u, v, 90), (-u, -v, 180), (u, -v, 270)]
-    return [p for cu, cv, a in corners for p in arc((centre[0] + cu, centre[1] + cv), radius, a, a + 90, steps)]

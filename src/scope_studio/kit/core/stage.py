@@ -1,7 +1,7 @@
-"""The stage: where kit objects are placed and become annotated instances.
+"""The stage, on which kit objects are placed and become annotated instances.
 
-Conventions. Metres, z up. World north is +y, east is +x. A *bearing* is in degrees clockwise from north seen from above.
-Every kit builder models its object at the origin, standing on z = 0, facing north (+y), right side towards +x.
+Lengths are in metres and z points up. World north is +y, east is +x. A *bearing* is in degrees clockwise from north, seen from
+above. Every builder models its object at the origin, standing on z = 0 and facing north (+y), with its right side towards +x.
 """
 
 from __future__ import annotations
@@ -15,15 +15,16 @@ import bpy
 from mathutils import Matrix, Vector
 
 INSTANCE_PROP = "scope_instance"
-"""Custom property of every annotated Blender object: the string id of the instance it belongs to."""
+"""Custom property of every annotated Blender object: the string id of its instance."""
 
 
 @dataclass
 class TextMark:
     """One readable text on an object, in the object's own frame (before placement).
 
-    ``centre`` is the middle of the text block; ``right`` runs along the line of text as a reader sees it and ``up`` towards the
-    top of the letters (unit vectors); the outward normal is ``right x up``. ``cap_height_m`` is the height of a capital letter.
+    ``centre`` is the middle of the text block. ``right`` runs along the line of text as a reader sees it, and ``up`` towards
+    the top of the letters (unit vectors); the outward normal is ``right x up``. ``cap_height_m`` is the height of a capital
+    letter.
     """
 
     text: str
@@ -37,7 +38,7 @@ class TextMark:
 
 @dataclass
 class Built:
-    """What a kit builder returns: the Blender objects of one thing, all parented to ``root``, and its readable texts."""
+    """The result of a builder: the Blender objects of one thing, all parented to ``root``, and its readable texts."""
 
     root: bpy.types.Object
     objects: list[bpy.types.Object]
@@ -45,7 +46,7 @@ class Built:
 
     @classmethod
     def of(cls, name: str, objects: Iterable[bpy.types.Object], texts: Sequence[TextMark] = ()) -> Built:
-        """Parent ``objects`` (already modelled around the origin) to a new empty and return them as one thing."""
+        """Parent ``objects`` (modelled around the origin) to a new empty and return them as one thing."""
         root = bpy.data.objects.new(name, None)
         root.empty_display_size = 0.2
         bpy.context.scene.collection.objects.link(root)
@@ -56,7 +57,7 @@ class Built:
         return cls(root, parts, list(texts))
 
     def copy(self) -> Built:
-        """A linked duplicate: mesh data are shared, so a hundred cones cost one cone of memory."""
+        """Return a linked duplicate. Mesh data are shared, so that a hundred cones need the memory of one."""
         twins: dict[bpy.types.Object, bpy.types.Object] = {}
         for obj in [self.root, *self.objects]:
             twin = obj.copy()
@@ -71,7 +72,7 @@ class Built:
 
 @dataclass
 class Instance:
-    """An annotated thing of the scene. ``number`` is its value in the ID layer (also ``object.pass_index``)."""
+    """An annotated thing of the scene. ``number`` is its value in the instance-number layer (also ``object.pass_index``)."""
 
     id: str
     number: int
@@ -94,7 +95,7 @@ class Viewpoint:
 
 @dataclass
 class Preset:
-    """A named pose of the scene, in the pan/tilt/zoom frame of its viewpoint. One preset of the scene is home."""
+    """A named pose in the pan/tilt/zoom frame of its viewpoint. One preset of the scene is the home preset."""
 
     name: str
     viewpoint: str
@@ -106,11 +107,11 @@ class Preset:
 
 @dataclass
 class ActorPath:
-    """A moving thing: a builder, and where it is at any time.
+    """A moving thing: its builder, and its position over time.
 
-    ``waypoints`` are ``(t_s, x, y, z)``, followed at the speed that they imply, heading along the motion; ``period_s`` repeats
-    it. ``build`` makes the object for one gait phase in [0, 1) (0 for things without legs); ``stride_m`` is the length of one
-    gait cycle.
+    ``waypoints`` are ``(t_s, x, y, z)``. The actor moves between them at the implied speed and heads along its motion; the path
+    repeats every ``period_s``. ``build`` makes the object for one gait phase in [0, 1) (0 for things without legs).
+    ``stride_m`` is the length of one gait cycle.
     """
 
     id: str
@@ -124,15 +125,16 @@ class ActorPath:
     stride_m: float | None = None
 
 
-def _leave(*, spare: tuple[str, ...] = ()) -> None:
-    """Materials stay as they are."""
+def _leave(*, skip: tuple[str, ...] = ()) -> None:
+    """Leave the materials as they are."""
 
 
 class Stage:
-    """Collects what a scene module builds. Ids are ``category-NN`` in order of placement, and never change afterwards.
+    """Collects the things that a scene module builds.
 
-    ``finish`` is the last step for materials: called once after the scene is built, and again for each moving thing that is built
-    later, with the names of the materials to leave alone (``spare``). Haze, for instance, goes on here.
+    Ids are ``category-NN`` in order of placement and never change afterwards. ``finish`` is the last step for materials, for
+    example haze. It is called once after the scene is built, and again for each moving thing that is built later; ``skip`` then
+    names the materials that are finished already.
     """
 
     def __init__(self, name: str, title: str) -> None:
@@ -161,11 +163,15 @@ class Stage:
         scale: float = 1.0,
         **attributes: Any,
     ) -> str:
-        """Put a built thing into the world and annotate it; returns the instance id.
+        """Place a built thing in the world and annotate it.
 
-        ``name`` is the plain-English noun phrase a person would use ("white van"). Attributes are facts worth asking about:
-        colour, material, state ("open", "lit", "parked"), facing, and so on; values are short lower-case strings, numbers or
-        booleans.
+        Args:
+            name: The plain English noun phrase that a person would use ("white van").
+            attributes: Facts worth asking about, such as colour, material, state ("open", "lit", "parked") or facing. Values
+                are short lower-case strings, numbers or booleans.
+
+        Returns:
+            The instance id.
         """
         self.put(built, location, bearing_deg, lean_deg=lean_deg, scale=scale)
         count = self._numbers.get(category, 0) + 1
@@ -188,18 +194,20 @@ class Stage:
         lean_deg: tuple[float, float] = (0.0, 0.0),
         scale: float = 1.0,
     ) -> Built:
-        """Put a thing into the world without annotating it (ground, far scenery): its pass index stays 0."""
+        """Place a thing in the world without annotation (ground, distant scenery). Its pass index stays 0."""
         rotation = Matrix.Rotation(-math.radians(bearing_deg), 4, "Z")
         rotation @= Matrix.Rotation(math.radians(lean_deg[0]), 4, "X") @ Matrix.Rotation(math.radians(lean_deg[1]), 4, "Y")
         built.root.matrix_world = Matrix.Translation(Vector(location)) @ rotation @ Matrix.Scale(scale, 4)
         return built
 
     def viewpoint(self, name: str, position: tuple[float, float, float], pan0_bearing_deg: float, description: str) -> None:
+        """Add a viewpoint at a position in metres."""
         self.viewpoints.append(Viewpoint(name, position, pan0_bearing_deg, description))
 
     def preset(
         self, name: str, viewpoint: str, pan_deg: float, tilt_deg: float, zoom: float, description: str, *, home: bool = False
     ) -> None:
+        """Add a preset. With ``home``, it is the scene's home preset."""
         self.presets.append(Preset(name, viewpoint, pan_deg, tilt_deg, zoom, description))
         if home:
             self.home_preset = name

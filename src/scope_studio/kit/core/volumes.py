@@ -1,5 +1,7 @@
-"""Soft bodies: capsules, ellipsoids and lofts melted into one skin by a voxel remesh. What people and other rounded
-things are made of."""
+"""Soft bodies of people, animals and other rounded things.
+
+Capsules, ellipsoids and lofts are merged into one skin by a voxel remesh.
+"""
 
 from __future__ import annotations
 
@@ -16,14 +18,14 @@ Skin = tuple[np.ndarray, list[tuple[int, ...]]]
 
 
 class Volume:
-    """Overlapping closed shapes, to be melted into one surface."""
+    """Overlapping closed shapes that are to be merged into one surface."""
 
     def __init__(self) -> None:
         self.points: list[tuple[float, float, float]] = []
         self.faces: list[tuple[int, ...]] = []
 
     def rings(self, rows: Sequence[Sequence[Vec]]) -> None:
-        """A closed tube through rings of equal length."""
+        """Add a closed tube through rings of equal length."""
         base, n = len(self.points), len(rows[0])
         for row in rows:
             self.points += [tuple(p) for p in row]
@@ -35,7 +37,7 @@ class Volume:
         self.faces.append(tuple(range(base + (len(rows) - 1) * n, base + len(rows) * n)))
 
     def capsule(self, a: Vec, b: Vec, ra: float, rb: float, *, sides: int = 16, flat: float = 1.0, across: Vec = (1, 0, 0)) -> None:
-        """A tapered bar with round ends; ``flat`` < 1 thins it at right angles to ``across``."""
+        """Add a tapered bar with round ends. ``flat`` < 1 makes it thinner at right angles to ``across``."""
         a, b = Vector(a), Vector(b)
         axis = (b - a).normalized()
         u = Vector(across) - axis * axis.dot(Vector(across))
@@ -57,7 +59,7 @@ class Volume:
         self.rings(rows)
 
     def ellipsoid(self, centre: Vec, radii: tuple[float, float, float], frame: Matrix | None = None) -> None:
-        """An axis-aligned ellipsoid, optionally carried by a frame."""
+        """Add an axis-aligned ellipsoid, optionally transformed by a frame."""
         rows = []
         for i in range(13):
             t = math.radians(-84 + 14 * i)
@@ -72,7 +74,7 @@ class Volume:
         self.rings(rows)
 
     def melt(self, voxel_m: float, smooth: int = 4) -> Skin:
-        """One watertight surface around everything, smoothed."""
+        """Merge the shapes into one smoothed, watertight surface."""
         mesh = bpy.data.meshes.new("melt")
         mesh.from_pydata(self.points, [], self.faces)
         obj = bpy.data.objects.new("melt", mesh)
@@ -81,7 +83,7 @@ class Volume:
         if smooth:
             soft = obj.modifiers.new("smooth", "SMOOTH")
             soft.factor, soft.iterations = 0.5, smooth
-        scratch = bpy.data.scenes.new("melt")  # a scene of its own: evaluating it does not touch the rest of the stage
+        scratch = bpy.data.scenes.new("melt")  # evaluating a separate scene does not touch the rest of the stage
         scratch.collection.objects.link(obj)
         layer = scratch.view_layers[0]
         layer.update()
@@ -97,7 +99,7 @@ class Volume:
 
 
 def normals(skin: Skin) -> np.ndarray:
-    """Unit vertex normals of a quad skin, (n, 3)."""
+    """Return the unit vertex normals of a quad skin, (n, 3)."""
     points, faces = skin
     quads = np.array([f if len(f) == 4 else (*f, f[-1]) for f in faces])
     cross = np.cross(points[quads[:, 2]] - points[quads[:, 0]], points[quads[:, 3]] - points[quads[:, 1]])
@@ -113,8 +115,11 @@ def crease(
     scale: tuple[float, float, float],
     seed: float,
 ) -> Skin:
-    """Push the surface in and out by folded noise: cloth. ``amount`` is metres, or an array (n,) of metres, or a
-    function of the points (n, 3) that gives one."""
+    """Return the skin displaced by folded noise, which looks like cloth.
+
+    Args:
+        amount: Metres, an array (n,) of metres, or a function of the points (n, 3) that returns either.
+    """
     points, faces = skin
     size = amount(points) if callable(amount) else amount
     shift = np.array(

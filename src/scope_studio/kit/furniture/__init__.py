@@ -1,1 +1,1 @@
-"""Street, roadside and market furniture."""
+"""Furniture of streets, squares, markets, shops and cafés."""

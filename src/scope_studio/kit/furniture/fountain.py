@@ -7,16 +7,19 @@ from collections.abc import Sequence
 
 import bpy
 
-from scope_studio.kit.buildings.townhouses import ashlar
+from scope_studio.kit.buildings.wall_materials import ashlar
 from scope_studio.kit.core.finishes import paint
+from scope_studio.kit.core.lettering import extent
 from scope_studio.kit.core.shading import Shader, plain
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
-from scope_studio.kit.signs.lettering import extent
 
 
 def fountain_basin(radius: float = 3.0) -> Built:
-    """A stone basin with moulded rim, water, and four low jets round a pedestal place in the middle (1.2 m square, 0.5 m high)."""
+    """Build a stone basin with moulded rim, water and four low jets.
+
+    In the middle, a base 1.2 m square and 0.5 m high takes a pedestal.
+    """
     s = Solid("fountain")
     stone = _basin_stone()
     s.lathe(
@@ -62,7 +65,7 @@ def _water() -> bpy.types.Material:
 
 
 def plinth(lines: Sequence[str], *, height: float = 2.2, side: float = 1.1) -> Built:
-    """A stone pedestal with a moulded foot and cap, and an inscription cut in its +y face."""
+    """Build a stone pedestal with a moulded foot and cap, and an inscription cut into its +y face."""
     s = Solid("plinth")
     stone = _basin_stone()
     s.box((side + 0.5, side + 0.5, 0.35), (0, 0, 0.17), stone, 0.04)
@@ -80,7 +83,7 @@ def plinth(lines: Sequence[str], *, height: float = 2.2, side: float = 1.1) -> B
 
 
 def bronze(built: Built) -> Built:
-    """The same figure cast in weathered bronze."""
+    """Return the same figure in weathered bronze."""
     metal = _bronze()
     for obj in built.objects:
         for slot in obj.material_slots:

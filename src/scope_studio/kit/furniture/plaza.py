@@ -1,4 +1,4 @@
-"""What stands about on a town square: lanterns, planters, post box, ticket machine, finger post, map, flags, kiosk."""
+"""Furniture of a town square: lanterns, planters, post box, recycling bin, ticket machine, flags, news kiosk."""
 
 from __future__ import annotations
 
@@ -6,19 +6,17 @@ import math
 import random
 from collections.abc import Sequence
 
-from scope_studio.kit.buildings.square_shops import stripes
-from scope_studio.kit.buildings.townhouses import block
-from scope_studio.kit.core.finishes import PALETTE, glass, glow, lens, paint, sheet, steel, timber
+from scope_studio.kit.core.finishes import PALETTE, glass, glow, lens, paint, sheet, steel, stripes, timber
+from scope_studio.kit.core.lettering import extent
 from scope_studio.kit.core.shading import plain
+from scope_studio.kit.core.shapes import block
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
-from scope_studio.kit.furniture.market import flowers
-from scope_studio.kit.signs.faces import arrow, board, disc, flat, write
-from scope_studio.kit.signs.lettering import extent
+from scope_studio.kit.furniture.stalls import flowers
 
 
 def lantern_post(*, arms: int = 2, colour: str = "dark green", height: float = 4.4, lit: bool = False) -> Built:
-    """A cast lamp post with ``arms`` lanterns (1 on top, 2 on a cross arm)."""
+    """Build a cast lamp post with 1 lantern on top, or 2 on a cross arm."""
     s = Solid("lantern post")
     iron = paint(colour, dirt=0.2, roughness=0.35)
     s.lathe(
@@ -63,7 +61,7 @@ def lantern_post(*, arms: int = 2, colour: str = "dark green", height: float = 4
 
 
 def planter(bloom: str = "red", second: str = "yellow", *, side: float = 0.95, seed: int = 0) -> Built:
-    """A square timber planter full of flowers."""
+    """Build a square timber planter full of flowers."""
     s = Solid("planter")
     rng = random.Random(f"planter {seed}")
     wood = timber(fresh=False)
@@ -81,7 +79,7 @@ def planter(bloom: str = "red", second: str = "yellow", *, side: float = 0.95, s
 
 
 def post_box(*, hours: str = "9.30 AM") -> Built:
-    """A red cast-iron pillar box, 1.6 m, its slot and collection plate towards +y."""
+    """Build a red cast-iron pillar box, 1.6 m high, with slot and collection plate towards +y."""
     s = Solid("post box")
     red = paint("red", dirt=0.15, roughness=0.3)
     s.lathe([(0.28, 0.0), (0.28, 0.16)], paint("black", dirt=0.3), steps=40)
@@ -102,7 +100,7 @@ def post_box(*, hours: str = "9.30 AM") -> Built:
 
 
 def recycling_bin(colour: str, word: str) -> Built:
-    """A steel recycling bin, 0.5 x 0.5 x 1.25 m, with a round opening and a label towards +y."""
+    """Build a steel recycling bin, 0.5 x 0.5 x 1.25 m, with a round opening and a label towards +y."""
     s = Solid("recycling bin")
     body = paint(colour, dirt=0.25, roughness=0.4)
     s.box((0.52, 0.50, 0.06), (0, 0, 0.03), paint("black"), 0.01)
@@ -116,7 +114,7 @@ def recycling_bin(colour: str, word: str) -> Built:
 
 
 def ticket_machine(*, lit: bool = True) -> Built:
-    """A ticket machine, 0.75 x 0.55 x 1.85 m: screen, slots, keypad towards +y, lettered head."""
+    """Build a ticket machine, 0.75 x 0.55 x 1.85 m, with lettered head, and screen, slots and keypad towards +y."""
     s = Solid("ticket machine")
     body = paint("blue", dirt=0.15, roughness=0.35)
     s.box((0.75, 0.50, 1.60), (0, 0, 0.80), body, 0.02)
@@ -132,79 +130,8 @@ def ticket_machine(*, lit: bool = True) -> Built:
     return s.built()
 
 
-def finger_post(fingers: Sequence[tuple[str, float]], *, colour: str = "dark green", height: float = 3.1) -> Built:
-    """A sign post with lettered fingers: (text, bearing in degrees that the finger points to), topmost first."""
-    s = Solid("finger post")
-    iron = paint(colour, dirt=0.2, roughness=0.35)
-    s.lathe(
-        [
-            (0.13, 0.0),
-            (0.13, 0.10),
-            (0.07, 0.16),
-            (0.05, 0.9),
-            (0.05, height),
-            (0.08, height + 0.03),
-            (0.05, height + 0.10),
-            (0.01, height + 0.22),
-        ],
-        iron,
-        steps=20,
-    )
-    for k, (text, bearing) in enumerate(fingers):
-        cap = 0.085
-        wide = extent(text, cap) + 0.30
-        with s.at(0, 0, height - 0.14 - 0.235 * k, turn=90.0 - bearing):
-            shape = [(0.05, -0.095), (wide - 0.10, -0.095), (wide, 0.0), (wide - 0.10, 0.095), (0.05, 0.095)]
-            s.prism(shape, (-0.014, 0.014), iron, "XZ")
-            for side, facing in ((1, "+Y"), (-1, "-Y")):
-                s.text(text, cap, (0.05 + (wide - 0.08) / 2, side * 0.0165, 0.0), sheet("white", dirt=0.05), facing=facing)
-    return s.built()
-
-
-def map_board(title: str = "TOWN MAP") -> Built:
-    """A town plan on two posts, 1.3 x 1.5 m, facing +y: streets, blocks, a park, a river and a red "you are here"."""
-    s = Solid("map board")
-    rng = random.Random(title)
-    for x in (-0.66, 0.66):
-        s.box((0.08, 0.08, 2.15), (x, -0.03, 1.07), paint("dark green", dirt=0.2), 0.012)
-    with s.at(0, 0.02, 1.38):
-        s.box((1.30, 0.05, 1.44), (0, 0, 0), paint("dark green", dirt=0.2), 0.012)
-        s.box((1.20, 0.012, 1.34), (0, 0.022, 0), sheet("cream", dirt=0.05), 0.0)
-        s.text(title, 0.10, (0, 0.031, 0.57), paint("dark green", dirt=0.0))
-        tints = [
-            plain(f"map {k}", c, 0.6)
-            for k, c in enumerate(((0.50, 0.40, 0.29), (0.44, 0.36, 0.27), (0.18, 0.36, 0.10), (0.16, 0.34, 0.52)))
-        ]
-        with s.at(0, 0.027, -0.08):
-            for i in range(6):
-                for j in range(6):
-                    if rng.random() < 0.88:
-                        flat(
-                            s,
-                            [
-                                (u * 0.18 + (i - 2.5) * 0.19, v * 0.17 + (j - 2.5) * 0.185)
-                                for u, v in (
-                                    (-0.42, -0.42),
-                                    (0.42, -0.42 + rng.uniform(0, 0.2)),
-                                    (0.42, 0.42),
-                                    (-0.42 + rng.uniform(0, 0.3), 0.42),
-                                )
-                            ],
-                            tints[2 if (i, j) in ((1, 4), (2, 4), (4, 1)) else rng.randrange(2)],
-                            0.003,
-                        )
-            flat(
-                s,
-                [(-0.58, 0.30), (-0.2, 0.16), (0.2, 0.22), (0.58, 0.05), (0.58, -0.03), (0.2, 0.14), (-0.2, 0.08), (-0.58, 0.22)],
-                tints[3],
-                0.004,
-            )
-            disc(s, 0.08, -0.12, 0.035, paint("red", dirt=0.0), 0.006)
-    return s.built()
-
-
 def flagpole(*, height: float = 7.5, colours: tuple[str, ...] = ("blue", "white", "red"), seed: int = 0) -> Built:
-    """A white pole with a flag of upright stripes that streams towards +x, rippling."""
+    """Build a white pole with a flag of vertical stripes that streams towards +x."""
     s = Solid("flagpole")
     rng = random.Random(f"flag {seed}")
     s.lathe(
@@ -239,7 +166,10 @@ def flagpole(*, height: float = 7.5, colours: tuple[str, ...] = ("blue", "white"
 
 
 def news_kiosk(name: str = "NEWS", *, colour: str = "dark green") -> Built:
-    """An octagonal-fronted kiosk, 2.6 x 2.1 x 3.1 m: counter and racks of papers towards +y, lettered fascia on four sides."""
+    """Build a newspaper kiosk, 2.6 x 2.1 x 3.1 m, with angled front corners.
+
+    Counter and racks of papers face +y; the fascia is lettered on four sides.
+    """
     s = Solid("kiosk")
     wood = paint(colour, dirt=0.18, roughness=0.35)
     inside = plain("kiosk inside", (0.05, 0.045, 0.04), 0.9)
@@ -280,7 +210,7 @@ def news_kiosk(name: str = "NEWS", *, colour: str = "dark green") -> Built:
 
 
 def headline_board(paper: str, lines: Sequence[str], *, cap: float = 0.085) -> Built:
-    """A wire-fronted newspaper bill on an A-frame, 0.62 x 0.95 m, facing +y."""
+    """Build a wire-fronted newspaper bill on an A-frame, 0.62 x 0.95 m, facing +y."""
     s = Solid("headline board")
     with s.at(0, 0.18, 0.0, pitch=12.0):
         s.box((0.66, 0.03, 0.98), (0, 0, 0.52), paint("red", dirt=0.25), 0.01)
@@ -295,36 +225,4 @@ def headline_board(paper: str, lines: Sequence[str], *, cap: float = 0.085) -> B
             )
     with s.at(0, -0.18, 0.0, pitch=-12.0):
         s.box((0.62, 0.02, 0.92), (0, 0, 0.48), paint("red", dirt=0.25), 0.01)
-    return s.built()
-
-
-def no_entry() -> Built:
-    """A red disc with a white bar on a post, 2.9 m, facing +y."""
-    s = Solid("no entry sign")
-    s.rod((0, -0.05, 0), (0, -0.05, 2.9), 0.035, steel())
-    with s.at(0, 0, 2.55):
-        s.lathe([(0.32, -0.012), (0.32, 0.0)], sheet("red"), (0, 0, 0), "Y", 40)
-        s.lathe([(0.33, -0.016), (0.33, -0.004)], steel(), (0, 0, 0), "Y", 40)
-        flat(s, [(-0.23, -0.055), (0.23, -0.055), (0.23, 0.055), (-0.23, 0.055)], sheet("white"))
-    return s.built()
-
-
-def post_sign(
-    lines: Sequence[str], *, background: str = "blue", cap: float = 0.10, height: float = 2.2, pointer: str | None = None
-) -> Built:
-    """A small sign on a post, as wide as its lines need, facing +y; the first line is larger."""
-    s = Solid(f"{background} sign")
-    caps = [cap * (1.5 if k == 0 else 0.8) for k in range(len(lines))]
-    wide = max(extent(line, c) for line, c in zip(lines, caps, strict=True)) + 0.22
-    tall = sum(c * 1.7 for c in caps) + 0.14 + (0.30 if pointer else 0.0)
-    s.rod((0, -0.05, 0), (0, -0.05, height + tall), 0.032, steel())
-    with s.at(0, 0, height + tall / 2):
-        board(s, wide, tall, background, edge=0.018, back=False)
-        v = tall / 2 - 0.07
-        for line, c in zip(lines, caps, strict=True):
-            v -= c * 0.85
-            write(s, line, c, 0, v, "white" if background not in ("white", "yellow") else "black")
-            v -= c * 0.85
-        if pointer:
-            arrow(s, 0.0, -tall / 2 + 0.20, 0.22, pointer, sheet("white" if background not in ("white", "yellow") else "black"))
     return s.built()

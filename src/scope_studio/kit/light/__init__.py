@@ -1,1 +1,1 @@
-"""Skies and light."""
+"""Skies, sunlight, haze and the colour management that belongs to them: daylight, overcast and dusk."""

@@ -1,8 +1,7 @@
-"""Dusk: a deep blue sky over a warm horizon, lamps that throw pools of light, evening haze, and a long exposure.
+"""Dusk: a deep blue sky over a warm horizon, pools of lamplight, evening haze, and a long exposure.
 
-The counterpart of ``sky`` for the hour after sunset. There is no sun: soft light comes from the whole sky, and every lamp is an
-area light of at least 0.3 m (small ones would speckle at few samples) that the camera does not see; what it sees is the
-glowing lens of the fitting that the light belongs to.
+There is no sun: soft light comes from the whole sky. Every lamp is an area light of at least 0.3 m, because smaller ones are
+noisy at few samples. The camera does not see these lights; it sees the emissive lens of the fitting that the light belongs to.
 """
 
 from __future__ import annotations
@@ -15,7 +14,7 @@ from mathutils import Vector
 from scope_studio.kit.core.shading import Shader, Value
 
 GLOW_BEARING_DEG = 312.0
-"""Where the sun went down."""
+"""Bearing of the sunset glow."""
 
 ZENITH = (0.050, 0.095, 0.235)
 MIDDLE = (0.150, 0.225, 0.400)
@@ -26,14 +25,14 @@ HAZE = (0.135, 0.155, 0.205)
 SODIUM = (1.0, 0.56, 0.20)
 LED = (0.86, 0.93, 1.0)
 WARM = (1.0, 0.80, 0.56)
-"""Colours of lamps, linear RGB."""
+"""Linear RGB of lamp light."""
 
 DIMMED = ("paint ", "vehicle lamp", "sheet ")
-"""Materials whose faint glow by day (lamp covers, reflective sheet) would pass for lit lamps at dusk, by prefix."""
+"""Name prefixes of materials (lamp covers, reflective sheet) that glow faintly by day and would look like lit lamps at dusk."""
 
 
 class _WorldShader(Shader):
-    """The shading vocabulary, writing into the node tree of a world."""
+    """A ``Shader`` that writes into the node tree of a world."""
 
     def __init__(self, world: bpy.types.World) -> None:
         self.tree = world.node_tree
@@ -41,7 +40,7 @@ class _WorldShader(Shader):
 
 
 def setup(scene: bpy.types.Scene, *, sky_strength: float = 0.36, exposure: float = 1.5) -> None:
-    """Give ``scene`` its evening sky, view transform, and light paths that stay clean at eight samples."""
+    """Give ``scene`` its evening sky, view transform, and light paths that are free of noise at eight samples."""
     _world(scene, sky_strength)
     scene.display_settings.display_device = "sRGB"
     scene.view_settings.view_transform = "AgX"
@@ -56,7 +55,7 @@ def setup(scene: bpy.types.Scene, *, sky_strength: float = 0.36, exposure: float
 
 
 def _world(scene: bpy.types.Scene, strength: float) -> None:
-    """Camera and mirror rays see clouds; diffuse light comes from a smooth gradient, which stays clean at few samples."""
+    """Build the world. Camera and mirror rays see clouds; diffuse light comes from a smooth gradient, which needs few samples."""
     world = bpy.data.worlds.new("Dusk")
     scene.world = world
     s = _WorldShader(world)
@@ -82,7 +81,7 @@ def _world(scene: bpy.types.Scene, strength: float) -> None:
 
 
 def _clouds(s: Shader, x: Value, y: Value, height: Value, towards: Value, clear: Value) -> Value:
-    """Thin sheets of evening cloud: slate above, still lit from below where the sun went down."""
+    """Return thin sheets of evening cloud, dark above and lit from below on the side of the sunset."""
     depth = s.math("ADD", height, 0.10)
     plane = s.node("ShaderNodeCombineXYZ")
     s.feed(plane.inputs[0], s.math("DIVIDE", x, depth))
@@ -106,7 +105,10 @@ def pool(
     spread_deg: float = 150.0,
     stretch: float = 1.0,
 ) -> None:
-    """A lamp's light without its fitting: a disc (an ellipse of height ``stretch`` times its width) shining along ``aim``."""
+    """Add the light of a lamp without its fitting: a disc that shines along ``aim``.
+
+    ``stretch`` turns the disc into an ellipse with that ratio of height to width.
+    """
     light = bpy.data.lights.new("lamp light", "AREA")
     light.shape = "ELLIPSE" if stretch != 1.0 else "DISK"
     light.size = size_m
@@ -122,14 +124,15 @@ def pool(
     lamp.visible_camera = False
 
 
-def finish_materials(*, visibility_m: float = 1500.0, spare: tuple[str, ...] = ()) -> None:
-    """Last step of a scene: evening haze on every material, unlit lamps unlit, and no mesh sampled as a lamp.
+def finish_materials(*, visibility_m: float = 1500.0, skip: tuple[str, ...] = ()) -> None:
+    """Finish the scene's materials: add evening haze, turn off unlit lamps, and sample no mesh as a lamp.
 
-    ``visibility_m`` is the distance at which 63% of a thing's light is replaced by haze. Materials named in ``spare``
-    stay as they are.
+    Args:
+        visibility_m: Distance at which 63% of a thing's light is replaced by haze.
+        skip: Names of materials that stay as they are.
     """
     for material in bpy.data.materials:
-        if material.name in spare or material.node_tree is None:
+        if material.name in skip or material.node_tree is None:
             continue
         material.cycles.emission_sampling = "NONE"
         if material.name.startswith(DIMMED):
@@ -144,7 +147,7 @@ def _dim(tree: bpy.types.NodeTree) -> None:
 
 
 def _add_haze(tree: bpy.types.NodeTree, visibility_m: float) -> None:
-    """Mix in the haze's glow by distance, for camera rays only."""
+    """Mix in the colour of the haze by distance, for camera rays only."""
     output = next((n for n in tree.nodes if n.type == "OUTPUT_MATERIAL" and n.is_active_output), None)
     if output is None or not output.inputs["Surface"].is_linked:
         return

@@ -1,4 +1,4 @@
-"""A dull sky just after rain: a low grey layer with darker rags, soft light from all over, haze at half a kilometre."""
+"""A dull sky just after rain: a low grey cloud layer, soft light from all sides, and haze from half a kilometre."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from scope_studio.kit.core.shading import Shader, Value
 
 
 class _WorldShader(Shader):
-    """The shading vocabulary, writing into the node tree of a world."""
+    """A ``Shader`` that writes into the node tree of a world."""
 
     def __init__(self, world: bpy.types.World) -> None:
         self.tree = world.node_tree
@@ -26,7 +26,7 @@ def setup(
     sun_bearing_deg: float = 215.0,
     exposure: float = 0.50,
 ) -> None:
-    """Give ``scene`` its grey world, a veiled sun, and its view transform."""
+    """Give ``scene`` a grey world, a veiled sun, and its view transform."""
     world = bpy.data.worlds.new("Overcast")
     scene.world = world
     s = _WorldShader(world)
@@ -52,7 +52,7 @@ def setup(
 
 
 def _layer(s: Shader, x: Value, y: Value, height: Value) -> Value:
-    """Stratus from below: broad pale and dark bands that crowd towards the horizon, one brighter break."""
+    """Return stratus seen from below: pale and dark bands that converge towards the horizon, with one brighter break."""
     depth = s.math("ADD", height, 0.16)
     plane = s.node("ShaderNodeCombineXYZ")
     s.feed(plane.inputs[0], s.math("DIVIDE", x, depth))

@@ -1,4 +1,4 @@
-"""Daylight: a sky of broken cloud, a soft sun, aerial haze, and the colour management that goes with them."""
+"""Daylight: a sky with broken cloud, a soft sun, aerial haze, and the matching colour management."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from scope_studio.kit.core.shading import Shader, Value
 HORIZON = (0.62, 0.74, 0.88)
 ZENITH = (0.10, 0.26, 0.62)
 HAZE = (0.50, 0.60, 0.70)
-"""Colour that distance turns things into; a little darker than the horizon so that far hills stand out against the sky."""
+"""Colour of distant things. It is slightly darker than the horizon, so that far hills stand out against the sky."""
 
 
 class _WorldShader(Shader):
-    """The shading vocabulary, writing into the node tree of a world."""
+    """A ``Shader`` that writes into the node tree of a world."""
 
     def __init__(self, world: bpy.types.World) -> None:
         self.tree = world.node_tree
@@ -33,7 +33,7 @@ def setup(
     cloud_cover: float = 0.5,
     exposure: float = 0.30,
 ) -> None:
-    """Give ``scene`` its world, sun and view transform. The sun stands at a bearing clockwise from north."""
+    """Give ``scene`` its world, sun and view transform. The sun's bearing is clockwise from north."""
     _world(scene, sky_strength, cloud_cover)
     _sun(sun_bearing_deg, sun_elevation_deg, sun_strength)
     scene.display_settings.display_device = "sRGB"
@@ -56,7 +56,7 @@ def _sun(bearing_deg: float, elevation_deg: float, strength: float) -> None:
 
 
 def _world(scene: bpy.types.Scene, strength: float, cover: float) -> None:
-    """Camera and mirror rays see clouds; diffuse light comes from a smooth gradient, which stays clean at few samples."""
+    """Build the world. Camera and mirror rays see clouds; diffuse light comes from a smooth gradient, which needs few samples."""
     world = bpy.data.worlds.new("Sky")
     scene.world = world
     s = _WorldShader(world)
@@ -78,7 +78,7 @@ def _world(scene: bpy.types.Scene, strength: float, cover: float) -> None:
 
 
 def _clouds(s: Shader, x: Value, y: Value, height: Value, clear: Value, cover: float) -> Value:
-    """Cumulus on a flat layer seen from below: sheets of noise that crowd towards the horizon, with grey undersides."""
+    """Return cumulus in a flat layer seen from below: noise that converges towards the horizon, with grey undersides."""
     depth = s.math("ADD", height, 0.11)
     plane = s.node("ShaderNodeCombineXYZ")
     s.feed(plane.inputs[0], s.math("DIVIDE", x, depth))
@@ -97,14 +97,15 @@ def _clouds(s: Shader, x: Value, y: Value, height: Value, clear: Value, cover: f
     return s.mix(mask, clear, body)
 
 
-def finish_materials(*, visibility_m: float = 3600.0, spare: tuple[str, ...] = ()) -> None:
-    """Last step of a scene: aerial haze on every material, and no mesh sampled as a lamp (which would only add noise).
+def finish_materials(*, visibility_m: float = 3600.0, skip: tuple[str, ...] = ()) -> None:
+    """Finish the scene's materials: add aerial haze, and sample no mesh as a lamp, which would only add noise.
 
-    ``visibility_m`` is the distance at which 63% of a thing's light is replaced by haze. Materials named in ``spare``
-    stay as they are.
+    Args:
+        visibility_m: Distance at which 63% of a thing's light is replaced by haze.
+        skip: Names of materials that stay as they are.
     """
     for material in bpy.data.materials:
-        if material.name in spare or material.node_tree is None:
+        if material.name in skip or material.node_tree is None:
             continue
         material.cycles.emission_sampling = "NONE"
         _add_haze(material.node_tree, visibility_m)

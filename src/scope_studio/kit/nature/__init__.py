@@ -1,1 +1,1 @@
-"""Ground, plants, animals and distant surroundings."""
+"""Plants and animals: trees, hedges, grass, birds, dogs, a fox."""

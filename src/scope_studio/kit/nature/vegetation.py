@@ -1,4 +1,4 @@
-"""Plants: branching trees in several species, hedges, bushes, rough grass. Build once, then place linked copies."""
+"""Plants: trees of several species, hedges, bushes and rough grass. Build each once and place linked copies."""
 
 from __future__ import annotations
 
@@ -19,7 +19,10 @@ Rgb = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Species:
-    """How a tree grows. ``crown`` is the outline: "round", "column", "cone" or "weeping"; colours are dark and bright leaves."""
+    """Parameters of a tree's growth.
+
+    ``crown`` is the outline: "round", "column", "cone" or "weeping". The colours are those of dark and bright leaves.
+    """
 
     name: str
     height_m: float
@@ -43,7 +46,10 @@ BUSH = Species("bush", 2.4, 1.7, 0.02, "round", 0.12, (0.052, 0.096, 0.020), (0.
 
 
 def tree(species: Species, seed: int, *, detail: float = 1.0) -> Built:
-    """One tree. ``detail`` 1.0 is for trees within about 60 m (about 30 thousand leaves); 0.15 does for a tree line."""
+    """Build a tree.
+
+    ``detail`` 1.0 is for trees within about 60 m (about 30,000 leaves); 0.15 is enough for a distant line of trees.
+    """
     rng = random.Random(f"{species.name}-{seed}")
     limbs, twigs = _grow(species, rng)
     wood = _tubes([limb for limb in limbs if limb[1] > (0.0 if detail > 0.5 else 0.025)], 6 if detail > 0.5 else 4)
@@ -58,7 +64,7 @@ Limb = tuple[list[Vector], float, float]
 
 
 def _grow(sp: Species, rng: random.Random) -> tuple[list[Limb], list[tuple[Vector, Vector]]]:
-    """Trunk, boughs, branches and twigs; returns the limbs and the (start, end) of every leaf-bearing twig."""
+    """Return the limbs (trunk, boughs, branches, twigs) and the (start, end) of every twig that bears leaves."""
     limbs: list[Limb] = []
     twigs: list[tuple[Vector, Vector]] = []
     girth = 0.020 * sp.height_m + 0.02
@@ -99,7 +105,7 @@ def _grow(sp: Species, rng: random.Random) -> tuple[list[Limb], list[tuple[Vecto
 
 
 def _habit(sp: Species, share: float) -> tuple[float, float]:
-    """Rise angle (radians) and length of a bough at its share of the crown's height."""
+    """Return the rise angle (radians) and length of a bough at a relative height in the crown."""
     r = sp.crown_radius_m
     if sp.crown == "round":
         return 0.05 + 1.15 * share**1.4, r * (0.80 + 0.34 * math.sin(math.pi * min(1.0, share * 0.95 + 0.12)) - 0.32 * share)
@@ -162,7 +168,7 @@ def _tubes(limbs: Sequence[Limb], sides: int) -> tuple[np.ndarray, np.ndarray]:
 def _leaves(
     sp: Species, twigs: Sequence[tuple[Vector, Vector]], rng: random.Random, detail: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Folded leaf cards in loose sprays around the twigs. Fewer and larger ones when ``detail`` is low."""
+    """Return folded leaf cards in loose sprays around the twigs: fewer and larger ones when ``detail`` is low."""
     gen = np.random.default_rng(rng.randrange(2**31))
     each = max(5, round(42 * detail))
     size = sp.leaf_m * detail**-0.42
@@ -180,7 +186,11 @@ def _leaves(
 def cards(
     gen: np.random.Generator, centres: np.ndarray, outward: np.ndarray, size_m: float, slim: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Diamond leaves at ``centres`` (n, 3), pointing roughly ``outward``: points (4n, 3), quads (n, 4), tints (4n,)."""
+    """Return diamond-shaped leaves at ``centres`` (n, 3) that point roughly ``outward``.
+
+    Returns:
+        Points (4n, 3), quads (n, 4) and tints (4n,).
+    """
     n = len(centres)
     axis = outward * 0.8 + gen.normal(size=(n, 3)) * 0.8 + np.array([0, 0, -0.12])
     axis /= np.linalg.norm(axis, axis=1, keepdims=True)
@@ -204,7 +214,7 @@ Part = tuple[np.ndarray, np.ndarray, bpy.types.Material]
 
 
 def _combine(name: str, parts: Sequence[Part], tints: np.ndarray) -> bpy.types.Object:
-    """One mesh from quads with a material each; ``tints`` belong to the last part's points."""
+    """Return one mesh from groups of quads with one material each. ``tints`` belong to the points of the last group."""
     mesh = bpy.data.meshes.new(name)
     points = np.concatenate([p for p, _, _ in parts]).astype(np.float32)
     offsets = np.cumsum([0] + [len(p) for p, _, _ in parts])
@@ -229,7 +239,7 @@ def _combine(name: str, parts: Sequence[Part], tints: np.ndarray) -> bpy.types.O
 
 
 def leaf_material(sp: Species) -> bpy.types.Material:
-    """Leaves of two tones, paler in patches, a third of the light passing through them."""
+    """Return leaves of two tones, paler in patches, with a third of the light passing through them."""
     found = bpy.data.materials.get(f"{sp.name} leaves")
     if found is not None:
         return found
@@ -253,6 +263,7 @@ def leaf_material(sp: Species) -> bpy.types.Material:
 
 
 def bark_material(sp: Species) -> bpy.types.Material:
+    """Return the bark of a species."""
     found = bpy.data.materials.get(f"{sp.name} bark")
     if found is not None:
         return found
@@ -270,7 +281,7 @@ HAWTHORN = Species("hawthorn", 1.9, 0.7, 0.0, "round", 0.085, (0.049, 0.087, 0.0
 
 
 def hedge(length_m: float, *, height_m: float = 1.9, depth_m: float = 1.2, seed: int = 0, detail: float = 1.0) -> Built:
-    """A field hedge along x: leaf cards over an uneven dark core."""
+    """Build a field hedge along x: leaf cards over an uneven dark core."""
     gen = np.random.default_rng(7919 + seed)
     count = int(900 * length_m * detail)
     along = gen.uniform(-length_m / 2, length_m / 2, count)
@@ -296,7 +307,7 @@ def hedge(length_m: float, *, height_m: float = 1.9, depth_m: float = 1.2, seed:
 
 
 def grass_patch(size_m: float, *, blades: int, height_m: float, seed: int, flowers: int = 0) -> Built:
-    """A square of grass in uneven tufts, with a few flower heads. Meant to be strewn as linked copies."""
+    """Build a square of uneven grass tufts with a few flower heads. It is meant to be scattered as linked copies."""
     gen = np.random.default_rng(104729 + seed)
     tufts = gen.uniform(-size_m / 2, size_m / 2, size=(max(1, blades // 7), 2))
     roots = tufts[gen.integers(len(tufts), size=blades)] + gen.normal(size=(blades, 2)) * 0.075
@@ -329,6 +340,7 @@ def grass_patch(size_m: float, *, blades: int, height_m: float, seed: int, flowe
 
 
 def grass_material() -> bpy.types.Material:
+    """Return the material of grass blades."""
     found = bpy.data.materials.get("grass blades")
     if found is not None:
         return found

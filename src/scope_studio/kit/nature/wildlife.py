@@ -16,7 +16,7 @@ TROT_M = 0.78
 
 
 def fox(*, phase: float | None = None) -> Built:
-    """A red fox facing +y, 0.38 m at the shoulder and 1.1 m long with its brush; ``phase`` in [0, 1) trots it."""
+    """Build a red fox facing +y, 0.38 m at the shoulder and 1.1 m long with its tail. ``phase`` in [0, 1) makes it trot."""
     s = Solid("fox")
     v = Volume()
     v.ellipsoid((0, 0.15, 0.315), (0.070, 0.125, 0.088))
@@ -64,7 +64,7 @@ def _leg(v: Volume, side: int, front: bool, phase: float | None) -> None:
 
 
 def _coat() -> bpy.types.Material:
-    """Red above, white throat, belly and brush tip, black stockings and ears."""
+    """Return a coat that is red above, with white throat, belly and tail tip, and black legs and ears."""
     found = bpy.data.materials.get("fox coat")
     if found is not None:
         return found

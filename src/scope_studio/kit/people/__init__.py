@@ -1,1 +1,1 @@
-"""People: figures, clothing, poses, what they carry."""
+"""People: figures, heads, clothing, poses, and the things that they carry or push."""

@@ -1,5 +1,7 @@
-"""Materials of people: skin with a painted face, hair, cloth, the reflective vest. Masks read the "rest" attribute
-(upright coordinates)."""
+"""Materials of people: skin with a painted face, hair, cloth, reflective vests.
+
+Their masks read the "rest" attribute (upright coordinates).
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,7 @@ from scope_studio.kit.core.shading import Shader, Value
 from scope_studio.kit.people.heads import EYES
 
 REST = "rest"
-"""Point attribute (vector): where the point is on the upright figure, or in the head's frame for heads."""
+"""Point attribute (vector): position of the point on the upright figure, or in the head's frame for heads."""
 
 SKIN_TONES: list[Colour] = [
     (0.56, 0.33, 0.235),
@@ -39,7 +41,7 @@ def _rest(s: Shader) -> Value:
 def _near(
     s: Shader, where: Value, centre: tuple[float, float, float], radii: tuple[float, float, float], soft: float = 0.35
 ) -> Value:
-    """1 inside an ellipsoid of rest space, 0 outside."""
+    """Return 1 inside an ellipsoid of rest space, 0 outside."""
     moved = s.scaled(where, tuple(1 / r for r in radii), tuple(-c / r for c, r in zip(centre, radii, strict=True)))
     length = s.node("ShaderNodeVectorMath", operation="LENGTH")
     s.feed(length.inputs[0], moved)
@@ -47,7 +49,7 @@ def _near(
 
 
 def skin(tone: int, hair: str | None, *, stubble: bool) -> bpy.types.Material:
-    """Skin of head or hands; eyes, brows, lips and stubble are masks in head coordinates."""
+    """Return the skin of head or hands. Eyes, brows, lips and stubble are masks in head coordinates."""
     name = f"skin {tone} {hair} {stubble}"
     if name in bpy.data.materials:
         return bpy.data.materials[name]
@@ -88,6 +90,7 @@ def skin(tone: int, hair: str | None, *, stubble: bool) -> bpy.types.Material:
 
 
 def hair(colour: str) -> bpy.types.Material:
+    """Return hair of a colour."""
     name = f"hair {colour}"
     if name in bpy.data.materials:
         return bpy.data.materials[name]
@@ -99,8 +102,10 @@ def hair(colour: str) -> bpy.types.Material:
 
 
 def _woven(s: Shader, colour: str) -> tuple[Value, Value, Value]:
-    """Tone, fold height and weave of a cloth in a plain colour: worn paler where it rubs, soiled in patches, dark in
-    the folds."""
+    """Return tone, fold height and weave of a cloth in a plain colour.
+
+    It is paler where it rubs, soiled in patches, and dark in the folds.
+    """
     where = s.object_coords()
     base = PALETTE[colour]
     folds = s.noise(s.scaled(where, (7.0, 7.0, 13.0)), 1.0, 3.0, 0.5, 0.15)
@@ -111,7 +116,7 @@ def _woven(s: Shader, colour: str) -> tuple[Value, Value, Value]:
 
 
 def cloth(colour: str, *, bands: tuple[float, ...] = ()) -> bpy.types.Material:
-    """Woven cloth; ``bands`` are positions along the limb (m, the third rest coordinate) of 5 cm reflective tape."""
+    """Return woven cloth. ``bands`` are positions of 5 cm reflective tape along the limb (m, the third rest coordinate)."""
     name = f"garment {colour} {bands}"
     if name in bpy.data.materials:
         return bpy.data.materials[name]
@@ -126,8 +131,11 @@ def cloth(colour: str, *, bands: tuple[float, ...] = ()) -> bpy.types.Material:
 
 
 def top(colour: str, style: str, inner: str, low: float) -> bpy.types.Material:
-    """The body of an upper garment, hem at height ``low``: "jumper" (ribbed hem), "jacket" (open on an ``inner``
-    shirt, zip, pockets) or "shirt" (button line, paler collar)."""
+    """Return the body of an upper garment with its hem at height ``low``.
+
+    ``style`` is "jumper" (ribbed hem), "jacket" (open on an ``inner`` shirt, with zip and pockets) or "shirt" (button line,
+    paler collar).
+    """
     name = f"top {colour} {style} {inner} {low:.2f}"
     if name in bpy.data.materials:
         return bpy.data.materials[name]
@@ -166,7 +174,7 @@ def top(colour: str, style: str, inner: str, low: float) -> bpy.types.Material:
 
 
 def vest(colour: str, lining: str) -> bpy.types.Material:
-    """High-visibility waistcoat: two hoops, two braces, dark piping, a zip and an open neck that shows ``lining``."""
+    """Return a high-visibility waistcoat: two hoops, two braces, dark piping, a zip, and an open neck that shows ``lining``."""
     name = f"vest {colour} over {lining}"
     if name in bpy.data.materials:
         return bpy.data.materials[name]

@@ -1,4 +1,4 @@
-"""The clothed human figure: trunk, sleeves, trousers, boots, hands and head around solved joints."""
+"""The clothed human figure: trunk, sleeves, trousers, boots and hands around solved joints."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from mathutils import Matrix, Vector
 from scope_studio.kit.core.volumes import Skin, Volume, crease
 from scope_studio.kit.people.poses import SIDES, Joints
 
-# Height, half width, half depth and forward shift of the clothed trunk, from hem to collar.
+# Height, half width, half depth and forward shift of the clothed trunk, from hem to collar (m).
 TRUNK = [
     (0.850, 0.160, 0.124, -0.008),
     (0.930, 0.168, 0.126, -0.006),
@@ -54,10 +54,14 @@ def trunk(
     flare: float = 0.0,
     seed: float,
 ) -> tuple[Skin, np.ndarray]:
-    """The body of a garment and the upright (rest) coordinates of its points.
+    """Return the body of a garment, and the upright (rest) coordinates of its points.
 
-    ``swell`` is how far the cloth stands off the body (m), ``low`` the height of the hem, ``neck`` "collar", "hood"
-    or None, ``flare`` extra looseness of the folds at the hem (m)."""
+    Args:
+        swell: Distance of the cloth from the body (m).
+        low: Height of the hem.
+        neck: "collar", "hood" or None.
+        flare: Extra looseness of the folds at the hem (m).
+    """
     upright = Joints(Matrix.Identity(4), Matrix.Identity(4), Matrix.Identity(4), [])
     v = Volume()
     v.rings(_trunk_rows(upright, swell, girth, low, 1.462))
@@ -88,7 +92,10 @@ def trunk(
 
 
 def sleeves(joints: Joints, *, loose: float, seed: float) -> tuple[Skin, np.ndarray]:
-    """Both sleeves, and for each point its distance along the arm from the shoulder (m). ``loose`` adds cloth (m)."""
+    """Return both sleeves, and the distance of each point from the shoulder along the arm (m).
+
+    ``loose`` is extra cloth (m).
+    """
     v = Volume()
     for i in range(2):
         shoulder, elbow, wrist = joints.shoulders[i], joints.elbows[i], joints.wrists[i]
@@ -110,7 +117,7 @@ def sleeves(joints: Joints, *, loose: float, seed: float) -> tuple[Skin, np.ndar
 
 
 def trousers(joints: Joints, *, loose: float, girth: float, seed: float) -> tuple[Skin, np.ndarray]:
-    """Both legs and the seat, and for each point its height along the leg (m above the sole, upright)."""
+    """Return both legs and the seat, and the height of each point along the upright leg (m above the sole)."""
     v = Volume()
     w = 1 + 0.5 * (girth - 1)
     v.ellipsoid((0, -0.004, 0.955), (0.150 * w, 0.108 * w, 0.105), joints.pelvis)
@@ -137,8 +144,10 @@ def trousers(joints: Joints, *, loose: float, girth: float, seed: float) -> tupl
 
 
 def _along(points: np.ndarray, bones: list[tuple[Vector, Vector, float, float]]) -> np.ndarray:
-    """For each point the value that runs from one end of its nearest bone to the other; bones are (from, to, value,
-    value)."""
+    """Return for each point a value that is interpolated between the ends of its nearest bone.
+
+    Bones are (from, to, value, value).
+    """
     best = np.full(len(points), 1e9)
     value = np.zeros(len(points))
     for a, b, va, vb in bones:
@@ -152,7 +161,7 @@ def _along(points: np.ndarray, bones: list[tuple[Vector, Vector, float, float]])
 
 
 def boots(joints: Joints, *, shoe: bool) -> Skin:
-    """Upper parts of both boots (or low shoes)."""
+    """Return the upper parts of both boots or low shoes."""
     v = Volume()
     for i in range(2):
         f = joints.feet[i]
@@ -166,7 +175,7 @@ def boots(joints: Joints, *, shoe: bool) -> Skin:
 
 
 def sole_outline(foot: Matrix, side: int, low: float, high: float) -> list[list[tuple[float, float, float]]]:
-    """Two rings of a boot sole, lower and upper, in world coordinates."""
+    """Return two rings of a boot sole, lower and upper, in world coordinates."""
     half = [
         (-0.088, 0.0),
         (-0.080, 0.026),
@@ -183,15 +192,15 @@ def sole_outline(foot: Matrix, side: int, low: float, high: float) -> list[list[
 
 
 def hands(joints: Joints, curls: tuple[float, float], *, glove: bool) -> Skin:
-    """Both hands with fingers; ``curl`` -1 points the index finger, 0 is flat, 1 a fist."""
+    """Return both hands with fingers. A curl of -1 points the index finger, 0 is flat, 1 is a fist."""
     v = Volume()
     fat = 0.0015 if glove else 0.0
     for i, side in enumerate(SIDES):
         wrist, elbow = joints.wrists[i], joints.elbows[i]
         along = (wrist - elbow).normalized()
         inward = joints.chest.to_3x3() @ Vector((-side * 1.0, 0.25, -0.1))
-        normal = (inward - along * along.dot(inward)).normalized()  # out of the palm
-        across = along.cross(normal)  # towards or away from the thumb, by side
+        normal = (inward - along * along.dot(inward)).normalized()  # points out of the palm
+        across = along.cross(normal)  # points towards or away from the thumb, depending on the side
         thumb_side = across * (-side if across.dot(Vector((0, 1, 0.3))) * -side > 0 else side)
         curl = curls[i]
         v.capsule(wrist - along * 0.045, wrist + along * 0.01, 0.029 + fat, 0.027 + fat, flat=0.78, across=across)

@@ -1,4 +1,4 @@
-"""What people hold: tools, phones, boards, boxes, bags, placed between the solved hands."""
+"""Hand-held props: tools, phones, boards, boxes, bags. They are placed between the solved hands."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from scope_studio.kit.people.poses import Joints
 
 
 def _grip(joints: Joints, index: int, reach: float = 0.085) -> Vector:
-    """The middle of a closed hand (0 left, 1 right)."""
+    """Return the middle of a closed hand (0 left, 1 right)."""
     wrist, elbow = joints.wrists[index], joints.elbows[index]
     return wrist + (wrist - elbow).normalized() * reach
 
 
 def _aim(s: Solid, origin: Vector, forward: Vector, up: Vector) -> None:
-    """Move the frame of ``s`` so that +y is ``forward`` and +z as near to ``up`` as can be."""
+    """Move the frame of ``s`` so that +y is ``forward`` and +z is as close to ``up`` as possible."""
     y = forward.normalized()
     x = y.cross(up).normalized()
     z = x.cross(y)
@@ -131,11 +131,11 @@ HOLDABLE: dict[str, Callable[[Solid, Joints], None]] = {
     "torch": _torch,
     "trowel": _trowel,
 }
-"""Names that ``holding`` takes."""
+"""Names that ``holding`` accepts."""
 
 
 def hold(s: Solid, joints: Joints, name: str) -> None:
-    """Put a held thing into the hands."""
+    """Add a prop to the hands."""
     saved = s.frame
     HOLDABLE[name](s, joints)
     s.frame = saved

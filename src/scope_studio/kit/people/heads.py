@@ -1,5 +1,7 @@
-"""Heads: face, ears, neck, hair. Head coordinates are upright rest coordinates with the head's centre at ``CENTRE``;
-the face looks to +y."""
+"""Heads: face, ears, neck, hair.
+
+Head coordinates are upright rest coordinates with the head's centre at ``CENTRE``. The face looks towards +y.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,7 @@ EYES = ((-0.0315, 0.0775, 0.012), (0.0315, 0.0775, 0.012))
 
 
 def face(*, woman: bool, stout: float) -> Skin:
-    """Head and neck as one skin, relative to ``CENTRE``."""
+    """Return head and neck as one skin, relative to ``CENTRE``."""
     v = Volume()
     jaw = 0.90 if woman else 1.0
     v.ellipsoid((0, -0.014, 0.036), (0.0755, 0.096, 0.086))
@@ -40,14 +42,14 @@ def face(*, woman: bool, stout: float) -> Skin:
         0.060 * stout * (0.88 if woman else 1),
     )
     points, faces = v.melt(0.0058, 2)
-    for x, y, z in EYES:  # sockets
+    for x, y, z in EYES:  # eye sockets
         d = (points - (x, y, z)) / (0.021, 0.030, 0.0125)
         points[:, 1] -= 0.0125 * np.exp(-(d**2).sum(axis=1))
     return points, faces
 
 
 def hair_cap(style: str, thickness: float, seed: float) -> Skin:
-    """Hair as a shell over the skull. Styles: "short", "crop", "long", "bun", "tail"."""
+    """Return hair as a shell over the skull. Styles are "short", "crop", "long", "bun" and "tail"."""
     v = Volume()
     t = thickness
     v.ellipsoid((0, -0.017, 0.040), (0.0755 + t, 0.096 + t, 0.085 + t))
@@ -77,8 +79,10 @@ def hair_cap(style: str, thickness: float, seed: float) -> Skin:
 
 
 def _hairline(points: np.ndarray, style: str) -> np.ndarray:
-    """Height of the lower edge of the hair by how far forward a point is: high over the brow, over the ears, low at
-    the nape."""
+    """Return the height of the hair's lower edge, which depends on how far forward a point is.
+
+    It is high over the brow, above the ears, and low at the nape.
+    """
     y = points[:, 1]
     table = [
         (-0.2, -0.075),
@@ -96,7 +100,7 @@ def _hairline(points: np.ndarray, style: str) -> np.ndarray:
 
 
 def place(skin: Skin, frame: Matrix) -> Skin:
-    """Head coordinates -> posed coordinates through the head's frame."""
+    """Transform head coordinates to posed coordinates by the head's frame."""
     points, faces = skin
     offset = Vector(CENTRE)
     return np.array([tuple(frame @ (Vector(p) + offset)) for p in points]), faces

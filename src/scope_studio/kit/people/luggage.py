@@ -9,7 +9,7 @@ from scope_studio.kit.core.stage import Built
 
 
 def suitcase(colour: str = "navy", *, height: float = 0.66, handle: bool = True) -> Built:
-    """A ribbed hard-shell case on four wheels, its broad side towards +y; ``handle`` pulls the telescope out."""
+    """Build a ribbed hard-shell case on four wheels, with its broad side towards +y. ``handle`` pulls out the telescopic handle."""
     s = Solid(f"{colour} suitcase")
     _case(s, colour, height, handle)
     return s.built()
@@ -37,7 +37,7 @@ def _case(s: Solid, colour: str, height: float, handle: bool) -> None:
 
 
 def trailing_case(colour: str, hand: Point, *, height: float = 0.66) -> Built:
-    """A suitcase tipped on two wheels behind a walker (who heads +y): its handle ends in the ``hand``."""
+    """Build a suitcase that is tipped on two wheels behind a walker who heads +y. Its handle ends in the ``hand``."""
     s = Solid(f"{colour} suitcase")
     with s.at(hand[0], hand[1] - 0.62, 0.0, pitch=-38.0):
         _case(s, colour, height, True)
@@ -45,7 +45,7 @@ def trailing_case(colour: str, hand: Point, *, height: float = 0.66) -> Built:
 
 
 def backpack(colour: str = "red") -> Built:
-    """A packed rucksack standing on the ground, its pocket towards +y."""
+    """Build a packed rucksack that stands on the ground, with its pocket towards +y."""
     s = Solid(f"{colour} backpack")
     skin, strap = cloth(colour), paint("black", dirt=0.1, roughness=0.8)
     s.box((0.32, 0.20, 0.46), (0, 0, 0.23), skin, 0.07)
@@ -59,7 +59,7 @@ def backpack(colour: str = "red") -> Built:
 
 
 def travel_bag(colour: str = "brown") -> Built:
-    """A soft holdall, 0.55 m, with two handles."""
+    """Build a soft holdall, 0.55 m long, with two handles."""
     s = Solid(f"{colour} travel bag")
     s.box((0.56, 0.27, 0.27), (0, 0, 0.14), cloth(colour), 0.08)
     for y in (-0.09, 0.09):

@@ -1,4 +1,4 @@
-"""How a person stands: joints by two-bone inverse kinematics from the feet and hands, and a walking gait."""
+"""Poses of a person: joints solved by two-bone inverse kinematics from feet and hands, and a walking gait."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from random import Random
 from mathutils import Matrix, Vector
 
 SIDES = (-1, 1)
-"""Left (x < 0), right (x > 0); pairs below are in this order."""
+"""Left (x < 0), right (x > 0). All pairs below are in this order."""
 
 STRIDE_M = 1.32
 """Length of one gait cycle (two steps) of a person of average height."""
@@ -22,7 +22,7 @@ SHOULDER = (0.178, -0.008, 1.412)
 
 @dataclass(frozen=True)
 class Foot:
-    """Where a foot is: ground point under the ankle (m), toe-out and pitch in degrees (positive = toe up), lift (m)."""
+    """Position of a foot: ground point under the ankle (m), toe-out and pitch in degrees (positive = toe up), lift (m)."""
 
     x: float
     y: float
@@ -33,8 +33,10 @@ class Foot:
 
 @dataclass(frozen=True)
 class Arm:
-    """Either swing angles (``forward``, ``out``, ``bend`` in degrees) or a ``hand`` to reach, in the upright body's
-    frame."""
+    """The position of an arm.
+
+    Either swing angles (``forward``, ``out``, ``bend`` in degrees), or a ``hand`` to reach, in the upright body's frame.
+    """
 
     forward: float = 4.0
     out: float = 9.0
@@ -46,7 +48,7 @@ class Arm:
 
 @dataclass(frozen=True)
 class Pose:
-    """A stance. Angles in degrees: positive lean is forward, twist and yaw positive to the left."""
+    """Parameters of a pose. Angles are in degrees. Positive lean is forward, positive twist and yaw are to the left."""
 
     feet: tuple[Foot, Foot]
     arms: tuple[Arm, Arm]
@@ -78,7 +80,7 @@ class Joints:
     wrists: list[Vector] = field(default_factory=list)
 
     def torso(self, rest: Vector) -> Vector:
-        """A point of the upright trunk, bent with the spine."""
+        """Return a point of the upright trunk, bent with the spine."""
         t = min(1.0, max(0.0, (rest.z - 0.96) / 0.24))
         t = t * t * (3 - 2 * t)
         return (self.pelvis @ rest).lerp(self.chest @ rest, t)
@@ -91,7 +93,7 @@ def _turn(pivot: tuple[float, float, float], lean: float, tilt: float, yaw: floa
 
 
 def _bend(a: Vector, target: Vector, first: float, second: float, pole: Vector) -> tuple[Vector, Vector]:
-    """The middle joint and the reached end of a two-bone chain."""
+    """Return the middle joint and the reached end of a two-bone chain."""
     reach = target - a
     d = min(reach.length, (first + second) * 0.9995)
     axis = reach.normalized()
@@ -109,7 +111,7 @@ def _foot_frame(foot: Foot, side: int) -> Matrix:
 
 
 def solve(pose: Pose) -> Joints:
-    """Joint positions for a pose. The pelvis sinks as far as the feet demand."""
+    """Return the joint positions of a pose. The pelvis is lowered as far as the feet require."""
     feet = [_foot_frame(f, s) for f, s in zip(pose.feet, SIDES, strict=True)]
     ankles = [f @ Vector((0, 0, ANKLE)) for f in feet]
     turn = Matrix.Translation(pose.hip) @ _turn((0, 0, HIP), pose.hip_lean, pose.hip_roll, pose.hip_yaw)
@@ -151,7 +153,7 @@ def _arm(arm: Arm, side: int, shoulder: Vector, chest: Matrix) -> tuple[Vector, 
 
 
 def _gait_foot(phase: float, x: float) -> Foot:
-    """One foot of the walk, relative to the body; phase 0 is its heel strike, stance lasts 0.6 of the cycle."""
+    """Return one foot of the walk, relative to the body. Phase 0 is its heel strike; stance lasts 0.6 of the cycle."""
     p = phase % 1.0
     start, stop = 0.33, 0.33 - 0.6 * STRIDE_M
     if p < 0.6:
@@ -169,7 +171,7 @@ def _gait_foot(phase: float, x: float) -> Foot:
 
 
 def walking(phase: float) -> Pose:
-    """The walk at a gait phase in [0, 1)."""
+    """Return the walk at a gait phase in [0, 1)."""
     swing = math.cos(2 * math.pi * phase)
     right, left = _gait_foot(phase, 0.075), _gait_foot(phase + 0.5, -0.075)
     arms = tuple(Arm(5 + s * 22 * swing * -1, 8, 18 + 12 * max(0.0, -s * swing)) for s in SIDES)
@@ -187,7 +189,7 @@ def walking(phase: float) -> Pose:
 
 
 def standing(random: Random) -> Pose:
-    """Weight on one leg, arms at rest in one of a few ways."""
+    """Return a stance with the weight on one leg and the arms at rest in one of a few ways."""
     lead = random.choice(SIDES)
     feet = [Foot(-0.105, 0.0, 10 + random.uniform(0, 8)), Foot(0.105, 0.0, 10 + random.uniform(0, 8))]
     free = 0 if lead > 0 else 1
@@ -212,7 +214,7 @@ def standing(random: Random) -> Pose:
 
 
 def named(name: str, phase: float, random: Random) -> Pose:
-    """The pose of a name; unknown names are errors."""
+    """Return the pose with this name. Unknown names raise an error."""
     base = standing(random)
     relaxed = Arm(3, 9, 18)
     if name == "stand":

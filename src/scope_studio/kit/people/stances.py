@@ -1,4 +1,4 @@
-"""Stances of townspeople: hands and feet where things are held, sat on, pushed and ridden."""
+"""Stances of townspeople who hold, sit on, push or ride something."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from scope_studio.kit.people.poses import Arm, Foot, Pose, solve, standing, walk
 from scope_studio.kit.vehicles import cycles
 
 UMBRELLA_GRIP: Point = (0.17, 0.24, 1.24)
-"""Where the right hand of ``with_umbrella`` holds the stick, metres."""
+"""Position of the right hand of ``with_umbrella`` on the stick, metres."""
 PRAM_HANDLE: Point = (0.17, 0.40, 1.04)
-"""Where the right hand of ``pushing`` is; the left mirrors it."""
+"""Position of the right hand of ``pushing``; the left hand mirrors it."""
 LEAD_GRIP: Point = (0.27, 0.22, 0.98)
-"""Where the right hand of ``leading`` holds a dog's lead."""
+"""Position of the right hand of ``leading``, which holds a dog's lead."""
 HAND_M = 0.085
-"""From the wrist to the middle of a closed hand."""
+"""Distance from the wrist to the middle of a closed hand."""
 
 
 def reaching(pose: Pose, *, left: Point | None = None, right: Point | None = None, drop: float = -0.5) -> Pose:
-    """``pose`` with closed hands at these points of the figure's own frame (metres, before any scaling by height)."""
+    """Return ``pose`` with closed hands at these points of the figure's own frame (metres, before scaling by height)."""
     chest = solve(pose).chest
     arms = list(pose.arms)
     for index, (side, target) in enumerate(zip((-1, 1), (left, right), strict=True)):
@@ -36,26 +36,26 @@ def reaching(pose: Pose, *, left: Point | None = None, right: Point | None = Non
 
 
 def with_umbrella(phase: float | None = None, *, seed: int = 0) -> Pose:
-    """Standing, or walking at a gait phase, with the right hand at ``UMBRELLA_GRIP``."""
+    """Return a stance, or a walk at a gait phase, with the right hand at ``UMBRELLA_GRIP``."""
     random = Random(f"umbrella {seed}")
     base = standing(random) if phase is None else walking(phase)
     return reaching(replace(base, twist=0.0), right=UMBRELLA_GRIP, drop=-0.9)
 
 
 def leading(phase: float | None = None, *, seed: int = 0) -> Pose:
-    """Standing, or walking at a gait phase, with a lead in the right hand at ``LEAD_GRIP``."""
+    """Return a stance, or a walk at a gait phase, with a lead in the right hand at ``LEAD_GRIP``."""
     base = standing(Random(f"lead {seed}")) if phase is None else walking(phase)
     return reaching(replace(base, twist=0.0), right=LEAD_GRIP, drop=-0.9)
 
 
 def pushing(phase: float) -> Pose:
-    """Walking with both hands on a handle at ``PRAM_HANDLE``."""
+    """Return a walk with both hands on a handle at ``PRAM_HANDLE``."""
     x, y, z = PRAM_HANDLE
     return reaching(replace(walking(phase), lean=9, twist=0.0), left=(-x, y, z), right=PRAM_HANDLE)
 
 
 def sitting(seat_m: float = 0.46, *, seed: int = 0, crossed: bool = False) -> Pose:
-    """Sitting towards +y with the hips over the origin, hands in the lap; ``crossed`` crosses the ankles."""
+    """Return a stance of someone who sits facing +y, hips over the origin, hands in the lap. ``crossed`` crosses the ankles."""
     random = Random(f"sit {seed}")
     spread = random.uniform(0.10, 0.15)
     near = random.uniform(0.36, 0.44)
@@ -76,7 +76,7 @@ def sitting(seat_m: float = 0.46, *, seed: int = 0, crossed: bool = False) -> Po
 
 
 def riding(crank_deg: float) -> Pose:
-    """On the saddle of a ``cycles.bicycle`` at the origin, hands on its grips, feet on its pedals."""
+    """Return a stance on the saddle of a ``cycles.bicycle`` at the origin, with hands on its grips and feet on its pedals."""
     feet = []
     for side in (-1, 1):
         y, z = cycles.pedal(crank_deg, side)

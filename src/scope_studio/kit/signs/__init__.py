@@ -1,1 +1,1 @@
-"""Signs: road signs, gantries, variable message signs, lettering."""
+"""Road signs, gantries, variable message signs, and the faces and stands that they are made of."""

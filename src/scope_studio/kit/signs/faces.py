@@ -1,7 +1,8 @@
-"""Faces of signs: rounded reflective boards with borders, lettering, arrows, route patches and pictograms.
+"""Sign faces: rounded reflective boards with borders, lettering, arrows, route patches and pictograms.
 
-A face is drawn in the plane y = 0 of the current frame of a ``Solid``, towards +y. Positions on it are given as the
-reader sees them: ``u`` to the right, ``v`` up (so x = -u)."""
+A face is drawn in the plane y = 0 of the current frame of a ``Solid``, towards +y. Positions are given as the reader sees them:
+``u`` to the right, ``v`` up (so x = -u).
+"""
 
 from __future__ import annotations
 
@@ -13,14 +14,15 @@ from dataclasses import dataclass
 import bpy
 
 from scope_studio.kit.core.finishes import sheet, steel
-from scope_studio.kit.core.solid import Solid, rounded
-from scope_studio.kit.signs.lettering import extent
+from scope_studio.kit.core.lettering import extent
+from scope_studio.kit.core.shapes import rounded
+from scope_studio.kit.core.solid import Solid
 
 PROUD_M = 0.0035
-"""How far lettering stands off its board: enough for no two surfaces to fight at any distance."""
+"""Distance of lettering from its board, large enough to avoid z-fighting at any distance."""
 
 INK = {"blue": "white", "green": "white", "red": "white", "dark green": "white", "brown": "white", "black": "white"}
-"""Lettering colour by background; black where not listed."""
+"""Lettering colour by background; black for backgrounds not listed."""
 
 ARROW_TURN = {
     "up": 0.0,
@@ -36,11 +38,12 @@ ARROW_TURN = {
 
 @dataclass(frozen=True)
 class Panel:
-    """A direction or information sign. Sizes in metres.
+    r"""A direction or information sign, sizes in metres.
 
-    A tab inside a line sends the rest of it to the right edge ("Halden\\t12"). ``arrows`` gives a direction (a key of
-    ``ARROW_TURN``) or None for each line, or a single one for the whole panel; ``route`` is a road number on a patch
-    in the first row."""
+    A tab inside a line sends the rest of it to the right edge ("Halden\t12"). ``arrows`` gives a direction (a key of
+    ``ARROW_TURN``) or None for each line, or a single one for the whole panel. ``route`` is a road number on a patch in the
+    first row.
+    """
 
     lines: Sequence[str]
     width: float
@@ -63,7 +66,7 @@ def board(
     edge: float | None = None,
     back: bool = True,
 ) -> None:
-    """A rounded board with a border stripe, face at y = 0."""
+    """Add a rounded board with a border stripe. Its face is at y = 0."""
     edge = edge if edge is not None else min(0.05, 0.035 * min(width, height) + 0.006)
     corner = min(0.10, 0.09 * min(width, height))
     ink = border or INK.get(background, "black")
@@ -79,14 +82,14 @@ def board(
 
 
 def flat(s: Solid, outline: Sequence[tuple[float, float]], material: bpy.types.Material, lift: float = PROUD_M) -> None:
-    """A flat shape on the face; ``outline`` in reader coordinates."""
+    """Add a flat shape on the face. ``outline`` is in reader coordinates."""
     s.prism([(-u, v) for u, v in outline], (lift - 0.002, lift), material, "XZ")
 
 
 def stroke(
     s: Solid, path: Sequence[tuple[float, float]], width: float, material: bpy.types.Material, lift: float = PROUD_M
 ) -> None:
-    """A thick line with round ends, as flat shapes."""
+    """Add a thick line with round ends, made of flat shapes."""
     for (u1, v1), (u2, v2) in itertools.pairwise(path):
         length = math.hypot(u2 - u1, v2 - v1)
         nu, nv = -(v2 - v1) / length * width / 2, (u2 - u1) / length * width / 2
@@ -96,12 +99,13 @@ def stroke(
 
 
 def disc(s: Solid, u: float, v: float, radius: float, material: bpy.types.Material, lift: float = PROUD_M, sides: int = 24) -> None:
+    """Add a filled circle on the face."""
     angles = [2 * math.pi * k / sides for k in range(sides)]
     flat(s, [(u + radius * math.cos(a), v + radius * math.sin(a)) for a in angles], material, lift)
 
 
 def arrow(s: Solid, u: float, v: float, size: float, direction: str, material: bpy.types.Material) -> None:
-    """A road-sign arrow of height ``size``, centred at (u, v)."""
+    """Add a road-sign arrow of height ``size``, centred at (u, v)."""
     shape = [
         (-0.10, -0.5),
         (0.10, -0.5),
@@ -130,7 +134,7 @@ def write(
     bold: bool = True,
     lift: float = PROUD_M,
 ) -> float:
-    """One line of lettering; returns its width."""
+    """Add one line of lettering and return its width in metres."""
     return s.text(
         body,
         cap,
@@ -142,7 +146,7 @@ def write(
 
 
 def panel_face(s: Solid, spec: Panel) -> None:
-    """A complete panel, centred on the frame's origin."""
+    """Add a complete panel, centred on the frame's origin."""
     board(s, spec.width, spec.height, spec.background)
     ink = INK.get(spec.background, "black")
     rows = len(spec.lines)
@@ -178,7 +182,7 @@ def panel_face(s: Solid, spec: Panel) -> None:
 
 
 def _need(line: str) -> float:
-    """Width of a line in cap heights, both its parts and the gap between them."""
+    """Return the width of a line in cap heights: both its parts and the gap between them."""
     head, _, tail = line.partition("\t")
     return extent(head, 1.0) + (extent(tail, 1.0) + 1.2 if tail else 0.0)
 
@@ -192,7 +196,7 @@ def _line(s: Solid, line: str, cap: float, left: float, right: float, v: float, 
 
 
 def _route_patch(s: Solid, spec: Panel, left: float, v: float, cap: float) -> float:
-    """A road number in a patch; returns the patch's width."""
+    """Add a road number on a patch and return the width of the patch in metres."""
     colour = spec.route_background or ("yellow" if spec.background == "green" else spec.background)
     width = extent(spec.route or "", cap) + 1.1 * cap
     centre = left + width / 2

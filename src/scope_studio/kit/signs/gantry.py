@@ -1,4 +1,4 @@
-"""Motorway gantry: a box truss on two braced legs with walkway, rails, lamps, hung panels and lane signals."""
+"""A motorway gantry: a box truss on two braced legs with walkway, rails, lamps, hung panels and lane signals."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from scope_studio.kit.core.finishes import concrete, glow, lens, paint, steel
+from scope_studio.kit.core.lettering import extent
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.signs.faces import Panel, panel_face
-from scope_studio.kit.signs.lettering import extent
 
 TRUSS_M = (1.1, 1.3)
 """Depth along the road and height of the truss."""
@@ -17,7 +17,7 @@ TRUSS_M = (1.1, 1.3)
 
 @dataclass(frozen=True)
 class Signal:
-    """A matrix lane signal: black box with a lit figure ("50"), or a red "X"."""
+    """A matrix lane signal: a black box with a lit figure ("50") or a red "X"."""
 
     text: str
 
@@ -30,10 +30,11 @@ def gantry(
     signals: Sequence[tuple[float, Signal]] = (),
     readable: str = "-Y",
 ) -> Built:
-    """A gantry along x with legs at x = +-span/2.
+    """Build a gantry along x with legs at x = +-span/2.
 
-    ``panels`` and ``signals`` are hung at the given x; their lower edges are ``clearance_m`` above the road.
-    ``readable`` "-Y" shows them to drivers who travel towards +y, "+Y" to the others."""
+    ``panels`` and ``signals`` hang at the given x, with their lower edges ``clearance_m`` above the road. ``readable`` "-Y"
+    turns them to drivers who travel towards +y, "+Y" to drivers in the other direction.
+    """
     s = Solid("gantry")
     depth, tall = TRUSS_M
     base = clearance_m + 0.35

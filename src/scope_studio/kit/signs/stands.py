@@ -1,4 +1,4 @@
-"""What signs stand on: galvanised posts, and temporary frames with sandbags."""
+"""Stands of signs: galvanised posts, and temporary frames with sandbags."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from scope_studio.kit.core.solid import Solid
 
 
 def posts_at(s: Solid, spread: float, top: float, radius: float, y: float = -0.10) -> None:
-    """Galvanised posts in small concrete footings; one post when ``spread`` is 0."""
+    """Add galvanised posts in small concrete footings: one post when ``spread`` is 0, otherwise two."""
     for x in sorted({-spread, spread}):
         s.lathe([(radius, -0.02), (radius, top), (radius * 0.6, top + 0.012)], steel(), (x, y, 0), steps=16)
         s.lathe(
@@ -19,7 +19,7 @@ def posts_at(s: Solid, spread: float, top: float, radius: float, y: float = -0.1
 
 
 def frame_stand(s: Solid, width: float, low: float) -> None:
-    """A temporary steel stand with sandbags, for signs that stand on the road."""
+    """Add a temporary steel stand with sandbags, for signs on the road."""
     for x in (-width * 0.28, width * 0.28):
         s.rod((x, -0.035, low + 0.5), (x, -0.035, 0.02), 0.016, steel(dark=True))
         s.rod((x, -0.03, low + 0.5), (x, -0.46, 0.02), 0.016, steel(dark=True))

@@ -1,1 +1,1 @@
-"""Cars, lorries, buses, trams, cycles and machines."""
+"""Vehicles: cars, lorries, buses, a tram, cycles, construction machines, and the parts that they share."""

@@ -1,6 +1,8 @@
-"""Articulated lorries: tractor units and the trailers that they pull (curtain-sided, box, skeletal with a container).
+"""Articulated lorries: tractor units and trailers (curtain-sided, box, skeletal with a container).
 
-The tractor's fifth wheel is at its origin's ``COUPLING_Y``; a trailer's own origin is the middle of its length, its nose at +y."""
+The tractor's fifth wheel is at ``COUPLING_Y`` in its own frame. A trailer's origin is the middle of its length, with its nose
+at +y.
+"""
 
 from __future__ import annotations
 
@@ -22,9 +24,9 @@ from scope_studio.kit.yard.containers import LENGTH_M, container
 TRAILER_M = 13.6
 _FRONT, _REAR = 3.10, -2.75
 COUPLING_Y = -1.25
-"""Where a trailer's kingpin rests, in the tractor's frame."""
+"""Position of a trailer's kingpin in the tractor's frame."""
 KINGPIN_M = 1.25
-"""How far the kingpin lies behind the trailer's nose."""
+"""Distance from the trailer's nose back to its kingpin."""
 
 
 def _tractor_parts() -> Parts:
@@ -57,8 +59,10 @@ def _tractor_parts() -> Parts:
 
 
 def tractor(colour: str, *, plate: str, name: str | None = None, lit: bool = False) -> Built:
-    """A two-axle tractor unit with a high sleeper cab, 5.9 m long; ``name`` stands over the windscreen, ``lit`` puts its
-    headlamps and marker lamps on."""
+    """Build a two-axle tractor unit with a high sleeper cab, 5.9 m long.
+
+    ``name`` is lettered over the windscreen. ``lit`` turns on headlamps and marker lamps.
+    """
     own, letters = bw.plates(plate, (_FRONT + 0.14, 0.60), (_REAR - 0.03, 0.98))
     if name:
         letters.append(bw.words(name, 0.19, (0, _FRONT - 0.445, 3.20), "+Y", fittings.contrast(colour), width_m=1.9))
@@ -72,7 +76,10 @@ def tractor(colour: str, *, plate: str, name: str | None = None, lit: bool = Fal
 
 
 def _bogie(parts: Parts, *, bed_m: float) -> None:
-    """Frame, three axles, landing legs, guards, underrun bar and lamps, under a bed whose underside is at ``bed_m``."""
+    """Add frame, three axles, landing legs, guards, underrun bar and lamps below a bed.
+
+    ``bed_m`` is the height of the bed's underside.
+    """
     half, dark = TRAILER_M / 2, chassis.chassis_paint()
     for x in (-0.46, 0.46):
         parts.box((0.10, TRAILER_M - 0.3, 0.32), (x, 0, bed_m - 0.17), dark)
@@ -154,7 +161,7 @@ def _body_parts(kind: str) -> Parts:
 
 
 def _folds(parts: Parts, z0: float, z1: float, half: float, skin: bpy.types.Material) -> None:
-    """A curtain along the right-hand side, drawn taut: shallow waves between its straps."""
+    """Add a taut curtain along the right-hand side, with shallow waves between its straps."""
     steps = 120
     points, faces = [], []
     for k in range(steps + 1):
@@ -174,7 +181,10 @@ def _curtain() -> bpy.types.Material:
 
 
 def trailer(colour: str, *, kind: str = "curtain", lettering: str, plate: str, front: str = "white") -> Built:
-    """A 13.6 m semi-trailer: "curtain" (coloured curtains, ``front`` headboard and doors) or "box" (refrigerated)."""
+    """Build a 13.6 m semi-trailer: "curtain" (with coloured curtains) or "box" (refrigerated).
+
+    ``front`` is the colour of a curtain trailer's headboard and doors.
+    """
     model = f"{kind} trailer"
     body = bw.body_mesh(model, lambda: _body_parts(kind))
     own, letters = Parts(), []
@@ -201,7 +211,7 @@ def trailer(colour: str, *, kind: str = "curtain", lettering: str, plate: str, f
 
 
 def skeletal(code: str, colour: str, *, livery: str | None = None, plate: str, feet: int = 40) -> Built:
-    """A skeletal trailer carrying a container, its doors to the rear."""
+    """Build a skeletal trailer that carries a container with its doors to the rear."""
     mesh = bw.body_mesh("skeletal trailer", _skeletal_parts)
     own, letters = Parts(), []
     _, plate_letters = bw.plates(plate, (90.0, 0.60), (-TRAILER_M / 2 - 0.045, 1.02))

@@ -1,4 +1,4 @@
-"""Car bodies: lofted shells with glazing, number plates and lettering, and the assembly of a painted vehicle."""
+"""Car bodies: lofted shells with glazing, number plates, lettering, and the assembly of a painted vehicle."""
 
 from __future__ import annotations
 
@@ -11,20 +11,19 @@ import bpy
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
-from scope_studio.kit.core import shading
+from scope_studio.kit.core import lettering, shading
 from scope_studio.kit.core.parts import Flat, Parts, Point
 from scope_studio.kit.core.stage import Built, TextMark
-from scope_studio.kit.signs import lettering
 from scope_studio.kit.vehicles import paintwork as pw
 from scope_studio.kit.vehicles import wheels
 
 
 @dataclass(frozen=True)
 class Station:
-    """A cross-section of a body at ``y``: right-hand ``(x, z)`` points from the floor's middle round to the roof's
-    middle.
+    """A cross-section of a body at ``y``.
 
-    ``dy`` moves single points along y, which rakes and bows the section.
+    Its right-hand ``(x, z)`` points run from the middle of the floor to the middle of the roof. ``dy`` moves single points
+    along y, which rakes and bows the section.
     """
 
     y: float
@@ -52,11 +51,12 @@ def shell(
     cutters: Parts | None = None,
     levels: int = 3,
 ) -> bpy.types.Mesh:
-    """A closed body lofted through ``stations`` from front to rear and subdivided; windows are framed in black trim.
+    """Return a closed body, lofted through ``stations`` from front to rear and subdivided, with windows framed in black trim.
 
-    ``bulge`` bows the front and rear ends outwards; ``cutters`` are solids taken away (wheel arches), leaving
-    their own material;
-    ``creases`` are (row, strength, first station, last station).
+    Args:
+        creases: (row, strength, first station, last station).
+        bulge: How far the front and rear ends bow outwards.
+        cutters: Solids to subtract (wheel arches). The cut faces keep the material of the cutter.
     """
     bm = bmesh.new()
     crease = bm.edges.layers.float.new("crease_edge")
@@ -165,31 +165,31 @@ def _evaluated(data: bpy.types.Mesh, cutters: Parts | None, levels: int) -> bpy.
 
 
 class Surface:
-    """Ray casts against a made mesh: where fittings and lettering touch the body."""
+    """Ray casts against a finished mesh. They find where fittings and lettering touch the body."""
 
     def __init__(self, made: bpy.types.Mesh) -> None:
         self.tree = BVHTree.FromPolygons([v.co for v in made.vertices], [p.vertices for p in made.polygons])
 
     def side(self, y: float, z: float) -> float:
-        """The body's half width at ``(y, z)`` on the right."""
+        """Return the body's half width at ``(y, z)`` on the right."""
         hit = self.tree.ray_cast(Vector((9.0, y, z)), Vector((-1, 0, 0)))[0]
         return hit.x if hit is not None else 0.0
 
     def end(self, x: float, z: float, front: bool) -> float:
-        """Where the front or rear of the body is (y) at ``(x, z)``."""
+        """Return the y of the body's front or rear at ``(x, z)``."""
         sign = 1.0 if front else -1.0
         hit = self.tree.ray_cast(Vector((x, 20.0 * sign, z)), Vector((0, -sign, 0)))[0]
         return hit.y if hit is not None else 0.0
 
     def top(self, x: float, y: float) -> float:
-        """The height of the body at ``(x, y)``."""
+        """Return the height of the body at ``(x, y)``."""
         hit = self.tree.ray_cast(Vector((x, y, 20.0)), Vector((0, 0, -1)))[0]
         return hit.z if hit is not None else 0.0
 
 
 @dataclass
 class Lettering:
-    """A line of letters standing in its place on a vehicle, and its mark."""
+    """A line of letters in its place on a vehicle, and its text mark."""
 
     points: list[Point]
     faces: list[tuple[int, ...]]
@@ -215,8 +215,10 @@ def words(
     width_m: float = math.inf,
     onto: Surface | None = None,
 ) -> Lettering:
-    """A line of lettering around ``centre``, narrowed to fit ``width_m``; ``onto`` lays it on a curved side
-    instead of a plane."""
+    """Return a line of lettering around ``centre``, narrowed to fit ``width_m``.
+
+    ``onto`` lays it on a curved side instead of a plane.
+    """
     flat, faces = lettering.letters(body, cap_m)
     if onto is not None:
         flat, faces = _fine(flat, faces)
@@ -267,7 +269,10 @@ def both_sides(
     width_m: float = math.inf,
     onto: Surface | None = None,
 ) -> list[Lettering]:
-    """The same lettering on the right and on the left, proud of the panel at ``x`` or laid ``onto`` the surface."""
+    """Return the same lettering for the right and the left side.
+
+    It stands in front of the panel at ``x``, or is laid ``onto`` the surface.
+    """
     return [
         words(body, cap_m, (sign * (x + 0.003), y, z), facing, colour, width_m=width_m, onto=onto)
         for sign, facing in ((1, "+X"), (-1, "-X"))
@@ -275,7 +280,10 @@ def both_sides(
 
 
 def plates(plate: str, front: tuple[float, float], rear: tuple[float, float]) -> tuple[Parts, list[Lettering]]:
-    """UK number plates, white in front and yellow behind; ``front`` and ``rear`` are the (y, z) of the plate's face."""
+    """Return UK number plates, white in front and yellow at the rear.
+
+    ``front`` and ``rear`` are the (y, z) of the plate's face.
+    """
     parts, letters = Parts(), []
     for (y, z), colour, rgb, sign in (
         (front, "white", (0.82, 0.82, 0.80), 1),
@@ -289,7 +297,7 @@ def plates(plate: str, front: tuple[float, float], rear: tuple[float, float]) ->
 
 
 def body_mesh(model: str, make: Callable[[], Parts]) -> bpy.types.Mesh:
-    """The model's mesh, made on first use and shared by every vehicle of that model in the file."""
+    """Return the mesh of a model. It is made on first use and shared by all vehicles of the model in the file."""
     return bpy.data.meshes.get(f"kit {model}") or make().build(f"kit {model}")
 
 
@@ -300,7 +308,7 @@ def finish(
     letters: Sequence[Lettering] = (),
     fittings: Parts | None = None,
 ) -> Built:
-    """A vehicle from the shared mesh in its own paint, with its own lettering and fittings in a second object."""
+    """Assemble a vehicle: the shared mesh in its own paint, and a second object with its lettering and fittings."""
     obj = bpy.data.objects.new(name, body)
     bpy.context.scene.collection.objects.link(obj)
     for number, material in enumerate(paints):
@@ -321,7 +329,7 @@ def finish(
 
 
 def arches(axles: Sequence[float], radius: float, inner_x: float) -> Parts:
-    """Cutters for the wheel arches of axles at y, reaching from ``inner_x`` outwards on both sides."""
+    """Return cutters for the wheel arches of axles at the given y. They reach from ``inner_x`` outwards on both sides."""
     tools = Parts()
     for y in axles:
         for sign in (-1, 1):

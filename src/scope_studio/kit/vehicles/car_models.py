@@ -1,4 +1,7 @@
-"""The shapes of the cars and vans: sections, windows, printed details. Metres; y forward, wheelbase centred on 0."""
+"""Shapes of the car models: sections, windows, printed details.
+
+Lengths are in metres. y points forward, and the wheelbase is centred on 0.
+"""
 
 from __future__ import annotations
 
@@ -6,15 +9,14 @@ from dataclasses import dataclass, field
 
 from scope_studio.kit.core.parts import Point
 from scope_studio.kit.vehicles import paintwork as pw
-from scope_studio.kit.vehicles import printed
+from scope_studio.kit.vehicles import printed_details
 from scope_studio.kit.vehicles.bodywork import Pane, Station
 from scope_studio.kit.vehicles.paintwork import AMBER, GAP, REAR_LAMP, TRIM, Patch
 
 
 @dataclass(frozen=True)
 class Cabin:
-    """What is seen through the windows: seats between ``front_y`` (dashboard) and ``rear_y`` below the ``belt_z``
-    line."""
+    """The visible interior: seats between ``front_y`` (dashboard) and ``rear_y``, below the ``belt_z`` line."""
 
     front_y: float
     rear_y: float
@@ -27,7 +29,7 @@ class Cabin:
 
 @dataclass(frozen=True)
 class CarModel:
-    """Everything that distinguishes one car from another. Metres; y forward, wheelbase centred on 0."""
+    """The shape of one car model. Lengths are in metres; y points forward, and the wheelbase is centred on 0."""
 
     name: str
     stations: list[Station]
@@ -82,15 +84,15 @@ SALOON = CarModel(
     bulge=(0.10, 0.07),
     creases=[(4, 0.7, 0, 99), (2, 0.35, 0, 99), (3, 0.2, 0, 99), (6, 0.85, 3, 7)],
     patches=[
-        *printed.door_patches([0.98, -0.36, -1.30], 0.30, 0.93, -0.03),
+        *printed_details.door_patches([0.98, -0.36, -1.30], 0.30, 0.93, -0.03),
         Patch(GAP, x=(0.742, 0.752), y=(1.05, 2.02), z=(0.7, 1.2), roughness=0.9),
         Patch(GAP, x=(0.0, 0.745), y=(2.11, 2.12), z=(0.6, 1.0), y_per_x=-0.06, roughness=0.9),
         Patch(GAP, x=(0.0, 0.70), y=(-9, -2.2), z=(0.655, 0.664), roughness=0.9),
         Patch(GAP, x=(0.70, 0.709), y=(-9, -1.95), z=(0.66, 1.2), roughness=0.9),
-        *printed.grille(0.40, 2.0, (0.50, 0.63), 3),
-        *printed.intake(0.46, 2.0, (0.24, 0.35)),
-        *printed.headlamp((0.45, 0.78), 1.90, (0.54, 0.645), 0.05),
-        *printed.rear_lamp((0.42, 0.80), -2.08, (0.72, 0.88)),
+        *printed_details.grille(0.40, 2.0, (0.50, 0.63), 3),
+        *printed_details.intake(0.46, 2.0, (0.24, 0.35)),
+        *printed_details.headlamp((0.45, 0.78), 1.90, (0.54, 0.645), 0.05),
+        *printed_details.rear_lamp((0.42, 0.80), -2.08, (0.72, 0.88)),
         Patch((0.45, 0.45, 0.46), y=(-9, -2.2), x=(-1, 0.40), z=(0.80, 0.815), roughness=0.2),
         Patch(TRIM, y=(-9, -2.1), z=(0.0, 0.40), roughness=0.6),
         Patch(TRIM, y=(0.98, 1.05), x=(-1, 0.66), z=(0.9, 1.1), roughness=0.6, y_per_x=-0.17),
@@ -130,15 +132,15 @@ HATCHBACK = CarModel(
     bulge=(0.10, 0.06),
     creases=[(4, 0.7, 0, 99), (2, 0.35, 0, 99), (3, 0.2, 0, 99), (6, 0.85, 3, 7)],
     patches=[
-        *printed.door_patches([0.90, -0.32, -1.16], 0.30, 0.97, -0.03),
+        *printed_details.door_patches([0.90, -0.32, -1.16], 0.30, 0.97, -0.03),
         Patch(GAP, x=(0.722, 0.732), y=(1.0, 1.75), z=(0.7, 1.2), roughness=0.9),
         Patch(GAP, x=(0.0, 0.72), y=(1.86, 1.869), z=(0.6, 1.0), y_per_x=-0.06, roughness=0.9),
         Patch(GAP, x=(0.0, 0.70), y=(-9, -1.7), z=(0.50, 0.509), roughness=0.9),
         Patch(GAP, x=(0.70, 0.709), y=(-9, -1.6), z=(0.5, 1.0), roughness=0.9),
-        *printed.grille(0.40, 1.7, (0.57, 0.66), 2),
-        *printed.intake(0.42, 1.7, (0.25, 0.38)),
-        *printed.headlamp((0.45, 0.76), 1.58, (0.56, 0.69), 0.06),
-        *printed.rear_lamp((0.58, 0.80), -1.70, (0.66, 0.96)),
+        *printed_details.grille(0.40, 1.7, (0.57, 0.66), 2),
+        *printed_details.intake(0.42, 1.7, (0.25, 0.38)),
+        *printed_details.headlamp((0.45, 0.76), 1.58, (0.56, 0.69), 0.06),
+        *printed_details.rear_lamp((0.58, 0.80), -1.70, (0.66, 0.96)),
         Patch(TRIM, y=(-9, -1.8), z=(0.0, 0.40), roughness=0.6),
         Patch(TRIM, z=(0.0, 0.265), roughness=0.7),
     ],
@@ -179,14 +181,14 @@ SUV = CarModel(
     bulge=(0.08, 0.05),
     creases=[(4, 0.75, 0, 99), (2, 0.4, 0, 99), (3, 0.25, 0, 99), (6, 0.85, 3, 7)],
     patches=[
-        *printed.door_patches([0.96, -0.28, -1.22], 0.42, 1.08, -0.02),
+        *printed_details.door_patches([0.96, -0.28, -1.22], 0.42, 1.08, -0.02),
         Patch(GAP, x=(0.782, 0.792), y=(1.05, 1.95), z=(0.9, 1.3), roughness=0.9),
         Patch(GAP, x=(0.0, 0.78), y=(2.05, 2.06), z=(0.8, 1.2), y_per_x=-0.05, roughness=0.9),
         Patch(GAP, x=(0.0, 0.76), y=(-9, -2.0), z=(0.58, 0.589), roughness=0.9),
         Patch(GAP, x=(0.76, 0.769), y=(-9, -1.9), z=(0.58, 1.1), roughness=0.9),
-        *printed.grille(0.44, 1.9, (0.68, 0.90), 4),
-        *printed.headlamp((0.50, 0.84), 1.74, (0.74, 0.87), 0.03),
-        *printed.rear_lamp((0.64, 0.86), -2.0, (0.76, 1.06)),
+        *printed_details.grille(0.44, 1.9, (0.68, 0.90), 4),
+        *printed_details.headlamp((0.50, 0.84), 1.74, (0.74, 0.87), 0.03),
+        *printed_details.rear_lamp((0.64, 0.86), -2.0, (0.76, 1.06)),
         Patch(TRIM, y=(1.8, 9), z=(0.0, 0.52), roughness=0.6),
         Patch(TRIM, y=(-9, -1.85), z=(0.0, 0.56), roughness=0.6),
         Patch((0.35, 0.35, 0.35), y=(1.9, 9), x=(0.0, 0.5), z=(0.34, 0.40), roughness=0.3),
@@ -239,8 +241,8 @@ VAN = CarModel(
         Patch(GAP, x=(0, 0.90), y=(-9, -2.7), z=(0.50, 0.508), roughness=0.9),
         Patch((0.012, 0.015, 0.017), x=(0.10, 0.78), y=(-9, -2.7), z=(1.38, 1.98), roughness=0.03),
         Patch(GAP, x=(0.79, 0.80), y=(1.9, 2.40), z=(0.9, 1.4), roughness=0.9),
-        *printed.grille(0.56, 2.3, (0.80, 0.98), 3),
-        *printed.headlamp((0.60, 0.92), 2.16, (0.80, 0.99), 0.06),
+        *printed_details.grille(0.56, 2.3, (0.80, 0.98), 3),
+        *printed_details.headlamp((0.60, 0.92), 2.16, (0.80, 0.99), 0.06),
         Patch(TRIM, y=(2.1, 9), z=(0, 0.68), roughness=0.65),
         Patch(TRIM, x=(0.9, 2), y=(-2.7, 2.2), z=(0.60, 0.74), roughness=0.65),
         Patch(REAR_LAMP, y=(-9, -2.72), x=(0.90, 2), z=(0.90, 1.50), roughness=0.08, emission=0.3),
@@ -285,16 +287,16 @@ PICKUP = CarModel(
     bulge=(0.08, 0.0),
     creases=[(4, 0.75, 0, 99), (2, 0.4, 0, 99), (3, 0.25, 0, 99), (5, 0.4, 0, 99), (6, 0.85, 3, 7)],
     patches=[
-        *printed.door_patches([1.26, 0.08, -0.72], 0.46, 1.09),
+        *printed_details.door_patches([1.26, 0.08, -0.72], 0.46, 1.09),
         pw.upright_gap(-0.94, (0.4, 1.3), width=0.03),
         Patch(GAP, x=(0.79, 0.80), y=(1.35, 2.25), z=(0.9, 1.3), roughness=0.9),
         Patch(GAP, x=(0.0, 0.79), y=(2.37, 2.38), z=(0.8, 1.2), y_per_x=-0.05, roughness=0.9),
         Patch(GAP, x=(0.0, 0.74), y=(-9, -2.5), z=(0.60, 0.609), roughness=0.9),
         Patch(GAP, x=(0.74, 0.749), y=(-9, -2.5), z=(0.60, 1.2), roughness=0.9),
         Patch(TRIM, x=(0, 0.12), y=(-9, -2.5), z=(0.98, 1.06), roughness=0.5),
-        *printed.grille(0.46, 2.2, (0.70, 0.96), 3),
-        *printed.headlamp((0.52, 0.86), 2.08, (0.76, 0.92), 0.0),
-        *printed.rear_lamp((0.78, 0.90), -2.47, (0.70, 1.04)),
+        *printed_details.grille(0.46, 2.2, (0.70, 0.96), 3),
+        *printed_details.headlamp((0.52, 0.86), 2.08, (0.76, 0.92), 0.0),
+        *printed_details.rear_lamp((0.78, 0.90), -2.47, (0.70, 1.04)),
         Patch(TRIM, y=(2.1, 9), z=(0.0, 0.58), roughness=0.6),
         Patch(TRIM, y=(-9, -2.45), z=(0.0, 0.56), roughness=0.6),
         Patch(TRIM, z=(0.0, 0.44), roughness=0.7),

@@ -88,7 +88,10 @@ def _coach_parts() -> Parts:
 
 
 def coach(colour: str, *, plate: str, lettering: str, destination: str) -> Built:
-    """A single-deck coach, 11.7 m long, door on the left (kerb) side; the destination glows above the windscreen."""
+    """Build a single-deck coach, 11.7 m long, with its door on the left (kerb) side.
+
+    The destination is lit above the windscreen.
+    """
     own, letters = bw.plates(plate, (_COACH_FRONT + 0.01, 0.52), (_COACH_REAR - 0.012, 0.66))
     letters += bw.both_sides(lettering, 0.30, 0.2, 1.38, fittings.contrast(colour), x=_COACH_HALF, width_m=4.4)
     letters.append(bw.words(destination, 0.20, (0, _COACH_FRONT - 0.116, 2.84), "+Y", "display", width_m=2.05))

@@ -1,4 +1,4 @@
-"""Bicycles and the hoops that they are locked to."""
+"""Bicycles, and the hoops that they are locked to."""
 
 from __future__ import annotations
 
@@ -20,12 +20,15 @@ CRANK: Point = (0.0, -0.08, 0.29)
 CRANK_M = 0.165
 SADDLE: Point = (0.0, -0.27, 0.96)
 GRIP: Point = (0.27, 0.24, 1.05)
-"""Where the right hand holds; the left mirrors it."""
+"""Position of the right hand; the left hand mirrors it."""
 
 
 @dataclass(frozen=True)
 class _Kind:
-    """What sets a kind of bicycle apart: tyre radius and the run of the right half of the handlebar, from the stem out."""
+    """Properties of a kind of bicycle.
+
+    They are the tyre radius, and the path of the right half of the handlebar, from the stem outwards.
+    """
 
     tyre_m: float
     bar: tuple[Point, ...]
@@ -54,9 +57,12 @@ def bicycle(
     front_wheel: bool = True,
     crank_deg: float = 35.0,
 ) -> Built:
-    """A bicycle heading +y, upright as in a stand; ``crank_deg`` is the angle of the right pedal forward of the top.
+    """Build an upright bicycle heading +y.
 
-    ``basket`` hangs a wicker basket in front; without ``front_wheel`` it stands on its fork ends.
+    Args:
+        basket: Add a wicker basket in front.
+        front_wheel: Without it, the bicycle stands on its fork ends.
+        crank_deg: Angle of the right pedal forward of the top.
     """
     s = Solid(f"{colour} bicycle")
     model, painted = KINDS[kind], paint(colour, dirt=0.12, roughness=0.25)
@@ -144,7 +150,7 @@ def _drive(s: Solid, crank_deg: float) -> None:
 
 
 def pedal(crank_deg: float, side: int) -> tuple[float, float]:
-    """(y, z) of the right (+1) or left (-1) pedal, metres."""
+    """Return the (y, z) of the right (+1) or left (-1) pedal in metres."""
     a = math.radians(crank_deg) + (0.0 if side > 0 else math.pi)
     return CRANK[1] + CRANK_M * math.sin(a), CRANK[2] + CRANK_M * math.cos(a)
 
@@ -169,7 +175,7 @@ def _basket(s: Solid) -> None:
 
 
 def bike_stand() -> Built:
-    """A steel hoop, 0.75 m high and long, set across the kerb: a bicycle leans on either side, along y."""
+    """Build a steel hoop, 0.75 m high and long, set across the kerb. A bicycle leans on either side, along y."""
     s = Solid("bike stand")
     bend = [(0.0, 0.375 - 0.09 + 0.09 * math.sin(a), 0.66 + 0.09 * math.cos(a)) for a in (k * math.pi / 12 for k in range(7))]
     path = [(0.0, 0.375, 0.0), *bend[::-1], *[(0.0, -y, z) for _, y, z in bend], (0.0, -0.375, 0.0)]

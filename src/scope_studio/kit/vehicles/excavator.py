@@ -14,13 +14,15 @@ from scope_studio.kit.vehicles import paintwork as pw
 
 
 def _turn(origin: Point, degrees: float) -> Matrix:
-    """A frame at ``origin`` tilted upwards (its +y rises for positive angles)."""
+    """Return a frame at ``origin`` that is tilted upwards (its +y rises for positive angles)."""
     return Matrix.Translation(origin) @ Matrix.Rotation(math.radians(degrees), 4, "X")
 
 
 def _cylinder(parts: Parts, start: Vector, end: Vector, radius: float, stroke: float) -> None:
-    """A hydraulic cylinder: dark barrel from ``start``, chromed rod to ``end``; ``stroke`` is the barrel's share
-    of the length."""
+    """Add a hydraulic cylinder: a dark barrel from ``start`` and a chromed rod to ``end``.
+
+    ``stroke`` is the barrel's share of the length.
+    """
     joint = start + (end - start) * stroke
     parts.tube([tuple(start), tuple(joint)], radius, pw.paint_slot(), sides=12)
     parts.tube(
@@ -35,7 +37,7 @@ def _cylinder(parts: Parts, start: Vector, end: Vector, radius: float, stroke: f
 
 
 def _track(parts: Parts, x: float, length: float, height: float, width: float) -> None:
-    """A crawler track round sprocket, idler and rollers."""
+    """Add a crawler track around sprocket, idler and rollers."""
     radius, reach = height / 2, length / 2 - height / 2
     straight, bend = 2 * reach, math.pi * radius
     total = 2 * (straight + bend)
@@ -86,7 +88,7 @@ def _track(parts: Parts, x: float, length: float, height: float, width: float) -
 
 
 def _cab(parts: Parts, x0: float, x1: float, y0: float, y1: float, z0: float, z1: float) -> None:
-    """A glazed operator's cab with painted pillars, a black roof edge and a seat-high sill."""
+    """Add a glazed operator's cab with painted pillars, a black roof edge and a sill at seat height."""
     paint, glass, trim = pw.paint_slot(), pw.glass(), pw.black_trim()
     profile: list[Flat] = [
         (y0, z0),
@@ -154,12 +156,13 @@ def excavator(
     bucket_deg: float = -70.0,
     slew_deg: float = 0.0,
 ) -> Built:
-    """A 20-tonne tracked excavator; tracks along y, 3.9 m long.
+    """Build a 20-tonne tracked excavator with its tracks along y, 3.9 m long.
 
-    ``boom_deg`` lifts the boom's foot above the level; ``stick_deg`` and ``bucket_deg`` are the stick's and the
-    bucket's angles to the
-    level (negative points down,
-        below -90 tucks back towards the cab). ``slew_deg`` turns the upper works clockwise seen from above.
+    Args:
+        boom_deg: Elevation of the boom's foot.
+        stick_deg, bucket_deg: Elevations of stick and bucket. Negative values point down; values below -90 point back towards
+            the cab.
+        slew_deg: Rotation of the upper works, clockwise as seen from above.
     """
     parts = Parts()
     parts.slot(pw.paint_slot())
@@ -221,7 +224,7 @@ _BOOM, _STICK = 5.5, 2.8
 
 
 def _arm(parts: Parts, upper: Matrix, boom_deg: float, stick_deg: float, bucket_deg: float) -> None:
-    """Boom, stick and bucket with their cylinders, in the plane x = 0.1 of the upper works."""
+    """Add boom, stick and bucket with their cylinders, in the plane x = 0.1 of the upper works."""
     paint, iron = pw.paint_slot(), fittings.iron()
     x, foot = 0.12, Vector((0.12, 0.85, 1.75))
     for side in (-0.34, 0.34):
@@ -235,7 +238,7 @@ def _arm(parts: Parts, upper: Matrix, boom_deg: float, stick_deg: float, bucket_
     chord = _turn((0, 0, 0), boom_deg - 21.0)
     boom = upper @ Matrix.Translation(foot) @ chord
     parts.matrix = boom
-    # The boom is cranked: its foot rises steeper than the chord, its nose flatter.
+    # The boom is cranked: its foot rises more steeply than the chord, its nose less steeply.
     bend: Flat = (_BOOM * 0.42, 1.10)
     low: list[Flat] = [
         (-0.16, -0.18),
@@ -323,8 +326,10 @@ def _arm(parts: Parts, upper: Matrix, boom_deg: float, stick_deg: float, bucket_
 
 
 def _bucket(parts: Parts) -> None:
-    """A digging bucket hung from the origin; its mouth opens towards -z (towards the cab when the bucket points
-    down)."""
+    """Add a digging bucket that hangs from the origin.
+
+    Its mouth opens towards -z, which is towards the cab when the bucket points down.
+    """
     wear, half = fittings.worn_steel(), 0.62
     spine: list[Flat] = [(0.05, 0.34), (0.35, 0.46), (0.75, 0.42), (1.08, 0.20), (1.22, -0.10), (1.22, -0.48)]
     inside: list[Flat] = [(1.17, -0.46), (1.16, -0.09), (1.03, 0.16), (0.73, 0.36), (0.36, 0.40), (0.10, 0.28)]

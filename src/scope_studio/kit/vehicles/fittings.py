@@ -10,26 +10,29 @@ from scope_studio.kit.core.parts import Flat, Parts
 from scope_studio.kit.vehicles import paintwork as pw
 
 DARK_PAINTS = {"black", "blue", "dark blue", "red", "dark red", "green", "dark green", "grey", "purple", "brown"}
-"""Paints on which lettering is white."""
+"""Paints that take white lettering."""
 
 
 def contrast(colour: str) -> str:
-    """The lettering colour that reads best on a paint."""
+    """Return the lettering colour that reads best on a paint."""
     return "white" if colour in DARK_PAINTS else "dark blue"
 
 
 def mirrored(parts: Parts, sign: int) -> None:
-    """Work on the right-hand side (+1), or on its mirror image (-1)."""
+    """Work on the right-hand side (+1) or on its mirror image (-1)."""
     parts.matrix = Matrix.Scale(sign, 4, (1, 0, 0))
 
 
 def aluminium() -> bpy.types.Material:
+    """Return the material of plain aluminium parts."""
     return shading.plain("lorry aluminium", (0.50, 0.51, 0.52), 0.38, 0.7)
 
 
 def seats_behind_glass(parts: Parts, places: list[Flat], sill: float, face: float, axis: str) -> None:
-    """Seat backs with head rests, pressed flat behind glass: ``places`` are (across, height) on the plane ``axis``
-    = ``face``."""
+    """Add flat seat backs with head rests directly behind glass.
+
+    ``places`` are (across, height) on the plane ``axis`` = ``face``.
+    """
     cloth = shading.plain("lorry seat cloth", (0.10, 0.105, 0.12), 0.9)
     for across, height in places:
         for half, low, high in ((0.24, 0.0, 0.46), (0.13, 0.49, 0.62)):
@@ -46,14 +49,17 @@ def seats_behind_glass(parts: Parts, places: list[Flat], sill: float, face: floa
 
 
 def iron() -> bpy.types.Material:
+    """Return the material of dark iron parts."""
     return shading.plain("machine iron", (0.022, 0.022, 0.023), 0.6)
 
 
 def chrome() -> bpy.types.Material:
+    """Return the material of chromed parts."""
     return shading.plain("machine chrome", (0.65, 0.66, 0.67), 0.15, 1.0)
 
 
 def worn_steel() -> bpy.types.Material:
+    """Return worn steel with rust."""
     found = bpy.data.materials.get("machine worn steel")
     if found is not None:
         return found
@@ -63,9 +69,11 @@ def worn_steel() -> bpy.types.Material:
 
 
 def machine_paint(model: str, colour: str) -> bpy.types.Material:
+    """Return the paint of a machine, with dirt."""
     return pw.paint(model, colour, dirt_top_m=1.3, dirt=0.6, gloss=0.2)
 
 
 def beacon(parts: Parts, x: float, y: float, z: float) -> None:
+    """Add an orange warning beacon at a position."""
     parts.lathe([(0.055, 0.0), (0.055, 0.05)], (x, y, z), pw.black_trim(), steps=16)
     parts.lathe([(0.062, 0.05), (0.062, 0.16), (0.045, 0.19), (0.01, 0.195)], (x, y, z), pw.lamp("beacon"), steps=16)

@@ -1,4 +1,4 @@
-"""A counterbalance forklift: mast, carriage and forks at any height, overhead guard, lamps, seat; with or without a load."""
+"""A counterbalance forklift with its mast, carriage and forks at any height."""
 
 from __future__ import annotations
 
@@ -10,11 +10,14 @@ from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
 SEAT: tuple[float, float, float] = (0.0, -0.22, 1.02)
-"""Where a driver's hips rest, metres; the driver faces +y."""
+"""Position of the driver's hips in metres; the driver faces +y."""
 
 
 def forklift(colour: str = "yellow", *, number: str = "3", fork_m: float = 0.10, lit: bool = True, beacon: bool = True) -> Built:
-    """A 2.5-tonne forklift facing +y, forks at ``fork_m``; lamps and the blue floor spot's housing lit when ``lit``."""
+    """Build a 2.5-tonne forklift facing +y with its forks at ``fork_m``.
+
+    ``lit`` turns on its lamps and the blue floor spot.
+    """
     s = Solid("forklift")
     body, dark, black = paint(colour, dirt=0.42), paint("dark grey", dirt=0.35), rubber()
     _wheels(s)
@@ -73,7 +76,7 @@ def _wheels(s: Solid) -> None:
 
 
 def _mast(s: Solid, fork_m: float) -> None:
-    """Rails, cross bars, lift chains, carriage with backrest, two forks."""
+    """Add rails, cross bars, lift chains, a carriage with backrest, and two forks."""
     dark, iron = paint("dark grey", dirt=0.35), steel(dark=True)
     lift = max(0.0, fork_m - 1.4)
     for x in (-0.36, 0.36):

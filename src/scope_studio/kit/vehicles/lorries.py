@@ -1,4 +1,4 @@
-"""Heavy vehicles: box lorry, tipper and tanker (and the coach, from its own module)."""
+"""Rigid lorries: box lorry, tipper and tanker."""
 
 from __future__ import annotations
 
@@ -14,10 +14,7 @@ from scope_studio.kit.vehicles import bodywork as bw
 from scope_studio.kit.vehicles import fittings, wheels
 from scope_studio.kit.vehicles import lorry_chassis as chassis
 from scope_studio.kit.vehicles import paintwork as pw
-from scope_studio.kit.vehicles.coach import coach
 from scope_studio.kit.vehicles.paintwork import Patch
-
-__all__ = ["box_lorry", "coach", "tanker", "tipper"]
 
 
 def _box_parts() -> Parts:
@@ -58,7 +55,10 @@ _SEAMS = [Patch((0.22, 0.22, 0.22), x=(1.2, 9), y=(y - 0.006, y + 0.006), roughn
 
 
 def box_lorry(cab_colour: str, box_colour: str, *, plate: str, lettering: str) -> Built:
-    """A two-axle rigid lorry with a box body and barn doors, 8 m long, lettered on both sides and the doors."""
+    """Build a two-axle rigid lorry, 8 m long, with a box body and barn doors.
+
+    It is lettered on both sides and on the doors.
+    """
     body = bw.body_mesh("box lorry", _box_parts)
     own, letters = bw.plates(plate, (3.86, 0.60), (-4.30, 0.98))
     tint = fittings.contrast(box_colour)
@@ -115,7 +115,7 @@ def _tipper_parts() -> Parts:
 
 
 def _load(parts: Parts, y0: float, y1: float, z: float) -> None:
-    """A heap of crushed stone in the body."""
+    """Add a heap of crushed stone in the body."""
     stone = bpy.data.materials.get("lorry aggregate")
     if stone is None:
         sh = shading.Shader("lorry aggregate")
@@ -147,7 +147,7 @@ def _load(parts: Parts, y0: float, y1: float, z: float) -> None:
 
 
 def tipper(cab_colour: str, body_colour: str, *, plate: str) -> Built:
-    """A three-axle tipper loaded with crushed stone, 8 m long."""
+    """Build a three-axle tipper loaded with crushed stone, 8 m long."""
     own, letters = bw.plates(plate, (3.99, 0.60), (-3.97, 0.98))
     paints = [
         pw.paint("lorry cab", cab_colour, dirt_top_m=1.2),
@@ -218,7 +218,7 @@ def _tanker_parts() -> Parts:
 
 
 def tanker(cab_colour: str, *, plate: str, lettering: str) -> Built:
-    """A three-axle fuel tanker, 8.4 m long, with a silver tank and lettering on both sides."""
+    """Build a three-axle fuel tanker, 8.4 m long, with a silver tank and lettering on both sides."""
     body = bw.body_mesh("tanker", _tanker_parts)
     own, letters = bw.plates(plate, (4.19, 0.60), (-4.22, 0.98))
     letters += bw.both_sides(

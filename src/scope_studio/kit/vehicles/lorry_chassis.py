@@ -1,4 +1,4 @@
-"""What every lorry shares: the day cab, and the chassis with its running gear."""
+"""Parts that all rigid lorries share: the day cab, and the chassis with its running gear."""
 
 from __future__ import annotations
 
@@ -14,11 +14,12 @@ from scope_studio.kit.vehicles import paintwork as pw
 
 
 def chassis_paint() -> bpy.types.Material:
+    """Return the paint of chassis parts."""
     return shading.plain("lorry chassis", (0.030, 0.030, 0.032), 0.6)
 
 
 def cab(parts: Parts, front_y: float, *, depth: float = 1.72, width: float = 2.40, top: float = 2.86) -> None:
-    """A day cab with its front face at ``front_y``: body, glazing, grille, bumper, lamps, steps, mirrors, visor."""
+    """Add a day cab with its front face at ``front_y``: body, glazing, grille, bumper, lamps, steps, mirrors, visor."""
     half, y, back = width / 2, front_y, front_y - depth
     body: list[Flat] = [
         (back, 1.02), (y - 0.35, 1.02), (y - 0.05, 0.90), (y - 0.01, 1.30), (y - 0.03, 1.72), (y - 0.19, 2.58),
@@ -120,6 +121,7 @@ def cab(parts: Parts, front_y: float, *, depth: float = 1.72, width: float = 2.4
 
 
 def mudguard(parts: Parts, y: float, radius: float, x0: float, x1: float, material: bpy.types.Material) -> None:
+    """Add a mudguard over a wheel at ``y``, from ``x0`` to ``x1``."""
     outer = [
         (y + (radius + 0.09) * math.cos(a), radius + (radius + 0.09) * math.sin(a))
         for a in (math.pi * (0.02 + 0.96 * k / 10) for k in range(11))
@@ -137,7 +139,7 @@ def mudguard(parts: Parts, y: float, radius: float, x0: float, x1: float, materi
 
 
 def running_gear(parts: Parts, front: float, rears: list[float], rear_end: float, front_end: float) -> None:
-    """Frame rails, axles, wheels, mudguards, tank, battery box and the rear underrun bar with its lamps."""
+    """Add frame rails, axles, wheels, mudguards, tank, battery box, and the rear underrun bar with its lamps."""
     dark = chassis_paint()
     for x in (-0.42, 0.42):
         parts.box((0.09, front_end - rear_end, 0.26), (x, (front_end + rear_end) / 2, 0.92), dark)
@@ -161,6 +163,7 @@ def running_gear(parts: Parts, front: float, rears: list[float], rear_end: float
 
 
 def side_guards(parts: Parts, y0: float, y1: float) -> None:
+    """Add guard rails between the axles, from ``y0`` to ``y1`` on both sides."""
     for sign in (-1, 1):
         fittings.mirrored(parts, sign)
         for z in (0.50, 0.80):
@@ -171,7 +174,7 @@ def side_guards(parts: Parts, y0: float, y1: float) -> None:
 
 
 def stores(parts: Parts, y: float) -> None:
-    """The fuel tank on the right and the battery and air boxes on the left, behind the cab."""
+    """Add the fuel tank on the right, and the battery and air boxes on the left, behind the cab."""
     parts.prism(
         [(0.62, 0.42), (1.16, 0.42), (1.20, 0.48), (1.20, 0.90), (1.14, 0.96), (0.62, 0.96)],
         y - 1.1,

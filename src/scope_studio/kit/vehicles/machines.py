@@ -1,4 +1,4 @@
-"""Construction machines: tandem roller and site dumper (and the excavator, from its own module)."""
+"""Construction machines: tandem roller and site dumper."""
 
 from __future__ import annotations
 
@@ -12,14 +12,13 @@ from scope_studio.kit.core.stage import Built
 from scope_studio.kit.vehicles import bodywork as bw
 from scope_studio.kit.vehicles import fittings, wheels
 from scope_studio.kit.vehicles import paintwork as pw
-from scope_studio.kit.vehicles.excavator import excavator
-
-__all__ = ["dumper", "excavator", "roller"]
 
 
 def roller(colour: str, *, number: str) -> Built:
-    """A 10-tonne tandem road roller with two steel drums, a roll-over frame with canopy and an operator's seat;
-    4.7 m long."""
+    """Build a 10-tonne tandem road roller, 4.7 m long.
+
+    It has two steel drums, a roll-over frame with canopy, and an operator's seat.
+    """
     mesh = bw.body_mesh("roller", _roller_parts)
     letters = bw.both_sides(number, 0.26, -0.14, 1.12, "black", x=0.765, width_m=0.7)
     letters.append(bw.words(number, 0.22, (0, -2.36, 1.33), "-Y", "black", width_m=0.8))
@@ -103,7 +102,7 @@ def _roller_parts() -> Parts:
 
 
 def dumper(colour: str, *, number: str) -> Built:
-    """A nine-tonne forward-tipping site dumper with a skip of earth, four big wheels and a roll bar; 4.6 m long."""
+    """Build a nine-tonne forward-tipping site dumper, 4.6 m long, with a skip of earth, four big wheels and a roll bar."""
     mesh = bw.body_mesh("dumper", _dumper_parts)
     letters = bw.both_sides(number, 0.24, 0.95, 1.40, "black", x=0.86, width_m=0.8)
     return bw.finish("dumper", mesh, [fittings.machine_paint("dumper", colour)], letters)

@@ -1,4 +1,4 @@
-"""A parked motorcycle: naked frame, tank, seat, engine, exhaust, wheels with discs, lamps, on its side stand."""
+"""A parked motorcycle: naked frame, tank, seat, engine, exhaust, wheels with discs, lamps, side stand."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from scope_studio.kit.core.stage import Built
 
 
 def motorcycle(colour: str = "red", *, plate: str = "KM21 BYK") -> Built:
-    """A middle-weight motorcycle, 2.1 m long, heading +y, upright (lean it when it is placed)."""
+    """Build a mid-size motorcycle, 2.1 m long, heading +y. It is upright: lean it when you place it."""
     s = Solid(f"{colour} motorcycle")
     skin, black = paint(colour, dirt=0.12, roughness=0.22), paint("black", dirt=0.2)
     chrome, iron = (

@@ -1,4 +1,4 @@
-"""Paints, glass, lamps and other vehicle materials; details such as lamps and door gaps are printed on the paint."""
+"""Vehicle materials: paints, glass, lamps. Details such as lamps and door gaps are printed on the paint."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ PAINTS: dict[str, tuple[float, float, float]] = {
     "beige": (0.50, 0.42, 0.29),
     "purple": (0.11, 0.018, 0.20),
 }
-"""Paint colours by plain name, linear RGB."""
+"""Linear RGB of the paint colours, by plain name."""
 
 _METALLIC = {"silver", "grey", "light grey", "blue", "dark blue", "dark red", "dark green", "brown"}
 Range = tuple[float, float]
@@ -39,8 +39,8 @@ ANY: Range = (-99.0, 99.0)
 class Patch:
     """A detail printed on the paint: everything with ``|x|``, y and z inside the ranges (metres, object frame).
 
-    ``y_per_z`` slants lines that are upright otherwise, ``z_per_x`` and ``z_per_y`` those that are level. A
-    ``round`` patch is the ellipse inside its x and z.
+    ``y_per_z`` slants upright lines; ``z_per_x`` and ``z_per_y`` slant level ones. A ``round`` patch is the ellipse inside its
+    x and z ranges.
     """
 
     colour: tuple[float, float, float]
@@ -72,15 +72,15 @@ def paint(
     dirt: float = 0.55,
     gloss: float = 0.45,
 ) -> bpy.types.Material:
-    """Lacquered paint of one colour with the model's patches and road dirt fading out at ``dirt_top_m``.
+    """Return lacquered paint of one colour, with the model's patches and road dirt that fades out at ``dirt_top_m``.
 
-    ``gloss`` is the lacquer's weight: kept below 1 so that a white sky does not wash the colour out.
+    ``gloss`` is the weight of the lacquer. It stays below 1, so that a white sky does not wash out the colour.
     """
     name = f"paint {model} {colour}"
     found = bpy.data.materials.get(name)
     if found is not None:
         return found
-    # Building hundreds of nodes takes a second, copying them a millisecond: one pattern serves all colours.
+    # Building hundreds of nodes takes a second, copying them a millisecond, so that all colours share one pattern.
     pattern = bpy.data.materials.get(f"paint {model}") or _pattern(f"paint {model}", patches, dirt_top_m, dirt, gloss)
     made = pattern.copy()
     made.name = name
@@ -131,7 +131,7 @@ def _blend(sh: shading.Shader, factor: shading.Value, a: shading.Value, b: shadi
 
 
 def _within(sh: shading.Shader, value: shading.Value, limits: Range) -> shading.Value:
-    """1 between the limits, 0 elsewhere, hard-edged: one node, where a soft band takes three."""
+    """Return 1 between the limits and 0 elsewhere, with hard edges. It needs one node where a soft band needs three."""
     made = sh.node("ShaderNodeMath", operation="COMPARE")
     for socket, number in enumerate((value, sum(limits) / 2, (limits[1] - limits[0]) / 2)):
         sh.feed(made.inputs[socket], number)
@@ -160,22 +160,25 @@ def _patch_mask(sh: shading.Shader, patch: Patch, x: shading.Value, y: shading.V
 
 
 def upright_gap(y: float, z: Range, *, x: Range = (0.5, 9.0), y_per_z: float = 0.0, width: float = 0.009) -> Patch:
-    """A door's edge: an upright dark line on the sides at ``y`` (where z = 0 if slanted)."""
+    """Return a door's edge: an upright dark line on the sides at ``y`` (at z = 0 if slanted)."""
     return Patch(GAP, x=x, y=(y - width / 2, y + width / 2), z=z, y_per_z=y_per_z, roughness=0.9)
 
 
 def level_gap(z: float, y: Range, *, x: Range = (0.5, 9.0), z_per_y: float = 0.0, width: float = 0.009) -> Patch:
-    """A door's bottom edge or a swage line: a level dark line on the sides at height ``z`` (where y = 0 if slanted)."""
+    """Return a door's bottom edge or a swage line: a level dark line on the sides at height ``z`` (at y = 0 if slanted)."""
     return Patch(GAP, x=x, y=y, z=(z - width / 2, z + width / 2), z_per_y=z_per_y, roughness=0.9)
 
 
 def glass() -> bpy.types.Material:
+    """Return the dark glass of windows without an interior."""
     return shading.plain("vehicle glass", (0.012, 0.015, 0.017), 0.03)
 
 
 def clear_glass(tint: float = 0.55) -> bpy.types.Material:
-    """Glass that shows the cabin behind it; ``tint`` is its opacity (kept above one half, so that ID passes see
-    the glass)."""
+    """Return glass through which the cabin is visible.
+
+    ``tint`` is its opacity. It stays above one half, so that instance-number renders hit the glass.
+    """
     name = f"vehicle clear glass {tint:.2f}"
     return bpy.data.materials.get(name) or shading.Shader(name).surface(
         base_color=(0.006, 0.009, 0.010), roughness=0.02, alpha=tint
@@ -183,11 +186,12 @@ def clear_glass(tint: float = 0.55) -> bpy.types.Material:
 
 
 def black_trim() -> bpy.types.Material:
+    """Return black plastic trim."""
     return shading.plain("vehicle black trim", TRIM, 0.55)
 
 
 def lamp(colour: str) -> bpy.types.Material:
-    """Lamp covers: "white", "red", "amber", or "beacon" (an orange warning light, lit)."""
+    """Return a lamp cover: "white", "red", "amber", or "beacon" (a lit orange warning light)."""
     rgb, glow = {
         "white": (HEADLAMP, 0.35),
         "red": (REAR_LAMP, 0.25),
@@ -201,12 +205,12 @@ def lamp(colour: str) -> bpy.types.Material:
 
 
 def paint_slot(number: int = 0) -> bpy.types.Material:
-    """The placeholder that ``finish`` replaces by the vehicle's own paint."""
+    """Return the placeholder that ``finish`` replaces by the vehicle's own paint."""
     return shading.plain(f"vehicle paint slot {number}", (0.5, 0.5, 0.5))
 
 
 def ink(colour: str) -> bpy.types.Material:
-    """Lettering film of a paint's colour; "display" is a destination screen's glowing amber."""
+    """Return lettering film in a paint's colour. "display" is the emissive amber of a destination screen."""
     if colour == "display":
         amber, name = (1.0, 0.50, 0.03), "vehicle display letters"
         return bpy.data.materials.get(name) or shading.Shader(name).surface(

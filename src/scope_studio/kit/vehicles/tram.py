@@ -1,4 +1,4 @@
-"""Trams: an articulated car, its stop's shelter, overhead poles. The car heads +y, standing on z = 0."""
+"""Tramway: an articulated tram, its stop's shelter and signs, overhead poles. The tram heads +y and stands on z = 0."""
 
 from __future__ import annotations
 
@@ -6,19 +6,19 @@ import math
 
 import bpy
 
-from scope_studio.kit.buildings.townhouses import block
 from scope_studio.kit.core.finishes import clear_glass, glow, lens, paint, sheet, steel
+from scope_studio.kit.core.lettering import extent
 from scope_studio.kit.core.shading import Shader, plain
+from scope_studio.kit.core.shapes import block
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.signs.faces import board, write
-from scope_studio.kit.signs.lettering import extent
 from scope_studio.kit.vehicles import paintwork
 
 LENGTH_M = 19.6
 HALF_WIDTH_M = 1.2
 RAKE = 0.20
-"""How far the front leans back for each metre of height."""
+"""How far the front leans back, in metres for each metre of height."""
 
 SECTION = [
     (0.0, 0.32),
@@ -56,7 +56,7 @@ def _hull(s: Solid, stations: list[tuple[float, float, bool]], material: bpy.typ
 
 
 def _end(s: Solid, sign: int, colour: str, line: str, destination: str, number: str, lit: bool) -> None:
-    """Windscreen, display, lamps, coupler cover of one end, drawn on the raked front plane."""
+    """Add windscreen, display, lamps and coupler cover of one end, on the raked front plane."""
     y = LENGTH_M / 2
     black, dark = plain("tram black", (0.010, 0.010, 0.011), 0.3), plain("tram glass", (0.012, 0.015, 0.017), 0.03)
     with s.at(turn=0.0 if sign > 0 else 180.0), s.at(0, y, 0.32, pitch=math.degrees(math.atan(RAKE))):
@@ -102,7 +102,7 @@ def _led() -> bpy.types.Material:
 
 
 def tram(colour: str, *, line: str, destination: str, number: str, company: str, second: str = "cream", lit: bool = True) -> Built:
-    """A three-part low-floor tram, 19.6 m long: two-tone livery, pantograph, lettering on its ends and sides."""
+    """Build a three-part low-floor tram, 19.6 m long, with two-tone livery, pantograph, and lettering on its ends and sides."""
     s = Solid(f"{colour} tram")
     skin = paintwork.paint("tram body", colour, dirt_top_m=1.3, dirt=0.4)
     band, dark = paint(second, dirt=0.05, roughness=0.25), plain("tram glass", (0.012, 0.015, 0.017), 0.03)
@@ -161,7 +161,10 @@ def _bellows(s: Solid, y: float) -> None:
 
 
 def shelter(name: str) -> Built:
-    """A glazed tram shelter, 4.4 x 1.5 m, open towards +y, with a bench and a lettered roof edge read from both sides."""
+    """Build a glazed tram shelter, 4.4 x 1.5 m, open towards +y, with a bench.
+
+    The lettered roof edge is readable from both sides.
+    """
     s = Solid("tram shelter")
     metal, pane = paint("dark grey", dirt=0.2), clear_glass()
     for x in (-2.1, -0.7, 0.7, 2.1):
@@ -186,7 +189,7 @@ def shelter(name: str) -> Built:
 
 
 def stop_flag(line: str, *, direction: str = "") -> Built:
-    """A tram stop's post, 3.0 m, with a yellow flag read from both sides (+y and -y)."""
+    """Build a tram stop's post, 3.0 m high, with a yellow flag readable from both sides (+y and -y)."""
     s = Solid("tram stop sign")
     s.rod((0, 0, 0), (0, 0, 3.0), 0.035, paint("dark grey", dirt=0.2))
     for side in (0.0, 180.0):
@@ -200,7 +203,7 @@ def stop_flag(line: str, *, direction: str = "") -> Built:
 
 
 def timetable(line: str, rows: list[tuple[str, str]], *, cap: float = 0.045) -> Built:
-    """A framed timetable panel on two legs, 0.9 x 1.2 m, facing +y: a heading and rows of (hour, minutes)."""
+    """Build a framed timetable on two legs, 0.9 x 1.2 m, facing +y: a heading and rows of (hour, minutes)."""
     s = Solid("timetable")
     metal = paint("dark grey", dirt=0.2)
     for x in (-0.42, 0.42):
@@ -219,7 +222,7 @@ def timetable(line: str, rows: list[tuple[str, str]], *, cap: float = 0.045) -> 
 
 
 def overhead_pole(height: float = 6.6, *, reaches: tuple[float, ...] = (2.4, 5.8), wire_m: float = 5.42) -> Built:
-    """A tapered steel pole with a bracket towards +y that carries a contact wire at each of ``reaches``."""
+    """Build a tapered steel pole with a bracket towards +y that carries a contact wire at each of ``reaches``."""
     s = Solid("tram pole")
     body = paint("dark green", dirt=0.2)
     s.lathe(

@@ -1,4 +1,4 @@
-"""Road wheels: lathed tyres with alloy, steel and lorry rims. All spin about the x axis."""
+"""Road wheels: lathed tyres with alloy, steel and lorry rims. All turn about the x axis."""
 
 from __future__ import annotations
 
@@ -12,23 +12,27 @@ from scope_studio.kit.core.parts import Parts, Point
 
 
 def rubber() -> bpy.types.Material:
+    """Return the material of tyres."""
     return shading.plain("vehicle rubber", (0.018, 0.018, 0.019), 0.85)
 
 
 def alloy() -> bpy.types.Material:
+    """Return the material of alloy rims."""
     return shading.plain("vehicle alloy", (0.40, 0.41, 0.42), 0.32, 0.6)
 
 
 def steel() -> bpy.types.Material:
+    """Return the material of steel rims."""
     return shading.plain("vehicle wheel steel", (0.30, 0.31, 0.32), 0.5, 0.3)
 
 
 def shade() -> bpy.types.Material:
+    """Return the dark material behind spokes."""
     return shading.plain("vehicle shade", (0.006, 0.006, 0.006), 0.9)
 
 
 def _frame(centre: Point, side: int) -> Matrix:
-    """Local +x points outwards from the vehicle on either side."""
+    """Return a frame whose +x points outwards from the vehicle on either side."""
     mirror = Matrix.Scale(-1, 4, (1, 0, 0)) if side < 0 else Matrix.Identity(4)
     return Matrix.Translation(centre) @ mirror
 
@@ -48,8 +52,10 @@ def _tyre(parts: Parts, radius: float, width: float, rim: float) -> None:
 
 
 def car_wheel(parts: Parts, centre: Point, radius: float, side: int, *, width: float = 0.21, spokes: int = 5) -> None:
-    """A car wheel with ``spokes`` twin spokes; ``side`` is +1 on the right of the vehicle, -1 on the left. Radius
-    in metres."""
+    """Add a car wheel with ``spokes`` twin spokes; ``radius`` and ``width`` in metres.
+
+    ``side`` is +1 on the right of the vehicle, -1 on the left.
+    """
     outer, rim = parts.matrix.copy(), radius * 0.70
     parts.matrix = outer @ _frame(centre, side)
     _tyre(parts, radius, width, rim)
@@ -85,7 +91,7 @@ def car_wheel(parts: Parts, centre: Point, radius: float, side: int, *, width: f
 
 
 def steel_wheel(parts: Parts, centre: Point, radius: float, side: int, *, width: float = 0.21) -> None:
-    """A pressed steel wheel with a black trim, as vans and work vehicles have."""
+    """Add a pressed steel wheel with a black trim, as on vans and work vehicles."""
     outer, rim = parts.matrix.copy(), radius * 0.66
     parts.matrix = outer @ _frame(centre, side)
     _tyre(parts, radius, width, rim)
@@ -102,7 +108,7 @@ def steel_wheel(parts: Parts, centre: Point, radius: float, side: int, *, width:
 
 
 def lorry_wheel(parts: Parts, centre: Point, radius: float, side: int, *, width: float = 0.29, twin: bool = False) -> None:
-    """A lorry wheel: dished out with a proud hub in front, deep dished for the twin tyres of a driven axle."""
+    """Add a lorry wheel: dished outwards with a proud hub, or deeply dished inwards when ``twin`` (driven axles)."""
     outer, rim = parts.matrix.copy(), radius * 0.60
     parts.matrix = outer @ _frame(centre, side)
     _tyre(parts, radius, width, rim)

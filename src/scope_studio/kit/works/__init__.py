@@ -1,1 +1,1 @@
-"""Road works: barriers, plant, stock."""
+"""Works on roads and buildings: barriers, site equipment, building materials and tools, scaffolding."""

@@ -1,25 +1,21 @@
-"""Traffic cones, drums, barriers, mesh fencing and the site gate.
+"""Traffic cones, drums and barriers.
 
-Pieces that are put side by side (boards, water barriers, fence panels, the gate) span x and show their front to +y; the
-cast barrier, which is laid along a lane, runs along y.
+Pieces that are placed side by side (boards, water barriers) span x and have their front towards +y. The cast barrier is laid
+along a lane and runs along y.
 """
 
 from __future__ import annotations
 
 import itertools
-import math
-from collections.abc import Sequence
 
 from scope_studio.kit.core.finishes import concrete, glow, lens, paint, rubber, sheet, steel
-from scope_studio.kit.core.solid import Solid, rounded
+from scope_studio.kit.core.shapes import rounded
+from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
-
-FENCE_PANEL_M = (3.45, 2.0)
-"""Width and height of a temporary mesh fence panel."""
 
 
 def cone(height: float = 0.75) -> Built:
-    """Orange traffic cone with two white reflective sleeves on a black rubber base; ``height`` 0.75 or 1.0 m."""
+    """Build an orange traffic cone with two white reflective sleeves on a black rubber base. ``height`` is 0.75 or 1.0 m."""
     s = Solid("cone")
     k = height / 0.75
     orange, white = paint("orange", dirt=0.34, roughness=0.46), sheet("white", dirt=0.30)
@@ -47,7 +43,7 @@ def cone(height: float = 0.75) -> Built:
 
 
 def drum() -> Built:
-    """Channelizer drum: an orange barrel, 1.0 m high, with white bands, on a rubber ring."""
+    """Build a channelizer drum: an orange barrel, 1.0 m high, with white bands, on a rubber ring."""
     s = Solid("drum")
     orange, white = paint("orange", dirt=0.34, roughness=0.46), sheet("white", dirt=0.26)
     s.lathe([(0.36, 0.0), (0.37, 0.02), (0.36, 0.07), (0.30, 0.085)], rubber(), steps=36)
@@ -81,7 +77,7 @@ def drum() -> Built:
 
 
 def delineator() -> Built:
-    """Flexible orange post, 1.0 m, with two white bands, on a black foot."""
+    """Build a flexible orange post, 1.0 m high, with two white bands, on a black foot."""
     s = Solid("delineator post")
     s.lathe([(0.20, 0.0), (0.20, 0.03), (0.17, 0.055), (0.07, 0.075)], rubber(), steps=24)
     orange, white = paint("orange", dirt=0.34), sheet("white")
@@ -91,8 +87,8 @@ def delineator() -> Built:
     return s.built()
 
 
-def _stripes(s: Solid, width: float, height: float, x0: float, y: float, z: float, count: int, depth: float = 0.03) -> None:
-    """A plank of alternating red and white reflective blocks, on both faces."""
+def striped_plank(s: Solid, width: float, height: float, x0: float, y: float, z: float, count: int, depth: float = 0.03) -> None:
+    """Add a plank of alternating red and white reflective blocks on both faces."""
     step = width / count
     for i in range(count):
         s.box(
@@ -104,10 +100,10 @@ def _stripes(s: Solid, width: float, height: float, x0: float, y: float, z: floa
 
 
 def barrier_board(*, lit: bool = True) -> Built:
-    """Red and white plank barrier, 2.0 m wide and 1.05 m high, on folding feet, with two amber lamps."""
+    """Build a red and white plank barrier on folding feet, 2.0 m wide and 1.05 m high, with two amber lamps."""
     s = Solid("barrier board")
     for z in (0.92, 0.52):
-        _stripes(s, 2.0, 0.24, -1.0, 0.0, z, 8)
+        striped_plank(s, 2.0, 0.24, -1.0, 0.0, z, 8)
     for x in (-0.78, 0.78):
         s.rod((x, -0.025, 1.02), (x, -0.025, 0.10), 0.022, steel())
         for sign in (-1, 1):
@@ -118,7 +114,7 @@ def barrier_board(*, lit: bool = True) -> Built:
 
 
 def lamp(s: Solid, x: float, y: float, z: float, lit: bool, colour: str = "amber") -> None:
-    """A road-works lamp: yellow battery box, round lens facing both ways; ``z`` is its foot."""
+    """Add a road-works lamp: yellow battery box with a round lens that faces both ways. ``z`` is the height of its foot."""
     s.box((0.15, 0.09, 0.13), (x, y, z + 0.065), paint("yellow", dirt=0.35), 0.012)
     s.lathe(
         [(0.05, -0.045), (0.088, -0.038), (0.092, 0.0), (0.088, 0.038), (0.05, 0.045)],
@@ -137,8 +133,10 @@ def lamp(s: Solid, x: float, y: float, z: float, lit: bool, colour: str = "amber
 
 
 def water_barrier(colour: str = "red") -> Built:
-    """Plastic water-filled barrier, 1.5 m long and 0.9 m high, with interlocking ends; ``colour`` "red", "white" or
-    "orange"."""
+    """Build a water-filled plastic barrier, 1.5 m long and 0.9 m high, with interlocking ends.
+
+    ``colour`` is "red", "white" or "orange".
+    """
     s = Solid(f"{colour} water barrier")
     body = paint(colour, dirt=0.36, roughness=0.42)
     half = [
@@ -188,8 +186,10 @@ def water_barrier(colour: str = "red") -> Built:
 
 
 def concrete_barrier(length: float = 3.0) -> Built:
-    """Cast safety barrier (New Jersey profile), 0.81 m high, ``length`` metres along y, with drain slots, loops and
-    reflectors."""
+    """Build a cast safety barrier (New Jersey profile), 0.81 m high and ``length`` metres long, along y.
+
+    It has drain slots, lifting loops and reflectors.
+    """
     s = Solid("concrete barrier")
     half = [(0.290, 0.0), (0.300, 0.01), (0.300, 0.075), (0.175, 0.255), (0.095, 0.77), (0.08, 0.80), (0.06, 0.81)]
     ring = half + [(-x, z) for x, z in half[::-1]]
@@ -215,8 +215,10 @@ def concrete_barrier(length: float = 3.0) -> Built:
 
 
 def chapter8_barrier() -> Built:
-    """Orange plastic pedestrian barrier, 2.0 x 1.0 m, with a red and white reflective board along the top and
-    swivelling feet."""
+    """Build an orange plastic pedestrian barrier, 2.0 x 1.0 m.
+
+    It has a red and white reflective board along the top, and swivelling feet.
+    """
     s = Solid("pedestrian barrier")
     orange = paint("orange", dirt=0.3, roughness=0.45)
     for x in (-0.97, 0.97):
@@ -239,71 +241,4 @@ def chapter8_barrier() -> Built:
         s.box((0.07, 0.07, 0.08), (x, 0, 0.07), rubber(), 0.012)
     for z in (0.35, 0.80):
         s.rod((1.0, 0, z), (1.05, 0, z), 0.02, orange)
-    return s.built()
-
-
-def wire_mesh(s: Solid, width: float, low: float, high: float, cx: float = 0.0, *, pitch: float = 0.11) -> None:
-    """Welded wires in the plane y = 0: close verticals, wider horizontals."""
-    count = round(width / pitch)
-    for i in range(1, count):
-        x = cx - width / 2 + width * i / count
-        s.tube([(x, 0.003, low), (x, 0.003, high)], 0.0024, steel(), sides=4)
-    rows = round((high - low) / 0.24)
-    for i in range(1, rows):
-        z = low + (high - low) * i / rows
-        s.tube([(cx - width / 2, -0.002, z), (cx + width / 2, -0.002, z)], 0.0028, steel(), sides=4)
-
-
-def frame(s: Solid, width: float, low: float, high: float, cx: float = 0.0, radius: float = 0.02) -> None:
-    """A rectangular tube frame with a middle rail."""
-    a, b = cx - width / 2, cx + width / 2
-    s.tube([(a, 0, low), (b, 0, low), (b, 0, high), (a, 0, high)], radius, steel(), closed=True)
-    s.rod((a, 0, (low + high) / 2), (b, 0, (low + high) / 2), radius * 0.8, steel())
-
-
-def mesh_fence_panel(plate: Sequence[str] = ()) -> Built:
-    """Temporary site fence panel in block feet; ``plate`` gives the lines of a small sign cable-tied to it."""
-    s = Solid("mesh fence panel")
-    width, height = FENCE_PANEL_M
-    frame(s, width - 0.04, 0.16, height)
-    wire_mesh(s, width - 0.06, 0.16, height)
-    for x in (-width / 2 + 0.02, width / 2 - 0.02):
-        s.rod((x, 0, 0.04), (x, 0, 0.16), 0.019, steel())
-        s.prism([(-0.36, 0.0), (0.36, 0.0), (0.33, 0.13), (-0.33, 0.13)], (x - 0.11, x + 0.11), concrete(light=False), "YZ")
-        s.box((0.09, 0.05, 0.05), (x, 0.0, 1.55), steel(dark=True), 0.01)
-    if plate:
-        s.box((0.72, 0.006, 0.16 + 0.12 * len(plate)), (0, 0.026, 1.25), sheet("yellow"), 0.001)
-        for i, line in enumerate(plate):
-            s.text(line, 0.07, (0, 0.0315, 1.25 + 0.06 * (len(plate) - 1) - 0.12 * i), paint("black", dirt=0.0))
-    return s.built()
-
-
-def gate(open: bool = False) -> Built:  # noqa: A002
-    """Double site gate, 6.2 m between posts, 2.2 m high; closed across x, or both leaves swung back towards -y."""
-    s = Solid("site gate")
-    leaf = 3.0
-    for sign in (-1, 1):
-        s.box((0.14, 0.14, 2.4), (sign * 3.1, 0, 1.2), steel(), 0.01)
-        s.lathe([(0.085, 2.4), (0.06, 2.43)], steel(dark=True), (sign * 3.1, 0, 0), steps=4)
-        s.box((0.5, 0.5, 0.10), (sign * 3.1, 0, 0.05), concrete(light=False), 0.02)
-        with s.at(sign * 3.02, 0, 0, turn=sign * (86.0 if open else 0.6)):
-            frame(s, leaf, 0.16, 2.2, -sign * leaf / 2, 0.026)
-            wire_mesh(s, leaf - 0.04, 0.18, 2.18, -sign * leaf / 2)
-            s.rod((-sign * 0.02, 0, 0.18), (-sign * (leaf - 0.02), 0, 2.18), 0.014, steel())
-            _stripes(s, leaf - 0.1, 0.16, -leaf + 0.05 if sign > 0 else 0.05, 0.035, 1.18, 12, 0.012)
-            s.rod((-sign * (leaf - 0.08), 0, 0.02), (-sign * (leaf - 0.08), 0, 0.9), 0.013, steel(dark=True))
-            s.box((0.9, 0.008, 0.34), (-sign * leaf / 2, 0.034, 1.66), sheet("yellow" if sign > 0 else "white"), 0.001)
-            words = ("WORKS", "ENTRANCE") if sign > 0 else ("AUTHORISED", "VEHICLES ONLY")
-            for i, line in enumerate(words):
-                s.text(line, 0.085, (-sign * leaf / 2, 0.0405, 1.73 - 0.14 * i), paint("black", dirt=0.0))
-            for z in (0.45, 1.9):
-                s.rod((0.06 * sign, 0, z - 0.05), (0.06 * sign, 0, z + 0.05), 0.03, steel(dark=True))
-    if not open:
-        s.tube(
-            [(0.05 * math.cos(a), 0.05 * math.sin(a), 1.05) for a in (k * math.pi / 4 for k in range(8))],
-            0.010,
-            steel(dark=True),
-            closed=True,
-        )
-        s.box((0.05, 0.025, 0.07), (0.0, 0.06, 0.98), paint("yellow"), 0.008)
     return s.built()

@@ -1,1 +1,1 @@
-"""Freight yards: ground, lamps, safety equipment, stock."""
+"""Freight yards: floor, lamps, containers, goods, safety equipment, shelters."""

@@ -1,6 +1,7 @@
 """Shipping containers of twenty and forty feet: corrugated walls, corner castings, doors with lock rods, codes and liveries.
 
-The door end faces +y and the length runs along y; a container stands on z = 0."""
+The length runs along y, the door end faces +y, and a container stands on z = 0.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +19,7 @@ RUST = (0.105, 0.040, 0.018)
 
 
 def container_paint(colour: str) -> bpy.types.Material:
-    """Sea-worn container paint: chalked, scraped, with rust bleeding from chips."""
+    """Return sea-worn container paint: chalked, scraped, with rust bleeding from chips."""
     name = f"container paint {colour}"
     found = bpy.data.materials.get(name)
     if found is not None:
@@ -44,7 +45,7 @@ def _ink(colour: str) -> bpy.types.Material:
 
 
 def _corrugated(s: Solid, length: float, x: float, z0: float, z1: float, skin: bpy.types.Material) -> None:
-    """A side wall at ``x``, trapezoids of 36 mm along y."""
+    """Add a side wall at ``x`` with trapezoidal corrugations, 36 mm deep, along y."""
     side = 1 if x > 0 else -1
     count = round((length - 0.24) / 0.278)
     step = (length - 0.24) / count
@@ -66,10 +67,14 @@ def container(
     doors: str = "closed",
     load: str | None = None,
 ) -> Built:
-    """One container; ``doors`` is "closed" or "open" (swung back along the sides), ``load`` "cartons" or None.
+    """Build one container.
 
-    ``code`` (owner letters, serial number, check digit) stands on the doors, on both sides and on the blind end; ``livery`` is
-    the owner's name in tall letters along the sides."""
+    Args:
+        code: Owner letters, serial number and check digit, lettered on the doors, both sides and the blind end.
+        livery: The owner's name in tall letters along the sides.
+        doors: "closed" or "open" (swung back along the sides).
+        load: "cartons" or None.
+    """
     s = Solid(f"{colour} container")
     skin, ink, iron = container_paint(colour), _ink(colour), steel(dark=True)
     length = LENGTH_M[feet]
@@ -108,7 +113,7 @@ def container(
     if load == "cartons":
         _cartons(s, w, d)
     for facing, side in (("+X", 1), ("-X", -1)):
-        edge = -side * (d - 0.35)  # the reader's right-hand end
+        edge = -side * (d - 0.35)  # the right-hand end for the reader
         s.text(code, 0.17, (side * (w + 0.006), -edge * 0.98, h - 0.30), ink, facing=facing, align="RIGHT")
         if livery:
             cap = min(0.82, (length - 1.2) / (0.95 * len(livery)))
@@ -129,7 +134,7 @@ def _doors(
     *,
     opened: bool,
 ) -> None:
-    """Two leaves with four lock rods; the code stands on the right-hand leaf."""
+    """Add two leaves with four lock rods. The code is on the right-hand leaf."""
     wide, tall = w - 0.13, h - 0.36
     for side in (-1, 1):
         turn = side * (-252.0 if opened else 0.0)
@@ -145,7 +150,7 @@ def _doors(
                 s.box((0.36, 0.022, 0.05), (x - 0.12 * side, 0.085, -0.22 + 0.1 * (x > cx)), iron, 0.006)
             for k in range(4):
                 s.box((0.06, 0.07, 0.13), (-0.01 * side, 0.0, -tall * 0.4 + tall * 0.27 * k), iron, 0.01)
-            if side < 0:  # right-hand for someone who looks at the doors
+            if side < 0:  # the right-hand leaf for someone who faces the doors
                 owner, serial, digit = code.split()
                 s.text(f"{owner} {serial}", 0.115, (cx, 0.037, tall / 2 - 0.20), ink, facing="+Y")
                 s.text(digit, 0.115, (cx, 0.037, tall / 2 - 0.40), ink, facing="+Y")
@@ -154,7 +159,7 @@ def _doors(
 
 
 def _cartons(s: Solid, w: float, d: float) -> None:
-    """Cartons stowed in courses up to the doors, two of them missing from the top."""
+    """Add stacked cartons up to the doors, with two missing from the top."""
     board = plain("carton board", (0.36, 0.235, 0.125), 0.85)
     tape = plain("carton tape", (0.46, 0.34, 0.20), 0.35)
     for row in range(4):

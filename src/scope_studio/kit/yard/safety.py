@@ -1,4 +1,7 @@
-"""Safety things of a yard: bollards, wheel stops, chain-link fencing, hydrant, spill kit, hose reel, notices. Fronts face +y."""
+"""Safety equipment of a yard: bollards, wheel stops, chain-link fence, hydrant, spill kit, hose reel, notices, gate.
+
+Fronts face +y.
+"""
 
 from __future__ import annotations
 
@@ -6,10 +9,10 @@ import math
 from collections.abc import Sequence
 
 from scope_studio.kit.core.finishes import concrete, glow, lens, paint, rubber, sheet, steel
+from scope_studio.kit.core.lettering import extent
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 from scope_studio.kit.signs.faces import INK, board, disc, flat, stroke, write
-from scope_studio.kit.signs.lettering import extent
 from scope_studio.kit.signs.stands import posts_at
 
 FENCE_M = 3.0
@@ -17,7 +20,7 @@ FENCE_M = 3.0
 
 
 def yard_bollard(colour: str = "yellow") -> Built:
-    """A steel tube set in concrete, 1.0 m, with a black band and a scraped foot."""
+    """Build a steel tube set in concrete, 1.0 m high, with a black band and a scraped foot."""
     s = Solid("bollard")
     skin = paint(colour, dirt=0.45)
     s.lathe([(0.084, -0.02), (0.084, 0.62)], skin, steps=24)
@@ -28,7 +31,7 @@ def yard_bollard(colour: str = "yellow") -> Built:
 
 
 def wheel_stop(colour: str = "yellow") -> Built:
-    """A low rubber kerb across the head of a bay, 1.65 m along x, with painted chevrons."""
+    """Build a low rubber kerb for the head of a bay, 1.65 m along x, with painted chevrons."""
     s = Solid("wheel stop")
     s.prism([(-0.075, 0.0), (0.075, 0.0), (0.05, 0.10), (-0.05, 0.10)], (-0.825, 0.825), rubber(), "YZ")
     for k in range(4):
@@ -40,7 +43,7 @@ def wheel_stop(colour: str = "yellow") -> Built:
 
 
 def bay_plate(number: str, *, background: str = "blue") -> Built:
-    """A bay's number on a low post, the same on both sides."""
+    """Build a bay's number plate on a low post, the same on both sides."""
     s = Solid("bay plate")
     s.box((0.05, 0.05, 0.55), (0, 0, 0.275), steel(), 0.005)
     for turn in (0, 180):
@@ -51,7 +54,10 @@ def bay_plate(number: str, *, background: str = "blue") -> Built:
 
 
 def chain_link(length: float = FENCE_M, height: float = 2.4, *, hole: bool = False) -> Built:
-    """A panel of chain-link along x on a post at each end, three barbed strands on top; ``hole``: cut and peeled open."""
+    """Build a chain-link panel along x with a post at each end and three barbed strands on top.
+
+    ``hole`` adds a hole that is cut and peeled open.
+    """
     s = Solid("chain-link panel")
     wire, pitch = steel(), 0.085
     half = length / 2
@@ -89,7 +95,7 @@ def chain_link(length: float = FENCE_M, height: float = 2.4, *, hole: bool = Fal
 
 
 def _outside(ends: Sequence[tuple[float, float, float]]) -> list[tuple[tuple[float, float, float], tuple[float, float, float]]]:
-    """The pieces of a wire that lie outside the hole (an arch 1.0 m wide and 1.25 m high)."""
+    """Return the pieces of a wire outside the hole (an arch 1.0 m wide and 1.25 m high)."""
     (x0, _, z0), (x1, _, z1) = ends
     pieces, steps, start = [], 48, None
     points = [(x0 + (x1 - x0) * t / steps, 0.0, z0 + (z1 - z0) * t / steps) for t in range(steps + 1)]
@@ -106,7 +112,7 @@ def _outside(ends: Sequence[tuple[float, float, float]]) -> list[tuple[tuple[flo
 
 
 def hydrant() -> Built:
-    """A red pillar hydrant, 0.85 m, with capped outlets."""
+    """Build a red pillar hydrant, 0.85 m high, with capped outlets."""
     s = Solid("fire hydrant")
     red = paint("red", dirt=0.25)
     s.lathe(
@@ -137,7 +143,7 @@ def hydrant() -> Built:
 
 
 def spill_kit() -> Built:
-    """A yellow wheeled chest for spills, lettered, its lid black."""
+    """Build a yellow, lettered chest on wheels for spill equipment, with a black lid."""
     s = Solid("spill kit")
     skin = paint("yellow", dirt=0.25)
     s.box((0.95, 0.60, 0.80), (0, 0, 0.48), skin, 0.04)
@@ -151,7 +157,7 @@ def spill_kit() -> Built:
 
 
 def hose_reel() -> Built:
-    """A red reel of hose on a wall bracket; the wall is y = 0, its axle at z = 0."""
+    """Build a red hose reel on a wall bracket. The wall is y = 0, and the axle is at z = 0."""
     s = Solid("hose reel")
     red = paint("red", dirt=0.2)
     s.box((0.12, 0.18, 0.5), (0, 0.09, 0), steel(dark=True), 0.01)
@@ -171,10 +177,13 @@ def notice(
     lines: Sequence[str], *, background: str = "white", cap: float = 0.10, header: str | None = None, symbol: str | None = None,
     post_height: float | None = None,
 ) -> Built:  # fmt: skip
-    """A rectangular notice, its back on y = 0 and its middle at z = 0, or on posts with its lower edge at ``post_height``.
+    """Build a rectangular notice on a wall or on posts.
 
-    ``header``: a coloured band above ("red", "yellow", "blue", "green") with ``symbol``: "warning", "forbidden", "flt", "camera",
-    "people" or "bolt".
+    On a wall, its back is at y = 0 and its middle at z = 0. On posts, its lower edge is at ``post_height``.
+
+    Args:
+        header: Colour of a band at the top: "red", "yellow", "blue" or "green".
+        symbol: Pictogram on the band: "warning", "forbidden", "flt", "camera", "people" or "bolt".
     """
     s = Solid("notice")
     width = max(extent(t, cap) for t in lines) + 2.2 * cap
@@ -205,7 +214,7 @@ def notice(
 
 
 def _symbol(s: Solid, kind: str, v: float, k: float) -> None:
-    """A pictogram of half height ``k`` centred at height ``v``."""
+    """Add a pictogram of half height ``k`` centred at height ``v``."""
     black, white, red = sheet("black", dirt=0.05), sheet("white"), sheet("red")
 
     def lay(points: Sequence[tuple[float, float]], ink, lift: float = 0.006) -> None:
@@ -240,7 +249,7 @@ def _symbol(s: Solid, kind: str, v: float, k: float) -> None:
 
 
 def assembly_point(letter: str = "A") -> Built:
-    """A green fire assembly point sign on a post, with four arrows, people, and its letter."""
+    """Build a green fire assembly point sign on a post, with four arrows, people, and its letter."""
     s = Solid("assembly point sign")
     with s.at(0, 0, 2.05):
         board(s, 0.80, 1.10, "green")
@@ -259,7 +268,7 @@ def assembly_point(letter: str = "A") -> Built:
 
 
 def alarm_beacon(colour: str = "amber", *, lit: bool = True) -> Built:
-    """A wall beacon over a door; the wall is y = 0."""
+    """Build a wall beacon for a place over a door. The wall is y = 0."""
     s = Solid("beacon")
     s.box((0.14, 0.10, 0.10), (0, 0.05, 0), paint("dark grey"), 0.01)
     s.lathe(
@@ -272,7 +281,7 @@ def alarm_beacon(colour: str = "amber", *, lit: bool = True) -> Built:
 
 
 def sliding_gate(length: float = 8.0, height: float = 2.2) -> Built:
-    """A barred steel gate along x on a low track, with a board in its middle."""
+    """Build a barred steel gate along x on a low track, with a board in its middle."""
     s = Solid("sliding gate")
     skin, half = paint("dark green", dirt=0.35), length / 2
     s.box((length, 0.14, 0.14), (0, 0, 0.17), skin, 0.01)

@@ -1,23 +1,22 @@
-"""Small buildings and machines of a yard: gatehouse, barrier arm, cycle and smoking shelters, vending machine, charge point."""
+"""Small buildings and machines of a yard: gatehouse, barrier, cycle and smoking shelters, vending machine, charge point."""
 
 from __future__ import annotations
 
 import math
 import random
 
-from scope_studio.kit.buildings.warehouse import glowing_face, pane
-from scope_studio.kit.core.finishes import concrete, glow, lens, paint, rubber, sheet, steel
+from scope_studio.kit.core.finishes import concrete, glow, lens, paint, pane, rubber, sheet, steel
 from scope_studio.kit.core.shading import plain
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
+from scope_studio.kit.light.glow import glowing_face, lit_lens
 from scope_studio.kit.signs.faces import board, write
-from scope_studio.kit.yard.lights import lit_lens
 
 GATEHOUSE_M = (3.0, 2.4, 2.7)
 
 
 def gatehouse(name: str = "SECURITY") -> Built:
-    """A guard's cabin with windows on all sides and a light room inside: desk, screens, chair, key cabinet, wall clock."""
+    """Build a guard's cabin with windows on all sides and a lit room inside: desk, screens, chair, key cabinet, wall clock."""
     s = Solid("gatehouse")
     wide, deep, tall = GATEHOUSE_M
     w, d = wide / 2, deep / 2
@@ -53,7 +52,10 @@ def gatehouse(name: str = "SECURITY") -> Built:
 
 
 def barrier_arm(length: float = 4.2, *, raised: bool = False) -> Built:
-    """A rising barrier: a cabinet at the origin and a red and white arm along +x, level at 1.0 m or raised to 78 degrees."""
+    """Build a rising barrier: a cabinet at the origin, and a red and white arm along +x.
+
+    The arm is level at 1.0 m, or raised to 78 degrees.
+    """
     s = Solid("barrier arm")
     s.box((0.60, 0.60, 0.10), (0, 0, 0.05), concrete(light=False), 0.02)
     s.box((0.38, 0.42, 1.10), (0, 0, 0.62), paint("yellow", dirt=0.3), 0.03)
@@ -80,7 +82,7 @@ def barrier_arm(length: float = 4.2, *, raised: bool = False) -> Built:
 
 
 def traffic_head(state: str = "red") -> Built:
-    """A small red/green lane signal on a post beside a barrier."""
+    """Build a small red and green lane signal on a post beside a barrier."""
     s = Solid("lane signal")
     s.rod((0, 0, 0), (0, 0, 2.1), 0.04, steel())
     s.box((0.22, 0.14, 0.44), (0, 0.02, 2.3), paint("black", dirt=0.1), 0.02)
@@ -96,7 +98,7 @@ def traffic_head(state: str = "red") -> Built:
 
 
 def cycle_shelter(length: float = 5.0) -> Built:
-    """A curved-roof cycle shelter open towards +y, with clear roof panels and a lamp inside."""
+    """Build a curved-roof cycle shelter open towards +y, with clear roof panels and a lamp inside."""
     s = Solid("cycle shelter")
     metal, clear = paint("dark green", dirt=0.3), pane(0.22)
     half = length / 2
@@ -117,7 +119,7 @@ def cycle_shelter(length: float = 5.0) -> Built:
 
 
 def smoking_shelter() -> Built:
-    """A small glazed shelter open towards +y with a bench, an ash bin and its sign."""
+    """Build a small glazed shelter open towards +y, with a bench, an ash bin and its sign."""
     s = Solid("smoking shelter")
     metal, clear = paint("dark grey", dirt=0.3), pane(0.25)
     for x in (-1.3, 1.3):
@@ -138,7 +140,7 @@ def smoking_shelter() -> Built:
 
 
 def vending_machine(name: str = "FIZZ", colour: str = "red") -> Built:
-    """A lit drinks machine, 0.95 x 0.8 x 1.85 m: glowing window with rows of bottles, key pad, lit head with its name."""
+    """Build a lit drinks machine, 0.95 x 0.8 x 1.85 m: lit window with rows of bottles, keypad, and lit head with its name."""
     s = Solid("vending machine")
     rng = random.Random("vending")
     skin = paint(colour, dirt=0.15)
@@ -163,7 +165,10 @@ def vending_machine(name: str = "FIZZ", colour: str = "red") -> Built:
 
 
 def charge_point(state: str = "green", *, number: str = "") -> Built:
-    """An electric charge post, 1.4 m, with a lit ring ("green" free, "red" busy, "unlit"), a cable, and its number."""
+    """Build an electric charge post, 1.4 m high, with a cable, its number, and a ring lamp.
+
+    The ring is "green" (free), "red" (busy) or "unlit".
+    """
     s = Solid("charging point")
     s.box((0.40, 0.34, 0.06), (0, 0, 0.03), concrete(light=False), 0.01)
     s.box((0.30, 0.20, 1.34), (0, 0, 0.70), paint("white", dirt=0.2), 0.03)

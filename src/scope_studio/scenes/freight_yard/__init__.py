@@ -1,4 +1,4 @@
-"""Scene "freight-yard": a distribution yard at dusk, its lamps just lit, seen from a mast at the gate and from over the docks."""
+"""Freight yard: a distribution yard at dusk with its lamps just lit, seen from a mast at the gate and from above the docks."""
 
 from __future__ import annotations
 
@@ -6,15 +6,7 @@ import bpy
 
 from scope_studio.kit.core.stage import Stage
 from scope_studio.kit.light import dusk
-from scope_studio.scenes.freight_yard import actors as freight_yard_actors
-from scope_studio.scenes.freight_yard import buildings as freight_yard_buildings
-from scope_studio.scenes.freight_yard import fixtures as freight_yard_fixtures
-from scope_studio.scenes.freight_yard import ground as freight_yard_ground
-from scope_studio.scenes.freight_yard import land as freight_yard_land
-from scope_studio.scenes.freight_yard import notices as freight_yard_notices
-from scope_studio.scenes.freight_yard import people as freight_yard_people
-from scope_studio.scenes.freight_yard import stock as freight_yard_stock
-from scope_studio.scenes.freight_yard import vehicles as freight_yard_vehicles
+from scope_studio.scenes.freight_yard import fixtures, ground, land, notices, parked_vehicles, people, premises, stock, traffic
 
 NAME = "freight-yard"
 TITLE = "Freight yard"
@@ -22,22 +14,22 @@ ABSENT = (
     "aircraft", "ambulance", "boat", "bulldozer", "bus", "child", "cow", "crane", "dog", "excavator", "fire engine", "fountain",
     "horse", "police car", "post box", "sheep", "statue", "swimming pool", "taxi", "tent", "train", "tram", "umbrella",
 )  # fmt: skip
-"""Things that a person might ask for and that are not there."""
+"""Things that a person might ask for but that are not in the scene."""
 
 
 def build(stage: Stage) -> None:
-    """Build the whole scene in an empty Blender file and fill in the stage."""
-    stage.start_s = 12.5  # the van, the guard, the forklift and the fox are all in the home view then
+    """Build the whole scene in an empty Blender file and fill the stage."""
+    stage.start_s = 12.5  # the van, the guard, the forklift and the fox are all in the home view at that time
     dusk.setup(bpy.context.scene)
-    freight_yard_people.build(stage)  # first, and lettering next: both slow down with every object that the file already holds
-    freight_yard_fixtures.build(stage)
-    freight_yard_notices.build(stage)
-    freight_yard_stock.build(stage)
-    freight_yard_vehicles.build(stage)
-    freight_yard_ground.build(stage)
-    freight_yard_buildings.build(stage)
-    freight_yard_land.build(stage)
-    freight_yard_actors.build(stage)
+    people.build(stage)  # people first, lettering next: both are slower the more objects the file holds
+    fixtures.build(stage)
+    notices.build(stage)
+    stock.build(stage)
+    parked_vehicles.build(stage)
+    ground.build(stage)
+    premises.build(stage)
+    land.build(stage)
+    traffic.build(stage)
     _cameras(stage)
     stage.absent = list(ABSENT)
     stage.finish = dusk.finish_materials

@@ -1,20 +1,21 @@
-"""Freight yard: the gate and its house, fences, shelters, charging points, plates of the bays."""
+"""Freight yard: gate and gatehouse, fences, shelters, charging points, number plates of the bays."""
 
 from __future__ import annotations
 
+from scope_studio.kit.core.prototypes import Prototypes
 from scope_studio.kit.core.stage import Built, Stage
-from scope_studio.kit.furniture import furniture
+from scope_studio.kit.furniture import roadside
 from scope_studio.kit.light import dusk
 from scope_studio.kit.vehicles import cycles
 from scope_studio.kit.yard import safety as yard_safety
 from scope_studio.kit.yard import shelters as yard_shelters
-from scope_studio.scenes.freight_yard import ground as ground
-from scope_studio.scenes.freight_yard.stock import Moulds
+from scope_studio.scenes.freight_yard import ground
 
 GATEHOUSE = (3.0, -39.0)
 
 
 def build(stage: Stage) -> None:
+    """Place everything that is fixed in the yard."""
     _gate(stage)
     _fences(stage)
     _shelters(stage)
@@ -80,12 +81,12 @@ def _gate(stage: Stage) -> None:
         colour="green",
         material="steel",
     )
-    stage.place(furniture.cctv_pole(6.4), "camera pole", "camera pole", (11.6, -42.6, 0), 320, colour="grey", height_m=6.4)
+    stage.place(roadside.cctv_pole(6.4), "camera pole", "camera pole", (11.6, -42.6, 0), 320, colour="grey", height_m=6.4)
 
 
 def _fences(stage: Stage) -> None:
-    """One annotated run a side; the cut panel in the west is its own."""
-    mould = yard_safety.chain_link()
+    """Place the fences, one annotated run for each side. The cut panel in the west is an instance of its own."""
+    prototype = yard_safety.chain_link()
     step = yard_safety.FENCE_M
     fresh = [True]
 
@@ -94,7 +95,7 @@ def _fences(stage: Stage) -> None:
         for k in range(count):
             if k in skip:
                 continue
-            panel = mould if fresh[0] else mould.copy()
+            panel = prototype if fresh[0] else prototype.copy()
             fresh[0] = False
             stage.put(panel, (x0 + dx * step * (k + 0.5), y0 + dy * step * (k + 0.5), 0), bearing)
             parts += panel.objects
@@ -124,14 +125,14 @@ def _shelters(stage: Stage) -> None:
     )
     dusk.pool((-51.9, -34.0, 2.25), 40, dusk.LED, size_m=1.0)
     rows = [("red", "town", 1.9), ("blue", "town", 1.2), ("black", "town", -0.4), ("green", "town", -1.2), ("orange", "town", -1.9)]
-    moulds = Moulds()
+    prototypes = Prototypes()
     for colour, kind, along in rows:
         built = cycles.bicycle(colour, kind=kind)
         stage.place(
             built, "bicycle", f"{colour} bicycle", (-52.15, -34.0 - along, 0), 270, colour=colour, state="parked", parent=shelter
         )
         stage.place(
-            moulds.get("hoop", cycles.bike_stand),
+            prototypes.get("hoop", cycles.bike_stand),
             "bike stand",
             "bike stand",
             (-52.1, -34.0 - along - 0.22, 0),
@@ -157,7 +158,7 @@ def _shelters(stage: Stage) -> None:
         )
     dusk.pool((-26.0, -7.9, 1.5), 25, dusk.LED, size_m=1.2, aim=(0, -1, -0.4))
     cabinet = stage.place(
-        furniture.cabinet(colour="green"),
+        roadside.cabinet(colour="green"),
         "cabinet",
         "green electrical cabinet",
         (-22.4, -7.4, 0),
@@ -180,7 +181,7 @@ def _shelters(stage: Stage) -> None:
 
 
 def _bay_furniture(stage: Stage) -> None:
-    moulds = Moulds()
+    prototypes = Prototypes()
     for row, y, bearing in ((ground.ROW_A, -11.75, 180.0), (ground.ROW_B, -29.25, 0.0), (ground.VISITORS, -44.3, 0.0)):
         for x, number in row:
             background = "green" if number in ground.CHARGING else "yellow" if row is ground.VISITORS else "blue"
@@ -195,7 +196,7 @@ def _bay_furniture(stage: Stage) -> None:
             )
             side = -1 if bearing == 0.0 else 1
             stage.place(
-                moulds.get("stop", yard_safety.wheel_stop),
+                prototypes.get("stop", yard_safety.wheel_stop),
                 "wheel stop",
                 "wheel stop",
                 (x, y - 0.55 * side, 0),

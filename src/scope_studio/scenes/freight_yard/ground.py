@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from scope_studio.kit.core.stage import Stage
 from scope_studio.kit.light import dusk
-from scope_studio.kit.yard import ground as yard_ground
-from scope_studio.kit.yard import lights as yard_lights
+from scope_studio.kit.yard import floor as yard_floor
+from scope_studio.kit.yard import lamps as yard_lamps
 
 WEST, EAST, SOUTH, NORTH = -58.0, 50.0, -46.0, 30.0
-"""Fence lines, and the face of the warehouse."""
+"""Fence lines in the west, east and south; the face of the warehouse in the north."""
 IN_X, OUT_X = -1.2, 7.2
-"""Lanes through the gate: entering traffic keeps left."""
+"""Lanes through the gate. Entering traffic keeps left."""
 
 BAY_M = 2.6
 ROW_A = [(-45.4 + BAY_M * k, str(12 + k)) for k in range(12)]
-"""Middle and number of each bay, nose to the north."""
+"""Middle (x) and number of each bay. Cars park with the nose to the north."""
 ROW_B = [(-45.4 + BAY_M * k, str(24 + k)) for k in range(12)]
 ROW_A_Y, ROW_B_Y = -14.5, -26.5
 VISITORS = [(-44.0 + 2.8 * k, str(36 + k)) for k in range(5)]
@@ -38,6 +38,7 @@ MASTS = (
 
 
 def build(stage: Stage) -> None:
+    """Place floor, markings, bays and lamps."""
     _paving(stage)
     _markings(stage)
     _bays(stage)
@@ -45,11 +46,11 @@ def build(stage: Stage) -> None:
 
 
 def _paving(stage: Stage) -> None:
-    asphalt, concrete = yard_ground.asphalt(), yard_ground.slabs()
-    stage.put(yard_ground.floor("asphalt", (WEST, EAST, SOUTH, 6.0), asphalt), (0, 0, 0))
-    stage.put(yard_ground.floor("apron", (WEST, EAST, 6.0, 45.0), concrete), (0, 0, 0))
-    stage.put(yard_ground.floor("stack floor", (14.5, EAST, -34.0, 6.0), concrete, 0.003), (0, 0, 0))
-    stage.put(yard_ground.floor("throat", (-6.0, 12.0, -54.0, SOUTH), asphalt), (0, 0, 0))
+    asphalt, concrete = yard_floor.asphalt(), yard_floor.slabs()
+    stage.put(yard_floor.floor("asphalt", (WEST, EAST, SOUTH, 6.0), asphalt), (0, 0, 0))
+    stage.put(yard_floor.floor("apron", (WEST, EAST, 6.0, 45.0), concrete), (0, 0, 0))
+    stage.put(yard_floor.floor("stack floor", (14.5, EAST, -34.0, 6.0), concrete, 0.003), (0, 0, 0))
+    stage.put(yard_floor.floor("throat", (-6.0, 12.0, -54.0, SOUTH), asphalt), (0, 0, 0))
 
 
 def _markings(stage: Stage) -> None:
@@ -59,7 +60,7 @@ def _markings(stage: Stage) -> None:
     ):  # fmt: skip
         facing = {0: "north", 180: "south", 270: "west"}[bearing]
         stage.place(
-            yard_ground.arrow(turn=turn),
+            yard_floor.arrow(turn=turn),
             "road marking",
             "painted arrow",
             (x, y, 0),
@@ -77,12 +78,12 @@ def _markings(stage: Stage) -> None:
     )
     for colour, width, depth, x, y in boxes:
         stage.place(
-            yard_ground.hatch(width, depth, colour=colour), "hatched zone", f"{colour} hatched zone", (x, y, 0), 0, colour=colour
+            yard_floor.hatch(width, depth, colour=colour), "hatched zone", f"{colour} hatched zone", (x, y, 0), 0, colour=colour
         )
-    stage.place(yard_ground.words(["STOP"], 1.2), "road marking", "painted STOP", (IN_X, -41.6, 0), 0, colour="white", kind="word")
-    stage.place(yard_ground.words(["SLOW"], 1.2), "road marking", "painted SLOW", (IN_X, -13.5, 0), 0, colour="white", kind="word")
+    stage.place(yard_floor.words(["STOP"], 1.2), "road marking", "painted STOP", (IN_X, -41.6, 0), 0, colour="white", kind="word")
+    stage.place(yard_floor.words(["SLOW"], 1.2), "road marking", "painted SLOW", (IN_X, -13.5, 0), 0, colour="white", kind="word")
     stage.place(
-        yard_ground.words(["KEEP", "CLEAR"], 0.9, colour="yellow"),
+        yard_floor.words(["KEEP", "CLEAR"], 0.9, colour="yellow"),
         "road marking",
         "painted KEEP CLEAR",
         (22.0, 20.6, 0),
@@ -95,32 +96,32 @@ def _markings(stage: Stage) -> None:
     stage.put(_lanes(), (0, 0, 0))
 
 
-def _stop_line() -> yard_ground.Built:
-    s = yard_ground.Solid("stop line")
-    yard_ground.line(s, (-1.9, 0), (1.9, 0), 0.35, yard_ground.paint("white"))
+def _stop_line() -> yard_floor.Built:
+    s = yard_floor.Solid("stop line")
+    yard_floor.line(s, (-1.9, 0), (1.9, 0), 0.35, yard_floor.paint("white"))
     return s.built()
 
 
-def _walkway() -> yard_ground.Built:
-    """A green pedestrian strip between white lines."""
-    s = yard_ground.Solid("walkway")
-    yard_ground.flat(s, [(-0.7, -17.0), (0.7, -17.0), (0.7, 17.0), (-0.7, 17.0)], yard_ground.paint("green"), 0.003)
+def _walkway() -> yard_floor.Built:
+    """Return a green pedestrian strip between white lines."""
+    s = yard_floor.Solid("walkway")
+    yard_floor.flat(s, [(-0.7, -17.0), (0.7, -17.0), (0.7, 17.0), (-0.7, 17.0)], yard_floor.paint("green"), 0.003)
     for x in (-0.75, 0.75):
-        yard_ground.line(s, (x, -17.0), (x, 17.0), 0.10, yard_ground.paint("white"))
+        yard_floor.line(s, (x, -17.0), (x, 17.0), 0.10, yard_floor.paint("white"))
     return s.built()
 
 
-def _lanes() -> yard_ground.Built:
-    """Unannotated lines: lane edges, dashes, dock approach lines."""
-    s = yard_ground.Solid("lane lines")
-    white, yellow = yard_ground.paint("white"), yard_ground.paint("yellow")
+def _lanes() -> yard_floor.Built:
+    """Return the lines that are not annotated: lane edges, dashes, dock approach lines."""
+    s = yard_floor.Solid("lane lines")
+    white, yellow = yard_floor.paint("white"), yard_floor.paint("yellow")
     for y in range(-38, 6, 5):
         for x in (IN_X - 2.1, OUT_X + 2.1):
-            yard_ground.line(s, (x, y), (x, y + 3.0), 0.10, white)
+            yard_floor.line(s, (x, y), (x, y + 3.0), 0.10, white)
     for x in (-26.7 + 5.4 * k for k in range(9)):
-        yard_ground.line(s, (x, 12.0), (x, 29.0), 0.10, yellow)
+        yard_floor.line(s, (x, 12.0), (x, 29.0), 0.10, yellow)
     for y in (-22.0, 1.0):
-        yard_ground.line(s, (-56.0, y), (-13.0, y), 0.10, white)
+        yard_floor.line(s, (-56.0, y), (-13.0, y), 0.10, white)
     return s.built()
 
 
@@ -130,13 +131,13 @@ def _bays(stage: Stage) -> None:
         for x, number in row:
             kind = "visitor bay" if row is VISITORS else "charging bay" if number in CHARGING else "car bay"
             stage.place(
-                yard_ground.bay(number, width=BAY_M - 0.05, colour="white"),
+                yard_floor.bay(number, width=BAY_M - 0.05, colour="white"),
                 "parking space", f"parking bay {number}", (x, y, 0), bearing,
                 number=number, state="occupied" if number in taken else "empty", kind=kind,
             )  # fmt: skip
     for y, number in TRAILER_BAYS:
         stage.place(
-            yard_ground.bay(number, width=3.9, depth=15.0, cap=1.0, colour="yellow"),
+            yard_floor.bay(number, width=3.9, depth=15.0, cap=1.0, colour="yellow"),
             "parking space", f"trailer bay {number}", (TRAILER_X, y, 0), 270,
             number=number, state="occupied" if number in OCCUPIED else "empty", kind="trailer bay",
         )  # fmt: skip
@@ -148,18 +149,18 @@ OCCUPIED = {
     "25": "green", "26": "yellow", "28": "silver", "29": "dark red", "31": "white", "33": "orange", "34": "grey", "37": "blue",
     "39": "beige", "61": "", "63": "", "64": "",
 }  # fmt: skip
-"""Number of each bay that is taken, and the colour of its car."""
+"""Number of each occupied bay, and the colour of the car in it."""
 
 
 def _masts(stage: Stage) -> None:
     for x, y, bearing, kind, heads, lit, number in MASTS:
         stage.place(
-            yard_lights.mast(kind=kind, heads=heads, lit=lit, number=number),
+            yard_lamps.mast(kind=kind, heads=heads, lit=lit, number=number),
             "lamp post", "tall lamp post" if lit else "unlit lamp post", (x, y, 0), bearing,
             state="lit" if lit else "unlit", light="orange" if kind == "sodium" else "white", number=number, height_m=10.0,
         )  # fmt: skip
         if lit:
-            yard_lights.mast_light(x, y, bearing, kind=kind, heads=heads, power_w=820 if kind == "sodium" else 650)
+            yard_lamps.mast_light(x, y, bearing, kind=kind, heads=heads, power_w=820 if kind == "sodium" else 650)
     for x in (-18.0, -4.5, 9.0):
         dusk.pool((x, 28.4, 4.72), 220, dusk.LED, size_m=6.0, stretch=0.06)
     for x in (-20.0, -6.0, 8.0, 22.0):

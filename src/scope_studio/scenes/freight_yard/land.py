@@ -1,25 +1,28 @@
-"""Freight yard: the road outside, trees, neighbours, and the town out to the hills."""
+"""Freight yard: the road outside, trees, neighbours, and the town between the yard and the hills."""
 
 from __future__ import annotations
 
 import math
 import random
 
+from scope_studio.kit.buildings import skyline
 from scope_studio.kit.core.stage import Built, Stage
-from scope_studio.kit.furniture import furniture
+from scope_studio.kit.furniture import roadside
+from scope_studio.kit.ground import highway, terrain
 from scope_studio.kit.light import dusk
-from scope_studio.kit.nature import far_town, ground, vegetation
-from scope_studio.kit.vehicles import vehicles
-from scope_studio.kit.yard import ground as yard_ground
+from scope_studio.kit.nature import vegetation
+from scope_studio.kit.vehicles import cars
+from scope_studio.kit.yard import floor as yard_floor
 
-ROAD = ground.Carriageway(edge_m=-1.0, straight_m=900.0)
-"""Only its level strip is used: the land rises to hills away from it."""
+ROAD = highway.Carriageway(edge_m=-1.0, straight_m=900.0)
+"""Only its level strip is used, away from which the land rises to hills."""
 STREET_Y = -58.0
 
 
 def build(stage: Stage) -> None:
-    height = ground.hills(ROAD)
-    stage.put(ground.terrain(ROAD, []), (0, 0, -0.02))
+    """Place the surroundings of the yard."""
+    height = terrain.hills(ROAD)
+    stage.put(terrain.terrain(ROAD, []), (0, 0, -0.02))
     _street(stage)
     _neighbours(stage)
     _trees(stage)
@@ -28,18 +31,16 @@ def build(stage: Stage) -> None:
 
 def _street(stage: Stage) -> None:
     stage.put(
-        yard_ground.floor(
-            "street", (-400, 400, STREET_Y - 4.0, STREET_Y + 4.0), yard_ground.asphalt("street asphalt", tone=1.1), -0.01
+        yard_floor.floor(
+            "street", (-400, 400, STREET_Y - 4.0, STREET_Y + 4.0), yard_floor.asphalt("street asphalt", tone=1.1), -0.01
         ),
         (0, 0, 0),
     )
     for y0, y1 in ((STREET_Y + 4.0, STREET_Y + 6.2), (STREET_Y - 6.2, STREET_Y - 4.0)):
-        stage.put(
-            yard_ground.floor("footway", (-400, 400, y0, y1), yard_ground.slabs("footway slabs", joint_m=1.2), 0.02), (0, 0, 0)
-        )
+        stage.put(yard_floor.floor("footway", (-400, 400, y0, y1), yard_floor.slabs("footway slabs", joint_m=1.2), 0.02), (0, 0, 0))
     for k, x in enumerate((-66.0, -38.0, -8.0, 20.0, 48.0, 76.0)):
         lit = k != 1
-        post = furniture.lamp_post(8.0, lit=lit)
+        post = roadside.lamp_post(8.0, lit=lit)
         stage.place(
             post,
             "lamp post",
@@ -53,10 +54,10 @@ def _street(stage: Stage) -> None:
         if lit:
             dusk.pool((x, STREET_Y - 3.0, 7.8), 300, dusk.SODIUM, size_m=0.45)
     for make, colour, noun, plate, x, y, bearing in (
-        (vehicles.saloon, "dark blue", "saloon", "NB17 COL", 22.0, -60.9, 270),
-        (vehicles.hatchback, "silver", "hatchback", "VE65 GRO", 29.0, -60.9, 270),
-        (vehicles.suv, "black", "SUV", "LM22 OWL", -24.0, -60.9, 270),
-        (vehicles.hatchback, "red", "hatchback", "RT13 KIN", -52.0, -55.1, 90),
+        (cars.saloon, "dark blue", "saloon", "NB17 COL", 22.0, -60.9, 270),
+        (cars.hatchback, "silver", "hatchback", "VE65 GRO", 29.0, -60.9, 270),
+        (cars.suv, "black", "SUV", "LM22 OWL", -24.0, -60.9, 270),
+        (cars.hatchback, "red", "hatchback", "RT13 KIN", -52.0, -55.1, 90),
     ):
         stage.place(
             make(colour, plate=plate),
@@ -71,9 +72,9 @@ def _street(stage: Stage) -> None:
             area="street",
             facing="west" if bearing == 270 else "east",
         )
-    s = yard_ground.Solid("street lines")
+    s = yard_floor.Solid("street lines")
     for x in range(-200, 200, 6):
-        yard_ground.line(s, (x, STREET_Y), (x + 2.5, STREET_Y), 0.10, yard_ground.paint("white"))
+        yard_floor.line(s, (x, STREET_Y), (x + 2.5, STREET_Y), 0.10, yard_floor.paint("white"))
     stage.put(s.built(), (0, 0, 0.0))
 
 
@@ -141,7 +142,7 @@ def _neighbours(stage: Stage) -> None:
         ({"width": 36, "depth": 24, "height": 8.0, "colour": (0.12, 0.16, 0.24), "seed": 8}, 36.0, 96.0, 180, "blue"),
     ]
     for spec, x, y, bearing, colour in sheds:
-        built = far_town.industrial(**spec)
+        built = skyline.industrial(**spec)
         stage.place(
             built,
             "building",
@@ -153,16 +154,14 @@ def _neighbours(stage: Stage) -> None:
             reads=spec.get("lettering", "").lower() or "nothing",
         )
     stage.place(
-        far_town.silos(3, lettering="CALDER"), "silo", "row of steel silos", (-64.0, 92.0, 0), 150, material="steel", count=3
+        skyline.silos(3, lettering="CALDER"), "silo", "row of steel silos", (-64.0, 92.0, 0), 150, material="steel", count=3
     )
-    stage.place(
-        far_town.chimney(), "chimney", "tall chimney with red lights", (64.0, 118.0, 0), 0, material="concrete", state="lit"
-    )
+    stage.place(skyline.chimney(), "chimney", "tall chimney with red lights", (64.0, 118.0, 0), 0, material="concrete", state="lit")
 
 
 def _trees(stage: Stage) -> None:
     rng = random.Random("yard trees")
-    moulds: dict[tuple[str, int], Built] = {}
+    prototypes: dict[tuple[str, int], Built] = {}
     species = {
         "lime": vegetation.LIME,
         "birch": vegetation.BIRCH,
@@ -192,7 +191,11 @@ def _trees(stage: Stage) -> None:
     for name, seed, x, y in rows:
         key = (name, seed)
         detail = 0.55 if abs(x) < 50 else 0.35
-        built = moulds[key].copy() if key in moulds else moulds.setdefault(key, vegetation.tree(species[name], seed, detail=detail))
+        built = (
+            prototypes[key].copy()
+            if key in prototypes
+            else prototypes.setdefault(key, vegetation.tree(species[name], seed, detail=detail))
+        )
         stage.place(
             built,
             "tree",
@@ -206,7 +209,7 @@ def _trees(stage: Stage) -> None:
 
 
 def _far(stage: Stage, height) -> None:
-    """Unannotated: tree lines, blocks of flats and lights, thinning out to the hills."""
+    """Place tree lines, blocks of flats and lights that become sparser towards the hills. They are not annotated."""
     rng = random.Random("far town")
     kinds = [
         vegetation.tree(sp, 7 + k, detail=0.12)
@@ -215,9 +218,9 @@ def _far(stage: Stage, height) -> None:
     hedge = vegetation.hedge(14.0, seed=3, detail=0.3)
     used: set[int] = set()
 
-    def strew(mould: Built, x: float, y: float, bearing: float, scale: float) -> None:
-        built = mould.copy() if id(mould) in used else mould
-        used.add(id(mould))
+    def strew(prototype: Built, x: float, y: float, bearing: float, scale: float) -> None:
+        built = prototype.copy() if id(prototype) in used else prototype
+        used.add(id(prototype))
         stage.put(built, (x, y, height(x, y) - 0.1), bearing, scale=scale)
 
     for x in range(-180, 190, 14):
@@ -231,11 +234,11 @@ def _far(stage: Stage, height) -> None:
         if abs(y - STREET_Y) > 12:
             strew(kinds[rng.choices(range(4), (5, 4, 1, 2))[0]], x, y, rng.uniform(0, 360), rng.uniform(0.7, 1.2))
     blocks = [
-        far_town.flats(seed=k, floors=3 + k % 4, width=16 + 4 * (k % 3), colour=c)
+        skyline.flats(seed=k, floors=3 + k % 4, width=16 + 4 * (k % 3), colour=c)
         for k, c in enumerate(((0.20, 0.14, 0.11), (0.26, 0.25, 0.23), (0.17, 0.10, 0.08), (0.30, 0.28, 0.24)))
     ]
     works = [
-        far_town.industrial(width=34 + 6 * k, depth=20, height=7 + k, colour=(0.16 + 0.05 * k, 0.18, 0.20), seed=20 + k)
+        skyline.industrial(width=34 + 6 * k, depth=20, height=7 + k, colour=(0.16 + 0.05 * k, 0.18, 0.20), seed=20 + k)
         for k in range(3)
     ]
     for _ in range(64):
@@ -248,4 +251,4 @@ def _far(stage: Stage, height) -> None:
         bearing, r = rng.uniform(0, 2 * math.pi), 170 + 1900 * rng.random() ** 1.4
         x, y = r * math.sin(bearing), r * math.cos(bearing)
         lights.append((x, y, height(x, y) + rng.uniform(3.0, 9.0)))
-    stage.put(far_town.glimmer(lights), (0, 0, 0))
+    stage.put(skyline.glimmer(lights), (0, 0, 0))

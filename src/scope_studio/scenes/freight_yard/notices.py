@@ -1,18 +1,20 @@
-"""Freight yard: every notice, on posts and on walls, with the clocks and beacons among them."""
+"""Freight yard: all notices on posts and walls, and the clocks and beacons beside them."""
 
 from __future__ import annotations
 
-from scope_studio.kit.buildings import clocks, warehouse
+from scope_studio.kit.buildings import warehouse
 from scope_studio.kit.core.stage import Built, Stage
-from scope_studio.kit.signs import signs
+from scope_studio.kit.furniture import clocks
+from scope_studio.kit.signs import road_signs
 from scope_studio.kit.yard import safety as yard_safety
-from scope_studio.scenes.freight_yard.buildings import DOCK_X, FRONT_Y, GOODS_IN_X, OFFICE_X, OFFICE_Y
+from scope_studio.scenes.freight_yard.premises import DOCK_X, FRONT_Y, GOODS_IN_X, OFFICE_X, OFFICE_Y
 
 Row = tuple[Built, str, float, float, float, dict[str, str]]
-"""What, its name, where (x, y and a bearing, or x, y, z on a wall), facts."""
+"""Built thing, its name, its place (x, y and a bearing; or x, y, z on a wall), attributes."""
 
 
 def build(stage: Stage) -> None:
+    """Place the notices on posts and on walls."""
     _standing(stage)
     _on_walls(stage)
 
@@ -218,7 +220,7 @@ def _standing(stage: Stage) -> None:
         stage.place(built, "sign", name, (x, y, 0), bearing, reads=words, **facts)
     for limit, x, y, bearing in (("10", -4.2, -30.4, 180), ("5", -3.6, 5.2, 180), ("5", 8.2, 12.8, 0)):
         stage.place(
-            signs.round_limit(limit, diameter=0.60, post_height=1.7),
+            road_signs.round_limit(limit, diameter=0.60, post_height=1.7),
             "speed sign",
             f"{limit} mph speed limit sign",
             (x, y, 0),

@@ -1,13 +1,14 @@
-"""Freight yard: those who work, wait and visit there."""
+"""Freight yard: workers, drivers and visitors who stay where they are."""
 
 from __future__ import annotations
 
 from scope_studio.kit.core.stage import Stage
-from scope_studio.kit.people import people
+from scope_studio.kit.people import characters
 from scope_studio.scenes.freight_yard.fixtures import GATEHOUSE
 
 
 def build(stage: Stage) -> None:
+    """Place the workers and the other people."""
     _crew(stage)
     _others(stage)
 
@@ -26,10 +27,10 @@ def _crew(stage: Stage) -> None:
         ("yellow", "yellow", "carry", -1.6, 31.8, 1.2, 100, "worker carrying a box in a half-open dock", "box", "docks"),
     ]  # fmt: skip
     for k, (vest, helmet, pose, x, y, z, bearing, name, holding, area) in enumerate(rows):
-        built = people.worker(vest=vest, helmet=helmet, pose=pose, phase=0.3, seed=40 + k)
+        built = characters.worker(vest=vest, helmet=helmet, pose=pose, phase=0.3, seed=40 + k)
         facts = {"carrying": holding} if holding else {}
         stage.place(built, "worker", name, (x, y, z), bearing, vest=vest, helmet=helmet or "none", pose=pose, area=area, **facts)
-    sweeper = people.worker(vest="yellow", helmet="white", pose="shovel", holding="broom", seed=60)
+    sweeper = characters.worker(vest="yellow", helmet="white", pose="shovel", holding="broom", seed=60)
     stage.place(
         sweeper,
         "worker",
@@ -46,7 +47,7 @@ def _crew(stage: Stage) -> None:
 
 def _others(stage: Stage) -> None:
     x, y = GATEHOUSE
-    guard = people.pedestrian(top="navy", trousers="black", hair="grey", pose="stand", seed=12)
+    guard = characters.pedestrian(top="navy", trousers="black", hair="grey", pose="stand", seed=12)
     stage.place(
         guard,
         "security guard",
@@ -66,6 +67,6 @@ def _others(stage: Stage) -> None:
         ("green", "beige", "stand", -39.0, -37.6, 40, "visitor beside a car", "person", 25, "bag"),
     ]  # fmt: skip
     for top, trousers, pose, px, py, bearing, name, category, seed, holding in rows:
-        built = people.pedestrian(top=top, trousers=trousers, pose=pose, phase=0.2, holding=holding, seed=seed)
+        built = characters.pedestrian(top=top, trousers=trousers, pose=pose, phase=0.2, holding=holding, seed=seed)
         facts = {"carrying": holding} if holding else {}
         stage.place(built, category, name, (px, py, 0), bearing, top=top, trousers=trousers, pose=pose, **facts)

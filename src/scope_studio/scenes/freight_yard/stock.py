@@ -1,18 +1,18 @@
-"""Freight yard: container stacks, and the goods and gear that stand about."""
+"""Freight yard: container stacks, and the goods and equipment around them."""
 
 from __future__ import annotations
 
 import random
-from collections.abc import Callable
 
+from scope_studio.kit.core.prototypes import Prototypes
 from scope_studio.kit.core.stage import Built, Stage
-from scope_studio.kit.works import works
+from scope_studio.kit.works import barriers, equipment, materials, site_units
 from scope_studio.kit.yard import containers
+from scope_studio.kit.yard import goods as yard_goods
 from scope_studio.kit.yard import safety as yard_safety
-from scope_studio.kit.yard import stock as yard_stock
 
 STACKS = (
-    # feet, x, y, then from the ground up: (colour, code, livery)
+    # feet, x, y, then (colour, code, livery) of each container from the ground up
     (20, 20.5, -14.5, (("blue", "KVRU 482915 3", "KESTREL"), ("dark red", "TSLU 610382 7", None))),
     (
         20,
@@ -38,19 +38,8 @@ STACKS = (
 )
 
 
-class Moulds:
-    """Builds each kind of thing once and hands out linked copies."""
-
-    def __init__(self) -> None:
-        self._made: dict[str, Built] = {}
-
-    def get(self, key: str, make: Callable[[], Built]) -> Built:
-        if key in self._made:
-            return self._made[key].copy()
-        return self._made.setdefault(key, make())
-
-
 def build(stage: Stage) -> None:
+    """Place containers, goods, equipment and bollards."""
     _containers(stage)
     _goods(stage)
     _gear(stage)
@@ -98,10 +87,10 @@ def _containers(stage: Stage) -> None:
 
 
 def _goods(stage: Stage) -> None:
-    moulds = Moulds()
+    prototypes = Prototypes()
     for n, (x, y, count) in enumerate(((25.6, 25.0, 9), (27.2, 25.4, 12), (25.8, 22.6, 5), (-27.9, 10.6, 7))):
         stage.place(
-            moulds.get(f"stack {count}", lambda count=count, n=n: yard_stock.pallet_stack(count, seed=n)),
+            prototypes.get(f"stack {count}", lambda count=count, n=n: yard_goods.pallet_stack(count, seed=n)),
             "pallet stack",
             "stack of empty pallets",
             (x, y, 0),
@@ -121,14 +110,14 @@ def _goods(stage: Stage) -> None:
     ]
     for n, (kind, label, wrapped, x, y, bearing) in enumerate(loads):
         facts = {"label": label.lower()} if label else {}
-        built = yard_stock.pallet_load(kind, label=label, wrapped=wrapped, seed=n)
+        built = yard_goods.pallet_load(kind, label=label, wrapped=wrapped, seed=n)
         stage.place(
             built, "pallet", f"pallet of {kind}", (x, y, 0), bearing, load=kind, wrapped="yes" if wrapped else "no", **facts
         )
     for k in range(11):
         colour = "red" if k in (3, 7, 8) else "blue"
         fallen = k == 10
-        built = moulds.get(f"drum {colour}", lambda colour=colour: yard_stock.steel_drum(colour))
+        built = prototypes.get(f"drum {colour}", lambda colour=colour: yard_goods.steel_drum(colour))
         where = (15.8 + 0.72 * k, 8.4, 0.0) if not fallen else (24.2, 7.3, 0.29)
         stage.place(
             built,
@@ -143,7 +132,7 @@ def _goods(stage: Stage) -> None:
         )
     for n, (x, y) in enumerate(((35.0, 21.6), (36.5, 21.7), (35.1, 20.2))):
         stage.place(
-            yard_stock.tank(f"TANK {n + 4}"),
+            yard_goods.tank(f"TANK {n + 4}"),
             "liquid container",
             "white liquid container",
             (x, y, 0),
@@ -153,7 +142,7 @@ def _goods(stage: Stage) -> None:
         )
     for n, (x, y, count) in enumerate(((33.2, 26.0, 5), (34.5, 26.2, 3), (33.9, 24.8, 2))):
         stage.place(
-            yard_stock.tyre_stack(count, seed=n), "tyre stack", "stack of tyres", (x, y, 0), 40 * n, tyres=count, colour="black"
+            yard_goods.tyre_stack(count, seed=n), "tyre stack", "stack of tyres", (x, y, 0), 40 * n, tyres=count, colour="black"
         )
     for n, (x, y, bearing, opened) in enumerate(
         (
@@ -165,7 +154,7 @@ def _goods(stage: Stage) -> None:
         )
     ):
         stage.place(
-            yard_stock.carton(seed=n, open=opened),
+            yard_goods.carton(seed=n, open=opened),
             "box",
             "cardboard box",
             (x, y, 0.004),
@@ -173,25 +162,25 @@ def _goods(stage: Stage) -> None:
             material="cardboard",
             state="open" if opened else "closed",
         )
-    stage.place(yard_stock.carton(seed=7), "box", "cardboard box", (18.15, -24.0, 0.43), 34, material="cardboard", state="closed")
+    stage.place(yard_goods.carton(seed=7), "box", "cardboard box", (18.15, -24.0, 0.43), 34, material="cardboard", state="closed")
 
 
 def _gear(stage: Stage) -> None:
     rows: list[tuple[Built, str, str, float, float, float, dict[str, str]]] = [
-        (yard_stock.gas_cage(), "gas cage", "cage of gas cylinders", 30.6, 27.6, 180, {"material": "steel", "state": "closed"}),
-        (works.skip("yellow"), "skip", "yellow skip", 45.0, 24.0, 95, {"colour": "yellow", "state": "full"}),
-        (works.skip("blue", full=False), "skip", "blue skip", 41.0, 26.2, 88, {"colour": "blue", "state": "empty"}),
-        (works.cable_drum(1.6), "cable drum", "wooden cable drum", 39.2, 19.0, 30, {"material": "timber"}),
-        (works.cable_drum(1.2), "cable drum", "wooden cable drum", 37.6, 17.4, 75, {"material": "timber"}),
-        (works.pipe_stack("grey", length=5.0), "pipe stack", "stack of grey pipes", 44.5, 14.0, 10, {"colour": "grey"}),
+        (yard_goods.gas_cage(), "gas cage", "cage of gas cylinders", 30.6, 27.6, 180, {"material": "steel", "state": "closed"}),
+        (site_units.skip("yellow"), "skip", "yellow skip", 45.0, 24.0, 95, {"colour": "yellow", "state": "full"}),
+        (site_units.skip("blue", full=False), "skip", "blue skip", 41.0, 26.2, 88, {"colour": "blue", "state": "empty"}),
+        (materials.cable_drum(1.6), "cable drum", "wooden cable drum", 39.2, 19.0, 30, {"material": "timber"}),
+        (materials.cable_drum(1.2), "cable drum", "wooden cable drum", 37.6, 17.4, 75, {"material": "timber"}),
+        (materials.pipe_stack("grey", length=5.0), "pipe stack", "stack of grey pipes", 44.5, 14.0, 10, {"colour": "grey"}),
         (yard_safety.spill_kit(), "spill kit", "yellow spill kit", 27.4, 28.9, 180, {"colour": "yellow"}),
-        (works.fire_extinguisher(), "fire extinguisher", "red fire extinguisher", 18.9, 29.6, 180, {"colour": "red"}),
-        (works.fire_extinguisher(), "fire extinguisher", "red fire extinguisher", -6.6, -9.6, 200, {"colour": "red"}),
-        (yard_stock.ladder(), "ladder", "aluminium ladder", -28.4, 30.0, 180, {"material": "aluminium"}),
+        (materials.fire_extinguisher(), "fire extinguisher", "red fire extinguisher", 18.9, 29.6, 180, {"colour": "red"}),
+        (materials.fire_extinguisher(), "fire extinguisher", "red fire extinguisher", -6.6, -9.6, 200, {"colour": "red"}),
+        (yard_goods.ladder(), "ladder", "aluminium ladder", -28.4, 30.0, 180, {"material": "aluminium"}),
         (yard_safety.hydrant(), "fire hydrant", "red fire hydrant", -12.9, -8.4, 180, {"colour": "red"}),
-        (works.generator("green"), "generator", "green generator", 45.6, 7.0, 92, {"colour": "green"}),
+        (equipment.generator("green"), "generator", "green generator", 45.6, 7.0, 92, {"colour": "green"}),
         (
-            works.wheelbarrow("green", load=False),
+            equipment.wheelbarrow("green", load=False),
             "wheelbarrow",
             "green wheelbarrow",
             42.0,
@@ -212,7 +201,7 @@ def _gear(stage: Stage) -> None:
     ):
         facts = {"label": label.lower()} if label else {}
         stage.place(
-            yard_stock.wheelie_bin(colour, open=opened, label=label),
+            yard_goods.wheelie_bin(colour, open=opened, label=label),
             "wheelie bin",
             f"{colour} wheelie bin",
             (x, y, 0),
@@ -224,8 +213,8 @@ def _gear(stage: Stage) -> None:
 
 
 def _guards(stage: Stage) -> None:
-    """Bollards, concrete blocks and cones."""
-    moulds = Moulds()
+    """Place bollards, concrete blocks and cones."""
+    prototypes = Prototypes()
     bollards = [
         (19.2, 28.9),
         (24.8, 28.9),
@@ -240,7 +229,7 @@ def _guards(stage: Stage) -> None:
     bollards += [(-20.7 + 2.6 * k, -11.2) for k in range(3)] + [(-9.9, 3.2), (-12.5, 3.2), (28.6, 29.2)]
     for x, y in bollards:
         stage.place(
-            moulds.get("bollard", yard_safety.yard_bollard),
+            prototypes.get("bollard", yard_safety.yard_bollard),
             "bollard",
             "yellow bollard",
             (x, y, 0),
@@ -250,7 +239,7 @@ def _guards(stage: Stage) -> None:
         )
     for k in range(4):
         stage.place(
-            moulds.get("block", lambda: works.concrete_barrier(3.0)),
+            prototypes.get("block", lambda: barriers.concrete_barrier(3.0)),
             "barrier",
             "concrete barrier",
             (14.4, -31.5 + 3.15 * k, 0),
@@ -262,7 +251,7 @@ def _guards(stage: Stage) -> None:
     for k in range(3):
         colour = ("red", "white")[k % 2]
         stage.place(
-            moulds.get(colour, lambda colour=colour: works.water_barrier(colour)),
+            prototypes.get(colour, lambda colour=colour: barriers.water_barrier(colour)),
             "barrier",
             f"{colour} water-filled barrier",
             (1.2 + 1.6 * k, 25.6, 0),
@@ -284,10 +273,16 @@ def _guards(stage: Stage) -> None:
     ]
     for k, (x, y) in enumerate(cones):
         stage.place(
-            moulds.get("cone", works.cone), "traffic cone", "traffic cone", (x, y, 0), 25 * k, colour="orange", state="upright"
+            prototypes.get("cone", barriers.cone),
+            "traffic cone",
+            "traffic cone",
+            (x, y, 0),
+            25 * k,
+            colour="orange",
+            state="upright",
         )
     stage.place(
-        moulds.get("cone", works.cone),
+        prototypes.get("cone", barriers.cone),
         "traffic cone",
         "fallen traffic cone",
         (13.3, -18.2, 0.17),

@@ -8,12 +8,7 @@ import bpy
 
 from scope_studio.kit.core.stage import Stage
 from scope_studio.kit.light import overcast, sky
-from scope_studio.scenes.high_street import kerb as high_street_kerb
-from scope_studio.scenes.high_street import land as high_street_land
-from scope_studio.scenes.high_street import people as high_street_people
-from scope_studio.scenes.high_street import shops as high_street_shops
-from scope_studio.scenes.high_street import traffic as high_street_traffic
-from scope_studio.scenes.high_street import wares as high_street_wares
+from scope_studio.scenes.high_street import kerb, land, people, shops, traffic, wares
 
 NAME = "high-street"
 TITLE = "High street"
@@ -22,19 +17,19 @@ ABSENT = (
     "horse", "lorry", "motorcycle", "parking barrier", "petrol pump", "police car", "skip", "statue", "suitcase", "swimming pool",
     "tractor", "train", "tram", "wheelchair", "wind turbine",
 )  # fmt: skip
-"""Things that a person might ask for and that are not there."""
+"""Things that a person might ask for but that are not in the scene."""
 
 
 def build(stage: Stage) -> None:
-    """Build the whole scene in an empty Blender file and fill in the stage."""
-    stage.start_s = 17.0  # car, cyclist, walkers and dog are all in the street then
+    """Build the whole scene in an empty Blender file and fill the stage."""
+    stage.start_s = 17.0  # car, cyclist, walkers and dog are all in the street at that time
     overcast.setup(bpy.context.scene)
-    high_street_people.build(stage)  # first: melting bodies slows down with every object that the file already holds
-    high_street_traffic.build(stage)
-    shops = high_street_shops.build(stage)
-    high_street_wares.build(stage, shops)
-    high_street_kerb.build(stage)
-    high_street_land.build(stage)
+    people.build(stage)  # first: merging bodies is slower the more objects the file holds
+    traffic.build(stage)
+    shop_ids = shops.build(stage)
+    wares.build(stage, shop_ids)
+    kerb.build(stage)
+    land.build(stage)
     _cameras(stage)
     stage.absent = list(ABSENT)
     stage.finish = partial(sky.finish_materials, visibility_m=700.0)

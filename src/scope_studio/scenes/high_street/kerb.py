@@ -1,18 +1,18 @@
-"""High street: what stands on the footways and at the kerbs, and the works at a manhole."""
+"""High street: things on the footways and at the kerbs, and the works at a manhole."""
 
 from __future__ import annotations
 
-from scope_studio.kit.buildings import building_works, shopfronts
+from scope_studio.kit.buildings import shopfronts
 from scope_studio.kit.core.stage import Built, Stage
-from scope_studio.kit.furniture import furniture, town_furniture
-from scope_studio.kit.nature.wet_ground import KERB_M
+from scope_studio.kit.furniture import roadside, street, traditional
+from scope_studio.kit.ground.wet_street import KERB_M
 from scope_studio.kit.vehicles import cycles
-from scope_studio.kit.works import works
+from scope_studio.kit.works import barriers, materials, street_works
 from scope_studio.scenes.high_street.plan import EAST_KERB, WEST_KERB, ZEBRA, Plot
 from scope_studio.scenes.high_street.shops import plots
 
 WEST_X, EAST_X = WEST_KERB - 0.55, EAST_KERB + 0.55
-"""The line of posts along either kerb."""
+"""The lines of posts along the kerbs."""
 
 LAMPS = (
     (WEST_X - 5.0, -51.3, True), (WEST_X, -16.5, True), (WEST_X, 6.0, True), (WEST_X, 31.0, False),
@@ -22,6 +22,7 @@ BASKETS = (("red", "white"), ("purple", "pink"), ("yellow", "orange"), ("pink", 
 
 
 def build(stage: Stage) -> None:
+    """Place the street furniture and the street works."""
     _lamps(stage)
     _posts(stage)
     _seats(stage)
@@ -33,19 +34,17 @@ def build(stage: Stage) -> None:
 
 
 def _lamps(stage: Stage) -> None:
-    moulds: dict[bool, Built] = {}
+    prototypes: dict[bool, Built] = {}
     hung: dict[int, Built] = {}
     for k, (x, y, lit) in enumerate(LAMPS):
-        built = moulds[lit].copy() if lit in moulds else moulds.setdefault(lit, town_furniture.street_lamp(lit=lit))
+        built = prototypes[lit].copy() if lit in prototypes else prototypes.setdefault(lit, traditional.street_lamp(lit=lit))
         post = stage.place(
             built, "lamp post", "street lamp", (x, y, KERB_M), 90, colour="dark green", state="lit" if lit else "unlit"
         )
         for side in (-1, 1):
             pick = (2 * k + (side > 0)) % len(BASKETS)
             made = (
-                hung[pick].copy()
-                if pick in hung
-                else hung.setdefault(pick, town_furniture.hanging_basket(BASKETS[pick], seed=pick))
+                hung[pick].copy() if pick in hung else hung.setdefault(pick, traditional.hanging_basket(BASKETS[pick], seed=pick))
             )
             stage.place(
                 made, "hanging basket", f"hanging basket of {BASKETS[pick][0]} flowers", (x, y + side * 0.63, KERB_M + 3.28),
@@ -57,31 +56,31 @@ def _posts(stage: Stage) -> None:
     z = KERB_M
     for k, (x, y) in enumerate(((WEST_X, ZEBRA[0] - 0.7), (EAST_X, ZEBRA[1] + 0.7))):
         stage.place(
-            town_furniture.belisha_beacon(), "belisha beacon", "belisha beacon", (x, y, z), 90 * k, colour="amber", state="lit"
+            traditional.belisha_beacon(), "belisha beacon", "belisha beacon", (x, y, z), 90 * k, colour="amber", state="lit"
         )
     stage.place(
-        town_furniture.post_box(), "post box", "red post box", (EAST_X + 0.1, 37.6, z), 270, colour="red", material="cast iron"
+        traditional.post_box(), "post box", "red post box", (EAST_X + 0.1, 37.6, z), 270, colour="red", material="cast iron"
     )
-    stage.place(town_furniture.phone_box(), "phone box", "red phone box", (EAST_X + 0.5, 32.6, z), 270, colour="red")
+    stage.place(traditional.phone_box(), "phone box", "red phone box", (EAST_X + 0.5, 32.6, z), 270, colour="red")
     for colour, x, y, bearing in (
         ("dark green", WEST_X, -4.6, 270), ("dark green", WEST_X, 24.5, 270), ("black", EAST_X, -13.5, 90), ("dark red", EAST_X,
         38.7, 270),
         ("dark green", EAST_X, 9.5, 90), ("dark green", 8.6, -59.6, 0),
     ):  # fmt: skip
-        stage.place(furniture.bin(colour=colour), "bin", f"{colour} litter bin", (x, y, z), bearing, colour=colour)
-    bollard = furniture.bollard()
+        stage.place(street.bin(colour=colour), "bin", f"{colour} litter bin", (x, y, z), bearing, colour=colour)
+    bollard = roadside.bollard()
     spots = [(WEST_X + 0.1, -47.6 + 1.5 * k) for k in range(5)] + [(EAST_X - 0.1, 42.6 + 1.4 * k) for k in range(5)]
     for k, (x, y) in enumerate(spots):
         stage.place(bollard if k == 0 else bollard.copy(), "bollard", "black bollard", (x, y, z), 0, colour="black")
     for x, y, bearing in ((EAST_X, -33.2, 90), (EAST_X, 28.6, 90)):
-        stage.place(town_furniture.parking_meter(), "parking meter", "parking meter", (x, y, z), bearing, colour="dark grey")
+        stage.place(traditional.parking_meter(), "parking meter", "parking meter", (x, y, z), bearing, colour="dark grey")
     planted = ((WEST_X - 0.1, -30.6, ("red", "yellow")), (WEST_X - 0.1, -21.5, ("purple", "white")), (EAST_X + 0.1, -20.0,
     ("pink", "red")),
                (EAST_X + 0.1, 26.0, ("yellow", "purple")), (WEST_X - 0.1, 40.3, ("orange", "red")))  # fmt: skip
     for k, (x, y, colours) in enumerate(planted):
-        built = town_furniture.planter(colours, seed=10 * k)
+        built = traditional.planter(colours, seed=10 * k)
         stage.place(built, "planter", f"planter of {colours[0]} flowers", (x, y, z), 90, colour=colours[0], material="timber")
-    drain = furniture.drain()
+    drain = roadside.drain()
     for k, (x, y) in enumerate(
         ((WEST_KERB + 0.3, -37), (WEST_KERB + 0.3, 9.0), (WEST_KERB + 0.3, 34), (EAST_KERB - 0.3, -16), (EAST_KERB - 0.3, 10.6))
     ):
@@ -90,9 +89,9 @@ def _posts(stage: Stage) -> None:
 
 def _seats(stage: Stage) -> None:
     z = KERB_M
-    shelter = furniture.bus_shelter("HIGH STREET", route="7")
+    shelter = street.bus_shelter("HIGH STREET", route="7")
     stage.place(shelter, "bus stop", "bus shelter", (-6.0, -10.0, z), 90, colour="dark grey", route="7", material="glass")
-    bench = furniture.bench()
+    bench = street.bench()
     for k, (x, y, bearing) in enumerate(((-6.75, -25.6, 90), (8.95, 0.6, 270), (-6.75, 20.2, 90), (5.9, -62.2, 0))):
         stage.place(bench if k == 0 else bench.copy(), "bench", "wooden bench", (x, y, z), bearing, material="timber")
 
@@ -132,7 +131,7 @@ def _signals(stage: Stage) -> None:
     ):  # fmt: skip
         facing = {0: "north", 90: "east", 270: "west"}[bearing]
         stage.place(
-            town_furniture.traffic_signal(state),
+            traditional.traffic_signal(state),
             "traffic light",
             f"{state} traffic light",
             (x, y, z),
@@ -144,7 +143,7 @@ def _signals(stage: Stage) -> None:
 
 def _signs(stage: Stage) -> None:
     where = plots()
-    post = town_furniture.fingerpost([("STATION", 0), ("MARKET HALL", 255), ("RIVER WALK", 100), ("MUSEUM", 180)])
+    post = traditional.fingerpost([("STATION", 0), ("MARKET HALL", 255), ("RIVER WALK", 100), ("MUSEUM", 180)])
     stage.place(post, "signpost", "green signpost", (WEST_X - 0.1, 43.0, KERB_M), 0, colour="dark green")
     for number, x, text in ((1, 1.6, "HIGH STREET"), (2, 2.2, "HIGH STREET"), (25, -3.3, "HIGH STREET"), (26, 3.6, "HIGH STREET")):
         plot = where[number]
@@ -175,7 +174,7 @@ def _signs(stage: Stage) -> None:
             says=lines[0].lower(),
         )
     plot = where[24]
-    clock = town_furniture.bracket_clock(3, 40)
+    clock = traditional.bracket_clock(3, 40)
     stage.place(clock, "clock", "jeweller's clock", plot.at(1.6, 0.0, 4.7), plot.bearing_deg, shows="3:40", colour="black")
     for x, y, bearing, lines in (
         (WEST_X, -16.4, 90, ("NO LOADING", "MON TO SAT", "8 AM TO 6 PM")), (EAST_X, -26.9, 270, ("1 HOUR", "NO RETURN",
@@ -189,26 +188,26 @@ def _signs(stage: Stage) -> None:
 
 def _manhole(stage: Stage) -> None:
     x, y = -1.55, 31.0
-    stage.place(building_works.open_manhole(), "manhole", "open manhole", (x, y, 0.006), 60, state="open", material="cast iron")
-    cone = works.cone()
+    stage.place(street_works.open_manhole(), "manhole", "open manhole", (x, y, 0.006), 60, state="open", material="cast iron")
+    cone = barriers.cone()
     for k, (dx, dy) in enumerate(((-1.2, -1.7), (1.25, -1.6), (1.45, 0.3), (1.2, 2.0), (-1.2, 2.1), (0.0, -3.2))):
         stage.place(
             cone if k == 0 else cone.copy(), "traffic cone", "orange traffic cone", (x + dx, y + dy, 0.004), 37 * k, colour="orange"
         )
-    barrier = works.chapter8_barrier()
+    barrier = barriers.chapter8_barrier()
     for k, (dx, dy, bearing) in enumerate(((0.0, -1.5, 180), (0.05, 1.9, 0))):
         stage.place(
             barrier if k == 0 else barrier.copy(), "barrier", "red and white works barrier", (x + dx, y + dy, 0.004), bearing,
             colour="red and white",
         )  # fmt: skip
-    stage.place(works.toolbox("blue"), "toolbox", "blue toolbox", (x - 0.9, y + 0.9, 0.004), 30, colour="blue")
+    stage.place(materials.toolbox("blue"), "toolbox", "blue toolbox", (x - 0.9, y + 0.9, 0.004), 30, colour="blue")
 
 
 def _scaffold(stage: Stage) -> None:
     plot: Plot = plots()[10]
-    frame = building_works.scaffolding(7.2, 3, first_m=3.75)
+    frame = street_works.scaffolding(7.2, 3, first_m=3.75)
     here = stage.place(frame, "scaffolding", "scaffolding", plot.at(0, 0.12), plot.bearing_deg, material="steel")
     board = shopfronts.plate(("TURRET SCAFFOLDING", "01632 960171"), 0.15, "yellow", "black")
     stage.place(board, "sign", "scaffolder's sign", plot.at(0.4, 1.60, 6.25), plot.bearing_deg, parent=here, colour="yellow")
-    ladder = building_works.ladder(5.0, 12.0)
+    ladder = street_works.ladder(5.0, 12.0)
     stage.place(ladder, "ladder", "aluminium ladder", plot.at(-2.4, 2.35), plot.bearing_deg, state="leaning", material="aluminium")

@@ -1,4 +1,4 @@
-"""High street: roads, footways and their paint, the houses that close every direction, trees behind the roofs."""
+"""High street: roads, footways and their paint, houses that close the view in every direction, trees behind the roofs."""
 
 from __future__ import annotations
 
@@ -6,15 +6,16 @@ import math
 import random
 
 from scope_studio.kit.buildings import shopfronts
-from scope_studio.kit.buildings.clocks import dial
-from scope_studio.kit.buildings.masonry import roofing, trim, wall
 from scope_studio.kit.buildings.terraces import DEPTH_M, Terrace, terrace
+from scope_studio.kit.buildings.wet_masonry import roofing, trim, wall
 from scope_studio.kit.core.finishes import paint
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built, Stage
-from scope_studio.kit.furniture import town_furniture
-from scope_studio.kit.nature import vegetation, wet_ground
-from scope_studio.kit.nature.markings import Stencil
+from scope_studio.kit.furniture import traditional
+from scope_studio.kit.furniture.clocks import dial
+from scope_studio.kit.ground import wet_street
+from scope_studio.kit.ground.markings import Stencil
+from scope_studio.kit.nature import vegetation
 from scope_studio.scenes.high_street.plan import (
     EAST_FRONT,
     EAST_KERB,
@@ -28,15 +29,16 @@ from scope_studio.scenes.high_street.plan import (
 )
 
 END_X = 84.0
-"""Where the cross streets are closed by a house."""
+"""Where a house closes each cross street."""
 
 
 def build(stage: Stage) -> None:
-    stage.put(wet_ground.carriageway(260.0, _gutters()), (0, 0, 0))
+    """Place ground, houses and trees."""
+    stage.put(wet_street.carriageway(260.0, _gutters()), (0, 0, 0))
     for colour, bars in _paint().items():
-        stage.put(wet_ground.markings(bars, colour), (0, 0, 0))
+        stage.put(wet_street.markings(bars, colour), (0, 0, 0))
     for outline in _blocks():
-        stage.put(wet_ground.footway(outline), (0, 0, 0))
+        stage.put(wet_street.footway(outline), (0, 0, 0))
     _zigzags(stage)
     _cross_streets(stage)
     _town_hall(stage)
@@ -101,7 +103,7 @@ def _blocks() -> list[list[tuple[float, float]]]:
 
 
 def _corner(x: float, y: float, radius: float, start_deg: float) -> list[tuple[float, float]]:
-    """A quarter circle that rounds the corner (x, y) of a convex outline, anticlockwise from ``start_deg``."""
+    """Return a quarter circle that rounds the corner (x, y) of a convex outline, anticlockwise from ``start_deg``."""
     cx = x - radius if start_deg in (270, 0) else x + radius
     cy = y + radius if start_deg in (270, 180) else y - radius
     angles = [math.radians(start_deg + 90 * k / 8) for k in range(9)]
@@ -109,9 +111,9 @@ def _corner(x: float, y: float, radius: float, start_deg: float) -> list[tuple[f
 
 
 def _zigzags(stage: Stage) -> None:
-    """The zebra's white zigzag lines at both kerbs, and the words BUS STOP on the road."""
+    """Place the white zigzag lines of the zebra crossing at both kerbs, and the words BUS STOP on the road."""
     s = Solid("zigzags")
-    white = wet_ground.road_paint("white")
+    white = wet_street.road_paint("white")
     for x in (WEST_KERB + 0.62, 0.0, EAST_KERB - 0.55):
         for y0, sign in ((ZEBRA[0] - 0.6, -1), (ZEBRA[1] + 0.6, 1)):
             for k in range(4):
@@ -146,7 +148,7 @@ DOORS = ("green", "blue", "black", "dark green", "navy", "white")
 
 
 def _cross_streets(stage: Stage) -> None:
-    """Terraced houses along Church Road and Mill Lane, as linked copies of six."""
+    """Place terraced houses along Church Road and Mill Lane, as linked copies of six."""
     row = _Row(stage)
     for sign in (1, -1):
         far_bearing, near_bearing = (180.0, 0.0) if sign > 0 else (0.0, 180.0)
@@ -161,7 +163,7 @@ def _cross_streets(stage: Stage) -> None:
 
 
 class _Row:
-    """Places houses, copying each mould after its first use."""
+    """Places houses, as linked copies after the first use of each prototype."""
 
     def __init__(self, stage: Stage) -> None:
         self._stage = stage
@@ -170,7 +172,7 @@ class _Row:
         self._count = 0
 
     def run(self, start: float, side: int, stop: float, y: float, bearing: float, *, seed: int) -> None:
-        """Houses from x = ``start`` outwards to ``side`` until ``stop``."""
+        """Place houses from x = ``start`` outwards in direction ``side`` until ``stop``."""
         order = random.Random(f"row {seed}")
         x, last = start, -1
         while abs(x) < stop:
@@ -181,6 +183,7 @@ class _Row:
             x += side * width
 
     def house(self, plot: Plot, pick: int | None = None) -> None:
+        """Place the house number ``pick`` on a plot."""
         pick = self._count % len(HOUSES) if pick is None else pick
         spec = HOUSES[pick]
         built = self._moulds[pick].copy() if pick in self._moulds else self._moulds.setdefault(pick, terrace(spec))
@@ -202,7 +205,7 @@ class _Row:
 
 
 def _town_hall(stage: Stage) -> None:
-    """The town hall that closes the street in the north, with its clock tower."""
+    """Place the town hall, with its clock tower, at the northern end of the street."""
     spec = Terrace(14.0, ("stone", "honey"), 3, 5, parapet=True, bars=2, shop=False, seed=41, lit=frozenset({(1, 2), (0, 0)}))
     plot = Plot(1.0, FAR_FRONT - 0.3, 180.0)
     hall = stage.place(
@@ -233,7 +236,7 @@ def _town_hall(stage: Stage) -> None:
 
 
 def _gables(stage: Stage) -> None:
-    """Old painted advertisements on the gable walls at Church Road, and what stands along the cross streets."""
+    """Place faded painted advertisements on the gable walls at Church Road, and the furniture of the cross streets."""
     for x, lines, ink in (
         (-11.9, ("OAKES HARDWARE", "HOME AND GARDEN", "SINCE 1888"), "cream"),
         (14.1, ("DRINK", "FENWICK TEA", "FULL WEIGHT"), "navy"),
@@ -243,31 +246,31 @@ def _gables(stage: Stage) -> None:
             s.text(line, (0.55, 0.42, 0.34)[k], (0, 0.02, 0.85 - 0.85 * k), paint(ink, dirt=0.6, roughness=0.8))
         name = "painted advertisement on a gable"
         stage.place(
-            s.built(), "wall sign", name, (x, ROW_END, wet_ground.KERB_M + 6.0), 0, lettering=ink, says=" ".join(lines).lower()
+            s.built(), "wall sign", name, (x, ROW_END, wet_street.KERB_M + 6.0), 0, lettering=ink, says=" ".join(lines).lower()
         )
-    lamp = town_furniture.street_lamp(lit=True)
+    lamp = traditional.street_lamp(lit=True)
     far = FAR_FRONT - 3.4
     spots = [(side * x, sign * far) for sign in (-1, 1) for side in (-1, 1) for x in (19.0, 45.0)]
     for k, (x, y) in enumerate(spots):
         built = lamp if k == 0 else lamp.copy()
-        stage.place(built, "lamp post", "street lamp", (x, y, wet_ground.KERB_M), 0, colour="dark green", state="lit")
+        stage.place(built, "lamp post", "street lamp", (x, y, wet_street.KERB_M), 0, colour="dark green", state="lit")
     tree = vegetation.tree(vegetation.BIRCH, 71, detail=0.55)
     for k, (x, y) in enumerate(((-9.5, -60.6), (13.5, -60.6), (-31.0, 60.6), (29.0, 60.6), (58.0, -60.6))):
         built = tree if k == 0 else tree.copy()
-        here = (x, y, wet_ground.KERB_M)
+        here = (x, y, wet_street.KERB_M)
         stage.place(built, "tree", "birch tree", here, 70.0 * k, scale=0.62 + 0.05 * (k % 2), colour="green", species="birch")
 
 
 def _behind(stage: Stage) -> None:
-    """Trees over the back gardens, hedges at the ends of the streets, the land beyond."""
+    """Place trees over the back gardens, hedges at the ends of the streets, and the land beyond."""
     rng = random.Random("behind")
     species = (vegetation.OAK, vegetation.LIME, vegetation.COPPER, vegetation.BIRCH, vegetation.POPLAR)
-    moulds = [vegetation.tree(sp, 60 + k, detail=0.16) for k, sp in enumerate(species)]
-    fresh = set(range(len(moulds)))
+    prototypes = [vegetation.tree(sp, 60 + k, detail=0.16) for k, sp in enumerate(species)]
+    fresh = set(range(len(prototypes)))
 
     def strew(x: float, y: float, scale: float) -> None:
-        k = rng.choices(range(len(moulds)), weights=(5, 5, 1, 3, 2))[0]
-        built = moulds[k] if k in fresh else moulds[k].copy()
+        k = rng.choices(range(len(prototypes)), weights=(5, 5, 1, 3, 2))[0]
+        built = prototypes[k] if k in fresh else prototypes[k].copy()
         fresh.discard(k)
         stage.put(built, (x, y, 0.1), rng.uniform(0, 360), scale=scale)
 

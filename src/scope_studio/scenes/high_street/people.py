@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from scope_studio.kit.core.stage import Built, Stage
-from scope_studio.kit.nature import birds
-from scope_studio.kit.nature.wet_ground import KERB_M
-from scope_studio.kit.people import companions, people, stances, umbrellas
+from scope_studio.kit.ground.wet_street import KERB_M
+from scope_studio.kit.nature import birds, dogs
+from scope_studio.kit.people import characters, prams, stances, umbrellas
 from scope_studio.scenes.high_street.plan import Plot
 from scope_studio.scenes.high_street.shops import plots
 
@@ -32,6 +32,7 @@ STANDING: tuple[tuple[float, float, float, str, int, str | None, str], ...] = (
 
 
 def build(stage: Stage) -> None:
+    """Place people, dogs and pigeons."""
     _walkers(stage)
     _pairs(stage)
     _sitters(stage)
@@ -61,20 +62,20 @@ def _walkers(stage: Stage) -> None:
         here = Plot(x, y, bearing)
         stance = stances.with_umbrella((seed * 0.37) % 1.0 if walking else None, seed=seed)
         person = stage.place(
-            people.pedestrian(stance=stance, seed=seed), "pedestrian", f"pedestrian with a {colour} umbrella", here.at(0, 0),
+            characters.pedestrian(stance=stance, seed=seed), "pedestrian", f"pedestrian with a {colour} umbrella", here.at(0, 0),
             bearing,
             state="walking" if walking else "standing", holding="umbrella", umbrella=colour,
         )  # fmt: skip
         _umbrella(stage, person, colour, second, here)
     for x, y, bearing, pose, seed, holding, doing in STANDING:
-        built = people.pedestrian(pose=pose, phase=(seed * 0.29) % 1.0, holding=holding, seed=seed)
+        built = characters.pedestrian(pose=pose, phase=(seed * 0.29) % 1.0, holding=holding, seed=seed)
         facts = {"holding": holding} if holding else {}
         stage.place(built, "pedestrian", f"pedestrian {doing}", (x, y, KERB_M), bearing, state=doing, **facts)
-    worker = people.worker(vest="orange", helmet="white", pose="clipboard", seed=61)
+    worker = characters.worker(vest="orange", helmet="white", pose="clipboard", seed=61)
     stage.place(
         worker, "worker", "worker in an orange vest", (-2.75, 31.9, 0.004), 130, vest="orange", helmet="white", state="standing"
     )
-    worker = people.worker(vest="yellow", helmet="blue", pose="kneel", seed=62)
+    worker = characters.worker(vest="yellow", helmet="blue", pose="kneel", seed=62)
     stage.place(
         worker,
         "worker",
@@ -89,18 +90,18 @@ def _walkers(stage: Stage) -> None:
 
 def _pairs(stage: Stage) -> None:
     here = Plot(-5.2, -16.6, 6.0)
-    person = people.pedestrian(stance=stances.pushing(0.15), seed=8, top="green")
+    person = characters.pedestrian(stance=stances.pushing(0.15), seed=8, top="green")
     stage.place(
         person, "pedestrian", "woman with a pram", here.at(0, 0), here.bearing_deg, state="walking", top="green", pushing="pram"
     )
-    stage.place(companions.pram("navy"), "pram", "navy pram", here.at(0, 0.98), here.bearing_deg, colour="navy")
+    stage.place(prams.pram("navy"), "pram", "navy pram", here.at(0, 0.98), here.bearing_deg, colour="navy")
     here = Plot(7.9, 4.2, 186.0)
-    person = people.pedestrian(stance=stances.leading(None, seed=3), seed=15, top="navy")
+    person = characters.pedestrian(stance=stances.leading(None, seed=3), seed=15, top="navy")
     owner = stage.place(
         person, "pedestrian", "man with a dog", here.at(0, 0), here.bearing_deg, state="standing", top="navy", holding="lead"
     )
     gx, gy, gz = stances.LEAD_GRIP
-    dog = companions.dog("golden", lead_to=(gx - 0.62, gy - 0.15, gz), collar="blue")
+    dog = dogs.dog("golden", lead_to=(gx - 0.62, gy - 0.15, gz), collar="blue")
     stage.place(
         dog,
         "dog",
@@ -121,18 +122,18 @@ def _sitters(stage: Stage) -> None:
         (Plot(-6.72, 20.5, 90.0), 0.47, 75, False, "sitting on a bench"),
     )  # fmt: skip
     for here, seat, seed, crossed, doing in rows:
-        built = people.pedestrian(stance=stances.sitting(seat, seed=seed, crossed=crossed), seed=seed)
+        built = characters.pedestrian(stance=stances.sitting(seat, seed=seed, crossed=crossed), seed=seed)
         stage.place(built, "pedestrian", f"person {doing}", here.at(0, 0), here.bearing_deg, state="sitting")
     plot = plots()[5]
     for x, side, seed in ((-2.4, 1, 73), (0.2, -1, 74)):
         spot = plot.at(x + side * 0.72, 1.05 + 0.1 * side)
         bearing = plot.bearing_deg - 90 * side + (20 if side > 0 else 160 % 90)
-        built = people.pedestrian(stance=stances.sitting(0.46, seed=seed), seed=seed)
+        built = characters.pedestrian(stance=stances.sitting(0.46, seed=seed), seed=seed)
         stage.place(built, "pedestrian", "person sitting at the café", spot, bearing, state="sitting")
 
 
 def _indoors(stage: Stage) -> None:
-    """Shopkeepers and customers behind glass."""
+    """Place shopkeepers and customers behind glass."""
     for number, x, y, bearing, seed, who in (
         (3, 1.4, -1.6, 0, 81, "butcher"), (9, -1.6, -1.7, 10, 82, "baker"), (6, -1.0, -1.5, 30, 83, "hairdresser"), (5, 1.8,
         -1.4, -20, 84, "customer"),
@@ -140,7 +141,7 @@ def _indoors(stage: Stage) -> None:
     ):  # fmt: skip
         plot = plots()[number]
         top = "white" if who in ("butcher", "baker") else None
-        built = people.pedestrian(pose="stand", top=top, seed=seed)
+        built = characters.pedestrian(pose="stand", top=top, seed=seed)
         stage.place(
             built,
             "pedestrian",

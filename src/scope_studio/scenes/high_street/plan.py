@@ -1,19 +1,19 @@
-"""High street: the plan that its parts share. The street runs along y; people drive on the left."""
+"""High street: the plan that its parts share. The street runs along y, and traffic drives on the left."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 
-from scope_studio.kit.nature.wet_ground import KERB_M
+from scope_studio.kit.ground.wet_street import KERB_M
 
 WEST_KERB, EAST_KERB = -3.2, 5.4
-"""The carriageway; its eastern 2.2 m are parking bays."""
+"""Edges of the carriageway. Its eastern 2.2 m are parking bays."""
 WEST_FRONT, EAST_FRONT = -7.4, 9.6
 ROW_END = 48.0
 """The rows of shops reach from -ROW_END to ROW_END."""
 JUNCTION = (52.0, 59.0)
-"""Near and far kerb of the streets that cross at either end (Church Road in the north, Mill Lane in the south)."""
+"""Near and far kerb of the cross streets (Church Road in the north, Mill Lane in the south)."""
 FAR_FRONT = 63.0
 BAY_X = 4.28
 NORTHBOUND_X, SOUTHBOUND_X = -1.6, 1.55
@@ -22,7 +22,7 @@ ZEBRA = (11.6, 15.2)
 
 @dataclass(frozen=True)
 class Plot:
-    """Where a building stands: the middle of its front at pavement height, and the bearing that it faces."""
+    """Place of a building: the middle of its front at pavement height, and the bearing that it faces."""
 
     x: float
     y: float
@@ -30,6 +30,6 @@ class Plot:
     z: float = KERB_M
 
     def at(self, x: float, y: float, z: float = 0.0) -> tuple[float, float, float]:
-        """A point of the building's frame in the world."""
+        """Return the world position of a point in the building's frame."""
         a = math.radians(self.bearing_deg)
         return (self.x + x * math.cos(a) + y * math.sin(a), self.y - x * math.sin(a) + y * math.cos(a), self.z + z)

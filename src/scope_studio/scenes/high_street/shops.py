@@ -1,18 +1,22 @@
-"""High street: the two rows of shops, front by front."""
+"""High street: the two rows of shops."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from scope_studio.kit.buildings import shop_trade, shopfronts
+from scope_studio.kit.buildings import shopfronts
 from scope_studio.kit.buildings.terraces import Terrace, terrace
 from scope_studio.kit.core.stage import Built, Stage
+from scope_studio.kit.furniture import shop_displays
 from scope_studio.scenes.high_street.plan import EAST_FRONT, ROW_END, WEST_FRONT, Plot
 
 
 @dataclass(frozen=True)
 class Shop:
-    """One house of the rows. ``noun`` is what a person calls the shop; "" makes it a dwelling with a front door."""
+    """One house of the rows.
+
+    ``noun`` is what a person calls the shop; an empty string makes it a dwelling with a front door.
+    """
 
     number: int
     width_m: float
@@ -44,11 +48,11 @@ class Shop:
 WEST: tuple[Shop, ...] = (
     Shop(1, 9.0, "bank", "FAIRHOLM BANK", "navy", "white", "black", ("stone", "grey"), 3, 3, "slate", True, 2,
          card=("MON TO FRI", "9.30 TO 4.30"), open=True, door_side=0.3, hanging=("FAIRHOLM",)),
-    Shop(3, 7.0, "butcher's shop", "HARTLEY & SONS", "dark red", "cream", "green", ("brick", "red"), 3, 2, bars=2, lit=((1, 0),),
-         small="BUTCHERS", tiles="white", room="white", awning=("dark red", "white", True), open=True, door_side=-0.28,
-         hanging=("HARTLEY", "& SONS")),
-    Shop(5, 7.5, "café", "THE COPPER KETTLE", "dark green", "cream", "dark green", ("render", "cream"), 2, 3, "clay", lit=((1, 2),),
-         room="beige", open=True, hanging=("COPPER", "KETTLE"), card=("BREAKFAST", "8 TILL 11"), door_side=0.05),
+    Shop(3, 7.0, "butcher's shop", "HARTLEY & SONS", "dark red", "cream", "green", ("brick", "red"), 3, 2, bars=2,
+         lit=((1, 0),), small="BUTCHERS", tiles="white", room="white", awning=("dark red", "white", True), open=True,
+         door_side=-0.28, hanging=("HARTLEY", "& SONS")),
+    Shop(5, 7.5, "café", "THE COPPER KETTLE", "dark green", "cream", "dark green", ("render", "cream"), 2, 3, "clay",
+         lit=((1, 2),), room="beige", open=True, hanging=("COPPER", "KETTLE"), card=("BREAKFAST", "8 TILL 11"), door_side=0.05),
     Shop(7, 6.5, "bookshop", "DALBY BOOKS", "black", "white", "blue", ("brick", "buff"), 2, 2, room="beige", open=False,
          card=("CLOSED", "ON MONDAYS"), hanging=("BOOKS",), door_side=0.3),
     Shop(9, 7.0, "bakery", "PELL'S BAKERY", "blue", "white", "blue", ("render", "white"), 3, 3, lit=((2, 1),), small="EST 1924",
@@ -56,61 +60,53 @@ WEST: tuple[Shop, ...] = (
     Shop(11, 6.5, "optician's shop", "WREN OPTICIANS", "light blue", "white", "white", ("brick", "dark red"), 3, 2, bars=2,
          room="light blue", open=True, hanging=("EYE", "TESTS"), door_side=0.28),
     Shop(13, 7.0, "shoe repair shop", "HARTLEY & SON", "brown", "cream", "green", ("brick", "brown"), 2, 2, "clay",
-    small="SHOE REPAIRS",
-         lit=((1, 1),), open=False, hanging=("HARTLEY", "& SON"), card=("BACK AT", "2.15"), door_side=-0.3),
+         small="SHOE REPAIRS", lit=((1, 1),), open=False, hanging=("HARTLEY", "& SON"), card=("BACK AT", "2.15"),
+         door_side=-0.3),
     Shop(15, 7.5, "charity shop", "SECOND CHANCE", "purple", "white", "black", ("render", "pink"), 2, 3, room="light grey",
-    open=True,
-         card=("DONATIONS", "WELCOME"), door_side=0.0),
-    Shop(17, 7.0, "chemist's shop", "MARLOW CHEMIST", "green", "white", "dark green", ("brick", "red"), 2, 2, bars=2, room="white",
-         open=True, hanging=("CHEMIST",), card=("OPEN 9 TO 6",), door_side=0.26),
+         open=True, card=("DONATIONS", "WELCOME"), door_side=0.0),
+    Shop(17, 7.0, "chemist's shop", "MARLOW CHEMIST", "green", "white", "dark green", ("brick", "red"), 2, 2, bars=2,
+         room="white", open=True, hanging=("CHEMIST",), card=("OPEN 9 TO 6",), door_side=0.26),
     Shop(19, 6.0, "", "", "", "", "red", ("brick", "buff"), 2, 2, lit=((1, 0),)),
     Shop(21, 6.5, "fish and chip shop", "THE GOLDEN COD", "navy", "yellow", "blue", ("render", "pale blue"), 2, 2, "clay",
          tiles="light blue", room="white", awning=("navy", "white", False), open=False, card=("OPEN 5 PM", "TO 10 PM"),
          door_side=-0.28),
-    Shop(23, 8.0, "hardware shop", "OAKES HARDWARE", "dark green", "yellow", "black", ("brick", "brown"), 3, 3, lit=((1, 1), (2,
-    2)),
-         room="beige", open=True, hanging=("TOOLS", "PAINT"), door_side=0.0),
-    Shop(25, 10.5, "pub", "THE PLOUGH", "black", "yellow", "black", ("render", "white"), 3, 4, "clay", bars=2, lit=((1, 0), (1, 3)),
-         room="beige", open=True, hanging=("THE", "PLOUGH"), card=("QUIZ NIGHT", "THURSDAY"), door_side=0.0),
+    Shop(23, 8.0, "hardware shop", "OAKES HARDWARE", "dark green", "yellow", "black", ("brick", "brown"), 3, 3,
+         lit=((1, 1), (2, 2)), room="beige", open=True, hanging=("TOOLS", "PAINT"), door_side=0.0),
+    Shop(25, 10.5, "pub", "THE PLOUGH", "black", "yellow", "black", ("render", "white"), 3, 4, "clay", bars=2,
+         lit=((1, 0), (1, 3)), room="beige", open=True, hanging=("THE", "PLOUGH"), card=("QUIZ NIGHT", "THURSDAY"),
+         door_side=0.0),
 )  # fmt: skip
 EAST: tuple[Shop, ...] = (
     Shop(2, 8.5, "convenience shop", "CORNER STORES", "green", "white", "white", ("brick", "red"), 3, 3, lit=((1, 1),),
-    room="white",
-         open=True, card=("OPEN 7 TO 11",), door_side=-0.3),
+         room="white", open=True, card=("OPEN 7 TO 11",), door_side=-0.3),
     Shop(4, 6.5, "florist's shop", "BLOOM & BOWER", "cream", "dark green", "green", ("render", "pale green"), 2, 2, "clay",
-    room="white",
-         awning=("green", "white", True), open=True, door_side=0.3),
+         room="white", awning=("green", "white", True), open=True, door_side=0.3),
     Shop(6, 6.5, "hairdresser's shop", "SILVER SCISSORS", "dark grey", "white", "black", ("brick", "buff"), 3, 2, lit=((2, 0),),
          room="light grey", open=True, hanging=("HAIR",), door_side=-0.28),
     Shop(8, 7.0, "empty shop", "WEBB DRAPERS", "grey", "white", "dark grey", ("brick", "brown"), 2, 2, lamps=False, room="grey",
          open=False, door_side=0.28, traits={"state": "vacant"}),
-    Shop(10, 7.5, "electrical shop", "KEMP ELECTRICAL", "blue", "yellow", "blue", ("render", "grey"), 3, 3, room="white", open=True,
-         door_side=-0.3),
+    Shop(10, 7.5, "electrical shop", "KEMP ELECTRICAL", "blue", "yellow", "blue", ("render", "grey"), 3, 3, room="white",
+         open=True, door_side=-0.3),
     Shop(12, 7.0, "gift shop", "POTTER & FINCH", "light blue", "white", "blue", ("stone", "honey"), 2, 2, lit=((1, 0),),
-    room="cream",
-         small="GIFTS", open=True, hanging=("POTTER", "& FINCH"), door_side=0.0),
+         room="cream", small="GIFTS", open=True, hanging=("POTTER", "& FINCH"), door_side=0.0),
     Shop(14, 7.0, "estate agent's office", "FINCH & POTTER", "navy", "white", "black", ("brick", "dark red"), 3, 3, bars=2,
-    room="white",
-         small="HOMES", open=True, hanging=("FINCH &", "POTTER"), door_side=0.28),
-    Shop(16, 7.0, "lighting shop", "LANTERN LIGHTING", "black", "yellow", "green", ("render", "ochre"), 2, 2, "clay", lit=((1, 1),),
-         room="beige", open=True, card=("SALE", "HALF PRICE"), door_side=-0.28),
+         room="white", small="HOMES", open=True, hanging=("FINCH &", "POTTER"), door_side=0.28),
+    Shop(16, 7.0, "lighting shop", "LANTERN LIGHTING", "black", "yellow", "green", ("render", "ochre"), 2, 2, "clay",
+         lit=((1, 1),), room="beige", open=True, card=("SALE", "HALF PRICE"), door_side=-0.28),
     Shop(18, 6.0, "", "", "", "", "green", ("brick", "red"), 2, 2, bars=2),
     Shop(20, 7.5, "dress shop", "TAILOR & TWINE", "dark red", "white", "black", ("stone", "grey"), 3, 3, parapet=True,
-    room="light grey",
-         open=True, hanging=("TAILOR", "& TWINE"), door_side=0.0),
+         room="light grey", open=True, hanging=("TAILOR", "& TWINE"), door_side=0.0),
     Shop(22, 7.5, "greengrocer's shop", "GREENGAGE", "dark green", "white", "dark green", ("brick", "red"), 2, 3, "clay",
-    tiles="green",
-         room="white", awning=("green", "yellow", True), open=True, door_side=0.3, lit=((1, 1),)),
-    Shop(24, 7.0, "jeweller's shop", "WHITLOCK", "black", "white", "black", ("render", "cream"), 3, 2, bars=2, small="JEWELLERS",
-         room="navy", open=False, card=("RING FOR", "ENTRY"), door_side=-0.26),
-    Shop(26, 11.0, "post office", "POST OFFICE", "red", "white", "blue", ("stone", "honey"), 3, 4, parapet=True, bars=2, lit=((1,
-    2),),
-         room="white", open=True, card=("9 TO 5.30", "SAT 9 TO 1"), door_side=0.25),
+         tiles="green", room="white", awning=("green", "yellow", True), open=True, door_side=0.3, lit=((1, 1),)),
+    Shop(24, 7.0, "jeweller's shop", "WHITLOCK", "black", "white", "black", ("render", "cream"), 3, 2, bars=2,
+         small="JEWELLERS", room="navy", open=False, card=("RING FOR", "ENTRY"), door_side=-0.26),
+    Shop(26, 11.0, "post office", "POST OFFICE", "red", "white", "blue", ("stone", "honey"), 3, 4, parapet=True, bars=2,
+         lit=((1, 2),), room="white", open=True, card=("9 TO 5.30", "SAT 9 TO 1"), door_side=0.25),
 )  # fmt: skip
 
 
 def plots() -> dict[int, Plot]:
-    """The plot of each house number."""
+    """Return the plot of each house number."""
     made: dict[int, Plot] = {}
     for row, x, bearing in ((WEST, WEST_FRONT, 90.0), (EAST, EAST_FRONT, 270.0)):
         y = -ROW_END
@@ -120,16 +116,17 @@ def plots() -> dict[int, Plot]:
     return made
 
 
-def by_number(number: int) -> Shop:
-    return next(s for s in (*WEST, *EAST) if s.number == number)
-
-
 def door_x(shop: Shop) -> float:
+    """Return the x of the door's middle in the frame of the shop front."""
     return shop.door_side * (shop.width_m - 2.0)
 
 
 def build(stage: Stage) -> dict[int, str]:
-    """Both rows; returns the instance id of each number's shop (or of the house)."""
+    """Place both rows.
+
+    Returns:
+        The instance id of each number's shop or house.
+    """
     where = plots()
     return {shop.number: _house(stage, shop, where[shop.number]) for shop in (*WEST, *EAST)}
 
@@ -185,20 +182,20 @@ def _front(stage: Stage, shop: Shop, plot: Plot, building: str) -> str:
     _notices(stage, shop, plot, ident)
     if shop.awning:
         first, second, out = shop.awning
-        made = shop_trade.awning(shop.width_m - 0.5, first, second, open=out)
+        made = shop_displays.awning(shop.width_m - 0.5, first, second, open=out)
         stage.place(
             made, "awning", f"{first} and {second} awning", plot.at(0, 0.24, 2.80), bearing, parent=ident,
             colour=first, pattern="striped", state="open" if out else "rolled up",
         )  # fmt: skip
     if shop.hanging:
-        board = shop_trade.hanging_sign(shop.hanging, shop.colour, shop.ink)
+        board = shop_displays.hanging_sign(shop.hanging, shop.colour, shop.ink)
         x = shop.hanging_side * (shop.width_m / 2 - 0.35)
         stage.place(board, "hanging sign", f"{name} hanging sign", plot.at(x, 0.0, 4.0), bearing, parent=ident, colour=shop.colour)
     return ident
 
 
 def _notices(stage: Stage, shop: Shop, plot: Plot, ident: str) -> None:
-    """The open or closed sign on the door, and the card of opening hours beside it."""
+    """Place the open or closed sign on the door, and the card with opening hours beside it."""
     bearing = plot.bearing_deg
     if shop.open is not None:
         word, tint = ("OPEN", "green") if shop.open else ("CLOSED", "red")

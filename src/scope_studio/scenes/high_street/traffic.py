@@ -1,4 +1,4 @@
-"""High street: vehicles at the kerb and on the road, and everything that moves."""
+"""High street: parked vehicles, and all moving actors."""
 
 from __future__ import annotations
 
@@ -9,23 +9,25 @@ import bpy
 
 from scope_studio.kit.buildings import shopfronts
 from scope_studio.kit.core.stage import ActorPath, Built, Stage
-from scope_studio.kit.nature.wet_ground import KERB_M
-from scope_studio.kit.people import companions, people, poses, stances, umbrellas
-from scope_studio.kit.vehicles import cycles, double_decker, vehicles
+from scope_studio.kit.ground.wet_street import KERB_M
+from scope_studio.kit.nature import dogs
+from scope_studio.kit.people import characters, poses, stances, umbrellas
+from scope_studio.kit.vehicles import cars, cycles, double_decker
 from scope_studio.scenes.high_street.plan import BAY_X, NORTHBOUND_X, SOUTHBOUND_X, ZEBRA, Plot
 
 FIRST_ACTOR = 9001
-"""Number of the first actor in the ID layer: far above those of the instances."""
+"""Number of the first actor in the instance-number layer, far above the numbers of the instances."""
 PERIOD_S = 40.0
-"""All paths repeat together, so that walkers and traffic meet the same way every time."""
+"""All paths repeat with this period, so that walkers and traffic always meet in the same way."""
 PARKED = (
-    (vehicles.hatchback, "red", "LK19 FWD", "hatchback", -38.4), (vehicles.saloon, "silver", "GY68 TNB", "saloon", -26.0),
-    (vehicles.suv, "blue", "RO21 HXC", "SUV", -13.8), (vehicles.hatchback, "yellow", "EA17 JVP", "hatchback", -1.6),
-    (vehicles.suv, "grey", "PD70 KUS", "SUV", 33.2), (vehicles.hatchback, "dark red", "FN15 ZLR", "hatchback", 45.6),
+    (cars.hatchback, "red", "LK19 FWD", "hatchback", -38.4), (cars.saloon, "silver", "GY68 TNB", "saloon", -26.0),
+    (cars.suv, "blue", "RO21 HXC", "SUV", -13.8), (cars.hatchback, "yellow", "EA17 JVP", "hatchback", -1.6),
+    (cars.suv, "grey", "PD70 KUS", "SUV", 33.2), (cars.hatchback, "dark red", "FN15 ZLR", "hatchback", 45.6),
 )  # fmt: skip
 
 
 def build(stage: Stage) -> None:
+    """Place the parked vehicles and add the actors with their paths."""
     _vehicles(stage)
     _actors(stage)
 
@@ -49,7 +51,7 @@ def _vehicles(stage: Stage) -> None:
         ("white", "VU20 DCM", "COBB & DAY\nPLUMBERS", -32.2),
         ("green", "MX18 POG", "ORCHARD\nFRUIT", 39.4),
     ):
-        van = vehicles.van(colour, plate=plate, lettering=lettering)
+        van = cars.van(colour, plate=plate, lettering=lettering)
         words = lettering.replace("\n", " ").lower()
         stage.place(
             van,
@@ -63,7 +65,7 @@ def _vehicles(stage: Stage) -> None:
             facing="south",
             lettering=words,
         )
-    taxi = vehicles.saloon("black", plate="TX16 AKE")
+    taxi = cars.saloon("black", plate="TX16 AKE")
     cab = stage.place(
         taxi,
         "car",
@@ -93,13 +95,13 @@ def _vehicles(stage: Stage) -> None:
         destination="station", plate="BV69 HLK", state="stopped", facing="north",
     )  # fmt: skip
     rows = (
-        (vehicles.saloon, "white", "KP22 SEV", "saloon", (SOUTHBOUND_X + 0.2, -45.4), 180, "waiting", "south"),
-        (vehicles.suv, "dark green", "OU71 BFA", "SUV", (-21.0, 57.2), 90, "moving", "east"),
-        (vehicles.hatchback, "light blue", "WJ14 GCT", "hatchback", (11.5, -57.3), 270, "moving", "west"),
-        (vehicles.saloon, "brown", "HD13 YRM", "saloon", (34.0, 53.4), 270, "parked", "west"),
-        (vehicles.suv, "black", "SC20 NOX", "SUV", (-40.0, 53.4), 270, "parked", "west"),
-        (vehicles.hatchback, "white", "DG65 LWP", "hatchback", (-30.0, -53.5), 90, "parked", "east"),
-        (vehicles.saloon, "grey", "AE09 VHU", "saloon", (46.0, -53.5), 90, "parked", "east"),
+        (cars.saloon, "white", "KP22 SEV", "saloon", (SOUTHBOUND_X + 0.2, -45.4), 180, "waiting", "south"),
+        (cars.suv, "dark green", "OU71 BFA", "SUV", (-21.0, 57.2), 90, "moving", "east"),
+        (cars.hatchback, "light blue", "WJ14 GCT", "hatchback", (11.5, -57.3), 270, "moving", "west"),
+        (cars.saloon, "brown", "HD13 YRM", "saloon", (34.0, 53.4), 270, "parked", "west"),
+        (cars.suv, "black", "SC20 NOX", "SUV", (-40.0, 53.4), 270, "parked", "west"),
+        (cars.hatchback, "white", "DG65 LWP", "hatchback", (-30.0, -53.5), 90, "parked", "east"),
+        (cars.saloon, "grey", "AE09 VHU", "saloon", (46.0, -53.5), 90, "parked", "east"),
     )  # fmt: skip
     for make, colour, plate, noun, (x, y), bearing, state, facing in rows:
         stage.place(
@@ -124,7 +126,7 @@ def _actors(stage: Stage) -> None:
     gx, gy, gz = stances.LEAD_GRIP
     stage.actors = [
         ActorPath(
-            "moving-car-01", FIRST_ACTOR, "car", "orange hatchback", lambda _phase: vehicles.hatchback("orange", plate="NB23 RTG"),
+            "moving-car-01", FIRST_ACTOR, "car", "orange hatchback", lambda _phase: cars.hatchback("orange", plate="NB23 RTG"),
             _timed([(30.0, 53.9), (6.5, 53.9), (2.6, 52.4), (1.5, 48.5), (1.5, -36.0)], 9.0, 12.0), PERIOD_S,
             {"colour": "orange", "kind": "hatchback", "plate": "NB23 RTG", "state": "moving", "facing": "south"},
         ),
@@ -139,13 +141,13 @@ def _actors(stage: Stage) -> None:
         ),
         ActorPath(
             "moving-walker-02", FIRST_ACTOR + 3, "pedestrian", "dog walker in a yellow jumper",
-            lambda phase: people.pedestrian(stance=stances.leading(phase), top="yellow", seed=92), _closed(dog_walk, PERIOD_S),
+            lambda phase: characters.pedestrian(stance=stances.leading(phase), top="yellow", seed=92), _closed(dog_walk, PERIOD_S),
             PERIOD_S,
             {"top": "yellow", "state": "walking", "holding": "lead"}, stride_m=1.15,
         ),
         ActorPath(
             "moving-dog-01", FIRST_ACTOR + 4, "dog", "black dog",
-            lambda phase: companions.dog("black", phase=phase, lead_to=(gx - 0.45, gy - 0.1, gz)), _beside(dog_walk, beside),
+            lambda phase: dogs.dog("black", phase=phase, lead_to=(gx - 0.45, gy - 0.1, gz)), _beside(dog_walk, beside),
             PERIOD_S,
             {"colour": "black", "state": "walking", "collar": "red"}, stride_m=0.75,
         ),
@@ -154,12 +156,12 @@ def _actors(stage: Stage) -> None:
 
 def _cyclist(phase: float) -> Built:
     bicycle = cycles.bicycle("blue", kind="town", crank_deg=360 * phase)
-    rider = people.pedestrian(stance=stances.riding(360 * phase), top="dark red", trousers="black", seed=14)
+    rider = characters.pedestrian(stance=stances.riding(360 * phase), top="dark red", trousers="black", seed=14)
     return Built.of("cyclist", [_loose(bicycle), _loose(rider)])
 
 
 def _walker(phase: float) -> Built:
-    person = people.pedestrian(stance=stances.with_umbrella(phase, seed=91), top="navy", seed=91)
+    person = characters.pedestrian(stance=stances.with_umbrella(phase, seed=91), top="navy", seed=91)
     canopy = umbrellas.umbrella("white")
     obj = _loose(canopy)
     for vertex in obj.data.vertices:
@@ -168,20 +170,20 @@ def _walker(phase: float) -> Built:
 
 
 def _loose(built: Built) -> bpy.types.Object:
-    """The single object of a thing, free of its root."""
+    """Return the single object of a thing, detached from its root."""
     obj = built.objects[0]
     obj.parent = None
     return obj
 
 
 def _height(x: float, y: float) -> float:
-    """Footway or road: kerbs are dropped at the zebra."""
+    """Return the height of footway or road. Kerbs are dropped at the zebra crossing."""
     on_road = -3.2 < x < 5.4
     return 0.0 if on_road and ZEBRA[0] - 1 < y < ZEBRA[1] + 1 else KERB_M
 
 
 def _closed(corners: list[tuple[float, float]], period_s: float) -> list[tuple[float, float, float, float]]:
-    """A closed walk at an even speed that takes ``period_s``, stepping down where it crosses the road."""
+    """Return a closed path at constant speed that takes ``period_s`` and steps down where it crosses the road."""
     ring = []
     for (x0, y0), (x1, y1) in zip(corners, corners[1:] + corners[:1], strict=True):
         ring.append((x0, y0))
@@ -205,6 +207,6 @@ def _timed(points: list[tuple[float, float]], speed_mps: float, start_s: float) 
 
 
 def _beside(lead: list[tuple[float, float]], own: list[tuple[float, float]]) -> list[tuple[float, float, float, float]]:
-    """A walk along ``own`` corners that keeps step with a walker along the ``lead`` corners."""
+    """Return a path along the ``own`` corners that keeps pace with a walker along the ``lead`` corners."""
     times = [w[0] for w in _closed(lead, PERIOD_S)]
     return [(t, *p, KERB_M) for t, p in zip(times, [*own, own[0]], strict=True)]

@@ -1,13 +1,13 @@
-"""High street: what the shops show behind their windows and put out on the footway."""
+"""High street: goods in the shop windows and on the footway."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from scope_studio.kit.buildings import cafe, shop_goods, shop_trade
 from scope_studio.kit.buildings.shopfronts import SILL_M
 from scope_studio.kit.core.stage import Built, Stage
-from scope_studio.kit.works import works
+from scope_studio.kit.furniture import cafe, shop_displays, shop_goods
+from scope_studio.kit.works import equipment, materials
 from scope_studio.scenes.high_street.shops import plots
 
 SHELF_M = SILL_M - 0.012
@@ -16,6 +16,7 @@ Ware = tuple[Callable[[], Built], str, str, dict[str, str]]
 
 
 def build(stage: Stage, shops: dict[int, str]) -> None:
+    """Place the goods of all shops."""
     _windows(stage, shops)
     _boards(stage, shops)
     _greengrocer(stage, shops[22])
@@ -28,12 +29,12 @@ def build(stage: Stage, shops: dict[int, str]) -> None:
 def _row(
     stage: Stage, number: int, parent: str, xs: Sequence[float], wares: Sequence[Ware], *, y: float = -0.30, z: float = SHELF_M
 ) -> None:
-    """Wares in a row on the display shelf of a number's window; equal ones are linked copies."""
+    """Place goods in a row on the display shelf of a shop's window. Equal ones are linked copies."""
     plot = plots()[number]
-    moulds: dict[str, Built] = {}
+    prototypes: dict[str, Built] = {}
     for k, x in enumerate(xs):
         make, category, name, facts = wares[k % len(wares)]
-        built = moulds[name].copy() if name in moulds else moulds.setdefault(name, make())
+        built = prototypes[name].copy() if name in prototypes else prototypes.setdefault(name, make())
         shift = 0.06 * ((k * 7) % 3 - 1)
         stage.place(
             built,
@@ -100,13 +101,13 @@ BOARDS: tuple[tuple[int, float, float, tuple[str, ...], str], ...] = (
     (16, -2.4, 2.5, ("LAMPS", "HALF PRICE"), "navy"),
     (6, 2.3, 2.4, ("CUT AND DRY", "28.00", "NO BOOKING"), "black"),
 )
-"""Pavement boards: number, place before the front (m), lines, colour."""
+"""Pavement boards: number, place in front of the shop (m), lines, colour."""
 
 
 def _boards(stage: Stage, shops: dict[int, str]) -> None:
     for number, x, y, lines, colour in BOARDS:
         plot = plots()[number]
-        board = shop_trade.a_board(lines, colour, "white")
+        board = shop_displays.a_board(lines, colour, "white")
         bearing = plot.bearing_deg + 90 + (12 if number % 3 else -9)
         stage.place(
             board,
@@ -133,16 +134,16 @@ def _greengrocer(stage: Stage, shop: str) -> None:
     }
     made: dict[str, Built] = {}
     for k, load in enumerate(("apples", "oranges", "cabbages", "potatoes", "tomatoes", "lemons", "green apples", "oranges")):
-        built = made[load].copy() if load in made else made.setdefault(load, shop_trade.crate(load))
+        built = made[load].copy() if load in made else made.setdefault(load, shop_displays.crate(load))
         x, y = 0.55 - 0.62 * (k % 6) if k < 6 else -0.2 - 0.9 * (k - 6), 0.62 if k < 6 else 1.15
         stage.place(
             built, "crate", f"crate of {load}", plot.at(x, y, 0.0 if k >= 6 else 0.22), plot.bearing_deg, parent=shop,
             load=load, state="full", material="timber",
         )  # fmt: skip
         if k < 6:
-            empty = made["none"].copy() if "none" in made else made.setdefault("none", shop_trade.crate(None, colour="green"))
+            empty = made["none"].copy() if "none" in made else made.setdefault("none", shop_displays.crate(None, colour="green"))
             stage.put(empty, plot.at(x, y, 0.0), plot.bearing_deg)
-            card = shop_trade.price_card(load.upper(), prices[load])
+            card = shop_displays.price_card(load.upper(), prices[load])
             stage.place(
                 card,
                 "price card",
@@ -170,8 +171,8 @@ def _florist(stage: Stage, shop: str) -> None:
     ):
         x, y = 0.9 - 0.52 * (k % 6), 0.55 + 0.5 * (k // 6) + 0.08 * (k % 2)
         stage.place(
-            shop_trade.flower_bucket(colours, seed=k), "flower bucket", f"bucket of {colours[0]} flowers", plot.at(x, y), 30.0 * k,
-            parent=shop, colour=colours[0],
+            shop_displays.flower_bucket(colours, seed=k), "flower bucket", f"bucket of {colours[0]} flowers", plot.at(x, y),
+            30.0 * k, parent=shop, colour=colours[0],
         )  # fmt: skip
 
 
@@ -197,7 +198,7 @@ def _cafe(stage: Stage, shop: str) -> None:
 def _hardware(stage: Stage, shop: str) -> None:
     plot = plots()[23]
     stage.place(
-        works.wheelbarrow("green", load=False),
+        equipment.wheelbarrow("green", load=False),
         "wheelbarrow",
         "green wheelbarrow",
         plot.at(2.4, 0.75),
@@ -207,7 +208,7 @@ def _hardware(stage: Stage, shop: str) -> None:
         state="empty",
     )
     stage.place(
-        works.wheelbarrow("red", load=False),
+        equipment.wheelbarrow("red", load=False),
         "wheelbarrow",
         "red wheelbarrow",
         plot.at(-2.9, 0.75),
@@ -218,7 +219,7 @@ def _hardware(stage: Stage, shop: str) -> None:
     )
     for k, colour in enumerate(("red", "green")):
         stage.place(
-            works.fuel_can(colour),
+            materials.fuel_can(colour),
             "fuel can",
             f"{colour} fuel can",
             plot.at(1.25 + 0.4 * k, 0.45),
@@ -226,7 +227,7 @@ def _hardware(stage: Stage, shop: str) -> None:
             parent=shop,
             colour=colour,
         )
-    stage.place(works.toolbox("red"), "toolbox", "red toolbox", plot.at(-1.5, 0.5), plot.bearing_deg, parent=shop, colour="red")
+    stage.place(materials.toolbox("red"), "toolbox", "red toolbox", plot.at(-1.5, 0.5), plot.bearing_deg, parent=shop, colour="red")
 
 
 def _deliveries(stage: Stage) -> None:
@@ -241,7 +242,7 @@ def _deliveries(stage: Stage) -> None:
             ("yellow", 3.25, 1.0, 0.0),
         )
     ):
-        built = made[colour].copy() if colour in made else made.setdefault(colour, shop_trade.crate(None, colour=colour))
+        built = made[colour].copy() if colour in made else made.setdefault(colour, shop_displays.crate(None, colour=colour))
         stage.place(
             built,
             "crate",

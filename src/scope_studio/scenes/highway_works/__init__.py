@@ -1,4 +1,4 @@
-"""Scene "highway-works": a lane of a dual carriageway closed for resurfacing, seen from a mast and from an overbridge."""
+"""Highway works: a lane of a dual carriageway closed for resurfacing, seen from a mast, a bridge and the verge."""
 
 from __future__ import annotations
 
@@ -6,11 +6,7 @@ import bpy
 
 from scope_studio.kit.core.stage import Stage
 from scope_studio.kit.light import sky
-from scope_studio.scenes.highway_works import land as highway_land
-from scope_studio.scenes.highway_works import plants as highway_plants
-from scope_studio.scenes.highway_works import road as highway_road
-from scope_studio.scenes.highway_works import site as highway_site
-from scope_studio.scenes.highway_works import traffic as highway_traffic
+from scope_studio.scenes.highway_works import land, plants, road, site, traffic
 
 NAME = "highway-works"
 TITLE = "Highway works"
@@ -18,18 +14,18 @@ ABSENT = (
     "ambulance", "bench", "bicycle", "bulldozer", "cow", "crane", "dog", "fire engine", "horse", "motorcycle", "police car",
     "swimming pool", "tractor", "traffic light", "train", "wind turbine",
 )  # fmt: skip
-"""Things that a person might ask for and that are not there."""
+"""Things that a person might ask for but that are not in the scene."""
 
 
 def build(stage: Stage) -> None:
-    """Build the whole scene in an empty Blender file and fill in the stage."""
-    stage.start_s = 10.0  # the saloon, the van and the walking worker are all in the home view then
+    """Build the whole scene in an empty Blender file and fill the stage."""
+    stage.start_s = 10.0  # the saloon, the van and the walking worker are all in the home view at that time
     sky.setup(bpy.context.scene)
-    highway_traffic.build(stage)
-    highway_site.build(stage)
-    highway_road.build(stage)
-    highway_land.build(stage)
-    highway_plants.build(stage)  # last: lettering slows down with every object that the file already holds
+    traffic.build(stage)
+    site.build(stage)
+    road.build(stage)
+    land.build(stage)
+    plants.build(stage)  # last, because lettering is slower the more objects the file holds
     _cameras(stage)
     stage.absent = list(ABSENT)
     stage.finish = sky.finish_materials

@@ -8,15 +8,15 @@ from itertools import pairwise
 
 import bpy
 
-from scope_studio.kit.buildings import buildings, structures
+from scope_studio.kit.buildings import detached, structures
 from scope_studio.kit.core.mesh import from_data
 from scope_studio.kit.core.shading import Shader
 from scope_studio.kit.core.stage import Stage
-from scope_studio.kit.nature import ground, markings
+from scope_studio.kit.ground import highway, markings, terrain
 
 Height = Callable[[float, float], float]
 
-ROAD = ground.Carriageway(
+ROAD = highway.Carriageway(
     lines=(
         markings.Line(2.15, 0.20),
         markings.Line(5.5, 0.13, 2.0, 7.0),
@@ -40,15 +40,16 @@ DECK_M = 6.9
 
 
 def build(stage: Stage) -> None:
-    height = ground.hills(ROAD)
+    """Place road, land, bridge and buildings."""
+    height = terrain.hills(ROAD)
     bare = [
         (COMPOUND[0] - 2, COMPOUND[1] + 1.5, COMPOUND[2] - 2, COMPOUND[3] + 1),
         (-38.0, -27.0, 2.0, 17.0),
         (-38.0, -15.0, 12.0, 21.0),
         (-24.0, -15.0, 18.0, 56.0),
     ]
-    stage.put(ground.terrain(ROAD, bare), (0, 0, 0))
-    stage.put(ground.carriageways(ROAD), (0, 0, 0))
+    stage.put(terrain.terrain(ROAD, bare), (0, 0, 0))
+    stage.put(highway.carriageways(ROAD), (0, 0, 0))
     _bridge(stage)
     _yard()
     _buildings(stage, height)
@@ -80,7 +81,7 @@ def _buildings(stage: Stage, height: Height) -> None:
     white, dark = (0.62, 0.63, 0.62), (0.05, 0.07, 0.09)
     sheds = [
         (
-            buildings.shed(
+            detached.shed(
                 width_m=46,
                 depth_m=30,
                 height_m=9.5,
@@ -95,7 +96,7 @@ def _buildings(stage: Stage, height: Height) -> None:
             "blue warehouse",
         ),
         (
-            buildings.shed(
+            detached.shed(
                 width_m=38,
                 depth_m=26,
                 height_m=8.0,
@@ -110,7 +111,7 @@ def _buildings(stage: Stage, height: Height) -> None:
             "grey warehouse",
         ),
         (
-            buildings.shed(
+            detached.shed(
                 width_m=30, depth_m=22, height_m=7.0, colour=(0.10, 0.20, 0.13), trim=dark, lettering="COLDSTORE 3", docks=3
             ),
             (112.0, -52.0),
@@ -132,26 +133,26 @@ def _buildings(stage: Stage, height: Height) -> None:
     ]
     for k, (x, y, bearing, brick, roof, door) in enumerate(houses):
         colour = "buff" if brick is buff else "red"
-        built = buildings.house(brick=brick, roof=roof, door=door, seed=k)
+        built = detached.house(brick=brick, roof=roof, door=door, seed=k)
         stage.place(
             built, "building", f"{colour} brick house", (x, y, height(x, y)), bearing, colour=colour, material="brick", kind="house"
         )
     x, y = -128.0, -62.0
     stage.place(
-        buildings.barn(), "building", "timber barn", (x, y, height(x, y)), 60, colour="brown", material="timber", kind="barn"
+        detached.barn(), "building", "timber barn", (x, y, height(x, y)), 60, colour="brown", material="timber", kind="barn"
     )
     _power_line(stage, height)
 
 
 def _power_line(stage: Stage, height: Height) -> None:
-    """Three pylons that cross the road far to the south, with sagging wires."""
-    mould = structures.pylon()
+    """Place three pylons that cross the road far to the south, with sagging wires."""
+    prototype = structures.pylon()
     feet = [(-430.0, -160.0), (-185.0, -205.0), (75.0, -252.0), (330.0, -300.0)]
     bearing = math.degrees(math.atan2(-(feet[1][1] - feet[0][1]), feet[1][0] - feet[0][0]))
     points: list[tuple[float, float, float]] = []
     faces: list[tuple[int, ...]] = []
     for k, (x, y) in enumerate(feet):
-        built = mould if k == 0 else mould.copy()
+        built = prototype if k == 0 else prototype.copy()
         stage.place(built, "pylon", "electricity pylon", (x, y, height(x, y) - 0.3), bearing + 90, colour="grey", material="steel")
     across = (math.sin(math.radians(bearing + 180)), math.cos(math.radians(bearing + 180)))
     for (x0, y0), (x1, y1) in pairwise(feet):

@@ -1,4 +1,4 @@
-"""Highway works: everything that grows, and the fences among it."""
+"""Highway works: trees, hedges and grass, and the fences among them."""
 
 from __future__ import annotations
 
@@ -7,12 +7,14 @@ import random
 
 from scope_studio.kit.buildings import structures
 from scope_studio.kit.core.stage import Built, Stage
-from scope_studio.kit.nature import ground, vegetation
+from scope_studio.kit.ground import terrain
+from scope_studio.kit.nature import vegetation
 from scope_studio.scenes.highway_works.land import ROAD, Height
 
 
 def build(stage: Stage) -> None:
-    height = ground.hills(ROAD)
+    """Place all plants."""
+    height = terrain.hills(ROAD)
     _near_trees(stage, height)
     _boundaries(stage, height)
     _countryside(stage, height)
@@ -32,7 +34,7 @@ def _near_trees(stage: Stage, height: Height) -> None:
             vegetation.BUSH,
         )
     }
-    moulds: dict[tuple[str, int], Built] = {}
+    prototypes: dict[tuple[str, int], Built] = {}
     rows = [
         ("lime", 0, 24.5, 24.0),
         ("birch", 0, 23.5, 33.5),
@@ -66,7 +68,7 @@ def _near_trees(stage: Stage, height: Height) -> None:
     rng = random.Random("near trees")
     for name, seed, x, y in rows:
         key = (name, seed)
-        built = moulds[key].copy() if key in moulds else moulds.setdefault(key, vegetation.tree(kinds[name], seed))
+        built = prototypes[key].copy() if key in prototypes else prototypes.setdefault(key, vegetation.tree(kinds[name], seed))
         category = "bush" if name == "bush" else "tree"
         noun = {"lime": "lime tree", "birch": "birch tree", "oak": "oak tree", "pine": "pine tree", "poplar": "poplar tree"}.get(
             name, name
@@ -85,7 +87,7 @@ def _near_trees(stage: Stage, height: Height) -> None:
 
 
 def _boundaries(stage: Stage, height: Height) -> None:
-    """Timber fences along the highway boundary, hedges behind them. Unannotated: they run on for ever."""
+    """Place timber fences along the highway boundary and hedges behind them. They have no visible ends and are not annotated."""
     fence = structures.post_and_rail(9.0)
     first = True
     for x, spans in ((27.5, ((-190, 64), (106, 190))), (-21.2, ((106, 190), (-190, -50)))):
@@ -123,7 +125,7 @@ def _boundaries(stage: Stage, height: Height) -> None:
 
 
 def _countryside(stage: Stage, height: Height) -> None:
-    """Woods that close the road's vanishing points, hedgerow trees in the fields, woods on the hills."""
+    """Place woods at the road's vanishing points and on the hills, and hedgerow trees in the fields."""
     rng = random.Random("countryside")
     species = (vegetation.OAK, vegetation.LIME, vegetation.POPLAR, vegetation.PINE, vegetation.COPPER)
     far = [vegetation.tree(sp, 7 + k, detail=0.14) for k, sp in enumerate(species)] + [
@@ -133,9 +135,9 @@ def _countryside(stage: Stage, height: Height) -> None:
     hedgerow = vegetation.hedge(16.0, seed=9, detail=0.16)
     fresh = {id(m) for m in [*far, scrub, hedgerow]}
 
-    def strew(mould: Built, x: float, y: float, bearing: float, scale: float) -> None:
-        built = mould if id(mould) in fresh else mould.copy()
-        fresh.discard(id(mould))
+    def strew(prototype: Built, x: float, y: float, bearing: float, scale: float) -> None:
+        built = prototype if id(prototype) in fresh else prototype.copy()
+        fresh.discard(id(prototype))
         stage.put(built, (x, y, height(x, y) - 0.1), bearing, scale=scale)
 
     def any_tree() -> Built:
@@ -179,22 +181,22 @@ def _countryside(stage: Stage, height: Height) -> None:
 
 
 def _grass(stage: Stage) -> None:
-    """Real blades wherever a camera can look closely: the verges near both viewpoints."""
+    """Place grass blades where a camera can look closely: on the verges near the viewpoints."""
     rng = random.Random("grass")
     long = [vegetation.grass_patch(2.0, blades=1500, height_m=0.17, seed=k, flowers=4 * (k == 0)) for k in range(3)]
     mown = [vegetation.grass_patch(2.0, blades=1700, height_m=0.075, seed=10 + k) for k in range(2)]
     used: set[int] = set()
 
-    def strew(moulds: list[Built], x: float, y: float) -> None:
-        mould = rng.choice(moulds)
-        built = mould.copy() if id(mould) in used else mould
-        used.add(id(mould))
+    def strew(prototypes: list[Built], x: float, y: float) -> None:
+        prototype = rng.choice(prototypes)
+        built = prototype.copy() if id(prototype) in used else prototype
+        used.add(id(prototype))
         stage.put(built, (x, y, -0.03), 90 * rng.randrange(4) + rng.uniform(-8, 8), scale=rng.uniform(0.95, 1.2))
 
-    def row(moulds: list[Built], x: float, y: float, share: float = 1.0) -> None:
+    def row(prototypes: list[Built], x: float, y: float, share: float = 1.0) -> None:
         if rng.random() < share:
             wide = 0.25 if share == 1.0 else 0.9
-            strew(moulds, x + rng.uniform(-wide, wide), y + rng.uniform(-0.4, 0.4))
+            strew(prototypes, x + rng.uniform(-wide, wide), y + rng.uniform(-0.4, 0.4))
 
     for y in range(-60, 76, 2):
         if not 8 < y < 58:

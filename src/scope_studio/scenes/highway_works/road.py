@@ -1,19 +1,21 @@
-"""Highway works: what stands along the road: gantries, signs, lamp posts, guardrails, marker posts, telephones."""
+"""Highway works: things along the road: gantries, signs, lamp posts, guardrails, marker posts, telephones."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 from scope_studio.kit.core.stage import Built, Stage
-from scope_studio.kit.furniture import furniture
-from scope_studio.kit.signs import signs
-from scope_studio.kit.signs.signs import Panel, Signal
+from scope_studio.kit.furniture import roadside
+from scope_studio.kit.signs import gantry, message_sign, road_signs
+from scope_studio.kit.signs.faces import Panel
+from scope_studio.kit.signs.gantry import Signal
 
 SOUTH, NORTH = 180.0, 0.0
-"""Which way a sign's front looks. Northbound drivers read the fronts that look south."""
+"""Bearing that a sign's front faces. Northbound drivers read the fronts that face south."""
 
 
 def build(stage: Stage) -> None:
+    """Place everything along the road."""
     _gantries(stage)
     _direction_signs(stage)
     _works_signs(stage)
@@ -24,7 +26,7 @@ def build(stage: Stage) -> None:
 
 
 def _gantries(stage: Stage) -> None:
-    north = signs.gantry(
+    north = gantry.gantry(
         16.4,
         [
             (-3.1, Panel(("Harrowfield\t6", "Brampton\t14"), 6.2, 2.7, "blue", 0.40, route="A482")),
@@ -37,7 +39,7 @@ def _gantries(stage: Stage) -> None:
     stage.place(
         north, "gantry", "northbound gantry", (-8.7, 45.5, 0), 0, colour="blue", readable_by="northbound drivers", signal="50"
     )
-    south = signs.gantry(
+    south = gantry.gantry(
         16.4,
         [
             (-1.0, Panel(("Stoke Mallory\t9", "Ashdown\t17"), 6.6, 2.8, "blue", 0.42, route="A482")),
@@ -58,17 +60,19 @@ def _sign(stage: Stage, built: Built, name: str, x: float, y: float, bearing: fl
 
 
 def _direction_signs(stage: Stage) -> None:
-    ahead = signs.panel(("Services", "Petrol  Food  Beds"), width=3.9, height=1.8, background="blue", cap_height=0.28)
+    ahead = road_signs.panel(("Services", "Petrol  Food  Beds"), width=3.9, height=1.8, background="blue", cap_height=0.28)
     _sign(stage, ahead, "blue services sign", -20.4, 67.5, SOUTH, "services petrol food beds", "blue")
-    farm = signs.panel(("Wetland Centre", "next exit"), width=3.3, height=1.3, background="brown", cap_height=0.22)
+    farm = road_signs.panel(("Wetland Centre", "next exit"), width=3.3, height=1.3, background="brown", cap_height=0.22)
     _sign(stage, farm, "brown tourist sign", 19.2, 47.0, NORTH, "wetland centre next exit", "brown")
-    route = signs.panel(
+    route = road_signs.panel(
         ("Stoke Mallory\t9", "Ashdown\t17", "Linton\t23"), width=4.0, height=2.6, background="green", cap_height=0.30
     )
     _sign(stage, route, "green distance sign", 19.6, 20.0, NORTH, "stoke mallory 9 ashdown 17 linton 23", "green")
-    later = signs.panel(("Linton B17", "Industrial Estate", "1/2 mile"), width=4.2, height=2.4, background="blue", cap_height=0.30)
+    later = road_signs.panel(
+        ("Linton B17", "Industrial Estate", "1/2 mile"), width=4.2, height=2.4, background="blue", cap_height=0.30
+    )
     _sign(stage, later, "blue exit sign", 19.4, -42.0, NORTH, "linton b17 industrial estate half mile", "blue")
-    board = signs.variable_message(("SLOW", "QUEUE", "AHEAD"), width=3.4, height=2.2)
+    board = message_sign.variable_message(("SLOW", "QUEUE", "AHEAD"), width=3.4, height=2.2)
     stage.place(
         board,
         "message sign",
@@ -79,7 +83,7 @@ def _direction_signs(stage: Stage) -> None:
         reads="slow queue ahead",
         facing="north",
     )
-    second = signs.variable_message(("50 MPH", "CAMERAS", "IN USE"), width=3.4, height=2.2)
+    second = message_sign.variable_message(("50 MPH", "CAMERAS", "IN USE"), width=3.4, height=2.2)
     stage.place(
         second,
         "message sign",
@@ -94,12 +98,22 @@ def _direction_signs(stage: Stage) -> None:
 
 def _works_signs(stage: Stage) -> None:
     rows: Sequence[tuple[Built, str, float, float, float, str, str]] = [
-        (signs.triangle("1 mile", symbol="works"), "road works sign", -16.6, -112.0, SOUTH, "1 mile", "red and white"),
-        (signs.lane_closed(3, (0,), "200 yds"), "lane closed sign", -16.6, -96.0, SOUTH, "200 yds", "white"),
-        (signs.lane_closed(3, (0,), None), "lane closed sign", -16.5, -82.0, SOUTH, "", "white"),
-        (signs.works_access(("WORKS", "ACCESS"), direction="left"), "works access sign", -16.4, 9.5, SOUTH, "works access", "red"),
+        (road_signs.triangle("1 mile", symbol="works"), "road works sign", -16.6, -112.0, SOUTH, "1 mile", "red and white"),
+        (road_signs.lane_closed(3, (0,), "200 yds"), "lane closed sign", -16.6, -96.0, SOUTH, "200 yds", "white"),
+        (road_signs.lane_closed(3, (0,), None), "lane closed sign", -16.5, -82.0, SOUTH, "", "white"),
         (
-            signs.panel(("END OF", "ROAD WORKS"), width=2.2, height=1.1, background="yellow", cap_height=0.24, post_height=1.2),
+            road_signs.works_access(("WORKS", "ACCESS"), direction="left"),
+            "works access sign",
+            -16.4,
+            9.5,
+            SOUTH,
+            "works access",
+            "red",
+        ),
+        (
+            road_signs.panel(
+                ("END OF", "ROAD WORKS"), width=2.2, height=1.1, background="yellow", cap_height=0.24, post_height=1.2
+            ),
             "yellow end of works sign",
             -16.9,
             63.0,
@@ -108,7 +122,7 @@ def _works_signs(stage: Stage) -> None:
             "yellow",
         ),
         (
-            signs.panel(("WORKS", "EXIT"), width=1.5, height=0.9, background="red", cap_height=0.22, post_height=1.0),
+            road_signs.panel(("WORKS", "EXIT"), width=1.5, height=0.9, background="red", cap_height=0.22, post_height=1.0),
             "red works exit sign",
             -16.9,
             26.0,
@@ -117,7 +131,7 @@ def _works_signs(stage: Stage) -> None:
             "red",
         ),
         (
-            signs.panel(
+            road_signs.panel(
                 ("ROAD WORKS", "NEXT 2 MILES", "SORRY FOR ANY DELAY"),
                 width=3.2,
                 height=1.6,
@@ -133,7 +147,7 @@ def _works_signs(stage: Stage) -> None:
             "yellow",
         ),
         (
-            signs.panel(
+            road_signs.panel(
                 ("FREE RECOVERY", "AWAIT RESCUE"), width=2.6, height=1.2, background="yellow", cap_height=0.22, post_height=1.3
             ),
             "yellow recovery sign",
@@ -144,7 +158,7 @@ def _works_signs(stage: Stage) -> None:
             "yellow",
         ),
         (
-            signs.triangle("Works traffic", symbol="exclamation"),
+            road_signs.triangle("Works traffic", symbol="exclamation"),
             "works traffic sign",
             16.9,
             62.0,
@@ -153,7 +167,7 @@ def _works_signs(stage: Stage) -> None:
             "red and white",
         ),
         (
-            signs.project_board(
+            road_signs.project_board(
                 (
                     "CASTELL HIGHWAYS",
                     "A482 Resurfacing, Junctions 4 to 6",
@@ -184,10 +198,10 @@ def _works_signs(stage: Stage) -> None:
 
 def _small_signs(stage: Stage) -> None:
     for x, y, bearing in ((-16.9, -66.0, SOUTH), (-16.7, 20.5, SOUTH), (16.8, 70.0, NORTH), (16.8, -4.0, NORTH)):
-        _sign(stage, signs.round_limit("50"), "50 speed limit sign", x, y, bearing, "50", "red and white", kind="speed limit")
+        _sign(stage, road_signs.round_limit("50"), "50 speed limit sign", x, y, bearing, "50", "red and white", kind="speed limit")
     _sign(
         stage,
-        signs.round_limit("10", diameter=0.6, post_height=1.5),
+        road_signs.round_limit("10", diameter=0.6, post_height=1.5),
         "10 speed limit sign",
         -29.3,
         5.2,
@@ -208,7 +222,7 @@ def _small_signs(stage: Stage) -> None:
     ):
         _sign(
             stage,
-            signs.warning_plate(text, background=colour, cap_height=0.075),
+            road_signs.warning_plate(text, background=colour, cap_height=0.075),
             name,
             x,
             y,
@@ -219,7 +233,7 @@ def _small_signs(stage: Stage) -> None:
         )
     for k, y in enumerate((-78.0, -44.0, -2.5, 5.5, 38.0, 66.5)):
         stage.place(
-            signs.marker_post(f"42/{3 + k}"),
+            road_signs.marker_post(f"42/{3 + k}"),
             "marker post",
             "white marker post",
             (-16.25, y, 0),
@@ -229,7 +243,7 @@ def _small_signs(stage: Stage) -> None:
         )
     for k, y in enumerate((68.0, 36.0, 2.0, -34.0, -70.0)):
         stage.place(
-            signs.marker_post(f"42/{4 + k}"),
+            road_signs.marker_post(f"42/{4 + k}"),
             "marker post",
             "white marker post",
             (16.25, y, 0),
@@ -240,16 +254,16 @@ def _small_signs(stage: Stage) -> None:
 
 
 def _guardrails(stage: Stage) -> None:
-    length, mould = 108.0, furniture.guardrail(108.0)
+    length, prototype = 108.0, roadside.guardrail(108.0)
     fresh = True
     for x, bearing in ((-0.95, 180.0), (0.95, 0.0)):
         for k in range(4):
-            built = mould if fresh else mould.copy()
+            built = prototype if fresh else prototype.copy()
             fresh = False
             stage.place(
                 built, "guardrail", "steel guardrail", (x, -162.0 + length * k, 0.07), bearing, material="steel", colour="grey"
             )
-    short = furniture.guardrail(16.0)
+    short = roadside.guardrail(16.0)
     stage.place(short, "guardrail", "steel guardrail", (-16.35, 46.5, 0), 0, material="steel", colour="grey", guards="gantry leg")
     stage.place(
         short.copy(), "guardrail", "steel guardrail", (16.35, -87.0, 0), 180, material="steel", colour="grey", guards="gantry leg"
@@ -257,17 +271,17 @@ def _guardrails(stage: Stage) -> None:
 
 
 def _lamps(stage: Stage) -> None:
-    mould = furniture.lamp_post(12.0, 2)
+    prototype = roadside.lamp_post(12.0, 2)
     for k, y in enumerate((-154.0, -118.0, -82.0, -46.0, -10.0, 26.0, 62.0, 112.0, 148.0)):
-        built = mould if k == 0 else mould.copy()
+        built = prototype if k == 0 else prototype.copy()
         stage.place(built, "lamp post", "double-armed lamp post", (0, y, 0.07), 90, colour="grey", state="unlit", arms=2)
 
 
 def _equipment(stage: Stage) -> None:
-    phone = furniture.emergency_phone("174")
+    phone = roadside.emergency_phone("174")
     stage.place(phone, "emergency phone", "orange emergency phone", (-16.9, 69.5, 0), 200, colour="orange", number="174")
     stage.place(
-        furniture.emergency_phone("175"),
+        roadside.emergency_phone("175"),
         "emergency phone",
         "orange emergency phone",
         (16.9, -9.5, 0),
@@ -275,12 +289,10 @@ def _equipment(stage: Stage) -> None:
         colour="orange",
         number="175",
     )
-    stage.place(furniture.cabinet(), "cabinet", "grey roadside cabinet", (-18.9, 12.6, 0), 170, colour="grey", state="closed")
+    stage.place(roadside.cabinet(), "cabinet", "grey roadside cabinet", (-18.9, 12.6, 0), 170, colour="grey", state="closed")
+    stage.place(roadside.cabinet(open=True), "cabinet", "open roadside cabinet", (-17.6, 44.6, 0), 190, colour="grey", state="open")
     stage.place(
-        furniture.cabinet(open=True), "cabinet", "open roadside cabinet", (-17.6, 44.6, 0), 190, colour="grey", state="open"
-    )
-    stage.place(
-        furniture.cabinet(colour="dark green"),
+        roadside.cabinet(colour="dark green"),
         "cabinet",
         "green roadside cabinet",
         (18.0, 51.0, 0),
@@ -288,8 +300,8 @@ def _equipment(stage: Stage) -> None:
         colour="green",
         state="closed",
     )
-    stage.place(furniture.cctv_pole(9.0), "camera pole", "camera pole", (19.4, 6.0, 0), -80, colour="grey")
-    drain = furniture.drain()
+    stage.place(roadside.cctv_pole(9.0), "camera pole", "camera pole", (19.4, 6.0, 0), -80, colour="grey")
+    drain = roadside.drain()
     for k, y in enumerate((-30.0, 0.0, 60.0)):
         for x in (-15.15, 15.15):
             built = drain if k == 0 and x < 0 else drain.copy()

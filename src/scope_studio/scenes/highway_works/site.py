@@ -4,27 +4,31 @@ from __future__ import annotations
 
 import math
 import random
-from collections.abc import Callable
 
+from scope_studio.kit.core.prototypes import Prototypes
 from scope_studio.kit.core.stage import Built, Stage
-from scope_studio.kit.people import people
-from scope_studio.kit.vehicles import machines
-from scope_studio.kit.works import works
-from scope_studio.kit.works.barriers import FENCE_PANEL_M
+from scope_studio.kit.people import characters
+from scope_studio.kit.vehicles import excavator, machines
+from scope_studio.kit.works import barriers, equipment, fencing, materials, site_units
+from scope_studio.kit.works.fencing import FENCE_PANEL_M
 from scope_studio.scenes.highway_works.land import COMPOUND
 
 GATE_X = -33.0
 LINE_X = -9.3
-"""The line of cones and barriers between the works and the traffic."""
+"""Line of cones and barriers between the works and the traffic."""
 
 TAPER = [(-15.1 + 5.8 * k / 9, -79.0 + 4.2 * k) for k in range(10)]
 CONES = [(LINE_X, y) for y in (-35.0, -28.5, -22.0, -15.5, -9.0, -2.5, 7.2, 10.8, 27.0, 31.0)]
 RESERVE_CONES = [(-1.72, y) for y in (9.2, 11.3, 13.5)]
-"""Cones beside the works, and by a damaged guardrail. From the mast, steps of 15 degrees to the right from the highway preset
-bring in two, four and seven of them, none near the edge of a frame or half hidden."""
+"""Cones on the central reserve, beside the works and a damaged guardrail.
+
+Seen from the mast, pan steps of 15 degrees to the right from the preset "highway" show two, four and seven of them. None of
+them is near the edge of a frame or half hidden.
+"""
 
 
 def build(stage: Stage) -> None:
+    """Place the works and the compound."""
     _cones(stage)
     _barriers(stage)
     _machines(stage)
@@ -34,24 +38,11 @@ def build(stage: Stage) -> None:
     _materials(stage)
 
 
-class Moulds:
-    """Builds each kind of thing once and hands out linked copies."""
-
-    def __init__(self) -> None:
-        self._made: dict[str, Built] = {}
-
-    def get(self, key: str, make: Callable[[], Built]) -> Built:
-        if key in self._made:
-            return self._made[key].copy()
-        self._made[key] = make()
-        return self._made[key]
-
-
 def _cones(stage: Stage) -> None:
-    moulds, rng = Moulds(), random.Random("cones")
+    prototypes, rng = Prototypes(), random.Random("cones")
     for k, (x, y) in enumerate(TAPER + CONES + RESERVE_CONES):
         part = "taper" if k < len(TAPER) else "lane closure" if x < -2 else "reserve repair"
-        built = moulds.get("cone", lambda: works.cone(1.0))
+        built = prototypes.get("cone", lambda: barriers.cone(1.0))
         lean = (rng.uniform(-2.5, 2.5), rng.uniform(-2.5, 2.5))
         stage.place(
             built,
@@ -67,10 +58,10 @@ def _cones(stage: Stage) -> None:
 
 
 def _barriers(stage: Stage) -> None:
-    moulds = Moulds()
+    prototypes = Prototypes()
     for k in range(14):
         colour = ("red", "white")[k % 2]
-        built = moulds.get(colour, lambda colour=colour: works.water_barrier(colour))
+        built = prototypes.get(colour, lambda colour=colour: barriers.water_barrier(colour))
         stage.place(
             built,
             "barrier",
@@ -82,7 +73,7 @@ def _barriers(stage: Stage) -> None:
             kind="water-filled",
         )
     for k in range(3):
-        built = moulds.get("concrete", lambda: works.concrete_barrier(3.0))
+        built = prototypes.get("concrete", lambda: barriers.concrete_barrier(3.0))
         stage.place(
             built,
             "barrier",
@@ -94,7 +85,7 @@ def _barriers(stage: Stage) -> None:
             kind="concrete",
         )
     for x, lit in ((-10.4, True), (-12.9, False)):
-        built = moulds.get(f"board {lit}", lambda lit=lit: works.barrier_board(lit=lit))
+        built = prototypes.get(f"board {lit}", lambda lit=lit: barriers.barrier_board(lit=lit))
         stage.place(
             built,
             "barrier",
@@ -106,12 +97,12 @@ def _barriers(stage: Stage) -> None:
             kind="board",
         )
     for x in (-10.6, -12.8, -15.0):
-        built = moulds.get("foot", works.chapter8_barrier)
+        built = prototypes.get("foot", barriers.chapter8_barrier)
         stage.place(
             built, "barrier", "orange pedestrian barrier", (x, -5.8, 0), 0, colour="orange", material="plastic", kind="pedestrian"
         )
     for k in range(5):
-        built = moulds.get("drum", works.drum)
+        built = prototypes.get("drum", barriers.drum)
         stage.place(
             built,
             "drum",
@@ -123,7 +114,7 @@ def _barriers(stage: Stage) -> None:
 
 
 def _machines(stage: Stage) -> None:
-    digger = machines.excavator("yellow", number="EX 14", boom_deg=46)
+    digger = excavator.excavator("yellow", number="EX 14", boom_deg=46)
     stage.place(digger, "excavator", "yellow excavator", (-11.4, 34.5, 0), 206, colour="yellow", number="EX 14", state="working")
     roller = machines.roller("yellow", number="R 07")
     stage.place(roller, "roller", "yellow road roller", (-11.3, 13.0, 0), 4, colour="yellow", number="R 07", state="working")
@@ -145,20 +136,20 @@ def _crew(stage: Stage) -> None:
         ("yellow", "yellow", None, "carry", -12.6, 49.5, 170, "worker carrying a load", "load"),
     ]
     for k, (vest, helmet, trousers, pose, x, y, bearing, name, holding) in enumerate(rows):
-        built = people.worker(vest=vest, helmet=helmet, trousers=trousers, pose=pose, phase=0.3, seed=k + 3)
+        built = characters.worker(vest=vest, helmet=helmet, trousers=trousers, pose=pose, phase=0.3, seed=k + 3)
         facts = {"carrying": holding} if holding else {}
         area = "compound" if x < -20 else "works"
         stage.place(built, "worker", name, (x, y, 0.0), bearing, vest=vest, helmet=helmet, pose=pose, area=area, **facts)
 
 
 def _fence(stage: Stage) -> None:
-    """Mesh panels round the compound, with a gap for the gate in the north side."""
-    moulds = Moulds()
+    """Place mesh panels around the compound, with a gap for the gate in the north side."""
+    prototypes = Prototypes()
     width = FENCE_PANEL_M[0] + 0.06
     west, east, south, north = COMPOUND
 
     def panel(x: float, y: float, bearing: float, plate: tuple[str, ...] = ()) -> None:
-        built = moulds.get("-".join(plate), lambda: works.mesh_fence_panel(plate))
+        built = prototypes.get("-".join(plate), lambda: fencing.mesh_fence_panel(plate))
         facts = {"plate": " ".join(plate).lower()} if plate else {}
         stage.place(built, "fence panel", "mesh fence panel", (x, y, 0), bearing, material="steel", **facts)
 
@@ -173,7 +164,7 @@ def _fence(stage: Stage) -> None:
     line(west, south, east, south, 0, {3: ("DANGER", "KEEP OUT")})
     line(west, north, GATE_X - 3.2, north, 180, {1: ("SITE TRAFFIC", "10 MPH")})
     line(GATE_X + 3.2, north, east, north, 180, {})
-    stage.place(works.gate(open=True), "gate", "site gate", (GATE_X, north, 0), 0, state="open", material="steel")
+    stage.place(fencing.gate(open=True), "gate", "site gate", (GATE_X, north, 0), 0, state="open", material="steel")
 
 
 def _compound(stage: Stage) -> None:
@@ -185,7 +176,7 @@ def _compound(stage: Stage) -> None:
     ):
         noun = colour.replace("light ", "")
         stage.place(
-            works.site_cabin(colour, text),
+            site_units.site_cabin(colour, text),
             "cabin",
             f"{noun} site cabin",
             (x, y, z),
@@ -196,7 +187,7 @@ def _compound(stage: Stage) -> None:
         )
     for colour, x, bearing in (("blue", -37.4, 140), ("green", -38.9, 150)):
         stage.place(
-            works.portable_toilet(colour),
+            site_units.portable_toilet(colour),
             "portable toilet",
             f"{colour} portable toilet",
             (x, 2.2, 0),
@@ -205,17 +196,41 @@ def _compound(stage: Stage) -> None:
             state="closed",
         )
     rows: list[tuple[Built, str, str, float, float, float, dict[str, str]]] = [
-        (works.skip("yellow"), "skip", "yellow skip", -28.0, -21.0, 70, {"colour": "yellow", "state": "full"}),
-        (works.skip("blue", full=False), "skip", "blue skip", -24.6, -18.2, 10, {"colour": "blue", "state": "empty"}),
-        (works.generator("green"), "generator", "green generator", -38.6, -19.0, 95, {"colour": "green"}),
-        (works.light_tower(lit=False), "light tower", "lighting tower", -39.6, -21.6, 200, {"colour": "yellow", "state": "unlit"}),
-        (works.light_tower(lit=True), "light tower", "lighting tower", -14.3, 52.5, 160, {"colour": "yellow", "state": "lit"}),
-        (works.arrow_board("right"), "arrow board", "lit arrow board", -12.6, -60.5, 180, {"state": "lit", "direction": "right"}),
-        (works.arrow_board("right", lit=False), "arrow board", "dark arrow board", -14.2, -36.5, 0, {"state": "unlit"}),
-        (works.plate_compactor(), "plate compactor", "yellow plate compactor", -14.7, 10.3, 130, {"colour": "yellow"}),
-        (works.wheelbarrow("green"), "wheelbarrow", "green wheelbarrow", -27.8, -6.6, 200, {"colour": "green", "state": "full"}),
+        (site_units.skip("yellow"), "skip", "yellow skip", -28.0, -21.0, 70, {"colour": "yellow", "state": "full"}),
+        (site_units.skip("blue", full=False), "skip", "blue skip", -24.6, -18.2, 10, {"colour": "blue", "state": "empty"}),
+        (equipment.generator("green"), "generator", "green generator", -38.6, -19.0, 95, {"colour": "green"}),
         (
-            works.wheelbarrow("red", load=False),
+            equipment.light_tower(lit=False),
+            "light tower",
+            "lighting tower",
+            -39.6,
+            -21.6,
+            200,
+            {"colour": "yellow", "state": "unlit"},
+        ),
+        (equipment.light_tower(lit=True), "light tower", "lighting tower", -14.3, 52.5, 160, {"colour": "yellow", "state": "lit"}),
+        (
+            equipment.arrow_board("right"),
+            "arrow board",
+            "lit arrow board",
+            -12.6,
+            -60.5,
+            180,
+            {"state": "lit", "direction": "right"},
+        ),
+        (equipment.arrow_board("right", lit=False), "arrow board", "dark arrow board", -14.2, -36.5, 0, {"state": "unlit"}),
+        (equipment.plate_compactor(), "plate compactor", "yellow plate compactor", -14.7, 10.3, 130, {"colour": "yellow"}),
+        (
+            equipment.wheelbarrow("green"),
+            "wheelbarrow",
+            "green wheelbarrow",
+            -27.8,
+            -6.6,
+            200,
+            {"colour": "green", "state": "full"},
+        ),
+        (
+            equipment.wheelbarrow("red", load=False),
             "wheelbarrow",
             "red wheelbarrow",
             -14.7,
@@ -223,20 +238,20 @@ def _compound(stage: Stage) -> None:
             300,
             {"colour": "red", "state": "empty"},
         ),
-        (works.toolbox("red"), "toolbox", "red toolbox", -14.4, 8.3, 60, {"colour": "red"}),
-        (works.fuel_can("red"), "fuel can", "red fuel can", -37.0, -18.1, 20, {"colour": "red"}),
-        (works.fuel_can("green"), "fuel can", "green fuel can", -14.9, 12.0, 70, {"colour": "green"}),
-        (works.fire_extinguisher(), "fire extinguisher", "red fire extinguisher", -27.2, -1.9, 120, {"colour": "red"}),
+        (materials.toolbox("red"), "toolbox", "red toolbox", -14.4, 8.3, 60, {"colour": "red"}),
+        (materials.fuel_can("red"), "fuel can", "red fuel can", -37.0, -18.1, 20, {"colour": "red"}),
+        (materials.fuel_can("green"), "fuel can", "green fuel can", -14.9, 12.0, 70, {"colour": "green"}),
+        (materials.fire_extinguisher(), "fire extinguisher", "red fire extinguisher", -27.2, -1.9, 120, {"colour": "red"}),
     ]
     for built, category, name, x, y, bearing, facts in rows:
         stage.place(built, category, name, (x, y, 0), bearing, **facts)
 
 
 def _materials(stage: Stage) -> None:
-    moulds = Moulds()
+    prototypes = Prototypes()
     for x, y, bearing in ((-29.4, -9.0, 8), (-29.2, -11.0, 2), (-31.2, -9.6, 95), (-20.2, 33.0, 12), (-20.6, 35.2, 4)):
         stage.place(
-            moulds.get("kerbs", works.pallet_of_kerbs),
+            prototypes.get("kerbs", materials.pallet_of_kerbs),
             "pallet",
             "pallet of kerb stones",
             (x, y, 0),
@@ -246,7 +261,12 @@ def _materials(stage: Stage) -> None:
         )
     for x, y, bearing in ((-33.4, -17.6, 30), (-32.0, -18.6, 18)):
         stage.place(
-            moulds.get("cement", works.cement_bags), "pallet", "pallet of cement bags", (x, y, 0), bearing, load="cement bags"
+            prototypes.get("cement", materials.cement_bags),
+            "pallet",
+            "pallet of cement bags",
+            (x, y, 0),
+            bearing,
+            load="cement bags",
         )
     for colour, x, y, bearing, length in (
         ("orange", -27.6, -15.2, 78, 6.0),
@@ -254,11 +274,11 @@ def _materials(stage: Stage) -> None:
         ("blue", -19.4, 49.6, 5, 4.0),
     ):
         stage.place(
-            works.pipe_stack(colour, length=length), "pipe stack", f"stack of {colour} pipes", (x, y, 0), bearing, colour=colour
+            materials.pipe_stack(colour, length=length), "pipe stack", f"stack of {colour} pipes", (x, y, 0), bearing, colour=colour
         )
-    stage.place(works.cable_drum(1.6), "cable drum", "wooden cable drum", (-25.0, -5.6, 0), 35, material="timber")
-    stage.place(works.cable_drum(1.2), "cable drum", "wooden cable drum", (-24.3, -7.4, 0), 70, material="timber")
-    stage.place(works.sand_pile(1.9), "sand pile", "pile of sand", (-26.6, -3.8, -0.03), 0, material="sand")
-    stage.place(works.gravel_pile(2.6), "gravel pile", "pile of gravel", (-21.4, 28.0, -0.03), 40, material="gravel")
-    stage.place(works.gravel_pile(1.7), "gravel pile", "pile of gravel", (-21.9, 38.6, -0.03), 110, material="gravel")
-    stage.place(works.shovel_standing(), "shovel", "shovel", (-26.0, -3.6, 0.55), 30)
+    stage.place(materials.cable_drum(1.6), "cable drum", "wooden cable drum", (-25.0, -5.6, 0), 35, material="timber")
+    stage.place(materials.cable_drum(1.2), "cable drum", "wooden cable drum", (-24.3, -7.4, 0), 70, material="timber")
+    stage.place(materials.sand_pile(1.9), "sand pile", "pile of sand", (-26.6, -3.8, -0.03), 0, material="sand")
+    stage.place(materials.gravel_pile(2.6), "gravel pile", "pile of gravel", (-21.4, 28.0, -0.03), 40, material="gravel")
+    stage.place(materials.gravel_pile(1.7), "gravel pile", "pile of gravel", (-21.9, 38.6, -0.03), 110, material="gravel")
+    stage.place(materials.shovel_standing(), "shovel", "shovel", (-26.0, -3.6, 0.55), 30)

@@ -1,44 +1,46 @@
-"""Highway works: traffic in the open lanes, vehicles parked at the works and in the freight yard, and what moves."""
+"""Highway works: vehicles in the open lanes, at the works and in the freight yard, and all moving actors."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
+from scope_studio.kit.core.paths import closed_loop
 from scope_studio.kit.core.stage import ActorPath, Built, Stage
-from scope_studio.kit.people import people
-from scope_studio.kit.vehicles import lorries, vehicles
+from scope_studio.kit.people import characters
+from scope_studio.kit.vehicles import cars, coach, lorries
 
 LANE_1, LANE_2, LANE_3 = 10.75, 7.25, 3.75
-"""Distances of the lane centres from the middle of the road. The moving vehicles have a lane to themselves on either side."""
+"""Distances of the lane centres from the middle of the road. In both directions, moving vehicles have one lane of their own."""
 
 FIRST_ACTOR = 9001
-"""Number of the first actor in the ID layer: far above those of the instances."""
+"""Number of the first actor in the instance-number layer, far above the numbers of the instances."""
 
 Car = Callable[..., Built]
 
 CARS: list[tuple[Car, str, str, float, float]] = [
-    # northbound, lane 3 (and lane 1 before the taper); lane 2 belongs to the moving car
-    (vehicles.hatchback, "red", "KV19 RTO", -LANE_3, 38.5),
-    (vehicles.saloon, "silver", "MB68 WLN", -LANE_3, 21.0),
-    (vehicles.suv, "black", "OE21 HXD", -LANE_3, 66.0),
-    (vehicles.suv, "light blue", "YP70 CKA", -LANE_3, -31.0),
-    (vehicles.hatchback, "yellow", "FN17 ZBE", -LANE_3, -66.0),
-    (vehicles.saloon, "grey", "LD22 UMS", -LANE_3, -98.0),
-    (vehicles.saloon, "dark red", "SR16 JVY", -LANE_1, -88.0),
+    # northbound, lane 3 (and lane 1 before the taper); lane 2 is for the moving car
+    (cars.hatchback, "red", "KV19 RTO", -LANE_3, 38.5),
+    (cars.saloon, "silver", "MB68 WLN", -LANE_3, 21.0),
+    (cars.suv, "black", "OE21 HXD", -LANE_3, 66.0),
+    (cars.suv, "light blue", "YP70 CKA", -LANE_3, -31.0),
+    (cars.hatchback, "yellow", "FN17 ZBE", -LANE_3, -66.0),
+    (cars.saloon, "grey", "LD22 UMS", -LANE_3, -98.0),
+    (cars.saloon, "dark red", "SR16 JVY", -LANE_1, -88.0),
     # southbound
-    (vehicles.suv, "green", "HG20 TPW", LANE_2, 58.0),
-    (vehicles.saloon, "white", "VO69 EDK", LANE_2, 29.0),
-    (vehicles.hatchback, "dark red", "CU15 NLR", LANE_2, 5.0),
-    (vehicles.hatchback, "orange", "PJ71 AXG", LANE_1, -11.0),
-    (vehicles.saloon, "blue", "DT18 OFC", LANE_2, -47.0),
-    (vehicles.saloon, "black", "WA23 KZH", LANE_1, -58.0),
-    (vehicles.suv, "silver", "BX67 VMJ", LANE_2, -88.0),
-    (vehicles.suv, "brown", "GM19 YEU", LANE_2, 104.0),
+    (cars.suv, "green", "HG20 TPW", LANE_2, 58.0),
+    (cars.saloon, "white", "VO69 EDK", LANE_2, 29.0),
+    (cars.hatchback, "dark red", "CU15 NLR", LANE_2, 5.0),
+    (cars.hatchback, "orange", "PJ71 AXG", LANE_1, -11.0),
+    (cars.saloon, "blue", "DT18 OFC", LANE_2, -47.0),
+    (cars.saloon, "black", "WA23 KZH", LANE_1, -58.0),
+    (cars.suv, "silver", "BX67 VMJ", LANE_2, -88.0),
+    (cars.suv, "brown", "GM19 YEU", LANE_2, 104.0),
 ]
-NOUNS: dict[Car, str] = {vehicles.saloon: "saloon", vehicles.hatchback: "hatchback", vehicles.suv: "SUV"}
+NOUNS: dict[Car, str] = {cars.saloon: "saloon", cars.hatchback: "hatchback", cars.suv: "SUV"}
 
 
 def build(stage: Stage) -> None:
+    """Place the standing vehicles and add the actors with their paths."""
     _cars(stage)
     _heavy(stage)
     _yard(stage)
@@ -47,7 +49,7 @@ def build(stage: Stage) -> None:
 
 
 def _course(x: float) -> tuple[float, dict[str, str | int]]:
-    """Bearing and attributes of a vehicle driving at ``x``."""
+    """Return bearing and attributes of a vehicle driving at ``x``."""
     lane = 1 + round((LANE_1 - abs(x)) / 3.5)
     heading = "north" if x < 0 else "south"
     return (0.0 if x < 0 else 180.0), {"state": "moving", "facing": heading, "lane": lane, "carriageway": f"{heading}bound"}
@@ -73,7 +75,7 @@ def _cars(stage: Stage) -> None:
         ("grey", "RF20 LWS", "NORTHLINE\nCOURIERS", LANE_2, -22.0),
     ):
         bearing, facts = _course(x)
-        van = vehicles.van(colour, plate=plate, lettering=lettering)
+        van = cars.van(colour, plate=plate, lettering=lettering)
         stage.place(van, "van", f"{colour} van", (x, y, 0), bearing, colour=colour, plate=plate, **facts)
 
 
@@ -98,7 +100,7 @@ def _heavy(stage: Stage) -> None:
             -100.0,
         ),
         (
-            lorries.coach("dark green", plate="JC19 XPO", lettering="Linnet Coaches", destination="EXPRESS 7"),
+            coach.coach("dark green", plate="JC19 XPO", lettering="Linnet Coaches", destination="EXPRESS 7"),
             "bus",
             "green coach",
             "green",
@@ -107,7 +109,7 @@ def _heavy(stage: Stage) -> None:
             -118.0,
         ),
         (
-            lorries.coach("white", plate="BT65 SVA", lettering="SKYLARK", destination="HARROWFIELD"),
+            coach.coach("white", plate="BT65 SVA", lettering="SKYLARK", destination="HARROWFIELD"),
             "bus",
             "white coach",
             "white",
@@ -141,15 +143,15 @@ def _heavy(stage: Stage) -> None:
 
 
 def _yard(stage: Stage) -> None:
-    """Staff cars nosed up to the bays, lorries backed on to the docks."""
+    """Place staff cars in their bays, and lorries at the docks."""
     bays = [
-        (vehicles.hatchback, "white", "YT14 BNA", -31.2),
-        (vehicles.saloon, "red", "LO12 FKS", -26.0),
-        (vehicles.suv, "grey", "EA22 CPD", -18.2),
-        (vehicles.hatchback, "blue", "MJ63 VRE", -15.6),
-        (vehicles.saloon, "black", "RK70 OLT", 2.6),
-        (vehicles.hatchback, "silver", "BD16 HWX", 10.4),
-        (vehicles.suv, "red", "AF19 UZN", 13.0),
+        (cars.hatchback, "white", "YT14 BNA", -31.2),
+        (cars.saloon, "red", "LO12 FKS", -26.0),
+        (cars.suv, "grey", "EA22 CPD", -18.2),
+        (cars.hatchback, "blue", "MJ63 VRE", -15.6),
+        (cars.saloon, "black", "RK70 OLT", 2.6),
+        (cars.hatchback, "silver", "BD16 HWX", 10.4),
+        (cars.suv, "red", "AF19 UZN", 13.0),
     ]
     for make, colour, plate, y in bays:
         noun = NOUNS[make]
@@ -192,7 +194,7 @@ def _at_the_works(stage: Stage) -> None:
         facing="north",
         area="works",
     )
-    van = vehicles.van("yellow", plate="WU20 KDF", lettering="CASTELL\nHIGHWAYS", roof_beacon=True)
+    van = cars.van("yellow", plate="WU20 KDF", lettering="CASTELL\nHIGHWAYS", roof_beacon=True)
     stage.place(
         van,
         "van",
@@ -205,7 +207,7 @@ def _at_the_works(stage: Stage) -> None:
         lettering="castell highways",
         area="works",
     )
-    pickup = vehicles.pickup("white", plate="GN71 OAH", beacon=True)
+    pickup = cars.pickup("white", plate="GN71 OAH", beacon=True)
     stage.place(
         pickup,
         "pickup truck",
@@ -217,7 +219,7 @@ def _at_the_works(stage: Stage) -> None:
         facing="south",
         area="compound",
     )
-    second = vehicles.pickup("dark blue", plate="SH18 TEW")
+    second = cars.pickup("dark blue", plate="SH18 TEW")
     stage.place(
         second,
         "pickup truck",
@@ -229,7 +231,7 @@ def _at_the_works(stage: Stage) -> None:
         facing="north",
         area="works",
     )
-    car = vehicles.hatchback("grey", plate="DP15 LXC")
+    car = cars.hatchback("grey", plate="DP15 LXC")
     stage.place(
         car,
         "car",
@@ -253,7 +255,7 @@ def _actors(stage: Stage) -> None:
             FIRST_ACTOR,
             "car",
             "dark blue saloon",
-            lambda _phase: vehicles.saloon("dark blue", plate="HX20 DLM"),
+            lambda _phase: cars.saloon("dark blue", plate="HX20 DLM"),
             [(0.0, -LANE_2, -120.0, 0.0), (240.0 / speed, -LANE_2, 120.0, 0.0)],
             30.0,
             {"colour": "dark blue", "kind": "saloon", "state": "moving", "facing": "north", "lane": 2, "carriageway": "northbound"},
@@ -263,7 +265,7 @@ def _actors(stage: Stage) -> None:
             FIRST_ACTOR + 1,
             "van",
             "white van",
-            lambda _phase: vehicles.van("white", plate="OB69 JNR", lettering="Brightwell\nBAKERY"),
+            lambda _phase: cars.van("white", plate="OB69 JNR", lettering="Brightwell\nBAKERY"),
             [(8.0, LANE_3, 120.0, 0.0), (8.0 + 240.0 / 15.0, LANE_3, -120.0, 0.0)],
             36.0,
             {"colour": "white", "state": "moving", "facing": "south", "lane": 3, "carriageway": "southbound"},
@@ -273,8 +275,8 @@ def _actors(stage: Stage) -> None:
             FIRST_ACTOR + 2,
             "worker",
             "walking worker",
-            lambda phase: people.worker(vest="yellow", helmet="blue", trousers="navy", pose="walk", phase=phase, seed=71),
-            _loop([(-13.2, -1.0), (-13.2, 16.6), (-9.95, 17.2), (-9.95, 22.0), (-13.2, 23.4)], 1.3),
+            lambda phase: characters.worker(vest="yellow", helmet="blue", trousers="navy", pose="walk", phase=phase, seed=71),
+            closed_loop([(-13.2, -1.0), (-13.2, 16.6), (-9.95, 17.2), (-9.95, 22.0), (-13.2, 23.4)], 1.3),
             41.0,
             {"vest": "yellow", "helmet": "blue", "state": "walking", "area": "works"},
             stride_m=1.32,
@@ -283,12 +285,3 @@ def _actors(stage: Stage) -> None:
     for actor in stage.actors:
         if actor.stride_m:
             actor.period_s = actor.waypoints[-1][0]
-
-
-def _loop(corners: list[tuple[float, float]], speed_mps: float) -> list[tuple[float, float, float, float]]:
-    """A closed walk through the corners at an even speed."""
-    way, t = [(0.0, *corners[0], 0.0)], 0.0
-    for (x0, y0), (x1, y1) in zip(corners, corners[1:] + corners[:1], strict=True):
-        t += ((x1 - x0) ** 2 + (y1 - y0) ** 2) ** 0.5 / speed_mps
-        way.append((t, x1, y1, 0.0))
-    return way

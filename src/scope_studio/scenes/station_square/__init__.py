@@ -1,4 +1,4 @@
-"""Scene "station-square": the forecourt of a town's railway station on a market morning."""
+"""Station square: the forecourt of a town's railway station on a market morning."""
 
 from __future__ import annotations
 
@@ -6,14 +6,7 @@ import bpy
 
 from scope_studio.kit.core.stage import Stage
 from scope_studio.kit.light import sky
-from scope_studio.scenes.station_square import beyond as station_square_beyond
-from scope_studio.scenes.station_square import furniture as station_square_furniture
-from scope_studio.scenes.station_square import ground as station_square_ground
-from scope_studio.scenes.station_square import life as station_square_life
-from scope_studio.scenes.station_square import market as station_square_market
-from scope_studio.scenes.station_square import people as station_square_people
-from scope_studio.scenes.station_square import town as station_square_town
-from scope_studio.scenes.station_square import traffic as station_square_traffic
+from scope_studio.scenes.station_square import beyond, fixtures, ground, life, market, people, town, traffic
 
 NAME = "station-square"
 TITLE = "Station square"
@@ -41,24 +34,24 @@ ABSENT = (
     "train",
     "tent",
 )
-"""Things that a person might ask for and that are not there."""
+"""Things that a person might ask for but that are not in the scene."""
 
 
 def build(stage: Stage) -> None:
-    """Build the whole scene in an empty Blender file and fill in the stage."""
-    stage.start_s = 27.0  # the cyclist, the traveller and the dog are in the home view then
+    """Build the whole scene in an empty Blender file and fill the stage."""
+    stage.start_s = 27.0  # the cyclist, the traveller and the dog are in the home view at that time
     sky.setup(
         bpy.context.scene, sun_bearing_deg=128.0, sun_elevation_deg=31.0, sun_strength=5.6, sky_strength=0.72, cloud_cover=0.25
     )
-    station_square_town.build(stage)
-    station_square_beyond.church(stage)
-    station_square_traffic.build(stage)
-    station_square_furniture.build(stage)
-    station_square_life.build(stage)
-    station_square_market.build(stage)
-    station_square_people.build(stage)
-    station_square_ground.build(stage)
-    station_square_beyond.build(stage)  # last: everything else slows down with each object that the file already holds
+    town.build(stage)
+    beyond.church(stage)
+    traffic.build(stage)
+    fixtures.build(stage)
+    life.build(stage)
+    market.build(stage)
+    people.build(stage)
+    ground.build(stage)
+    beyond.build(stage)  # last, because building is slower the more objects the file holds
     _cameras(stage)
     stage.absent = list(ABSENT)
     stage.finish = sky.finish_materials

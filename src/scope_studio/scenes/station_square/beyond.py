@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import random
 
-from scope_studio.kit.buildings import buildings, townhouses
+from scope_studio.kit.buildings import townhouses, wall_materials
 from scope_studio.kit.buildings.townhouses import CLAY, SLATE, House
 from scope_studio.kit.core.finishes import paint
 from scope_studio.kit.core.solid import Solid
@@ -15,7 +15,7 @@ from scope_studio.scenes.station_square.town import walls
 
 
 def build(stage: Stage) -> None:
-    """Streets that lead away, closed by houses, and roofs behind the rows; unannotated."""
+    """Place the streets that lead away, closed by houses, and the roofs behind the rows. They are not annotated."""
     w = walls()
     kinds = [
         House(9.0, w["red brick"], 3, 3, seed=50),
@@ -24,12 +24,12 @@ def build(stage: Stage) -> None:
         House(8.5, w["white"], 2, 3, shutters="green", seed=53, roof=CLAY, door="red"),
         House(9.5, w["stone"], 4, 3, seed=54, storey_m=2.9, dormers=2, door="black"),
     ]
-    moulds = [townhouses.town_house(h) for h in kinds]
+    prototypes = [townhouses.town_house(h) for h in kinds]
     used: set[int] = set()
     rng = random.Random("beyond")
 
     def row(x: float, y: float, bearing: float, length: float, first: int) -> None:
-        """Houses side by side from (x, y) along the reader's right when facing their fronts reversed."""
+        """Place houses side by side from (x, y) on, over ``length`` metres; ``bearing`` is that of their fronts."""
         b = math.radians(bearing)
         step, k = 0.0, first
         while step < length:
@@ -41,15 +41,15 @@ def build(stage: Stage) -> None:
             k += rng.choice((1, 2, 3))
 
     def _lay(index: int, x: float, y: float, bearing: float) -> None:
-        built: Built = moulds[index].copy() if index in used else moulds[index]
+        built: Built = prototypes[index].copy() if index in used else prototypes[index]
         used.add(index)
         stage.put(built, (x, y, 0.0), bearing)
 
     row(-45.4, -8.0, 180, 62, 0)  # north side of the street, west of the square
-    row(110.0, -8.0, 180, 62, 2)  # and east of it
+    row(110.0, -8.0, 180, 62, 2)  # north side, east of the square
     row(-110.0, -34.0, 0, 62, 1)  # south side
     row(48.5, -34.0, 0, 62, 3)
-    row(-112.0, 4.0, 90, 60, 2)  # closing the street's ends
+    row(-112.0, 4.0, 90, 60, 2)  # houses that close the ends of the street
     row(112.0, -58.0, 270, 60, 4)
     row(-47.5, -36.0, 90, 50, 1)  # side streets to the south
     row(-34.0, -85.0, 270, 38, 0)
@@ -89,10 +89,10 @@ def _trees(stage: Stage, rng: random.Random) -> None:
 
 
 def church(stage: Stage) -> None:
-    """A stone tower with louvred belfry, battlements and a spire above the roofs to the north-west."""
+    """Place the church, north-west of the square: a stone tower with louvred belfry, battlements and a spire."""
     s = Solid("church tower")
-    stone = townhouses.ashlar("church stone", (0.40, 0.36, 0.29))
-    slate = buildings.tile_material("church slate", SLATE)
+    stone = wall_materials.ashlar("church stone", (0.40, 0.36, 0.29))
+    slate = wall_materials.tile_material("church slate", SLATE)
     s.box((7.0, 7.0, 24.0), (0, 0, 12.0), stone, 0.05)
     for x in (-3.5, 3.5):
         for y in (-3.5, 3.5):

@@ -1,4 +1,4 @@
-"""Station square: paving, carriageways, tram tracks, covers, and the country round the town."""
+"""Station square: paving, carriageways, tram tracks, covers, and the country around the town."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import bpy
 from scope_studio.kit.core.mesh import from_data
 from scope_studio.kit.core.shading import Shader
 from scope_studio.kit.core.stage import Stage
-from scope_studio.kit.furniture import furniture
-from scope_studio.kit.nature import paving
+from scope_studio.kit.furniture import roadside
+from scope_studio.kit.ground import paving
 
 ROAD_M = -0.10
-"""Height of the carriageways; the square and the pavements are at 0."""
+"""Height of the carriageways. The square and the pavements are at 0."""
 SQUARE = (-36.0, 23.5, -11.8, 40.0)
 APPROACH = (23.5, 32.5)
 STREET = (-25.5, -11.8)
@@ -22,6 +22,7 @@ TRACKS = (-14.0, -17.4)
 
 
 def build(stage: Stage) -> None:
+    """Place paving, tracks, covers and the land beyond."""
     _surfaces(stage)
     _tracks(stage)
     _covers(stage)
@@ -79,7 +80,7 @@ def _tracks(stage: Stage) -> None:
 def _covers(stage: Stage) -> None:
     for text, x, y in (("WATER", 5.4, -9.2), ("GAS", -9.6, 1.4), ("WATER", 18.2, 17.3), ("TELECOM", 7.2, -26.9)):
         stage.place(paving.manhole_cover(text), "manhole cover", "round manhole cover", (x, y, 0.002), 0, material="iron")
-    grate = furniture.drain()
+    grate = roadside.drain()
     for k, (x, y) in enumerate(
         ((-22.0, -12.2), (2.0, -12.2), (24.0, -4.0), (24.0, 9.0), (32.0, 2.0), (-6.0, -25.1), (16.0, -25.1))
     ):
@@ -87,7 +88,7 @@ def _covers(stage: Stage) -> None:
 
 
 def _hills() -> None:
-    """Farmland out to wooded hills; a ring mesh, so that no direction ends."""
+    """Create farmland that rises to wooded hills: a ring mesh that closes the view in every direction."""
     s = Shader("far country")
     p = s.position()
     fields = s.voronoi(s.scaled(p, (0.006, 0.0085, 0.0)), 1.0, output="Color")

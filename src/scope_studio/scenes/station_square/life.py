@@ -1,29 +1,36 @@
-"""Station square: bicycles, luggage left standing, trees, pigeons."""
+"""Station square: bicycles, luggage, trees, pigeons."""
 
 from __future__ import annotations
 
 import random
 
+from scope_studio.kit.core.prototypes import Prototypes
 from scope_studio.kit.core.stage import Built, Stage
-from scope_studio.kit.nature import birds, paving, vegetation
+from scope_studio.kit.ground import paving
+from scope_studio.kit.nature import birds, vegetation
 from scope_studio.kit.people import luggage
 from scope_studio.kit.vehicles import cycles
-from scope_studio.scenes.station_square.furniture import PLATFORM_TOP_M, TREES
-from scope_studio.scenes.station_square.market import Moulds
+from scope_studio.scenes.station_square.fixtures import PLATFORM_TOP_M, TREES
 
 
 def build(stage: Stage) -> None:
-    moulds = Moulds()
-    _bicycles(stage, moulds)
+    """Place bicycles, luggage, trees and pigeons."""
+    prototypes = Prototypes()
+    _bicycles(stage, prototypes)
     _luggage(stage)
-    _green(stage, moulds)
-    _pigeons(stage, moulds)
+    _green(stage, prototypes)
+    _pigeons(stage, prototypes)
 
 
-def _bicycles(stage: Stage, moulds: Moulds) -> None:
+def _bicycles(stage: Stage, prototypes: Prototypes) -> None:
     for k in range(5):
         stage.place(
-            moulds.get("hoop", cycles.bike_stand), "bike stand", "steel bike stand", (12.2 + 1.2 * k, 19.8, 0), 0, material="steel"
+            prototypes.get("hoop", cycles.bike_stand),
+            "bike stand",
+            "steel bike stand",
+            (12.2 + 1.2 * k, 19.8, 0),
+            0,
+            material="steel",
         )
     bikes = [
         (0, 1, "blue", "town", False),
@@ -75,7 +82,7 @@ def _luggage(stage: Stage) -> None:
         stage.place(built, category, name, (x, y, z), bearing, colour=colour)
 
 
-def _green(stage: Stage, moulds: Moulds) -> None:
+def _green(stage: Stage, prototypes: Prototypes) -> None:
     rng = random.Random("square trees")
     trees: dict[int, Built] = {}
     for k, (x, y) in enumerate(TREES):
@@ -83,7 +90,7 @@ def _green(stage: Stage, moulds: Moulds) -> None:
         built = (
             trees[kind].copy() if kind in trees else trees.setdefault(kind, vegetation.tree(vegetation.LIME, 30 + kind, detail=0.8))
         )
-        stage.place(moulds.get("grate", paving.tree_grate), "tree grate", "iron tree grate", (x, y, 0), 0, material="iron")
+        stage.place(prototypes.get("grate", paving.tree_grate), "tree grate", "iron tree grate", (x, y, 0), 0, material="iron")
         stage.place(
             built,
             "tree",
@@ -96,13 +103,13 @@ def _green(stage: Stage, moulds: Moulds) -> None:
         )
 
 
-def _pigeons(stage: Stage, moulds: Moulds) -> None:
+def _pigeons(stage: Stage, prototypes: Prototypes) -> None:
     rng = random.Random("pigeons")
     poses = ("stand", "peck", "peck", "stand", "rest")
     for k in range(16):
         x, y = (rng.gauss(2.6, 1.5), rng.gauss(-0.6, 0.9)) if k < 12 else (rng.gauss(-6.6, 1.2), rng.gauss(0.2, 0.8))
         colour, pose = ("grey", "dark grey", "grey", "white", "grey", "brown")[k % 6], poses[k % 5]
-        built = moulds.get(f"pigeon {colour} {pose}", lambda colour=colour, pose=pose: birds.pigeon(colour, pose=pose))
+        built = prototypes.get(f"pigeon {colour} {pose}", lambda colour=colour, pose=pose: birds.pigeon(colour, pose=pose))
         stage.place(
             built,
             "pigeon",
@@ -114,7 +121,7 @@ def _pigeons(stage: Stage, moulds: Moulds) -> None:
         )
     for x, z in ((-3.1, 7.29), (1.4, 7.29), (4.9, 7.29)):
         stage.place(
-            moulds.get("pigeon grey stand", lambda: birds.pigeon("grey")),
+            prototypes.get("pigeon grey stand", lambda: birds.pigeon("grey")),
             "pigeon",
             "grey pigeon",
             (x, 26.8, z),

@@ -1,20 +1,19 @@
-"""Station square: the market stalls with what they sell, and the café's terrace."""
+"""Station square: the market stalls with their goods, and the café's terrace."""
 
 from __future__ import annotations
 
 import math
 import random
-from collections.abc import Callable
 
-from scope_studio.kit.buildings import cafe
-from scope_studio.kit.core.stage import Built, Stage
-from scope_studio.kit.furniture import market
+from scope_studio.kit.core.prototypes import Prototypes
+from scope_studio.kit.core.stage import Stage
+from scope_studio.kit.furniture import cafe, produce, stalls
 
 FACING = 150.0
-"""Bearing that the stalls' fronts face."""
+"""Bearing that the fronts of the stalls face."""
 
 Goods = tuple[str, str | None]
-"""What a crate holds, and the text of its price card (lines split at the newline)."""
+"""Contents of a crate, and the text of its price card (lines split at the newline)."""
 
 Stall = tuple[str, tuple[str, ...], tuple[float, float], list[Goods]]
 
@@ -109,31 +108,23 @@ TERRACE_COLUMNS = (-32.2, -28.9)
 
 
 def spot(place: tuple[float, float], right: float, out: float, bearing: float = FACING) -> tuple[float, float]:
-    """World position ``right`` metres to the reader's right along a front and ``out`` before its middle."""
+    """Return the world position of a point at a front.
+
+    ``right`` is measured to the reader's right along the front, ``out`` in front of it (m).
+    """
     b = math.radians(bearing)
     return place[0] - right * math.cos(b) + out * math.sin(b), place[1] + right * math.sin(b) + out * math.cos(b)
 
 
-class Moulds:
-    """First use builds, later uses are linked copies."""
-
-    def __init__(self) -> None:
-        self._made: dict[str, Built] = {}
-
-    def get(self, key: str, make: Callable[[], Built]) -> Built:
-        if key in self._made:
-            return self._made[key].copy()
-        return self._made.setdefault(key, make())
-
-
 def build(stage: Stage) -> None:
-    moulds = Moulds()
+    """Place the stalls and the terrace."""
+    prototypes = Prototypes()
     for sign, canvas, place, goods in STALLS:
-        _stall(stage, moulds, sign, canvas, place, goods)
-    _flowers(stage, moulds)
+        _stall(stage, prototypes, sign, canvas, place, goods)
+    _flowers(stage, prototypes)
     x, y = EMPTY_STALL
     empty = stage.place(
-        market.stall("grey", table=True, rolled=True),
+        stalls.stall("grey", table=True, rolled=True),
         "market stall",
         "empty market stall",
         (x, y, 0),
@@ -143,13 +134,13 @@ def build(stage: Stage) -> None:
     )
     cx, cy = spot(EMPTY_STALL, 0.4, 0.5)
     stage.place(
-        market.price_card("BACK AT\nNOON", cap=0.09), "notice", "notice on the empty stall", (cx, cy, 0.82), FACING, parent=empty
+        produce.price_card("BACK AT\nNOON", cap=0.09), "notice", "notice on the empty stall", (cx, cy, 0.82), FACING, parent=empty
     )
     for k, (right, out) in enumerate(((-2.2, -0.6), (-2.2, 0.1), (2.3, -0.9))):
         x, y = spot(EMPTY_STALL, right, out)
         for level in range(3 if k == 0 else 1):
             stage.place(
-                moulds.get("empty crate", market.crate),
+                prototypes.get("empty crate", produce.crate),
                 "crate",
                 "empty crate",
                 (x, y, 0.165 * level),
@@ -157,18 +148,18 @@ def build(stage: Stage) -> None:
                 state="empty",
                 material="timber",
             )
-    _carts(stage, moulds)
-    _terrace(stage, moulds)
+    _carts(stage, prototypes)
+    _terrace(stage, prototypes)
 
 
 def _stall(
-    stage: Stage, moulds: Moulds, sign: str, canvas: tuple[str, ...], place: tuple[float, float], goods: list[Goods]
+    stage: Stage, prototypes: Prototypes, sign: str, canvas: tuple[str, ...], place: tuple[float, float], goods: list[Goods]
 ) -> None:
     first, second = canvas
     striped = first != second
     colour = f"{first} and {second}" if striped else first
     own = stage.place(
-        market.stall(first, second, sign=sign),
+        stalls.stall(first, second, sign=sign),
         "market stall",
         f"{colour} market stall",
         (*place, 0.0),
@@ -182,10 +173,10 @@ def _stall(
         row, column = divmod(k, 5)
         right, out = -1.17 + 0.585 * column, 0.70 - 0.42 * row
         x, y = spot(place, right, out)
-        z = market.COUNTER_M + 0.145 - (out - 0.35) * math.tan(math.radians(14))
+        z = stalls.COUNTER_M + 0.145 - (out - 0.35) * math.tan(math.radians(14))
         colour = "timber" if kind not in ("fish", "salmon", "prawns") else "white"
-        built = moulds.get(
-            f"{kind} {k % 2}", lambda kind=kind, k=k, colour=colour: market.produce_crate(kind, seed=k % 2, colour=colour)
+        built = prototypes.get(
+            f"{kind} {k % 2}", lambda kind=kind, k=k, colour=colour: produce.produce_crate(kind, seed=k % 2, colour=colour)
         )
         crate = stage.place(
             built, "crate", f"crate of {kind}", (x, y, z), FACING, lean_deg=(-14, 0), parent=own, contents=kind, state="full"
@@ -193,14 +184,14 @@ def _stall(
         if card:
             cx, cy = spot(place, right, out - 0.19)
             stage.place(
-                market.price_card(card, cap=0.068, colour="yellow" if k % 3 == 1 else "white"), "price card",
+                produce.price_card(card, cap=0.068, colour="yellow" if k % 3 == 1 else "white"), "price card",
                 f"price card for {card.split(chr(10))[0].lower()}", (cx, cy, z + 0.06), FACING, parent=crate,
             )  # fmt: skip
     for k, right in enumerate((-1.0, 0.2, 1.1)):  # stock under and behind the counter
         if (k + len(sign)) % 2:
             x, y = spot(place, right, -1.35)
             stage.place(
-                moulds.get("empty crate", market.crate),
+                prototypes.get("empty crate", produce.crate),
                 "crate",
                 "empty crate",
                 (x, y, 0.0),
@@ -225,7 +216,7 @@ def _sells(sign: str) -> str:
     return next(value for key, value in words.items() if key in sign)
 
 
-def _flowers(stage: Stage, moulds: Moulds) -> None:
+def _flowers(stage: Stage, prototypes: Prototypes) -> None:
     place = STALLS[3][2]
     for k in range(14):
         bloom = BLOOMS[(k * 5 + k // 6) % 6]
@@ -233,12 +224,12 @@ def _flowers(stage: Stage, moulds: Moulds) -> None:
         right, out = -1.15 + 0.56 * column + 0.1 * row, 1.55 - 0.45 * row if row < 2 else 0.55
         x, y = spot(place, right, out if row < 2 else 0.45)
         z = 0.0 if row < 2 else 0.90
-        built = moulds.get(f"bucket {bloom}", lambda bloom=bloom: market.flower_bucket(bloom))
+        built = prototypes.get(f"bucket {bloom}", lambda bloom=bloom: stalls.flower_bucket(bloom))
         stage.place(built, "flower bucket", f"bucket of {bloom} flowers", (x, y, z), 40.0 * k, colour=bloom)
     for text, right in (("ROSES\n5.00", -0.6), ("TULIPS\n3.50", 0.5)):
         x, y = spot(place, right, 0.75)
         stage.place(
-            market.price_card(text, cap=0.068),
+            produce.price_card(text, cap=0.068),
             "price card",
             f"price card for {text.split(chr(10))[0].lower()}",
             (x, y, 0.84),
@@ -246,28 +237,28 @@ def _flowers(stage: Stage, moulds: Moulds) -> None:
         )
 
 
-def _carts(stage: Stage, moulds: Moulds) -> None:
-    stage.place(market.hand_cart("green"), "hand cart", "green hand cart", (-1.4, 18.2, 0.0), 205, colour="green", state="loaded")
+def _carts(stage: Stage, prototypes: Prototypes) -> None:
+    stage.place(stalls.hand_cart("green"), "hand cart", "green hand cart", (-1.4, 18.2, 0.0), 205, colour="green", state="loaded")
     rng = random.Random("cart")
     for k, kind in enumerate(("cabbages", "apples", "potatoes")):
         b = math.radians(205)
         out = 0.55 - 0.42 * k
         stage.place(
-            moulds.get(f"{kind} 0", lambda kind=kind: market.produce_crate(kind)), "crate", f"crate of {kind}",
+            prototypes.get(f"{kind} 0", lambda kind=kind: produce.produce_crate(kind)), "crate", f"crate of {kind}",
             (-1.4 + out * math.sin(b), 18.2 + out * math.cos(b), 0.64), 205 + rng.uniform(-5, 5), contents=kind, state="full",
         )  # fmt: skip
-    stage.place(market.hand_cart("red"), "hand cart", "red hand cart", (-26.2, 9.6, 0.0), 70, colour="red", state="empty")
+    stage.place(stalls.hand_cart("red"), "hand cart", "red hand cart", (-26.2, 9.6, 0.0), 70, colour="red", state="empty")
 
 
-def _terrace(stage: Stage, moulds: Moulds) -> None:
-    """Eight tables in two files, three chairs at each, parasols between."""
+def _terrace(stage: Stage, prototypes: Prototypes) -> None:
+    """Place eight tables in two columns, with three chairs each, and parasols between them."""
     rng = random.Random("terrace")
     taken = {(0, 0, 0), (0, 0, 1), (1, 0, 2), (0, 1, 1), (1, 2, 0), (1, 2, 1), (0, 3, 0), (1, 3, 2), (1, 3, 0)}
     for row, y in enumerate(TERRACE_ROWS):
         for column, x in enumerate(TERRACE_COLUMNS):
             mine = sorted(seat for c, r, seat in taken if (c, r) == (column, row))
             table = stage.place(
-                moulds.get("table", cafe.table),
+                prototypes.get("table", cafe.table),
                 "table",
                 "round café table",
                 (x, y, 0.0),
@@ -279,7 +270,7 @@ def _terrace(stage: Stage, moulds: Moulds) -> None:
                 at, bearing = seat_place(column, row, seat)
                 tint = "dark green" if column == 0 else "red"
                 stage.place(
-                    moulds.get(f"chair {tint}", lambda tint=tint: cafe.chair(tint)),
+                    prototypes.get(f"chair {tint}", lambda tint=tint: cafe.chair(tint)),
                     "chair",
                     f"{tint.removeprefix('dark ')} café chair",
                     (*at, 0.0),
@@ -291,7 +282,7 @@ def _terrace(stage: Stage, moulds: Moulds) -> None:
             for k in range(len(mine) or rng.randrange(2)):
                 a = rng.uniform(0, 6.28)
                 stage.place(
-                    moulds.get("cup", cafe.cup),
+                    prototypes.get("cup", cafe.cup),
                     "cup",
                     "white coffee cup",
                     (x + 0.2 * math.cos(a + 2.2 * k), y + 0.2 * math.sin(a + 2.2 * k), cafe.TABLE_M),
@@ -320,7 +311,7 @@ def _terrace(stage: Stage, moulds: Moulds) -> None:
 
 
 def seat_place(column: int, row: int, seat: int) -> tuple[tuple[float, float], float]:
-    """Where a chair of the terrace stands, and the bearing that its sitter looks along."""
+    """Return the position of a chair of the terrace, and the bearing that its sitter faces."""
     x, y = TERRACE_COLUMNS[column], TERRACE_ROWS[row]
     towards = (20.0, 140.0, 260.0)[seat] + 25.0 * ((row + column) % 2)
     b = math.radians(towards)

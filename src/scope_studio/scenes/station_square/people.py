@@ -1,4 +1,4 @@
-"""Station square: vendors, customers, travellers, people at café tables and on benches; and those who walk about."""
+"""Station square: vendors, customers, travellers, people at café tables and on benches, and walking people."""
 
 from __future__ import annotations
 
@@ -6,14 +6,15 @@ from dataclasses import replace
 from typing import Any
 
 from scope_studio.kit.core.stage import ActorPath, Built, Stage
-from scope_studio.kit.people import companions, luggage, people, seated, stances
+from scope_studio.kit.nature import dogs
+from scope_studio.kit.people import characters, luggage, poses, prams, seated, stances
 from scope_studio.kit.people.poses import Pose, walking
-from scope_studio.scenes.station_square import traffic as traffic
-from scope_studio.scenes.station_square.furniture import BENCHES, PLATFORM_TOP_M
+from scope_studio.scenes.station_square import traffic
+from scope_studio.scenes.station_square.fixtures import BENCHES, PLATFORM_TOP_M
 from scope_studio.scenes.station_square.market import FACING, STALLS, seat_place, spot
 
 TRAIL: tuple[float, float, float] = (0.24, -0.16, 0.86)
-"""Where a walker's right hand holds the handle of a case that rolls behind."""
+"""Position of a walker's right hand on the handle of a case that rolls behind."""
 
 VENDORS = ["white", "green", "dark green", "purple", "navy", "cream", "brown", "red"]
 CUSTOMERS: list[tuple[int, float, float, str, str, str | None]] = [
@@ -22,7 +23,7 @@ CUSTOMERS: list[tuple[int, float, float, str, str, str | None]] = [
     (5, -0.3, 1.7, "green", "stand", "bag"), (6, 0.8, 1.7, "light blue", "point", None), (7, 0.0, 1.9, "black", "stand", None),
     (7, 0.9, 2.3, "orange", "stand", None),
 ]  # fmt: skip
-"""Stall, place before it (right, out), coat, pose, what is held."""
+"""Stall, place in front of it (right, out), coat, pose, what is held."""
 
 STROLLERS: list[tuple[float, float, float, str, str, str | None, str]] = [
     (3.3, 22.6, 160, "navy", "stand", None, "waiting by the station"),
@@ -59,6 +60,7 @@ SITTERS: list[tuple[int, int, int, str, str]] = [
 
 
 def build(stage: Stage) -> None:
+    """Place the people and add the actors with their paths."""
     _market(stage)
     _strollers(stage)
     _sitters(stage)
@@ -71,7 +73,7 @@ def _person(stage: Stage, at: tuple[float, float, float], bearing: float, name: 
     pose: str = facts.pop("pose", "stand")
     stance: Pose | None = facts.pop("stance", None)
     held: str | None = facts.pop("holding", None)
-    built = people.pedestrian(top=top, pose=pose, phase=0.08 + 0.13 * (seed % 7), holding=held, stance=stance, seed=seed)
+    built = characters.pedestrian(top=top, pose=pose, phase=0.08 + 0.13 * (seed % 7), holding=held, stance=stance, seed=seed)
     state = {"walk": "walking", "sit": "sitting"}.get("sit" if facts.pop("seated", False) else pose, "standing")
     if held:
         facts["holding"] = held
@@ -136,18 +138,18 @@ def _sitters(stage: Stage) -> None:
 
 
 def _companions(stage: Stage) -> None:
-    """A man with a dog on a lead, a woman with a pram, two travellers with cases."""
+    """Place a man with a dog on a lead, a woman with a pram, and two travellers with cases."""
     _person(
         stage, (5.6, 3.2, 0), 140, "dog walker in grey", "grey", 460, stance=stances.leading(None, seed=3), activity="walking a dog"
     )
-    dog = companions.dog("golden", lead_to=(stances.LEAD_GRIP[0] - 0.55, stances.LEAD_GRIP[1] - 0.55, stances.LEAD_GRIP[2]))
+    dog = dogs.dog("golden", lead_to=(stances.LEAD_GRIP[0] - 0.55, stances.LEAD_GRIP[1] - 0.55, stances.LEAD_GRIP[2]))
     x, y = spot((5.6, 3.2), -0.55, 0.55, 140)
     stage.place(dog, "dog", "golden dog on a lead", (x, y, 0), 140, colour="golden", state="standing")
     _person(
         stage, (14.2, 14.0, 0), 262, "woman with a pram", "light blue", 461, stance=stances.pushing(0.2), activity="pushing a pram"
     )
     x, y = spot((14.2, 14.0), 0.0, 0.86, 262)
-    stage.place(companions.pram("navy"), "pram", "navy pram", (x, y, 0), 262, colour="navy")
+    stage.place(prams.pram("navy"), "pram", "navy pram", (x, y, 0), 262, colour="navy")
     for k, (at, bearing, top, case) in enumerate((((-3.6, 15.6), 20, "black", "green"), ((16.4, -0.6), 10, "dark red", "purple"))):
         stance = stances.reaching(_free_walk(0.3 + 0.3 * k), right=TRAIL)
         _person(stage, (*at, 0), bearing, f"traveller in {top}", top, 470 + k, stance=stance, activity="pulling a suitcase")
@@ -157,19 +159,19 @@ def _companions(stage: Stage) -> None:
 
 
 def _free_walk(phase: float) -> Pose:
-    """A walk whose right hand is free to hold."""
+    """Return a walk whose right hand is free to hold something."""
     return replace(walking(phase), twist=0.0)
 
 
 def _with_case(phase: float) -> Built:
-    walker = people.pedestrian(top="orange", trousers="navy", seed=501, stance=stances.reaching(_free_walk(phase), right=TRAIL))
+    walker = characters.pedestrian(top="orange", trousers="navy", seed=501, stance=stances.reaching(_free_walk(phase), right=TRAIL))
     case = luggage.trailing_case("blue", TRAIL)
     case.root.parent = walker.root
     return Built(walker.root, [*walker.objects, *case.objects], [])
 
 
 def _walkers() -> list[ActorPath]:
-    """A traveller from the station to the western passage, a passer-by to the trains, and a dog that trots about alone."""
+    """Return the actors: a traveller from the station, a passer-by on the way to the trains, and a dog that trots alone."""
     traveller = [(0.4, 31.5), (0.3, 24.0), (-3.6, 19.6), (-14.0, 16.4), (-24.0, 17.4), (-31.0, 18.8), (-37.0, 18.9), (-42.0, 19.0)]
     commuter = [
         (47.5, 6.0),
@@ -196,25 +198,27 @@ def _walkers() -> list[ActorPath]:
             traffic.timed(traveller, 1.35),
             52.0,
             {"top": "orange", "state": "walking", "with": "suitcase"},
-            stride_m=people.STRIDE_M,
+            stride_m=poses.STRIDE_M,
         ),
         ActorPath(
             "moving-person-02",
             first + 1,
             "person",
             "walking person in dark red",
-            lambda phase: people.pedestrian(top="dark red", trousers="black", pose="walk", phase=phase, holding="bag", seed=502),
+            lambda phase: characters.pedestrian(
+                top="dark red", trousers="black", pose="walk", phase=phase, holding="bag", seed=502
+            ),
             traffic.timed(commuter, 1.45),
             54.0,
             {"top": "dark red", "state": "walking", "holding": "bag"},
-            stride_m=people.STRIDE_M,
+            stride_m=poses.STRIDE_M,
         ),
         ActorPath(
             "moving-dog-01",
             first + 2,
             "dog",
             "black dog",
-            lambda phase: companions.dog("black", phase=phase),
+            lambda phase: dogs.dog("black", phase=phase),
             traffic.timed(trot, 1.5),
             0.0,
             {"colour": "black", "state": "walking"},

@@ -1,4 +1,4 @@
-"""Station square: the station, and the buildings round the square with their shops."""
+"""Station square: the station, and the buildings around the square with their shops."""
 
 from __future__ import annotations
 
@@ -6,12 +6,13 @@ import math
 
 import bpy
 
-from scope_studio.kit.buildings import buildings, clocks, square_shops, station, townhouses
+from scope_studio.kit.buildings import square_shops, station, townhouses, wall_materials
 from scope_studio.kit.buildings.townhouses import CLAY, SLATE, House
 from scope_studio.kit.core.finishes import paint
+from scope_studio.kit.core.lettering import extent
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Stage
-from scope_studio.kit.signs.lettering import extent
+from scope_studio.kit.furniture import clocks
 
 STATION_Y = 27.0
 WEST_X, EAST_X, SOUTH_Y = -36.0, 37.0, -30.0
@@ -26,6 +27,7 @@ DEPARTURES = [
 
 
 def build(stage: Stage) -> None:
+    """Place the station and the buildings."""
     _station(stage)
     _rows(stage)
 
@@ -60,17 +62,18 @@ def _station(stage: Stage) -> None:
 
 
 def walls() -> dict[str, bpy.types.Material]:
+    """Return the wall materials by colour name."""
     return {
-        "cream": townhouses.stucco("stucco cream", (0.58, 0.50, 0.36)),
-        "white": townhouses.stucco("stucco white", (0.64, 0.62, 0.57)),
-        "ochre": townhouses.stucco("stucco ochre", (0.52, 0.34, 0.14)),
-        "pink": townhouses.stucco("stucco pink", (0.53, 0.31, 0.25)),
-        "blue": townhouses.stucco("stucco blue", (0.30, 0.38, 0.44)),
-        "green": townhouses.stucco("stucco green", (0.33, 0.38, 0.28)),
-        "stone": townhouses.ashlar("town stone", (0.43, 0.37, 0.28)),
-        "grey stone": townhouses.ashlar("bank stone", (0.40, 0.385, 0.355), (0.95, 0.45)),
-        "red brick": buildings.brick_material("town red brick", (0.27, 0.090, 0.055)),
-        "buff brick": buildings.brick_material("town buff brick", (0.38, 0.285, 0.17)),
+        "cream": wall_materials.stucco("stucco cream", (0.58, 0.50, 0.36)),
+        "white": wall_materials.stucco("stucco white", (0.64, 0.62, 0.57)),
+        "ochre": wall_materials.stucco("stucco ochre", (0.52, 0.34, 0.14)),
+        "pink": wall_materials.stucco("stucco pink", (0.53, 0.31, 0.25)),
+        "blue": wall_materials.stucco("stucco blue", (0.30, 0.38, 0.44)),
+        "green": wall_materials.stucco("stucco green", (0.33, 0.38, 0.28)),
+        "stone": wall_materials.ashlar("town stone", (0.43, 0.37, 0.28)),
+        "grey stone": wall_materials.ashlar("bank stone", (0.40, 0.385, 0.355), (0.95, 0.45)),
+        "red brick": wall_materials.brick_material("town red brick", (0.27, 0.090, 0.055)),
+        "buff brick": wall_materials.brick_material("town buff brick", (0.38, 0.285, 0.17)),
     }
 
 
@@ -94,7 +97,10 @@ def _house(stage: Stage, h: House, place: tuple[float, float, float], colour: st
 
 
 def _local(place: tuple[float, float, float], right: float, out: float) -> tuple[float, float]:
-    """World position of a point ``right`` metres to a reader's right along a front and ``out`` before it."""
+    """Return the world position of a point at a front.
+
+    ``right`` is measured to the reader's right along the front, ``out`` in front of it (m).
+    """
     x, y, bearing = place
     b = math.radians(bearing)
     return x - right * math.cos(b) + out * math.sin(b), y + right * math.sin(b) + out * math.cos(b)
@@ -119,7 +125,7 @@ def shop(
     awning_open: bool = True,
     seed: int = 0,
 ) -> None:
-    """A shop front with its sign, door and awning, each an instance, before the house at ``place``."""
+    """Place a shop front with its sign, door and awning, each an instance, in front of the house at ``place``."""
     bearing = place[2]
     x, y = _local(place, 0.0, 0.0)
     front = stage.place(

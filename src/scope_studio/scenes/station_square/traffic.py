@@ -1,4 +1,4 @@
-"""Station square: the standing tram, taxis, parked vehicles, and the vehicles that move."""
+"""Station square: the standing tram, taxis, parked vehicles, and the moving vehicles."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from itertools import pairwise
 from scope_studio.kit.core.finishes import glow, paint
 from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import ActorPath, Built, Stage
-from scope_studio.kit.people import people, stances
-from scope_studio.kit.vehicles import cycles, tram, vehicles
+from scope_studio.kit.people import characters, stances
+from scope_studio.kit.vehicles import cars, cycles, tram
 from scope_studio.scenes.station_square.ground import ROAD_M, TRACKS
 
 FIRST_ACTOR = 9001
@@ -20,25 +20,26 @@ TAXIS = [("black", "RM19 TXA", -4.6, "lit"), ("silver", "LK70 CBD", 1.2, "unlit"
 """Colour, plate, y on the rank, state of the roof sign."""
 
 PARKED: list[tuple[Callable[..., Built], str, str, str, float, float, float]] = [
-    (vehicles.hatchback, "hatchback", "red", "GX68 LOM", 31.4, -6.4, 180.0),
-    (vehicles.suv, "SUV", "white", "TY21 NEB", 31.4, 16.4, 180.0),
-    (vehicles.hatchback, "hatchback", "blue", "PD17 WKU", 24.6, -24.3, 270.0),
-    (vehicles.saloon, "saloon", "dark red", "HN65 RJF", -22.0, -24.3, 270.0),
-    (vehicles.suv, "SUV", "dark green", "CE70 ZQA", -29.4, -24.3, 270.0),
-    (vehicles.hatchback, "hatchback", "yellow", "AO18 SVT", 17.8, -24.3, 270.0),
+    (cars.hatchback, "hatchback", "red", "GX68 LOM", 31.4, -6.4, 180.0),
+    (cars.suv, "SUV", "white", "TY21 NEB", 31.4, 16.4, 180.0),
+    (cars.hatchback, "hatchback", "blue", "PD17 WKU", 24.6, -24.3, 270.0),
+    (cars.saloon, "saloon", "dark red", "HN65 RJF", -22.0, -24.3, 270.0),
+    (cars.suv, "SUV", "dark green", "CE70 ZQA", -29.4, -24.3, 270.0),
+    (cars.hatchback, "hatchback", "yellow", "AO18 SVT", 17.8, -24.3, 270.0),
 ]
 
 DOWN_THE_STREET: list[tuple[Callable[..., Built], str, str, str, float]] = [
-    (vehicles.saloon, "saloon", "grey", "EJ18 PYT", 51.0),
-    (vehicles.hatchback, "hatchback", "orange", "NR14 LKV", 57.2),
-    (vehicles.suv, "SUV", "black", "BU22 ODA", 69.5),
-    (vehicles.hatchback, "hatchback", "white", "YC16 FHM", -52.0),
-    (vehicles.saloon, "saloon", "silver", "MT71 ESG", -64.5),
+    (cars.saloon, "saloon", "grey", "EJ18 PYT", 51.0),
+    (cars.hatchback, "hatchback", "orange", "NR14 LKV", 57.2),
+    (cars.suv, "SUV", "black", "BU22 ODA", 69.5),
+    (cars.hatchback, "hatchback", "white", "YC16 FHM", -52.0),
+    (cars.saloon, "saloon", "silver", "MT71 ESG", -64.5),
 ]
 """Cars parked farther along the street: colour, plate, x."""
 
 
 def build(stage: Stage) -> None:
+    """Place the standing vehicles. ``actors`` returns the moving ones."""
     _tram(stage)
     _taxis(stage)
     _parked(stage)
@@ -62,7 +63,7 @@ def _tram(stage: Stage) -> None:
 
 
 def taxi_sign(lit: bool) -> Built:
-    """The sign on a cab's roof."""
+    """Build the sign for the roof of a taxi."""
     s = Solid("taxi sign")
     s.box((0.62, 0.16, 0.19), (0, 0, 0.10), glow("yellow", 1.3) if lit else paint("cream", dirt=0.1, roughness=0.3), 0.03)
     for facing, y in (("+Y", 0.0815), ("-Y", -0.0815)):
@@ -73,7 +74,7 @@ def taxi_sign(lit: bool) -> Built:
 def _taxis(stage: Stage) -> None:
     for k, (colour, plate, y, sign) in enumerate(TAXIS):
         cab = stage.place(
-            vehicles.saloon(colour, plate=plate),
+            cars.saloon(colour, plate=plate),
             "taxi",
             f"{colour} taxi",
             (25.2, y, ROAD_M),
@@ -124,7 +125,7 @@ def _parked(stage: Stage) -> None:
             facing="west",
             area="street",
         )
-    van = vehicles.van("blue", plate="WJ69 FDC", lettering="FENWICK\nBAKERS")
+    van = cars.van("blue", plate="WJ69 FDC", lettering="FENWICK\nBAKERS")
     stage.place(
         van,
         "van",
@@ -140,18 +141,18 @@ def _parked(stage: Stage) -> None:
 
 
 def _bend(centre: tuple[float, float], radius: float, start: float, stop: float, steps: int = 7) -> list[tuple[float, float]]:
-    """Points of an arc; bearings in degrees clockwise from north."""
+    """Return the points of an arc. Bearings are in degrees clockwise from north."""
     angles = [math.radians(start + (stop - start) * k / steps) for k in range(steps + 1)]
     return [(centre[0] + radius * math.sin(a), centre[1] + radius * math.cos(a)) for a in angles]
 
 
 def _ground(x: float, y: float) -> float:
-    """Height of the paving there: carriageways lie lower."""
+    """Return the height of the paving. Carriageways lie lower."""
     return ROAD_M if y < -11.9 or 23.6 < x < 32.4 else 0.0
 
 
 def timed(corners: list[tuple[float, float]], speed_mps: float, start_s: float = 0.0) -> list[tuple[float, float, float, float]]:
-    """Way points at an even speed, on the ground."""
+    """Return way points (t_s, x, y, z) at constant speed, on the ground."""
     way, t = [(start_s, *corners[0], _ground(*corners[0]))], start_s
     for (x0, y0), (x1, y1) in pairwise(corners):
         t += math.hypot(x1 - x0, y1 - y0) / speed_mps
@@ -160,7 +161,7 @@ def timed(corners: list[tuple[float, float]], speed_mps: float, start_s: float =
 
 
 def _moving_taxi() -> Built:
-    cab = vehicles.saloon("yellow", plate="SD20 KWN")
+    cab = cars.saloon("yellow", plate="SD20 KWN")
     sign = taxi_sign(True)
     sign.root.parent = cab.root
     sign.root.location = (0.0, -0.25, TAXI_ROOF_M)
@@ -169,13 +170,13 @@ def _moving_taxi() -> Built:
 
 def _rider() -> Built:
     bike = cycles.bicycle("red", kind="town", basket=True, crank_deg=70.0)
-    person = people.pedestrian(top="light blue", trousers="denim", seed=733, stance=stances.riding(70.0))
+    person = characters.pedestrian(top="light blue", trousers="denim", seed=733, stance=stances.riding(70.0))
     person.root.parent = bike.root
     return Built(bike.root, [*bike.objects, *person.objects], [])
 
 
 def actors() -> list[ActorPath]:
-    """The taxi that passes along the street, and the cyclist who crosses the square."""
+    """Return the taxi that passes along the street, and the cyclist who crosses the square."""
     taxi = [
         (-40.2, -58.0),
         (-40.2, -28.0),

@@ -1,0 +1,98 @@
+"""Bodies of moving actors: built on first use, then placed on their paths at a given time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import bpy
+import numpy as np
+
+from scope_studio.kit.core.stage import INSTANCE_PROP, ActorPath, Built, Stage
+
+GAIT_PHASES = 8
+"""Number of bodies of a walking actor, one for each phase of its gait."""
+
+
+class ActorBodies:
+    """The bodies of all actors of a stage. A body is hidden in renders except while it is shown."""
+
+    def __init__(self, stage: Stage) -> None:
+        self._stage = stage
+        self._bodies: dict[tuple[str, int], Built] = {}
+
+    def body(self, actor: ActorPath, phase: float) -> Built:
+        """Return the body for a gait phase in [0, 1), rounded to one of ``GAIT_PHASES``. Build it on first use."""
+        index = round(phase * GAIT_PHASES) % GAIT_PHASES if actor.stride_m else 0
+        key = (actor.id, index)
+        if key not in self._bodies:
+            finished = tuple(m.name for m in bpy.data.materials)
+            built = actor.build(index / GAIT_PHASES)
+            self._stage.finish(skip=finished)
+            for obj in built.objects:
+                obj[INSTANCE_PROP] = actor.id
+                obj.pass_index = actor.number
+            show(built, False)
+            self._bodies[key] = built
+        return self._bodies[key]
+
+    def stand(self, actor: ActorPath, time_s: float, phase: float | None = None) -> Built | None:
+        """Place the actor where it is at a scene time and show it.
+
+        Returns:
+            The body, or None when the actor is not in the scene at that time.
+        """
+        t = time_s % actor.period_s
+        if not actor.waypoints[0][0] <= t <= actor.waypoints[-1][0]:
+            return None
+        position, bearing_deg, walked_m = along(actor, t)
+        if phase is None:
+            phase = (walked_m / actor.stride_m) % 1.0 if actor.stride_m else 0.0
+        built = self.body(actor, phase)
+        self._stage.put(built, position, bearing_deg)
+        show(built, True)
+        return built
+
+    @contextmanager
+    def shown_at(self, time_s: float) -> Iterator[None]:
+        """Show every actor that is in the scene at that time, until the end of the block."""
+        standing = [built for actor in self._stage.actors if (built := self.stand(actor, time_s)) is not None]
+        bpy.context.view_layer.update()
+        try:
+            yield
+        finally:
+            for built in standing:
+                show(built, False)
+
+    def size_m(self, actor: ActorPath) -> tuple[float, float, float]:
+        """Return the width, length and height of the actor's body in metres."""
+        built = self.body(actor, 0.0)
+        self._stage.put(built, (0.0, 0.0, 0.0), 0.0)
+        bpy.context.view_layer.update()
+        corners = np.array([obj.matrix_world @ v.co for obj in built.objects if obj.type == "MESH" for v in obj.data.vertices])
+        reach = np.abs(corners).max(axis=0)
+        return float(2 * reach[0]), float(2 * reach[1]), float(corners[:, 2].max())
+
+
+def along(actor: ActorPath, t: float) -> tuple[tuple[float, float, float], float, float]:
+    """Return the actor's position (m), bearing (degrees) and distance walked (m) at a time on its path."""
+    walked = 0.0
+    last = len(actor.waypoints) - 2
+    for k, (a, b) in enumerate(zip(actor.waypoints, actor.waypoints[1:], strict=False)):
+        length = math.dist(a[1:], b[1:])
+        if t <= b[0] or k == last:
+            share = 0.0 if b[0] == a[0] else (t - a[0]) / (b[0] - a[0])
+            x, y, z = (a[i] + (b[i] - a[i]) * share for i in (1, 2, 3))
+            return (x, y, z), math.degrees(math.atan2(b[1] - a[1], b[2] - a[2])), walked + length * share
+        walked += length
+    raise ValueError("a path needs two waypoints")
+
+
+def show(built: Built, on: bool) -> None:
+    """Show or hide a thing in renders.
+
+    The viewport's own visibility flag must stay on: Cycles does not export objects that are hidden there.
+    """
+    for obj in built.objects:
+        obj.hide_render = not on

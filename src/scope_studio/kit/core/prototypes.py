@@ -1,0 +1,21 @@
+"""A cache of built things, so that repeated objects share their mesh data."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from scope_studio.kit.core.stage import Built
+
+
+class Prototypes:
+    """Builds each kind of thing once and returns linked copies afterwards."""
+
+    def __init__(self) -> None:
+        self._built: dict[str, Built] = {}
+
+    def get(self, key: str, make: Callable[[], Built]) -> Built:
+        """Return the thing for this key: built by ``make`` on the first call, a linked copy on later calls."""
+        if key in self._built:
+            return self._built[key].copy()
+        self._built[key] = make()
+        return self._built[key]

@@ -1,0 +1,1 @@
+"""Ground: a dual carriageway, terrain, paving, wet streets, and road markings."""

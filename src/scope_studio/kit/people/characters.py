@@ -1,0 +1,252 @@
+"""Road workers and pedestrians of varied height, build, skin and hair, in relaxed poses or walking.
+
+A person stands at the origin facing +y, with about 45,000 points in one object. Appearance and small asymmetries are drawn from
+``seed``; everything else is a parameter. ``phase`` in [0, 1) is the gait phase of the poses "walk" and "carry". One cycle
+covers ``STRIDE_M`` times the person's height over 1.77 m.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from random import Random
+
+import numpy as np
+from mathutils import Matrix, Vector
+
+from scope_studio.kit.core.finishes import paint, rubber
+from scope_studio.kit.core.solid import Solid
+from scope_studio.kit.core.stage import Built
+from scope_studio.kit.core.volumes import Skin, normals
+from scope_studio.kit.people import clothing, figure, heads
+from scope_studio.kit.people.hand_props import HOLDABLE, hold
+from scope_studio.kit.people.poses import Joints, Pose, named, solve
+
+
+@dataclass(frozen=True)
+class _Appearance:
+    """Physical features of a person, drawn from the seed."""
+
+    height_m: float
+    girth: float
+    woman: bool
+    tone: int
+    hair: str | None
+    style: str
+    stubble: bool
+
+
+def _looks(random: Random, hair: str | None, woman_share: float) -> _Appearance:
+    woman = random.random() < woman_share
+    height = random.gauss(1.67, 0.04) if woman else random.gauss(1.78, 0.045)
+    tone = random.choices(range(6), (30, 26, 16, 12, 10, 6))[0]
+    usual = ["black"] if tone >= 3 else ["black", "brown", "brown", "light brown", "blond", "ginger", "grey"]
+    style = random.choice(["long", "tail", "bun"]) if woman else random.choice(["short", "short", "crop"])
+    girth = random.uniform(0.96, 1.10) if woman else random.uniform(0.98, 1.30)
+    return _Appearance(
+        min(1.90, max(1.60, height)),
+        girth,
+        woman,
+        tone,
+        hair or random.choice(usual),
+        style,
+        not woman and random.random() < 0.45,
+    )
+
+
+def _wear(s: Solid, skin: Skin, material: object, rest: np.ndarray | None = None) -> None:
+    points, faces = skin
+    s.add(points.tolist(), faces, material, None if rest is None else rest.tolist())
+
+
+def _head(s: Solid, joints: Joints, looks: _Appearance, covered: bool) -> None:
+    skin = heads.face(woman=looks.woman, stout=0.9 + 0.12 * (looks.girth - 0.95) / 0.25)
+    _wear(s, heads.place(skin, joints.head), clothing.skin(looks.tone, looks.hair, stubble=looks.stubble), skin[0])
+    if looks.hair is None or looks.hair == "bald":
+        return
+    style = "crop" if covered and looks.style in ("short", "bun") else looks.style
+    hair = heads.hair_cap(style, 0.004 if style == "crop" else 0.009, looks.height_m * 10)
+    _wear(s, heads.place(hair, joints.head), clothing.hair(looks.hair), hair[0])
+
+
+def _helmet(s: Solid, joints: Joints, colour: str) -> None:
+    """Add a safety helmet: dome with a ridge, short brim, long peak in front, badge."""
+    shell = paint(colour, dirt=0.16, roughness=0.30)
+    saved = s.frame
+    s.frame = (
+        saved @ joints.head @ Matrix.Translation(Vector(heads.CENTRE) + Vector((0, -0.014, 0.055))) @ Matrix.Rotation(0.15, 4, "X")
+    )
+    rows = [(1.00, 0.0), (0.99, 0.026), (0.94, 0.053), (0.82, 0.078), (0.62, 0.097), (0.36, 0.108), (0.10, 0.112)]
+    points, faces, n = [], [], 40
+    angles = np.linspace(0, 2 * np.pi, n, endpoint=False)
+    for scale, z in rows:
+        for a in angles:
+            ridge = 0.007 * np.exp(-((np.cos(a) * scale / 0.16) ** 2)) * (z > 0.04)
+            points.append((0.102 * scale * np.cos(a), 0.126 * scale * np.sin(a), z + ridge))
+    for reach, z in ((0.006, -0.004), (0.016, -0.010), (0.015, -0.014), (-0.004, -0.010)):
+        for a in angles:
+            peak = 0.040 * max(0.0, np.sin(a)) ** 3 * (reach > 0)
+            points.append(((0.102 + reach) * np.cos(a), (0.126 + reach + peak) * np.sin(a), z - peak * 0.30))
+    order = [10, 9, 8, 7, *range(7)]
+    for low, high in itertools.pairwise(order):
+        faces += [(low * n + k, low * n + (k + 1) % n, high * n + (k + 1) % n, high * n + k) for k in range(n)]
+    faces.append(tuple(range(6 * n, 7 * n)))
+    s.add([tuple(float(c) for c in p) for p in points], faces, shell)
+    s.box((0.045, 0.006, 0.022), (0, 0.1225, 0.045), paint("navy" if colour != "blue" else "white"), 0.002)
+    s.frame = saved
+
+
+@dataclass(frozen=True)
+class _Outfit:
+    """Clothes of a person. ``vest`` and ``helmet`` make a worker."""
+
+    top: str
+    legs: str
+    style: str
+    inner: str
+    neck: str
+    glove: str | None
+    vest: str | None
+    helmet: str | None
+
+
+def _dress(s: Solid, joints: Joints, random: Random, looks: _Appearance, outfit: _Outfit, curls: tuple[float, float]) -> None:
+    """Add clothes and hands."""
+    seed = random.uniform(0, 50)
+    vest = outfit.vest
+    loose = random.uniform(0.004, 0.012)
+    low = 0.87 if vest else round(random.uniform(0.87, 0.92), 2)
+    body, rest = figure.trunk(
+        joints,
+        swell=-0.012 if vest else loose * 0.6,
+        low=low,
+        girth=looks.girth,
+        woman=looks.woman,
+        neck=outfit.neck,
+        seed=seed,
+    )
+    _wear(s, body, clothing.top(outfit.top, outfit.style, outfit.inner, low), rest)
+    sleeve, along = figure.sleeves(joints, loose=0.008 if vest else loose * 0.7, seed=seed + 4)
+    bands = (0.17, 0.40) if outfit.top.startswith("hi-vis") else ()
+    _wear(s, sleeve, clothing.cloth(outfit.top, bands=bands), _limb(along))
+    if vest:
+        skin, rest = figure.trunk(joints, swell=0.024, low=0.835, girth=looks.girth, woman=looks.woman, flare=0.007, seed=seed + 1)
+        _wear(s, skin, clothing.vest(vest, outfit.top), rest)
+    leg_skin, along = figure.trousers(joints, loose=0.008 if vest else 0.002, girth=looks.girth, seed=seed + 2)
+    bands = (0.27, 0.40) if outfit.legs.startswith("hi-vis") else ()
+    _wear(s, leg_skin, clothing.cloth(outfit.legs, bands=bands), _limb(along))
+    shoe = vest is None
+    upper = paint("black" if shoe else random.choice(["brown", "black", "dark grey"]), dirt=0.38, roughness=0.6)
+    _wear(s, figure.boots(joints, shoe=shoe), upper)
+    for i, side in enumerate((-1, 1)):
+        low, high = figure.sole_outline(joints.feet[i], side, 0.0, 0.026)
+        n = len(low)
+        s.add(
+            [*low, *high],
+            [
+                tuple(range(n))[::-1],
+                tuple(range(n, 2 * n)),
+                *((k, (k + 1) % n, n + (k + 1) % n, n + k) for k in range(n)),
+            ],
+            rubber(),
+        )
+    paw = figure.hands(joints, curls, glove=outfit.glove is not None)
+    if outfit.glove:
+        _wear(s, paw, paint(outfit.glove, dirt=0.5, roughness=0.8))
+    else:
+        _wear(s, paw, clothing.skin(looks.tone, looks.hair, stubble=False), np.full_like(paw[0], 5.0) + normals(paw))
+
+
+def _limb(along: np.ndarray) -> np.ndarray:
+    """Return the rest coordinates of a limb. Only the position along it matters."""
+    return np.column_stack([np.zeros((len(along), 2)), along])
+
+
+IN_HAND = {"shovel": "shovel", "phone": "phone", "clipboard": "clipboard", "carry": "box", "kneel": "trowel"}
+"""What a pose holds by default."""
+
+
+def _person(
+    name: str,
+    pose: str,
+    phase: float,
+    random: Random,
+    looks: _Appearance,
+    outfit: _Outfit,
+    holding: str | None,
+    own_stance: Pose | None = None,
+) -> Built:
+    if holding is not None and holding not in HOLDABLE:
+        raise ValueError(f"cannot hold {holding!r}; known: {sorted(HOLDABLE)}")
+    stance = own_stance or named(pose, phase, random)
+    joints = solve(stance)
+    s = Solid(name)
+    scale = looks.height_m / 1.77
+    s.frame = Matrix.Diagonal((scale * (0.93 if looks.woman else 1.0), scale, scale, 1.0))
+    _dress(s, joints, random, looks, outfit, (stance.arms[0].curl, stance.arms[1].curl))
+    _head(s, joints, looks, outfit.helmet is not None)
+    if outfit.helmet:
+        _helmet(s, joints, outfit.helmet)
+    prop = holding or IN_HAND.get(pose)
+    if prop:
+        hold(s, joints, prop)
+    return s.built()
+
+
+def worker(
+    *,
+    vest: str = "orange",
+    helmet: str | None = "white",
+    trousers: str | None = None,
+    pose: str = "stand",
+    phase: float = 0.0,
+    holding: str | None = None,
+    stance: Pose | None = None,
+    seed: int = 0,
+) -> Built:
+    """Build a road worker in a high-visibility vest ("orange" or "yellow").
+
+    Args:
+        helmet: A colour, or None.
+        pose: "stand", "walk", "point", "carry", "kneel", "shovel", "phone" or "clipboard".
+        holding: Replaces what the pose holds by default.
+        stance: The caller's own pose, instead of a named one.
+    """
+    random = Random(f"worker {seed}")
+    looks = _looks(random, None, 0.15)
+    legs = trousers or random.choice(["navy", "dark grey", f"hi-vis {vest}", "khaki", "navy"])
+    top = random.choice(["navy", "dark grey", "grey", f"hi-vis {vest}", "navy"])
+    glove = random.choice(["dark grey", "hi-vis orange", "black", None])
+    if pose in ("phone", "clipboard"):
+        glove = None
+    outfit = _Outfit(top, legs, "shirt", "white", "collar", glove, vest, helmet)
+    return _person(f"worker in {vest}", pose, phase, random, looks, outfit, holding, stance)
+
+
+def pedestrian(
+    *,
+    top: str | None = None,
+    trousers: str | None = None,
+    hair: str | None = None,
+    pose: str = "stand",
+    phase: float = 0.0,
+    holding: str | None = None,
+    stance: Pose | None = None,
+    seed: int = 0,
+) -> Built:
+    """Build a passer-by in everyday clothes.
+
+    Colours have plain names and are drawn from the seed when not given. ``stance`` is the caller's own pose, instead of a named
+    one.
+    """
+    random = Random(f"pedestrian {seed}")
+    looks = _looks(random, hair, 0.5)
+    upper = top or random.choice(["dark red", "navy", "grey", "green", "beige", "light blue", "black", "purple", "yellow"])
+    choices = ["denim", "denim", "black", "dark grey", "beige", "khaki"]
+    legs = trousers or random.choice([c for c in choices if c != upper])
+    style, neck = random.choice(
+        [("jacket", "collar"), ("jacket", "hood"), ("jumper", "hood"), ("jumper", "collar"), ("shirt", "collar")]
+    )
+    inner = random.choice([c for c in ("white", "light grey", "black", "light blue") if c != upper])
+    outfit = _Outfit(upper, legs, style, inner, neck, None, None, None)
+    return _person(f"pedestrian in {upper}", pose, phase, random, looks, outfit, holding, stance)
