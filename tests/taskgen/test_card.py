@@ -12,11 +12,11 @@ from scope_ptz.bench.tasks.splits import published_folder, write_manifest, write
 from scope_ptz.bench.tasks.task import CANARY
 from scope_ptz.errors import InputError
 from scope_ptz.simulator.pack import load_scene
-from scope_ptz.taskgen.audit import DRAW, Draw, drawn, score
 from scope_ptz.taskgen.dataset.card import AUDIT, GOLD, PROOF, Dataset, card
-from scope_ptz.taskgen.facts.phrasing import right_answers
+from scope_ptz.taskgen.facts.answer_phrasing import right_answers
+from scope_ptz.taskgen.gold.gold_runs import gold_runs, write_gold
 from scope_ptz.taskgen.gold.mutations import Setting
-from scope_ptz.taskgen.gold.runs import gold_runs, write_gold
+from scope_ptz.taskgen.picture_audit import DRAW, Draw, drawn, score
 from scope_ptz.taskgen.validation.validate import Report
 from tests.bench.making import EYES, PRESETS, samples
 

@@ -12,8 +12,8 @@ import pytest
 from scope_ptz.bench.scoring import error_modes
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.errors import InputError
+from scope_ptz.taskgen.gold.gold_runs import gold_runs, matrix, read_gold, write_gold
 from scope_ptz.taskgen.gold.mutations import Gold, Setting
-from scope_ptz.taskgen.gold.runs import gold_runs, matrix, read_gold, write_gold
 from tests.bench.making import EYES, PRESETS, samples
 
 SAMPLES = samples()

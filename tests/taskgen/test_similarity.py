@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from scope_ptz.taskgen.facts.similarity import Known, shingles, similarity
+from scope_ptz.taskgen.facts.near_duplicates import Known, shingles, similarity
 from tests.bench.making import samples
 
 COUNT, OTHER = (task for task, _ in samples()[:2])

@@ -48,7 +48,7 @@ def make(
         from scope_ptz.bench.tasks.splits import load_split
         from scope_ptz.cli.bench_show import EYES
         from scope_ptz.factory.validation_perception import KnownViews, equip_with_truth
-        from scope_ptz.taskgen.audit import DRAW, QUESTIONS, Draw, drawn
+        from scope_ptz.taskgen.picture_audit import DRAW, QUESTIONS, Draw, drawn
 
         rows = load_split(tasks)
         chosen = drawn(rows, number, seed)
@@ -81,7 +81,7 @@ def score(
     """Read the answers with the benchmark's own reader. What looking into a disagreement showed goes into findings.jsonl."""
     with ending(as_json=as_json):
         from scope_ptz.bench.tasks.splits import load_split
-        from scope_ptz.taskgen.audit import score as hold
+        from scope_ptz.taskgen.picture_audit import score as hold
 
         audit = hold(folder, load_split(tasks))
         if out is not None:

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from scope_ptz.bench.tasks.task import Category, Task
     from scope_ptz.endpoints.endpoint import Endpoint
     from scope_ptz.simulator.pack import Scene
-    from scope_ptz.taskgen.generating.ledger import Ledger
-    from scope_ptz.taskgen.generating.loop import Order, Prove
+    from scope_ptz.taskgen.generating.draft_ledger import Ledger
+    from scope_ptz.taskgen.generating.drafting_loop import Order, Prove
 
 
 def generate(
@@ -44,9 +44,9 @@ def generate(
 
         from scope_ptz.bench.tasks.splits import load_split
         from scope_ptz.factory.session import open_scene
-        from scope_ptz.taskgen.generating.ledger import Ledger
-        from scope_ptz.taskgen.generating.loop import Order
-        from scope_ptz.taskgen.generating.operators import read_runs
+        from scope_ptz.taskgen.generating.draft_ledger import Ledger
+        from scope_ptz.taskgen.generating.drafting_loop import Order
+        from scope_ptz.taskgen.generating.operator_runs import read_runs
 
         order = Order(
             scene=open_scene(scene),
@@ -73,7 +73,7 @@ def generate(
 
 async def _run(order: Order, ledger: Ledger, endpoint: Endpoint, model: str, temperature: float) -> None:
     from scope_ptz.bench.judging.server import JudgeOptions, ServerPort
-    from scope_ptz.taskgen.generating.loop import generate as drafts
+    from scope_ptz.taskgen.generating.drafting_loop import generate as drafts
 
     options = JudgeOptions(temperature=temperature, seed=order.seed)
     port = ServerPort(await _named(endpoint, model), options)

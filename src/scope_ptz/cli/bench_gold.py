@@ -32,7 +32,7 @@ def make(
         import anyio
 
         from scope_ptz.bench.tasks.splits import load_split
-        from scope_ptz.taskgen.gold.runs import matrix, write_gold
+        from scope_ptz.taskgen.gold.gold_runs import matrix, write_gold
 
         gold = anyio.run(made_gold, load_split(tasks), seed)
         out.parent.mkdir(parents=True, exist_ok=True)
@@ -53,7 +53,7 @@ def check(
     """Apply the rules to the gold runs again. Exit code 1 when fewer faults are named, or more let through, than published."""
     with ending(as_json=as_json):
         from scope_ptz.bench.tasks.splits import load_split, published_folder
-        from scope_ptz.taskgen.gold.runs import matrix, read_gold
+        from scope_ptz.taskgen.gold.gold_runs import matrix, read_gold
 
         published, runs = read_gold(gold or published_folder() / "gold.jsonl.gz", load_split(tasks))
         result = matrix(runs)
@@ -73,10 +73,10 @@ async def made_gold(tasks: Sequence[Task], seed: int) -> list[Gold]:
     from scope_ptz.bench.programs import Stage
     from scope_ptz.bench.scoring.verdict import judge
     from scope_ptz.factory.validation_perception import KnownViews, equip_with_truth
-    from scope_ptz.taskgen.authoring.places import preset_at
-    from scope_ptz.taskgen.facts.phrasing import right_answers
+    from scope_ptz.taskgen.authoring.task_places import preset_at
+    from scope_ptz.taskgen.facts.answer_phrasing import right_answers
+    from scope_ptz.taskgen.gold.gold_runs import EYES, gold_runs
     from scope_ptz.taskgen.gold.mutations import Setting
-    from scope_ptz.taskgen.gold.runs import EYES, gold_runs
 
     worlds = worlds_of(tasks)
     equip = equip_with_truth(worlds, KnownViews())
@@ -101,7 +101,7 @@ HEADS = {
 def matrix_lines(gold: Sequence[Gold]) -> Iterator[str]:
     """The confusion matrix, rows the faults put in, columns what they were taken for; then every run off the diagonal."""
     from scope_ptz.bench.scoring.error_modes import ErrorMode
-    from scope_ptz.taskgen.gold.runs import OTHER, matrix
+    from scope_ptz.taskgen.gold.gold_runs import OTHER, matrix
 
     result = matrix(gold)
     columns = [*(mode.value for mode in ErrorMode), *OTHER]

@@ -12,7 +12,7 @@ import typer
 from scope_ptz.cli.endings import FAILED, complain, ending, put, put_json
 
 if TYPE_CHECKING:
-    from scope_ptz.taskgen.importing.places import Places
+    from scope_ptz.taskgen.importing.scene_names import Places
 
 
 def import_tasks(
@@ -36,7 +36,7 @@ def import_tasks(
     with ending(as_json=as_json):
         from scope_ptz.bench.tasks.imported import dump_imported
         from scope_ptz.errors import OutputError
-        from scope_ptz.taskgen.importing.report import import_file, report_lines
+        from scope_ptz.taskgen.importing.import_report import import_file, report_lines
 
         imported = import_file(file, places_in(scenes, mapping))
         target = out or Path(f"{file.stem}.imported.jsonl")
@@ -71,7 +71,7 @@ def places_in(folder: Path | None, mapping: Path | None) -> Places:
     from scope_ptz.factory.session import scene_search
     from scope_ptz.settings import load_settings
     from scope_ptz.simulator.pack import list_scenes, load_scene
-    from scope_ptz.taskgen.importing.places import PlaceMap, Places, ScenePresets, read_place_map
+    from scope_ptz.taskgen.importing.scene_names import PlaceMap, Places, ScenePresets, read_place_map
 
     if folder is not None and not folder.is_dir():
         raise InputError(f"There is no folder {folder} of scenes.")

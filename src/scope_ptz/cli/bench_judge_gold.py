@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from scope_ptz.bench.judging.server import ServerPort
     from scope_ptz.bench.judging.tally import Tally
     from scope_ptz.bench.scoring.trials import Judgement
-    from scope_ptz.taskgen.gold.judges import GoldCase, GoldResult, GoldVerdict
+    from scope_ptz.taskgen.gold.judge_results import GoldCase, GoldResult, GoldVerdict
 
 
 def judge_gold(
@@ -46,7 +46,7 @@ def judge_gold(
     with ending(as_json=as_json):
         import anyio
 
-        from scope_ptz.taskgen.gold.judges import read_verdicts, results
+        from scope_ptz.taskgen.gold.judge_results import read_verdicts, results
 
         before = read_verdicts(out)
         cases = gold_cases(gold, tasks, passing, limit)
@@ -79,7 +79,7 @@ async def _judge_all(
     from scope_ptz.bench.judging.lines import append_line
     from scope_ptz.bench.judging.rubrics import prompt_version
     from scope_ptz.bench.judging.tally import Tally
-    from scope_ptz.taskgen.gold.judges import judge_gold as judge_cases
+    from scope_ptz.taskgen.gold.judge_results import judge_gold as judge_cases
 
     name = port.client.endpoint.model
     version = prompt_version()
@@ -113,9 +113,9 @@ def gold_cases(gold: Path | None, tasks: str, passing: int, limit: int | None) -
     from scope_ptz.bench.tasks.splits import load_split, published_folder
     from scope_ptz.cli.bench_inputs import worlds_of
     from scope_ptz.factory.validation_perception import equip_with_truth
-    from scope_ptz.taskgen.facts.phrasing import right_answers
-    from scope_ptz.taskgen.gold.judges import gold_case, in_turn, passing_case
-    from scope_ptz.taskgen.gold.runs import EYES, read_gold
+    from scope_ptz.taskgen.facts.answer_phrasing import right_answers
+    from scope_ptz.taskgen.gold.gold_runs import EYES, read_gold
+    from scope_ptz.taskgen.gold.judge_results import gold_case, in_turn, passing_case
 
     _, runs = read_gold(gold or published_folder() / "gold.jsonl.gz", load_split(tasks))
     runs = in_turn(runs)[:limit]
@@ -138,7 +138,7 @@ def gold_cases(gold: Path | None, tasks: str, passing: int, limit: int | None) -
 def gold_lines(result: GoldResult) -> Iterator[str]:
     """What a judge made of gold runs, as text."""
     from scope_ptz.bench.scoring.error_modes import ErrorMode
-    from scope_ptz.taskgen.gold.judges import APART, PASSES
+    from scope_ptz.taskgen.gold.judge_results import APART, PASSES
 
     modes = [mode.value for mode in ErrorMode]
     columns = [*modes, "correct", *APART]

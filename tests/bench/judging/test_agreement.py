@@ -20,7 +20,7 @@ from scope_ptz.bench.tasks.wording import facts_of
 from scope_ptz.cli.bench_agree import agreement_lines, figures
 from scope_ptz.cli.bench_judge_gold import gold_lines
 from scope_ptz.errors import InputError
-from scope_ptz.taskgen.gold.judges import (
+from scope_ptz.taskgen.gold.judge_results import (
     GoldCase,
     GoldVerdict,
     gold_case,

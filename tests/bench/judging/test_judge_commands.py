@@ -22,10 +22,10 @@ from scope_ptz.cli.bench_judge import UnnamedJudgeError, open_judge
 from scope_ptz.errors import ConfigError, InputError
 from scope_ptz.factory.session import open_scene
 from scope_ptz.factory.validation_perception import equip_with_truth
-from scope_ptz.taskgen.authoring.places import preset_at
-from scope_ptz.taskgen.gold.judges import read_verdicts
+from scope_ptz.taskgen.authoring.task_places import preset_at
+from scope_ptz.taskgen.gold.gold_runs import EYES, write_gold
+from scope_ptz.taskgen.gold.judge_results import read_verdicts
 from scope_ptz.taskgen.gold.mutations import Setting, mutate
-from scope_ptz.taskgen.gold.runs import EYES, write_gold
 from tests.bench.judging.runs import CORRECT, written
 from tests.bench.judging.test_labels import turn_task
 from tests.support import misbehaving as m

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from scope_ptz.simulator.models import SceneInstance
-from scope_ptz.taskgen.authoring.naming import alike, bears, spoken
-from scope_ptz.taskgen.authoring.words import the
+from scope_ptz.taskgen.authoring.noun_phrases import the
+from scope_ptz.taskgen.authoring.object_names import alike, bears, spoken
 
 
 def thing(category: str, name: str, **attributes: str) -> SceneInstance:

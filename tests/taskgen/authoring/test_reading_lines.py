@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from scope_ptz.simulator.models import SceneText
 from scope_ptz.simulator.truth import BoxTuple, TextSighting
-from scope_ptz.taskgen.authoring.ocr import lines, on_it, priced
+from scope_ptz.taskgen.authoring.categories.ocr_tasks import lines, on_it, priced
 
 
 def written(text: str, box: BoxTuple) -> TextSighting:

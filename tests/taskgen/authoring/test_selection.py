@@ -12,8 +12,8 @@ from scope_ptz.bench.tasks.expected import AnyExpected, Choice, NoneThere, Numbe
 from scope_ptz.geometry import Pose
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.taskgen.authoring.drafts import Draft, Question
-from scope_ptz.taskgen.authoring.places import Place, go, preset_at
 from scope_ptz.taskgen.authoring.selection import AT_ONE_PLACE, POLAR, SAME, Selection, Shared, right_at
+from scope_ptz.taskgen.authoring.task_places import Place, go, preset_at
 
 
 @pytest.fixture

@@ -22,7 +22,7 @@ from scope_ptz.simulator.pack import Scene
 from scope_ptz.taskgen.authoring.assembly import QUOTAS as PUBLISHED
 from scope_ptz.taskgen.authoring.assembly import Built
 from scope_ptz.taskgen.authoring.reactions import reactions
-from scope_ptz.taskgen.facts.phrasing import offered
+from scope_ptz.taskgen.facts.answer_phrasing import offered
 from scope_ptz.taskgen.validation.adversarial import common_answers
 from scope_ptz.taskgen.validation.validate import Report, structure, validate
 from tests.taskgen.authoring.conftest import QUOTAS

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from scope_ptz.taskgen.authoring.descriptor import one_of
-from scope_ptz.taskgen.authoring.words import about, article, listing, many_of, noun_of, plain_colour, plural, unit_of
+from scope_ptz.taskgen.authoring.categories.descriptor_tasks import one_of
+from scope_ptz.taskgen.authoring.noun_phrases import about, article, listing, many_of, noun_of, plain_colour, plural, unit_of
 from scope_ptz.taskgen.facts.kinds import Kind
 
 

@@ -11,9 +11,9 @@ import pytest
 from scope_ptz.agent.records import Labels
 from scope_ptz.bench.tasks.files import load_tasks
 from scope_ptz.errors import InputError
-from scope_ptz.taskgen.generating.ledger import Ledger
-from scope_ptz.taskgen.generating.operators import read_runs
-from scope_ptz.taskgen.generating.schema import Draft, read_draft, read_reply, reply_schema
+from scope_ptz.taskgen.generating.draft_ledger import Ledger
+from scope_ptz.taskgen.generating.draft_schema import Draft, read_draft, read_reply, reply_schema
+from scope_ptz.taskgen.generating.operator_runs import read_runs
 from tests.cli.conftest import Scope, scenes, scope
 from tests.support import misbehaving as m
 

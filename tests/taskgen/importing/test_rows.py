@@ -18,10 +18,10 @@ from scope_ptz.bench.tasks.task import Argument
 from scope_ptz.cli.app import app
 from scope_ptz.errors import InputError
 from scope_ptz.taskgen.importing import check_calls_of, holds_imported, load_imported
-from scope_ptz.taskgen.importing.audit import given_away
-from scope_ptz.taskgen.importing.mapping import category_of, scope_of
-from scope_ptz.taskgen.importing.places import PlaceMap, Places, ScenePresets, read_place_map
-from scope_ptz.taskgen.importing.report import Imported, import_file, report_lines
+from scope_ptz.taskgen.importing.import_report import Imported, import_file, report_lines
+from scope_ptz.taskgen.importing.paper_names import category_of, scope_of
+from scope_ptz.taskgen.importing.row_checks import given_away
+from scope_ptz.taskgen.importing.scene_names import PlaceMap, Places, ScenePresets, read_place_map
 from tests.bench.making import counted, play
 
 COLUMNS = (

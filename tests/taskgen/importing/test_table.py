@@ -13,8 +13,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from scope_ptz.errors import InputError
-from scope_ptz.taskgen.importing.cells import structure
-from scope_ptz.taskgen.importing.table import read_table
+from scope_ptz.taskgen.importing.csv_table import read_table
+from scope_ptz.taskgen.importing.structured_cells import structure
 
 HEADER = "question_id,question,expected_answer"
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from scope_ptz.bench.tasks.task import Behaviour, Category, Task
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.taskgen.authoring.descriptor import values_of
+from scope_ptz.taskgen.authoring.categories.descriptor_tasks import values_of
 from scope_ptz.taskgen.authoring.drafts import Draft, difficulty
 from scope_ptz.taskgen.authoring.reactions import DATASET, reactions
 from scope_ptz.taskgen.authoring.scene_drafts import SceneDrafts

@@ -13,8 +13,8 @@ from typing import Literal
 
 from scope_ptz.bench.tasks.expected import AnyExpected, Wordings
 from scope_ptz.bench.tasks.task import Behaviour, Category, EvidenceView, Item, Need, ProgramCall
-from scope_ptz.taskgen.authoring.places import Place
-from scope_ptz.taskgen.authoring.words import capital
+from scope_ptz.taskgen.authoring.noun_phrases import capital
+from scope_ptz.taskgen.authoring.task_places import Place
 from scope_ptz.taskgen.facts.robust import EYES
 from scope_ptz.tools.arguments import View
 

@@ -13,20 +13,20 @@ import numpy as np
 from scope_ptz.bench.tasks.task import Category
 from scope_ptz.geometry import angle_between_deg, pan_tilt_deg
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.taskgen.authoring import (
-    commands,
-    comparative,
-    counting,
-    descriptor,
-    location,
-    ocr,
-    presets_compared,
-    reasoning,
-    single_call,
+from scope_ptz.taskgen.authoring.categories import (
+    command_tasks,
+    comparative_tasks,
+    counting_tasks,
+    descriptor_tasks,
+    location_tasks,
+    ocr_tasks,
+    preset_comparisons,
+    reasoning_tasks,
+    single_call_tasks,
 )
-from scope_ptz.taskgen.authoring.descriptor import Values
+from scope_ptz.taskgen.authoring.categories.descriptor_tasks import Values
 from scope_ptz.taskgen.authoring.drafts import Draft
-from scope_ptz.taskgen.authoring.places import Place, Places
+from scope_ptz.taskgen.authoring.task_places import Place, Places
 from scope_ptz.taskgen.facts.robust import EYES
 
 OFF = 64
@@ -121,21 +121,21 @@ class SceneDrafts:
         rng = self._rng(category)
         match category:
             case "single_call":
-                yield from single_call.drafts(self.places, self.presets, rng)
+                yield from single_call_tasks.drafts(self.places, self.presets, rng)
             case "multi_step_command":
-                yield from commands.drafts(self.places, rng)
+                yield from command_tasks.drafts(self.places, rng)
             case "ocr":
                 for place in [*self.presets, *self.reading_views, *self.views[len(self.presets) :]]:
-                    yield from ocr.drafts(place)
+                    yield from ocr_tasks.drafts(place)
             case _:
                 for place in self.views:
                     yield from _few(self._at(category, place), self._seed)
         if category == "comparative":
             for group in (*self._groups(2), *self._groups(3)):
-                yield from presets_compared.drafts(group, rng)
+                yield from preset_comparisons.drafts(group, rng)
         elif category == "multi_step_reasoning":
             for one, two in self._groups(2):
-                yield from reasoning.drafts(one, two, self.places, self.nouns, rng)
+                yield from reasoning_tasks.drafts(one, two, self.places, self.nouns, rng)
 
     def _groups(self, size: int) -> list[tuple[Place, ...]]:
         """Presets to be compared, two or three at a time."""
@@ -148,14 +148,14 @@ class SceneDrafts:
         rng = self._rng(f"{category}:{place.start}:{place.key}")
         match category:
             case "counting":
-                return counting.drafts(place, self.nouns, rng)
+                return counting_tasks.drafts(place, self.nouns, rng)
             case "descriptor":
-                return descriptor.drafts(place, self.nouns, self.values, rng)
+                return descriptor_tasks.drafts(place, self.nouns, self.values, rng)
             case "location":
-                return location.drafts(place, self.nouns, rng)
+                return location_tasks.drafts(place, self.nouns, rng)
             case "comparative":
-                return comparative.drafts(place, rng)
-        return reasoning.within(place, rng)
+                return comparative_tasks.drafts(place, rng)
+        return reasoning_tasks.within(place, rng)
 
 
 def _few(drafts: list[Draft], seed: str) -> Iterator[Draft]:

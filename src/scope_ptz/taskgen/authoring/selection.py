@@ -11,8 +11,8 @@ from scope_ptz.bench.scoring.coverage import gap
 from scope_ptz.bench.scoring.episode import Look
 from scope_ptz.bench.tasks.task import Category
 from scope_ptz.taskgen.authoring.drafts import Draft, Frames
-from scope_ptz.taskgen.authoring.places import preset_at
-from scope_ptz.taskgen.facts.phrasing import offered
+from scope_ptz.taskgen.authoring.task_places import preset_at
+from scope_ptz.taskgen.facts.answer_phrasing import offered
 from scope_ptz.taskgen.facts.robust import EYES
 
 PAIRS: dict[Category, int] = {"counting": 31, "descriptor": 16, "location": 12, "multi_step_reasoning": 16}

@@ -12,9 +12,9 @@ from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.tasks.splits import load_split, read_manifest
 from scope_ptz.bench.tasks.task import CANARY, Task
 from scope_ptz.errors import InputError
-from scope_ptz.taskgen.audit import Audit, Held, read_audit, task_digest
 from scope_ptz.taskgen.dataset import distributions as d
-from scope_ptz.taskgen.gold.runs import OTHER, matrix, read_gold
+from scope_ptz.taskgen.gold.gold_runs import OTHER, matrix, read_gold
+from scope_ptz.taskgen.picture_audit import Audit, Held, read_audit, task_digest
 
 GOLD, PROOF, AUDIT = "gold.jsonl.gz", "proof.json", "audit.json"
 _ABOUT = {

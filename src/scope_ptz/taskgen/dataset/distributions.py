@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from scope_ptz.bench.tasks.expected import ActionOnly, NoneThere, Number, Text
 from scope_ptz.bench.tasks.task import Task
-from scope_ptz.taskgen.facts.phrasing import right_answers
+from scope_ptz.taskgen.facts.answer_phrasing import right_answers
 
 BAR = 30
 MOST_ANSWERS = 6

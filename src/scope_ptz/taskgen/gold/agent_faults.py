@@ -21,7 +21,7 @@ from scope_ptz.bench.tasks.expected import (
 )
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.geometry import Pose
-from scope_ptz.taskgen.facts.phrasing import wrong_answer
+from scope_ptz.taskgen.facts.answer_phrasing import wrong_answer
 
 LOOKERS = frozenset({"count_objects", "query_answer"})
 TURNS = ("pan_deg", "tilt_deg")

@@ -13,7 +13,7 @@ from scope_ptz.bench.scoring.episode import Call, Episode
 from scope_ptz.bench.scoring.evidence import is_grounded, numbers_said
 from scope_ptz.bench.tasks.expected import ActionOnly, AnyExpected, NoneThere, Number, Relation, YesNo
 from scope_ptz.bench.tasks.task import Task
-from scope_ptz.taskgen.facts.phrasing import right_answers, wrong_answer
+from scope_ptz.taskgen.facts.answer_phrasing import right_answers, wrong_answer
 from scope_ptz.taskgen.gold.agent_faults import Setting, changed, count_of, replayed, retold
 
 _TRIES = 24

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from scope_ptz.bench.tasks.expected import ActionOnly, AnyExpected, NoneThere, Number
 from scope_ptz.bench.tasks.task import ProgramCall, Task
-from scope_ptz.taskgen.facts.phrasing import offered, right_answers, wrong_answer
+from scope_ptz.taskgen.facts.answer_phrasing import offered, right_answers, wrong_answer
 
 LOOKS = frozenset({"count_objects", "query_answer"})
 MOVES = frozenset({"adjust_ptz", "go_to_preset", "go_home", "zoom_to_object", "track_object"})

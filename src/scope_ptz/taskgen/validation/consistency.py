@@ -17,7 +17,7 @@ from scope_ptz.bench.tasks.task import EvidenceView, Item, Task
 from scope_ptz.geometry import Equirectangular, Perspective, Pose
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.truth import ViewTruth, view_truth
-from scope_ptz.taskgen.authoring.words import noun_of, plain_colour
+from scope_ptz.taskgen.authoring.noun_phrases import noun_of, plain_colour
 from scope_ptz.taskgen.facts.kinds import Kind, kinds_in
 from scope_ptz.taskgen.facts.robust import EYES, TRACE_PX, Sight, visible
 

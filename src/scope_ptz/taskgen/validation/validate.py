@@ -17,7 +17,7 @@ from scope_ptz.bench.tasks.expected import ActionOnly, NoneThere, Number
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.truth import view_truth
-from scope_ptz.taskgen.facts.phrasing import right_answers
+from scope_ptz.taskgen.facts.answer_phrasing import right_answers
 from scope_ptz.taskgen.validation.adversarial import Attempt, cheats, common_answers, guesses, honest, right_texts
 from scope_ptz.taskgen.validation.consistency import Look, inconsistencies
 

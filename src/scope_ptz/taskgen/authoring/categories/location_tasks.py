@@ -7,13 +7,13 @@ from collections.abc import Iterator
 from itertools import combinations
 
 from scope_ptz.bench.tasks.expected import Choice, Number, Options, Ordering, Relation, YesNo
-from scope_ptz.taskgen.authoring import location_pairs
-from scope_ptz.taskgen.authoring.counting import counted
+from scope_ptz.taskgen.authoring.categories import location_pairs
+from scope_ptz.taskgen.authoring.categories.counting_tasks import counted
+from scope_ptz.taskgen.authoring.categories.location_pairs import corner_options
 from scope_ptz.taskgen.authoring.drafts import Draft, Question, ask, count, view
-from scope_ptz.taskgen.authoring.location_pairs import corner_options
-from scope_ptz.taskgen.authoring.naming import Named, distinct
-from scope_ptz.taskgen.authoring.places import Place
-from scope_ptz.taskgen.authoring.words import about, listing, many_of, noun_of, the, unit_of
+from scope_ptz.taskgen.authoring.noun_phrases import about, listing, many_of, noun_of, the, unit_of
+from scope_ptz.taskgen.authoring.object_names import Named, distinct
+from scope_ptz.taskgen.authoring.task_places import Place
 
 _SIDES: tuple[tuple[str, str], ...] = (("left", "right"), ("upper", "lower"))
 _SIDE_OPTIONS: tuple[Options, Options] = (

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from scope_ptz.bench.answers.words import plain_words
 from scope_ptz.bench.tasks.findings import Finding, Kind
-from scope_ptz.taskgen.importing.rows import RowRead
+from scope_ptz.taskgen.importing.row_reading import RowRead
 
 _NOW = re.compile(
     r"\b(?:right now|at the moment|currently (?:visible|in view|see)|in (?:this|the|your) (?:current )?view|current view)\b",

@@ -21,7 +21,7 @@ from scope_ptz.bench.tasks.files import digest_of
 from scope_ptz.bench.tasks.sampling import stratified
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import InputError
-from scope_ptz.taskgen.facts.phrasing import right_answers
+from scope_ptz.taskgen.facts.answer_phrasing import right_answers
 
 QUESTIONS, ANSWERS, FINDINGS, DRAW = "questions.jsonl", "answers.jsonl", "findings.jsonl", "draw.json"
 Outcome = Literal["agrees", "disagrees", "not readable", "not answered"]

@@ -11,8 +11,7 @@ from scope_ptz.bench.answers.words import plain_words
 from scope_ptz.bench.tasks.findings import Finding
 from scope_ptz.bench.tasks.task import Argument, RequiredCall, ToolName
 from scope_ptz.errors import ToolCallError
-from scope_ptz.taskgen.importing.cells import structure
-from scope_ptz.taskgen.importing.mapping import (
+from scope_ptz.taskgen.importing.paper_names import (
     DURATION_ARGUMENTS,
     TEXT_ARGUMENTS,
     TOOLS,
@@ -22,7 +21,8 @@ from scope_ptz.taskgen.importing.mapping import (
     scope_of,
     spelled,
 )
-from scope_ptz.taskgen.importing.steps import plain, spare_arguments, steps_in, without_names
+from scope_ptz.taskgen.importing.structured_cells import structure
+from scope_ptz.taskgen.importing.tool_steps import plain, spare_arguments, steps_in, without_names
 from scope_ptz.tools.registry import TOOLS as OURS
 from scope_ptz.tools.registry import parse_call
 

@@ -16,11 +16,11 @@ from scope_ptz.bench.tasks.task import Behaviour, EvidenceView, ProgramCall, Tas
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.truth import Sighting
 from scope_ptz.taskgen.authoring.drafts import ask, count, difficulty, view
-from scope_ptz.taskgen.authoring.places import Place
-from scope_ptz.taskgen.authoring.words import about, colour_options, many_of, noun_of, plain_colour, unit_of
+from scope_ptz.taskgen.authoring.noun_phrases import about, colour_options, many_of, noun_of, plain_colour, unit_of
+from scope_ptz.taskgen.authoring.task_places import Place
 from scope_ptz.taskgen.facts.kinds import Kind
-from scope_ptz.taskgen.generating.places import Refused, places_of
-from scope_ptz.taskgen.generating.schema import ALLOWED, Draft
+from scope_ptz.taskgen.generating.draft_places import Refused, places_of
+from scope_ptz.taskgen.generating.draft_schema import ALLOWED, Draft
 
 MOST_COUNTED = 15
 TAG = "generated"

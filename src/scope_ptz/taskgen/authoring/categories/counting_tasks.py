@@ -8,8 +8,8 @@ from functools import lru_cache
 
 from scope_ptz.bench.tasks.expected import NoneThere, Number
 from scope_ptz.taskgen.authoring.drafts import Draft, Question, count, scope_of, view
-from scope_ptz.taskgen.authoring.places import Place
-from scope_ptz.taskgen.authoring.words import UNCOUNTED, about, many_of, noun_of, unit_of
+from scope_ptz.taskgen.authoring.noun_phrases import UNCOUNTED, about, many_of, noun_of, unit_of
+from scope_ptz.taskgen.authoring.task_places import Place
 from scope_ptz.taskgen.facts.kinds import Kind, kinds_in, own_colour
 from scope_ptz.taskgen.facts.robust import Sight
 

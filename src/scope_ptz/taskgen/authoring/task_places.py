@@ -12,7 +12,7 @@ from scope_ptz.bench.tasks.task import Aim, FinalPose, Need, ProgramCall
 from scope_ptz.geometry import Pose
 from scope_ptz.simulator.models import ScenePreset
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.taskgen.authoring.words import degrees, times
+from scope_ptz.taskgen.authoring.noun_phrases import degrees, times
 from scope_ptz.taskgen.facts.robust import EYES, Sight, sight
 from scope_ptz.tools.arguments import AdjustPtz
 from scope_ptz.tools.moves import wanted_pose

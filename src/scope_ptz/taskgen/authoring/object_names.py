@@ -9,7 +9,7 @@ from functools import lru_cache
 
 from scope_ptz.bench.tasks.expected import Wordings
 from scope_ptz.simulator.truth import Sighting
-from scope_ptz.taskgen.authoring.words import UNCOUNTED, about, called, noun_of, plain_colour, the
+from scope_ptz.taskgen.authoring.noun_phrases import UNCOUNTED, about, called, noun_of, plain_colour, the
 from scope_ptz.taskgen.facts.kinds import COLOUR_WORDS, GROUPS, SIGNS, Kind, Thing, has_colour, near_colours, own_colour
 from scope_ptz.taskgen.facts.robust import Sight, with_parts
 

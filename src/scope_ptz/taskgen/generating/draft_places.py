@@ -7,9 +7,9 @@ from collections.abc import Iterator
 
 from scope_ptz.bench.tasks.task import ProgramCall
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.taskgen.authoring.places import Place, adjust, go, move, preset_at
-from scope_ptz.taskgen.facts.phrasing import in_words
-from scope_ptz.taskgen.generating.schema import Draft, Move
+from scope_ptz.taskgen.authoring.task_places import Place, adjust, go, move, preset_at
+from scope_ptz.taskgen.facts.answer_phrasing import in_words
+from scope_ptz.taskgen.generating.draft_schema import Draft, Move
 
 _AROUND = re.compile(
     r"\b(?:around|round|sweep|whole|everything|entire|everywhere|all directions|every direction|full)\b", re.IGNORECASE

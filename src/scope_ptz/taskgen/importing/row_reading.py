@@ -13,10 +13,10 @@ from scope_ptz.bench.tasks.findings import Finding, Kind
 from scope_ptz.bench.tasks.imported import ImportedTask, Policy
 from scope_ptz.bench.tasks.task import Category, RequiredCall, Scope
 from scope_ptz.bench.tasks.wording import call_in_words
-from scope_ptz.taskgen.importing.calls import Expectation, expected_calls
-from scope_ptz.taskgen.importing.mapping import category_of, compares_arguments, order_of, policy_of, scope_of, spelled
-from scope_ptz.taskgen.importing.places import Places
-from scope_ptz.taskgen.importing.table import Row
+from scope_ptz.taskgen.importing.call_mapping import Expectation, expected_calls
+from scope_ptz.taskgen.importing.csv_table import Row
+from scope_ptz.taskgen.importing.paper_names import category_of, compares_arguments, order_of, policy_of, scope_of, spelled
+from scope_ptz.taskgen.importing.scene_names import Places
 
 MOVERS = frozenset({"adjust_ptz", "go_to_preset", "go_home", "zoom_to_object", "track_object"})
 _DIFFICULTIES: dict[str, Literal["easy", "medium", "hard"]] = {

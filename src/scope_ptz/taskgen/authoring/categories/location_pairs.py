@@ -8,11 +8,11 @@ from dataclasses import replace
 
 from scope_ptz.bench.tasks.expected import Choice, NoneThere, Options, YesNo
 from scope_ptz.bench.tasks.task import EvidenceView
-from scope_ptz.taskgen.authoring.counting import absent, counted, likely_first
+from scope_ptz.taskgen.authoring.categories.counting_tasks import absent, counted, likely_first
 from scope_ptz.taskgen.authoring.drafts import Draft, Question, ask, view
-from scope_ptz.taskgen.authoring.naming import Named
-from scope_ptz.taskgen.authoring.places import Place
-from scope_ptz.taskgen.authoring.words import about, article, many_of, noun_of, plural, the, unit_of, wordings
+from scope_ptz.taskgen.authoring.noun_phrases import about, article, many_of, noun_of, plural, the, unit_of, wordings
+from scope_ptz.taskgen.authoring.object_names import Named
+from scope_ptz.taskgen.authoring.task_places import Place
 from scope_ptz.taskgen.facts.kinds import Kind
 
 

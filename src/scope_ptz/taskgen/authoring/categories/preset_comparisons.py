@@ -6,11 +6,11 @@ import random
 from collections.abc import Iterator, Sequence
 
 from scope_ptz.bench.tasks.expected import Choice, Options, Wordings
-from scope_ptz.taskgen.authoring.comparative import SAME, counted_view
-from scope_ptz.taskgen.authoring.counting import counted
+from scope_ptz.taskgen.authoring.categories.comparative_tasks import SAME, counted_view
+from scope_ptz.taskgen.authoring.categories.counting_tasks import counted
 from scope_ptz.taskgen.authoring.drafts import Draft, count
-from scope_ptz.taskgen.authoring.places import Place, elsewhere, go
-from scope_ptz.taskgen.authoring.words import many_of
+from scope_ptz.taskgen.authoring.noun_phrases import many_of
+from scope_ptz.taskgen.authoring.task_places import Place, elsewhere, go
 
 _OF_TWO = (
     "Are there more {many} at the {p} preset or at the {q} preset?",

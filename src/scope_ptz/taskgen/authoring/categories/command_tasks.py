@@ -7,10 +7,10 @@ from collections.abc import Iterator
 
 from scope_ptz.bench.scoring.episode import Standing
 from scope_ptz.bench.tasks.task import Argument, Behaviour, Need, ProgramCall, RequiredCall
+from scope_ptz.taskgen.authoring.categories.single_call_tasks import command
 from scope_ptz.taskgen.authoring.drafts import Draft
-from scope_ptz.taskgen.authoring.places import Place, Places, adjust, go, move, preset_at, say
-from scope_ptz.taskgen.authoring.single_call import command
-from scope_ptz.taskgen.authoring.words import capital
+from scope_ptz.taskgen.authoring.noun_phrases import capital
+from scope_ptz.taskgen.authoring.task_places import Place, Places, adjust, go, move, preset_at, say
 
 _SHOTS = ("take a picture", "take a photo", "save an image", "capture a still", "take a snapshot")
 _SHAPES = (

@@ -8,11 +8,9 @@ from dataclasses import replace
 
 from scope_ptz.bench.tasks.expected import Choice, NoneThere, YesNo
 from scope_ptz.bench.tasks.task import EvidenceView
-from scope_ptz.taskgen.authoring.counting import absent, counted, likely_first
+from scope_ptz.taskgen.authoring.categories.counting_tasks import absent, counted, likely_first
 from scope_ptz.taskgen.authoring.drafts import Draft, Question, ask, count, view
-from scope_ptz.taskgen.authoring.naming import singles
-from scope_ptz.taskgen.authoring.places import Place
-from scope_ptz.taskgen.authoring.words import (
+from scope_ptz.taskgen.authoring.noun_phrases import (
     about,
     article,
     colour_options,
@@ -24,6 +22,8 @@ from scope_ptz.taskgen.authoring.words import (
     unit_of,
     wordings,
 )
+from scope_ptz.taskgen.authoring.object_names import singles
+from scope_ptz.taskgen.authoring.task_places import Place
 from scope_ptz.taskgen.facts.kinds import Kind, colour_shows, near_colours, own_colour
 
 

@@ -8,11 +8,11 @@ from itertools import combinations, pairwise
 
 from scope_ptz.bench.tasks.expected import AnyExpected, Choice, Number, Options, Ordering, Relation, YesNo
 from scope_ptz.bench.tasks.task import EvidenceView
-from scope_ptz.taskgen.authoring.counting import apart, counted, plain_counts
+from scope_ptz.taskgen.authoring.categories.counting_tasks import apart, counted, plain_counts
 from scope_ptz.taskgen.authoring.drafts import Draft, Question, ask, count, same_form, view
-from scope_ptz.taskgen.authoring.naming import Named, distinct
-from scope_ptz.taskgen.authoring.places import Place
-from scope_ptz.taskgen.authoring.words import about, listing, many_of, unit_of
+from scope_ptz.taskgen.authoring.noun_phrases import about, listing, many_of, unit_of
+from scope_ptz.taskgen.authoring.object_names import Named, distinct
+from scope_ptz.taskgen.authoring.task_places import Place
 from scope_ptz.taskgen.facts.kinds import GROUPS, Kind
 
 SAME = ("the same", "equal", "as many", "equally many")

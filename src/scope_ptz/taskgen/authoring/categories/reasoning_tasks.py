@@ -9,10 +9,10 @@ from itertools import pairwise
 
 from scope_ptz.bench.tasks.expected import ActionOnly, NoneThere, Number, YesNo
 from scope_ptz.bench.tasks.task import Behaviour, EvidenceView
-from scope_ptz.taskgen.authoring.counting import absent, apart, counted, likely_first, plain_counts
+from scope_ptz.taskgen.authoring.categories.counting_tasks import absent, apart, counted, likely_first, plain_counts
 from scope_ptz.taskgen.authoring.drafts import Draft, Question, count, view
-from scope_ptz.taskgen.authoring.places import Place, Places, elsewhere, go, preset_at
-from scope_ptz.taskgen.authoring.words import about, article, many_of, noun_of, unit_of
+from scope_ptz.taskgen.authoring.noun_phrases import about, article, many_of, noun_of, unit_of
+from scope_ptz.taskgen.authoring.task_places import Place, Places, elsewhere, go, preset_at
 from scope_ptz.taskgen.facts.kinds import GROUPS, Kind
 
 _SUMS = (

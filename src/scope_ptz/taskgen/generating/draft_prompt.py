@@ -12,10 +12,10 @@ from scope_ptz.bench.tasks.task import Category, Task
 from scope_ptz.bench.tasks.wording import expected_in_words
 from scope_ptz.simulator.models import ScenePreset
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.taskgen.authoring.places import Place, adjust, move, preset_at
+from scope_ptz.taskgen.authoring.task_places import Place, adjust, move, preset_at
 from scope_ptz.taskgen.facts.kinds import Kind, kinds_in
-from scope_ptz.taskgen.generating.operators import OperatorRun
-from scope_ptz.taskgen.generating.schema import ALLOWED
+from scope_ptz.taskgen.generating.draft_schema import ALLOWED
+from scope_ptz.taskgen.generating.operator_runs import OperatorRun
 
 ADJUSTMENTS = ((30.0, 0.0, None), (-30.0, 0.0, None), (0.0, -8.0, None), (0.0, 0.0, 2.0))
 """Pans, tilts and zooms whose effect on each view is told."""

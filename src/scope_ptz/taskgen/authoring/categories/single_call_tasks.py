@@ -8,12 +8,12 @@ from collections.abc import Iterator
 from scope_ptz.bench.tasks.expected import ActionOnly, Number
 from scope_ptz.bench.tasks.task import Argument, Behaviour, Category, Need, ProgramCall, RequiredCall
 from scope_ptz.simulator.models import SceneActor
-from scope_ptz.taskgen.authoring.counting import counted
+from scope_ptz.taskgen.authoring.categories.counting_tasks import counted
 from scope_ptz.taskgen.authoring.drafts import Draft, Question, count, view
-from scope_ptz.taskgen.authoring.naming import distinct
-from scope_ptz.taskgen.authoring.places import Place, Places, adjust, go, move, preset_at, say
-from scope_ptz.taskgen.authoring.targets import framing
-from scope_ptz.taskgen.authoring.words import about, capital, many_of, noun_of, unit_of
+from scope_ptz.taskgen.authoring.noun_phrases import about, capital, many_of, noun_of, unit_of
+from scope_ptz.taskgen.authoring.object_names import distinct
+from scope_ptz.taskgen.authoring.task_places import Place, Places, adjust, go, move, preset_at, say
+from scope_ptz.taskgen.authoring.zoom_targets import framing
 from scope_ptz.taskgen.facts.kinds import Kind
 from scope_ptz.taskgen.facts.robust import TRACE_PX
 

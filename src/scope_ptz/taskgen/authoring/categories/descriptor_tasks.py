@@ -6,12 +6,12 @@ import random
 from collections.abc import Iterator, Mapping, Sequence
 
 from scope_ptz.bench.tasks.expected import Choice, NameSet, Options
-from scope_ptz.taskgen.authoring import descriptor_pairs
-from scope_ptz.taskgen.authoring.counting import absent, likely_first, plain_counts
+from scope_ptz.taskgen.authoring.categories import descriptor_pairs
+from scope_ptz.taskgen.authoring.categories.counting_tasks import absent, likely_first, plain_counts
 from scope_ptz.taskgen.authoring.drafts import Draft, Question, ask, scope_of, view
-from scope_ptz.taskgen.authoring.naming import Named, by_name, ends, singles
-from scope_ptz.taskgen.authoring.places import Place
-from scope_ptz.taskgen.authoring.words import about, article, colour_options, listing, many_of, noun_of, plain_colour
+from scope_ptz.taskgen.authoring.noun_phrases import about, article, colour_options, listing, many_of, noun_of, plain_colour
+from scope_ptz.taskgen.authoring.object_names import Named, by_name, ends, singles
+from scope_ptz.taskgen.authoring.task_places import Place
 from scope_ptz.taskgen.facts.kinds import COLOUR_WORDS, Thing, colour_shows, own_colour
 
 STATES: tuple[tuple[str, ...], ...] = (

@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
-from scope_ptz.taskgen.importing.mapping import TOOLS, spelled
+from scope_ptz.taskgen.importing.paper_names import TOOLS, spelled
 
 _TOOL_KEYS = ("tool", "name", "tool_name", "function")
 

@@ -11,13 +11,13 @@ from scope_ptz.bench.judging.judge import Complete, NoReplyError
 from scope_ptz.bench.tasks.task import Category, Task
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.taskgen.authoring.reactions import DATASET
-from scope_ptz.taskgen.facts.similarity import Known
-from scope_ptz.taskgen.generating.briefing import messages
-from scope_ptz.taskgen.generating.ledger import Entry, Ledger
-from scope_ptz.taskgen.generating.operators import OperatorRun
-from scope_ptz.taskgen.generating.places import Refused
-from scope_ptz.taskgen.generating.programs import task_of
-from scope_ptz.taskgen.generating.schema import Draft, read_draft, read_reply, reply_schema
+from scope_ptz.taskgen.facts.near_duplicates import Known
+from scope_ptz.taskgen.generating.answer_programs import task_of
+from scope_ptz.taskgen.generating.draft_ledger import Entry, Ledger
+from scope_ptz.taskgen.generating.draft_places import Refused
+from scope_ptz.taskgen.generating.draft_prompt import messages
+from scope_ptz.taskgen.generating.draft_schema import Draft, read_draft, read_reply, reply_schema
+from scope_ptz.taskgen.generating.operator_runs import OperatorRun
 
 BATCH = 8
 """Drafts that are asked for at once."""

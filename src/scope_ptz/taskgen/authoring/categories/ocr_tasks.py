@@ -10,9 +10,9 @@ from scope_ptz.bench.tasks.expected import Text
 from scope_ptz.bench.tasks.task import ProgramCall
 from scope_ptz.simulator.truth import BoxTuple, TextSighting
 from scope_ptz.taskgen.authoring.drafts import Draft, Question, ask, view
-from scope_ptz.taskgen.authoring.naming import Named, boards, distinct, ends
-from scope_ptz.taskgen.authoring.places import Place
-from scope_ptz.taskgen.authoring.targets import SMALLEST_PX, framed
+from scope_ptz.taskgen.authoring.object_names import Named, boards, distinct, ends
+from scope_ptz.taskgen.authoring.task_places import Place
+from scope_ptz.taskgen.authoring.zoom_targets import SMALLEST_PX, framed
 from scope_ptz.taskgen.facts.robust import with_parts
 
 LONGEST = 80

@@ -8,7 +8,7 @@ from scope_ptz.bench.scoring.episode import Standing
 from scope_ptz.bench.tasks.task import Framing
 from scope_ptz.geometry import Perspective, Pose, direction, pan_tilt_deg
 from scope_ptz.simulator.truth import Sighting
-from scope_ptz.taskgen.authoring.places import Place
+from scope_ptz.taskgen.authoring.task_places import Place
 from scope_ptz.taskgen.facts.kinds import Thing
 from scope_ptz.taskgen.facts.robust import EYES, Sight
 

@@ -11,10 +11,10 @@ from typing import Any, get_args
 from scope_ptz.bench.tasks.findings import BLOCKING, MEANINGS, Finding, Kind
 from scope_ptz.bench.tasks.imported import ImportedTask
 from scope_ptz.bench.tasks.task import Category
-from scope_ptz.taskgen.importing.audit import audit, comparable
-from scope_ptz.taskgen.importing.places import Places
-from scope_ptz.taskgen.importing.rows import RowRead, ids_of, read_row
-from scope_ptz.taskgen.importing.table import read_table
+from scope_ptz.taskgen.importing.csv_table import read_table
+from scope_ptz.taskgen.importing.row_checks import audit, comparable
+from scope_ptz.taskgen.importing.row_reading import RowRead, ids_of, read_row
+from scope_ptz.taskgen.importing.scene_names import Places
 
 PAPER_COUNTS: dict[Category, int] = {
     "counting": 95, "descriptor": 89, "location": 53, "ocr": 54, "single_call": 72, "multi_step_command": 57,
