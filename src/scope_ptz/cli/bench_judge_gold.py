@@ -114,7 +114,8 @@ def gold_cases(gold: Path | None, tasks: str, passing: int, limit: int | None) -
     from scope_ptz.cli.bench_inputs import worlds_of
     from scope_ptz.factory.validation_perception import equip_with_truth
     from scope_ptz.taskgen.facts.answer_phrasing import right_answers
-    from scope_ptz.taskgen.gold.gold_runs import EYES, read_gold
+    from scope_ptz.taskgen.facts.robust import TASK_CAMERA
+    from scope_ptz.taskgen.gold.gold_runs import read_gold
     from scope_ptz.taskgen.gold.judge_results import gold_case, in_turn, passing_case
 
     _, runs = read_gold(gold or published_folder() / "gold.jsonl.gz", load_split(tasks))
@@ -127,7 +128,7 @@ def gold_cases(gold: Path | None, tasks: str, passing: int, limit: int | None) -
     async def add_passing() -> None:
         for task in list({run.task.id: run.task for run in runs}.values())[:passing]:
             answer, outcome = right_answers(task.expected)[0], task.behaviour.outcomes[0]
-            episode = await Stage(worlds[task.world], equip, EYES).run(task, task.reference, answer, outcome)
+            episode = await Stage(worlds[task.world], equip, TASK_CAMERA).run(task, task.reference, answer, outcome)
             if judge(task, episode).headline == "correct":
                 cases.append(passing_case(task, episode, places[task.world]))
 
@@ -138,10 +139,10 @@ def gold_cases(gold: Path | None, tasks: str, passing: int, limit: int | None) -
 def gold_lines(result: GoldResult) -> Iterator[str]:
     """What a judge made of gold runs, as text."""
     from scope_ptz.bench.scoring.error_modes import ErrorMode
-    from scope_ptz.taskgen.gold.judge_results import APART, PASSES
+    from scope_ptz.taskgen.gold.judge_results import PASSES, WITHOUT_VERDICT
 
     modes = [mode.value for mode in ErrorMode]
-    columns = [*modes, "correct", *APART]
+    columns = [*modes, "correct", *WITHOUT_VERDICT]
     made = sum(result.cells.values())
     times = f", {made} judgements" if made != result.runs else ""
     runs = f"{result.runs} gold run{'' if result.runs == 1 else 's'}"

@@ -1,7 +1,7 @@
-"""An audit by readers who see pictures only: which tasks they are asked, what they are given, and how often they agree.
+"""Audit by readers who see only pictures: drawing the questions, and scoring how often their answers agree.
 
-Readers get the frames that the reference program looks at and the words of the task, under numbers that say nothing. What they
-answer is read by the deterministic reader and held against the expected value.
+Readers get the instruction and the frames that the reference program observes, under anonymous question numbers. The answer parser
+reads their answers, which are compared with the expected values.
 """
 
 from __future__ import annotations
@@ -34,16 +34,16 @@ class _Row(BaseModel):
 Row = TypeVar("Row", bound=_Row)
 
 
-class Draw(_Row):
-    """How questions were drawn, without what they are: who has the same tasks can draw them again."""
+class QuestionDraw(_Row):
+    """How questions were drawn. The same tasks, number and seed give the same questions."""
 
     number: int = Field(ge=1)
     seed: int
     tasks: str
-    """SHA-256 of all tasks that were drawn from."""
+    """SHA-256 of all tasks that the questions were drawn from."""
 
 
-class Answer(_Row):
+class ReaderAnswer(_Row):
     """One reader's answer to one question."""
 
     q: Annotated[str, Field(pattern=r"^q\d{3,}$")]
@@ -51,15 +51,18 @@ class Answer(_Row):
     reader: str = "reader"
 
 
-class Finding(_Row):
-    """What looking into a disagreement showed."""
+class DisagreementNote(_Row):
+    """The explanation of a disagreement, found by investigating it."""
 
     q: str
     finding: str
 
 
-class Held(_Row):
-    """An answer held against its task. ``digest``: of words and expected value, which tells whether the task was mended since."""
+class AuditedAnswer(_Row):
+    """An answer and whether it agrees with its task.
+
+    ``digest`` covers instruction and expected value. It shows whether the task was corrected after the audit.
+    """
 
     q: str
     task: str
@@ -75,17 +78,18 @@ class Held(_Row):
 
 
 class Audit(_Row):
-    """The result, as it is published."""
+    """The result of an audit, as it is published."""
 
-    draw: Draw
-    rows: tuple[Held, ...]
+    draw: QuestionDraw
+    rows: tuple[AuditedAnswer, ...]
 
-    def share(self, rows: Iterable[Held] | None = None) -> tuple[int, int]:
-        """How many answers agree, of how many. What nobody answered is neither for a task nor against it."""
+    def share(self, rows: Iterable[AuditedAnswer] | None = None) -> tuple[int, int]:
+        """Return how many answers agree, and how many were given. Unanswered questions are left out."""
         counted = [row for row in (self.rows if rows is None else rows) if row.outcome != "not answered"]
         return sum(row.outcome == "agrees" for row in counted), len(counted)
 
     def as_dict(self) -> dict[str, Any]:
+        """Return the result as JSON data."""
         right, of = self.share()
         categories = sorted({row.category for row in self.rows})
         by_category = {name: self.share(r for r in self.rows if r.category == name) for name in categories}
@@ -98,47 +102,53 @@ class Audit(_Row):
         }
 
 
-def drawn(tasks: Sequence[Task], number: int, seed: int) -> list[tuple[str, Task]]:
-    """Numbers and tasks that want an answer, by category, scene and difficulty; the numbers follow no order of the tasks."""
-    wanted = [task for task in tasks if task.stratum == "core" and not isinstance(task.expected, ActionOnly)]
-    chosen = stratified(wanted, number, seed)
+def draw_questions(tasks: Sequence[Task], number: int, seed: int) -> list[tuple[str, Task]]:
+    """Draw questions, stratified by category, scene and difficulty.
+
+    Only core tasks with an answer are drawn.
+
+    Returns:
+        Question numbers with their tasks. The numbers do not reveal the order of the tasks.
+    """
+    candidates = [task for task in tasks if task.stratum == "core" and not isinstance(task.expected, ActionOnly)]
+    chosen = stratified(candidates, number, seed)
     mixed = sorted(chosen, key=lambda t: hashlib.sha256(f"order:{seed}:{t.id}".encode()).hexdigest())
     return [(f"q{n:03d}", task) for n, task in enumerate(mixed, 1)]
 
 
 def task_digest(task: Task) -> str:
-    """Short digest of what a task asks and expects."""
+    """Return a short digest of the instruction and the expected value of a task."""
     return hashlib.sha256(f"{task.instruction}|{task.expected.model_dump_json()}".encode()).hexdigest()[:16]
 
 
-def score(folder: Path, tasks: Sequence[Task]) -> Audit:
-    """Hold the answers in a folder against the tasks that its questions were drawn from.
+def score_answers(folder: Path, tasks: Sequence[Task]) -> Audit:
+    """Compare the answers in a folder with the tasks that its questions were drawn from.
 
     Raises:
-        InputError: a file is missing or damaged, or the tasks are not those that were drawn from.
+        InputError: A file is missing or damaged, or the questions were drawn from other tasks.
     """
-    (draw,) = _rows(folder / DRAW, Draw)
+    (draw,) = _rows(folder / DRAW, QuestionDraw)
     if draw.tasks != digest_of(tasks):
         raise InputError(f"The questions in {folder} were drawn from other tasks. Name those with --tasks.")
-    given: dict[str, list[Answer]] = {}
-    for answer in _rows(folder / ANSWERS, Answer):
+    given: dict[str, list[ReaderAnswer]] = {}
+    for answer in _rows(folder / ANSWERS, ReaderAnswer):
         given.setdefault(answer.q, []).append(answer)
-    findings = {f.q: f.finding for f in _rows(folder / FINDINGS, Finding)} if (folder / FINDINGS).is_file() else {}
-    questions = dict(drawn(tasks, draw.number, draw.seed))
+    findings = {f.q: f.finding for f in _rows(folder / FINDINGS, DisagreementNote)} if (folder / FINDINGS).is_file() else {}
+    questions = dict(draw_questions(tasks, draw.number, draw.seed))
     if unknown := sorted({*given, *findings} - set(questions)):
         raise InputError(f"{folder} holds an answer to {unknown[0]}, which was not asked.")
     rows = [
-        _held(q, task, answer, findings)
+        _audited(q, task, answer, findings)
         for q, task in questions.items()
-        for answer in given.get(q) or [Answer(q=q, answer="", reader="")]
+        for answer in given.get(q) or [ReaderAnswer(q=q, answer="", reader="")]
     ]
     return Audit(draw=draw, rows=tuple(rows))
 
 
-def _held(q: str, task: Task, answer: Answer, findings: Mapping[str, str]) -> Held:
+def _audited(q: str, task: Task, answer: ReaderAnswer, findings: Mapping[str, str]) -> AuditedAnswer:
     agreed = agrees(task.expected, read(task.expected, answer.answer)) if answer.answer.strip() else None
     outcome: Outcome = "agrees" if agreed else "disagrees" if agreed is False else "not readable"
-    return Held(
+    return AuditedAnswer(
         q=q,
         task=task.id,
         digest=task_digest(task),
@@ -154,16 +164,20 @@ def _held(q: str, task: Task, answer: Answer, findings: Mapping[str, str]) -> He
 
 
 def read_audit(path: Path) -> Audit:
-    """A published audit. Raises ``InputError`` when it is damaged."""
+    """Read a published audit.
+
+    Raises:
+        InputError: The file is damaged.
+    """
     try:
         content = json.loads(path.read_text("utf-8"))
         return Audit.model_validate({name: content[name] for name in ("draw", "rows")})
     except (OSError, ValueError, KeyError, TypeError) as error:
-        raise InputError(f"{path} holds no audit: {error}.") from error
+        raise InputError(f"{path} is not an audit: {error}.") from error
 
 
 def _rows(path: Path, kind: type[Row]) -> list[Row]:
-    """The rows of a JSONL file."""
+    """Return the rows of a JSONL file."""
     try:
         lines = path.read_text("utf-8").splitlines()
     except OSError as error:

@@ -1,4 +1,4 @@
-"""English for instructions: nouns in number, articles, numbers, and how values are called."""
+"""English phrases for instructions: plurals, articles, lists, names of object kinds, colours and amounts."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ UNCOUNTED = frozenset({
     "pedestrian", "door sign", "window notice", "wall sign", "loaf", "ham", "cake", "book", "bottle", "teapot", "table lamp",
     "lane signal", "wheel stop", "wheel guide", "walkway", "cycle shelter", "clock tower", "sign", "gantry", "parking space",
 })  # fmt: skip
-"""What people do not count alike: where one ends and the next begins, or which of many far ones still counts, is anyone's guess."""
+"""Categories that people count differently, because the objects run into each other or recede into the distance."""
 
 _FAMILIES: dict[str, Wordings] = {
     "white": ("off-white",), "black": (), "grey": ("gray", "silver", "dark grey", "light grey"),
@@ -32,13 +32,13 @@ _FAMILIES: dict[str, Wordings] = {
     "blue": ("dark blue", "light blue", "navy", "sky blue", "navy blue"), "green": ("dark green", "light green", "lime"),
     "yellow": ("gold",), "orange": ("amber",), "brown": ("dark brown", "light brown"), "purple": ("violet",), "pink": (),
 }  # fmt: skip
-"""Plain colours and what else they are called."""
+"""Plain colours and other words for them."""
 
 _FAMILY = {name: plain for plain, others in _FAMILIES.items() for name in (plain, *others)}
 
 
 def plural(noun: str) -> str:
-    """The plural of a noun phrase whose last word, or the one before "of", "with" ..., is its noun."""
+    """Return the plural of a noun phrase. Its noun is the last word, or the word before "of", "with" and the like."""
     words = noun.split()
     head = next((i for i, word in enumerate(words) if i and word in {"of", "with", "in", "on", "for", "carrying"}), len(words)) - 1
     words[head] = _plural(words[head])
@@ -56,27 +56,28 @@ def _plural(word: str) -> str:
 
 
 def article(noun: str) -> str:
-    """The noun with "a" or "an"."""
+    """Return the noun with "a" or "an"."""
     first = noun.lower()
     vowel = first[0] in "aeio" or (first[0] == "u" and not first.startswith(("uni", "use", "uti")))
     return f"{'an' if vowel or noun.startswith(_SPELT) else 'a'} {noun}"
 
 
 _SPELT = ("SUV", "8", "11 ", "18 ")
-"""Said with a vowel first."""
+"""Beginnings that are pronounced with a vowel."""
 
 
 def the(name: str) -> str:
-    """A name with its article; what is numbered ("dock door 5") has none."""
+    """Return a name with its article. Numbered names ("dock door 5") take none."""
     return name if re.search(r"\d$", name) else f"the {name.removeprefix('The ')}"
 
 
 def listing(names: Sequence[str], word: str = "and") -> str:
+    """Join names with commas, and the last two with a conjunction."""
     return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} {word} {names[-1]}"
 
 
 def called(category: str) -> str:
-    """What people say for a category, where they say something else."""
+    """Return the everyday name of a category, usually the category itself."""
     return _CALLED.get(category, category)
 
 
@@ -88,7 +89,7 @@ _CALLED = {
 
 
 def noun_of(kind: Kind) -> str:
-    """What one thing of a kind is called, attributes in their usual order."""
+    """Return the noun phrase for one object of a kind, with its attributes in their usual order."""
     noun = called(kind.category)
     if kind.attribute is not None:
         key, value = kind.attribute
@@ -98,7 +99,7 @@ def noun_of(kind: Kind) -> str:
 
 
 def many_of(kind: Kind) -> str:
-    """What several things of a kind are called."""
+    """Return the noun phrase for several objects of a kind."""
     key = kind.attribute[0] if kind.attribute is not None else ""
     key = "posture" if kind.category == "person" and key == "state" else key
     if kind.attribute is not None and key in _WITH:
@@ -115,12 +116,12 @@ _WITH = {
 
 
 def unit_of(kind: Kind) -> Wordings:
-    """The words for what is counted: the whole name, the category, its last word."""
+    """Return the words that may stand for what is counted: the whole name, the category, and its last word."""
     return tuple(dict.fromkeys((noun_of(kind), called(kind.category), kind.category, kind.category.split()[-1])))
 
 
 def about(*kinds: Kind) -> Wordings:
-    """The words that a look at things of these kinds mentions."""
+    """Return the words that a perception call about objects of these kinds mentions."""
     words = (word for kind in kinds for word in (kind.category, kind.category.split()[-1], *_ALSO.get(kind.category, ())))
     return tuple(dict.fromkeys(words))
 
@@ -129,27 +130,30 @@ _ALSO = {"person": ("anyone", "people"), "lorry": ("truck",)}
 
 
 def plain_colour(colour: object) -> str | None:
-    """The plain colour that a thing has; None where people would not agree."""
+    """Return the plain colour for a colour attribute, or None where people would disagree."""
     return _FAMILY.get(str(colour))
 
 
 def wordings(options: Options) -> Wordings:
-    """All words in which any of the options may come."""
+    """Return every word that stands for any of the options."""
     return tuple(word for name, others in options.items() for word in (name, *others))
 
 
 def colour_options() -> Options:
+    """Return the plain colours as answer options."""
     return dict(_FAMILIES)
 
 
 def degrees(number: float) -> str:
+    """Return an angle in words."""
     return f"{number:g} degrees" if number != 1 else "1 degree"
 
 
 def times(factor: float) -> str:
-    """A magnification in words: "twice", "three times", "1.5 times"."""
+    """Return a magnification in words: "twice", "three times", "1.5 times"."""
     return {2.0: "twice", 3.0: "three times", 4.0: "four times"}.get(factor, f"{factor:g} times")
 
 
 def capital(text: str) -> str:
+    """Return the text with a capital first letter."""
     return text[:1].upper() + text[1:]

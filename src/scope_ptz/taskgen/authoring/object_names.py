@@ -1,4 +1,4 @@
-"""How to name one thing in a view so that nobody can take another for it."""
+"""Names for single objects in a view that no other object in the view can be mistaken for."""
 
 from __future__ import annotations
 
@@ -10,21 +10,28 @@ from functools import lru_cache
 from scope_ptz.bench.tasks.expected import Wordings
 from scope_ptz.simulator.truth import Sighting
 from scope_ptz.taskgen.authoring.noun_phrases import UNCOUNTED, about, called, noun_of, plain_colour, the
-from scope_ptz.taskgen.facts.kinds import COLOUR_WORDS, GROUPS, SIGNS, Kind, Thing, has_colour, near_colours, own_colour
-from scope_ptz.taskgen.facts.robust import Sight, with_parts
+from scope_ptz.taskgen.facts.kinds import COLOUR_WORDS, GROUPS, SIGNS, Kind, SceneThing, has_colour, near_colours, own_colour
+from scope_ptz.taskgen.facts.robust import RobustTruth, with_parts
 
 MADE_OUT_PX = 8.0
-"""Capitals of this height are made out by whoever knows what to look for."""
+"""Height in pixels at which somebody who knows what to look for can make out capitals."""
 
 
 @dataclass(frozen=True)
-class Named:
-    """A thing and what to call it ("excavator", "leftmost car"), with the kind that the name is made of."""
+class NamedThing:
+    """An object and its name.
+
+    Attributes:
+        thing: The object as it shows in the view.
+        name: The name without an article ("excavator", "leftmost car").
+        kind: The kind that the name is built from.
+        positional: Whether the name depends on the position in the view.
+    """
 
     thing: Sighting
     name: str
     kind: Kind
-    place: bool = False
+    positional: bool = False
 
     @property
     def the(self) -> str:
@@ -33,111 +40,121 @@ class Named:
 
     @property
     def words(self) -> Wordings:
-        """The words that a look at it mentions."""
+        """The words that a perception call about the object mentions."""
         return tuple(dict.fromkeys((*about(self.kind), self.name, self.name.split()[-1])))
 
 
 @lru_cache(maxsize=2048)
-def singles(sight: Sight, *, coloured: bool, min_pixels: int = 350) -> tuple[Named, ...]:
-    """Things that are the only ones of their kind in view. ``coloured``: the name may hold the colour."""
+def unique_things(truth: RobustTruth, *, coloured: bool, min_pixels: int = 350) -> tuple[NamedThing, ...]:
+    """Return the objects that are the only ones of their kind in view. With ``coloured``, a kind may include the colour."""
     found = []
-    categories = sorted({s.instance.category for s in sight.clear})
+    categories = sorted({s.instance.category for s in truth.clear})
     for category in categories:
-        alone = sight.of(Kind(category))
-        if alone is not None and len(alone) == 1 and unrivalled(sight, Kind(category), alone[0]):
-            found.append(Named(alone[0], called(category), Kind(category)))
+        alone = truth.all_of(Kind(category))
+        if alone is not None and len(alone) == 1 and is_only_candidate(truth, Kind(category), alone[0]):
+            found.append(NamedThing(alone[0], called(category), Kind(category)))
             continue
         if not coloured:
             continue
-        own = (own_colour(s.instance) for s in sight.clear if s.instance.category == category)
+        own = (own_colour(s.instance) for s in truth.clear if s.instance.category == category)
         colours = sorted({colour for colour in own if colour is not None and " and " not in colour})
         for colour in colours:
-            things = sight.of(Kind(category, colour))
-            if things is not None and len(things) == 1 and unrivalled(sight, Kind(category, colour), things[0]):
-                found.append(Named(things[0], noun_of(Kind(category, colour)), Kind(category, colour)))
+            things = truth.all_of(Kind(category, colour))
+            if things is not None and len(things) == 1 and is_only_candidate(truth, Kind(category, colour), things[0]):
+                found.append(NamedThing(things[0], noun_of(Kind(category, colour)), Kind(category, colour)))
     return tuple(n for n in found if n.thing.pixels >= min_pixels and n.kind.category not in UNCOUNTED)
 
 
-def unrivalled(sight: Sight, kind: Kind, thing: Sighting) -> bool:
-    """Whether nothing else shows, however small, that could be meant."""
-    return not any(kind.fits(other) or kind.doubtful(other) for other in sight.others(thing))
+def is_only_candidate(truth: RobustTruth, kind: Kind, thing: Sighting) -> bool:
+    """Whether no other object that shows in the view, however small, could be meant."""
+    return not any(kind.fits(other) or kind.ambiguous_with(other) for other in truth.others(thing))
 
 
 @lru_cache(maxsize=2048)
-def by_name(sight: Sight, min_pixels: int = 350, made_out_px: float = MADE_OUT_PX) -> tuple[Named, ...]:
-    """Things that the scene gives a name of their own ("bakery sign", "red hatchback"), which nothing else in view could bear."""
+def named_things(truth: RobustTruth, min_pixels: int = 350, made_out_px: float = MADE_OUT_PX) -> tuple[NamedThing, ...]:
+    """Return the objects with a name of their own in the scene ("bakery sign") that fits nothing else in view."""
     found = []
-    for sighting in sight.clear:
+    for sighting in truth.clear:
         thing, name = sighting.instance, spoken(sighting.instance.name)
         words = name.lower().split()
         least = max(min_pixels, _PERSON_PX) if thing.category in GROUPS["person"] else min_pixels
-        if sighting.pixels < least or sight.parted(sighting) or thing.category in _VAGUE or not 2 <= len(words) <= _LONGEST_NAME:
+        if (
+            sighting.pixels < least
+            or truth.split_by_sweep(sighting)
+            or thing.category in _VAGUE
+            or not 2 <= len(words) <= _LONGEST_NAME
+        ):
             continue
         if (
             set(words) & _MISLEADING
             or (set(words) & _HAVING and sighting.share < _HAD_SHARE)
             or (set(words) & COLOUR_WORDS and not has_colour(thing))
             or ("phone" in words and thing.category in GROUPS["person"])
-            or not recognised(sight, sighting, name, made_out_px)
-            or any(bears(other, name, thing) for other in sight.others(sighting))
+            or not recognised(truth, sighting, name, made_out_px)
+            or any(could_bear_name(other, name, thing) for other in truth.others(sighting))
         ):
             continue
-        found.append(Named(sighting, name, Kind(thing.category)))
+        found.append(NamedThing(sighting, name, Kind(thing.category)))
     return tuple(found)
 
 
-def recognised(sight: Sight, sighting: Sighting, name: str, made_out_px: float) -> bool:
-    """Whether a person knows a thing by its name from its looks, or can make out in this view what is written on it: a sign that
-    is told from others by its words, a bay by its number."""
+def recognised(truth: RobustTruth, sighting: Sighting, name: str, made_out_px: float) -> bool:
+    """Whether a person recognises an object by its name in this view.
+
+    Objects that are known by their lettering, such as signs and numbered bays, must show it large enough to be made out.
+    """
     thing = sighting.instance
     own = _letters(name) - _LITTLE - _WEAK - _letters(thing.category) - _letters(_head(name))
     by_number, by_words = name[-1].isdigit(), thing.category in _BY_WORDS and not own <= COLOUR_WORDS
     if not by_number and not by_words:
         return True
-    family = with_parts(sight.scene, thing.id)
-    near = [t for t in sight.first.texts if t.text.parent in family and t.cap_height_px >= made_out_px and t.unhidden_share > 0.9]
-    said = {word for t in near for word in _letters(t.text.text)}
+    family = with_parts(truth.scene, thing.id)
+    near = [t for t in truth.first.texts if t.text.parent in family and t.cap_height_px >= made_out_px and t.unhidden_share > 0.9]
+    lettering = {word for t in near for word in _letters(t.text.text)}
     if by_number:
-        return name.split()[-1] in said
-    return any(a[:_STEM] == b[:_STEM] for a in own for b in said)
+        return name.split()[-1] in lettering
+    return any(a[:_STEM] == b[:_STEM] for a in own for b in lettering)
 
 
 _STEM = 4
-"""Words that begin alike by so many letters are forms of one ("optician", "opticians")."""
+"""Words with this many first letters in common are forms of one word ("optician", "opticians")."""
 
 _BY_WORDS = SIGNS | {"shop", "kiosk", "market stall", "door"}
-"""What is told from others of its kind by what is written on it."""
+"""Categories whose objects are told apart by their lettering."""
 
 _HAVING, _HAD_SHARE = frozenset({"with", "carrying", "pushing", "holding"}), 0.75
-"""Where less than so much of a thing shows, what it is told by ("with a pram") may be what is hidden."""
+"""When less than this share of an object shows, the part that it is named after ("with a pram") may be hidden."""
 
 _PERSON_PX = 700
-"""What somebody wears or holds is seen on no fewer pixels."""
+"""Fewest pixels on which clothes and things in the hand can be seen."""
 
 
 def _head(name: str) -> str:
-    """The noun of a name, empty for a number."""
+    """Return the head noun of a name, or an empty string when the name ends in a number."""
     head = re.split(r" (?:of|with|in|on|by|for|at) ", name)[0].split()[-1]
     return head if head.isalpha() else ""
 
 
 def spoken(name: str) -> str:
-    """The name of a thing as it is said after "the"."""
+    """Return the name of an object as it is used after "the"."""
     name = re.sub(r"^(\w+) (standing|walking|waiting|sitting)$", r"\2 \1", name)
     return name.removeprefix("The ").replace("price of ", "price card for ").replace("belisha", "Belisha")
 
 
-def bears(other: Thing, name: str, thing: Thing) -> bool:
-    """Whether a person could take something else for the thing that is named: its own name, category and attributes say the same,
-    but for words that tell little ("tall") or not enough ("saloon"), and colours that are nearly alike."""
-    told = _letters(name) - _LITTLE
+def could_bear_name(other: SceneThing, name: str, thing: SceneThing) -> bool:
+    """Whether a person could mistake another object for the named one.
+
+    That is so when name, category and attributes of the other object agree with the name, apart from words that distinguish
+    little ("tall", "saloon") and colours that are nearly alike.
+    """
+    named = _letters(name) - _LITTLE
     facts = (f"{key} {value}" for key, value in other.attributes.items() if isinstance(value, str))
     borne = _letters(" ".join((other.name, other.category, *facts)))
-    if told <= borne:
+    if named <= borne:
         return True
-    if other.category != thing.category and not Kind(thing.category).doubtful(other):
+    if other.category != thing.category and not Kind(thing.category).ambiguous_with(other):
         return False
-    own = told - _WEAK - _letters(thing.category) - _letters(_head(name))
+    own = named - _WEAK - _letters(thing.category) - _letters(_head(name))
     return all(word in borne or any(near_colours(word, colour) for colour in borne) for word in own)
 
 
@@ -150,15 +167,15 @@ _WEAK = frozenset({
     "standing", "walking", "waiting", "tall", "small", "large", "wide", "light", "dark", "saloon", "hatchback", "suv", "estate",
     "town", "site", "delivery", "roadside", "lit", "unlit", "round", "worker", "person", "man", "woman", "pedestrian", "customer",
 })  # fmt: skip
-"""Words by which nobody tells one thing from another for sure."""
+"""Words that do not reliably distinguish one object from another."""
 
 _MISLEADING = frozenset({
     "no", "and", "area", "end", "without", "behind", "before", "painted", "name", "by", "under", "at", "near", "beside", "middle",
     "left", "right",
 })  # fmt: skip
-"""Words that make a name one of two things, of a place that several may be at, or of what is not there."""
+"""Words in names of two objects, of a location that several objects may be at, or of something that is absent."""
 
-_LONGEST_NAME = 5
+_LONGEST_NAME = 5  # words
 _VAGUE = frozenset({
     "tree", "bush", "hedge", "hill", "road", "pavement", "surface", "field", "grass", "plant", "shrub", "kerb", "track", "ground",
     "yew", "flower bed", "puddle", "marking", "sky", "fence panel", "guardrail", "pylon", "building", "house", "terrace",
@@ -166,49 +183,54 @@ _VAGUE = frozenset({
     "wheel guide", "window", "door sign", "window notice", "fence", "silo", "chimney", "dock leveller", "dock shelter",
     "tram platform", "lane signal", "gate",
 })  # fmt: skip
-"""Of these nobody knows one from another by its name."""
+"""Categories whose objects nobody can tell apart by name."""
 
 
-def distinct(sight: Sight, min_pixels: int = 500, made_out_px: float = MADE_OUT_PX) -> list[Named]:
-    """Each thing that has a name which nothing else in view could bear, under its shortest."""
-    named = (*by_name(sight, min_pixels, made_out_px), *singles(sight, coloured=True, min_pixels=min_pixels))
+def nameable_things(truth: RobustTruth, min_pixels: int = 500, made_out_px: float = MADE_OUT_PX) -> list[NamedThing]:
+    """Return every object with a name that fits nothing else in view, under its shortest name."""
+    named = (*named_things(truth, min_pixels, made_out_px), *unique_things(truth, coloured=True, min_pixels=min_pixels))
     return list({one.thing.instance.id: one for one in named}.values())
 
 
-def ends(sight: Sight, min_pixels: int = 350) -> Iterator[Named]:
-    """The leftmost, rightmost and nearest of several of a kind, where that is beyond doubt."""
-    for category in sorted({s.instance.category for s in sight.clear} - UNCOUNTED):
+def extreme_things(truth: RobustTruth, min_pixels: int = 350) -> Iterator[NamedThing]:
+    """Yield the leftmost, rightmost and nearest of several objects of a kind, where there is no doubt which one it is."""
+    for category in sorted({s.instance.category for s in truth.clear} - UNCOUNTED):
         kind = Kind(category)
-        things = sight.of(kind)
-        if things is None or not 2 <= len(things) <= 9 or not whole_group(sight, kind):
+        things = truth.all_of(kind)
+        if things is None or not 2 <= len(things) <= 9 or not whole_group(truth, kind):
             continue
         for axis_name, which in (("leftmost", 0), ("rightmost", -1)):
-            end = outermost(sight, things, which)
+            end = outermost(truth, things, which)
             if end is not None and end.pixels >= min_pixels:
-                yield Named(end, f"{axis_name} {called(category)}", kind, place=True)
+                yield NamedThing(end, f"{axis_name} {called(category)}", kind, positional=True)
         near = sorted(things, key=lambda s: s.distance_m)
         if near[1].distance_m > near[0].distance_m * 1.2 and near[0].pixels >= min_pixels:
-            yield Named(near[0], f"nearest {called(category)}", kind, place=True)
+            yield NamedThing(near[0], f"nearest {called(category)}", kind, positional=True)
 
 
-def boards(sight: Sight, min_pixels: int = 350) -> Iterator[Named]:
-    """Boards with lettering, told from others of their own sort by their colour ("navy shop sign")."""
-    for sighting in sight.clear:
+def coloured_boards(truth: RobustTruth, min_pixels: int = 350) -> Iterator[NamedThing]:
+    """Yield boards with lettering that differ in colour from others of their category ("navy shop sign")."""
+    for sighting in truth.clear:
         thing = sighting.instance
         colour = own_colour(thing)
-        if thing.category not in _COLOURED_BOARDS or colour is None or sighting.pixels < min_pixels or sight.parted(sighting):
+        if (
+            thing.category not in _COLOURED_BOARDS
+            or colour is None
+            or sighting.pixels < min_pixels
+            or truth.split_by_sweep(sighting)
+        ):
             continue
-        rivals = (other for other in sight.others(sighting) if other.category == thing.category)
-        if not any(alike(colour, own_colour(rival)) for rival in rivals):
+        rivals = (other for other in truth.others(sighting) if other.category == thing.category)
+        if not any(colours_confusable(colour, own_colour(rival)) for rival in rivals):
             kind = Kind(thing.category, colour)
-            yield Named(sighting, noun_of(kind), kind)
+            yield NamedThing(sighting, noun_of(kind), kind)
 
 
 _COLOURED_BOARDS = frozenset({"shop sign", "hanging sign", "pavement board"})
 
 
-def alike(one: str, other: str | None) -> bool:
-    """Whether two colours could be called the same: by a word, by their family, or because people disagree on them."""
+def colours_confusable(one: str, other: str | None) -> bool:
+    """Whether two colours share a word or a plain colour, or are colours that people disagree on."""
     return (
         other is None
         or bool({*one.split()} & {*other.split()})
@@ -217,14 +239,14 @@ def alike(one: str, other: str | None) -> bool:
     )
 
 
-def whole_group(sight: Sight, kind: Kind) -> bool:
-    """Whether no further one of the kind shows in part: someone could take it for the outermost."""
-    visible = {s.instance.number for s in sight.of(kind) or ()}
-    return not any(kind.fits(s.instance) and s.instance.number not in visible and s.pixels > 30 for s in sight.samples[0].sightings)
+def whole_group(truth: RobustTruth, kind: Kind) -> bool:
+    """Whether no further object of the kind shows in part. Somebody could take it for the outermost one."""
+    visible = {s.instance.number for s in truth.all_of(kind) or ()}
+    return not any(kind.fits(s.instance) and s.instance.number not in visible and s.pixels > 30 for s in truth.samples[0].sightings)
 
 
-def outermost(sight: Sight, things: Sequence[Sighting], which: int) -> Sighting | None:
-    """The first (0) or last (-1) from the left, clear of the one beside it."""
+def outermost(truth: RobustTruth, things: Sequence[Sighting], which: int) -> Sighting | None:
+    """Return the first (0) or last (-1) object from the left, or None when the one beside it is too close."""
     order = sorted(things, key=lambda s: (s.box[0] + s.box[2]) / 2)
     pair = order[:2] if which == 0 else order[-2:]
-    return (order[which]) if sight.in_order(pair, 0, 0.05) is not None else None
+    return order[which] if truth.in_order(pair, 0, 0.05) is not None else None

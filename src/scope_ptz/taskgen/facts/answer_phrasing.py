@@ -1,4 +1,4 @@
-"""Answers in words, right and wrong, to any expected value: what validation puts into the mouths of its programs."""
+"""Right and wrong answers in words to any expected value. Validation lets its programs give them."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ _SMALL = (
 _TENS = ("", "", "twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety")
 _PLACES = frozenset({"left", "right", "north", "south", "east", "west", "above", "below", "behind"})
 _UNLIKE = "ACDEFHJKMNPRTUVWXY2346790"
-"""Letters and digits to misread a text with: none is a look-alike of another within its pair below."""
+"""Letters and digits that replace a letter of a text to simulate a misreading."""
 
 
 def right_answers(expected: AnyExpected) -> tuple[str, ...]:
-    """Five or more differently worded right answers."""
+    """Return five or more wordings of the right answer."""
     match expected:
         case Number():
             return _numbers(expected.value, expected.unit)
@@ -69,7 +69,7 @@ def right_answers(expected: AnyExpected) -> tuple[str, ...]:
 
 
 def offered(expected: AnyExpected, question: str) -> tuple[str, ...]:
-    """The answers that a question offers ("on the left or on the right?") in its order; none without an offer."""
+    """Return the answers that a question offers ("on the left or on the right?") in its order, or nothing without an offer."""
     if not isinstance(expected, Choice | NameSet | Ordering):
         return ()
     found = list[tuple[int, int, str]]()
@@ -87,11 +87,11 @@ def offered(expected: AnyExpected, question: str) -> tuple[str, ...]:
 
 
 _OFFER_GAP = 26
-"""Letters between two things that are offered: "the red car or the"."""
+"""Most characters between two answers that are offered together: "the red car or the"."""
 
 
 def wrong_answer(expected: AnyExpected, rng: random.Random) -> str | None:
-    """A readable answer that is wrong; None where there is no such thing (nothing is asked, or there is a single option)."""
+    """Return a readable answer that is wrong, or None when there is none (no question, or a single option)."""
     match expected:
         case Number():
             steps = [
@@ -127,7 +127,7 @@ def wrong_answer(expected: AnyExpected, rng: random.Random) -> str | None:
 
 
 def plural(words: str) -> str:
-    """The plural of a noun, as far as one rule goes."""
+    """Return the plural of a noun phrase by simple rules."""
     noun = re.split(r" (?:in|who|with|of|on|for|carrying) ", words)[0]
     if noun != words:
         return plural(noun) + words[len(noun) :].replace(" who is ", " who are ")
@@ -141,7 +141,7 @@ def plural(words: str) -> str:
 
 
 def in_words(number: int) -> str:
-    """A whole number below 100 in words, larger ones in digits."""
+    """Return a whole number in words below 100, else in digits."""
     if not 0 <= number < 100:
         return str(number)
     if number < 20:
@@ -194,15 +194,15 @@ def _relations(expected: Relation, value: str) -> tuple[str, ...]:
         )
     words = expected.forward if value == "forward" else expected.backward
     turned = expected.backward if value == "forward" else expected.forward
-    said = []
+    wordings = []
     for way, this, that in ((words, one, two), (turned, two, one)):
         for word in way[:2]:
             link = "of" if word in _PLACES else "than"
-            said += [f"The {this} is {word} {link} the {that}.", f"{this}: {word} {link} {that}"]
-    said.append(f"I would say that {said[0][0].lower()}{said[0][1:]}")
+            wordings += [f"The {this} is {word} {link} the {that}.", f"{this}: {word} {link} {that}"]
+    wordings.append(f"I would say that {wordings[0][0].lower()}{wordings[0][1:]}")
     if not any(word in _PLACES for word in (*words, *turned)):
-        said += [f"The {one if value == 'forward' else two}."]
-    return tuple(said)
+        wordings += [f"The {one if value == 'forward' else two}."]
+    return tuple(wordings)
 
 
 def _descriptions(facts: Sequence[str]) -> tuple[str, ...]:
@@ -225,7 +225,7 @@ def _other_set(expected: NameSet, rng: random.Random) -> tuple[str, ...]:
 
 
 def _misread(text: str, rng: random.Random) -> str:
-    """A text with one letter or digit taken for another that does not look like it."""
+    """Return a text with one letter or digit replaced by another that does not look like it."""
     places = [at for at, letter in enumerate(text) if letter.isalnum()]
     at = rng.choice(places)
     others = [letter for letter in _UNLIKE if letter.lower() != text[at].lower() and {letter, text[at].upper()} != {"0", "O"}]

@@ -1,7 +1,7 @@
-"""Near-duplicates among tasks: the same question of the same view whatever its words, or nearly the same words.
+"""Near-duplicates among tasks: the same question about the same view in any words, or nearly the same words.
 
-Words are compared by the Jaccard similarity of their sets of five-letter shingles, numbers and names included. That is exact,
-and at some thousands of short texts as fast as an estimate by MinHash, which pays from hundreds of thousands on.
+Texts are compared by the Jaccard similarity of their sets of five-letter shingles, numbers and names included. For a few thousand
+short texts this is as fast as an estimate by MinHash, and exact.
 """
 
 from __future__ import annotations
@@ -13,24 +13,24 @@ from dataclasses import dataclass
 
 from scope_ptz.bench.tasks.task import Task
 
-SHINGLE = 5
-ALIKE = 0.75
-"""From this share of common shingles on two texts are near-duplicates, if they are set in the same world."""
+SHINGLE_CHARS = 5
+NEAR_SIMILARITY = 0.75
+"""Similarity from which two texts in the same world are near-duplicates."""
 
 
 def shingles(text: str) -> frozenset[str]:
-    """The runs of five letters of a text in lower case, spaces made one."""
+    """Return all substrings of five characters of a text, in lower case and with single spaces."""
     plain = f" {' '.join(re.findall(r'[a-z0-9]+', text.lower()))} "
-    return frozenset(plain[at : at + SHINGLE] for at in range(max(1, len(plain) - SHINGLE + 1)))
+    return frozenset(plain[at : at + SHINGLE_CHARS] for at in range(max(1, len(plain) - SHINGLE_CHARS + 1)))
 
 
 def similarity(one: frozenset[str], two: frozenset[str]) -> float:
-    """Jaccard: what is common over what there is."""
+    """Return the Jaccard similarity of two sets."""
     return len(one & two) / len(one | two) if one or two else 1.0
 
 
-def asks(task: Task) -> str | None:
-    """What a task asks of which views, whatever its words; None for one that asks nothing."""
+def asked_about(task: Task) -> str | None:
+    """Return what a task asks about which views, independent of its words, or None when it asks nothing."""
     if not task.evidence:
         return None
     views = [
@@ -42,15 +42,15 @@ def asks(task: Task) -> str | None:
 
 
 @dataclass(frozen=True)
-class Near:
-    """A task that another one nearly repeats. ``share``: of common shingles; 1 where the same is asked of the same view."""
+class NearDuplicate:
+    """A task that another one nearly repeats, with their similarity (1 when they ask the same about the same view)."""
 
     task: str
-    share: float
+    similarity: float
 
 
-class Known:
-    """Tasks that new ones are held against."""
+class KnownTasks:
+    """Tasks that new tasks are compared with."""
 
     def __init__(self, tasks: Iterable[Task] = ()) -> None:
         self._texts: dict[str, list[tuple[str, frozenset[str]]]] = {}
@@ -59,16 +59,17 @@ class Known:
             self.add(task)
 
     def add(self, task: Task) -> None:
+        """Add a task to compare with."""
         self._texts.setdefault(task.world, []).append((task.id, shingles(task.instruction)))
-        if (asked := asks(task)) is not None:
+        if (asked := asked_about(task)) is not None:
             self._asked.setdefault(asked, task.id)
 
-    def nearest(self, task: Task) -> Near | None:
-        """The task that this one repeats, or comes nearest to; None when it comes near to none."""
-        asked = asks(task)
+    def nearest(self, task: Task) -> NearDuplicate | None:
+        """Return the task that this one repeats or resembles most, or None when it resembles none enough."""
+        asked = asked_about(task)
         if asked is not None and asked in self._asked:
-            return Near(self._asked[asked], 1.0)
+            return NearDuplicate(self._asked[asked], 1.0)
         own = shingles(task.instruction)
-        found = [Near(name, similarity(own, other)) for name, other in self._texts.get(task.world, ())]
-        best = max(found, key=lambda near: near.share, default=None)
-        return best if best is not None and best.share >= ALIKE else None
+        found = [NearDuplicate(name, similarity(own, other)) for name, other in self._texts.get(task.world, ())]
+        best = max(found, key=lambda near: near.similarity, default=None)
+        return best if best is not None and best.similarity >= NEAR_SIMILARITY else None

@@ -1,4 +1,4 @@
-"""What became of every draft, on disk as it goes: enough to go on after a stop, and a list for a person to look through."""
+"""The record of every draft on disk. It allows resuming after an interruption, and gives a list for human review."""
 
 from __future__ import annotations
 
@@ -19,8 +19,16 @@ RECORD, TASKS, REVIEW = "drafts.jsonl", "tasks.jsonl", "review.md"
 Fate = Literal["kept", "dropped", "near-duplicate", "no reply"]
 
 
-class Entry(BaseModel):
-    """One draft, or a reply that held none. ``batch``: which request it came from; ``draft``: as it was written."""
+class LedgerEntry(BaseModel):
+    """The record of one draft, or of a reply without drafts.
+
+    Attributes:
+        batch: Number of the request.
+        fate: What happened to the draft.
+        reason: Why it was not kept.
+        draft: The draft as the model wrote it.
+        task: The task made of it, when it was kept.
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -31,8 +39,8 @@ class Entry(BaseModel):
     task: Task | None = None
 
 
-class Ledger:
-    """The record of a folder. It is only ever added to."""
+class DraftLedger:
+    """The record in a folder. Entries are only added, never changed."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -45,25 +53,26 @@ class Ledger:
 
     @property
     def kept(self) -> list[Task]:
+        """The tasks of all kept drafts."""
         return [entry.task for entry in self.entries if entry.task is not None and entry.fate == "kept"]
 
     @property
     def batches(self) -> int:
-        """How many requests have been answered so far."""
+        """Number of requests so far."""
         return max((entry.batch for entry in self.entries), default=0)
 
-    def missing(self, wanted: dict[Category, int]) -> dict[Category, int]:
-        """How many tasks of each category are still to be made."""
+    def missing(self, requested: dict[Category, int]) -> dict[Category, int]:
+        """Return how many tasks of each category are still missing."""
         have = Counter(task.category for task in self.kept)
-        return {category: number - have[category] for category, number in wanted.items() if number > have[category]}
+        return {category: number - have[category] for category, number in requested.items() if number > have[category]}
 
     def last_reasons(self, most: int = 8) -> list[str]:
-        """Why the newest drafts were not kept, each reason once."""
+        """Return why the most recent drafts were not kept, each reason once."""
         reasons = [entry.reason for entry in reversed(self.entries) if entry.fate in ("dropped", "near-duplicate")]
         return list(dict.fromkeys(reasons))[:most]
 
-    def add(self, entry: Entry) -> None:
-        """Record what became of a draft, at once."""
+    def add(self, entry: LedgerEntry) -> None:
+        """Record a draft on disk immediately."""
         row = entry.model_dump(mode="json", exclude={"task"})
         row["task"] = entry.task.model_dump(mode="json", exclude_defaults=True) if entry.task else None
         try:
@@ -74,7 +83,7 @@ class Ledger:
         self.entries.append(entry)
 
     def finish(self) -> list[Path]:
-        """Write the kept tasks, and the list for review."""
+        """Write the kept tasks and the list for review, and return their paths."""
         tasks, review = self.folder / TASKS, self.folder / REVIEW
         try:
             dump_tasks(self.kept, tasks)
@@ -84,25 +93,25 @@ class Ledger:
         return [tasks, review]
 
 
-def _entry(line: str, path: Path, number: int) -> Entry:
+def _entry(line: str, path: Path, number: int) -> LedgerEntry:
     try:
-        return Entry.model_validate_json(line)
+        return LedgerEntry.model_validate_json(line)
     except ValidationError as error:
         raise InputError(
-            f"{path}, line {number} is damaged: {error.errors(include_url=False)[0]['msg']}. Delete it to go on."
+            f"{path}, line {number} is damaged: {error.errors(include_url=False)[0]['msg']}. Delete the line to continue."
         ) from error
 
 
-def _review(entries: Sequence[Entry]) -> list[str]:
-    """The list as Markdown. Words of the model stand in code spans: nothing in them is markup."""
+def _review(entries: Sequence[LedgerEntry]) -> list[str]:
+    """Return the review list as Markdown. Text of the model is in code spans, so that it cannot act as markup."""
     fates = Counter(entry.fate for entry in entries)
     lines = [
-        "# Drafted tasks to look through",
+        "# Drafted tasks for review",
         "",
         ", ".join(f"{number} {fate}" for fate, number in fates.most_common()) or "none",
         "",
     ]
-    lines += ["Tick what may stay; look at each with `scope bench browse ID --tasks tasks.jsonl --out pictures`.", ""]
+    lines += ["Tick the tasks to keep. View each one with `scope bench browse ID --tasks tasks.jsonl --out pictures`.", ""]
     for entry in entries:
         if entry.fate == "kept" and entry.task is not None:
             task = entry.task
@@ -111,8 +120,8 @@ def _review(entries: Sequence[Entry]) -> list[str]:
     lines += ["", "## Not kept", ""]
     for entry in entries:
         if entry.fate != "kept":
-            said = entry.draft.get("instruction", entry.draft) if isinstance(entry.draft, dict) else entry.draft
-            lines.append(f"- {entry.fate}: {_code(entry.reason)}" + (f" {_code(str(said)[:200])}" if said else ""))
+            text = entry.draft.get("instruction", entry.draft) if isinstance(entry.draft, dict) else entry.draft
+            lines.append(f"- {entry.fate}: {_code(entry.reason)}" + (f" {_code(str(text)[:200])}" if text else ""))
     return lines
 
 

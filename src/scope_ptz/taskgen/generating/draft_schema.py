@@ -1,7 +1,7 @@
-"""What a model may write: drafts as data, never programs. Everything in them is checked before it is used.
+"""The format of drafts that a model writes. They are data, never code, and everything in them is checked before use.
 
-A draft says how to get to one view or several, which program over the ground truth answers it, and what it takes the answer to
-be. The answer counts for nothing but a comparison.
+A draft states how to get to one or several views, which program over the ground truth answers it, and the expected answer. That
+answer is only compared with the right one. Class names and docstrings are part of the schema that the model receives.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ ALLOWED: dict[Category, tuple[Program, ...]] = {
     "multi_step_reasoning": ("sum", "most"),
     "comparative": ("most",),
 }
-"""Which programs make a task of which category."""
+"""Programs that can make a task of each category."""
 
-MOST_DRAFTS, MOST_CHARS = 20, 200_000
+MOST_DRAFTS, MOST_CHARS = 20, 200_000  # drafts and characters of one reply
 Word = Annotated[str, Field(min_length=1, max_length=60, pattern=r"^[\w][\w '/&-]*$")]
 _FENCE = re.compile(r"\A\s*```(?:json)?\s*(.*?)\s*```\s*\Z", re.DOTALL)
 
@@ -46,6 +46,7 @@ class Move(_Written):
 
     @property
     def turns(self) -> bool:
+        """Whether the move turns or zooms."""
         return bool(self.pan_deg or self.tilt_deg or self.zoom_factor)
 
 
@@ -84,7 +85,7 @@ class Draft(_Written):
 
 
 def reply_schema() -> dict[str, Any]:
-    """The JSON schema of a reply: a list of drafts."""
+    """Return the JSON schema of a reply: a list of drafts."""
     return {
         "type": "object",
         "properties": {"drafts": {"type": "array", "items": {"$ref": "#/$defs/Draft"}, "maxItems": MOST_DRAFTS}},
@@ -99,22 +100,26 @@ def _without_defs(schema: dict[str, Any]) -> dict[str, Any]:
 
 
 def read_reply(text: str) -> list[Any]:
-    """The rows of a reply, unchecked. Raises ``ValueError`` that says why it is no list of drafts."""
+    """Return the rows of a reply without checking them.
+
+    Raises:
+        ValueError: The reply is not a list of drafts.
+    """
     if len(text) > MOST_CHARS:
         raise ValueError(f"the reply is longer than {MOST_CHARS} characters")
     fenced = _FENCE.match(text)
     try:
         content = json.loads(fenced.group(1) if fenced else text)
     except (ValueError, RecursionError) as error:
-        raise ValueError(f"the reply is no JSON: {error}") from error
+        raise ValueError(f"the reply is not JSON: {error}") from error
     rows = content.get("drafts") if isinstance(content, dict) else content
     if not isinstance(rows, list):
-        raise ValueError("the reply holds no list of drafts")  # noqa: TRY004 - a wrong value of a reply, not a wrong call
+        raise ValueError("the reply has no list of drafts")  # noqa: TRY004 - a wrong value in a reply is not a TypeError
     return rows[:MOST_DRAFTS]
 
 
 def read_draft(row: Any) -> Draft | str:
-    """A draft, or what is wrong with it."""
+    """Return a draft, or the reason why it is not valid."""
     try:
         return Draft.model_validate_json(json.dumps(row))
     except ValidationError as error:

@@ -1,4 +1,4 @@
-"""Runs of operators, with what they said of them: what people really ask of a camera, and what they found good or bad."""
+"""Recorded runs of operators with their feedback. They show a model what people ask of a camera."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from scope_ptz.agent.trace import FILE_NAME, Trace, read_trace
 from scope_ptz.errors import InputError
 
-MOST_RUNS, MOST_CHARS = 12, 300
+MOST_RUNS, MOST_CHARS = 12, 300  # runs in a prompt, and characters of each text in it
 
 
 class Feedback(BaseModel):
-    """A line of a feedback file. ``run``: name of the run's folder."""
+    """A line of a feedback file. ``run`` is the name of a run folder."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -27,13 +27,13 @@ class Feedback(BaseModel):
 
 @dataclass(frozen=True, slots=True)
 class OperatorRun:
-    """A recorded run and what was said of it."""
+    """A recorded run and the feedback on it."""
 
     trace: Trace
     feedback: Feedback | None
 
-    def told(self) -> dict[str, Any]:
-        """The run in short, as data for a prompt."""
+    def summary(self) -> dict[str, Any]:
+        """Return the run in short, as data for a prompt."""
         ended = self.trace.ended
         return {
             "asked": self.trace.started.instruction[:MOST_CHARS],
@@ -44,23 +44,27 @@ class OperatorRun:
 
 
 def read_runs(folder: Path | None, feedback: Path | None) -> list[OperatorRun]:
-    """The runs in a folder of run folders, those that were commented on first, no more than a prompt should hold.
+    """Read the runs for a prompt, those with feedback first.
+
+    Args:
+        folder: Folder of run folders.
+        feedback: JSONL file with feedback.
 
     Raises:
-        InputError: the folder or the feedback cannot be read, or feedback is about a run that is not there.
+        InputError: The folder or the feedback cannot be read, or the feedback is about a run that does not exist.
     """
-    said = {row.run: row for row in _feedback(feedback)} if feedback is not None else {}
+    comments = {row.run: row for row in _feedback(feedback)} if feedback is not None else {}
     if folder is None:
-        if said:
-            raise InputError("Feedback is about runs: name their folder with --runs.")
+        if comments:
+            raise InputError("Feedback needs the runs that it is about. Name their folder with --runs.")
         return []
     if not folder.is_dir():
         raise InputError(f"There is no folder of runs at {folder}.")
     names = sorted(path.name for path in folder.iterdir() if (path / FILE_NAME).is_file())
-    if unknown := sorted(set(said) - set(names)):
+    if unknown := sorted(set(comments) - set(names)):
         raise InputError(f"The feedback is about the run '{unknown[0]}', which is not in {folder}.")
-    chosen = sorted(names, key=lambda name: (name not in said, name))[:MOST_RUNS]
-    return [OperatorRun(read_trace(folder / name), said.get(name)) for name in chosen]
+    chosen = sorted(names, key=lambda name: (name not in comments, name))[:MOST_RUNS]
+    return [OperatorRun(read_trace(folder / name), comments.get(name)) for name in chosen]
 
 
 def _feedback(path: Path) -> Sequence[Feedback]:

@@ -1,4 +1,4 @@
-"""Judges on runs whose faults are known: what they let through, what they condemn wrongly, which mode they name."""
+"""Accuracy of LLM judges on runs with known faults: false accepts, false rejects, and the error modes that they name."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ from scope_ptz.bench.tasks.facts import TaskFacts
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.bench.tasks.wording import facts_of
 from scope_ptz.errors import InputError
-from scope_ptz.taskgen.gold.mutations import Gold
+from scope_ptz.taskgen.gold.mutations import GoldRun
 
-PASSES = "passes"
-APART = ("unparseable", "failed")
+PASSES = "passes"  # stands for the mode of a run without a fault
+WITHOUT_VERDICT = ("unparseable", "failed")
 
 
 class GoldCase(BaseModel):
-    """A run with a known verdict. ``fault``: the mode of its one fault, None when it has none; ``how``: how it was put in."""
+    """A run with a known verdict. ``fault`` is the mode of its fault, if any, and ``how`` the name of the fault function."""
 
     model_config = ConfigDict(frozen=True, arbitrary_types_allowed=True)
 
@@ -42,12 +42,12 @@ class GoldCase(BaseModel):
 
     @property
     def key(self) -> str:
-        """Its name among gold runs."""
+        """Identify the run among gold runs."""
         return f"{self.facts.id}/{self.fault.value if self.fault else PASSES}/{self.how}"
 
 
 class GoldVerdict(BaseModel):
-    """What a judge said about a gold run, as it is kept in a file."""
+    """The judgement of a gold run, as it is stored in a file."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -57,13 +57,13 @@ class GoldVerdict(BaseModel):
     judgement: Judgement
 
 
-def gold_case(gold: Gold, places: Places) -> GoldCase:
-    """A faulty run for a judge. ``places``: of its scene."""
+def gold_case(gold: GoldRun, places: Places) -> GoldCase:
+    """Return a faulty run as a case for a judge, with the places of its scene."""
     return _case(gold.task, gold.episode, places, gold.mode, gold.fault)
 
 
 def passing_case(task: Task, episode: Episode, places: Places) -> GoldCase:
-    """A run that passes all checks, for a judge."""
+    """Return a run that passes all checks as a case for a judge."""
     return _case(task, episode, places, None, "reference")
 
 
@@ -76,9 +76,17 @@ def _case(task: Task, episode: Episode, places: Places, fault: ErrorMode | None,
 async def judge_gold(
     judge: Judge, cases: Iterable[GoldCase], *, concurrency: int = 8, repeat: int = 0, note: Callable[[GoldVerdict], None]
 ) -> None:
-    """Judge runs, several at a time; ``note`` gets each verdict when it is there, so that nothing is lost when this is ended.
+    """Judge runs concurrently.
 
-    Raises what ``note`` raises.
+    Args:
+        judge: The judge.
+        cases: The runs.
+        concurrency: How many runs are judged at the same time.
+        repeat: Number of this repetition.
+        note: Receives every verdict as soon as it is available, so that an interruption loses nothing.
+
+    Raises:
+        Exception: Whatever ``note`` raises.
     """
     limit = anyio.Semaphore(concurrency)
 
@@ -97,10 +105,15 @@ async def judge_gold(
 
 @dataclass(frozen=True)
 class GoldResult:
-    """``cells``: judgements by fault ("passes" for none) and by what they say (a mode, "correct", or one of ``APART``).
+    """The accuracy of one judge.
 
-    ``runs``: of which there may be several judgements each; the other counts are of judgements. ``verdicts``: agreement on correct
-    or not, over all that it gave a verdict on; ``modes``: on the mode, where it condemned a faulty run.
+    Attributes:
+        judge: Name of the judge.
+        runs: Number of runs, each of which may have several judgements.
+        cells: Number of judgements by the mode of the fault ("passes" for none) and by verdict: a mode, "correct", or one of
+            ``WITHOUT_VERDICT``.
+        verdicts: Agreement on whether a run is correct, over all judgements with a verdict.
+        modes: Agreement on the error mode, over faulty runs that were judged incorrect.
     """
 
     judge: str
@@ -109,35 +122,40 @@ class GoldResult:
     verdicts: Agreement
     modes: Agreement
 
-    def _count(self, *, faulty: bool, told: tuple[str, ...] | None = None) -> int:
+    def _count(self, *, faulty: bool, verdicts: tuple[str, ...] | None = None) -> int:
         return sum(
-            number for (fault, said), number in self.cells.items() if (fault != PASSES) is faulty and (told is None or said in told)
+            number
+            for (fault, verdict), number in self.cells.items()
+            if (fault != PASSES) is faulty and (verdicts is None or verdict in verdicts)
         )
 
     @property
     def false_accept_rate(self) -> float | None:
-        """Of the faulty runs with a verdict the share that it calls correct."""
-        given = self._count(faulty=True) - self._count(faulty=True, told=APART)
-        return self._count(faulty=True, told=("correct",)) / given if given else None
+        """Share of faulty runs with a verdict that are judged correct."""
+        given = self._count(faulty=True) - self._count(faulty=True, verdicts=WITHOUT_VERDICT)
+        return self._count(faulty=True, verdicts=("correct",)) / given if given else None
 
     @property
     def false_reject_rate(self) -> float | None:
-        """Of the passing runs with a verdict the share that it does not call correct."""
-        given = self._count(faulty=False) - self._count(faulty=False, told=APART)
-        return 1 - self._count(faulty=False, told=("correct",)) / given if given else None
+        """Share of passing runs with a verdict that are not judged correct."""
+        given = self._count(faulty=False) - self._count(faulty=False, verdicts=WITHOUT_VERDICT)
+        return 1 - self._count(faulty=False, verdicts=("correct",)) / given if given else None
 
     def as_dict(self) -> dict[str, Any]:
-        """As JSON data."""
+        """Return the result as JSON data."""
         matrix: dict[str, dict[str, int]] = {}
-        for (fault, told), number in sorted(self.cells.items()):
-            matrix.setdefault(fault, {})[told] = number
+        for (fault, verdict), number in sorted(self.cells.items()):
+            matrix.setdefault(fault, {})[verdict] = number
         return {
             "judge": self.judge,
             "runs": self.runs,
             "judgements": sum(self.cells.values()),
             "false_accept_rate": self.false_accept_rate,
             "false_reject_rate": self.false_reject_rate,
-            "apart": {name: self._count(faulty=True, told=(name,)) + self._count(faulty=False, told=(name,)) for name in APART},
+            "apart": {
+                name: self._count(faulty=True, verdicts=(name,)) + self._count(faulty=False, verdicts=(name,))
+                for name in WITHOUT_VERDICT
+            },
             "matrix": matrix,
             "verdicts": self.verdicts.as_dict(),
             "modes": self.modes.as_dict(),
@@ -145,18 +163,18 @@ class GoldResult:
 
 
 def result(judge: str, verdicts: Sequence[GoldVerdict], seed: int = 1) -> GoldResult:
-    """What a judge made of gold runs."""
-    told = [(_fault(verdict), _told(verdict.judgement), verdict) for verdict in verdicts]
-    given = [row for row in told if row[1] not in APART]
+    """Compare the verdicts of one judge with the known faults."""
+    rows = [(_fault(verdict), _verdict(verdict.judgement), verdict) for verdict in verdicts]
+    given = [row for row in rows if row[1] not in WITHOUT_VERDICT]
     blamed = [row for row in given if row[0] != PASSES and row[1] != "correct"]
     return GoldResult(
         judge=judge,
         runs=len({verdict.key for verdict in verdicts}),
-        cells=Counter((fault, said) for fault, said, _ in told),
+        cells=Counter((fault, verdict) for fault, verdict, _ in rows),
         verdicts=cohen(
             ["correct" if fault == PASSES else "incorrect" for fault, _, _ in given],
-            ["correct" if said == "correct" else "incorrect" for _, said, _ in given],
-            [verdict.task for _, _, verdict in given],
+            ["correct" if verdict == "correct" else "incorrect" for _, verdict, _ in given],
+            [row.task for _, _, row in given],
             seed,
         ),
         modes=cohen([r[0] for r in blamed], [r[1] for r in blamed], [r[2].task for r in blamed], seed),
@@ -164,7 +182,7 @@ def result(judge: str, verdicts: Sequence[GoldVerdict], seed: int = 1) -> GoldRe
 
 
 def results(verdicts: Sequence[GoldVerdict], seed: int = 1) -> list[GoldResult]:
-    """Of every judge in turn, all its repeats together. A judgement that failed and was made good later does not count."""
+    """Return the result of every judge over all its repetitions. A failed judgement that was repeated later does not count."""
     newest = {(v.key, v.judgement.judge, v.judgement.prompt, v.judgement.repeat): v for v in verdicts}
     by_judge: dict[str, list[GoldVerdict]] = {}
     for verdict in newest.values():
@@ -173,7 +191,7 @@ def results(verdicts: Sequence[GoldVerdict], seed: int = 1) -> list[GoldResult]:
 
 
 def raters_of_gold(verdicts: Iterable[GoldVerdict]) -> list[Rater]:
-    """The known faults as a rater, and every judge of them."""
+    """Return the known faults as one rater, and every judge as another."""
     newest = {(v.key, v.judgement.judge, v.judgement.prompt, v.judgement.repeat): v for v in verdicts}
     known, judges = Rater("the known faults", "gold", "gold"), dict[str, Rater]()
     by_key: dict[str, list[GoldVerdict]] = {}
@@ -188,21 +206,25 @@ def raters_of_gold(verdicts: Iterable[GoldVerdict]) -> list[Rater]:
     return [known, *judges.values()] if by_key else []
 
 
-def in_turn(runs: Sequence[Gold]) -> list[Gold]:
-    """The runs with the modes in turn, so that the first few are of all sorts."""
+def in_turn(runs: Sequence[GoldRun]) -> list[GoldRun]:
+    """Return the runs alternating between error modes, so that the first few cover all modes."""
     waiting = [[run for run in runs if run.mode is mode] for mode in ErrorMode]
     return [run for row in zip_longest(*waiting) for run in row if run is not None]
 
 
 def read_verdicts(path: Path) -> tuple[GoldVerdict, ...]:
-    """The verdicts of a file. A last line that was cut off is left out. Raises ``InputError`` for other damage."""
+    """Read the verdicts of a file. A last line that was cut off is left out.
+
+    Raises:
+        InputError: The file is damaged otherwise.
+    """
     rows = list[GoldVerdict]()
     for number, line in whole_lines(path):
         try:
             rows.append(GoldVerdict.model_validate_json(line))
         except ValidationError as error:
             first = error.errors(include_url=False, include_input=False)[0]
-            raise InputError(f"{path}, line {number} is no verdict on a gold run: {first['msg']}.") from error
+            raise InputError(f"{path}, line {number} is not a verdict on a gold run: {first['msg']}.") from error
     return tuple(rows)
 
 
@@ -210,5 +232,5 @@ def _fault(verdict: GoldVerdict) -> str:
     return verdict.fault.value if verdict.fault else PASSES
 
 
-def _told(judgement: Judgement) -> str:
+def _verdict(judgement: Judgement) -> str:
     return judgement.error_mode.value if judgement.error_mode else judgement.verdict

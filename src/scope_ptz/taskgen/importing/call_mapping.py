@@ -1,4 +1,4 @@
-"""From a row's expected tools and arguments to the calls that a run must make."""
+"""Mapping of the expected tools and arguments of a row to the calls that a run must make."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from scope_ptz.taskgen.importing.paper_names import (
     spelled,
 )
 from scope_ptz.taskgen.importing.structured_cells import structure
-from scope_ptz.taskgen.importing.tool_steps import plain, spare_arguments, steps_in, without_names
+from scope_ptz.taskgen.importing.tool_steps import shown, steps_in, unused_arguments, without_names
 from scope_ptz.tools.registry import TOOLS as OURS
 from scope_ptz.tools.registry import parse_call
 
-DEGREES_WITHIN, ZOOM_SHARE, SECONDS_WITHIN = 0.5, 0.03, 0.5
+DEGREES_WITHIN, ZOOM_SHARE, SECONDS_WITHIN = 0.5, 0.03, 0.5  # tolerances of expected arguments
 _UNITS_S = {"": 1.0, "s": 1.0, "sec": 1.0, "second": 1.0, "seconds": 1.0, "ms": 0.001, "min": 60.0, "minute": 60.0, "minutes": 60.0}
 _ARTICLES = frozenset({"the", "a", "an", "all", "any", "of", "in", "on", "with", "and", "view", "scene"})
 TOOL_FIELDS = {name: frozenset(tool.arguments.model_fields) for name, tool in OURS.items()}
@@ -35,24 +35,32 @@ PresetOf = Callable[[str], str | None]
 
 @dataclass
 class Expectation:
-    """``calls``: as far as they could be mapped."""
+    """The required calls of a row, as far as they could be mapped, and the findings about the others."""
 
     calls: list[RequiredCall] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
 
     def note(self, kind: Any, detail: str) -> None:
+        """Add a finding."""
         self.findings.append(Finding(kind=kind, detail=detail[:300]))
 
 
 def expected_calls(order_cell: str, arguments_cell: str, *, compare: bool, preset_of: PresetOf) -> Expectation:
-    """The calls that a row expects. ``compare``: with their arguments; ``preset_of``: the scene's preset by the file's name."""
+    """Map the expected calls of a row.
+
+    Args:
+        order_cell: The cell with the expected tools.
+        arguments_cell: The cell with their arguments.
+        compare: Whether arguments are compared.
+        preset_of: Returns the preset of the scene for a name in the file.
+    """
     made = Expectation()
-    order, given = _read(order_cell, "expected_tool_order_json", made), _read(arguments_cell, "expected_tool_args_json", made)
-    names = list(steps_in(order, lambda told: made.note("unknown-tool", told)))
+    order, given = _parse(order_cell, "expected_tool_order_json", made), _parse(arguments_cell, "expected_tool_args_json", made)
+    names = list(steps_in(order, lambda detail: made.note("unknown-tool", detail)))
     if not names and isinstance(given, dict) and any(spelled(name) in TOOLS for name in given):
-        names = [(name, {}) for name in given]  # Arguments by tool, and no order beside them.
-    for told in spare_arguments(given, [name for name, _ in names]):
-        made.note("unchecked-argument", told)
+        names = [(name, {}) for name in given]  # arguments by tool, without a list of tools
+    for detail in unused_arguments(given, [name for name, _ in names]):
+        made.note("unchecked-argument", detail)
     for at, (name, own) in enumerate(names):
         tool = TOOLS.get(spelled(name))
         if tool is None:
@@ -64,7 +72,7 @@ def expected_calls(order_cell: str, arguments_cell: str, *, compare: bool, prese
     return made
 
 
-def _read(cell: str, column: str, made: Expectation) -> Any:
+def _parse(cell: str, column: str, made: Expectation) -> Any:
     try:
         return structure(cell)
     except ValueError as error:
@@ -73,8 +81,15 @@ def _read(cell: str, column: str, made: Expectation) -> Any:
 
 
 def _arguments_of(given: Any, name: str, at: int, times_before: int, *, alone: bool) -> Mapping[str, Any]:
-    """The arguments of one expected call: by place in a list, or by tool, where one tool may have several in turn. ``alone``: it is
-    the only one, so that arguments without its name are its own."""
+    """Return the arguments of one expected call, from a list by position or from an object by tool.
+
+    Args:
+        given: The arguments of all calls.
+        name: The name of the tool in the file.
+        at: Position of the call.
+        times_before: How many earlier calls are of the same tool.
+        alone: Whether this is the only call. Arguments without a tool name are then its own.
+    """
     if isinstance(given, list):
         one = given[at] if at < len(given) else None
         if not isinstance(one, dict):
@@ -93,14 +108,14 @@ def _arguments_of(given: Any, name: str, at: int, times_before: int, *, alone: b
 
 
 def _mapped(tool: ToolName, given: Mapping[str, Any], preset_of: PresetOf, made: Expectation) -> dict[str, Argument]:
-    """What arguments must be, under our names. What cannot be mapped is noted and not compared."""
+    """Return the required arguments under the names of this project. Arguments that cannot be mapped are noted and not compared."""
     given = {spelled(name): value for name, value in given.items() if value is not None and value != ""}
-    wanted, call, used = dict[str, Argument](), dict[str, Any](), set[str]()
+    required, call, used = dict[str, Argument](), dict[str, Any](), set[str]()
 
     def take(name: str, value: Any, argument: Argument | None) -> None:
         call[name] = value
         if argument is not None:
-            wanted[name] = argument
+            required[name] = argument
 
     if tool == "adjust_ptz":
         _moves(given, take, used, made)
@@ -121,14 +136,14 @@ def _mapped(tool: ToolName, given: Mapping[str, Any], preset_of: PresetOf, made:
     texts = set(TEXT_ARGUMENTS.get(tool, ()))
     for name in sorted(texts & set(given) - used):
         if not isinstance(given[name], str):
-            made.note("wrong-arguments", f"{tool}: {name} is {plain(given[name])}, which is no text")
-        elif tool != "query_answer":  # Its wording is free: there is nothing to compare.
-            made.note("unchecked-argument", f"{tool}: {name} is {plain(given[name])}, and {text} was read")
-    spare = sorted(set(given) - used - texts)
-    if spare:
-        made.note("wrong-arguments", f"{tool} takes no {', '.join(spare)}")
+            made.note("wrong-arguments", f"{tool}: {name} is {shown(given[name])}, which is no text")
+        elif tool != "query_answer":  # the wording of a question is free
+            made.note("unchecked-argument", f"{tool}: {name} is {shown(given[name])}, and {text} was read")
+    unused = sorted(set(given) - used - texts)
+    if unused:
+        made.note("wrong-arguments", f"{tool} takes no {', '.join(unused)}")
     _validate(tool, call, made)
-    return wanted
+    return required
 
 
 Take = Callable[[str, Any, Argument | None], None]
@@ -176,7 +191,7 @@ def _text(tool: ToolName, text: str, preset_of: PresetOf, take: Take, made: Expe
         else:
             take("name", preset, Argument(equals=preset))
     elif tool == "query_answer":
-        take("question", text, None)  # Questions may be worded in any way.
+        take("question", text, None)  # the wording of a question is free
     else:
         words = [word for word in plain_words(text) if word not in _ARTICLES and any(c.isalpha() or c.isdecimal() for c in word)]
         head = words[-1:]
@@ -197,7 +212,7 @@ def _duration(given: Mapping[str, Any], take: Take, used: set[str], made: Expect
 
 
 def _validate(tool: ToolName, call: Mapping[str, Any], made: Expectation) -> None:
-    """Whether our tool would take the call. A missing text is no fault: files often leave it out."""
+    """Note a call that the tool would reject. A missing text is ignored, because files often leave it out."""
     filled = dict(call)
     for name in ("name", "description", "question"):
         if name in TOOL_FIELDS[tool] and name not in filled:

@@ -1,4 +1,4 @@
-"""CSV files as they come: byte order marks, several encodings, any of four separators, blank lines, ragged rows."""
+"""Reading of CSV files with byte order marks, several encodings, four separators, blank lines and ragged rows."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pathlib import Path
 from scope_ptz.errors import InputError
 
 MOST_BYTES = 256 * 2**20
-_LONGEST_CELL = 4 * 2**20
+_LONGEST_CELL = 4 * 2**20  # characters
 _SEPARATORS = ",;\t|"
 _ENCODINGS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
 REQUIRED = ("question", "expected_answer")
@@ -21,8 +21,14 @@ REQUIRED = ("question", "expected_answer")
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """``line``: where it begins in the file; ``cells`` by column, stripped; ``extra``: cells beyond the header; ``short``: cells
-    that are missing."""
+    """A row of the file.
+
+    Attributes:
+        line: The line on which it begins.
+        cells: Stripped cells by column.
+        extra: Cells beyond the header.
+        short: Number of missing cells.
+    """
 
     line: int
     cells: dict[str, str]
@@ -32,7 +38,7 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """``columns`` in plain lower case; ``notes``: what is odd about the file as a whole."""
+    """A file: its columns in lower case, its rows, notes on what is unusual about it, and its encoding."""
 
     columns: tuple[str, ...]
     rows: tuple[Row, ...]
@@ -41,7 +47,11 @@ class Table:
 
 
 def read_table(path: Path) -> Table:
-    """The rows of a CSV file. Raises ``InputError`` when it is none, or lacks the columns that make a task."""
+    """Read a CSV file.
+
+    Raises:
+        InputError: The file cannot be read, is not CSV, or lacks the columns that make a task.
+    """
     text, encoding, notes = _text(path)
     separator = _separator(text)
     lines = _lines(text, separator, path)
@@ -57,44 +67,44 @@ def read_table(path: Path) -> Table:
             "The paper's format has question_id, file_location, preset_start, question, expected_answer, eval_category, ..."
         )
     if repeated := sorted({name for name in columns if name and columns.count(name) > 1}):
-        notes.append(f"columns that occur more than once, of which the first counts: {', '.join(repeated)}")
+        notes.append(f"columns that occur more than once (the first one is used): {', '.join(repeated)}")
     rows = tuple(_row(line, cells, columns) for line, cells in lines)
     if _open_quote(text, separator):
-        notes.append("a quotation mark is opened and never closed: rows behind it may have been taken for one cell")
+        notes.append("a quotation mark is never closed; the rows after it may have been read as one cell")
     return Table(tuple(columns), rows, tuple(notes), encoding)
 
 
 def _text(path: Path) -> tuple[str, str, list[str]]:
     try:
         if path.stat().st_size > MOST_BYTES:
-            raise InputError(f"{path} is larger than {MOST_BYTES // 2**20} MB: it is no file of tasks.")
+            raise InputError(f"{path} is larger than {MOST_BYTES // 2**20} MB, which is too large for a file of tasks.")
         data = path.read_bytes()
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}.") from error
     marked = next((name for mark, name in _ENCODINGS if data.startswith(mark)), None)
     if marked is None and b"\0" in data[:65536]:
-        raise InputError(f"{path} is no CSV file: there are null bytes in it. Save it as CSV in UTF-8.")
+        raise InputError(f"{path} is not a CSV file: it contains null bytes. Save it as CSV in UTF-8.")
     try:
         name = marked or "utf-8"
         return data.decode(name), name, []
     except UnicodeDecodeError as error:
         if marked:
-            raise InputError(f"{path} claims to be {name} and is not: {error.reason} at byte {error.start}.") from error
+            raise InputError(f"{path} claims to be {name}, but is not: {error.reason} at byte {error.start}.") from error
         return (
             data.decode("cp1252", errors="replace"),
             "cp1252",
-            ["it is not UTF-8 and was read as Windows-1252: look at the accents"],
+            ["the file is not UTF-8 and was read as Windows-1252; check accented letters"],
         )
 
 
 def _separator(text: str) -> str:
-    """The separator that cuts the header into most pieces."""
+    """Return the separator that splits the header into most columns."""
     header = next((line for line in text.splitlines() if line.strip()), "")
     return max(_SEPARATORS, key=lambda mark: (header.count(mark), -_SEPARATORS.index(mark)))
 
 
 def _lines(text: str, separator: str, path: Path) -> Iterator[tuple[int, list[str]]]:
-    """Rows with the line that each begins on; blank ones are left out."""
+    """Yield the rows that are not blank, each with the line on which it begins."""
     csv.field_size_limit(_LONGEST_CELL)
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator)
     began = 1
@@ -120,7 +130,7 @@ def _open_quote(text: str, separator: str) -> bool:
 
 
 def _plain(name: str) -> str:
-    """A column's name whatever its case, spaces and hyphens."""
+    """Return the name of a column in lower case, with underscores for spaces and hyphens."""
     return re.sub(r"[\s\-/.]+", "_", name.strip().lower()).strip("_")
 
 

@@ -1,4 +1,4 @@
-"""The paper's names for tools, arguments, categories and modes, and ours for the same."""
+"""The names of tools, arguments, categories and modes in the paper's files, and their names in this project."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ TOOLS: dict[str, ToolName] = {
     "zoom_to_object": "zoom_to_object",
     "track_object": "track_object",
 }
-_WHAT = ("object_of_interest", "description", "instruction", "object", "name")
+_OBJECT_ARGUMENTS = ("object_of_interest", "description", "instruction", "object", "name")
 TEXT_ARGUMENTS: dict[ToolName, tuple[str, ...]] = {
     "go_to_preset": ("name", "preset", "preset_name"),
-    "count_objects": _WHAT,
-    "zoom_to_object": _WHAT,
-    "track_object": _WHAT,
+    "count_objects": _OBJECT_ARGUMENTS,
+    "zoom_to_object": _OBJECT_ARGUMENTS,
+    "track_object": _OBJECT_ARGUMENTS,
     "query_answer": ("instruction", "question", "object_of_interest", "query"),
 }
-"""Names under which a tool's text may be given, best first."""
+"""Arguments that may hold the text of a tool call, in order of preference."""
 
 VIEW_ARGUMENTS = ("view_type", "view", "answer_view")
 DURATION_ARGUMENTS = ("duration", "duration_s", "seconds")
@@ -107,33 +107,33 @@ _CURRENT = ("current", "current_view", "view", "now", "present", "local", "curre
 
 
 def spelled(text: str) -> str:
-    """A name as it is compared: lower case, one underscore where anything else but letters and digits stands."""
+    """Normalise a name: lower case, with one underscore for everything that is neither a letter nor a digit."""
     return re.sub(r"[^a-z0-9]+", "_", text.strip().lower()).strip("_")
 
 
 def category_of(text: str) -> Category | None:
-    """One of the eight categories by any of its spellings."""
+    """Return the category for any of its spellings, or None."""
     return _BY_SPELLING.get(re.sub(r"^multistep", "multi_step", spelled(text)))
 
 
 def scope_of(text: str) -> Scope | None:
-    """ "current" or "full"; None for anything else, blank included."""
+    """Return "current" or "full", or None for anything else."""
     name = spelled(text)
     return "full" if name in _FULL else "current" if name in _CURRENT else None
 
 
 def policy_of(text: str) -> Policy | None:
-    """What is demanded of the expected tools; None when the word is not known."""
+    """Return which of the expected tools are required, or None for an unknown word."""
     return next((policy for policy, words in _POLICIES.items() if spelled(text) in words), None)
 
 
 def order_of(text: str) -> Literal["ordered", "any"] | None:
-    """Whether the order counts; a single step has none to keep. None when the word is not known."""
+    """Return whether the order of calls matters, or None for an unknown word. It does not matter for a single step."""
     name = spelled(text)
     return "ordered" if name in _ORDERED else "any" if name in _UNORDERED or name in _SINGLE else None
 
 
 def compares_arguments(text: str) -> bool | None:
-    """Whether expected arguments are compared; None when the word is not known."""
+    """Return whether expected arguments are compared, or None for an unknown word."""
     name = spelled(text)
     return False if name in _NO_CHECK else True if name in _CHECK else None

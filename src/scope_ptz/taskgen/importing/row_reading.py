@@ -1,4 +1,4 @@
-"""From a row of a file to a task that can be run, or to the reasons why it cannot."""
+"""Reading of a row: its task, or the reasons why it cannot be run."""
 
 from __future__ import annotations
 
@@ -16,20 +16,23 @@ from scope_ptz.bench.tasks.wording import call_in_words
 from scope_ptz.taskgen.importing.call_mapping import Expectation, expected_calls
 from scope_ptz.taskgen.importing.csv_table import Row
 from scope_ptz.taskgen.importing.paper_names import category_of, compares_arguments, order_of, policy_of, scope_of, spelled
-from scope_ptz.taskgen.importing.scene_names import Places
+from scope_ptz.taskgen.importing.scene_names import SceneNames
 
 MOVERS = frozenset({"adjust_ptz", "go_to_preset", "go_home", "zoom_to_object", "track_object"})
 _DIFFICULTIES: dict[str, Literal["easy", "medium", "hard"]] = {
     "easy": "easy", "simple": "easy", "low": "easy", "1": "easy", "medium": "medium", "moderate": "medium", "mid": "medium",
     "normal": "medium", "2": "medium", "hard": "hard", "difficult": "hard", "high": "hard", "3": "hard",
 }  # fmt: skip
-_MOST_CHARS = 4000
+_MOST_CHARS = 4000  # longer questions are cut
 Note = Callable[[Kind, str], None]
 
 
 @dataclass(frozen=True)
-class RowRead:
-    """A row as it was understood. ``scene`` and ``preset``: None where there are none; ``place``: what the file calls them."""
+class ParsedRow:
+    """A row as it was understood.
+
+    ``scene`` and ``preset`` are None when they were not found. ``place`` holds their names in the file.
+    """
 
     row: Row
     question: str
@@ -47,16 +50,17 @@ class RowRead:
 
     @property
     def line(self) -> int:
+        """The line on which the row begins."""
         return self.row.line
 
     @property
     def view(self) -> tuple[str, ...]:
-        """The view that it is asked about, as far as it is known."""
+        """Scene and preset of the question, or their names in the file."""
         return (self.scene or self.place[0], self.preset or self.place[1])
 
     @property
     def sweeps(self) -> bool:
-        """Whether the whole scene is to be looked at."""
+        """Whether the question is about the whole scene."""
         return self.scope == "full"
 
     @property
@@ -64,8 +68,8 @@ class RowRead:
         """Whether a call that moves the camera is expected."""
         return any(call.tool in MOVERS for call in self.calls)
 
-    def task(self, dataset: str, name: str, places: Places, findings: tuple[Finding, ...]) -> ImportedTask | None:
-        """The task; None when something is in its way."""
+    def task(self, dataset: str, name: str, scene_names: SceneNames, findings: tuple[Finding, ...]) -> ImportedTask | None:
+        """Return the task, or None when the row cannot be run."""
         if self.scene is None or self.preset is None or self.category is None or any(f.blocks for f in findings):
             return None
         notes = self.row.cells.get("evaluation_notes", "")
@@ -74,7 +78,7 @@ class RowRead:
             dataset=dataset,
             stratum="imported",
             scene=self.scene,
-            viewpoint=places.viewpoint(self.scene, self.preset),
+            viewpoint=scene_names.viewpoint(self.scene, self.preset),
             preset=self.preset,
             instruction=self.question[:_MOST_CHARS],
             category=self.category,
@@ -90,13 +94,13 @@ class RowRead:
             calls=self.calls,
             policy=self.policy,
             order=self.order,
-            start_s=places.scenes[self.scene].start_s,
+            start_s=scene_names.scenes[self.scene].start_s,
             findings=findings,
         )
 
 
-def read_row(row: Row, places: Places) -> RowRead:
-    """What a row says, in our words, with everything that is odd about its cells."""
+def read_row(row: Row, scene_names: SceneNames) -> ParsedRow:
+    """Map the cells of a row, and note everything that is unusual about them."""
     cells, notes = row.cells, list[Finding]()
 
     def note(kind: Kind, detail: str) -> None:
@@ -106,20 +110,20 @@ def read_row(row: Row, places: Places) -> RowRead:
     if not question:
         note("empty-question", "")
     category = _category(cells, note)
-    scene, preset = _place(cells, places, note)
+    scene, preset = _place(cells, scene_names, note)
     policy, order, compare = _modes(cells, note)
     expectation = expected_calls(
         cells.get("expected_tool_order_json", cells.get("expected_tool_order", "")),
         cells.get("expected_tool_args_json", cells.get("expected_tool_args", "")),
         compare=compare,
-        preset_of=lambda name: places.preset(scene, name) if scene is not None and name.strip() else name,
+        preset_of=lambda name: scene_names.preset(scene, name) if scene is not None and name.strip() else name,
     )
     notes += expectation.findings
     if not answer and not expectation.calls:
         note("nothing-expected", "")
     if row.extra or row.short:
         note("ragged-row", f"{len(row.extra)} cells too many" if row.extra else f"{row.short} cells too few")
-    return RowRead(
+    return ParsedRow(
         row=row,
         question=question,
         answer=answer,
@@ -137,7 +141,7 @@ def read_row(row: Row, places: Places) -> RowRead:
 
 
 def ids_of(rows: list[Row], dataset: str) -> list[str]:
-    """An id for every row, from its own where it has one; of rows that share one, the later get a number."""
+    """Return an id for every row, made from its own id if it has one. Repeated ids get a number."""
     named = [f"{dataset}-{_slug(row.cells.get('question_id', '')) or f'line-{row.line}'}" for row in rows]
     taken, ids = Counter[str](), list[str]()
     for name in named:
@@ -156,24 +160,24 @@ def _slug(text: str) -> str:
 def _category(cells: Mapping[str, str], note: Note) -> Category | None:
     columns = ("eval_category", "category", "question_type")
     given = {column: cells[column] for column in columns if cells.get(column)}
-    found = next(((column, category) for column, text in given.items() if (category := category_of(text)) is not None), None)
+    found = next(((name, category) for name, text in given.items() if (category := category_of(text)) is not None), None)
     if found is None:
         note("unknown-category", next(iter(given.values()), ""))
         return None
-    by, category = found
+    column, category = found
     first = next(iter(given))
-    if by != first:
-        note("unknown-value", f"{first}: {given[first]}; read as {category}, by {by}: {given[by]}")
+    if column != first:
+        note("unknown-value", f"{first}: {given[first]}; read as {category}, by {column}: {given[column]}")
     return category
 
 
-def _place(cells: Mapping[str, str], places: Places, note: Note) -> tuple[str | None, str | None]:
+def _place(cells: Mapping[str, str], scene_names: SceneNames, note: Note) -> tuple[str | None, str | None]:
     location, start = cells.get("file_location", ""), cells.get("preset_start", "")
-    scene = places.scene(location)
+    scene = scene_names.scene(location)
     if scene is None:
         note("missing-scene", location)
         return None, None
-    preset = places.preset(scene, start)
+    preset = scene_names.preset(scene, start)
     if preset is None:
         note("missing-preset", f"{scene}: {start}")
     return scene, preset
@@ -194,7 +198,7 @@ def _modes(cells: Mapping[str, str], note: Note) -> tuple[Policy, Literal["order
 
 
 def _scope(cells: Mapping[str, str], expectation: Expectation, note: Note) -> Scope:
-    """What ``answer_view`` says; without it, full where an expected call looks all around."""
+    """Return the scope in ``answer_view``, or else the full scope if an expected call has it."""
     given = cells.get("answer_view", "")
     scope = scope_of(given)
     if scope is not None:

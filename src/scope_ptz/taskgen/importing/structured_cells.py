@@ -1,4 +1,4 @@
-"""Cells that hold structures: JSON, Python literals with single quotes, or plain lists of words."""
+"""Parsing of cells that hold JSON, Python literals with single quotes, or plain lists of words."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ _NOTHING = frozenset({"", "null", "none", "n/a", "na", "nan", "-", "[]", "{}"})
 
 
 def structure(text: str) -> Any:
-    """What a cell holds; None for an empty one. Words without brackets are a list of words.
+    """Return the content of a cell, or None for an empty one. Words without brackets are read as a list.
 
-    Raises ``ValueError`` when it begins like a structure and is none.
+    Raises:
+        ValueError: The cell begins like JSON or a literal and cannot be parsed.
     """
     text = text.strip().strip("`")
     if text.lower() in _NOTHING:
@@ -39,7 +40,7 @@ def _json(text: str) -> Any:
 
 
 def _literal(text: str) -> Any:
-    """A Python literal, of the kinds that JSON has too."""
+    """Parse a Python literal of types that JSON has as well."""
     return _plain(ast.literal_eval(re.sub(r"\b(true|false|null)\b(?=\s*[,}\]])", _python_word, text)))
 
 

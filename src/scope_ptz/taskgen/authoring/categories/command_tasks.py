@@ -1,4 +1,4 @@
-"""Commands of several steps: go, turn, zoom, photograph, come back, in the order that the instruction fixes."""
+"""Multi-step command tasks: go, turn, zoom, take pictures and return, in the order that the instruction states."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from collections.abc import Iterator
 from scope_ptz.bench.scoring.episode import Standing
 from scope_ptz.bench.tasks.task import Argument, Behaviour, Need, ProgramCall, RequiredCall
 from scope_ptz.taskgen.authoring.categories.single_call_tasks import command
-from scope_ptz.taskgen.authoring.drafts import Draft
+from scope_ptz.taskgen.authoring.drafts import TaskDraft
 from scope_ptz.taskgen.authoring.noun_phrases import capital
-from scope_ptz.taskgen.authoring.task_places import Place, Places, adjust, go, move, preset_at, say
+from scope_ptz.taskgen.authoring.task_places import ScenePlaces, TaskPlace, adjust, call_phrases, go, move, preset_at
 
 _SHOTS = ("take a picture", "take a photo", "save an image", "capture a still", "take a snapshot")
 _SHAPES = (
@@ -48,7 +48,8 @@ _OPENINGS = (
 )
 
 
-def drafts(places: Places, rng: random.Random) -> Iterator[Draft]:
+def drafts(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield commands of every shape, from random presets."""
     names = list(places.presets)
     for n in range(60 * len(_SHAPES)):
         shape = _SHAPES[n % len(_SHAPES)]
@@ -57,7 +58,7 @@ def drafts(places: Places, rng: random.Random) -> Iterator[Draft]:
             yield draft
 
 
-def _command(places: Places, shape: tuple[str, ...], start: str, rng: random.Random) -> Draft | None:
+def _command(places: ScenePlaces, shape: tuple[str, ...], start: str, rng: random.Random) -> TaskDraft | None:
     scene = places.scene
     at = preset_at(places.presets[start])
     program, visited = list[ProgramCall](), [start]
@@ -71,15 +72,14 @@ def _command(places: Places, shape: tuple[str, ...], start: str, rng: random.Ran
         at = there
         program.append(call)
     origin = places.stay(start)
-    end = Place(scene, start, tuple(program), at)
+    end = TaskPlace(scene, start, tuple(program), at)
     shots = shape.count("shot")
     if not shots and end.key == origin.key:
         return None
-    said = [[rng.choice(_SHOTS)] if c.tool == "take_image" else [" and ".join(say(c, rng))] for c in program]
+    _step_phrases(program, rng)  # Published wordings depend on these random draws.
     variants = []
     for opening in _OPENINGS:
-        said = [[rng.choice(_SHOTS)] if c.tool == "take_image" else [" and ".join(say(c, rng))] for c in program]
-        order = joined_in_order([part for parts in said for part in parts], rng)
+        order = joined_in_order(_step_phrases(program, rng), rng)
         variants.append(opening.format(m=order, M=capital(order)))
     calls = tuple(required(c) for c in program) if shots else ()
     return command(
@@ -95,20 +95,26 @@ def _command(places: Places, shape: tuple[str, ...], start: str, rng: random.Ran
     )
 
 
+def _step_phrases(program: list[ProgramCall], rng: random.Random) -> list[str]:
+    """Return each step of a program in words."""
+    return [rng.choice(_SHOTS) if c.tool == "take_image" else " and ".join(call_phrases(c, rng)) for c in program]
+
+
 def joined_in_order(parts: list[str], rng: random.Random) -> str:
-    """Steps one after the other: never "and" alone between them, which would leave their order open."""
+    """Join steps in sequence. A bare "and" would leave their order open."""
     last = rng.choice((", then ", " and then ", " and after that "))
     return f"{', '.join(parts[:-1])}{last}{parts[-1]}"
 
 
 def required(call: ProgramCall) -> RequiredCall:
-    """A step that must be seen in the run. How far the camera turned is told by its pose in the end."""
+    """Return the call that a run must contain for a step. The final pose shows how far the camera turned."""
     if call.tool == "go_to_preset":
         return RequiredCall(tool="go_to_preset", arguments={"name": Argument(equals=str(call.arguments["name"]))})
     return RequiredCall(tool=call.tool)
 
 
 def needs_of(program: list[ProgramCall]) -> tuple[Need, ...]:
+    """Return what a program does to the view: change the preset, move, zoom."""
     found: list[Need] = []
     for call in program:
         if call.tool in ("go_to_preset", "go_home"):
@@ -120,7 +126,8 @@ def needs_of(program: list[ProgramCall]) -> tuple[Need, ...]:
     return tuple(dict.fromkeys(found))
 
 
-def after(places: Places, at: Standing, call: ProgramCall) -> Standing | None:
+def after(places: ScenePlaces, at: Standing, call: ProgramCall) -> Standing | None:
+    """Return where the camera is after a call, or None when a limit would clamp the move."""
     if call.tool == "go_to_preset":
         return preset_at(places.presets[str(call.arguments["name"])])
     if call.tool == "go_home":
@@ -128,7 +135,7 @@ def after(places: Places, at: Standing, call: ProgramCall) -> Standing | None:
     return move(at, call) if call.tool == "adjust_ptz" else at
 
 
-def _step(step: str, places: Places, visited: list[str], rng: random.Random) -> ProgramCall | None:
+def _step(step: str, places: ScenePlaces, visited: list[str], rng: random.Random) -> ProgramCall | None:
     match step:
         case "preset":
             fresh = [p for p in places.presets if p not in visited]

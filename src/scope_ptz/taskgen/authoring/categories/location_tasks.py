@@ -1,4 +1,4 @@
-"""Location: halves and corners of the frame, left and right of each other, order across the view."""
+"""Location tasks: halves and quarters of the frame, left and right of each other, order across the view."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from itertools import combinations
 
 from scope_ptz.bench.tasks.expected import Choice, Number, Options, Ordering, Relation, YesNo
 from scope_ptz.taskgen.authoring.categories import location_pairs
-from scope_ptz.taskgen.authoring.categories.counting_tasks import counted
 from scope_ptz.taskgen.authoring.categories.location_pairs import corner_options
-from scope_ptz.taskgen.authoring.drafts import Draft, Question, ask, count, view
+from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, ask_call, count_call, evidence_view
 from scope_ptz.taskgen.authoring.noun_phrases import about, listing, many_of, noun_of, the, unit_of
-from scope_ptz.taskgen.authoring.object_names import Named, distinct
-from scope_ptz.taskgen.authoring.task_places import Place
+from scope_ptz.taskgen.authoring.object_names import NamedThing, nameable_things
+from scope_ptz.taskgen.authoring.task_places import TaskPlace
+from scope_ptz.taskgen.authoring.view_contents import countable
 
 _SIDES: tuple[tuple[str, str], ...] = (("left", "right"), ("upper", "lower"))
 _SIDE_OPTIONS: tuple[Options, Options] = (
@@ -22,13 +22,11 @@ _SIDE_OPTIONS: tuple[Options, Options] = (
 )
 
 
-_LEFTMOST = ("leftmost", "furthest left", "furthest to the left")
-
-
-def drafts(place: Place, nouns: frozenset[str], rng: random.Random) -> list[Draft]:
+def drafts(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> list[TaskDraft]:
+    """Return all location drafts for a view. A sweep has none."""
     if place.swept:
         return []
-    named = distinct(place.sight)
+    named = nameable_things(place.truth)
     return [
         *_halves(place, named),
         *_corners(place, named),
@@ -39,10 +37,10 @@ def drafts(place: Place, nouns: frozenset[str], rng: random.Random) -> list[Draf
     ]
 
 
-def _halves(place: Place, named: list[Named]) -> Iterator[Draft]:
+def _halves(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
     for one in named:
         for axis in (0, 1):
-            side = place.sight.side(one.thing, axis)
+            side = place.truth.side(one.thing, axis)
             if side is None:
                 continue
             expected = Choice(value=_SIDES[axis][side], options=_SIDE_OPTIONS[axis])
@@ -71,9 +69,9 @@ def _half_forms(the: str, axis: int) -> tuple[tuple[str, str], ...]:
     )  # fmt: skip
 
 
-def _corners(place: Place, named: list[Named]) -> Iterator[Draft]:
+def _corners(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
     for one in named:
-        side, level = place.sight.side(one.thing, 0), place.sight.side(one.thing, 1)
+        side, level = place.truth.side(one.thing, 0), place.truth.side(one.thing, 1)
         if side is None or level is None:
             continue
         expected = Choice(value=f"{('top', 'bottom')[level]} {('left', 'right')[side]}", options=corner_options())
@@ -92,9 +90,9 @@ def _corners(place: Place, named: list[Named]) -> Iterator[Draft]:
         )
 
 
-def _relations(place: Place, named: list[Named], rng: random.Random) -> Iterator[Draft]:
+def _relations(place: TaskPlace, named: list[NamedThing], rng: random.Random) -> Iterator[TaskDraft]:
     for one, two in (tuple(rng.sample(pair, 2)) for pair in combinations(named, 2)):
-        order = place.sight.in_order((one.thing, two.thing), 0, 0.08)
+        order = place.truth.in_order((one.thing, two.thing), 0, 0.08)
         if order is None or one.kind.category == two.kind.category:
             continue
         left = order[0] is one.thing
@@ -128,25 +126,25 @@ def _relations(place: Place, named: list[Named], rng: random.Random) -> Iterator
                      f"whether {one.the} appears to the {side} of {two.the}"),
                 )
             )  # fmt: skip
-        items = [place.sight.item(n.thing) for n in (one, two)]
-        yield Draft(
+        items = [place.truth.item(n.thing) for n in (one, two)]
+        yield TaskDraft(
             category="location",
-            kind=kind,
+            question_type=kind,
             key=f"beside:{one.thing.instance.id}:{two.thing.instance.id}",
             place=place,
             expected=expected,
             question=asked,
-            evidence=(view(place, expected, (*one.words, *two.words), items, whole=False),),
-            looks=(ask(asked.forms[0][0], place),),
+            evidence=(evidence_view(place, expected, (*one.words, *two.words), items, whole=False),),
+            perception_calls=(ask_call(asked.forms[0][0], place),),
             tags=("relation",),
-            reads=("yes" if expected.value else "no") if isinstance(expected, YesNo) else "left" if left else "right",
+            answer_key=("yes" if expected.value else "no") if isinstance(expected, YesNo) else "left" if left else "right",
         )
 
 
-def _order(place: Place, named: list[Named], rng: random.Random) -> Iterator[Draft]:
-    distinct = list({n.kind.category: n for n in named}.values())
-    for three in list(combinations(distinct, 3))[:6]:
-        order = place.sight.in_order([n.thing for n in three], 0, 0.06)
+def _order(place: TaskPlace, named: list[NamedThing], rng: random.Random) -> Iterator[TaskDraft]:
+    one_per_category = list({n.kind.category: n for n in named}.values())
+    for three in list(combinations(one_per_category, 3))[:6]:
+        order = place.truth.in_order([n.thing for n in three], 0, 0.06)
         if order is None:
             continue
         names = {n.thing.instance.id: n.name for n in three}
@@ -154,7 +152,7 @@ def _order(place: Place, named: list[Named], rng: random.Random) -> Iterator[Dra
         shuffled = list(value)
         rng.shuffle(shuffled)
         listed = listing([the(name) for name in shuffled])
-        items = [place.sight.item(n.thing) for n in three]
+        items = [place.truth.item(n.thing) for n in three]
         sets: list[tuple[str, Ordering | Choice, Question]] = [
             (
                 "row",
@@ -186,33 +184,33 @@ def _order(place: Place, named: list[Named], rng: random.Random) -> Iterator[Dra
             ),
         ]
         for kind, expected, asked in sets:
-            yield Draft(
+            yield TaskDraft(
                 category="location",
-                kind=kind,
+                question_type=kind,
                 key=f"{kind}:{'/'.join(sorted(value))}",
                 place=place,
                 expected=expected,
                 question=asked,
-                evidence=(view(place, expected, tuple(w for n in three for w in n.words), items, whole=False),),
-                looks=tuple(ask(f"where is {n.the}?", place) for n in three),
+                evidence=(evidence_view(place, expected, tuple(w for n in three for w in n.words), items, whole=False),),
+                perception_calls=tuple(ask_call(f"where is {n.the}?", place) for n in three),
                 tags=("order",),
                 weight=3,
-                reads="/".join(value) if kind == "row" else value[0],
+                answer_key="/".join(value) if kind == "row" else value[0],
             )
 
 
-def _in_half(place: Place) -> Iterator[Draft]:
-    for kind, total in counted(place.sight):
-        sides = [place.sight.side(t, 0, 0.03) for t in place.sight.of(kind) or ()]
+def _in_half(place: TaskPlace) -> Iterator[TaskDraft]:
+    for kind, total in countable(place.truth):
+        sides = [place.truth.side(t, 0, 0.03) for t in place.truth.all_of(kind) or ()]
         if total < 2 or kind.attribute or None in sides or len(set(sides)) == 1:
             continue
         for side, name in enumerate(_SIDES[0]):
             many, number = many_of(kind), sides.count(side)
             expected = Number(value=number, unit=unit_of(kind), part=True)
-            things = [t for t, s in zip(place.sight.of(kind) or (), sides, strict=True) if s == side]
-            yield Draft(
+            things = [t for t, s in zip(place.truth.all_of(kind) or (), sides, strict=True) if s == side]
+            yield TaskDraft(
                 category="location",
-                kind="count-half",
+                question_type="count-half",
                 key=f"half-count:{noun_of(kind)}:{name}",
                 place=place,
                 expected=expected,
@@ -228,24 +226,24 @@ def _in_half(place: Place) -> Iterator[Draft]:
                         ),
                     )
                 ),
-                evidence=(view(place, expected, about(kind), [place.sight.item(t, True) for t in things], whole=True),),
-                looks=(count(f"{many} in the {name} half", place),),
+                evidence=(evidence_view(place, expected, about(kind), [place.truth.item(t, True) for t in things], whole=True),),
+                perception_calls=(count_call(f"{many} in the {name} half", place),),
                 tags=("half",),
                 weight=number,
-                reads=str(number),
+                answer_key=str(number),
             )
 
 
-def _about(place: Place, one: Named, kind: str, expected: Choice, forms: tuple[tuple[str, str], ...]) -> Draft:
-    return Draft(
+def _about(place: TaskPlace, one: NamedThing, kind: str, expected: Choice, forms: tuple[tuple[str, str], ...]) -> TaskDraft:
+    return TaskDraft(
         category="location",
-        kind=kind,
+        question_type=kind,
         key=f"{kind}:{one.thing.instance.id}",
         place=place,
         expected=expected,
         question=Question(forms),
-        evidence=(view(place, expected, one.words, [place.sight.item(one.thing, expected.value)], whole=False),),
-        looks=(ask(forms[0][0], place),),
+        evidence=(evidence_view(place, expected, one.words, [place.truth.item(one.thing, expected.value)], whole=False),),
+        perception_calls=(ask_call(forms[0][0], place),),
         tags=("frame",),
-        reads=expected.value,
+        answer_key=expected.value,
     )

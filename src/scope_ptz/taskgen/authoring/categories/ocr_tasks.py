@@ -1,4 +1,4 @@
-"""Reading: signs, boards and lettering, in views that are near enough and after zooming in on what bears them."""
+"""OCR tasks: signs, boards and lettering, in views that are close enough or after zooming in on them."""
 
 from __future__ import annotations
 
@@ -9,56 +9,60 @@ from itertools import pairwise
 from scope_ptz.bench.tasks.expected import Text
 from scope_ptz.bench.tasks.task import ProgramCall
 from scope_ptz.simulator.truth import BoxTuple, TextSighting
-from scope_ptz.taskgen.authoring.drafts import Draft, Question, ask, view
-from scope_ptz.taskgen.authoring.object_names import Named, boards, distinct, ends
-from scope_ptz.taskgen.authoring.task_places import Place
+from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, ask_call, evidence_view
+from scope_ptz.taskgen.authoring.object_names import NamedThing, coloured_boards, extreme_things, nameable_things
+from scope_ptz.taskgen.authoring.task_places import TaskPlace
 from scope_ptz.taskgen.authoring.zoom_targets import SMALLEST_PX, framed
 from scope_ptz.taskgen.facts.robust import with_parts
 
 LONGEST = 80
-"""Longer texts are not asked for: nobody would dictate them."""
-
+"""Most characters of a text that is asked for. Nobody would dictate a longer one."""
 
 _GUESSED_PX = 5.0
-"""Whoever may zoom in knows what to zoom in on when its capitals are this high."""
+"""Height of capitals in pixels from which somebody can tell what to zoom in on."""
 
 
-def drafts(place: Place) -> list[Draft]:
+def drafts(place: TaskPlace) -> list[TaskDraft]:
+    """Return the texts to read in a view, and those to read after zooming in. A sweep has none."""
     if place.swept:
         return []
-    named = [*distinct(place.sight, SMALLEST_PX, _GUESSED_PX), *boards(place.sight, SMALLEST_PX), *ends(place.sight)]
+    named = [
+        *nameable_things(place.truth, SMALLEST_PX, _GUESSED_PX),
+        *coloured_boards(place.truth, SMALLEST_PX),
+        *extreme_things(place.truth),
+    ]
     return [*_in_view(place, named), *_zoomed(place, named)]
 
 
-def _in_view(place: Place, named: list[Named]) -> Iterator[Draft]:
+def _in_view(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
     for one in named:
-        texts = asked_for(one, place)
-        expected = wanted(one, texts)
+        texts = texts_to_read(one, place)
+        expected = expected_text(one, texts)
         if texts and expected is not None:
             yield _draft(place, one, expected, texts, place, ())
 
 
-def _zoomed(place: Place, named: list[Named]) -> Iterator[Draft]:
-    """What cannot be read from here, but can once the camera has zoomed in on it."""
+def _zoomed(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
+    """Yield texts that cannot be read from here, but can be read after zooming in."""
     if any("zoom_factor" in call.arguments for call in place.calls):
-        return  # nobody zooms in twice
+        return  # operators do not zoom in twice
     for one in named:
         family = with_parts(place.scene, one.thing.instance.id)
         lettered = any(text.parent in family for text in place.scene.file.texts)
-        if one.place or not lettered or place.sight.texts_on(one.thing.instance):
+        if one.positional or not lettered or place.truth.texts_on(one.thing.instance):
             continue
         close = framed(place, one.thing, one.thing.instance)
         if close is None:
             continue
-        texts = asked_for(one, close)
-        expected = wanted(one, texts)
+        texts = texts_to_read(one, close)
+        expected = expected_text(one, texts)
         if texts and expected is not None:
             call = ProgramCall(tool="zoom_to_object", arguments={"description": one.name})
             yield _draft(place, one, expected, texts, close, (call,))
 
 
 def lines(texts: tuple[TextSighting, ...] | None) -> tuple[TextSighting, ...] | None:
-    """Texts from top to bottom, where they are the lines of one piece of writing; None where they stand apart."""
+    """Return texts from top to bottom if they are lines of one piece of writing, else None."""
     if not texts:
         return None
     found = {t.text.text.strip(): t for t in texts}
@@ -74,30 +78,30 @@ def lines(texts: tuple[TextSighting, ...] | None) -> tuple[TextSighting, ...] | 
 
 
 _LINE_GAP = 3.0
-"""Lines of one piece of writing are no farther apart than so many times their height."""
+"""Largest gap between lines of one piece of writing, as a multiple of their height."""
 
 
 def priced(texts: tuple[TextSighting, ...]) -> tuple[TextSighting, ...]:
-    """Of what a price card says the price: its name holds the rest."""
+    """Return the prices among the texts of a price card. The rest is in its name."""
     return tuple(t for t in texts if re.fullmatch(r"\d+\.\d\d", t.text.text.strip()))
 
 
-def wanted(one: Named, texts: tuple[TextSighting, ...] | None) -> Text | None:
-    """What the thing says in all; None when that is nothing, too much, or mostly in its name."""
+def expected_text(one: NamedThing, texts: tuple[TextSighting, ...] | None) -> Text | None:
+    """Return the whole text on an object, or None when there is none, too much, or it is mostly in the name."""
     if not texts:
         return None
-    said = list(dict.fromkeys(t.text.text.strip() for t in texts))
-    whole = " ".join(said)
+    pieces = list(dict.fromkeys(t.text.text.strip() for t in texts))
+    whole = " ".join(pieces)
     name, words = (re.findall(r"\w+", text.lower()) for text in (one.name, whole))
-    if len(whole) > LONGEST or len(said) > 4 or 2 * sum(word in name for word in words) >= len(words) or not words:
+    if len(whole) > LONGEST or len(pieces) > 4 or 2 * sum(word in name for word in words) >= len(words) or not words:
         return None
     return Text(accepted=(whole,), ocr=True)
 
 
-def asked_for(one: Named, place: Place) -> tuple[TextSighting, ...] | None:
-    """What is read on a thing at a place: all its lines, of a price card the price; None where the writing stands apart."""
-    found = lines(place.sight.texts_on(one.thing.instance))
-    here = place.sight.first.sightings
+def texts_to_read(one: NamedThing, place: TaskPlace) -> tuple[TextSighting, ...] | None:
+    """Return the lines to read on an object (only the price of a price card), or None when they are not one piece of writing."""
+    found = lines(place.truth.texts_on(one.thing.instance))
+    here = place.truth.first.sightings
     box = next((s.box for s in here if s.instance.number == one.thing.instance.number), None)
     if found and not all(on_it(box, text) for text in found):
         return None
@@ -105,7 +109,7 @@ def asked_for(one: Named, place: Place) -> tuple[TextSighting, ...] | None:
 
 
 def on_it(box: BoxTuple | None, text: TextSighting) -> bool:
-    """Whether a text lies within the box of a thing, and not on a plate beside it: that this is its number does not show."""
+    """Whether a text lies within the box of an object. A number plate beside it does not show that it belongs to it."""
     x, y = (text.box[0] + text.box[2]) / 2, (text.box[1] + text.box[3]) / 2
     return box is not None and box[0] <= x <= box[2] and box[1] <= y <= box[3]
 
@@ -137,8 +141,6 @@ _PLATES: tuple[_Forms, _Forms] = (
         ("which registration does a close-up of {n} show?", "which registration a close-up of {n} shows"),
     ),
 )
-
-
 _PRICES: tuple[_Forms, _Forms] = (
     (
         ("what price is on {n}?", "what price is on {n}"),
@@ -154,26 +156,31 @@ _PRICES: tuple[_Forms, _Forms] = (
 
 
 def _draft(
-    place: Place, one: Named, expected: Text, texts: tuple[TextSighting, ...], close: Place, zoom: tuple[ProgramCall, ...]
-) -> Draft:
+    place: TaskPlace,
+    one: NamedThing,
+    expected: Text,
+    texts: tuple[TextSighting, ...],
+    close: TaskPlace,
+    zoom: tuple[ProgramCall, ...],
+) -> TaskDraft:
     plate = str(one.thing.instance.attributes.get("plate", ""))
     plated, price = expected.accepted == (plate,), one.kind.category == "price card"
     forms = (_PLATES if plated else _PRICES if price else _WRITING)[bool(zoom)]
     forms = tuple((direct.format(n=one.the), inside.format(n=one.the)) for direct, inside in forms)
     question = f"what is the number plate of {one.the}?" if plated else f"what does {one.the} say?"
-    # Items are measured in the look that reads them, at its own sharpness.
-    items = [close.sight.text_item(t) for t in texts]
-    return Draft(
+    # Items are measured in the view in which they are read, at its resolution.
+    items = [close.truth.text_item(t) for t in texts]
+    return TaskDraft(
         category="ocr",
-        kind=("plate-" if plated else "price-" if price else "") + ("close-up" if zoom else "in-view"),
+        question_type=("plate-" if plated else "price-" if price else "") + ("close-up" if zoom else "in-view"),
         key=f"text:{one.thing.instance.id}",
         place=place,
         expected=expected,
         question=Question(forms),
-        evidence=(view(close, expected, one.words, items, whole=False),),
-        looks=(*zoom, ask(question, place)),
+        evidence=(evidence_view(close, expected, one.words, items, whole=False),),
+        perception_calls=(*zoom, ask_call(question, place)),
         needs=tuple(dict.fromkeys((*place.needs, *(("zoom",) if zoom else ())))),
         tags=("text",),
         weight=len(texts),
-        reads=expected.accepted[0],
+        answer_key=expected.accepted[0],
     )

@@ -1,4 +1,4 @@
-"""Comparisons of presets: which of two or three shows the most of a kind."""
+"""Comparative tasks between presets: which of two or three shows the most objects of a kind."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import random
 from collections.abc import Iterator, Sequence
 
 from scope_ptz.bench.tasks.expected import Choice, Options, Wordings
-from scope_ptz.taskgen.authoring.categories.comparative_tasks import SAME, counted_view
-from scope_ptz.taskgen.authoring.categories.counting_tasks import counted
-from scope_ptz.taskgen.authoring.drafts import Draft, count
+from scope_ptz.taskgen.authoring.categories.comparative_tasks import SAME, count_evidence
+from scope_ptz.taskgen.authoring.drafts import TaskDraft, count_call
 from scope_ptz.taskgen.authoring.noun_phrases import many_of
-from scope_ptz.taskgen.authoring.task_places import Place, elsewhere, go
+from scope_ptz.taskgen.authoring.task_places import TaskPlace, elsewhere, go
+from scope_ptz.taskgen.authoring.view_contents import countable
 
 _OF_TWO = (
     "Are there more {many} at the {p} preset or at the {q} preset?",
@@ -28,24 +28,23 @@ _OF_THREE = (
     "Check the {p} preset, then {q}, then {r}. Which one has the largest number of {many}?",
 )
 
-
 _FEWEST = 4
-"""With fewer in all there is nothing to compare."""
+"""Fewest objects over all presets that are worth a comparison."""
 
 
-def drafts(places: Sequence[Place], rng: random.Random) -> list[Draft]:
-    """``places``: two or three presets, come to one after the other."""
+def drafts(places: Sequence[TaskPlace], rng: random.Random) -> list[TaskDraft]:
+    """Return comparisons of two or three presets, which are visited one after the other."""
     found = list(_compared(places))
     rng.shuffle(found)
     return found
 
 
-def _compared(places: Sequence[Place]) -> Iterator[Draft]:
+def _compared(places: Sequence[TaskPlace]) -> Iterator[TaskDraft]:
     names = [str(place.preset) for place in places]
     start = elsewhere(places[0], places[1])
     if len(set(names)) < len(places) or (len(places) == 3 and start.start in names[1:]):
         return
-    known = [dict(counted(place.sight)) for place in places]
+    known = [dict(countable(place.truth)) for place in places]
     for kind in known[0]:
         numbers = [counts.get(kind) for counts in known]
         found = [number for number in numbers if number is not None]
@@ -57,19 +56,19 @@ def _compared(places: Sequence[Place]) -> Iterator[Draft]:
         if len(places) == 2:
             options = {**options, "same": SAME}
         words = dict(zip("pqr", names, strict=False))
-        yield Draft(
+        yield TaskDraft(
             category="comparative",
-            kind="between" if len(places) == 2 else "among",
+            question_type="between" if len(places) == 2 else "among",
             key=f"between:{':'.join(names)}:{many}",
             place=start,
             expected=Choice(value=best, options=options, picks=("more", "most")),
-            orders=tuple(text.format(many=many, **words) for text in (_OF_TWO if len(places) == 2 else _OF_THREE)),
-            evidence=tuple(counted_view(place, kind, n) for place, n in zip(places, found, strict=True)),
-            program=tuple(call for place, name in zip(places, names, strict=True) for call in (go(name), count(many, place))),
+            instructions=tuple(text.format(many=many, **words) for text in (_OF_TWO if len(places) == 2 else _OF_THREE)),
+            evidence=tuple(count_evidence(place, kind, n) for place, n in zip(places, found, strict=True)),
+            program=tuple(call for place, name in zip(places, names, strict=True) for call in (go(name), count_call(many, place))),
             needs=("preset",),
             tags=("two-views",) if len(places) == 2 else ("three-views",),
             weight=sum(found),
-            reads=best,
+            answer_key=best,
         )
 
 

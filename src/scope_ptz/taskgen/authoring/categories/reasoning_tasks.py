@@ -1,4 +1,4 @@
-"""Reasoning over several looks: sums, differences, conditions, and plans that depend on what is seen."""
+"""Multi-step reasoning tasks: sums, differences, conditions, and plans that depend on what the camera sees."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from itertools import pairwise
 
 from scope_ptz.bench.tasks.expected import ActionOnly, NoneThere, Number, YesNo
 from scope_ptz.bench.tasks.task import Behaviour, EvidenceView
-from scope_ptz.taskgen.authoring.categories.counting_tasks import absent, apart, counted, likely_first, plain_counts
-from scope_ptz.taskgen.authoring.drafts import Draft, Question, count, view
+from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, count_call, evidence_view
 from scope_ptz.taskgen.authoring.noun_phrases import about, article, many_of, noun_of, unit_of
-from scope_ptz.taskgen.authoring.task_places import Place, Places, elsewhere, go, preset_at
+from scope_ptz.taskgen.authoring.task_places import ScenePlaces, TaskPlace, elsewhere, go, preset_at
+from scope_ptz.taskgen.authoring.view_contents import absent_kinds, countable, disjoint, plain_counts, scene_kinds_first
 from scope_ptz.taskgen.facts.kinds import GROUPS, Kind
 
 _SUMS = (
@@ -51,8 +51,8 @@ _WHERE = (
 )
 
 
-def drafts(one: Place, two: Place, places: Places, nouns: frozenset[str], rng: random.Random) -> list[Draft]:
-    """What takes two presets."""
+def drafts(one: TaskPlace, two: TaskPlace, places: ScenePlaces, nouns: frozenset[str], rng: random.Random) -> list[TaskDraft]:
+    """Return drafts that take two presets."""
     p, q = one.preset, two.preset
     if p is None or q is None or p == q:
         return []
@@ -62,48 +62,49 @@ def drafts(one: Place, two: Place, places: Places, nouns: frozenset[str], rng: r
     ]  # fmt: skip
 
 
-def _seen(place: Place, kind: Kind, number: int) -> EvidenceView:
+def _count_view(place: TaskPlace, kind: Kind, number: int) -> EvidenceView:
     shows = Number(value=number, unit=unit_of(kind)) if number else NoneThere(subject=unit_of(kind)[:2])
-    return view(place, shows, about(kind), [place.sight.item(t, True) for t in place.sight.of(kind) or ()], whole=True)
+    return evidence_view(place, shows, about(kind), [place.truth.item(t, True) for t in place.truth.all_of(kind) or ()], whole=True)
 
 
-def _totals(one: Place, two: Place, p: str, q: str) -> Iterator[Draft]:
-    there = dict(counted(two.sight))
+def _totals(one: TaskPlace, two: TaskPlace, p: str, q: str) -> Iterator[TaskDraft]:
+    """Yield sums and differences of a kind between two presets."""
+    there = dict(countable(two.truth))
     start = elsewhere(one, two)
-    for kind, n in counted(one.sight):
+    for kind, n in countable(one.truth):
         m = there.get(kind)
         if m is None:
             continue
         many = many_of(kind)
-        program = (go(p), count(many, one), go(q), count(many, two))
-        seen = (_seen(one, kind, n), _seen(two, kind, m))
-        # What shows in both views would be counted twice in their sum.
-        same = {t.number for t in one.sight.traces if kind.fits(t)} & {t.number for t in two.sight.traces}
-        sorts = [*([("sum", n + m, _SUMS)] if not same else []), *([("difference", n - m, _GAPS)] if n > m else [])]
-        for sort, value, texts in sorts:
-            yield Draft(
+        program = (go(p), count_call(many, one), go(q), count_call(many, two))
+        seen = (_count_view(one, kind, n), _count_view(two, kind, m))
+        # A sum would count objects twice that show in both views.
+        same = {t.number for t in one.truth.traces if kind.fits(t)} & {t.number for t in two.truth.traces}
+        question_types = [*([("sum", n + m, _SUMS)] if not same else []), *([("difference", n - m, _GAPS)] if n > m else [])]
+        for question_type, value, texts in question_types:
+            yield TaskDraft(
                 category="multi_step_reasoning",
-                kind=sort,
-                key=f"{sort}:{p}:{q}:{many}",
+                question_type=question_type,
+                key=f"{question_type}:{p}:{q}:{many}",
                 place=start,
                 expected=Number(value=value, unit=unit_of(kind)),
-                orders=tuple(t.format(many=many, p=p, q=q) for t in texts),
+                instructions=tuple(t.format(many=many, p=p, q=q) for t in texts),
                 evidence=seen,
                 program=program,
                 needs=("preset",),
                 tags=("two-views",),
                 weight=n + m,
-                reads=str(value),
+                answer_key=str(value),
             )
 
 
-def within(place: Place, rng: random.Random) -> list[Draft]:
-    """Sums and differences within one view."""
-    found = list[Draft]()
-    plain = list(plain_counts(place.sight))
+def within(place: TaskPlace, rng: random.Random) -> list[TaskDraft]:
+    """Return sums and differences within one view."""
+    found = list[TaskDraft]()
+    plain = list(plain_counts(place.truth))
     rng.shuffle(plain)
     for (one, n), (two, m) in pairwise(plain):
-        if min(n, m) < 2 or not apart(place.sight, (one, two)):
+        if min(n, m) < 2 or not disjoint(place.truth, (one, two)):
             continue
         first, second = many_of(one), many_of(two)
         if _unlike(one, two):
@@ -120,154 +121,162 @@ def within(place: Place, rng: random.Random) -> list[Draft]:
                 (f"by how many do the {first} outnumber the {second}?", f"by how many the {first} outnumber the {second}"),
             )
         )
-        sorts = ([("together", n + m, together)] if n + m > 3 else []) + ([("excess", n - m, difference)] if n > m else [])
-        for sort, value, asked in sorts:
-            # No unit: a sum of two kinds has none, and their own numbers must not be taken for it.
+        question_types = ([("together", n + m, together)] if n + m > 3 else []) + ([("excess", n - m, difference)] if n > m else [])
+        for question_type, value, asked in question_types:
+            # Without a unit, a reply that states the numbers of the two kinds is not read as their sum or difference.
             found.append(
-                Draft(
+                TaskDraft(
                     category="multi_step_reasoning",
-                    kind=sort,
-                    key=f"{sort}:{first}:{second}",
+                    question_type=question_type,
+                    key=f"{question_type}:{first}:{second}",
                     place=place,
                     expected=Number(value=value),
                     question=asked,
-                    evidence=(_seen(place, one, n), _seen(place, two, m)),
-                    looks=(count(first, place), count(second, place)),
+                    evidence=(_count_view(place, one, n), _count_view(place, two, m)),
+                    perception_calls=(count_call(first, place), count_call(second, place)),
                     tags=("arithmetic",),
                     weight=n + m,
-                    reads=str(value),
+                    answer_key=str(value),
                 )
             )
     return found
 
 
 def _unlike(one: Kind, two: Kind) -> bool:
-    """Whether nobody would add up things of two kinds: people (or animals) and what is none."""
+    """Whether one kind is alive and the other is not. Nobody would add these up."""
     return (one.category in _ALIVE) != (two.category in _ALIVE)
 
 
 _ALIVE = GROUPS["person"] | {"dog", "pigeon", "cyclist"}
 
 
-def _branches(one: Place, p: str, places: Places, rng: random.Random) -> Iterator[Draft]:
+def _branches(one: TaskPlace, p: str, places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield commands that go to one of two presets, depending on a count."""
     others = [name for name in places.presets if name != p and name != one.start]
     if len(others) < 2:
         return
-    start = Place(one.scene, one.start, (), one.at)
-    for kind, n in plain_counts(one.sight):
+    start = TaskPlace(one.scene, one.start, (), one.at)
+    for kind, n in plain_counts(one.truth):
         if n < 2:
             continue
         yes, no = rng.sample(others, 2)
         least = n + rng.choice((-1, 0, 2)) if n > 2 else n + rng.choice((0, 1))
         end = yes if n >= least else no
-        final = Place(one.scene, one.start, (), preset_at(places.presets[end])).final
+        final = TaskPlace(one.scene, one.start, (), preset_at(places.presets[end])).final
         many = many_of(kind)
-        yield Draft(
+        yield TaskDraft(
             category="multi_step_reasoning",
-            kind="condition",
+            question_type="condition",
             key=f"if:{p}:{many}:{least}",
             place=start,
             expected=ActionOnly(),
-            orders=tuple(t.format(p=p, many=many, least=f"at least {least}", yes=yes, no=no) for t in _BRANCHES),
-            evidence=(_seen(one, kind, n),),
-            program=(go(p), count(many, one), go(end)),
+            instructions=tuple(t.format(p=p, many=many, least=f"at least {least}", yes=yes, no=no) for t in _BRANCHES),
+            evidence=(_count_view(one, kind, n),),
+            program=(go(p), count_call(many, one), go(end)),
             behaviour=Behaviour(final=final),
             needs=("preset",),
             tags=("condition",),
             weight=n,
-            reads=end,
+            answer_key=end,
         )
 
 
-def _checks(one: Place, p: str, places: Places, nouns: frozenset[str], rng: random.Random) -> Iterator[Draft]:
-    """Whether something is at a preset, and then another preset for either case."""
+def _checks(one: TaskPlace, p: str, places: ScenePlaces, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield questions about whether something shows at a preset, with a further preset to go to in either case."""
     others = [name for name in places.presets if name != p and name != one.start]
-    shown = [kind for kind, _ in plain_counts(one.sight)]
-    gone = [kind for kind in absent(one.sight, nouns) if kind.colour is None]
+    shown = [kind for kind, _ in plain_counts(one.truth)]
+    gone = [kind for kind in absent_kinds(one.truth, nouns) if kind.colour is None]
     if len(others) < 2:
         return
     rng.shuffle(shown)
-    gone = likely_first(one, gone, rng)
+    gone = scene_kinds_first(one, gone, rng)
     for here, missing in zip(shown, gone, strict=False):
         yes, no = rng.sample(others, 2)
-        things = one.sight.of(here) or ()
+        things = one.truth.all_of(here) or ()
         there = YesNo(value=True, affirms=unit_of(here)[:2])
         none = NoneThere(subject=unit_of(missing)[:2])
-        seen = view(one, there, about(here), [one.sight.item(things[0], True)], whole=False)
+        seen = evidence_view(one, there, about(here), [one.truth.item(things[0], True)], whole=False)
         twin = _check(one, p, here, there, seen, (yes, no), places)
         yield replace(
-            _check(one, p, missing, none, view(one, none, about(missing), whole=True), (yes, no), places),
-            kind="check-none",
+            _check(one, p, missing, none, evidence_view(one, none, about(missing), whole=True), (yes, no), places),
+            question_type="check-none",
             twin=twin,
         )
 
 
 def _check(
-    one: Place, p: str, kind: Kind, expected: YesNo | NoneThere, seen: EvidenceView, ends: tuple[str, str], places: Places
-) -> Draft:
-    yes, no = ends
+    one: TaskPlace,
+    p: str,
+    kind: Kind,
+    expected: YesNo | NoneThere,
+    seen: EvidenceView,
+    end_presets: tuple[str, str],
+    places: ScenePlaces,
+) -> TaskDraft:
+    yes, no = end_presets
     end = no if isinstance(expected, NoneThere) else yes
-    start = Place(one.scene, one.start, (), one.at)
+    start = TaskPlace(one.scene, one.start, (), one.at)
     words = {"p": p, "one": article(noun_of(kind)), "many": many_of(kind), "yes": yes, "no": no}
-    return Draft(
+    return TaskDraft(
         category="multi_step_reasoning",
-        kind="check",
+        question_type="check",
         key=f"check:{p}:{noun_of(kind)}",
         place=start,
         expected=expected,
-        orders=tuple(text.format(**words) for text in _CHECKS),
+        instructions=tuple(text.format(**words) for text in _CHECKS),
         evidence=(seen,),
-        program=(go(p), count(many_of(kind), one), go(end)),
-        behaviour=Behaviour(final=Place(one.scene, one.start, (), preset_at(places.presets[end])).final),
+        program=(go(p), count_call(many_of(kind), one), go(end)),
+        behaviour=Behaviour(final=TaskPlace(one.scene, one.start, (), preset_at(places.presets[end])).final),
         needs=("preset",),
         tags=("none-there",) if isinstance(expected, NoneThere) else ("presence",),
-        reads=end,
+        answer_key=end,
     )
 
 
-def _either(one: Place, two: Place, p: str, q: str, nouns: frozenset[str], rng: random.Random) -> Iterator[Draft]:
-    missing_there = set(absent(two.sight, nouns))
-    gone = [kind for kind in absent(one.sight, nouns) if kind in missing_there]
+def _either(one: TaskPlace, two: TaskPlace, p: str, q: str, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield questions about whether either preset shows an absent kind, each with a twin about a present one."""
+    missing_there = set(absent_kinds(two.truth, nouns))
+    gone = [kind for kind in absent_kinds(one.truth, nouns) if kind in missing_there]
     shown = [
         (kind, place)
         for place, other in ((one, two), (two, one))
-        for kind, _ in counted(place.sight)
-        if other.sight.of(kind) is not None
+        for kind, _ in countable(place.truth)
+        if other.truth.all_of(kind) is not None
     ]
-    gone = likely_first(one, gone, rng)
+    gone = scene_kinds_first(one, gone, rng)
     rng.shuffle(shown)
     start = elsewhere(one, two)
     if start.start == q:
-        return  # what is there at the start would be seen without going anywhere
+        return  # the start view would answer the question without a move
     for kind, (present, place) in zip(gone, shown, strict=False):
         texts = (many_of(kind), many_of(present))
         yes = YesNo(value=True, affirms=unit_of(present)[:2])
-        first = place.sight.of(present) or ()
-        twin = Draft(
+        first = place.truth.all_of(present) or ()
+        twin = TaskDraft(
             category="multi_step_reasoning",
-            kind="either",
+            question_type="either",
             key=f"either:{p}:{q}:{noun_of(present)}",
             place=start,
             expected=yes,
-            orders=tuple(t.format(p=p, q=q, one=article(noun_of(present))) for t in _WHERE),
-            evidence=(view(place, yes, about(present), [place.sight.item(first[0], True)], whole=False),),
-            program=(go(p), count(texts[1], one), go(q), count(texts[1], two)),
+            instructions=tuple(t.format(p=p, q=q, one=article(noun_of(present))) for t in _WHERE),
+            evidence=(evidence_view(place, yes, about(present), [place.truth.item(first[0], True)], whole=False),),
+            program=(go(p), count_call(texts[1], one), go(q), count_call(texts[1], two)),
             needs=("preset",),
             tags=("presence",),
-            reads="yes",
+            answer_key="yes",
         )
         none = NoneThere(subject=unit_of(kind)[:2])
-        yield Draft(
+        yield TaskDraft(
             category="multi_step_reasoning",
-            kind="neither",
+            question_type="neither",
             key=f"either:{p}:{q}:{noun_of(kind)}",
             place=start,
             expected=none,
-            orders=tuple(t.format(p=p, q=q, one=article(noun_of(kind))) for t in _WHERE),
-            evidence=(view(one, none, about(kind), [], whole=True), view(two, none, about(kind), [], whole=True)),
-            program=(go(p), count(texts[0], one), go(q), count(texts[0], two)),
+            instructions=tuple(t.format(p=p, q=q, one=article(noun_of(kind))) for t in _WHERE),
+            evidence=(evidence_view(one, none, about(kind), [], whole=True), evidence_view(two, none, about(kind), [], whole=True)),
+            program=(go(p), count_call(texts[0], one), go(q), count_call(texts[0], two)),
             needs=("preset",),
             tags=("none-there", "two-views"),
             twin=twin,
-            reads="none",
+            answer_key="none",
         )

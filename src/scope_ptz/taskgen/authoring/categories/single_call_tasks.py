@@ -1,4 +1,4 @@
-"""Single calls: one tool does it. Moves, presets, home, pictures, close-ups, and looks that need one call only."""
+"""Single-call tasks: moves, presets, home, pictures, close-ups, tracking, and counts that take one tool call."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from collections.abc import Iterator
 from scope_ptz.bench.tasks.expected import ActionOnly, Number
 from scope_ptz.bench.tasks.task import Argument, Behaviour, Category, Need, ProgramCall, RequiredCall
 from scope_ptz.simulator.models import SceneActor
-from scope_ptz.taskgen.authoring.categories.counting_tasks import counted
-from scope_ptz.taskgen.authoring.drafts import Draft, Question, count, view
+from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, count_call, evidence_view
 from scope_ptz.taskgen.authoring.noun_phrases import about, capital, many_of, noun_of, unit_of
-from scope_ptz.taskgen.authoring.object_names import distinct
-from scope_ptz.taskgen.authoring.task_places import Place, Places, adjust, go, move, preset_at, say
+from scope_ptz.taskgen.authoring.object_names import nameable_things
+from scope_ptz.taskgen.authoring.task_places import ScenePlaces, TaskPlace, adjust, call_phrases, go, move, preset_at
+from scope_ptz.taskgen.authoring.view_contents import countable
 from scope_ptz.taskgen.authoring.zoom_targets import framing
 from scope_ptz.taskgen.facts.kinds import Kind
 from scope_ptz.taskgen.facts.robust import TRACE_PX
@@ -20,65 +20,72 @@ from scope_ptz.taskgen.facts.robust import TRACE_PX
 _POLITE = ("{M}.", "Please {m}.", "{M}, please.", "Could you {m}?", "I need you to {m}.", "{M} now.", "Now {m}.")
 
 
-def polite(order: str) -> tuple[str, ...]:
-    return tuple(form.format(m=order, M=capital(order)) for form in _POLITE)
+def polite(request: str) -> tuple[str, ...]:
+    """Return a request in several polite forms."""
+    return tuple(form.format(m=request, M=capital(request)) for form in _POLITE)
 
 
 def command(
     category: Category,
-    kind: str, key: str, place: Place, orders: tuple[str, ...], program: tuple[ProgramCall, ...], behaviour: Behaviour,
-    needs: tuple[Need, ...], tags: tuple[str, ...] = (),
-) -> Draft:  # fmt: skip
-    """An order without an answer: what the camera does decides."""
-    return Draft(
+    question_type: str,
+    key: str,
+    place: TaskPlace,
+    instructions: tuple[str, ...],
+    program: tuple[ProgramCall, ...],
+    behaviour: Behaviour,
+    needs: tuple[Need, ...],
+    tags: tuple[str, ...] = (),
+) -> TaskDraft:
+    """Return a command. It has no answer, and is scored by what the camera does."""
+    return TaskDraft(
         category=category,
-        kind=kind,
+        question_type=question_type,
         key=key,
         place=place,
         expected=ActionOnly(),
-        orders=orders,
+        instructions=instructions,
         program=program,
         behaviour=behaviour,
         needs=needs,
         tags=("command", *tags),
-        reads=kind,
+        answer_key=question_type,
     )
 
 
-def drafts(places: Places, pool: list[Place], rng: random.Random) -> Iterator[Draft]:
-    """All sorts in turn, so that whoever takes the first n has a mixture."""
-    sorts = [
+def drafts(places: ScenePlaces, pool: list[TaskPlace], rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield drafts of all types in turn."""
+    streams = [
         _moves(places, rng),
         _presets(places, rng),
         _pans(places, rng),
         _close_ups(pool),
-        _follows(pool),
+        _tracking(pool),
         _sweeps(places),
         _moves(places, rng),
         _services(places, rng),
         _tilts(places, rng),
     ]
-    while sorts:
-        for sort in list(sorts):
-            draft = next(sort, None)
+    while streams:
+        for stream in list(streams):
+            draft = next(stream, None)
             if draft is None:
-                sorts.remove(sort)
+                streams.remove(stream)
             else:
                 yield draft
 
 
-def _adjusted(places: Places, name: str, call: ProgramCall, kind: str, rng: random.Random) -> Draft | None:
+def _adjusted(places: ScenePlaces, name: str, call: ProgramCall, kind: str, rng: random.Random) -> TaskDraft | None:
     start = places.stay(name)
     there = move(start.at, call)
     if there is None:
         return None
-    end = Place(start.scene, name, (call,), there)
-    orders = tuple(dict.fromkeys(text for _ in range(4) for text in polite(" and ".join(say(call, rng)))))
-    return command("single_call", kind, f"adjust:{end.key}", start, orders, (call,), Behaviour(final=end.final), end.needs)
+    end = TaskPlace(start.scene, name, (call,), there)
+    instructions = tuple(dict.fromkeys(text for _ in range(4) for text in polite(" and ".join(call_phrases(call, rng)))))
+    return command("single_call", kind, f"adjust:{end.key}", start, instructions, (call,), Behaviour(final=end.final), end.needs)
 
 
-def _moves(places: Places, rng: random.Random) -> Iterator[Draft]:
-    """Two axes, or the zoom, at once."""
+def _moves(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield zooms, and moves that combine two of pan, tilt and zoom."""
     names = list(places.presets)
     for n in range(60):
         pan, tilt, factor = (
@@ -92,7 +99,7 @@ def _moves(places: Places, rng: random.Random) -> Iterator[Draft]:
             yield draft
 
 
-def _pans(places: Places, rng: random.Random) -> Iterator[Draft]:
+def _pans(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
     names = list(places.presets)
     for _ in range(40):
         amount = rng.choice((-1, 1)) * rng.choice((5, 8, 15, 20, 24, 33, 45, 65, 80, 100))
@@ -101,7 +108,7 @@ def _pans(places: Places, rng: random.Random) -> Iterator[Draft]:
             yield draft
 
 
-def _tilts(places: Places, rng: random.Random) -> Iterator[Draft]:
+def _tilts(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
     names = list(places.presets)
     for _ in range(30):
         draft = _adjusted(places, rng.choice(names), adjust(0, rng.choice((-18, -11, -7, -4, 3, 6, 9, 12))), "tilt", rng)
@@ -109,33 +116,35 @@ def _tilts(places: Places, rng: random.Random) -> Iterator[Draft]:
             yield draft
 
 
-def _presets(places: Places, rng: random.Random) -> Iterator[Draft]:
+def _presets(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
     for name, preset in places.presets.items():
         starts = [other for other in places.presets if other != name]
         if not starts:
             continue
         start = places.stay(rng.choice(starts))
-        end = Place(start.scene, start.start, (go(name),), preset_at(preset))
-        orders = tuple(dict.fromkeys(text for _ in range(4) for text in polite(say(go(name), rng)[0])))
-        yield command("single_call", "preset", f"go:{name}", start, orders, (go(name),), Behaviour(final=end.final), ("preset",))
+        end = TaskPlace(start.scene, start.start, (go(name),), preset_at(preset))
+        instructions = tuple(dict.fromkeys(text for _ in range(4) for text in polite(call_phrases(go(name), rng)[0])))
+        yield command(
+            "single_call", "preset", f"go:{name}", start, instructions, (go(name),), Behaviour(final=end.final), ("preset",)
+        )
 
 
-def _services(places: Places, rng: random.Random) -> Iterator[Draft]:
-    """Home, a picture of the view, the list of presets."""
+def _services(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield commands to go home, to take a picture, and to list the presets."""
     scene, home = places.scene, places.scene.file.home_preset
     others = [name for name in places.presets if name != home]
     rng.shuffle(others)
     for n, name in enumerate(others[:3]):
         start = places.stay(name)
-        final = Place(scene, name, (), preset_at(places.presets[home])).final
+        final = TaskPlace(scene, name, (), preset_at(places.presets[home])).final
         ways = ("go home", "return to the home position", "take the camera back home", "move back to the home view")
-        orders = tuple(order for way in ways for order in polite(way))
+        instructions = tuple(text for way in ways for text in polite(way))
         yield command(
             "single_call",
             "home",
             f"home:{name}",
             start,
-            orders,
+            instructions,
             (ProgramCall(tool="go_home"),),
             Behaviour(final=final),
             ("preset",),
@@ -157,26 +166,26 @@ def _services(places: Places, rng: random.Random) -> Iterator[Draft]:
             ("picture",),
         )
         if n == 0:
-            orders = (
+            instructions = (
                 f"Which presets are stored for {scene.file.title}?",
                 f"List the preset views of {scene.file.title}.",
                 f"What views have been saved for the camera at {scene.file.title}?",
             )
             calls = (ProgramCall(tool="get_presets"),)
             behaviour = Behaviour(calls=(RequiredCall(tool="get_presets"),), final=start.final)
-            yield command("single_call", "list", "presets", start, orders, calls, behaviour, (), ("presets",))
+            yield command("single_call", "list", "presets", start, instructions, calls, behaviour, (), ("presets",))
 
 
-def _close_ups(pool: list[Place]) -> Iterator[Draft]:
+def _close_ups(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
     for place in pool:
         if not place.stays and place.preset is None:
             continue
-        here = Place(place.scene, place.preset or place.start, (), place.at)
-        for one in distinct(place.sight, 400):
+        here = TaskPlace(place.scene, place.preset or place.start, (), place.at)
+        for one in nameable_things(place.truth, 400):
             target = framing(here, one.thing, one.thing.instance)
             if target is None or len(one.thing.instance.attributes) == 0:
                 continue
-            orders = tuple(
+            instructions = tuple(
                 t
                 for w in (
                     f"zoom in on {one.the}",
@@ -192,7 +201,7 @@ def _close_ups(pool: list[Place]) -> Iterator[Draft]:
                 "close-up",
                 f"close-up:{one.thing.instance.id}",
                 here,
-                orders,
+                instructions,
                 (call,),
                 Behaviour(framing=target),
                 ("zoom",),
@@ -200,19 +209,19 @@ def _close_ups(pool: list[Place]) -> Iterator[Draft]:
             )
 
 
-def _follows(pool: list[Place]) -> Iterator[Draft]:
-    """Something that moves, in view when the task begins and for the seconds after, and the only one of its kind."""
+def _tracking(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
+    """Yield commands to follow a moving object that is the only one of its kind and stays in view for the first seconds."""
     for n, place in enumerate(pool):
-        here = Place(place.scene, place.preset or place.start, (), place.at)
-        began = here.sight.samples[0]
-        later = here.sight.look(here.scene, str(here.at.viewpoint), here.sight.projection, here.sight.time_s + 1.5)
+        here = TaskPlace(place.scene, place.preset or place.start, (), place.at)
+        began = here.truth.samples[0]
+        later = here.truth.read_truth(here.scene, str(here.at.viewpoint), here.truth.projection, here.truth.time_s + 1.5)
         for sighting in began.visible:
             actor = sighting.instance
             kind = Kind(actor.category)
             if not isinstance(actor, SceneActor) or sighting.pixels < 600 or sighting.share < 0.9:
                 continue
             others = [s for s in began.sightings if s.instance is not actor]
-            rivals = [s for s in others if kind.fits(s.instance) or kind.doubtful(s.instance)]
+            rivals = [s for s in others if kind.fits(s.instance) or kind.ambiguous_with(s.instance)]
             if any(s.pixels > TRACE_PX for s in rivals) or actor.number not in {s.instance.number for s in later.visible}:
                 continue
             seconds = (4.0, 5.0, 6.0, 8.0)[n % 4]
@@ -222,31 +231,31 @@ def _follows(pool: list[Place]) -> Iterator[Draft]:
                 f"track the {kind.category} for the next {seconds:g} seconds",
             )
             call = ProgramCall(tool="track_object", arguments={"description": kind.category, "duration_s": seconds})
-            wanted = {"description": Argument(mentions=unit_of(kind)), "duration_s": Argument(equals=seconds, within=0.5)}
+            required = {"description": Argument(mentions=unit_of(kind)), "duration_s": Argument(equals=seconds, within=0.5)}
             yield command(
                 "single_call",
                 "follow",
                 f"follow:{actor.id}",
                 here,
-                tuple(order for way in ways for order in polite(way)),
+                tuple(text for way in ways for text in polite(way)),
                 (call,),
-                Behaviour(calls=(RequiredCall(tool="track_object", arguments=wanted),)),
+                Behaviour(calls=(RequiredCall(tool="track_object", arguments=required),)),
                 ("move",),
                 ("moving",),
             )
 
 
-def _sweeps(places: Places) -> Iterator[Draft]:
+def _sweeps(places: ScenePlaces) -> Iterator[TaskDraft]:
     for place in places.around():
         if place.calls:
             continue
-        for kind, number in counted(place.sight)[:40]:
+        for kind, number in countable(place.truth)[:40]:
             many = many_of(kind)
             expected = Number(value=number, unit=unit_of(kind))
-            items = [place.sight.item(t, True) for t in place.sight.of(kind) or ()]
-            yield Draft(
+            items = [place.truth.item(t, True) for t in place.truth.all_of(kind) or ()]
+            yield TaskDraft(
                 category="single_call",
-                kind="count-all",
+                question_type="count-all",
                 key=f"count:{noun_of(kind)}",
                 place=place,
                 expected=expected,
@@ -256,9 +265,9 @@ def _sweeps(places: Places) -> Iterator[Draft]:
                         (f"what is the total of {many}?", f"the total of {many}"),
                     )
                 ),
-                evidence=(view(place, expected, about(kind), items, whole=True),),
-                looks=(count(many, place),),
+                evidence=(evidence_view(place, expected, about(kind), items, whole=True),),
+                perception_calls=(count_call(many, place),),
                 tags=("full",),
                 weight=number,
-                reads=str(number),
+                answer_key=str(number),
             )

@@ -1,4 +1,4 @@
-"""Nouns in number, with articles and attributes."""
+"""Noun phrases: plurals, articles, lists and attributes."""
 
 from __future__ import annotations
 
@@ -55,12 +55,12 @@ def test_names_of_kinds() -> None:
     assert about(Kind("car", "red")) == ("car",)
 
 
-def test_shades_are_called_by_their_plain_colour() -> None:
+def test_shades_map_to_their_plain_colour() -> None:
     assert plain_colour("dark blue") == "blue"
     assert plain_colour("red and white") is None
 
 
-def test_a_value_in_more_words_is_no_other_option() -> None:
+def test_values_with_the_same_meaning_share_an_option() -> None:
     kinds = ["road", "road bicycle", "step-through bicycle", "town"]
     assert one_of("road bicycle", kinds, "bicycle") == {
         "road bicycle": ("road",),

@@ -1,4 +1,4 @@
-"""Rows of the paper's published format: mapped to our tools, scenes and categories, and everything doubtful reported."""
+"""Rows in the paper's format are mapped to tools, scenes and categories, and doubtful ones are reported."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
-from scope_ptz.bench.tasks.imported import ImportedTask, dump_imported
+from scope_ptz.bench.scoring.imported import check_calls_of
+from scope_ptz.bench.tasks.imported import ImportedTask, dump_imported, holds_imported, load_imported
 from scope_ptz.bench.tasks.task import Argument
 from scope_ptz.cli.app import app
 from scope_ptz.errors import InputError
-from scope_ptz.taskgen.importing import check_calls_of, holds_imported, load_imported
 from scope_ptz.taskgen.importing.import_report import Imported, import_file, report_lines
 from scope_ptz.taskgen.importing.paper_names import category_of, scope_of
-from scope_ptz.taskgen.importing.row_checks import given_away
-from scope_ptz.taskgen.importing.scene_names import PlaceMap, Places, ScenePresets, read_place_map
+from scope_ptz.taskgen.importing.row_checks import answer_in_question
+from scope_ptz.taskgen.importing.scene_names import SceneNameMap, SceneNames, ScenePresets, read_scene_names
 from tests.bench.making import counted, play
 
 COLUMNS = (
@@ -29,27 +29,27 @@ COLUMNS = (
     "eval_category", "multi_step_mode", "required_tools_policy", "expected_tool_order_json", "args_check",
     "expected_tool_args_json", "answer_view", "evaluation_notes", "difficulty",
 )  # fmt: skip
-PLACES = Places({"parking-lot": ScenePresets({"gate": "mast", "highway": "mast", "bridge": "roof"}, "gate", 12.0)})
-USUAL = {
+NAMES = SceneNames({"parking-lot": ScenePresets({"gate": "mast", "highway": "mast", "bridge": "roof"}, "gate", 12.0)})
+TYPICAL = {
     "file_location": "worlds/Parking_Lot.blend", "preset_start": "Gate", "question": "How many cones are there?",
     "expected_answer": "There are 5 cones.", "eval_category": "counting", "expected_tool_order_json": '["count_pointing"]',
 }  # fmt: skip
 
 
-def imported(tmp_path: Path, *rows: dict[str, str], places: Places = PLACES) -> Imported:
+def imported(tmp_path: Path, *rows: dict[str, str], names: SceneNames = NAMES) -> Imported:
     path = tmp_path / "Paper Tasks.csv"
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, COLUMNS)
         writer.writeheader()
-        writer.writerows({"question_id": str(n), **USUAL, **row} for n, row in enumerate(rows, 1))
-    return import_file(path, places)
+        writer.writerows({"question_id": str(n), **TYPICAL, **row} for n, row in enumerate(rows, 1))
+    return import_file(path, names)
 
 
 def kinds(done: Imported, at: int = 0) -> set[str]:
     return {finding.kind for finding in done.findings[done.rows[at].line]}
 
 
-def test_a_usual_row(tmp_path: Path) -> None:
+def test_a_typical_row(tmp_path: Path) -> None:
     done = imported(tmp_path, {"answer_view": "full_scene", "difficulty": "Hard", "evaluation_notes": "Any wording."})
     (task,) = done.tasks
     facts = task.facts
@@ -86,10 +86,10 @@ MAPPED: list[tuple[str, Any, str, dict[str, Argument]]] = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("theirs", "arguments", "ours", "wanted"), MAPPED)
+@pytest.mark.parametrize(("theirs", "arguments", "ours", "required"), MAPPED)
 @pytest.mark.parametrize("form", ["list", "by tool", "inside", "python"])
 def test_tools_and_arguments(
-    tmp_path: Path, form: str, theirs: str, arguments: dict[str, Any], ours: str, wanted: dict[str, Argument]
+    tmp_path: Path, form: str, theirs: str, arguments: dict[str, Any], ours: str, required: dict[str, Argument]
 ) -> None:
     cells = {
         "list": (json.dumps([theirs]), json.dumps([arguments])),
@@ -100,7 +100,7 @@ def test_tools_and_arguments(
     order, args = cells[form]
     done = imported(tmp_path, {"expected_tool_order_json": order, "expected_tool_args_json": args})
     ((call,),) = (task.calls for task in done.tasks)
-    assert (call.tool, call.arguments) == (ours, wanted)
+    assert (call.tool, call.arguments) == (ours, required)
     assert not kinds(done) & {"wrong-arguments", "unknown-tool", "unreadable-cell"}
 
 
@@ -125,7 +125,7 @@ def test_wrong_arguments_are_reported_and_the_row_still_runs(tmp_path: Path, too
     assert len(done.tasks) == 1
 
 
-def test_one_tool_several_times(tmp_path: Path) -> None:
+def test_one_tool_is_expected_several_times(tmp_path: Path) -> None:
     done = imported(
         tmp_path,
         {
@@ -137,7 +137,7 @@ def test_one_tool_several_times(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("zoom", [{"zoom_percent": 0}, {"zoom_factor": 1}, {}])
-def test_an_expected_zoom_of_nothing_is_met_by_a_call_that_leaves_the_zoom(tmp_path: Path, zoom: dict[str, Any]) -> None:
+def test_an_expected_zoom_of_zero_is_met_by_a_call_without_zoom(tmp_path: Path, zoom: dict[str, Any]) -> None:
     wanted = json.dumps([{"pan_deg": 20, "tilt_deg": 0, **zoom}])
     done = imported(tmp_path, {"expected_tool_order_json": '["ptz_adjust"]', "expected_tool_args_json": wanted})
     (task,) = done.tasks
@@ -152,7 +152,7 @@ def test_an_expected_zoom_of_nothing_is_met_by_a_call_that_leaves_the_zoom(tmp_p
 
 
 @pytest.mark.parametrize(
-    ("order", "arguments", "kind", "told"),
+    ("order", "arguments", "kind", "detail"),
     [
         (["ptz_adjust", 5], None, "unknown-tool", "5 names no tool"),
         (["ptz_adjust", None], None, "unknown-tool", "null names no tool"),
@@ -170,16 +170,16 @@ def test_an_expected_zoom_of_nothing_is_met_by_a_call_that_leaves_the_zoom(tmp_p
         (["count_pointing"], 7, "unchecked-argument", '"7" (number 1)'),
     ],
 )
-def test_what_is_read_nowhere_is_told(tmp_path: Path, order: Any, arguments: Any, kind: str, told: str) -> None:
+def test_unused_parts_are_reported(tmp_path: Path, order: Any, arguments: Any, kind: str, detail: str) -> None:
     cells = {"expected_tool_order_json": json.dumps(order), "expected_tool_args_json": json.dumps(arguments)}
     done = imported(tmp_path, cells)
-    found = [finding for finding in done.findings[done.rows[0].line] if told in finding.detail]
+    found = [finding for finding in done.findings[done.rows[0].line] if detail in finding.detail]
     assert [finding.kind for finding in found] == [kind], done.findings
     assert len(done.tasks) == 1
 
 
-def test_nothing_is_told_of_what_is_read(tmp_path: Path) -> None:
-    """Arguments by place, by tool, by number, and of the only call without its name."""
+def test_used_parts_are_not_reported(tmp_path: Path) -> None:
+    """Arguments may be given by position, by tool, by number, and without a name for a single call."""
     both = '["count_pointing", "ptz_adjust"]'
     for order, arguments in (
         (both, [{"object_of_interest": "cars"}, {"pan_deg": 5}]),
@@ -193,7 +193,7 @@ def test_nothing_is_told_of_what_is_read(tmp_path: Path) -> None:
         assert not kinds(done) & {"wrong-arguments", "unknown-tool", "unchecked-argument"}, (arguments, done.findings)
 
 
-def test_a_file_without_rows_says_so(tmp_path: Path) -> None:
+def test_a_file_without_rows_is_reported(tmp_path: Path) -> None:
     path = tmp_path / "empty.csv"
     path.write_text("question,expected_answer\n", "utf-8")
     done = CliRunner().invoke(app, ["bench", "import", str(path), "--out", str(tmp_path / "x.jsonl")])
@@ -244,7 +244,7 @@ FOUND: list[tuple[str, list[dict[str, str]]]] = [
 
 
 @pytest.mark.parametrize(("kind", "rows"), FOUND)
-def test_what_is_wrong_is_found_in_every_row_that_it_is_about(tmp_path: Path, kind: str, rows: list[dict[str, str]]) -> None:
+def test_findings_are_reported_for_every_affected_row(tmp_path: Path, kind: str, rows: list[dict[str, str]]) -> None:
     done = imported(tmp_path, *rows)
     assert all(kind in kinds(done, at) for at in range(len(rows)))
     assert kind in "\n".join(report_lines(done))
@@ -253,7 +253,7 @@ def test_what_is_wrong_is_found_in_every_row_that_it_is_about(tmp_path: Path, ki
     assert len(done.as_dict()["each"]) == len(rows), "no row is dropped"
 
 
-def test_an_unknown_category_is_told_where_another_column_stands_in(tmp_path: Path) -> None:
+def test_an_unknown_category_is_reported_when_another_column_replaces_it(tmp_path: Path) -> None:
     done = imported(tmp_path, {"eval_category": "Telepathy", "question_type": "location"}, {"question_type": "location"})
     (task, usual) = done.tasks
     assert (task.facts.category, usual.facts.category) == ("location", "counting")
@@ -281,13 +281,13 @@ def test_sound_rows_have_no_findings(tmp_path: Path, row: dict[str, str]) -> Non
     assert kinds(done) == set()
 
 
-def test_an_answer_that_the_question_quotes() -> None:
-    assert given_away("Zoom in on the STOP sign and read it", 'The sign says "STOP"') == "STOP"
-    assert given_away("Zoom in on the sign and read it", 'The sign says "STOP"') is None
-    assert given_away("Where is the red car?", "to the left of the van") is None
+def test_answers_in_the_question_are_found() -> None:
+    assert answer_in_question("Zoom in on the STOP sign and read it", 'The sign says "STOP"') == "STOP"
+    assert answer_in_question("Zoom in on the sign and read it", 'The sign says "STOP"') is None
+    assert answer_in_question("Where is the red car?", "to the left of the van") is None
 
 
-def test_ids_stay_apart_whatever_the_file_says(tmp_path: Path) -> None:
+def test_ids_are_unique_whatever_the_file_contains(tmp_path: Path) -> None:
     done = imported(
         tmp_path, *({"question_id": name, "question": f"{n}?"} for n, name in enumerate(["a b", "A-B", "a-b-x2", "", "../x"]))
     )
@@ -296,29 +296,29 @@ def test_ids_stay_apart_whatever_the_file_says(tmp_path: Path) -> None:
     assert all("/" not in name and "." not in name for name in ids)
 
 
-def test_places_by_mapping(tmp_path: Path) -> None:
+def test_scenes_and_presets_by_mapping(tmp_path: Path) -> None:
     path = tmp_path / "map.yaml"
     path.write_text("scenes: {'moon.blend': parking-lot, '*': parking-lot}\npresets: {parking-lot: {crater: bridge, '*': gate}}\n")
-    places = Places(PLACES.scenes, read_place_map(path))
+    names = SceneNames(NAMES.scenes, read_scene_names(path))
     rows = [{"file_location": "x/moon.blend", "preset_start": "crater"}, {"file_location": "mars.blend", "preset_start": "rim"}]
-    done = imported(tmp_path, *rows, places=places)
+    done = imported(tmp_path, *rows, names=names)
     assert [task.facts.preset for task in done.tasks] == ["bridge", "gate"]
     without = imported(tmp_path, *rows, {"preset_start": "rim"})
     assert without.map_to_fill() == {"scenes": {"mars.blend": "", "x/moon.blend": ""}, "presets": {"parking-lot": {"rim": ""}}}
-    assert PlaceMap.model_validate(without.map_to_fill())
-    wrong = Places(PLACES.scenes, PlaceMap(scenes={"moon.blend": "nowhere"}))
-    assert "missing-scene" in kinds(imported(tmp_path, rows[0], places=wrong))
+    assert SceneNameMap.model_validate(without.map_to_fill())
+    wrong = SceneNames(NAMES.scenes, SceneNameMap(scenes={"moon.blend": "nowhere"}))
+    assert "missing-scene" in kinds(imported(tmp_path, rows[0], names=wrong))
 
 
 @pytest.mark.parametrize("content", ["[1]", "scenes: 3", "worlds: {}", "a: [", "\0"])
-def test_wrong_mappings_are_told(tmp_path: Path, content: str) -> None:
+def test_wrong_mappings_are_rejected(tmp_path: Path, content: str) -> None:
     path = tmp_path / "map.yaml"
     path.write_text(content)
     with pytest.raises(InputError):
-        read_place_map(path)
+        read_scene_names(path)
 
 
-def test_tasks_on_disk(tmp_path: Path) -> None:
+def test_imported_tasks_are_stored_without_loss(tmp_path: Path) -> None:
     done = imported(
         tmp_path,
         {"expected_tool_args_json": "[{'object_of_interest': 'cones'}]"},
@@ -348,7 +348,9 @@ ODD = st.sampled_from(
 
 @given(st.lists(st.fixed_dictionaries({}, optional=dict.fromkeys(COLUMNS, ODD)), min_size=1, max_size=4))
 @settings(deadline=None, max_examples=60)
-def test_no_row_breaks_the_import_and_none_is_lost(tmp_path_factory: pytest.TempPathFactory, rows: list[dict[str, str]]) -> None:
+def test_arbitrary_rows_are_neither_lost_nor_break_the_import(
+    tmp_path_factory: pytest.TempPathFactory, rows: list[dict[str, str]]
+) -> None:
     folder = tmp_path_factory.mktemp("odd")
     done = imported(folder, *rows)
     assert len(done.rows) == len(rows)
@@ -390,14 +392,14 @@ GO, LOOK = ("go_to_preset", {"name": "highway"}), counted(5)
         ({}, [("go_to_preset", {"name": "highway"}, {"error": "no"}), LOOK], False),
     ],
 )
-def test_the_check_of_calls(tmp_path: Path, cells: dict[str, str], steps: list[Any], passed: bool | None) -> None:
+def test_check_of_required_calls(tmp_path: Path, cells: dict[str, str], steps: list[Any], passed: bool | None) -> None:
     task = task_with(tmp_path, ["go_to_preset", "count_pointing"], {"go_to_preset": {"name": "Highway"}}, **cells)
     check = check_calls_of(task, play(steps, "5"))
     assert (check.name, check.passed) == ("calls", passed)
     assert check.reason
 
 
-def test_nothing_expected_is_not_told(tmp_path: Path) -> None:
+def test_without_expected_calls_the_check_has_no_result(tmp_path: Path) -> None:
     assert check_calls_of(task_with(tmp_path, []), play([LOOK], "5")).passed is None
 
 
@@ -419,7 +421,7 @@ def test_the_command_writes_tasks_and_a_report(tmp_path: Path, analytic_folder: 
     assert json.loads(CliRunner().invoke(app, [*command, "--json"]).stdout) == report
 
 
-def test_the_command_fails_where_nothing_can_be_run(tmp_path: Path) -> None:
+def test_the_command_fails_when_no_row_can_be_run(tmp_path: Path) -> None:
     imported(tmp_path, {})
     done = CliRunner().invoke(app, ["bench", "import", str(tmp_path / "Paper Tasks.csv"), "--out", str(tmp_path / "x.jsonl")])
     assert done.exit_code == 1

@@ -1,4 +1,4 @@
-"""Lines of writing: read from top to bottom as one piece, or not asked for at all."""
+"""Lines of text are read from top to bottom as one piece of writing, or not asked about."""
 
 from __future__ import annotations
 
@@ -27,27 +27,27 @@ ROAD, AHEAD, ASIDE = (
 )  # fmt: skip
 
 
-def test_lines_come_from_top_to_bottom() -> None:
+def test_lines_are_ordered_from_top_to_bottom() -> None:
     assert lines((AHEAD, ROAD)) == (ROAD, AHEAD)
 
 
-def test_what_stands_apart_is_no_piece_of_writing() -> None:
+def test_separate_texts_are_not_one_piece_of_writing() -> None:
     assert lines((ROAD, ASIDE)) is None
     assert lines((ROAD, written("FOOT", (0.4, 0.9, 0.6, 0.94)))) is None
     assert lines(()) is None
 
 
-def test_the_same_twice_is_one() -> None:
+def test_a_repeated_text_counts_once() -> None:
     again = written("ROAD", (0.1, 0.2, 0.2, 0.24))
     assert lines((ROAD, again)) == (again,)
 
 
-def test_of_a_price_card_the_price() -> None:
+def test_only_the_price_of_a_price_card_is_read() -> None:
     price = written("5.00", (0.4, 0.46, 0.6, 0.5))
     assert priced((written("ROSES", (0.4, 0.4, 0.6, 0.44)), price)) == (price,)
 
 
-def test_a_plate_beside_a_thing_is_no_writing_on_it() -> None:
+def test_a_plate_beside_an_object_is_not_a_text_on_it() -> None:
     box = (0.4, 0.45, 0.6, 0.9)
     assert on_it(box, AHEAD)
     assert not on_it(box, ROAD)

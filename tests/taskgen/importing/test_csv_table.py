@@ -1,4 +1,4 @@
-"""CSV files as they come: everything that can be read is read, everything else is told."""
+"""CSV files: everything readable is read, and everything else is reported."""
 
 from __future__ import annotations
 
@@ -37,38 +37,38 @@ def table(tmp_path: Path, content: bytes | str) -> Any:
         '"question_id","question","expected_answer"\n"1","How many?","5"\n',
     ],
 )
-def test_the_same_rows_in_many_files(tmp_path: Path, content: bytes | str) -> None:
+def test_many_formats_give_the_same_rows(tmp_path: Path, content: bytes | str) -> None:
     (row,) = table(tmp_path, content).rows
     assert row.cells == {"question_id": "1", "question": "How many?", "expected_answer": "5"}
 
 
-def test_lines_are_those_of_the_file(tmp_path: Path) -> None:
+def test_line_numbers_are_those_of_the_file(tmp_path: Path) -> None:
     found = table(tmp_path, f'{HEADER}\n\n1,"two\nlines, ""quoted""",5\n\n2,one,6\n')
     assert [row.line for row in found.rows] == [3, 6]
     assert found.rows[0].cells["question"] == 'two\nlines, "quoted"'
 
 
-def test_ragged_rows_keep_everything(tmp_path: Path) -> None:
+def test_ragged_rows_keep_all_cells(tmp_path: Path) -> None:
     long, short = table(tmp_path, f"{HEADER}\n1,a,b,c,d\n2,a\n").rows
     assert (long.extra, long.short) == (("c", "d"), 0)
     assert (short.extra, short.short) == ((), 1)
     assert short.cells["expected_answer"] == ""
 
 
-def test_other_encodings_are_told(tmp_path: Path) -> None:
+def test_another_encoding_is_reported(tmp_path: Path) -> None:
     found = table(tmp_path, f"{HEADER}\n1,caf\xe9?,5\n".encode("cp1252"))
     assert found.rows[0].cells["question"] == "café?"
     assert found.encoding == "cp1252"
     assert any("Windows-1252" in note for note in found.notes)
 
 
-def test_an_open_quotation_mark_is_told(tmp_path: Path) -> None:
+def test_an_open_quotation_mark_is_reported(tmp_path: Path) -> None:
     found = table(tmp_path, f'{HEADER}\n1,"never closed,5\n2,x,6\n')
     assert any("never closed" in note for note in found.notes)
 
 
 @pytest.mark.parametrize(
-    ("content", "told"),
+    ("content", "message"),
     [
         (b"", "is empty"),
         (b"\n \n", "is empty"),
@@ -78,8 +78,8 @@ def test_an_open_quotation_mark_is_told(tmp_path: Path) -> None:
         (b"question,expected_answer\n" + b"x" * (5 * 2**20) + b",y\n", "line 2"),
     ],
 )
-def test_what_is_no_table_of_tasks(tmp_path: Path, content: bytes, told: str) -> None:
-    with pytest.raises(InputError, match=told):
+def test_files_that_are_not_tables_of_tasks_are_rejected(tmp_path: Path, content: bytes, message: str) -> None:
+    with pytest.raises(InputError, match=message):
         table(tmp_path, content)
 
 
@@ -93,7 +93,7 @@ CELL = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0\r
 
 @given(st.lists(st.tuples(CELL, CELL), max_size=6))
 @settings(deadline=None, max_examples=60)
-def test_what_a_csv_writer_writes_is_read_back(tmp_path_factory: pytest.TempPathFactory, rows: list[tuple[str, str]]) -> None:
+def test_output_of_a_csv_writer_is_read_back(tmp_path_factory: pytest.TempPathFactory, rows: list[tuple[str, str]]) -> None:
     out = io.StringIO()
     writer = csv.writer(out)
     writer.writerow(("question", "expected_answer"))
@@ -128,14 +128,14 @@ def test_any_bytes_give_rows_or_one_clear_error(tmp_path_factory: pytest.TempPat
         ("a -> b", ["a", "b"]), ("a, b", ["a", "b"]), ("a; b|c", ["a", "b", "c"]), ("a", ["a"]),
     ],
 )  # fmt: skip
-def test_cells_that_hold_structures(cell: str, content: Any) -> None:
+def test_structured_cells(cell: str, content: Any) -> None:
     assert structure(cell) == content
 
 
 @pytest.mark.parametrize(
     "cell", ["[broken", "{'a': }", "[__import__('os')]", "[" * 5000, "{'a': 1e999}", "[NaN]", "['a' for a in 'b']"]
 )
-def test_cells_that_hold_none(cell: str) -> None:
+def test_unreadable_cells_are_rejected(cell: str) -> None:
     with pytest.raises(ValueError, match=r"\w"):
         structure(cell)
 

@@ -1,4 +1,4 @@
-"""Names: what else could bear one rules it out."""
+"""Names of objects: a name is not used when it could mean another object in the view."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import pytest
 
 from scope_ptz.simulator.models import SceneInstance
 from scope_ptz.taskgen.authoring.noun_phrases import the
-from scope_ptz.taskgen.authoring.object_names import alike, bears, spoken
+from scope_ptz.taskgen.authoring.object_names import colours_confusable, could_bear_name, spoken
 
 
 def thing(category: str, name: str, **attributes: str) -> SceneInstance:
@@ -27,8 +27,8 @@ def thing(category: str, name: str, **attributes: str) -> SceneInstance:
         (("lamp post", "tall lamp post"), ("lamp post", "street lamp")),
     ],
 )
-def test_what_people_would_call_the_same(named: tuple[str, str], other: tuple[str, str]) -> None:
-    assert bears(thing(*other), named[1], thing(*named))
+def test_names_that_could_mean_another_object(named: tuple[str, str], other: tuple[str, str]) -> None:
+    assert could_bear_name(thing(*other), named[1], thing(*named))
 
 
 @pytest.mark.parametrize(
@@ -41,13 +41,13 @@ def test_what_people_would_call_the_same(named: tuple[str, str], other: tuple[st
         (("car", "red saloon"), ("post box", "red post box")),
     ],
 )
-def test_what_people_tell_apart(named: tuple[str, str], other: tuple[str, str]) -> None:
-    assert not bears(thing(*other), named[1], thing(*named))
+def test_names_that_mean_one_object_only(named: tuple[str, str], other: tuple[str, str]) -> None:
+    assert not could_bear_name(thing(*other), named[1], thing(*named))
 
 
-def test_attributes_bear_a_name_too() -> None:
-    assert bears(thing("worker", "kneeling worker", vest="orange"), "worker in an orange vest", thing("worker", "x"))
-    assert not bears(thing("worker", "kneeling worker", vest="green"), "worker in an orange vest", thing("worker", "x"))
+def test_attributes_count_as_part_of_a_name() -> None:
+    assert could_bear_name(thing("worker", "kneeling worker", vest="orange"), "worker in an orange vest", thing("worker", "x"))
+    assert not could_bear_name(thing("worker", "kneeling worker", vest="green"), "worker in an orange vest", thing("worker", "x"))
 
 
 def test_articles_before_names() -> None:
@@ -59,9 +59,9 @@ def test_articles_before_names() -> None:
 
 
 @pytest.mark.parametrize(("one", "other"), [("navy", "blue"), ("dark red", "red"), ("grey", "silver"), ("black", None)])
-def test_boards_of_colours_like_these_are_not_told_apart(one: str, other: str | None) -> None:
-    assert alike(one, other)
+def test_boards_of_similar_colours_are_confusable(one: str, other: str | None) -> None:
+    assert colours_confusable(one, other)
 
 
-def test_boards_of_different_colours_are() -> None:
-    assert not alike("navy", "dark red") and not alike("green", "brown")
+def test_boards_of_different_colours_are_not_confusable() -> None:
+    assert not colours_confusable("navy", "dark red") and not colours_confusable("green", "brown")
