@@ -61,7 +61,7 @@ def test_card_lists_every_answer_that_does_not_agree(dataset: Path, tmp_path: Pa
     assert result.share() == (4, 5)  # the sixth question has no answer
     (dataset / AUDIT).write_text(json.dumps(result.as_dict()))
     text = card(Dataset.read(dataset))
-    assert "4 of 5 answers agree with the expected value (80.0%), and 1 of the drawn tasks got no answer." in text
+    assert "4 of 5 answers agree with the expected value (80.0%). Drawn tasks without an answer: 1." in text
     line = next(line for line in text.splitlines() if wrong.id in line)
     assert "I cannot tell." in line and "disagrees" in line and line.endswith("Too small to see. |")
     assert "not answered" in text and "(corrected)" not in text

@@ -187,7 +187,7 @@ def _gold(data: Dataset) -> Iterator[str]:
     yield "## Error modes"
     yield (
         f"{result.total} reference runs have one known fault each (`scope bench gold check`). The rules name the error mode of "
-        f"{result.named} of them correctly, and {result.accepted} are judged correct (false-accept rate "
+        f"{result.named} of them correctly. The number of runs that are judged correct is {result.accepted} (false-accept rate "
         f"{result.false_accept_rate:.1%}). The faults were added by rules. The result shows that the rules for error modes are "
         "consistent, not that people would agree with them on every run."
     )
@@ -205,7 +205,7 @@ def _audit(data: Dataset) -> Iterator[str]:
     yield (
         "Readers saw only the instruction and the frames that the answer depends on. Tasks were drawn by category, scene and "
         f"difficulty (`scope bench audit make --n {audit.draw.number} --seed {audit.draw.seed}`). {right} of {of} answers agree "
-        f"with the expected value ({right / of:.1%}), and {len(audit.rows) - of} of the drawn tasks got no answer."
+        f"with the expected value ({right / of:.1%}). Drawn tasks without an answer: {len(audit.rows) - of}."
         if of
         else "No question was answered."
     )
