@@ -32,7 +32,7 @@ from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose, pan_tilt
 from scope_ptz.simulator.pack import Scene, find_scenes
 from scope_ptz.simulator.truth import MIN_CAP_HEIGHT_PX, TextSighting, view_truth
 from scope_ptz.simulator.views import picture
-from scope_ptz.taskgen.facts.phrasing import right_answers
+from scope_ptz.taskgen.facts.answer_phrasing import right_answers
 
 WIDTH, HEIGHT = 1280, 720
 ALIKE = 5 / 6

@@ -14,7 +14,7 @@ from scope_ptz.bench.scoring.error_modes import ErrorMode, error_mode
 from scope_ptz.bench.scoring.verdict import judge
 from scope_ptz.bench.tasks.expected import ActionOnly, Choice, Text
 from scope_ptz.bench.tasks.task import Argument, Behaviour, Item, RequiredCall, Task
-from scope_ptz.taskgen.gold.mutations import Gold, Setting, confusion, mutate
+from scope_ptz.taskgen.gold.mutations import FaultSetting, GoldRun, confusion, mutate
 from tests.bench.making import (
     EYES,
     GO_BRIDGE,
@@ -33,10 +33,10 @@ from tests.bench.making import (
 
 SAMPLES = samples()
 BY_NAME = {of.id.removeprefix("scope1-test-"): of for of, _ in SAMPLES}
-SETTING = Setting(PRESETS, EYES)
+SETTING = FaultSetting(PRESETS, EYES)
 
 
-def gold() -> list[Gold]:
+def gold() -> list[GoldRun]:
     made = (
         mutate(of, episode, mode, SETTING, random.Random(seed))
         for of, episode in SAMPLES

@@ -28,7 +28,7 @@ from scope_ptz.bench.tasks.expected import (
     Text,
     YesNo,
 )
-from scope_ptz.taskgen.facts.phrasing import right_answers, wrong_answer
+from scope_ptz.taskgen.facts.answer_phrasing import right_answers, wrong_answer
 
 DATA = Path(__file__).parent / "data"
 ADAPTER: TypeAdapter[AnyExpected] = TypeAdapter(Expected)

@@ -42,7 +42,7 @@ def raters_in(logs: Sequence[Path]) -> list[Rater]:
     """Everyone who rated what is in these files. Raises ``InputError`` or ``TraceError``."""
     from scope_ptz.bench.judging.agreement import raters_of
     from scope_ptz.bench.judging.labels import labels_file, read_labels, with_labels
-    from scope_ptz.taskgen.gold.judges import raters_of_gold, read_verdicts
+    from scope_ptz.taskgen.gold.judge_results import raters_of_gold, read_verdicts
 
     gold = [path for path in logs if path.suffix == ".jsonl"]
     evaluations = []

@@ -39,7 +39,7 @@ def make(
     number: Annotated[int, typer.Option("--n", min=1, help="How many tasks.")] = 100,
     seed: Annotated[int, typer.Option(help="Which of them.")] = 1,
 ) -> None:
-    """Draw tasks by category, scene and difficulty; write the frames that their answers rest on and the questions."""
+    """QuestionDraw tasks by category, scene and difficulty; write the frames that their answers rest on and the questions."""
     with ending():
         import anyio
 
@@ -48,10 +48,10 @@ def make(
         from scope_ptz.bench.tasks.splits import load_split
         from scope_ptz.cli.bench_show import EYES
         from scope_ptz.factory.validation_perception import KnownViews, equip_with_truth
-        from scope_ptz.taskgen.audit import DRAW, QUESTIONS, Draw, drawn
+        from scope_ptz.taskgen.picture_audit import DRAW, QUESTIONS, QuestionDraw, draw_questions
 
         rows = load_split(tasks)
-        chosen = drawn(rows, number, seed)
+        chosen = draw_questions(rows, number, seed)
         if not chosen:
             raise InputError("None of these tasks wants an answer: there is nothing to ask.")
         worlds = worlds_of([task for _, task in chosen])
@@ -65,7 +65,7 @@ def make(
             raise OutputError(f"{out} cannot be made: {error.strerror}.") from error
         questions = [anyio.run(_question, q, task, stages[task.world], out) for q, task in chosen]
         (out / QUESTIONS).write_text("".join(json.dumps(row, ensure_ascii=False) + "\n" for row in questions), "utf-8")
-        draw = Draw(number=number, seed=seed, tasks=digest_of(rows))
+        draw = QuestionDraw(number=number, seed=seed, tasks=digest_of(rows))
         (out / DRAW).write_text(draw.model_dump_json() + "\n", "utf-8")
         (out / "README.md").write_text(_README, "utf-8")
         put(f"{len(questions)} questions and {sum(len(row['pictures']) for row in questions)} pictures in {out}")
@@ -81,7 +81,7 @@ def score(
     """Read the answers with the benchmark's own reader. What looking into a disagreement showed goes into findings.jsonl."""
     with ending(as_json=as_json):
         from scope_ptz.bench.tasks.splits import load_split
-        from scope_ptz.taskgen.audit import score as hold
+        from scope_ptz.taskgen.picture_audit import score_answers as hold
 
         audit = hold(folder, load_split(tasks))
         if out is not None:

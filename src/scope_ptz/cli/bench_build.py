@@ -14,7 +14,7 @@ from scope_ptz.errors import InputError
 
 if TYPE_CHECKING:
     from scope_ptz.bench.tasks.task import Category
-    from scope_ptz.taskgen.authoring.assembly import Built
+    from scope_ptz.taskgen.authoring.assembly import BuiltTasks
 
 UNSEEN_NUMBERS = (7, 8, 9)
 
@@ -75,7 +75,7 @@ def _quotas(share: float) -> dict[Category, int] | None:
     return None if share == 1.0 else {name: max(2, round(number * share)) for name, number in QUOTAS.items()}
 
 
-def tell_short(made: Built, of: str = "") -> bool:
+def tell_short(made: BuiltTasks, of: str = "") -> bool:
     """Say what the scenes did not yield; whether anything."""
     if made.short:
         missing = ", ".join(f"{number} of {name} are missing" for name, number in made.short.items())

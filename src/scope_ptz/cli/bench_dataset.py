@@ -18,7 +18,7 @@ from scope_ptz.factory.validation_perception import answered
 from scope_ptz.taskgen.authoring.assembly import build
 from scope_ptz.taskgen.dataset.card import GOLD, PROOF
 from scope_ptz.taskgen.dataset.unseen import build_unseen
-from scope_ptz.taskgen.gold.runs import write_gold
+from scope_ptz.taskgen.gold.gold_runs import write_gold
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

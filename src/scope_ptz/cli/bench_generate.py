@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from scope_ptz.bench.tasks.task import Category, Task
     from scope_ptz.endpoints.endpoint import Endpoint
     from scope_ptz.simulator.pack import Scene
-    from scope_ptz.taskgen.generating.ledger import Ledger
-    from scope_ptz.taskgen.generating.loop import Order, Prove
+    from scope_ptz.taskgen.generating.draft_ledger import DraftLedger
+    from scope_ptz.taskgen.generating.drafting_loop import GenerationRequest, Prove
 
 
 def generate(
@@ -44,25 +44,25 @@ def generate(
 
         from scope_ptz.bench.tasks.splits import load_split
         from scope_ptz.factory.scenes import open_scene
-        from scope_ptz.taskgen.generating.ledger import Ledger
-        from scope_ptz.taskgen.generating.loop import Order
-        from scope_ptz.taskgen.generating.operators import read_runs
+        from scope_ptz.taskgen.generating.draft_ledger import DraftLedger
+        from scope_ptz.taskgen.generating.drafting_loop import GenerationRequest
+        from scope_ptz.taskgen.generating.operator_runs import read_runs
 
-        order = Order(
+        order = GenerationRequest(
             scene=open_scene(scene),
-            wanted=_wanted(want or [], number),
+            requested=_wanted(want or [], number),
             known=load_split(known) if known else (),
             runs=read_runs(runs, feedback),
             seed=seed,
             most_requests=requests,
         )
-        ledger = Ledger(out)
+        ledger = DraftLedger(out)
         endpoint = _endpoint(url, key_file, timeout)
         try:
             anyio.run(_run, order, ledger, endpoint, model, temperature)
         finally:
             tasks, review = ledger.finish()
-        missing = ledger.missing(order.wanted)
+        missing = ledger.missing(order.requested)
         put(f"{len(ledger.kept)} tasks kept of {len(ledger.entries)} drafts: {tasks}; to look through: {review}")
         if missing:
             complain(
@@ -71,9 +71,9 @@ def generate(
             sys.exit(FAILED)
 
 
-async def _run(order: Order, ledger: Ledger, endpoint: Endpoint, model: str, temperature: float) -> None:
+async def _run(order: GenerationRequest, ledger: DraftLedger, endpoint: Endpoint, model: str, temperature: float) -> None:
     from scope_ptz.bench.judging.server import JudgeOptions, ServerPort
-    from scope_ptz.taskgen.generating.loop import generate as drafts
+    from scope_ptz.taskgen.generating.drafting_loop import generate as drafts
 
     options = JudgeOptions(temperature=temperature, seed=order.seed)
     port = ServerPort(await _named(endpoint, model), options)
@@ -92,8 +92,8 @@ def prover(scene: Scene) -> Prove:
     equip = equip_with_truth({scene.name: scene}, views)
 
     async def prove(task: Task) -> str | None:
-        report = await validate([task], {task.world: scene}, equip, look=views.look)
-        wrong = [*report.faults, *report.cheated, *report.disagreements]
+        report = await validate([task], {task.world: scene}, equip, read_truth=views.look)
+        wrong = [*report.faults, *report.adversarial_passes, *report.disagreements]
         return f"{wrong[0].attempt}: {wrong[0].reason}" if wrong else None
 
     return prove

@@ -12,7 +12,7 @@ import typer
 from scope_ptz.cli.endings import FAILED, complain, ending, put, put_json
 
 if TYPE_CHECKING:
-    from scope_ptz.taskgen.importing.places import Places
+    from scope_ptz.taskgen.importing.scene_names import SceneNames
 
 
 def import_tasks(
@@ -36,7 +36,7 @@ def import_tasks(
     with ending(as_json=as_json):
         from scope_ptz.bench.tasks.imported import dump_imported
         from scope_ptz.errors import OutputError
-        from scope_ptz.taskgen.importing.report import import_file, report_lines
+        from scope_ptz.taskgen.importing.import_report import import_file, report_lines
 
         imported = import_file(file, places_in(scenes, mapping))
         target = out or Path(f"{file.stem}.imported.jsonl")
@@ -65,13 +65,13 @@ def import_tasks(
             sys.exit(FAILED)
 
 
-def places_in(folder: Path | None, mapping: Path | None) -> Places:
+def places_in(folder: Path | None, mapping: Path | None) -> SceneNames:
     """The scenes of a folder and the built-in ones, with what a mapping file says. Raises ``InputError``."""
     from scope_ptz.errors import InputError
     from scope_ptz.factory.scenes import scene_search
     from scope_ptz.settings import load_settings
     from scope_ptz.simulator.pack import list_scenes, load_scene
-    from scope_ptz.taskgen.importing.places import PlaceMap, Places, ScenePresets, read_place_map
+    from scope_ptz.taskgen.importing.scene_names import SceneNameMap, SceneNames, ScenePresets, read_scene_names
 
     if folder is not None and not folder.is_dir():
         raise InputError(f"There is no folder {folder} of scenes.")
@@ -80,4 +80,4 @@ def places_in(folder: Path | None, mapping: Path | None) -> Places:
     for name in list_scenes(search):
         file = load_scene(name, search).file
         known[name] = ScenePresets({preset.name: preset.viewpoint for preset in file.presets}, file.home_preset, file.start_s)
-    return Places(known, read_place_map(mapping) if mapping else PlaceMap())
+    return SceneNames(known, read_scene_names(mapping) if mapping else SceneNameMap())

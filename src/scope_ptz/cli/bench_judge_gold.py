@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from scope_ptz.bench.judging.server import ServerPort
     from scope_ptz.bench.judging.tally import Tally
     from scope_ptz.bench.scoring.trials import Judgement
-    from scope_ptz.taskgen.gold.judges import GoldCase, GoldResult, GoldVerdict
+    from scope_ptz.taskgen.gold.judge_results import GoldCase, GoldResult, GoldVerdict
 
 
 def judge_gold(
@@ -47,7 +47,7 @@ def judge_gold(
     with ending(as_json=as_json):
         import anyio
 
-        from scope_ptz.taskgen.gold.judges import read_verdicts, results
+        from scope_ptz.taskgen.gold.judge_results import read_verdicts, results
 
         before = read_verdicts(out)
         cases = gold_cases(gold, tasks, passing, limit)
@@ -80,7 +80,7 @@ async def _judge_all(
     from scope_ptz.bench.judging.lines import append_line
     from scope_ptz.bench.judging.rubrics import prompt_version
     from scope_ptz.bench.judging.tally import Tally
-    from scope_ptz.taskgen.gold.judges import judge_gold as judge_cases
+    from scope_ptz.taskgen.gold.judge_results import judge_gold as judge_cases
 
     name = port.client.endpoint.model
     version = prompt_version()
@@ -114,9 +114,10 @@ def gold_cases(gold: Path | None, tasks: str, passing: int, limit: int | None) -
     from scope_ptz.bench.tasks.splits import load_split, published_folder
     from scope_ptz.cli.bench_inputs import worlds_of
     from scope_ptz.factory.validation_perception import equip_with_truth
-    from scope_ptz.taskgen.facts.phrasing import right_answers
-    from scope_ptz.taskgen.gold.judges import gold_case, in_turn, passing_case
-    from scope_ptz.taskgen.gold.runs import EYES, read_gold
+    from scope_ptz.taskgen.facts.answer_phrasing import right_answers
+    from scope_ptz.taskgen.facts.robust import TASK_CAMERA
+    from scope_ptz.taskgen.gold.gold_runs import read_gold
+    from scope_ptz.taskgen.gold.judge_results import gold_case, in_turn, passing_case
 
     _, runs = read_gold(gold or published_folder() / "gold.jsonl.gz", load_split(tasks))
     runs = in_turn(runs)[:limit]
@@ -128,7 +129,7 @@ def gold_cases(gold: Path | None, tasks: str, passing: int, limit: int | None) -
     async def add_passing() -> None:
         for task in list({run.task.id: run.task for run in runs}.values())[:passing]:
             answer, outcome = right_answers(task.expected)[0], task.behaviour.outcomes[0]
-            episode = await Stage(worlds[task.world], equip, EYES).run(task, task.reference, answer, outcome)
+            episode = await Stage(worlds[task.world], equip, TASK_CAMERA).run(task, task.reference, answer, outcome)
             if judge(task, episode).headline == "correct":
                 cases.append(passing_case(task, episode, places[task.world]))
 
@@ -139,10 +140,10 @@ def gold_cases(gold: Path | None, tasks: str, passing: int, limit: int | None) -
 def gold_lines(result: GoldResult) -> Iterator[str]:
     """What a judge made of gold runs, as text."""
     from scope_ptz.bench.scoring.error_modes import ErrorMode
-    from scope_ptz.taskgen.gold.judges import APART, PASSES
+    from scope_ptz.taskgen.gold.judge_results import PASSES, WITHOUT_VERDICT
 
     modes = [mode.value for mode in ErrorMode]
-    columns = [*modes, "correct", *APART]
+    columns = [*modes, "correct", *WITHOUT_VERDICT]
     made = sum(result.cells.values())
     times = f", {made} judgements" if made != result.runs else ""
     runs = f"{result.runs} gold run{'' if result.runs == 1 else 's'}"

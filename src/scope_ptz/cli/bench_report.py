@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from scope_ptz.taskgen.validation.validate import Fault, Report
+from scope_ptz.taskgen.validation.validation_report import ValidationFault, ValidationReport
 
 MOST_LISTED = 40
 
 
-def report_lines(report: Report) -> Iterator[str]:
+def report_lines(report: ValidationReport) -> Iterator[str]:
     """Counts by category, right ways, cheats, then every failure."""
     content = report.as_dict()
     yield f"{report.tasks} tasks: " + ", ".join(f"{number} {name}" for name, number in sorted(report.by_stratum.items()))
@@ -28,12 +28,12 @@ def report_lines(report: Report) -> Iterator[str]:
         guess = name.removeprefix("looked-and-guessed: ")
         yield f"  {guess:<22}{row['passed']:>5}  ({row['share']:.1%})  {row['pairs_whole']:>5}  ({row['share_pairs_whole']:.1%})"
     yield from _listed("failed", report.faults)
-    yield from _listed("cheated", report.cheated)
+    yield from _listed("cheated", report.adversarial_passes)
     yield from _listed("seen otherwise by the ground-truth perception", report.disagreements)
     yield "sound" if report.sound else "NOT SOUND"
 
 
-def _listed(title: str, faults: Sequence[Fault]) -> Iterator[str]:
+def _listed(title: str, faults: Sequence[ValidationFault]) -> Iterator[str]:
     if faults:
         yield f"{title}: {len(faults)}"
     for fault in faults[:MOST_LISTED]:

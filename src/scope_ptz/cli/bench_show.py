@@ -21,7 +21,7 @@ from scope_ptz.factory.validation_perception import equip_with_truth
 from scope_ptz.geometry import Equirectangular, Perspective, Pose, Projection
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.views import picture
-from scope_ptz.taskgen.facts.phrasing import right_answers
+from scope_ptz.taskgen.facts.answer_phrasing import right_answers
 
 EYES = Eyes(1280, 720)
 _MARGIN, _HEAD, _LINE = 28, 118, 24

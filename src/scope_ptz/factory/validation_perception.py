@@ -17,8 +17,8 @@ from scope_ptz.perception.view import View, read_view
 from scope_ptz.simulator.actors import appearances, shows
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.truth import ViewTruth, view_truth
-from scope_ptz.taskgen.authoring.drafts import Draft
-from scope_ptz.taskgen.facts.robust import Sight
+from scope_ptz.taskgen.authoring.drafts import TaskDraft
+from scope_ptz.taskgen.facts.robust import RobustTruth
 from scope_ptz.tools.context import ToolContext
 
 
@@ -56,18 +56,18 @@ class KnownViews:
         return self._known[key]
 
 
-def answered(draft: Draft) -> bool:
+def answered(draft: TaskDraft) -> bool:
     """Return whether ground-truth perception can answer the questions of a draft's reference program, in agreement with the draft.
 
     Questions about a close-up are left to the proof.
     """
-    sight = draft.place.sight
-    asked = [str(call.arguments["question"]) for call in draft.looks if call.tool == "query_answer"]
-    if draft.looks_closer or not asked:
+    truth = draft.place.truth
+    asked = [str(call.arguments["question"]) for call in draft.perception_calls if call.tool == "query_answer"]
+    if draft.ends_zoomed or not asked:
         return True
-    view = _view(sight)
+    view = _view(truth)
     replies = [answer(view, parse_question(question)) for question in asked]
-    if len(draft.looks) == 1 and agrees(draft.expected, read(draft.expected, replies[0].text)) is False:
+    if len(draft.perception_calls) == 1 and agrees(draft.expected, read(draft.expected, replies[0].text)) is False:
         return False
     return all(reply.known for reply in replies)
 
@@ -83,8 +83,8 @@ def is_plain_noun(view: View, asked: str) -> bool:
 
 
 @lru_cache(maxsize=512)
-def _view(sight: Sight) -> View:
-    return read_view(sight.first, sight.scene.file, sight.time_s)
+def _view(truth: RobustTruth) -> View:
+    return read_view(truth.first, truth.scene.file, truth.time_s)
 
 
 def equip_with_truth(scenes: Mapping[str, Scene], views: KnownViews | None = None) -> Equip:

@@ -20,7 +20,7 @@ from scope_ptz.bench.tasks.wording import facts_of
 from scope_ptz.cli.bench_agree import agreement_lines, figures
 from scope_ptz.cli.bench_judge_gold import gold_lines
 from scope_ptz.errors import InputError
-from scope_ptz.taskgen.gold.judges import (
+from scope_ptz.taskgen.gold.judge_results import (
     GoldCase,
     GoldVerdict,
     gold_case,
@@ -32,7 +32,7 @@ from scope_ptz.taskgen.gold.judges import (
     result,
     results,
 )
-from scope_ptz.taskgen.gold.mutations import Gold, Setting, mutate
+from scope_ptz.taskgen.gold.mutations import FaultSetting, GoldRun, mutate
 from tests.bench.judging.runs import PLACES
 from tests.bench.making import EYES, PRESETS, samples
 
@@ -130,10 +130,10 @@ def test_the_report_as_text_and_as_json() -> None:
 # Gold runs
 
 
-def gold_runs() -> list[Gold]:
+def gold_runs() -> list[GoldRun]:
     import random
 
-    setting = Setting(PRESETS, EYES)
+    setting = FaultSetting(PRESETS, EYES)
     made = (mutate(task, episode, mode, setting, random.Random(7)) for task, episode in samples() for mode in MODES)
     return [gold for gold in made if gold is not None]
 

@@ -22,10 +22,11 @@ from scope_ptz.errors import ConfigError, InputError
 from scope_ptz.factory.judges import UnnamedJudgeError, open_judge
 from scope_ptz.factory.scenes import open_scene
 from scope_ptz.factory.validation_perception import equip_with_truth
-from scope_ptz.taskgen.authoring.places import preset_at
-from scope_ptz.taskgen.gold.judges import read_verdicts
-from scope_ptz.taskgen.gold.mutations import Setting, mutate
-from scope_ptz.taskgen.gold.runs import EYES, write_gold
+from scope_ptz.taskgen.authoring.task_places import preset_at
+from scope_ptz.taskgen.facts.robust import TASK_CAMERA
+from scope_ptz.taskgen.gold.gold_runs import write_gold
+from scope_ptz.taskgen.gold.judge_results import read_verdicts
+from scope_ptz.taskgen.gold.mutations import FaultSetting, mutate
 from tests.bench.judging.runs import CORRECT, written
 from tests.bench.judging.test_labels import turn_task
 from tests.support import misbehaving as m
@@ -38,8 +39,8 @@ def gold(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with two tasks of the shipped scene and their gold runs: turned the wrong way, and not at all."""
     folder = tmp_path_factory.mktemp("gold")
     scene = open_scene("highway-works")
-    stage = Stage(scene, equip_with_truth({scene.name: scene}), EYES)
-    setting = Setting({preset.name: preset_at(preset) for preset in scene.file.presets}, EYES)
+    stage = Stage(scene, equip_with_truth({scene.name: scene}), TASK_CAMERA)
+    setting = FaultSetting({preset.name: preset_at(preset) for preset in scene.file.presets}, TASK_CAMERA)
     tasks = [turn_task(1, 20), turn_task(2, 30)]
 
     async def run(task: Task) -> Episode:

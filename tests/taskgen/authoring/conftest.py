@@ -1,4 +1,4 @@
-"""A small dataset of the synthetic scene, made and proved once."""
+"""A small dataset of the synthetic scene, built and validated once."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ import pytest
 from scope_ptz.bench.tasks.task import Category
 from scope_ptz.factory.validation_perception import answered, equip_with_truth
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.taskgen.authoring.assembly import Built, build
-from scope_ptz.taskgen.validation.validate import Report, validate
+from scope_ptz.taskgen.authoring.assembly import BuiltTasks, build
+from scope_ptz.taskgen.validation.validate import validate
+from scope_ptz.taskgen.validation.validation_report import ValidationReport
 
 QUOTAS: dict[Category, int] = {
     "counting": 8,
@@ -26,12 +27,12 @@ QUOTAS: dict[Category, int] = {
 
 
 @pytest.fixture(scope="session")
-def built(analytic_scene: Scene) -> Built:
+def built(analytic_scene: Scene) -> BuiltTasks:
     return build([analytic_scene], 1, QUOTAS, None, answered)
 
 
 @pytest.fixture(scope="session")
-def report(built: Built, analytic_scene: Scene) -> Report:
+def report(built: BuiltTasks, analytic_scene: Scene) -> ValidationReport:
     scenes = {analytic_scene.name: analytic_scene}
     return anyio.run(lambda: validate(built.tasks, scenes, equip_with_truth(scenes)))
 

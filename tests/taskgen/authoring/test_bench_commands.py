@@ -1,4 +1,4 @@
-"""scope bench build, validate and browse, on the synthetic scene."""
+"""``scope bench build``, ``validate`` and ``browse`` on the synthetic scene."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from pathlib import Path
 import pytest
 
 from scope_ptz.bench.tasks.files import dump_tasks, load_tasks
-from scope_ptz.taskgen.authoring.assembly import Built
+from scope_ptz.taskgen.authoring.assembly import BuiltTasks
 from tests.cli.conftest import Scope, scenes, scope
 
 __all__ = ["scenes", "scope"]
 
 
 @pytest.fixture
-def few(built: Built, tmp_path: Path) -> Path:
+def few(built: BuiltTasks, tmp_path: Path) -> Path:
     """A file of four tasks without twins."""
     core = [task for task in built.tasks if task.stratum == "core" and task.pair is None]
     path = tmp_path / "tasks.jsonl"
@@ -23,7 +23,7 @@ def few(built: Built, tmp_path: Path) -> Path:
     return path
 
 
-def test_build_writes_tasks_and_tells_what_is_short(scope: Scope, tmp_path: Path) -> None:
+def test_build_writes_tasks_and_reports_the_shortfall(scope: Scope, tmp_path: Path) -> None:
     out = tmp_path / "made" / "tasks.jsonl"
     done = scope("bench", "build", "--scene", "analytic-yard", "--share", "0.03", "--out", str(out))
     assert len(load_tasks(out)) > 8
@@ -48,7 +48,7 @@ def test_validate_fails_on_a_wrong_value(scope: Scope, few: Path) -> None:
     assert done.json["faults"][0]["attempt"] == "truth"
 
 
-def test_browse_shows_words_run_and_frames(scope: Scope, few: Path, tmp_path: Path) -> None:
+def test_browse_shows_instruction_run_and_frames(scope: Scope, few: Path, tmp_path: Path) -> None:
     task = load_tasks(few)[0]
     done = scope("bench", "browse", task.id, "--tasks", str(few), "--out", str(tmp_path / "frames"))
     assert done.code == 0, done.err
@@ -56,13 +56,13 @@ def test_browse_shows_words_run_and_frames(scope: Scope, few: Path, tmp_path: Pa
     assert len(list((tmp_path / "frames").glob("*.png"))) == 1 + len(task.evidence)
 
 
-def test_browse_wants_a_task_that_is_there(scope: Scope, few: Path) -> None:
+def test_browse_rejects_an_unknown_task(scope: Scope, few: Path) -> None:
     done = scope("bench", "browse", "counting-999", "--tasks", str(few))
     assert done.code == 2
     assert "no task" in done.err
 
 
-def test_a_missing_file_is_told(scope: Scope, tmp_path: Path) -> None:
+def test_a_missing_file_is_reported(scope: Scope, tmp_path: Path) -> None:
     done = scope("bench", "validate", "--tasks", str(tmp_path / "none.jsonl"))
     assert done.code == 2
     assert "cannot be read" in done.err

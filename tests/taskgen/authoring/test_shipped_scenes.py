@@ -1,4 +1,4 @@
-"""A few tasks of a scene that ships, and of two scenes together: made, worded, proved."""
+"""A small dataset of a shipped scene together with the synthetic one is worded and validated."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scope_ptz.bench.tasks.task import Category
 from scope_ptz.cli.bench_report import report_lines
 from scope_ptz.factory.validation_perception import KnownViews, equip_with_truth
 from scope_ptz.simulator.pack import Scene, load_scene
-from scope_ptz.taskgen.authoring.assembly import QUOTAS, Built, build
+from scope_ptz.taskgen.authoring.assembly import QUOTAS, BuiltTasks, build
 from scope_ptz.taskgen.validation.validate import validate
 
 FEW: dict[Category, int] = {**dict.fromkeys(QUOTAS, 2), "counting": 6, "descriptor": 4, "ocr": 1}
@@ -25,26 +25,26 @@ def two_scenes(analytic_scene: Scene) -> dict[str, Scene]:
 
 
 @pytest.fixture(scope="module")
-def made(two_scenes: dict[str, Scene]) -> Built:
+def made(two_scenes: dict[str, Scene]) -> BuiltTasks:
     return build(list(two_scenes.values()), 3, FEW)
 
 
-def test_both_scenes_have_their_share(made: Built, two_scenes: dict[str, Scene]) -> None:
+def test_tasks_are_spread_over_both_scenes(made: BuiltTasks, two_scenes: dict[str, Scene]) -> None:
     assert not made.short
     per_scene = Counter(task.scene for task in made.tasks if task.stratum == "core" and task.category == "counting")
     assert set(per_scene) == set(two_scenes)
     assert max(per_scene.values()) - min(per_scene.values()) <= 2
 
 
-def test_all_of_it_is_proved(made: Built, two_scenes: dict[str, Scene]) -> None:
+def test_the_dataset_is_sound(made: BuiltTasks, two_scenes: dict[str, Scene]) -> None:
     views = KnownViews()
-    report = anyio.run(lambda: validate(made.tasks, two_scenes, equip_with_truth(two_scenes, views), look=views.look))
+    report = anyio.run(lambda: validate(made.tasks, two_scenes, equip_with_truth(two_scenes, views), read_truth=views.look))
     assert report.sound, "\n".join(report_lines(report))
     assert not report.disagreements
     assert report.absences == sum(isinstance(t.expected, NoneThere) for t in made.tasks if t.stratum == "core")
 
 
-def test_the_english_is_clean(made: Built) -> None:
+def test_instructions_have_no_formatting_faults(made: BuiltTasks) -> None:
     for task in made.tasks:
         text = task.instruction
         assert text[0].isupper() or text[0] == '"'

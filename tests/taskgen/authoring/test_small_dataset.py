@@ -1,4 +1,4 @@
-"""A dataset of the synthetic scene: quotas, distinctness, pairs, the same bytes again, and that faults are caught."""
+"""A dataset of the synthetic scene: quotas, unique tasks, pairs, reproducible bytes, and validation that detects faults."""
 
 from __future__ import annotations
 
@@ -20,28 +20,30 @@ from scope_ptz.cli.bench_report import report_lines
 from scope_ptz.factory.validation_perception import equip_with_truth
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.taskgen.authoring.assembly import QUOTAS as PUBLISHED
-from scope_ptz.taskgen.authoring.assembly import Built
+from scope_ptz.taskgen.authoring.assembly import BuiltTasks
 from scope_ptz.taskgen.authoring.reactions import reactions
-from scope_ptz.taskgen.facts.phrasing import offered
+from scope_ptz.taskgen.facts.answer_phrasing import offered
 from scope_ptz.taskgen.validation.adversarial import common_answers
-from scope_ptz.taskgen.validation.validate import Report, structure, validate
+from scope_ptz.taskgen.validation.dataset_checks import structure
+from scope_ptz.taskgen.validation.validate import validate
+from scope_ptz.taskgen.validation.validation_report import ValidationReport
 from tests.taskgen.authoring.conftest import QUOTAS
 
 
-def core(built: Built) -> list[Task]:
+def core(built: BuiltTasks) -> list[Task]:
     return [task for task in built.tasks if task.stratum == "core"]
 
 
-def prove(tasks: list[Task], scene: Scene) -> Report:
+def run_validation(tasks: list[Task], scene: Scene) -> ValidationReport:
     scenes = {scene.name: scene}
     return anyio.run(lambda: validate(tasks, scenes, equip_with_truth(scenes)))
 
 
-def test_the_published_numbers_are_the_papers() -> None:
+def test_published_quotas_add_up_to_the_536_tasks_of_the_paper() -> None:
     assert sum(PUBLISHED.values()) == 536
 
 
-def test_quotas_are_filled_or_what_is_short_is_told(built: Built) -> None:
+def test_quotas_are_filled_or_the_shortfall_is_reported(built: BuiltTasks) -> None:
     counts = Counter(task.category for task in core(built))
     assert {name: counts[name] + built.short.get(name, 0) for name in QUOTAS} == QUOTAS
     assert counts["counting"] == QUOTAS["counting"]
@@ -60,8 +62,8 @@ dump_tasks(build([Scene(Path(folder))], int(seed), QUOTAS, None, answered).tasks
 """
 
 
-def test_the_same_seed_makes_the_same_bytes_and_another_seed_does_not(built: Built, analytic_folder: Path, tmp_path: Path) -> None:
-    """In a process of its own, where strings and sets hash otherwise."""
+def test_same_seed_gives_the_same_bytes_and_another_seed_does_not(built: BuiltTasks, analytic_folder: Path, tmp_path: Path) -> None:
+    """Separate processes have other hash seeds, so that strings and sets are ordered differently."""
     files = [tmp_path / f"{n}.jsonl" for n in range(3)]
     dump_tasks(built.tasks, files[0])
     for seed, hashes, file in ((1, "4711", files[1]), (2, "0", files[2])):
@@ -72,20 +74,20 @@ def test_the_same_seed_makes_the_same_bytes_and_another_seed_does_not(built: Bui
     assert load_tasks(files[0]) == tuple(built.tasks)
 
 
-def test_a_selection_may_leave_a_twin_behind(built: Built) -> None:
+def test_the_twin_of_a_selected_task_may_be_in_the_rest_of_the_dataset(built: BuiltTasks) -> None:
     alone = [task for task in built.tasks if task.pair is not None][:1]
     assert [fault.attempt for fault in structure(alone)] == ["pair"]
-    assert not structure(alone, beside=built.tasks)
+    assert not structure(alone, dataset=built.tasks)
 
 
-def test_no_two_ask_the_same(built: Built) -> None:
+def test_no_two_tasks_ask_the_same(built: BuiltTasks) -> None:
     assert not structure(built.tasks)
     views = Counter((t.evidence[0].aim, t.evidence[0].scope, t.expected, t.tags) for t in core(built) if t.category == "counting")
     assert max(views.values()) == 1
     assert len({task.id for task in built.tasks}) == len(built.tasks)
 
 
-def test_absences_stand_beside_presences_of_like_wording(built: Built) -> None:
+def test_every_absence_has_a_presence_as_its_twin(built: BuiltTasks) -> None:
     by_id = {task.id: task for task in built.tasks}
     absences = [task for task in core(built) if isinstance(task.expected, NoneThere)]
     assert absences
@@ -96,14 +98,14 @@ def test_absences_stand_beside_presences_of_like_wording(built: Built) -> None:
         assert task.preset == twin.preset or task.evidence[0].aim.viewpoint == twin.evidence[0].aim.viewpoint
 
 
-def test_a_sum_over_two_views_counts_nothing_twice(built: Built) -> None:
+def test_a_sum_over_two_views_counts_no_object_twice(built: BuiltTasks) -> None:
     for task in core(built):
         if len(task.evidence) > 1 and isinstance(task.expected, Number) and not {"sort:difference", "sort:excess"} & set(task.tags):
             things = [item.instance for view in task.evidence for item in view.items]
             assert len(things) == len(set(things)) == task.expected.value
 
 
-def test_paraphrases_expect_what_their_task_expects(built: Built) -> None:
+def test_paraphrases_have_the_expected_answer_of_their_task(built: BuiltTasks) -> None:
     by_id = {task.id: task for task in built.tasks}
     wordings = [task for task in built.tasks if task.stratum == "paraphrase"]
     assert wordings
@@ -113,27 +115,27 @@ def test_paraphrases_expect_what_their_task_expects(built: Built) -> None:
         assert (task.expected, task.behaviour, task.reference) == (original.expected, original.behaviour, original.reference)
 
 
-def test_everything_is_proved(report: Report) -> None:
+def test_the_dataset_is_sound(report: ValidationReport) -> None:
     assert report.sound, "\n".join(report_lines(report))
     assert not report.disagreements
     assert report.passed["reference"] == report.tasks
-    assert all(share == 0 for share in report.cheat_shares.values())
+    assert all(share == 0 for share in report.adversarial_shares.values())
     assert {"nothing", "guess", "blind", "stay", "wrong-answer", "ignored", "wrong-pose"} <= set(report.tried)
 
 
-def test_no_answer_passes_both_tasks_of_a_pair(report: Report, built: Built) -> None:
+def test_no_fixed_answer_passes_both_tasks_of_a_pair(report: ValidationReport, built: BuiltTasks) -> None:
     twins = {task.id: task.pair for task in core(built)}
     assert set(report.guessed) >= {f"looked-and-guessed: {guess}" for guess in ("none", "0", "yes", "no", "most common")}
     for name, ids in report.guessed.items():
         assert not any(twins[one] in ids for one in ids), name
-        assert report.whole[name] == sum(twins[one] is None for one in ids)
+        assert report.pairs_passed[name] == sum(twins[one] is None for one in ids)
     none = set(report.guessed["looked-and-guessed: none"])
-    # Beside absences "none" is right only where something in a single task is not so.
+    # Outside pairs, "none" is right only for questions whose answer is no.
     denied = {task.id for task in core(built) if isinstance(task.expected, YesNo) and not task.expected.value}
     assert none and {one for one in none if twins[one] is None} <= denied
 
 
-def test_what_a_question_offers() -> None:
+def test_answers_that_a_question_offers() -> None:
     sides = Choice(value="right", options={"left": ("left half",), "right": ("right half",)})
     assert offered(sides, "Turn 20 degrees to the right. Is the car in the left or the right half?") == ("left", "right")
     assert offered(sides, "On which side is the car?") == ()
@@ -142,7 +144,7 @@ def test_what_a_question_offers() -> None:
     assert offered(three, "Which is nearest: the van, the red car or the bus?") == ("van", "red car", "bus")
 
 
-def test_the_most_common_answer_stands_without_the_words_of_its_question(built: Built) -> None:
+def test_most_common_answer_does_not_contain_words_of_its_question(built: BuiltTasks) -> None:
     counts = [task.expected for task in core(built) if task.category == "counting" and task.pair is None]
     common = Counter(f"{e.value:g}" for e in counts if isinstance(e, Number)).most_common(1)[0][0]
     assert common_answers(built.tasks, presences=True)["counting"] == common
@@ -153,46 +155,48 @@ def wrong_count(task: Task) -> Task:
     return task.model_copy(update={"expected": task.expected.model_copy(update={"value": task.expected.value + 1})})
 
 
-def without_evidence_of_looking(task: Task) -> Task:
+def without_required_observation(task: Task) -> Task:
     views = tuple(view.model_copy(update={"must_look": False}) for view in task.evidence)
     return task.model_copy(update={"evidence": views, "behaviour": task.behaviour.model_copy(update={"final": None})})
 
 
-def elsewhere(task: Task) -> Task:
+def with_another_final_pose(task: Task) -> Task:
     final = task.behaviour.final
     assert final is not None
     moved = final.model_copy(update={"pan_deg": final.pan_deg + 2.0})
     return task.model_copy(update={"behaviour": task.behaviour.model_copy(update={"final": moved})})
 
 
-@pytest.mark.parametrize(("spoil", "caught"), [(without_evidence_of_looking, "cheated"), (elsewhere, "faults")])
-def test_a_spoilt_task_is_caught(built: Built, analytic_scene: Scene, spoil: Callable[[Task], Task], caught: str) -> None:
+@pytest.mark.parametrize(
+    ("spoil", "field"), [(without_required_observation, "adversarial_passes"), (with_another_final_pose, "faults")]
+)
+def test_a_spoilt_task_is_detected(built: BuiltTasks, analytic_scene: Scene, spoil: Callable[[Task], Task], field: str) -> None:
     task = next(t for t in core(built) if t.category == "counting" and isinstance(t.expected, Number) and t.behaviour.final)
-    spoilt = prove([spoil(task).model_copy(update={"pair": None})], analytic_scene)
+    spoilt = run_validation([spoil(task).model_copy(update={"pair": None})], analytic_scene)
     assert not spoilt.sound
-    assert getattr(spoilt, caught)
+    assert getattr(spoilt, field)
 
 
-def test_a_wrong_expected_count_is_told(built: Built, analytic_scene: Scene) -> None:
+def test_a_wrong_expected_count_is_reported(built: BuiltTasks, analytic_scene: Scene) -> None:
     task = next(t for t in core(built) if t.category == "counting" and isinstance(t.expected, Number))
-    spoilt = prove([wrong_count(task).model_copy(update={"pair": None})], analytic_scene)
+    spoilt = run_validation([wrong_count(task).model_copy(update={"pair": None})], analytic_scene)
     assert not spoilt.sound
     assert [fault.attempt for fault in spoilt.faults] == ["truth"]
 
 
-def test_a_twin_that_is_gone_is_told(built: Built) -> None:
+def test_a_missing_twin_is_reported(built: BuiltTasks) -> None:
     task = next(t for t in core(built) if t.pair)
     assert [fault.attempt for fault in structure([task])] == ["pair"]
 
 
-def test_reactions_leave_the_camera_alone(analytic_scene: Scene) -> None:
+def test_reactions_require_that_the_camera_does_not_move(analytic_scene: Scene) -> None:
     tasks, missing = reactions([analytic_scene], 1)
     assert missing == 0 and len(tasks) >= 40
     assert len({task.instruction for task in tasks}) == len(tasks)
-    assert prove(random.Random(1).sample(tasks, 3), analytic_scene).sound
+    assert run_validation(random.Random(1).sample(tasks, 3), analytic_scene).sound
 
 
-def test_a_preset_that_is_gone_is_told(built: Built, analytic_scene: Scene) -> None:
+def test_a_missing_preset_is_reported(built: BuiltTasks, analytic_scene: Scene) -> None:
     task = next(t for t in core(built) if t.pair is None).model_copy(update={"preset": "old-gate"})
-    report = prove([task], analytic_scene)
+    report = run_validation([task], analytic_scene)
     assert [fault.reason for fault in report.faults] == ["the scene has no preset old-gate"]

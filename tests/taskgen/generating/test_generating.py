@@ -1,4 +1,4 @@
-"""Drafts of a scripted model server: good ones are proved and kept, wrong and malicious ones dropped with the reason."""
+"""Drafts of a scripted model server: valid ones are kept, wrong and malicious ones are dropped with a reason."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ import pytest
 from scope_ptz.agent.records import Labels
 from scope_ptz.bench.tasks.files import load_tasks
 from scope_ptz.errors import InputError
-from scope_ptz.taskgen.generating.ledger import Ledger
-from scope_ptz.taskgen.generating.operators import read_runs
-from scope_ptz.taskgen.generating.schema import Draft, read_draft, read_reply, reply_schema
+from scope_ptz.taskgen.generating.draft_ledger import DraftLedger
+from scope_ptz.taskgen.generating.draft_schema import Draft, read_draft, read_reply, reply_schema
+from scope_ptz.taskgen.generating.operator_runs import read_runs
 from tests.cli.conftest import Scope, scenes, scope
 from tests.support import misbehaving as m
 
@@ -57,15 +57,15 @@ BAD = {
         "views": [{"moves": [{"preset": "yard"}, {"tilt_deg": -60.0}]}],
     },
     "program: Input should be": {**COUNT, "program": "exec"},
-    "holds its answer": draft(
+    "contains its answer": draft(
         "At the board preset, read the board that says NO ENTRY.", "ocr", "text", "NO ENTRY",
         start="yard", views=[{"moves": [{"preset": "board"}]}], things=[BOARD],
     ),
-    "would be counted twice": draft(
+    "a sum would count it twice": draft(
         "Add up the blocks at yard and those seen after a turn of 30 degrees to the right.", "multi_step_reasoning", "sum", "3",
         views=[TO_YARD, {"moves": [{"pan_deg": 30.0}]}], things=[BLOCK],
     ),
-    "does not say that all around is meant": {**COUNT, "views": [{**TO_YARD, "sweep": True}]},
+    "does not say that it is about everything around": {**COUNT, "views": [{**TO_YARD, "sweep": True}]},
     "Input should be": "count the balls",
 }  # fmt: skip
 NEAR = {**COUNT, "instruction": "Please go to the yard preset and count the balls."}
@@ -76,7 +76,7 @@ def says(*drafts: Any) -> m.Behaviour:
     return m.good(m.Say(json.dumps({"drafts": drafts})))
 
 
-def test_good_drafts_are_proved_and_kept_and_no_request_is_made_twice(scope: Scope, tmp_path: Path) -> None:
+def test_good_drafts_are_kept_and_no_request_is_repeated(scope: Scope, tmp_path: Path) -> None:
     out = tmp_path / "made"
     more = [draft("Look at the yard preset: is there a ball?", "descriptor", "exists", "yes")]
     with m.Misbehaving([says(*GOOD, NEAR, COUNT), m.good(m.Say("Sorry, no.")), says(*more)]) as server:
@@ -91,14 +91,14 @@ def test_good_drafts_are_proved_and_kept_and_no_request_is_made_twice(scope: Sco
     assert [task.category for task in tasks] == ["counting", "counting", "ocr", "comparative", "single_call", "descriptor"]
     assert [task.expected.model_dump().get("value") for task in tasks] == [3.0, 2.0, None, "balls", None, True]
     assert all(task.scene == "analytic-yard" and "generated" in task.tags for task in tasks)
-    fates = [entry.fate for entry in Ledger(out).entries]
+    fates = [entry.fate for entry in DraftLedger(out).entries]
     assert fates == ["kept"] * 5 + ["dropped", "dropped", "no reply", "kept"]
     review = (out / "review.md").read_text()
     assert "- [ ] scope1-analytic-yard-generated-ocr-003" in review and "no more tasks of the category counting" in review
     assert "generate" not in first.err or "request 1: 5 kept, 2 dropped" in first.err
 
 
-def test_what_the_model_is_told(scope: Scope, tmp_path: Path) -> None:
+def test_content_of_the_prompt(scope: Scope, tmp_path: Path) -> None:
     with m.Misbehaving([says(GOOD[4])]) as server:
         done = scope(
             "bench", "generate", "--scene", "analytic-yard", "--url", server.url, "--out", str(tmp_path / "made"),
@@ -106,36 +106,36 @@ def test_what_the_model_is_told(scope: Scope, tmp_path: Path) -> None:
         )  # fmt: skip
     assert done.code == 0, done.err
     (request,) = server.requests
-    told = json.loads(request.data["messages"][1]["content"])
-    assert told["inventory"]["ball"] == {"no colour": 5}
-    assert told["absent from the whole scene"] == ["zebra"]
-    (yard,) = [view for view in told["views"] if view["preset"] == "yard"]
+    content = json.loads(request.data["messages"][1]["content"])
+    assert content["inventory"]["ball"] == {"no colour": 5}
+    assert content["absent from the whole scene"] == ["zebra"]
+    (yard,) = [view for view in content["views"] if view["preset"] == "yard"]
     assert yard["surely shows"]["ball"] == 3 and yard["changes"]["pan +30"]["ball"] == "3 -> 2"
     assert yard["texts that can be read"] == ["NO ENTRY"]
-    assert told["wanted"] == {"single_call": {"drafts": 1, "programs": ["action"]}}
+    assert content["wanted"] == {"single_call": {"drafts": 1, "programs": ["action"]}}
     assert request.data["response_format"]["json_schema"]["schema"] == reply_schema()
 
 
-def test_wrong_and_malicious_drafts_are_dropped_with_the_reason(scope: Scope, tmp_path: Path) -> None:
+def test_wrong_and_malicious_drafts_are_dropped_with_a_reason(scope: Scope, tmp_path: Path) -> None:
     out, rows = tmp_path / "made", list(BAD.values())
     with m.Misbehaving([says(COUNT, *rows[:9]), says(NEAR, *rows[9:])]) as server:
         done = scope(
             "bench", "generate", "--scene", "analytic-yard", "--url", server.url, "--model", "drafter", "--out", str(out),
             "--want", "counting=5", "--want", "ocr=5", "--want", "multi_step_reasoning=5", "--requests", "2",
         )  # fmt: skip
-        told = json.loads(server.requests[1].data["messages"][1]["content"])
+        content = json.loads(server.requests[1].data["messages"][1]["content"])
     assert done.code == 1 and "still missing: 4 of counting" in done.err
-    entries = Ledger(out).entries
+    entries = DraftLedger(out).entries
     assert [entry.fate for entry in entries] == ["kept", *["dropped"] * 9, "near-duplicate", *["dropped"] * (len(rows) - 9)]
     reasons = [entry.reason for entry in entries if entry.fate == "dropped"]
     assert [wanted for wanted, reason in zip(BAD, reasons, strict=True) if wanted not in reason] == []
-    assert any("does not name the ball" in reason for reason in told["why earlier drafts were dropped"])
+    assert any("does not name the ball" in reason for reason in content["why earlier drafts were dropped"])
     assert {path.name for path in out.iterdir()} == {"drafts.jsonl", "tasks.jsonl", "review.md"}
     assert not (tmp_path / "owned").exists()
     assert "\x1b" not in (out / "review.md").read_text()
 
 
-def test_a_server_that_never_answers_ends_it_and_nothing_is_lost(scope: Scope, tmp_path: Path) -> None:
+def test_unusable_replies_end_generation_without_losing_tasks(scope: Scope, tmp_path: Path) -> None:
     out = tmp_path / "made"
     with m.Misbehaving([says(COUNT), m.good(m.Say("no")), m.good(m.Say("[")), m.good(m.Say('{"drafts": 3}'))]) as server:
         done = scope(
@@ -147,17 +147,17 @@ def test_a_server_that_never_answers_ends_it_and_nothing_is_lost(scope: Scope, t
 
 
 @pytest.mark.parametrize("want", ["counting", "sums=3", "counting=0", "counting=-1"])
-def test_a_wish_that_is_none_is_told(scope: Scope, tmp_path: Path, want: str) -> None:
+def test_an_invalid_number_of_tasks_is_reported(scope: Scope, tmp_path: Path, want: str) -> None:
     done = scope(
         "bench", "generate", "--scene", "analytic-yard", "--url", "http://127.0.0.1:9/v1", "--out", str(tmp_path), "--want", want
     )
     assert done.code == 2 and "counting=5" in done.err
 
 
-def test_replies_may_be_fenced_and_a_bare_list() -> None:
+def test_replies_may_be_fenced_or_a_bare_list() -> None:
     assert read_reply(f"```json\n{json.dumps([COUNT])}\n```") == [COUNT]
     assert isinstance(read_draft(COUNT), Draft)
-    with pytest.raises(ValueError, match="no JSON"):
+    with pytest.raises(ValueError, match="not JSON"):
         read_reply("[" * 100_000)
     with pytest.raises(ValueError, match="longer"):
         read_reply("x" * 300_000)
@@ -165,14 +165,14 @@ def test_replies_may_be_fenced_and_a_bare_list() -> None:
     assert "pan_deg" in str(read_draft({**COUNT, "views": [{"moves": [{"pan_deg": float("nan")}]}]}))
 
 
-def test_runs_of_operators_are_told_with_their_feedback(scope: Scope, tmp_path: Path) -> None:
+def test_operator_runs_are_summarised_with_their_feedback(scope: Scope, tmp_path: Path) -> None:
     done = scope("ask", "count the balls", "--scene", "analytic-yard", "--json")
     assert done.code == 0, done.err
     (run,) = (tmp_path / "runs").iterdir()
     feedback = tmp_path / "feedback.jsonl"
     feedback.write_text(json.dumps({"run": run.name, "rating": "bad", "note": "It missed one."}) + "\n")
     (read,) = read_runs(tmp_path / "runs", feedback)
-    assert read.told()["asked"] == "count the balls" and read.told()["operator said"] == "bad: It missed one."
+    assert read.summary()["asked"] == "count the balls" and read.summary()["operator said"] == "bad: It missed one."
     assert read.trace.started.labels == Labels(perception_note=read.trace.started.labels.perception_note, seed=0)
     feedback.write_text(json.dumps({"run": "../elsewhere", "rating": "bad"}) + "\n")
     with pytest.raises(InputError, match="not in"):

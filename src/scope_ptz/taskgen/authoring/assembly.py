@@ -1,4 +1,4 @@
-"""A dataset: drafts of all scenes chosen to the published quotas, worded, numbered, paired and paraphrased."""
+"""Assembly of a dataset: drafts of all scenes are selected to the quotas, worded, numbered, paired and paraphrased."""
 
 from __future__ import annotations
 
@@ -8,59 +8,60 @@ from dataclasses import dataclass, field
 
 from scope_ptz.bench.tasks.task import Behaviour, Category, Task
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.taskgen.authoring.descriptor import values_of
-from scope_ptz.taskgen.authoring.drafts import Draft, difficulty
+from scope_ptz.taskgen.authoring.categories.descriptor_tasks import values_of
+from scope_ptz.taskgen.authoring.drafts import TaskDraft, difficulty
 from scope_ptz.taskgen.authoring.reactions import DATASET, reactions
 from scope_ptz.taskgen.authoring.scene_drafts import SceneDrafts
-from scope_ptz.taskgen.authoring.selection import Answered, Chosen, Selection, Shared
+from scope_ptz.taskgen.authoring.selection import CanAnswer, ChosenDraft, Selection, SharedLimits
 
 QUOTAS: dict[Category, int] = {
     "counting": 95, "descriptor": 89, "location": 53, "ocr": 54, "single_call": 72, "multi_step_command": 57,
     "multi_step_reasoning": 54, "comparative": 62,
 }  # fmt: skip
-"""The paper's 536."""
+"""Core tasks per category, as in the paper: 536 in all."""
 
-REACTIONS = 44
-PARAPHRASED, WORDINGS = 64, 3
+REACTIONS = 44  # tasks that an agent should question or refuse
+PARAPHRASED, WORDINGS = 64, 3  # paraphrased core tasks, and further wordings of each
 
-Say = Callable[[str], None]
+Progress = Callable[[str], None]
 
 
 @dataclass
-class Built:
-    """``short``: how many tasks of a category (or stratum) the scenes did not yield."""
+class BuiltTasks:
+    """A dataset. ``short`` counts, by category or stratum, the tasks that the scenes did not yield."""
 
     tasks: list[Task] = field(default_factory=list)
     short: dict[str, int] = field(default_factory=dict)
 
 
 class Builder:
-    """Chooses from the desks of all scenes in turn, so that scenes, viewpoints and sorts of question are evenly used."""
+    """Builds the dataset of some scenes."""
 
     def __init__(
         self,
         scenes: Sequence[Scene],
         seed: int,
         quotas: dict[Category, int] | None = None,
-        say: Say | None = None,
-        answered: Answered | None = None,
+        progress: Progress | None = None,
+        can_answer: CanAnswer | None = None,
     ) -> None:
         self.scenes, self.seed, self.quotas = sorted(scenes, key=lambda scene: scene.name), seed, quotas or QUOTAS
-        self.say: Say = say or (lambda _: None)
+        self.progress: Progress = progress or (lambda _: None)
         things = [thing for scene in scenes for thing in scene.things]
         nouns = frozenset({thing.category for thing in things} | {noun for scene in scenes for noun in scene.file.absent})
-        self.desks = [SceneDrafts(scene, seed, nouns, values_of(things)) for scene in scenes]
-        self.shared = Shared(scale=sum(self.quotas.values()) / sum(QUOTAS.values()), answered=answered)
+        self.scene_drafts = [SceneDrafts(scene, seed, nouns, values_of(things)) for scene in scenes]
+        self.shared = SharedLimits(scale=sum(self.quotas.values()) / sum(QUOTAS.values()), can_answer=can_answer)
 
-    def build(self) -> Built:
-        built = Built()
-        chosen: dict[Category, list[Chosen]] = {}
+    def build(self) -> BuiltTasks:
+        """Select and word the tasks of every category, then the paraphrases and reactions."""
+        built = BuiltTasks()
+        chosen: dict[Category, list[ChosenDraft]] = {}
         pools = self._pools()
         for category, quota in self.quotas.items():
             chosen[category] = Selection(category, quota, self.shared, self.seed).fill(pools[category])
             if (missing := quota - len(chosen[category])) > 0:
                 built.short[category] = missing
-            self.say(f"{category}: {len(chosen[category])} of {quota}")
+            self.progress(f"{category}: {len(chosen[category])} of {quota}")
         for category, rows in chosen.items():
             self._number(category, rows)
             built.tasks += [_task(row, row.text) for row in rows]
@@ -72,19 +73,19 @@ class Builder:
                 built.short["reaction"] = missing
         return built
 
-    def _pools(self) -> dict[Category, list[Draft]]:
-        """All drafts of all scenes by category. One scene's layers are in memory at a time."""
-        pools: dict[Category, list[Draft]] = {category: [] for category in self.quotas}
-        for desk in self.desks:
+    def _pools(self) -> dict[Category, list[TaskDraft]]:
+        """Return the drafts of all scenes by category. Only one scene's layers are in memory at a time."""
+        pools: dict[Category, list[TaskDraft]] = {category: [] for category in self.quotas}
+        for drafts in self.scene_drafts:
             for category, pool in pools.items():
-                pool += desk.drafts(category)
-            desk.scene.release()
-            self.say(
-                f"{desk.scene.name}: {sum(draft.place.scene is desk.scene for pool in pools.values() for draft in pool)} drafts"
-            )
+                pool += drafts.drafts(category)
+            drafts.scene.release()
+            number = sum(draft.place.scene is drafts.scene for pool in pools.values() for draft in pool)
+            self.progress(f"{drafts.scene.name}: {number} drafts")
         return pools
 
-    def _number(self, category: Category, rows: list[Chosen]) -> None:
+    def _number(self, category: Category, rows: list[ChosenDraft]) -> None:
+        """Give every draft its id, and connect the two tasks of each pair."""
         counts: Counter[str] = Counter()
         for row in rows:
             counts[row.scene] += 1
@@ -95,17 +96,17 @@ class Builder:
                 twin = by_draft[id(row.draft.twin)]
                 row.pair, twin.pair = twin.id, row.id
 
-    def _paraphrases(self, chosen: dict[Category, list[Chosen]]) -> list[Task]:
-        """Further wordings of tasks, categories in turn."""
-        wanted = max(1, PARAPHRASED * sum(self.quotas.values()) // sum(QUOTAS.values()))
+    def _paraphrases(self, chosen: dict[Category, list[ChosenDraft]]) -> list[Task]:
+        """Return further wordings of tasks, alternating between categories."""
+        number = max(1, PARAPHRASED * sum(self.quotas.values()) // sum(QUOTAS.values()))
         found = list[Task]()
-        able = {c: [row for row in rows if len(row.variants) >= WORDINGS] for c, rows in chosen.items()}
-        for rows in able.values():
+        candidates = {c: [row for row in rows if len(row.variants) >= WORDINGS] for c, rows in chosen.items()}
+        for rows in candidates.values():
             rows.sort(key=lambda row: row.draft.digest(f"{self.seed}:paraphrases"))
         done = 0
-        while done < wanted and any(able.values()):
-            for rows in able.values():
-                if rows and done < wanted:
+        while done < number and any(candidates.values()):
+            for rows in candidates.values():
+                if rows and done < number:
                     row, done = rows.pop(), done + 1
                     texts = [text for text in dict.fromkeys(row.variants) if text not in self.shared.texts][:WORDINGS]
                     self.shared.texts.update(texts)
@@ -113,9 +114,9 @@ class Builder:
         return found
 
 
-def _task(row: Chosen, text: str, wording: int = 0) -> Task:
+def _task(row: ChosenDraft, text: str, wording: int = 0) -> Task:
     draft, place = row.draft, row.draft.place
-    fixed = draft.program is None and not draft.looks_closer
+    fixed = draft.program is None and not draft.ends_zoomed
     behaviour = draft.behaviour or (Behaviour(final=place.final) if fixed else Behaviour())
     return Task(
         id=f"{row.id.replace(f'-{row.scene}-', f'-{row.scene}-wording-')}{wording}" if wording else row.id,
@@ -133,7 +134,7 @@ def _task(row: Chosen, text: str, wording: int = 0) -> Task:
         evidence=draft.evidence,
         reference=draft.calls,
         needs=draft.needs if draft.needs is not None else place.needs,
-        tags=(*draft.tags, f"sort:{draft.kind}"),
+        tags=(*draft.tags, f"sort:{draft.question_type}"),
         pair=None if wording else row.pair,
         paraphrase_of=row.id if wording else None,
     )
@@ -143,9 +144,19 @@ def build(
     scenes: Sequence[Scene],
     seed: int = 1,
     quotas: dict[Category, int] | None = None,
-    say: Say | None = None,
-    answered: Answered | None = None,
-) -> Built:
-    """The dataset of these scenes; what they do not yield is told in ``short``. ``answered``: whether eyes that see all can answer
-    what the reference program of a draft asks them (None: taken for granted)."""
-    return Builder(scenes, seed, quotas, say, answered).build()
+    progress: Progress | None = None,
+    can_answer: CanAnswer | None = None,
+) -> BuiltTasks:
+    """Build the dataset of some scenes.
+
+    Args:
+        scenes: The scenes. Their order matters.
+        seed: Seed for every random choice.
+        quotas: Core tasks per category. By default the published ones, with reactions besides.
+        progress: Receives a line of text after every step.
+        can_answer: Whether perception can answer the reference program of a draft. By default every draft counts as answerable.
+
+    Returns:
+        The tasks, and how many are missing.
+    """
+    return Builder(scenes, seed, quotas, progress, can_answer).build()

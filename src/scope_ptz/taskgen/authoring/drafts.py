@@ -1,4 +1,4 @@
-"""Drafts of tasks: a question or an order about a place, before it has a wording and a number."""
+"""Drafts of tasks: a question or a command about a place, before it has a wording and an id."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from typing import Literal
 
 from scope_ptz.bench.tasks.expected import AnyExpected, Wordings
 from scope_ptz.bench.tasks.task import Behaviour, Category, EvidenceView, Item, Need, ProgramCall
-from scope_ptz.taskgen.authoring.places import Place
-from scope_ptz.taskgen.authoring.words import capital
-from scope_ptz.taskgen.facts.robust import EYES
+from scope_ptz.taskgen.authoring.noun_phrases import capital
+from scope_ptz.taskgen.authoring.task_places import TaskPlace
+from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 from scope_ptz.tools.arguments import View
 
 _WRAPPERS = (
@@ -42,65 +42,81 @@ _STAYING = (
 
 @dataclass(frozen=True)
 class Question:
-    """Ways to ask one thing: each directly ("how many cars are there?") and inside a sentence ("how many cars there are")."""
+    """Wordings of a question, each as a direct question ("how many are there?") and as a clause ("how many there are")."""
 
     forms: tuple[tuple[str, str], ...]
 
 
 def same_form(*questions: str) -> tuple[tuple[str, str], ...]:
-    """Questions that read the same inside a sentence ("which is nearer, ...")."""
+    """Return wordings that read the same as a question and as a clause ("which is nearer, ...")."""
     return tuple((question, question.rstrip("?")) for question in questions)
 
 
 @dataclass(frozen=True)
-class Draft:
-    """``key``: what is asked, so that nothing is asked twice of a view; ``kind``: the sort of question, for an even mixture.
+class TaskDraft:
+    """A task before it has a wording and an id.
 
-    ``orders``: complete wordings, for what is no question. ``twin``: the like-worded task whose answer is a presence where this
-    one's is an absence. ``reads``: words that tell the answer apart, for the spread of answers.
+    Attributes:
+        category: The category of the task.
+        question_type: The question type, which the selection balances.
+        key: What is asked. The same question is never asked twice about a view.
+        place: The start of the task and the view it is about.
+        expected: The expected answer.
+        question: The wordings of a question.
+        instructions: Complete wordings, for a task that is not a question about a place.
+        evidence: The views that the answer rests on.
+        perception_calls: The calls of the reference program that ask perception.
+        program: The reference program. By default, the calls of the place followed by ``perception_calls``.
+        behaviour: What a run must do besides answering.
+        needs: What an agent must do before it can answer. By default, what the place needs.
+        tags: Tags of the task.
+        weight: How many objects must be told apart, for the difficulty.
+        twin: The task with the same wording whose answer is a presence, where the answer of this one is an absence.
+        answer_key: The answer as a short text, which the selection balances.
     """
 
     category: Category
-    kind: str
+    question_type: str
     key: str
-    place: Place
+    place: TaskPlace
     expected: AnyExpected
     question: Question | None = None
-    orders: tuple[str, ...] = ()
+    instructions: tuple[str, ...] = ()
     evidence: tuple[EvidenceView, ...] = ()
-    looks: tuple[ProgramCall, ...] = ()
+    perception_calls: tuple[ProgramCall, ...] = ()
     program: tuple[ProgramCall, ...] | None = None
     behaviour: Behaviour | None = None
     needs: tuple[Need, ...] | None = None
     tags: tuple[str, ...] = ()
     weight: int = 1
-    twin: Draft | None = None
-    reads: str = ""
+    twin: TaskDraft | None = None
+    answer_key: str = ""
 
     @property
     def calls(self) -> tuple[ProgramCall, ...]:
-        return self.program if self.program is not None else (*self.place.calls, *self.looks)
+        """The reference program."""
+        return self.program if self.program is not None else (*self.place.calls, *self.perception_calls)
 
     @property
-    def looks_closer(self) -> bool:
-        """Whether the camera ends where a close-up leaves it."""
-        return any(call.tool == "zoom_to_object" for call in self.looks)
+    def ends_zoomed(self) -> bool:
+        """Whether the reference program ends at a close-up."""
+        return any(call.tool == "zoom_to_object" for call in self.perception_calls)
 
     @property
     def calls_move(self) -> bool:
-        """Whether the reference moves the camera or looks all around."""
+        """Whether the reference program moves the camera or sweeps."""
         return self.place.swept or any(call.tool not in ("count_objects", "query_answer", "take_image") for call in self.calls)
 
     @cached_property
     def traits(self) -> tuple[tuple[str, str], ...]:
-        """What tasks are to be spread over: scene, viewpoints looked at, sort of question, answer, subject, view, start."""
+        """What the selection balances: scene, viewpoints, question type, answer, subjects, view and start preset."""
         place = self.place
         seen = {view.aim.viewpoint for view in self.evidence} or {str(place.at.viewpoint)}
         return (
             ("scene", place.scene.name),
             *(("viewpoint", f"{place.scene.name}:{name}") for name in sorted(seen)),
-            ("kind", self.kind),
-            ("answer", self.reads),
+            ("question type", self.question_type),
+            ("answer", self.answer_key),
             *(("subject", name) for name in sorted({view.about[0] for view in self.evidence if view.about})),
             ("place", place.key),
             ("start", f"{place.scene.name}:{place.start}"),
@@ -108,23 +124,33 @@ class Draft:
 
     @property
     def full_key(self) -> str:
+        """Identify the question together with the view."""
         return f"{self.place.key}|{self.key}"
 
     def digest(self, seed: int | str) -> str:
-        """A number of its own, as good as drawn by lot, that no other draft has a say in."""
-        said = f"{seed}|{self.category}|{self.kind}|{self.full_key}|{self.reads}|{self.place.start}"
-        return hashlib.blake2b(said.encode(), digest_size=8).hexdigest()
+        """Return a pseudo-random number that depends on the seed and on this draft alone."""
+        text = f"{seed}|{self.category}|{self.question_type}|{self.full_key}|{self.answer_key}|{self.place.start}"
+        return hashlib.blake2b(text.encode(), digest_size=8).hexdigest()
 
 
-class Frames:
-    """Which wordings a category has used, so that none is used more than its share and no text comes twice."""
+class SentenceFrames:
+    """Words the drafts of a category, using its sentence frames evenly and no text twice."""
 
     def __init__(self, texts: set[str]) -> None:
         self.used: Counter[str] = Counter()
         self.texts = texts
 
-    def word(self, draft: Draft, rng: random.Random, like: str | None = None) -> tuple[str, str] | None:
-        """An instruction for a draft and the name of its frame; None when every wording is taken. ``like``: the frame to use."""
+    def word(self, draft: TaskDraft, rng: random.Random, like: str | None = None) -> tuple[str, str] | None:
+        """Word a draft with one of the least used frames.
+
+        Args:
+            draft: The draft.
+            rng: Source of the random choices.
+            like: The only frame to use, for the twin of a draft.
+
+        Returns:
+            The instruction and the name of its frame, or None when no unused wording is left.
+        """
         options = [o for o in self._options(draft, rng) if o[0] not in self.texts and (like is None or o[1] == like)]
         if not options:
             return None
@@ -133,16 +159,17 @@ class Frames:
         return text, frame
 
     def take(self, text: str, frame: str) -> None:
+        """Record that a wording is used."""
         self.texts.add(text)
         self.used[frame] += 1
 
-    def _options(self, draft: Draft, rng: random.Random) -> list[tuple[str, str]]:
+    def _options(self, draft: TaskDraft, rng: random.Random) -> list[tuple[str, str]]:
         if draft.question is None:
-            return [(text, f"{draft.kind}/{n}") for n, text in enumerate(draft.orders)]
+            return [(text, f"{draft.question_type}/{n}") for n, text in enumerate(draft.instructions)]
         place, options = draft.place, list[tuple[str, str]]()
         for n, (direct, inside) in enumerate(draft.question.forms):
             words = {"d": direct, "D": capital(direct), "i": inside}
-            name = f"{draft.kind}/{n}"
+            name = f"{draft.question_type}/{n}"
             if place.stays:
                 options += [(w.format(**words), f"{name}/stay{k}") for k, w in enumerate(_STAYING)]
                 continue
@@ -151,16 +178,25 @@ class Frames:
             if place.swept and not place.calls:
                 options += [(w.format(**words), f"{name}/around{k}") for k, w in enumerate(_AROUND)]
             for k, wrapper in enumerate(_WRAPPERS):
-                moves, before_and = place.said(rng)
-                said = wrapper.format(m=moves, M=capital(moves), l=before_and, L=capital(before_and), **words)
-                options.append((said, f"{name}/{k}"))
+                moves, before_and = place.move_phrases(rng)
+                text = wrapper.format(m=moves, M=capital(moves), l=before_and, L=capital(before_and), **words)
+                options.append((text, f"{name}/{k}"))
         return options
 
 
-def view(place: Place, shows: AnyExpected | None, about: Wordings, items: Sequence[Item] = (), *, whole: bool) -> EvidenceView:
-    """A place as evidence. A view that counts as a whole must be seen at 60% of its sharpness here."""
-    eyes = place.sight.projection
-    density = eyes.density * math.pi / 180
+def evidence_view(
+    place: TaskPlace, shows: AnyExpected | None, about: Wordings, items: Sequence[Item] = (), *, whole: bool
+) -> EvidenceView:
+    """Return a place as evidence for an answer.
+
+    Args:
+        place: The view, or the sweep.
+        shows: What the view shows.
+        about: Words that a perception call about it mentions.
+        items: The objects that the answer rests on.
+        whole: Whether the whole view counts. A run must then see it at 60% or more of its resolution here.
+    """
+    density = place.truth.projection.density * math.pi / 180
     return EvidenceView(
         aim=place.aim,
         scope="full" if place.swept else "current",
@@ -175,20 +211,23 @@ def view(place: Place, shows: AnyExpected | None, about: Wordings, items: Sequen
 
 
 def band() -> tuple[float, float]:
-    """The tilts that a sweep takes in, bottom and top."""
-    sweep = EYES.sweep()
+    """Return the lowest and the highest tilt that a sweep covers, in degrees."""
+    sweep = TASK_CAMERA.sweep()
     return round(sweep.bottom_tilt_deg + 0.01, 2), round(sweep.top_tilt_deg, 2)
 
 
-def scope_of(place: Place) -> View:
+def scope_of(place: TaskPlace) -> View:
+    """Return the scope of perception calls about a place."""
     return "full" if place.swept else "current"
 
 
-def count(description: str, place: Place) -> ProgramCall:
+def count_call(description: str, place: TaskPlace) -> ProgramCall:
+    """Return a call that counts objects at a place."""
     return ProgramCall(tool="count_objects", arguments={"description": description, "view": scope_of(place)})
 
 
-def ask(question: str, place: Place) -> ProgramCall:
+def ask_call(question: str, place: TaskPlace) -> ProgramCall:
+    """Return a call that asks perception a question about a place."""
     return ProgramCall(tool="query_answer", arguments={"question": capital(question), "view": scope_of(place)})
 
 
@@ -196,6 +235,6 @@ Difficulty = Literal["easy", "medium", "hard"]
 
 
 def difficulty(calls: Sequence[ProgramCall], size: float, *, swept: bool) -> Difficulty:
-    """By rule: what it takes, and how much there is to tell. ``size``: how many things must be told apart."""
+    """Return the difficulty by rule, from the number of calls, the number of objects to tell apart (``size``), and a sweep."""
     points = (len(calls) > 2) + (len(calls) > 4) + (size > 4) + (size > 9) + swept
     return "easy" if points == 0 else "medium" if points == 1 else "hard"

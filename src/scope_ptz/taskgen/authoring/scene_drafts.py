@@ -1,4 +1,4 @@
-"""What one scene has to offer: for each category all drafts."""
+"""All drafts of one scene, by category."""
 
 from __future__ import annotations
 
@@ -13,55 +13,44 @@ import numpy as np
 from scope_ptz.bench.tasks.task import Category
 from scope_ptz.geometry import angle_between_deg, pan_tilt_deg
 from scope_ptz.simulator.pack import Scene
-from scope_ptz.taskgen.authoring import (
-    commands,
-    comparative,
-    counting,
-    descriptor,
-    location,
-    ocr,
-    presets_compared,
-    reasoning,
-    single_call,
+from scope_ptz.taskgen.authoring.categories import (
+    command_tasks,
+    comparative_tasks,
+    counting_tasks,
+    descriptor_tasks,
+    location_tasks,
+    ocr_tasks,
+    preset_comparisons,
+    reasoning_tasks,
+    single_call_tasks,
 )
-from scope_ptz.taskgen.authoring.descriptor import Values
-from scope_ptz.taskgen.authoring.drafts import Draft
-from scope_ptz.taskgen.authoring.places import Place, Places
-from scope_ptz.taskgen.facts.robust import EYES
+from scope_ptz.taskgen.authoring.categories.descriptor_tasks import Values
+from scope_ptz.taskgen.authoring.drafts import TaskDraft
+from scope_ptz.taskgen.authoring.task_places import ScenePlaces, TaskPlace
+from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 
-OFF = 64
-"""How many views off the presets a scene is asked about,"""
-
-TRIED = 2
-"""... each the one that shows most of so many."""
-
-STAYS = 3
-"""At so many presets something is asked of the start view itself: such tasks can be answered without a move."""
-
-MOST_GROUPS = 40
-"""How many pairs, and threes, of presets are compared."""
-
-MOST_OF_A_SORT = 10
-"""So many drafts of one sort are kept of a view."""
-
-READING = 36
-"""How many views near to a text a scene is asked about."""
+_OFF_PRESET_VIEWS = 64  # views away from the presets, per scene
+_VIEWS_TRIED = 2  # each of them is the one that shows most objects among this many
+_START_VIEWS = 3  # presets whose start view is asked about; such tasks can be answered without a move
+_MOST_GROUPS = 40  # pairs, and groups of three, of presets that are compared
+_MOST_OF_A_TYPE = 10  # drafts of one question type that are kept for a view
+_READING_VIEWS = 36  # views that are close enough to read a text, per scene
 
 
 class SceneDrafts:
-    """Drafts of a scene, in an order that the seed fixes. Places are looked at only when a category asks for them."""
+    """Drafts of a scene, in an order that the seed determines. Views are read only when a category needs them."""
 
     def __init__(self, scene: Scene, seed: int, nouns: frozenset[str], values: Values) -> None:
         self.scene, self.nouns, self.values = scene, nouns, values
         self._seed = f"{seed}:{scene.name}"
-        self.places = Places(scene, self._rng("places"))
+        self.places = ScenePlaces(scene, self._rng("places"))
 
     def _rng(self, purpose: str) -> random.Random:
         return random.Random(f"{self._seed}:{purpose}")
 
     @cached_property
-    def presets(self) -> list[Place]:
-        """Every preset, viewpoints in turn."""
+    def presets(self) -> list[TaskPlace]:
+        """Every preset, alternating between viewpoints."""
         by_viewpoint: dict[str, list[str]] = {}
         for preset in self.scene.file.presets:
             by_viewpoint.setdefault(preset.viewpoint, []).append(preset.name)
@@ -70,28 +59,28 @@ class SceneDrafts:
         return [self.places.direct(name) for name in names]
 
     @cached_property
-    def views(self) -> list[Place]:
-        """The same places for every category: presets, a sweep from each viewpoint, views off the presets, a few start views."""
+    def views(self) -> list[TaskPlace]:
+        """The places that most categories share: presets, sweeps, views away from the presets, and a few start views."""
         sweeps = {place.at.viewpoint: place for place in reversed(self.places.around()) if not place.calls}
         stays = [self.places.stay(str(p.preset)) for p in self.presets]
         self._rng("stays").shuffle(stays)
-        return [*self.presets, *sweeps.values(), *self._off(), *stays[:STAYS]]
+        return [*self.presets, *sweeps.values(), *self._off_presets(), *stays[:_START_VIEWS]]
 
-    def _off(self) -> Iterator[Place]:
-        """Views off the presets, each the fullest of a few, all presets and viewpoints in turn."""
+    def _off_presets(self) -> Iterator[TaskPlace]:
+        """Yield views away from the presets, each the one of a few that shows most objects."""
         stream, seen = self.places.off(), set[str]()
-        for _ in range(OFF):
-            tried = [place for place in islice(stream, TRIED) if place.key not in seen]
+        for _ in range(_OFF_PRESET_VIEWS):
+            tried = [place for place in islice(stream, _VIEWS_TRIED) if place.key not in seen]
             if not tried:
                 return
-            best = max(tried, key=lambda place: len(place.sight.first.visible))
+            best = max(tried, key=lambda place: len(place.truth.first.visible))
             seen.add(best.key)
             yield best
 
     @cached_property
-    def reading_views(self) -> list[Place]:
-        """Views that are near enough to read a text, one for each thing that bears some."""
-        found: dict[str, Place] = {}
+    def reading_views(self) -> list[TaskPlace]:
+        """Views that are close enough to read a text, one for each object with lettering."""
+        found: dict[str, TaskPlace] = {}
         texts = list(self.scene.file.texts)
         self._rng("reading").shuffle(texts)
         for text in texts:
@@ -102,72 +91,72 @@ class SceneDrafts:
                 angle = float(angle_between_deg(np.cross(np.array(text.right), np.array(text.up)), towards))
                 if angle > 42 or text.parent in found:
                     continue
-                # 22 px of capitals: enough to be read under the strictest threshold.
+                # Capitals of 22 px are legible under the strictest threshold.
                 cap_deg = np.degrees(text.cap_height_m / float(np.linalg.norm(towards)))
-                hfov = EYES.width / (22.0 / cap_deg)
-                if hfov < EYES.optics.hfov_deg(EYES.limits.max_zoom):
+                hfov = TASK_CAMERA.width / (22.0 / cap_deg)
+                if hfov < TASK_CAMERA.optics.hfov_deg(TASK_CAMERA.limits.max_zoom):
                     continue
                 pan, tilt = pan_tilt_deg(here.offset(centre))
-                zoom = EYES.optics.zoom_for_hfov(min(hfov, EYES.optics.hfov_deg(1.0)))
+                zoom = TASK_CAMERA.optics.zoom_for_hfov(min(hfov, TASK_CAMERA.optics.hfov_deg(1.0)))
                 place = self.places.towards(viewpoint.name, float(pan), float(tilt), zoom)
-                if place is not None and any(t.text.id == text.id and t.legible for t in place.sight.first.texts):
+                if place is not None and any(t.text.id == text.id and t.legible for t in place.truth.first.texts):
                     found[text.parent] = place
-                if len(found) == READING:
+                if len(found) == _READING_VIEWS:
                     return list(found.values())
         return list(found.values())
 
-    def drafts(self, category: Category) -> Iterator[Draft]:
-        """Everything that could be asked in a category."""
+    def drafts(self, category: Category) -> Iterator[TaskDraft]:
+        """Yield every draft of a category."""
         rng = self._rng(category)
         match category:
             case "single_call":
-                yield from single_call.drafts(self.places, self.presets, rng)
+                yield from single_call_tasks.drafts(self.places, self.presets, rng)
             case "multi_step_command":
-                yield from commands.drafts(self.places, rng)
+                yield from command_tasks.drafts(self.places, rng)
             case "ocr":
                 for place in [*self.presets, *self.reading_views, *self.views[len(self.presets) :]]:
-                    yield from ocr.drafts(place)
+                    yield from ocr_tasks.drafts(place)
             case _:
                 for place in self.views:
                     yield from _few(self._at(category, place), self._seed)
         if category == "comparative":
             for group in (*self._groups(2), *self._groups(3)):
-                yield from presets_compared.drafts(group, rng)
+                yield from preset_comparisons.drafts(group, rng)
         elif category == "multi_step_reasoning":
             for one, two in self._groups(2):
-                yield from reasoning.drafts(one, two, self.places, self.nouns, rng)
+                yield from reasoning_tasks.drafts(one, two, self.places, self.nouns, rng)
 
-    def _groups(self, size: int) -> list[tuple[Place, ...]]:
-        """Presets to be compared, two or three at a time."""
+    def _groups(self, size: int) -> list[tuple[TaskPlace, ...]]:
+        """Return groups of two or three presets to compare."""
         rng = self._rng(f"groups:{size}")
         groups = [tuple(rng.sample(group, size)) for group in combinations(self.presets, size)]
         rng.shuffle(groups)
-        return groups[:MOST_GROUPS]
+        return groups[:_MOST_GROUPS]
 
-    def _at(self, category: Category, place: Place) -> list[Draft]:
+    def _at(self, category: Category, place: TaskPlace) -> list[TaskDraft]:
         rng = self._rng(f"{category}:{place.start}:{place.key}")
         match category:
             case "counting":
-                return counting.drafts(place, self.nouns, rng)
+                return counting_tasks.drafts(place, self.nouns, rng)
             case "descriptor":
-                return descriptor.drafts(place, self.nouns, self.values, rng)
+                return descriptor_tasks.drafts(place, self.nouns, self.values, rng)
             case "location":
-                return location.drafts(place, self.nouns, rng)
+                return location_tasks.drafts(place, self.nouns, rng)
             case "comparative":
-                return comparative.drafts(place, rng)
-        return reasoning.within(place, rng)
+                return comparative_tasks.drafts(place, rng)
+        return reasoning_tasks.within(place, rng)
 
 
-def _few(drafts: list[Draft], seed: str) -> Iterator[Draft]:
-    """No more than some drafts of each sort, as different in their answers as there are."""
-    by_kind: dict[str, list[Draft]] = {}
+def _few(drafts: list[TaskDraft], seed: str) -> Iterator[TaskDraft]:
+    """Yield a few drafts of each question type, with as many different answers as there are."""
+    by_type: dict[str, list[TaskDraft]] = {}
     for draft in sorted(drafts, key=lambda draft: draft.digest(seed)):
-        by_kind.setdefault(draft.kind, []).append(draft)
-    for group in by_kind.values():
+        by_type.setdefault(draft.question_type, []).append(draft)
+    for group in by_type.values():
         seen: Counter[str] = Counter()
         ranks = []
         for draft in group:
-            ranks.append(seen[draft.reads])
-            seen[draft.reads] += 1
+            ranks.append(seen[draft.answer_key])
+            seen[draft.answer_key] += 1
         order = sorted(range(len(group)), key=ranks.__getitem__)
-        yield from (group[at] for at in order[:MOST_OF_A_SORT])
+        yield from (group[at] for at in order[:_MOST_OF_A_TYPE])

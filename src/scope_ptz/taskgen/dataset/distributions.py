@@ -1,4 +1,4 @@
-"""How a dataset is spread: over categories, scenes, viewpoints, difficulty, needs, and over the answers that are right."""
+"""Distributions of a dataset over categories, scenes, viewpoints, difficulty, needs and right answers, as tables and charts."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from scope_ptz.bench.tasks.expected import ActionOnly, NoneThere, Number, Text
 from scope_ptz.bench.tasks.task import Task
-from scope_ptz.taskgen.facts.phrasing import right_answers
+from scope_ptz.taskgen.facts.answer_phrasing import right_answers
 
-BAR = 30
-MOST_ANSWERS = 6
+BAR_CHARS = 30  # length of the longest bar of a chart
+MOST_ANSWERS = 6  # answers that are listed per category
 
 Key = Callable[[Task], str]
 _ORDER = {"easy": 1, "medium": 2, "hard": 3}
 
 
 def crossed(tasks: Sequence[Task], rows: Key, columns: Key) -> tuple[list[str], list[list[str | int]]]:
-    """A table of counts with sums: its head, and its rows, the last of which is the sum."""
+    """Return the header and the rows of a table of counts. The last column and the last row are sums."""
     counts = Counter((rows(task), columns(task)) for task in tasks)
     across = sorted({column for _, column in counts}, key=lambda name: (_ORDER.get(name, 0), name))
     down = list(dict.fromkeys(rows(task) for task in tasks))
@@ -27,19 +27,19 @@ def crossed(tasks: Sequence[Task], rows: Key, columns: Key) -> tuple[list[str], 
 
 
 def spread(tasks: Iterable[Task], of: Callable[[Task], Iterable[str]]) -> list[tuple[str, int]]:
-    """How many tasks have each of some values, most first."""
+    """Return how many tasks have each value, the most frequent first."""
     return Counter(value for task in tasks for value in of(task)).most_common()
 
 
 def viewpoint(task: Task) -> str:
-    """The optical centre that the answer rests on, "several" when there is more than one; where the camera ends else."""
+    """Return the viewpoint that the answer rests on, "several" for more than one; without evidence, where the camera must end."""
     aims = [view.aim.viewpoint for view in task.evidence] or ([task.behaviour.final.viewpoint] if task.behaviour.final else [])
     names = sorted(set(aims))
     return f"{task.scene} {names[0]}" if len(names) == 1 else f"{task.scene} several" if names else f"{task.scene} any"
 
 
 def answer(task: Task) -> str:
-    """The right answer, short; the same for all that want none, or say that there is none."""
+    """Return the right answer in short, with one text for all actions and one for all absences."""
     match task.expected:
         case ActionOnly():
             return "(an action)"
@@ -53,14 +53,14 @@ def answer(task: Task) -> str:
 
 
 def answers(tasks: Sequence[Task]) -> Iterator[tuple[str, int, int, list[tuple[str, int]]]]:
-    """Of each category its name, its size, how many different answers it has, and the most frequent ones."""
+    """Yield the name of each category, its size, its number of different answers, and the most frequent answers."""
     for category in dict.fromkeys(task.category for task in tasks):
         counts = Counter(answer(task) for task in tasks if task.category == category)
         yield category, counts.total(), len(counts), counts.most_common(MOST_ANSWERS)
 
 
 def numbers(tasks: Iterable[Task]) -> list[tuple[str, int]]:
-    """How often each number is the right answer; "there is none" counts as 0."""
+    """Return how often each number is the right answer. "There is none" counts as 0."""
     counts = Counter(
         round(task.expected.value) if isinstance(task.expected, Number) else 0
         for task in tasks
@@ -70,17 +70,17 @@ def numbers(tasks: Iterable[Task]) -> list[tuple[str, int]]:
 
 
 def pairs(tasks: Iterable[Task]) -> int:
-    """How many tasks say that there is none and stand beside one of like wording that says that there is."""
+    """Return how many tasks have the answer that there is none and a twin with a presence."""
     return sum(isinstance(task.expected, NoneThere) and task.pair is not None for task in tasks)
 
 
 def from_start(tasks: Iterable[Task]) -> int:
-    """How many tasks need neither a move nor a zoom nor a sweep."""
+    """Return how many tasks need neither a move nor a zoom nor a sweep."""
     return sum(not task.needs for task in tasks)
 
 
 def markdown_table(head: Sequence[str], rows: Iterable[Sequence[str | int]]) -> str:
-    """A Markdown table; numbers stand to the right."""
+    """Return a Markdown table with numbers aligned to the right."""
     body = [list(row) for row in rows]
     right = [all(isinstance(row[n], int) for row in body) for n in range(len(head))]
     lines = [head, ["--:" if r else "---" for r in right], *body]
@@ -88,7 +88,7 @@ def markdown_table(head: Sequence[str], rows: Iterable[Sequence[str | int]]) -> 
 
 
 def chart(values: Sequence[tuple[str, int]]) -> str:
-    """Values as bars of text, in a code block."""
+    """Return values as bars of text in a code block."""
     most, width = max((n for _, n in values), default=0), max((len(name) for name, _ in values), default=0)
-    lines = [f"{name:>{width}} {'█' * max(1, round(BAR * n / most)) if n else ''} {n}" for name, n in values]
+    lines = [f"{name:>{width}} {'█' * max(1, round(BAR_CHARS * n / most)) if n else ''} {n}" for name, n in values]
     return "\n".join(["```text", *lines, "```"])

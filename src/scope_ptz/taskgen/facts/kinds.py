@@ -1,7 +1,7 @@
-"""Kinds of things that a question can be about, and which things somebody could call by a kind's name.
+"""Kinds of objects that a question can be about, and the objects that somebody could call by the name of a kind.
 
-What one person calls a litter bin another calls a bin, and that is a recycling bin to a third: such names rule each other out, so
-that no expected number rests on taste.
+What one person calls a litter bin is a bin or a recycling bin to others. Where a view holds objects with such names, nothing is
+asked about them, so that no expected number is a matter of taste.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ GROUPS: dict[str, frozenset[str]] = {
         "coach", "minibus", "truck",
     }),
 }  # fmt: skip
-"""Words for many categories at once, and what surely is one."""
+"""Words for groups of categories, with the categories that certainly belong to each."""
 
 SIGNS = frozenset({
     "sign", "message sign", "arrow board", "board", "notice", "poster", "banner", "a-board", "shop sign", "no entry sign",
@@ -31,27 +31,28 @@ SIGNS = frozenset({
     "traffic sign", "road sign", "street sign", "parking sign", "estate agent board", "for sale board", "label", "placard",
     "speed sign", "dock number", "bay number", "pavement board", "wall sign", "window notice", "door sign", "company board",
 })  # fmt: skip
-"""Whatever bears a notice."""
+"""Categories that could be called a sign."""
 
 KNOWN_BY_THEIR_FACE = SIGNS | {"vending machine", "ticket machine", "dock number", "bay number"}
-"""What nobody can tell from behind: of these only the side that bears the lettering says what they are."""
+"""Categories that can be recognised only from the side with the lettering."""
 
 FACELESS = frozenset({
     "cabinet", "generator", "liquid container", "bike stand", "gas cage", "lane signal", "parking meter", "dock light",
     "camera pole",
 })  # fmt: skip
-"""Plain boxes, poles and lamps at a camera's distance, beside others that look the same and bear no name: nothing is asked of
-them."""
+"""Plain boxes, poles and lamps that look like others without a name from a distance. Nothing is asked about them."""
 
 BACKDROP: Mapping[str, frozenset[str]] = {
     "highway-works": frozenset({"roller door", "door", "dock door", "window", "pallet"}),
     "station-square": frozenset({"awning"}),
     "freight-yard": frozenset({"roller door"}),
 }
-"""By scene: what shows in its backdrop, or as part of something larger, without being a thing of its ground truth; and what is so
-hidden under something else that people do not count it alike."""
+"""Categories that a scene shows but its ground truth does not hold completely, by scene.
 
-_TWINS: tuple[frozenset[str], ...] = (
+They show in the backdrop or as parts of larger objects, or lie hidden under others so that people count them differently.
+"""
+
+_CONFUSED_CATEGORIES: tuple[frozenset[str], ...] = (
     GROUPS["person"] | {"cyclist", "driver", "mannequin", "statue"},
     GROUPS["vehicle"] | {
         "tram", "train", "bicycle", "cargo bike", "motorcycle", "scooter", "trailer", "excavator", "roller", "forklift", "tractor",
@@ -107,7 +108,7 @@ _TWINS: tuple[frozenset[str], ...] = (
     frozenset({"fire hydrant", "fire extinguisher", "fire point"}),
     frozenset({"phone", "phone box", "emergency phone"}),
 )  # fmt: skip
-"""Categories of which one person says one, and another the other."""
+"""Groups of categories that people confuse."""
 
 _NEAR_COLOURS = (
     {"silver", "grey"}, {"silver", "white"}, {"orange", "yellow"}, {"orange", "red"}, {"cream", "white"}, {"buff", "yellow"},
@@ -120,10 +121,10 @@ _NEAR_COLOURS = (
 )  # fmt: skip
 
 _RIDDEN = frozenset({"forklift", "reach truck", "tug", "terminal tractor", "roller", "motorcycle", "scooter", "bicycle", "cyclist"})
-"""Things whose driver one sees."""
+"""Categories whose driver can be seen."""
 
-_OTHERWISE = {"car": frozenset({"taxi", "cab"}), "bus": frozenset({"coach", "minibus"})}
-"""Words in the name of a thing by which some would call it rather than by its category."""
+_OTHER_NAMES = {"car": frozenset({"taxi", "cab"}), "bus": frozenset({"coach", "minibus"})}
+"""Words in the name of an object that some people would use instead of its category."""
 
 COLOUR_WORDS = frozenset({
     "white", "black", "grey", "silver", "red", "blue", "navy", "green", "yellow", "orange", "brown", "beige", "cream", "buff",
@@ -131,45 +132,46 @@ COLOUR_WORDS = frozenset({
     "khaki", "bronze",
 })  # fmt: skip
 
-Thing = SceneInstance | SceneActor
+SceneThing = SceneInstance | SceneActor
 
 
 @dataclass(frozen=True)
 class Kind:
-    """Things of a category (or of a group of them), of one colour or with one more attribute where these are given."""
+    """Objects of a category or group of categories, optionally of one colour or with one other attribute."""
 
     category: str
     colour: str | None = None
     attribute: tuple[str, str] | None = None
 
-    def fits(self, thing: Thing) -> bool:
+    def fits(self, thing: SceneThing) -> bool:
+        """Whether an object certainly is of this kind."""
         facts = thing.attributes
         return (
-            not self._goes_by_another(thing)
+            not self._has_other_name(thing)
             and thing.category in GROUPS.get(self.category, {self.category})
             and (self.colour is None or own_colour(thing) == self.colour)
             and (self.attribute is None or str(facts.get(self.attribute[0])) == self.attribute[1])
         )
 
-    def _goes_by_another(self, thing: Thing) -> bool:
-        """A taxi is a car to some, and a coach a bus."""
+    def _has_other_name(self, thing: SceneThing) -> bool:
+        """Whether some people use another word for an object of this category: taxi for car, coach for bus."""
         return thing.category == self.category and bool(
-            _OTHERWISE.get(self.category, frozenset()) & set(thing.name.lower().split())
+            _OTHER_NAMES.get(self.category, frozenset()) & set(thing.name.lower().split())
         )
 
-    def rides_on(self, thing: Thing) -> bool:
-        """Whether somebody of this kind may sit on a moving thing in plain view, who is no thing of the ground truth."""
+    def may_ride_on(self, thing: SceneThing) -> bool:
+        """Whether a person of this kind may be visible on a vehicle without being an object of the ground truth."""
         return self.category in GROUPS["person"] and thing.category in _RIDDEN
 
-    def doubtful(self, thing: Thing) -> bool:
-        """Whether somebody could call a thing that does not fit by this kind's name."""
+    def ambiguous_with(self, thing: SceneThing) -> bool:
+        """Whether somebody could call an object by the name of this kind although it does not fit."""
         if self.fits(thing):
             return False
-        if self._goes_by_another(thing):
+        if self._has_other_name(thing):
             return True
         if thing.category not in GROUPS.get(self.category, {self.category}):
             words, name = set(self.category.split()), set(f"{thing.category} {thing.name}".lower().split())
-            alike = any({self.category, thing.category} <= group for group in _TWINS)
+            alike = any({self.category, thing.category} <= group for group in _CONFUSED_CATEGORIES)
             return words <= name or alike or thing.category.split()[-1] == self.category
         if self.attribute is not None:
             return self.attribute[0] not in thing.attributes
@@ -177,8 +179,8 @@ class Kind:
         return not colour or bool(set((self.colour or "").split()) & set(colour.split())) or near_colours(self.colour, colour)
 
 
-def own_colour(thing: Thing) -> str | None:
-    """The colour of a thing itself: not that of somebody's clothes, nor of what it holds ("planter with red flowers")."""
+def own_colour(thing: SceneThing) -> str | None:
+    """Return the colour of an object itself, not that of clothes or of its contents ("planter with red flowers")."""
     colour = thing.attributes.get("colour")
     if not isinstance(colour, str) or thing.category in GROUPS["person"] or not has_colour(thing):
         return None
@@ -187,36 +189,38 @@ def own_colour(thing: Thing) -> str | None:
     return None if set(colour.split()) & set(behind) else colour
 
 
-def has_colour(thing: Thing) -> bool:
-    """Whether people would say of such a thing that it has one colour."""
+def has_colour(thing: SceneThing) -> bool:
+    """Whether people would say that an object of this category has one colour."""
     return thing.category not in _COLOURLESS
 
 
-def colour_shows(thing: Thing) -> bool:
-    """Whether a thing is all of its colour, and its name keeps it: not a board, which has letters of another, nor what is striped,
-    nor a door that is rolled up."""
+def colour_shows(thing: SceneThing) -> bool:
+    """Whether the picture shows the colour of an object and its name does not give it away.
+
+    Signs, striped objects and rolled-up doors do not show one colour.
+    """
     facts = thing.attributes
     striped = facts.get("pattern", "plain") != "plain"
     rolled_up = "door" in thing.category and facts.get("state", "closed") != "closed"
-    told = not _OF_A_COLOUR.isdisjoint(thing.name.lower().split())
-    return thing.category not in SIGNS and not striped and not rolled_up and not told
+    implied = not _COLOUR_IMPLYING.isdisjoint(thing.name.lower().split())
+    return thing.category not in SIGNS and not striped and not rolled_up and not implied
 
 
-_OF_A_COLOUR = frozenset({"concrete", "aluminium", "steel", "galvanised", "timber", "wooden", "brick"})
-"""Words in a name that tell the colour."""
+_COLOUR_IMPLYING = frozenset({"concrete", "aluminium", "steel", "galvanised", "timber", "wooden", "brick"})
+"""Materials in a name that give the colour away."""
 
 
 _COLOURLESS = (SIGNS - {"shop sign", "pavement board", "hanging sign"}) | {
     "cyclist", "driver", "clock", "statue", "fox", "tram", "lorry", "articulated lorry", "charging point", "traffic light",
     "plate compactor", "belisha beacon",
 }  # fmt: skip
-"""Of these nobody would say that they have one colour, or that colour."""
+"""Categories of which nobody would say that they have one colour, or that colour."""
 
 _JOINS = frozenset({"of", "with", "in", "on", "for"})
 
 
 def near_colours(one: str | None, other: str) -> bool:
-    """Whether people disagree on which of two colours a thing has."""
+    """Whether people disagree which of two colours an object has."""
     words = {*(one or "").split(), *other.split()}
     return one is not None and any(words >= pair for pair in _NEAR_COLOURS)
 
@@ -231,11 +235,11 @@ COUNTED_STATES: tuple[tuple[str, str, str], ...] = (
     ("lamp post", "state", "lit"), ("parking space", "state", "empty"), ("parking space", "state", "occupied"),
     ("umbrella", "state", "open"), ("container", "state", "open"),
 )  # fmt: skip
-"""(category, attribute, value) that can be told at a glance, and so be counted."""
+"""States that can be recognised at a glance and therefore counted: category, attribute and value."""
 
 
-def kinds_in(things: Iterable[Thing]) -> list[Kind]:
-    """Every category, group of them, category with a colour and category in a state, in a fixed order."""
+def kinds_in(things: Iterable[SceneThing]) -> list[Kind]:
+    """Return every kind among some objects in a fixed order: categories with and without colour, groups, and states."""
     present = list(things)
     found = {(t.category, c) for t in present for c in (None, own_colour(t)) if c is None or " and " not in c}
     plain = [Kind(category, colour) for category, colour in sorted(found, key=str)]

@@ -1,7 +1,7 @@
-"""An independent reading of the ground truth: what is so in a view whatever a doubtful threshold says.
+"""Robust ground truth: what holds in a view even when pose, time and visibility thresholds change a little.
 
-A *sight* holds the truth of one view at its pose, and at eight poses and moments around it. What it tells holds in all of them, and
-under visibility thresholds 30% lower and higher; what does not is not told at all. No language is read or made here.
+The truth of a view is read at its pose and at eight further poses and moments around it. A statement is made only if it holds in
+all of them, and under visibility thresholds that are 30% lower and 30% higher. This module neither reads nor writes language.
 """
 
 from __future__ import annotations
@@ -32,191 +32,210 @@ from scope_ptz.simulator.truth import (
     ViewTruth,
     view_truth,
 )
-from scope_ptz.taskgen.facts.kinds import BACKDROP, FACELESS, KNOWN_BY_THEIR_FACE, Kind, Thing
+from scope_ptz.taskgen.facts.kinds import BACKDROP, FACELESS, KNOWN_BY_THEIR_FACE, Kind, SceneThing
 
-EYES = Eyes(1280, 720)
-"""The frames in which tasks are set."""
+TASK_CAMERA = Eyes(1280, 720)
+"""The camera that tasks are made and validated for."""
 
-JITTER_DEG, JITTER_ZOOM = 0.5, 0.03
+JITTER_DEG, JITTER_ZOOM = 0.5, 0.03  # how far the poses around differ in pan and tilt, and in zoom
 THRESHOLDS = (0.7, 1.0, 1.3)
-"""Shares of the visibility thresholds under which what is told must hold alike."""
+"""Factors of the visibility thresholds under which a statement must hold."""
 
 TRACE_PX = 20
-"""Less than this shows nothing to a person: a thing is absent when no more of it shows."""
+"""Most pixels of an object that counts as absent. A person sees nothing of it."""
 
 FAINT_PX = 40
-"""What is not visible by definition but shows more than this may be counted by somebody: then nothing of its kind is."""
+"""Somebody may count an object with more pixels even if it is not visible by definition. Its kind is then not counted at all."""
 
 _EDGE = 0.2
-"""Cosine of the angle to a surface's normal below which one looks along it rather than at it."""
+"""Cosine of the angle to the normal of a surface below which it is seen edge-on."""
 
 SOON_S = (0.5, 1.0, 1.5, 2.0, 4.5)
-"""Moments at which texts are read too, where somebody may walk by."""
+"""Seconds after the start at which texts must be legible as well when actors pass by."""
 
 LATER_S = (3.0, 6.0, 10.0, 15.0, 20.0, 27.0, 35.0, 45.0)
-"""Moments after the start at which the poses around are read."""
+"""Seconds after the start at which the poses around are read."""
 
 
 @dataclass(frozen=True)
-class Sight:
-    """What is surely so in a view. ``pose`` None: everything around, as a sweep shows it."""
+class RobustTruth:
+    """Statements about a view that certainly hold.
+
+    Attributes:
+        scene: The scene.
+        viewpoint: Name of the viewpoint.
+        pose: Pose of the view; None for a sweep.
+        time_s: Scene time in seconds.
+        read_truth: Reads the ground truth of one view.
+    """
 
     scene: Scene
     viewpoint: str
     pose: Pose | None
     time_s: float
-    look: Callable[[Scene, str, Perspective | Equirectangular, float], ViewTruth] = field(default=view_truth, compare=False)
+    read_truth: Callable[[Scene, str, Perspective | Equirectangular, float], ViewTruth] = field(default=view_truth, compare=False)
 
     @cached_property
     def projection(self) -> Perspective | Equirectangular:
-        return EYES.sweep() if self.pose is None else EYES.view(self.pose)
+        """The projection of the view or of the sweep."""
+        return TASK_CAMERA.sweep() if self.pose is None else TASK_CAMERA.view(self.pose)
 
     @cached_property
     def first(self) -> ViewTruth:
-        """The truth at the pose itself."""
-        return self.look(self.scene, self.viewpoint, self.projection, self.time_s)
+        """The ground truth at the pose itself."""
+        return self.read_truth(self.scene, self.viewpoint, self.projection, self.time_s)
 
     @cached_property
     def samples(self) -> tuple[ViewTruth, ...]:
-        """The truth at the pose, then at the corners of the box of poses around it, each at another moment."""
+        """The ground truth at the pose, then at the corners of a box of poses around it, each at another moment."""
         if self.pose is None:
             moments = LATER_S[1::3]
-            return self.first, *(self.look(self.scene, self.viewpoint, self.projection, self.time_s + s) for s in moments)
+            return self.first, *(self.read_truth(self.scene, self.viewpoint, self.projection, self.time_s + s) for s in moments)
         corners = product((-1, 1), repeat=3)
         around = [
             Pose(self.pose.pan_deg + a * JITTER_DEG, self.pose.tilt_deg + b * JITTER_DEG, self.pose.zoom * (1 + c * JITTER_ZOOM))
             for a, b, c in corners
         ]
         return self.first, *(
-            self.look(self.scene, self.viewpoint, EYES.view(p), self.time_s + s) for p, s in zip(around, LATER_S, strict=True)
+            self.read_truth(self.scene, self.viewpoint, TASK_CAMERA.view(p), self.time_s + s)
+            for p, s in zip(around, LATER_S, strict=True)
         )
 
     @cached_property
     def passing(self) -> frozenset[int]:
-        """Numbers of the actors that come into view at one time or another."""
+        """Numbers of the actors that come into view at some time."""
         found = _all_appearances(self.scene, self.viewpoint)
         return frozenset(number for number, seen in found.items() if any(shows(a, self.projection) for a in seen))
 
     @cached_property
     def _visible(self) -> dict[int, set[bool]]:
-        """What the samples and thresholds say of each thing that shows in any of them."""
-        told: dict[int, set[bool]] = {}
+        """For each object that shows in any sample, whether it is visible in each sample under each threshold."""
+        found: dict[int, set[bool]] = {}
         numbers = {s.instance.number for truth in self.samples for s in truth.sightings}
         for truth in self.samples:
             by_number = {s.instance.number: s for s in truth.sightings}
             for number in numbers:
                 sighting = by_number.get(number)
-                told.setdefault(number, set()).update(sighting is not None and visible(sighting, scale) for scale in THRESHOLDS)
-        return told
+                found.setdefault(number, set()).update(sighting is not None and visible(sighting, scale) for scale in THRESHOLDS)
+        return found
 
-    def state(self, number: int) -> bool | None:
-        """Whether a thing is visible: surely, surely not, or (None) it depends."""
+    def visibility(self, number: int) -> bool | None:
+        """Whether an object is certainly visible (True), certainly not (False), or neither (None)."""
         if number in self.passing:
             return None
-        said = self._visible.get(number, {False})
-        return next(iter(said)) if len(said) == 1 else None
+        outcomes = self._visible.get(number, {False})
+        return next(iter(outcomes)) if len(outcomes) == 1 else None
 
     @cached_property
     def clear(self) -> tuple[Sighting, ...]:
-        """What is surely visible and can be told to be what it is, nearest first."""
-        return tuple(s for s in self.samples[0].sightings if self.state(s.instance.number) and self.telling(s.instance))
+        """Objects that are certainly visible and recognisable, nearest first."""
+        return tuple(s for s in self.samples[0].sightings if self.visibility(s.instance.number) and self.recognisable(s.instance))
 
-    def telling(self, thing: Thing) -> bool:
-        """Whether a picture from here shows what a thing is: its lettered side, where only that tells it."""
-        if self.untold(thing.category) or thing.attributes.get("canopy") == "rolled up":
-            return False  # a bare frame is hardly a stall
+    def recognisable(self, thing: SceneThing) -> bool:
+        """Whether a picture from here shows what an object is. Some categories are known only by their lettered side."""
+        if self.unreliable(thing.category) or thing.attributes.get("canopy") == "rolled up":
+            return False  # without its canopy, a market stall is a bare frame
         if thing.category not in KNOWN_BY_THEIR_FACE:
             return True
         from_here = np.array(self.scene.viewpoint(self.viewpoint).manifest.position_m)
         return any(_faces(text, from_here) for text in lettering(self.scene, thing.id)) or not lettering(self.scene, thing.id)
 
-    def untold(self, category: str) -> bool:
-        """Whether a picture of this scene does not tell what is of a category, or shows more of it than the ground truth holds."""
+    def unreliable(self, category: str) -> bool:
+        """Whether objects of a category cannot be recognised in this scene, or the ground truth does not hold all of them."""
         return category in FACELESS or category in BACKDROP.get(self.scene.name, ())
 
-    def of(self, kind: Kind) -> tuple[Sighting, ...] | None:
-        """All things of a kind that are visible; None when that is not sure, or somebody could see it differently."""
+    def all_of(self, kind: Kind) -> tuple[Sighting, ...] | None:
+        """Return all visible objects of a kind, or None when that is uncertain or somebody could see it differently."""
         found = []
-        if self.untold(kind.category):
+        if self.unreliable(kind.category):
             return None
         for sighting in self.samples[0].sightings:
             thing = sighting.instance
             if kind.fits(thing):
-                if self.state(thing.number) is not False and not self.telling(thing):
+                if self.visibility(thing.number) is not False and not self.recognisable(thing):
                     return None
-                if thing.attributes.get("behind") == "glass" and self.state(thing.number) is not False:
-                    return None  # whether what is inside a window counts, people do not agree on
-                if self.state(thing.number) is None or (not self.state(thing.number) and thing.number in self.faint):
+                if thing.attributes.get("behind") == "glass" and self.visibility(thing.number) is not False:
+                    return None  # people disagree whether objects behind a window count
+                if self.visibility(thing.number) is None or (not self.visibility(thing.number) and thing.number in self.faint):
                     return None
-                if self.state(thing.number):
-                    if self.parted(sighting):
+                if self.visibility(thing.number):
+                    if self.split_by_sweep(sighting):
                         return None
                     found.append(sighting)
-            elif kind.doubtful(thing) and self.state(thing.number) is not False:
+            elif kind.ambiguous_with(thing) and self.visibility(thing.number) is not False:
                 return None
-        if any(kind.fits(a) or kind.rides_on(a) for a in self.scene.file.actors if a.number in self.passing):
+        if any(kind.fits(a) or kind.may_ride_on(a) for a in self.scene.file.actors if a.number in self.passing):
             return None
         shown = {s.instance.number for s in self.samples[0].sightings}
         others = (s for truth in self.samples[1:] for s in truth.sightings if s.instance.number not in shown)
-        if any(kind.fits(s.instance) and self.state(s.instance.number) is not False for s in others):
+        if any(kind.fits(s.instance) and self.visibility(s.instance.number) is not False for s in others):
             return None
         return tuple(found)
 
-    def parted(self, sighting: Sighting) -> bool:
-        """Whether a thing lies across the two ends of a sweep, so that it has no one place in it."""
+    def split_by_sweep(self, sighting: Sighting) -> bool:
+        """Whether an object lies across the two ends of a sweep, so that it has no single position."""
         return self.pose is None and sighting.box[2] - sighting.box[0] > 0.5
 
     def lacks(self, kind: Kind) -> bool:
-        """Whether nothing of a kind, nor anything that could be taken for it, shows at all, now or later."""
-        if self.untold(kind.category) or any(
-            kind.fits(a) or kind.doubtful(a) for a in self.scene.file.actors if a.number in self.passing
+        """Whether no object of a kind, nor any that could be mistaken for one, shows now or later."""
+        if self.unreliable(kind.category) or any(
+            kind.fits(a) or kind.ambiguous_with(a) for a in self.scene.file.actors if a.number in self.passing
         ):
             return False
-        return not any(kind.fits(thing) or kind.doubtful(thing) for thing in self.traces)
+        return not any(kind.fits(thing) or kind.ambiguous_with(thing) for thing in self.traces)
 
     @cached_property
     def faint(self) -> frozenset[int]:
-        """Numbers of the things of which so much shows in some sample that a person with good eyes would count them."""
+        """Numbers of the objects that show enough in some sample for an attentive person to count them."""
         return frozenset(s.instance.number for truth in self.samples for s in truth.sightings if s.pixels > FAINT_PX)
 
     @cached_property
-    def traces(self) -> tuple[Thing, ...]:
-        """Everything of which more than a trace shows in any of the samples."""
+    def traces(self) -> tuple[SceneThing, ...]:
+        """Objects of which more than a trace shows in any sample."""
         numbers = {s.instance.number for truth in self.samples for s in truth.sightings if s.pixels > TRACE_PX}
         return tuple(self.scene.by_number[number] for number in sorted(numbers))
 
     @cached_property
-    def _met(self) -> tuple[Thing, ...]:
-        """Everything of which more than a trace shows in any sample, and what comes by."""
+    def _ever_shown(self) -> tuple[SceneThing, ...]:
+        """Objects of which more than a trace shows in any sample, and the actors that pass by."""
         passing = tuple(actor for actor in self.scene.file.actors if actor.number in self.passing)
         return tuple(thing for thing in self.traces if thing not in passing) + passing
 
-    def others(self, sighting: Sighting) -> tuple[Thing, ...]:
-        """Everything else that could be taken for a thing, now or later."""
-        return tuple(thing for thing in self._met if thing.number != sighting.instance.number)
+    def others(self, sighting: Sighting) -> tuple[SceneThing, ...]:
+        """Return all other objects that show in the view now or later."""
+        return tuple(thing for thing in self._ever_shown if thing.number != sighting.instance.number)
 
-    def spot(self, sighting: Sighting) -> list[tuple[float, float]]:
-        """The middle of a thing in the frame (x, y in 0..1), at the pose and around it."""
+    def centres(self, sighting: Sighting) -> list[tuple[float, float]]:
+        """Return the centre of an object in the frame (x and y from 0 to 1), at the pose and around it."""
         number = sighting.instance.number
         boxes = [s.box for truth in self.samples for s in truth.sightings if s.instance.number == number]
         return [((b[0] + b[2]) / 2, (b[1] + b[3]) / 2) for b in boxes]
 
     def areas(self, sighting: Sighting) -> list[float]:
-        """How many pixels a thing covers, at the pose and around it."""
+        """Return how many pixels an object covers, at the pose and around it."""
         number = sighting.instance.number
         return [float(s.pixels) for truth in self.samples for s in truth.sightings if s.instance.number == number]
 
     def side(self, sighting: Sighting, axis: int, margin: float = 0.06) -> int | None:
-        """0 or 1: the left or right (axis 0), upper or lower (axis 1) half that holds a thing, well clear of the middle line."""
+        """Return the half of the frame that certainly holds an object.
+
+        Args:
+            sighting: The object.
+            axis: 0 for left and right, 1 for upper and lower.
+            margin: Distance to the middle line, as a share of the frame.
+
+        Returns:
+            0 for left or upper, 1 for right or lower, or None when the object is too close to the middle line.
+        """
         low, high = sighting.box[axis], sighting.box[axis + 2]
-        middles = [spot[axis] for spot in self.spot(sighting)]
+        middles = [spot[axis] for spot in self.centres(sighting)]
         if max(middles) < 0.5 - margin and high < 0.5 + margin / 2:
             return 0
         return 1 if min(middles) > 0.5 + margin and low > 0.5 - margin / 2 else None
 
     def in_order(self, things: Sequence[Sighting], axis: int, margin: float = 0.05) -> tuple[Sighting, ...] | None:
-        """Things from left to right (or top to bottom); None when two of them are about level."""
-        spots = {s.instance.number: self.spot(s) for s in things}
+        """Return objects from left to right (axis 0) or top to bottom (axis 1), or None when two of them are too close."""
+        spots = {s.instance.number: self.centres(s) for s in things}
         order = sorted(things, key=lambda s: spots[s.instance.number][0][axis])
         for one, two in pairwise(order):
             pairs = zip(spots[one.instance.number], spots[two.instance.number], strict=False)
@@ -226,16 +245,16 @@ class Sight:
 
     @cached_property
     def legible(self) -> tuple[TextSighting, ...]:
-        """Texts that can surely be read, top to bottom and left to right."""
+        """Texts that are certainly legible, from top to bottom and left to right."""
         sure = [{t.text.id for t in truth.texts if all(legible(t, scale) for scale in THRESHOLDS)} for truth in self.samples]
         ids = frozenset.intersection(*(frozenset(names) for names in sure))
         for later_s in SOON_S if ids and self.passing else ():
-            soon = self.look(self.scene, self.viewpoint, self.projection, self.time_s + later_s)
+            soon = self.read_truth(self.scene, self.viewpoint, self.projection, self.time_s + later_s)
             ids &= {text.text.id for text in soon.legible}
         return tuple(sorted((t for t in self.samples[0].texts if t.text.id in ids), key=lambda t: (round(t.box[1], 2), t.box[0])))
 
-    def texts_on(self, thing: Thing) -> tuple[TextSighting, ...] | None:
-        """All texts that show on a thing and its parts; None when one of them can be read only by some."""
+    def texts_on(self, thing: SceneThing) -> tuple[TextSighting, ...] | None:
+        """Return all texts on an object and its parts, or None when one of them is only partly legible."""
         family = with_parts(self.scene, thing.id)
         legible_ids = {t.text.id for t in self.legible}
         shown = [t for t in self.samples[0].texts if t.text.parent in family and t.unhidden_share > 0.3]
@@ -244,10 +263,11 @@ class Sight:
         return tuple(t for t in self.legible if t.text.parent in family)
 
     def item(self, sighting: Sighting, value: str | bool | float | None = None) -> Item:
-        """A thing as evidence: where it shows, and how large it must be to be told (70% of what it is here)."""
+        """Return an object as evidence: where it shows, and the size at which a run must see it (70% of its size here)."""
         return self._item(sighting.instance.id, sighting.box, value, None)
 
     def text_item(self, text: TextSighting) -> Item:
+        """Return a text as evidence."""
         cap_deg = text.cap_height_px / (self.projection.density * np.pi / 180)
         return self._item(text.text.id, text.box, text.text.text, float(cap_deg))
 
@@ -272,7 +292,7 @@ class Sight:
 
 @lru_cache(maxsize=16)
 def _all_appearances(scene: Scene, viewpoint: str) -> dict[int, tuple[Appearance, ...]]:
-    """Of each actor every place where it is to be seen in the first two minutes, twice a second, by its number."""
+    """Return where each actor appears during the first two minutes, twice a second, by its number."""
     here, found = scene.viewpoint(viewpoint), dict[int, list[Appearance]]()
     longest = max((actor.period_s for actor in scene.file.actors), default=0.0)
     for moment in np.arange(0.0, min(longest, 120.0), 0.5):
@@ -283,7 +303,7 @@ def _all_appearances(scene: Scene, viewpoint: str) -> dict[int, tuple[Appearance
 
 @lru_cache(maxsize=4096)
 def with_parts(scene: Scene, whole: str) -> frozenset[str]:
-    """Ids of a thing, its parts, and theirs."""
+    """Return the ids of an object, its parts, and their parts."""
     found = {whole}
     while grown := {part.id for part in scene.file.instances if part.parent in found} - found:
         found |= grown
@@ -292,25 +312,25 @@ def with_parts(scene: Scene, whole: str) -> frozenset[str]:
 
 @lru_cache(maxsize=4096)
 def lettering(scene: Scene, whole: str) -> tuple[SceneText, ...]:
-    """What is written on a thing and its parts."""
+    """Return the texts on an object and its parts."""
     family = with_parts(scene, whole)
     return tuple(text for text in scene.file.texts if text.parent in family)
 
 
-def _faces(text: SceneText, eye: NDArray[np.float64]) -> bool:
-    """Whether a text turns its written side to a point, and not merely its edge."""
+def _faces(text: SceneText, point: NDArray[np.float64]) -> bool:
+    """Whether a text faces a point with its written side, and not edge-on."""
     ahead = np.cross(text.right, text.up)
-    towards = eye - np.array(text.centre_m)
+    towards = point - np.array(text.centre_m)
     return float(ahead @ towards) > _EDGE * float(np.linalg.norm(towards))
 
 
 def visible(sighting: Sighting, scale: float = 1.0) -> bool:
-    """The definition of visible, with both thresholds scaled."""
+    """Whether an object is visible by definition, with both thresholds scaled."""
     return sighting.pixels >= MIN_VISIBLE_PX * scale and sighting.share >= MIN_VISIBLE_SHARE * scale
 
 
 def legible(text: TextSighting, scale: float = 1.0) -> bool:
-    """The definition of legible, made stricter or laxer."""
+    """Whether a text is legible by definition, with all thresholds scaled."""
     return (
         text.cap_height_px >= MIN_CAP_HEIGHT_PX * scale
         and text.angle_deg <= min(MAX_READING_ANGLE_DEG / scale, 85.0)
@@ -319,6 +339,6 @@ def legible(text: TextSighting, scale: float = 1.0) -> bool:
 
 
 @lru_cache(maxsize=600)
-def sight(scene: Scene, at: Standing, time_s: float, *, swept: bool = False) -> Sight:
-    """The sight of a standing, or of everything around it."""
-    return Sight(scene, at.viewpoint or "", None if swept else at.pose, time_s)
+def robust_truth(scene: Scene, at: Standing, time_s: float, *, swept: bool = False) -> RobustTruth:
+    """Return the robust ground truth of a view, or of a sweep from its viewpoint. Recent results are kept."""
+    return RobustTruth(scene, at.viewpoint or "", None if swept else at.pose, time_s)

@@ -1,6 +1,7 @@
-"""Known faults of what an agent does, to put into a run that passes: calls left out, wrong tools, scopes and arguments.
+"""Faults in the actions of an agent: missing calls, wrong tools, wrong scopes and wrong arguments.
 
-Every way gives the run with the fault, or None where the run offers no place for it.
+Every fault function takes a run that passes. It returns the run with the fault, or None when the fault does not apply to the run.
+The names of these functions are stored with gold runs.
 """
 
 from __future__ import annotations
@@ -21,33 +22,33 @@ from scope_ptz.bench.tasks.expected import (
 )
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.geometry import Pose
-from scope_ptz.taskgen.facts.phrasing import wrong_answer
+from scope_ptz.taskgen.facts.answer_phrasing import wrong_answer
 
-LOOKERS = frozenset({"count_objects", "query_answer"})
-TURNS = ("pan_deg", "tilt_deg")
+PERCEPTION_TOOLS = frozenset({"count_objects", "query_answer"})
+TURN_ARGUMENTS = ("pan_deg", "tilt_deg")
 
 
 @dataclass(frozen=True, slots=True)
-class Setting:
-    """What a mutation may know of the world of a run: where presets are and what frames look like."""
+class FaultSetting:
+    """The world of a run as fault functions need it: where its presets are, and the camera."""
 
     presets: Mapping[str, Standing]
-    eyes: Eyes
+    camera: Eyes
 
 
-def replayed(episode: Episode, calls: Iterable[Call], setting: Setting) -> Episode:
-    """The run with other calls: poses follow on from each other again, and looks are where the camera then is."""
+def replayed(episode: Episode, calls: Iterable[Call], setting: FaultSetting) -> Episode:
+    """Return the run with other calls. Poses and observed views are worked out again from the start."""
     at, made = episode.start, list[Call]()
     for call in calls:
         after = _after(call, at, episode, setting)
         moved = replace(call, before=at, after=after, looks=())
-        made.append(replace(moved, looks=looks_of(moved, setting.eyes) if moved.succeeded else ()))
+        made.append(replace(moved, looks=looks_of(moved, setting.camera) if moved.succeeded else ()))
         at = after
     kept = {str((call.result or {}).get("file")) for call in made if call.name == "take_image"}
     return replace(episode, calls=tuple(made), final=at, pictures=tuple(p for p in episode.pictures if p.file in kept))
 
 
-def _after(call: Call, at: Standing, episode: Episode, setting: Setting) -> Standing:
+def _after(call: Call, at: Standing, episode: Episode, setting: FaultSetting) -> Standing:
     if not call.succeeded or call.name not in MOVERS:
         return at
     if call.name == "go_to_preset":
@@ -57,34 +58,38 @@ def _after(call: Call, at: Standing, episode: Episode, setting: Setting) -> Stan
     if call.name == "adjust_ptz":
         one, two = call.before.pose, call.after.pose
         pan, tilt, zoom = two.pan_deg - one.pan_deg, two.tilt_deg - one.tilt_deg, two.zoom / one.zoom
-        limits = setting.eyes.limits
+        limits = setting.camera.limits
         return Standing(at.viewpoint, limits.clamp(at.pose.turned(pan, tilt).zoomed(zoom))[0])
     return Standing(at.viewpoint, call.after.pose)
 
 
-def retold(call: Call, **said: Any) -> Call:
-    return replace(call, result={**(call.result or {}), **said})
+def with_result(call: Call, **changes: Any) -> Call:
+    """Return a call with some fields of its result changed."""
+    return replace(call, result={**(call.result or {}), **changes})
 
 
-def changed(episode: Episode, setting: Setting, change: Callable[[Call], Call | None]) -> Episode:
-    """The run with each call changed, or left out where the change gives None."""
+def changed(episode: Episode, setting: FaultSetting, change: Callable[[Call], Call | None]) -> Episode:
+    """Return the run with every call changed, or left out where ``change`` returns None."""
     return replayed(episode, [new for call in episode.calls if (new := change(call)) is not None], setting)
 
 
-# Lack of a tool call
+# Missing tool calls
 
 
-def drop_all(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
+def drop_all(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+    """Leave out all calls."""
     return replayed(episode, (), setting)
 
 
-def drop_looks(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
-    if not any(call.name in LOOKERS for call in episode.calls):
+def drop_looks(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+    """Leave out all perception calls."""
+    if not any(call.name in PERCEPTION_TOOLS for call in episode.calls):
         return None
-    return changed(episode, setting, lambda call: None if call.name in LOOKERS else call)
+    return changed(episode, setting, lambda call: None if call.name in PERCEPTION_TOOLS else call)
 
 
-def drop_pictures(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
+def drop_pictures(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+    """Leave out all pictures."""
     if not episode.pictures:
         return None
     return changed(episode, setting, lambda call: None if call.name == "take_image" else call)
@@ -99,10 +104,10 @@ _STAND_INS: dict[str, tuple[str, dict[str, Any], dict[str, Any]]] = {
 }
 
 
-def swap_tools(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
-    """Every call of one tool becomes a call of one that cannot do its work."""
+def swap_tools(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+    """Replace every call of one tool by a call of a tool that cannot do its work."""
     name = rng.choice([call.name for call in episode.calls])
-    other, arguments, said = _STAND_INS.get(name, ("take_image", {}, {"message": "Done.", "file": "pictures/001.png"}))
+    other, arguments, result = _STAND_INS.get(name, ("take_image", {}, {"message": "Done.", "file": "pictures/001.png"}))
     if any(call.name == other for call in episode.calls):
         return None
 
@@ -110,12 +115,13 @@ def swap_tools(task: Task, episode: Episode, setting: Setting, rng: random.Rando
         if call.name != name:
             return call
         pose = call.before.pose.zoomed(1.2) if other == "adjust_ptz" else call.before.pose
-        return replace(call, name=other, arguments=arguments, after=Standing(call.before.viewpoint, pose), result=said)
+        return replace(call, name=other, arguments=arguments, after=Standing(call.before.viewpoint, pose), result=result)
 
     return changed(episode, setting, swap)
 
 
-def swap_order(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
+def swap_order(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+    """Swap two consecutive calls whose order matters."""
     if len(task.behaviour.calls) < 2 or task.behaviour.order != "ordered":
         return None
     places = list(range(len(episode.calls) - 1))
@@ -131,25 +137,29 @@ def swap_order(task: Task, episode: Episode, setting: Setting, rng: random.Rando
 # Wrong scope
 
 
-def flip_scope(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
-    if not any(call.name in LOOKERS for call in episode.calls) or isinstance(task.expected, ActionOnly):
+def flip_scope(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+    """Use the full scope instead of the current view, or the reverse, with a wrong answer."""
+    if not any(call.name in PERCEPTION_TOOLS for call in episode.calls) or isinstance(task.expected, ActionOnly):
         return None
-    told = wrong_answer(task.expected, rng)
-    if told is None:
+    answer = wrong_answer(task.expected, rng)
+    if answer is None:
         return None
 
     def flip(call: Call) -> Call:
-        if call.name not in LOOKERS:
+        if call.name not in PERCEPTION_TOOLS:
             return call
         view = "full" if call.arguments.get("view", "current") == "current" else "current"
-        said: dict[str, Any] = {"count": count_of(task.expected, told, call)} if call.name == "count_objects" else {"answer": told}
-        return retold(replace(call, arguments={**call.arguments, "view": view}), view=view, message=told, **said)
+        result: dict[str, Any] = (
+            {"count": count_of(task.expected, answer, call)} if call.name == "count_objects" else {"answer": answer}
+        )
+        return with_result(replace(call, arguments={**call.arguments, "view": view}), view=view, message=answer, **result)
 
-    return replace(changed(episode, setting, flip), text=told)
+    return replace(changed(episode, setting, flip), text=answer)
 
 
-def count_of(expected: AnyExpected, told: str, call: Call) -> int:
-    reading, counted = read(expected, told), int((call.result or {}).get("count", 0))
+def count_of(expected: AnyExpected, answer: str, call: Call) -> int:
+    """Return a count that would explain a wrong answer."""
+    reading, counted = read(expected, answer), int((call.result or {}).get("count", 0))
     if isinstance(reading, Value) and isinstance(reading.value, float):
         return round(reading.value)
     return 0 if counted else 2
@@ -158,7 +168,8 @@ def count_of(expected: AnyExpected, told: str, call: Call) -> int:
 # Wrong arguments
 
 
-def other_preset(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
+def other_preset(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+    """Go to another preset."""
     visited = [call.arguments["name"] for call in episode.calls if call.name == "go_to_preset"]
     if not visited:
         return None
@@ -168,13 +179,13 @@ def other_preset(task: Task, episode: Episode, setting: Setting, rng: random.Ran
     def go(call: Call) -> Call:
         if call.name != "go_to_preset" or call.arguments["name"] != right:
             return call
-        return retold(replace(call, arguments={"name": wrong}), message=f"At preset {wrong}.")
+        return with_result(replace(call, arguments={"name": wrong}), message=f"At preset {wrong}.")
 
     return changed(episode, setting, go)
 
 
-def turned_round(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
-    """ "Panning left when asked to pan right"."""
+def turned_round(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+    """Turn in the opposite direction: "panning left when asked to pan right", as the paper puts it."""
     if not any(call.name == "adjust_ptz" and turns(call) for call in episode.calls):
         return None
 
@@ -182,7 +193,7 @@ def turned_round(task: Task, episode: Episode, setting: Setting, rng: random.Ran
         if call.name != "adjust_ptz":
             return call
         one, two = call.before.pose, call.after.pose
-        arguments = {k: -v if k in TURNS else v for k, v in call.arguments.items()}
+        arguments = {k: -v if k in TURN_ARGUMENTS else v for k, v in call.arguments.items()}
         pose = Pose(2 * one.pan_deg - two.pan_deg, 2 * one.tilt_deg - two.tilt_deg, two.zoom)
         return replace(call, arguments=arguments, after=Standing(call.after.viewpoint, pose))
 
@@ -190,23 +201,27 @@ def turned_round(task: Task, episode: Episode, setting: Setting, rng: random.Ran
 
 
 def turns(call: Call) -> bool:
-    """Whether an adjustment changes the direction, not the magnification alone."""
-    return any(call.arguments.get(name) for name in TURNS)
+    """Whether an adjustment changes the direction and not only the magnification."""
+    return any(call.arguments.get(name) for name in TURN_ARGUMENTS)
 
 
-def other_target(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
-    """Counts, or asks about, something else than what was asked for."""
-    told = wrong_answer(task.expected, rng)
-    if told is None or not any(view.about for view in task.evidence) or not any(call.name in LOOKERS for call in episode.calls):
+def other_target(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+    """Count, or ask about, something that was not asked for."""
+    answer = wrong_answer(task.expected, rng)
+    if (
+        answer is None
+        or not any(view.about for view in task.evidence)
+        or not any(call.name in PERCEPTION_TOOLS for call in episode.calls)
+    ):
         return None
 
     def aside(call: Call) -> Call:
         if call.name == "count_objects":
             arguments = {**call.arguments, "description": "clouds"}
-            return retold(replace(call, arguments=arguments), count=count_of(task.expected, told, call), message=told)
+            return with_result(replace(call, arguments=arguments), count=count_of(task.expected, answer, call), message=answer)
         if call.name == "query_answer":
             arguments = {**call.arguments, "question": "What is the weather like?"}
-            return retold(replace(call, arguments=arguments), answer=told, known=True, message=told)
+            return with_result(replace(call, arguments=arguments), answer=answer, known=True, message=answer)
         return call
 
-    return replace(changed(episode, setting, aside), text=told)
+    return replace(changed(episode, setting, aside), text=answer)

@@ -1,4 +1,4 @@
-"""Gold runs for the error modes: a run that passes, with one known fault of one mode put into it."""
+"""Mutation of a run that passes: one known fault of one error mode is put into it."""
 
 from __future__ import annotations
 
@@ -10,29 +10,27 @@ from dataclasses import dataclass
 from scope_ptz.bench.scoring.episode import Episode
 from scope_ptz.bench.scoring.error_modes import ErrorMode, error_mode
 from scope_ptz.bench.tasks.task import Task
-from scope_ptz.taskgen.gold import agent_faults as faults
-from scope_ptz.taskgen.gold import reply_faults as faults_told
-from scope_ptz.taskgen.gold.agent_faults import Setting
+from scope_ptz.taskgen.gold import agent_faults, reply_faults
+from scope_ptz.taskgen.gold.agent_faults import FaultSetting
 
-__all__ = ["Gold", "Setting", "confusion", "mutate"]
+__all__ = ["FaultSetting", "GoldRun", "confusion", "mutate"]
 
-
-Way = Callable[[Task, Episode, Setting, random.Random], Episode | None]
-FAULTS: dict[ErrorMode, tuple[Way, ...]] = {
-    ErrorMode.LACK_OF_TOOL_CALL: (faults.drop_all, faults.drop_looks, faults.drop_pictures),
-    ErrorMode.TOOL_ROUTING: (faults.swap_tools, faults.swap_order),
-    ErrorMode.SCOPE: (faults.flip_scope,),
-    ErrorMode.TOOL_ARGS: (faults.other_preset, faults.turned_round, faults.other_target),
-    ErrorMode.HALLUCINATION: (faults_told.make_up,),
-    ErrorMode.VLM_COUNTING: (faults_told.miscount,),
-    ErrorMode.VLM_QUERY: (faults_told.misread, faults_told.overlook),
-    ErrorMode.REASONING: (faults_told.conclude_wrongly,),
+FaultFunction = Callable[[Task, Episode, FaultSetting, random.Random], Episode | None]
+FAULTS: dict[ErrorMode, tuple[FaultFunction, ...]] = {
+    ErrorMode.LACK_OF_TOOL_CALL: (agent_faults.drop_all, agent_faults.drop_looks, agent_faults.drop_pictures),
+    ErrorMode.TOOL_ROUTING: (agent_faults.swap_tools, agent_faults.swap_order),
+    ErrorMode.SCOPE: (agent_faults.flip_scope,),
+    ErrorMode.TOOL_ARGS: (agent_faults.other_preset, agent_faults.turned_round, agent_faults.other_target),
+    ErrorMode.HALLUCINATION: (reply_faults.make_up,),
+    ErrorMode.VLM_COUNTING: (reply_faults.miscount,),
+    ErrorMode.VLM_QUERY: (reply_faults.misread, reply_faults.overlook),
+    ErrorMode.REASONING: (reply_faults.conclude_wrongly,),
 }
 
 
 @dataclass(frozen=True, slots=True)
-class Gold:
-    """A run with a known fault. ``fault``: the name of the function that put it in."""
+class GoldRun:
+    """A run with a known fault. ``fault`` is the name of the fault function."""
 
     mode: ErrorMode
     task: Task
@@ -40,16 +38,20 @@ class Gold:
     fault: str
 
 
-def mutate(task: Task, episode: Episode, mode: ErrorMode, setting: Setting, rng: random.Random) -> Gold | None:
-    """The run with one fault of a mode, or None when it has no place for one (who looks at nothing cannot miscount)."""
-    ways = list(FAULTS[mode])
-    rng.shuffle(ways)
-    for way in ways:
-        if (faulty := way(task, episode, setting, rng)) is not None:
-            return Gold(mode, task, faulty, way.__name__)
+def mutate(task: Task, episode: Episode, mode: ErrorMode, setting: FaultSetting, rng: random.Random) -> GoldRun | None:
+    """Put one fault of an error mode into a run.
+
+    Returns:
+        The run with the fault, or None when no fault of the mode applies to it: without a counting call, nothing can be miscounted.
+    """
+    functions = list(FAULTS[mode])
+    rng.shuffle(functions)
+    for function in functions:
+        if (faulty := function(task, episode, setting, rng)) is not None:
+            return GoldRun(mode, task, faulty, function.__name__)
     return None
 
 
-def confusion(gold: Iterable[Gold]) -> Counter[tuple[ErrorMode, ErrorMode | None]]:
-    """How often a fault of one mode (first) was taken for which (second); None: not judged incorrect, which is a false accept."""
+def confusion(gold: Iterable[GoldRun]) -> Counter[tuple[ErrorMode, ErrorMode | None]]:
+    """Count runs by the mode of their fault and the mode that the rules assign (None when a run is not judged incorrect)."""
     return Counter((one.mode, error_mode(one.task, one.episode)) for one in gold)

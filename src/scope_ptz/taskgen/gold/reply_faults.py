@@ -1,6 +1,7 @@
-"""Known faults of what an agent is told and makes of it, to put into a run that passes: perception and answers that are wrong.
+"""Faults in replies: wrong output of perception, and wrong final answers.
 
-Every way gives the run with the fault, or None where the run offers no place for it.
+Every fault function takes a run that passes. It returns the run with the fault, or None when the fault does not apply to the run.
+The names of these functions are stored with gold runs.
 """
 
 from __future__ import annotations
@@ -13,39 +14,40 @@ from scope_ptz.bench.scoring.episode import Call, Episode
 from scope_ptz.bench.scoring.evidence import is_grounded, numbers_said
 from scope_ptz.bench.tasks.expected import ActionOnly, AnyExpected, NoneThere, Number, Relation, YesNo
 from scope_ptz.bench.tasks.task import Task
-from scope_ptz.taskgen.facts.phrasing import right_answers, wrong_answer
-from scope_ptz.taskgen.gold.agent_faults import Setting, changed, count_of, replayed, retold
+from scope_ptz.taskgen.facts.answer_phrasing import right_answers, wrong_answer
+from scope_ptz.taskgen.gold.agent_faults import FaultSetting, changed, count_of, replayed, with_result
 
-_TRIES = 24
+_TRIES = 24  # wrong answers that are tried until one has no support in the run
 _DECLINES = ("I cannot tell.", "I'm not sure.", "It is not possible to say.")
 
 
 # Perception is wrong
 
 
-def miscount(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
+def miscount(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+    """Let perception return wrong counts that lead to a wrong answer."""
     counts = [n for n, call in enumerate(episode.calls) if call.name == "count_objects"]
-    told = wrong_answer(task.expected, rng)
-    if not counts or told is None:
+    answer = wrong_answer(task.expected, rng)
+    if not counts or answer is None:
         return None
-    for wrong in _miscounts(task.expected, told, [episode.calls[n] for n in counts]):
+    for wrong in _miscounts(task.expected, answer, [episode.calls[n] for n in counts]):
         calls = list(episode.calls)
         for n, number in zip(counts, wrong, strict=True):
             calls[n] = recounted(calls[n], number)
-        made = replace(replayed(episode, calls, setting), text=told)
+        made = replace(replayed(episode, calls, setting), text=answer)
         if is_grounded(task, made):
             return made
     return None
 
 
-def _miscounts(expected: AnyExpected, told: str, counts: list[Call]) -> Iterator[list[int]]:
-    """Wrong counts that could lead to what is told."""
+def _miscounts(expected: AnyExpected, answer: str, counts: list[Call]) -> Iterator[list[int]]:
+    """Yield wrong counts that could explain a wrong answer."""
     numbers = [int((call.result or {})["count"]) for call in counts]
     if not isinstance(expected, Number | NoneThere | YesNo):
         exchanged = list(reversed(numbers)) if isinstance(expected, Relation) else [*numbers[1::-1], *numbers[2:]]
         yield exchanged if exchanged != numbers else [numbers[0] + 2, *numbers[1:]]
         return
-    last = count_of(expected, told, counts[-1])
+    last = count_of(expected, answer, counts[-1])
     off = last - round(expected.value) if isinstance(expected, Number) else 0
     for number in (last, numbers[-1] + off, numbers[-1] - off):
         if number >= 0 and number != numbers[-1]:
@@ -53,48 +55,52 @@ def _miscounts(expected: AnyExpected, told: str, counts: list[Call]) -> Iterator
 
 
 def recounted(call: Call, number: int) -> Call:
-    return retold(call, count=number, message=f"{number} of '{call.arguments.get('description')}' in view.")
+    """Return a counting call with another result."""
+    return with_result(call, count=number, message=f"{number} of '{call.arguments.get('description')}' in view.")
 
 
-def misread(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
-    told = wrong_answer(task.expected, rng)
-    if told is None or not any(call.name == "query_answer" for call in episode.calls):
+def misread(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+    """Let perception answer a question wrongly."""
+    answer = wrong_answer(task.expected, rng)
+    if answer is None or not any(call.name == "query_answer" for call in episode.calls):
         return None
 
-    def misread(call: Call) -> Call:
-        return retold(call, answer=told, message=told) if call.name == "query_answer" else call
+    def change(call: Call) -> Call:
+        return with_result(call, answer=answer, message=answer) if call.name == "query_answer" else call
 
-    return replace(changed(episode, setting, misread), text=told)
+    return replace(changed(episode, setting, change), text=answer)
 
 
-def overlook(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
-    """Perception does not find a target that is in view."""
+def overlook(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+    """Let perception miss a target that is in view."""
     if not any(call.name == "zoom_to_object" for call in episode.calls) or not isinstance(task.expected, ActionOnly):
         return None
 
-    def overlook(call: Call) -> Call:
+    def change(call: Call) -> Call:
         if call.name != "zoom_to_object":
             return call
-        said = {"message": "Nothing that fits is in view.", "found": False, "matches": 0}
-        return replace(call, result=said, after=call.before)
+        result = {"message": "Nothing that fits is in view.", "found": False, "matches": 0}
+        return replace(call, result=result, after=call.before)
 
-    return replace(changed(episode, setting, overlook), text="It is not in view.")
+    return replace(changed(episode, setting, change), text="It is not in view.")
 
 
 # The answer is wrong
 
 
-def make_up(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
+def make_up(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+    """Answer with something that no observation supports."""
     for _ in range(_TRIES):
-        told = wrong_answer(task.expected, rng)
-        if told is None:
+        answer = wrong_answer(task.expected, rng)
+        if answer is None:
             return None
-        if not is_grounded(task, replace(episode, text=told)):
-            return replace(episode, text=told)
+        if not is_grounded(task, replace(episode, text=answer)):
+            return replace(episode, text=answer)
     return None
 
 
-def conclude_wrongly(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
+def conclude_wrongly(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
+    """Draw a wrong conclusion from correct observations, or decline to answer."""
     expected = task.expected
     if isinstance(expected, ActionOnly):
         return None
@@ -102,7 +108,7 @@ def conclude_wrongly(task: Task, episode: Episode, setting: Setting, rng: random
         others = sorted(n for n in numbers_said(episode) if abs(n - expected.value) > expected.tolerance)
         if others and rng.random() < 0.5:
             return replace(episode, text=right_answers(expected.model_copy(update={"value": rng.choice(others)}))[0])
-    told = wrong_answer(expected, rng)
-    if told is not None and rng.random() < 0.5 and is_grounded(task, replace(episode, text=told)):
-        return replace(episode, text=told)
+    answer = wrong_answer(expected, rng)
+    if answer is not None and rng.random() < 0.5 and is_grounded(task, replace(episode, text=answer)):
+        return replace(episode, text=answer)
     return replace(episode, text=rng.choice(_DECLINES))

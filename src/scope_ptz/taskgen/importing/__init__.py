@@ -1,6 +1,7 @@
-"""Tasks of other people's files: read, mapped to our tools and scenes, checked for what is wrong with them, and made to run."""
+"""Import of tasks from CSV files in the paper's format.
 
-from scope_ptz.bench.scoring.imported import check_calls_of
-from scope_ptz.bench.tasks.imported import ImportedTask, holds_imported, load_imported
-
-__all__ = ["ImportedTask", "check_calls_of", "holds_imported", "load_imported"]
+``csv_table`` reads the file and ``structured_cells`` the lists and objects in its cells. ``paper_names`` maps the paper's names to
+those of this project, ``scene_names`` does so for scenes and presets, and ``tool_steps`` and ``call_mapping`` turn expected tools
+and arguments into required calls. ``row_reading`` makes a task of each row, ``row_checks`` finds rows that are doubtful as tasks,
+and ``import_report`` runs all of this and reports on every row. The details of findings are stored with the imported tasks.
+"""

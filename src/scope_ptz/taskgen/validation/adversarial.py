@@ -1,6 +1,7 @@
-"""Programs that must pass beside the reference, and cheats, none of which may.
+"""Attempts at a task: correct programs, which must pass, and adversarial programs and answers, which must fail.
 
-A program is a list of calls, a closing text and an outcome. A cheat knows the right answer wherever that makes it stronger.
+An attempt is a list of calls, a final answer and an outcome. Adversarial attempts know the right answer wherever that makes them
+stronger. The names of the attempts are stored with the dataset.
 """
 
 from __future__ import annotations
@@ -13,16 +14,23 @@ from dataclasses import dataclass
 
 from scope_ptz.bench.tasks.expected import ActionOnly, AnyExpected, NoneThere, Number
 from scope_ptz.bench.tasks.task import ProgramCall, Task
-from scope_ptz.taskgen.facts.phrasing import offered, right_answers, wrong_answer
+from scope_ptz.taskgen.facts.answer_phrasing import offered, right_answers, wrong_answer
 from scope_ptz.tools.registry import TOOLS
 
-LOOKS = frozenset({"count_objects", "query_answer"})
-MOVES = TOOLS.moving
+PERCEPTION_TOOLS = frozenset({"count_objects", "query_answer"})
+MOVING_TOOLS = TOOLS.moving
 
 
 @dataclass(frozen=True)
 class Attempt:
-    """``name``: what is tried, for the report."""
+    """A program with its answer.
+
+    Attributes:
+        name: Name of the attempt in the report.
+        program: The calls.
+        text: The final answer.
+        outcome: How the run ends.
+    """
 
     name: str
     program: tuple[ProgramCall, ...]
@@ -30,8 +38,8 @@ class Attempt:
     outcome: str = "answered"
 
 
-def honest(task: Task) -> Iterator[Attempt]:
-    """The reference and two other correct programs, with five wordings of the right answer among them."""
+def correct_attempts(task: Task) -> Iterator[Attempt]:
+    """Yield the reference program and two other correct programs, with different wordings of the right answer."""
     outcome = task.behaviour.outcomes[0]
     texts = right_answers(task.expected) if outcome == "answered" else ("I am not sure what you mean: which one?",) * 5
     yield Attempt("reference", task.reference, texts[0], outcome)
@@ -41,13 +49,13 @@ def honest(task: Task) -> Iterator[Attempt]:
     yield Attempt("twice", tuple(twice(task.reference)), texts[2], outcome)
 
 
-def right_texts(task: Task) -> tuple[str, ...]:
-    """The remaining wordings, to be told after the reference program."""
+def other_right_wordings(task: Task) -> tuple[str, ...]:
+    """Return the remaining wordings of the right answer, which follow the reference program."""
     return right_answers(task.expected)[3:] if task.behaviour.outcomes[0] == "answered" else ()
 
 
 def detour(task: Task) -> tuple[ProgramCall, ...]:
-    """The reference after a look at the presets, and, where the target is not the view of now, after turning aside and back."""
+    """Return the reference program after listing the presets and, if it starts with a preset, after a turn elsewhere."""
     first = task.reference[0] if task.reference else None
     ahead = (ProgramCall(tool="get_presets"),)
     if first is None or first.tool not in ("go_to_preset", "go_home"):
@@ -56,9 +64,9 @@ def detour(task: Task) -> tuple[ProgramCall, ...]:
 
 
 def twice(program: Sequence[ProgramCall]) -> Iterator[ProgramCall]:
-    """Every look taken twice, every turn and zoom made in two halves."""
+    """Yield a program with every perception call repeated and every turn and zoom split into two halves."""
     for call in program:
-        if call.tool in LOOKS:
+        if call.tool in PERCEPTION_TOOLS:
             yield from (call, call)
         elif call.tool == "adjust_ptz":
             half = {k: v / 2 for k, v in call.arguments.items() if k != "zoom_factor" and isinstance(v, int | float)}
@@ -71,23 +79,35 @@ def twice(program: Sequence[ProgramCall]) -> Iterator[ProgramCall]:
 
 
 def common_answers(tasks: Sequence[Task], *, presences: bool = False) -> dict[str, str]:
-    """The most common answer of each category, as a text. ``presences``: of tasks without a twin, and other than "none"."""
-    said: dict[str, Counter[str]] = {}
+    """Return the most common answer of each category as a text.
+
+    Args:
+        tasks: The tasks.
+        presences: Whether to leave out tasks with a twin, and answers that there is none.
+    """
+    answers: dict[str, Counter[str]] = {}
     for task in tasks:
-        passed_over = presences and (task.pair is not None or isinstance(task.expected, NoneThere))
-        if task.stratum == "core" and not isinstance(task.expected, ActionOnly) and not passed_over:
-            said.setdefault(task.category, Counter())[_bare(task.expected)] += 1
-    return {category: counts.most_common(1)[0][0] for category, counts in said.items()}
+        left_out = presences and (task.pair is not None or isinstance(task.expected, NoneThere))
+        if task.stratum == "core" and not isinstance(task.expected, ActionOnly) and not left_out:
+            answers.setdefault(task.category, Counter())[_bare_answer(task.expected)] += 1
+    return {category: counts.most_common(1)[0][0] for category, counts in answers.items()}
 
 
-def _bare(expected: AnyExpected) -> str:
-    """A right answer without the words of its question, so that it is an answer to others as well."""
+def _bare_answer(expected: AnyExpected) -> str:
+    """Return a right answer without words of its question, so that it also answers other questions."""
     return f"{expected.value:g}" if isinstance(expected, Number) else right_answers(expected)[0]
 
 
-def cheats(task: Task, common: str, sibling: str | None, rng: random.Random) -> Iterator[Attempt]:
-    """What must fail. ``common``: the most common answer of the category; ``sibling``: the answer to another task like it."""
-    blind = tuple(call for call in task.reference if call.tool not in LOOKS and call.tool != "zoom_to_object")
+def adversarial_attempts(task: Task, common: str, sibling: str | None, rng: random.Random) -> Iterator[Attempt]:
+    """Yield attempts that must fail.
+
+    Args:
+        task: The task.
+        common: The most common answer of its category.
+        sibling: The answer to a similar task, if there is one with another answer.
+        rng: Source of the wrong answers.
+    """
+    blind = tuple(call for call in task.reference if call.tool not in PERCEPTION_TOOLS and call.tool != "zoom_to_object")
     right = right_answers(task.expected)[0]
     yield Attempt("nothing", (), "")
     for text in ("None.", "0", "Yes.", common):
@@ -107,25 +127,25 @@ def cheats(task: Task, common: str, sibling: str | None, rng: random.Random) -> 
         yield Attempt("wrong-pose", (*task.reference, aside, back), right)
 
 
-def guesses(task: Task, common: str) -> Iterator[Attempt]:
-    """Answers given after looking at everything, whatever was seen. Each passes where it happens to be right."""
-    looks = [at for at, call in enumerate(task.reference) if call.tool in LOOKS or call.tool == "zoom_to_object"]
-    if not looks or isinstance(task.expected, ActionOnly):
+def guess_attempts(task: Task, common: str) -> Iterator[Attempt]:
+    """Yield fixed answers after the full reference program. Each passes where it happens to be right."""
+    seeing = [at for at, call in enumerate(task.reference) if call.tool in PERCEPTION_TOOLS or call.tool == "zoom_to_object"]
+    if not seeing or isinstance(task.expected, ActionOnly):
         return
-    program = task.reference[: looks[-1] + 1]
+    program = task.reference[: seeing[-1] + 1]
     names = offered(task.expected, task.instruction)
-    said: dict[str, str | None] = {"none": "None.", "0": "0", "yes": "Yes.", "no": "No.", "most common": common}
-    said |= {f"{place} offered": name for place, name in zip(("first", "second", "third"), names, strict=False)}
-    said |= {"last offered": names[-1]} if names else {}
-    for name, text in said.items():
+    answers: dict[str, str | None] = {"none": "None.", "0": "0", "yes": "Yes.", "no": "No.", "most common": common}
+    answers |= {f"{place} offered": name for place, name in zip(("first", "second", "third"), names, strict=False)}
+    answers |= {"last offered": names[-1]} if names else {}
+    for name, text in answers.items():
         if text is not None:
             yield Attempt(f"looked-and-guessed: {name}", program, text)
 
 
 def stay(program: Sequence[ProgramCall]) -> Iterator[ProgramCall]:
-    """The looks of a program, all taken at the view of the start."""
+    """Yield the perception calls of a program, all made at the start view."""
     for call in program:
-        if call.tool in LOOKS:
+        if call.tool in PERCEPTION_TOOLS:
             yield ProgramCall(tool=call.tool, arguments={**call.arguments, "view": "current"})
-        elif call.tool not in MOVES:
+        elif call.tool not in MOVING_TOOLS:
             yield call

@@ -1,0 +1,154 @@
+"""Multi-step command tasks: go, turn, zoom, take pictures and return, in the order that the instruction states."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+
+from scope_ptz.bench.scoring.episode import Standing
+from scope_ptz.bench.tasks.task import Argument, Behaviour, Need, ProgramCall, RequiredCall
+from scope_ptz.taskgen.authoring.categories.single_call_tasks import command
+from scope_ptz.taskgen.authoring.drafts import TaskDraft
+from scope_ptz.taskgen.authoring.noun_phrases import capital
+from scope_ptz.taskgen.authoring.task_places import ScenePlaces, TaskPlace, adjust, call_phrases, go, move, preset_at
+
+_SHOTS = ("take a picture", "take a photo", "save an image", "capture a still", "take a snapshot")
+_SHAPES = (
+    ("preset", "turn"),
+    ("preset", "zoom", "shot"),
+    ("turn", "shot"),
+    ("preset", "shot", "preset", "shot"),
+    ("preset", "turn", "zoom"),
+    ("turn", "zoom", "shot"),
+    ("preset", "shot", "home"),
+    ("zoom", "shot", "preset"),
+    ("turn", "shot", "turn", "shot"),
+    ("preset", "tilt", "shot"),
+    ("home", "turn"),
+    ("preset", "shot", "turn", "shot"),
+    ("preset", "turn", "shot", "home"),
+    ("turn", "tilt", "zoom"),
+    ("shot", "preset", "shot"),
+    ("preset", "zoom"),
+    ("home", "zoom", "shot"),
+    ("turn", "tilt", "shot"),
+    ("shot", "turn", "shot"),
+    ("preset", "tilt", "zoom", "shot"),
+    ("tilt", "shot", "home"),
+    ("zoom", "turn", "shot", "preset"),
+)
+_OPENINGS = (
+    "{M}.",
+    "Please {m}.",
+    "First {m}.",
+    "I'd like you to {m}.",
+    "Your next job: {m}.",
+    "Could you {m}?",
+    "Do this in order: {m}.",
+)
+
+
+def drafts(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield commands of every shape, from random presets."""
+    names = list(places.presets)
+    for n in range(60 * len(_SHAPES)):
+        shape = _SHAPES[n % len(_SHAPES)]
+        draft = _command(places, shape, rng.choice(names), rng)
+        if draft is not None:
+            yield draft
+
+
+def _command(places: ScenePlaces, shape: tuple[str, ...], start: str, rng: random.Random) -> TaskDraft | None:
+    scene = places.scene
+    at = preset_at(places.presets[start])
+    program, visited = list[ProgramCall](), [start]
+    for step in shape:
+        call = _step(step, places, visited, rng)
+        if call is None:
+            return None
+        there = after(places, at, call)
+        if there is None or (call.tool != "take_image" and there == at):
+            return None
+        at = there
+        program.append(call)
+    origin = places.stay(start)
+    end = TaskPlace(scene, start, tuple(program), at)
+    shots = shape.count("shot")
+    if not shots and end.key == origin.key:
+        return None
+    _step_phrases(program, rng)  # Published wordings depend on these random draws.
+    variants = []
+    for opening in _OPENINGS:
+        order = joined_in_order(_step_phrases(program, rng), rng)
+        variants.append(opening.format(m=order, M=capital(order)))
+    calls = tuple(required(c) for c in program) if shots else ()
+    return command(
+        "multi_step_command",
+        "-".join(shape),
+        f"steps:{[c.model_dump() for c in program]}",
+        origin,
+        tuple(variants),
+        tuple(program),
+        Behaviour(final=end.final, calls=calls, pictures=shots),
+        needs_of(program),
+        ("picture",) if shots else (),
+    )
+
+
+def _step_phrases(program: list[ProgramCall], rng: random.Random) -> list[str]:
+    """Return each step of a program in words."""
+    return [rng.choice(_SHOTS) if c.tool == "take_image" else " and ".join(call_phrases(c, rng)) for c in program]
+
+
+def joined_in_order(parts: list[str], rng: random.Random) -> str:
+    """Join steps in sequence. A bare "and" would leave their order open."""
+    last = rng.choice((", then ", " and then ", " and after that "))
+    return f"{', '.join(parts[:-1])}{last}{parts[-1]}"
+
+
+def required(call: ProgramCall) -> RequiredCall:
+    """Return the call that a run must contain for a step. The final pose shows how far the camera turned."""
+    if call.tool == "go_to_preset":
+        return RequiredCall(tool="go_to_preset", arguments={"name": Argument(equals=str(call.arguments["name"]))})
+    return RequiredCall(tool=call.tool)
+
+
+def needs_of(program: list[ProgramCall]) -> tuple[Need, ...]:
+    """Return what a program does to the view: change the preset, move, zoom."""
+    found: list[Need] = []
+    for call in program:
+        if call.tool in ("go_to_preset", "go_home"):
+            found.append("preset")
+        if call.arguments.get("pan_deg") or call.arguments.get("tilt_deg"):
+            found.append("move")
+        if "zoom_factor" in call.arguments:
+            found.append("zoom")
+    return tuple(dict.fromkeys(found))
+
+
+def after(places: ScenePlaces, at: Standing, call: ProgramCall) -> Standing | None:
+    """Return where the camera is after a call, or None when a limit would clamp the move."""
+    if call.tool == "go_to_preset":
+        return preset_at(places.presets[str(call.arguments["name"])])
+    if call.tool == "go_home":
+        return preset_at(places.presets[places.scene.file.home_preset])
+    return move(at, call) if call.tool == "adjust_ptz" else at
+
+
+def _step(step: str, places: ScenePlaces, visited: list[str], rng: random.Random) -> ProgramCall | None:
+    match step:
+        case "preset":
+            fresh = [p for p in places.presets if p not in visited]
+            if not fresh:
+                return None
+            visited.append(rng.choice(fresh))
+            return go(visited[-1])
+        case "home":
+            return ProgramCall(tool="go_home")
+        case "turn":
+            return adjust(rng.choice((-1, 1)) * rng.choice((10, 15, 18, 20, 25, 30, 40, 45, 60, 90)))
+        case "tilt":
+            return adjust(0, rng.choice((-12, -10, -8, -5, 5, 6, 8)))
+        case "zoom":
+            return adjust(factor=rng.choice((1.25, 1.5, 1.75, 2.0, 2.5, 3.0)))
+    return ProgramCall(tool="take_image")

@@ -1,0 +1,279 @@
+"""Comparative tasks within one view: more or fewer, nearer or farther, larger in the picture."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator, Sequence
+from itertools import combinations, pairwise
+
+from scope_ptz.bench.tasks.expected import AnyExpected, Choice, Number, Options, Ordering, Relation, YesNo
+from scope_ptz.bench.tasks.task import EvidenceView
+from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, ask_call, count_call, evidence_view, same_form
+from scope_ptz.taskgen.authoring.noun_phrases import about, listing, many_of, unit_of
+from scope_ptz.taskgen.authoring.object_names import NamedThing, nameable_things
+from scope_ptz.taskgen.authoring.task_places import TaskPlace
+from scope_ptz.taskgen.authoring.view_contents import countable, disjoint, plain_counts
+from scope_ptz.taskgen.facts.kinds import GROUPS, Kind
+
+SAME = ("the same", "equal", "as many", "equally many")
+_NEARER, _LARGER = 1.5, 2.5
+"""Ratios of distances, and of areas in the picture, from which a difference is beyond doubt."""
+
+
+def drafts(place: TaskPlace, rng: random.Random) -> list[TaskDraft]:
+    """Return comparisons within one view."""
+    return [*_of_two(place, rng), *_of_several(place, rng), *_distances(place, rng), *_sizes(place, rng)]
+
+
+def _of_two(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
+    pairs = [
+        (a, b)
+        for a, b in combinations(countable(place.truth), 2)
+        if not a[0].attribute
+        and not b[0].attribute
+        and bool(a[0].colour) == bool(b[0].colour) == (a[0].category == b[0].category)
+        and min(a[1], b[1]) >= 2
+        and a[1] + b[1] >= 5
+        and disjoint(place.truth, (a[0], b[0]))
+    ]
+    rng.shuffle(pairs)
+    for n, pair in enumerate(pairs[:14]):
+        (one, many), (two, few) = rng.sample(pair, 2)
+        first, second = many_of(one), many_of(two)
+        seen = tuple(count_evidence(place, kind, number) for kind, number in ((one, many), (two, few)))
+        kind, expected, asked = (_excess, _more, _fewer, _number_relation, _whether_more)[n % 5](first, second, many, few)
+        yield TaskDraft(
+            category="comparative",
+            question_type=kind,
+            key=f"more:{'/'.join(sorted((first, second)))}",
+            place=place,
+            expected=expected,
+            question=asked,
+            evidence=seen,
+            perception_calls=(count_call(first, place), count_call(second, place)),
+            tags=("counts",),
+            weight=max(many, few),
+            answer_key=_answer_key(expected),
+        )
+
+
+_TypedQuestion = tuple[str, AnyExpected, Question]
+
+
+def _answer_key(expected: AnyExpected) -> str:
+    match expected:
+        case YesNo():
+            return "yes" if expected.value else "no"
+        case Choice() | Relation():
+            return expected.value
+        case Ordering():
+            return "/".join(expected.value)
+        case Number():
+            return f"{expected.value:g}"
+    return expected.kind
+
+
+def _more(first: str, second: str, n: int, m: int) -> _TypedQuestion:
+    winner = "same" if n == m else first if n > m else second
+    expected = Choice(value=winner, options={first: (), second: (), "same": SAME}, picks=("more", "most"))
+    forms = (
+        (f"are there more {first} or more {second}?", f"whether there are more {first} or more {second}"),
+        (f"what do you see more of, {first} or {second}?", f"what you see more of, {first} or {second}"),
+        (f"which are more numerous, the {first} or the {second}?", f"which are more numerous, the {first} or the {second}"),
+    )
+    return "more", expected, Question(forms)
+
+
+def _fewer(first: str, second: str, n: int, m: int) -> _TypedQuestion:
+    if n == m:
+        return _number_relation(first, second, n, m)
+    expected = Choice(
+        value=first if n < m else second, options={first: (), second: (), "same": SAME}, picks=("fewer", "fewest", "less", "least")
+    )
+    forms = (
+        (f"are there fewer {first} or fewer {second}?", f"whether there are fewer {first} or fewer {second}"),
+        (f"which are there fewer of, {first} or {second}?", f"which there are fewer of, {first} or {second}"),
+    )
+    return "fewer", expected, Question(forms)
+
+
+def _excess(first: str, second: str, n: int, m: int) -> _TypedQuestion:
+    if n <= m:
+        return _number_relation(first, second, n, m)
+    forms = (
+        (f"how many more {first} than {second} are there?", f"how many more {first} than {second} there are"),
+        (f"by how many do the {first} outnumber the {second}?", f"by how many the {first} outnumber the {second}"),
+    )
+    # Without a unit, a reply that states the numbers of the two kinds is not read as their difference.
+    return "excess", Number(value=n - m), Question(forms)
+
+
+def _number_relation(first: str, second: str, n: int, m: int) -> _TypedQuestion:
+    expected = Relation(
+        value="same" if n == m else "forward" if n > m else "backward", subject=(first,), object=(second,),
+        forward=("more", "greater", "higher"), backward=("fewer", "smaller", "lower", "less"), same=SAME,
+    )  # fmt: skip
+    forms = (
+        (f"how does the number of {first} compare with that of {second}?",
+         f"how the number of {first} compares with that of {second}"),
+        (f"are there more {first} than {second}, fewer, or just as many?",
+         f"whether there are more {first} than {second}, fewer, or just as many"),
+    )  # fmt: skip
+    return "compare", expected, Question(forms)
+
+
+def _whether_more(first: str, second: str, n: int, m: int) -> _TypedQuestion:
+    expected = YesNo(value=n > m)
+    forms = (
+        (f"are there more {first} than {second}?", f"whether there are more {first} than {second}"),
+        (f"do the {first} outnumber the {second}?", f"whether the {first} outnumber the {second}"),
+    )
+    return "whether-more", expected, Question(forms)
+
+
+def count_evidence(place: TaskPlace, kind: Kind, number: int) -> EvidenceView:
+    """Return a view as evidence for the number of a kind."""
+    items = [place.truth.item(t, True) for t in place.truth.all_of(kind) or ()]
+    return evidence_view(place, Number(value=number, unit=unit_of(kind)), about(kind), items, whole=True)
+
+
+def _of_several(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield questions about the most numerous of four kinds, and for the order of three kinds by number."""
+    plain = [(kind, n) for kind, n in plain_counts(place.truth) if kind.category not in GROUPS]
+    for size, most in ((3, 4), (4, 4)):
+        groups = [
+            group
+            for group in combinations(plain, size)
+            if _distinct([n for _, n in group], whole=size == 3) and disjoint(place.truth, [kind for kind, _ in group])
+        ]
+        rng.shuffle(groups)
+        for group in groups[:most]:
+            ranked = tuple(many_of(kind) for kind, _ in sorted(group, key=lambda t: -t[1]))
+            shuffled = rng.sample(group, size)
+            names = [many_of(kind) for kind, _ in shuffled]
+            asked, expected = _ranking(names, ranked) if size == 3 else _most(names, ranked[0])
+            yield TaskDraft(
+                category="comparative",
+                question_type="ranking" if size == 3 else "most-of",
+                key=f"rank:{'/'.join(sorted(ranked))}",
+                place=place,
+                expected=expected,
+                question=asked,
+                evidence=tuple(count_evidence(place, kind, n) for kind, n in shuffled),
+                perception_calls=tuple(count_call(name, place) for name in names),
+                tags=("counts",),
+                weight=sum(n for _, n in group),
+                answer_key=_answer_key(expected),
+            )
+
+
+def _distinct(numbers: Sequence[int], *, whole: bool) -> bool:
+    """Whether all numbers differ, or, without ``whole``, whether the greatest occurs once."""
+    return len(set(numbers)) == len(numbers) if whole else numbers.count(max(numbers)) == 1
+
+
+def _ranking(names: list[str], ranked: tuple[str, ...]) -> tuple[Question, Ordering]:
+    expected = Ordering(value=ranked, options=dict.fromkeys(ranked, ()), first=("most",), last=("fewest",))
+    listed = listing(names)
+    forms = (
+        (f"how do {listed} rank by number, from most to fewest?", f"how {listed} rank by number, from most to fewest"),
+        (f"put {listed} in order of how many there are, the most first.",
+         f"the order of {listed} by how many there are, the most first"),
+    )  # fmt: skip
+    return Question(forms), expected
+
+
+def _most(names: list[str], winner: str) -> tuple[Question, Choice]:
+    listed = listing(names, "or")
+    expected = Choice(value=winner, options=dict.fromkeys(names, ()), picks=("most", "more"))
+    return Question(same_form(f"what is there most of: {listed}?", f"which are the most numerous: {listed}?")), expected
+
+
+def _distances(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield questions about the nearest or farthest of two to four objects, and for the order of three by distance."""
+    if place.swept:
+        return
+    named = nameable_things(place.truth)
+    for size in (2, 3, 4):
+        for group in _groups(named, size, rng):
+            ranked = sorted(group, key=lambda n: n.thing.distance_m)
+            gaps = [b.thing.distance_m / max(a.thing.distance_m, 0.1) for a, b in pairwise(ranked)]
+            if min(gaps if size < 4 else (gaps[0], gaps[-1])) >= _NEARER:
+                names = [one.the for one in rng.sample(group, size)]
+                yield from _by_distance(place, ranked, names, rng)
+
+
+def _by_distance(place: TaskPlace, ranked: list[NamedThing], names: list[str], rng: random.Random) -> Iterator[TaskDraft]:
+    options: Options = {one.name: () for one in ranked}
+    either = listing(names, "or")
+    near = rng.random() < 0.5
+    way, winner = ("closest to", ranked[0]) if near else ("farthest from", ranked[-1])
+    if len(ranked) == 2:
+        way = "closer to" if near else "farther from"
+    picks = ("closest", "closer", "nearest", "nearer") if near else ("farthest", "farther", "furthest", "further")
+    choice = Choice(value=winner.name, options=options, picks=picks)
+    asked = Question(same_form(f"which is {way} the camera, {either}?", f"what is {way} the camera: {either}?"))
+    yield _comparison(
+        place, ("nearer" if near else "farther") if len(ranked) == 2 else "nearest-of", choice, asked, ranked, "distance"
+    )
+    if len(ranked) == 3:
+        order = Ordering(
+            value=tuple(one.name for one in ranked), options=options, first=("nearest", "closest"), last=("farthest", "furthest")
+        )
+        listed = listing(names)
+        yield _comparison(place, "by-distance", order, Question((
+            (f"put {listed} in order of distance, the nearest first.", f"the order of {listed} by distance, the nearest first"),
+            (f"from nearest to farthest, how are {listed} placed?", f"how {listed} are placed, from nearest to farthest"),
+        )), ranked, "distance")  # fmt: skip
+
+
+def _sizes(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield questions about the largest of three or four objects in the picture, whatever their real size."""
+    if place.swept:
+        return
+    named = nameable_things(place.truth)
+    for group in (*_groups(named, 3, rng), *_groups(named, 4, rng)):
+        areas = {one.name: place.truth.areas(one.thing) for one in group}
+        ranked = sorted(group, key=lambda one: areas[one.name][0], reverse=True)
+        if min(areas[ranked[0].name]) < _LARGER * max(max(areas[one.name]) for one in ranked[1:]):
+            continue
+        either = listing([one.the for one in rng.sample(group, len(group))], "or")
+        expected = Choice(value=ranked[0].name, options={one.name: () for one in ranked}, picks=("largest", "biggest", "most"))
+        asked = Question(
+            same_form(
+                f"which looks largest in the picture: {either}?",
+                f"which takes up the most room in the picture: {either}?",
+                f"which appears biggest in the frame: {either}?",
+            )
+        )
+        yield _comparison(place, "largest", expected, asked, ranked, "size")
+
+
+def _groups(named: list[NamedThing], size: int, rng: random.Random) -> list[tuple[NamedThing, ...]]:
+    """Return a few groups of objects of different categories."""
+    groups = [g for g in combinations(named[:12], size) if len({one.kind.category for one in g}) == size]
+    rng.shuffle(groups)
+    return groups[:12]
+
+
+def _comparison(
+    place: TaskPlace, kind: str, expected: Choice | Ordering, asked: Question, things: list[NamedThing], tag: str
+) -> TaskDraft:
+    """Return a comparison of single objects in one view."""
+    ids = "/".join(sorted(one.thing.instance.id for one in things))
+    measures = [one.thing.distance_m if tag == "distance" else float(one.thing.pixels) for one in things]
+    items = [place.truth.item(one.thing, measure) for one, measure in zip(things, measures, strict=True)]
+    lookup = "how far away is" if tag == "distance" else "where is"
+    return TaskDraft(
+        category="comparative",
+        question_type=kind,
+        key=f"{tag}:{ids}",
+        place=place,
+        expected=expected,
+        question=asked,
+        evidence=(evidence_view(place, expected, tuple(word for one in things for word in one.words), items, whole=False),),
+        perception_calls=tuple(ask_call(f"{lookup} {one.the}?", place) for one in things),
+        tags=(tag,),
+        weight=len(things),
+        answer_key=_answer_key(expected),
+    )

@@ -1,0 +1,70 @@
+"""Counting tasks: how many objects of a kind there are in a view or all around, and kinds of which there are none."""
+
+from __future__ import annotations
+
+import random
+
+from scope_ptz.bench.tasks.expected import NoneThere, Number
+from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, count_call, evidence_view, scope_of
+from scope_ptz.taskgen.authoring.noun_phrases import about, many_of, noun_of, unit_of
+from scope_ptz.taskgen.authoring.task_places import TaskPlace
+from scope_ptz.taskgen.authoring.view_contents import absent_kinds, countable, scene_kinds_first
+from scope_ptz.taskgen.facts.kinds import Kind
+
+
+def question(kind: Kind) -> Question:
+    """Return the wordings that ask for the number of a kind."""
+    many = many_of(kind)
+    return Question(
+        (
+            (f"how many {many} are there?", f"how many {many} there are"),
+            (f"how many {many} can you see?", f"how many {many} you can see"),
+            (f"what is the number of {many}?", f"the number of {many}"),
+            (f"how many {many} are visible?", f"how many {many} are visible"),
+            (f"what's the count of {many}?", f"the count of {many}"),
+        )
+    )
+
+
+def drafts(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> list[TaskDraft]:
+    """Return a draft for every countable kind at a place, and for absent kinds, each with a twin of the same wording."""
+    truth = place.truth
+    present = [_number(place, kind, n) for kind, n in countable(truth)]
+    twins = list(present)
+    rng.shuffle(twins)
+    missing = scene_kinds_first(place, absent_kinds(truth, nouns), rng)
+    none = [
+        TaskDraft(
+            category="counting",
+            question_type="none",
+            key=f"count:{noun_of(kind)}",
+            place=place,
+            expected=(expected := NoneThere(subject=unit_of(kind)[:2])),
+            question=question(kind),
+            evidence=(evidence_view(place, expected, about(kind), whole=True),),
+            perception_calls=(count_call(many_of(kind), place),),
+            tags=("none-there", scope_of(place)),
+            twin=twin,
+            answer_key="none",
+        )
+        for kind, twin in zip(missing, twins, strict=False)
+    ]
+    return [*present, *none]
+
+
+def _number(place: TaskPlace, kind: Kind, number: int) -> TaskDraft:
+    things = place.truth.all_of(kind) or ()
+    expected = Number(value=number, unit=unit_of(kind))
+    return TaskDraft(
+        category="counting",
+        question_type="all-around" if place.swept else "coloured" if kind.colour else "in-state" if kind.attribute else "count",
+        key=f"count:{noun_of(kind)}",
+        place=place,
+        expected=expected,
+        question=question(kind),
+        evidence=(evidence_view(place, expected, about(kind), [place.truth.item(t, True) for t in things], whole=True),),
+        perception_calls=(count_call(many_of(kind), place),),
+        tags=(scope_of(place),),
+        weight=number,
+        answer_key=str(number),
+    )

@@ -1,0 +1,143 @@
+"""Descriptor tasks in pairs of an absence and a presence, and questions about whether an object has a colour."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from dataclasses import replace
+
+from scope_ptz.bench.tasks.expected import Choice, NoneThere, YesNo
+from scope_ptz.bench.tasks.task import EvidenceView
+from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, ask_call, count_call, evidence_view
+from scope_ptz.taskgen.authoring.noun_phrases import (
+    about,
+    article,
+    colour_options,
+    many_of,
+    noun_of,
+    plain_colour,
+    plural,
+    the,
+    unit_of,
+    wordings,
+)
+from scope_ptz.taskgen.authoring.object_names import unique_things
+from scope_ptz.taskgen.authoring.task_places import TaskPlace
+from scope_ptz.taskgen.authoring.view_contents import absent_kinds, countable, scene_kinds_first
+from scope_ptz.taskgen.facts.kinds import Kind, colour_shows, near_colours, own_colour
+
+
+def drafts(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield presence questions, colour confirmations, and colours of objects that may be absent."""
+    yield from _presence(place, nouns, rng)
+    yield from _coloured_or_not(place, rng)
+    yield from _colour_if_there(place, nouns, rng)
+
+
+def _presence(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield questions about whether an absent object is there, each with a twin about a present one."""
+    present = [kind for kind, _ in countable(place.truth)]
+    rng.shuffle(present)
+    missing = scene_kinds_first(place, absent_kinds(place.truth, nouns), rng)
+    for here, gone in zip(present, missing, strict=False):
+        yield _presence_draft(place, gone, there=False, twin=_presence_draft(place, here, there=True))
+
+
+def _presence_draft(place: TaskPlace, kind: Kind, *, there: bool, twin: TaskDraft | None = None) -> TaskDraft:
+    one, many = noun_of(kind), many_of(kind)
+    expected = YesNo(value=True, affirms=unit_of(kind)[:2]) if there else NoneThere(subject=unit_of(kind)[:2])
+    things = (place.truth.all_of(kind) or ())[:1] if there else ()
+    return TaskDraft(
+        category="descriptor",
+        question_type="there" if there else "not-there",
+        key=f"there:{one}",
+        place=place,
+        expected=expected,
+        question=Question(
+            (
+                (f"is there {article(one)}?", f"whether there is {article(one)}"),
+                (f"are there any {many}?", f"whether there are any {many}"),
+                (f"can you see {article(one)}?", f"if you can see {article(one)}"),
+                (f"do you see any {many}?", f"whether you see any {many}"),
+            )
+        ),
+        evidence=(evidence_view(place, expected, about(kind), [place.truth.item(t, True) for t in things], whole=not there),),
+        perception_calls=(ask_call(f"are there any {many}?", place),),
+        tags=("presence",) if there else ("none-there",),
+        twin=twin,
+        answer_key="yes" if there else "none",
+    )
+
+
+def _coloured_or_not(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield questions about whether one object has a colour: its own, or one that nobody would mistake for it."""
+    for one in unique_things(place.truth, coloured=False, min_pixels=400):
+        colour = plain_colour(own_colour(one.thing.instance))
+        if colour is None or colour in one.name or not colour_shows(one.thing.instance):
+            continue
+        strangers = [c for c in ("red", "blue", "green", "yellow", "white", "black") if c != colour and not near_colours(c, colour)]
+        for asked in (colour, rng.choice(strangers)):
+            expected = YesNo(value=asked == colour, affirms=(asked,), denies=(colour,) if asked != colour else ())
+            yield TaskDraft(
+                category="descriptor",
+                question_type="is-coloured",
+                key=f"is-coloured:{one.thing.instance.id}",
+                place=place,
+                expected=expected,
+                question=Question(
+                    (
+                        (f"is {one.the} {asked}?", f"whether {one.the} is {asked}"),
+                        (f"is it true that {one.the} is {asked}?", f"if it is true that {one.the} is {asked}"),
+                    )
+                ),
+                evidence=(evidence_view(place, expected, one.words, [place.truth.item(one.thing, colour)], whole=False),),
+                perception_calls=(ask_call(f"what colour is {one.the}?", place),),
+                tags=("verification",),
+                answer_key="yes" if expected.value else "no",
+            )
+
+
+def _colour_if_there(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield questions about the colour of an absent object, each with a twin about a present one."""
+    missing = scene_kinds_first(place, [kind for kind in absent_kinds(place.truth, nouns) if kind.colour is None], rng)
+    shown = [one for one in unique_things(place.truth, coloured=False, min_pixels=300) if own_colour(one.thing.instance)]
+    rng.shuffle(shown)
+    for one, gone in zip(shown, missing, strict=False):
+        colour = plain_colour(own_colour(one.thing.instance))
+        if colour is None or colour in one.name or not colour_shows(one.thing.instance):
+            continue
+        value = Choice(value=colour, options=colour_options(), subject=unit_of(one.kind)[:2])
+        none = NoneThere(subject=unit_of(gone)[:2], claims=wordings(colour_options()))
+        item = place.truth.item(one.thing, colour)
+        twin = _colour_if_there_draft(place, one.name, value, evidence_view(place, value, one.words, [item], whole=False), colour)
+        yield replace(
+            _colour_if_there_draft(place, noun_of(gone), none, evidence_view(place, none, about(gone), whole=True), "none"),
+            question_type="no-colour",
+            twin=twin,
+        )
+
+
+def _colour_if_there_draft(
+    place: TaskPlace, name: str, expected: Choice | NoneThere, evidence: EvidenceView, answer_key: str
+) -> TaskDraft:
+    one = article(name)
+    return TaskDraft(
+        category="descriptor",
+        question_type="colour-if",
+        key=f"colour-if:{name}",
+        place=place,
+        expected=expected,
+        question=Question(
+            (
+                (f"what colour is {the(name)}, if there is one?", f"what colour {the(name)} is, if there is one"),
+                (f"if there is {one}, what colour is it?", f"what colour {the(name)} is, if you can see one"),
+                (f"can you see {one}, and what colour is it?", f"whether you can see {one}, and what colour it is"),
+            )
+        ),
+        evidence=(evidence,),
+        perception_calls=(count_call(f"{plural(name)}", place),)
+        if answer_key == "none"
+        else (ask_call(f"what colour is {the(name)}?", place),),
+        tags=("none-there",) if answer_key == "none" else ("attribute", "colour"),
+        answer_key=answer_key,
+    )

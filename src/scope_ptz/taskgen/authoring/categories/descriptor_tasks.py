@@ -1,0 +1,263 @@
+"""Descriptor tasks: colour, clothing, state, material and kind of one object, presence, and which of a list is there."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator, Mapping, Sequence
+
+from scope_ptz.bench.tasks.expected import Choice, NameSet, Options
+from scope_ptz.taskgen.authoring.categories import descriptor_pairs
+from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, ask_call, evidence_view, scope_of
+from scope_ptz.taskgen.authoring.noun_phrases import about, article, colour_options, listing, many_of, noun_of, plain_colour
+from scope_ptz.taskgen.authoring.object_names import NamedThing, extreme_things, named_things, unique_things
+from scope_ptz.taskgen.authoring.task_places import TaskPlace
+from scope_ptz.taskgen.authoring.view_contents import absent_kinds, plain_counts, scene_kinds_first
+from scope_ptz.taskgen.facts.kinds import COLOUR_WORDS, SceneThing, colour_shows, own_colour
+
+STATES: tuple[tuple[str, ...], ...] = (
+    ("open", "closed"), ("lit", "unlit"), ("full", "empty"), ("occupied", "free"), ("occupied", "empty"), ("standing", "sitting"),
+)  # fmt: skip
+_SYNONYMS = {
+    "closed": ("shut",),
+    "lit": ("on", "switched on", "lit up"),
+    "unlit": ("off", "switched off", "dark", "not lit"),
+    "suv": ("SUV", "4x4"),
+    "hatchback": ("hatch",),
+    "saloon": ("sedan",),
+    "estate": ("station wagon",),
+    "timber": ("wood", "wooden"),
+    "steel": ("metal",),
+    "metal cladding": ("metal",),
+    "brick": ("bricks",),
+    "full": ("filled", "loaded"),
+    "free": ("unoccupied", "empty", "vacant"),
+    "occupied": ("taken", "in use"),
+    "sitting": ("seated",),
+    "cartons": ("carton", "cardboard boxes", "boxes"),
+    "pallet of cartons": ("cartons", "cardboard boxes", "boxes"),
+    "phone": ("mobile", "mobile phone"),
+    "broom": ("brush",),
+}
+Values = Mapping[tuple[str, str], Sequence[str]]
+"""The values of an attribute in the scenes, by category and attribute."""
+
+
+def values_of(things: Sequence[SceneThing]) -> Values:
+    """Return the values that attributes have among some objects, by category and attribute."""
+    found: dict[tuple[str, str], set[str]] = {}
+    for thing in things:
+        for key, value in thing.attributes.items():
+            if isinstance(value, str) and value and " and " not in value:
+                found.setdefault((thing.category, key), set()).add(value)
+    return {key: sorted(values) for key, values in found.items()}
+
+
+def options(values: Sequence[str]) -> Options:
+    """Return the values as answer options, with synonyms that do not name another value."""
+    return {value: tuple(word for word in _SYNONYMS.get(value, ()) if word not in values) for value in values}
+
+
+def one_of(value: str, values: Sequence[str], category: str) -> Options:
+    """Return answer options of which ``value`` is right.
+
+    Values that say the same in more words share an option: a "road bicycle" is a "road" one, and "cast iron" is iron.
+    """
+    same: dict[str, set[str]] = {value: set()}
+    for other in values:
+        like = next((known for known in same if _is_same(known, other, category)), other)
+        same.setdefault(like, set()).update({other, other.removesuffix(f" {category}")} - {like})
+    return {name: (*words, *sorted(same[name] - {*words})) for name, words in options(list(same)).items()}
+
+
+def _is_same(one: str, other: str, category: str) -> bool:
+    """Whether two values mean the same, one of them in more words."""
+    short, long = sorted((one.removesuffix(f" {category}"), other.removesuffix(f" {category}")), key=len)
+    return short == long or long.endswith(f" {short}")
+
+
+def drafts(place: TaskPlace, nouns: frozenset[str], values: Values, rng: random.Random) -> list[TaskDraft]:
+    """Return all descriptor drafts for a place."""
+    return [
+        *_attributes(place, values), *_lists(place, nouns, rng), *descriptor_pairs.drafts(place, nouns, rng),
+    ]  # fmt: skip
+
+
+def _attributes(place: TaskPlace, values: Values) -> Iterator[TaskDraft]:
+    """Yield questions about one attribute of one object."""
+    named = [*unique_things(place.truth, coloured=False, min_pixels=300), *named_things(place.truth, 300)]
+    if not place.swept:
+        named += list(extreme_things(place.truth, 300))
+    for one in named:
+        yield from _colour(place, one)
+        yield from _clothes(place, one)
+        yield from _state(place, one)
+        yield from _other_attributes(place, one, values)
+
+
+def _colour(place: TaskPlace, one: NamedThing) -> Iterator[TaskDraft]:
+    colour = plain_colour(own_colour(one.thing.instance))
+    in_name = {colour, str(one.thing.instance.attributes.get("colour"))} & set(one.name.split())
+    if colour is not None and colour_shows(one.thing.instance) and not in_name:
+        yield _choice(place, one, "colour", Choice(value=colour, options=colour_options()), _COLOUR_FORMS)
+
+
+def _clothes(place: TaskPlace, one: NamedThing) -> Iterator[TaskDraft]:
+    """Yield questions about the colour of clothes and umbrellas."""
+    facts = one.thing.instance.attributes
+    for key, garment, verb in _GARMENTS:
+        worn = plain_colour(facts.get(key))
+        if worn is not None and one.thing.pixels >= _GARMENT_PX and not {worn, str(facts.get(key))} & set(one.name.split()):
+            forms = (
+                (f"what colour {garment} is {{n}} {verb}?", f"what colour {garment} {{n}} is {verb}"),
+                (
+                    f"what is the colour of the {garment} that {{n}} is {verb}?",
+                    f"the colour of the {garment} that {{n}} is {verb}",
+                ),
+            )
+            yield _choice(place, one, key, Choice(value=worn, options=colour_options()), forms)
+
+
+def _state(place: TaskPlace, one: NamedThing) -> Iterator[TaskDraft]:
+    """Yield questions about the state of an object, such as open or closed."""
+    facts = one.thing.instance.attributes
+    state = facts.get("state")
+    for pair in STATES:
+        named = {word for value in pair for word in (value, *_SYNONYMS.get(value, ()))} & set(one.name.split())
+        if {"lit", "unlit"} & set(pair) and "light" in facts and set(one.name.split()) & COLOUR_WORDS:
+            continue  # "the green charging point" is one that is lit
+        least = _INSIDE_PX if {"full", "empty"} & set(pair) else _STATE_PX
+        shows = not one.thing.cut and one.thing.pixels >= least and one.thing.instance.category not in _STATE_HARDLY_SHOWS
+        if state in pair and not named and shows:
+            # The order of the two states must be the same in every build, and vary between objects.
+            first, second = pair[:: 1 if sum(map(ord, one.thing.instance.id)) % 2 else -1]
+            forms = (
+                (f"is {{n}} {first} or {second}?", f"whether {{n}} is {first} or {second}"),
+                (f"what state is {{n}} in, {first} or {second}?", f"if {{n}} is {first} or {second}"),
+            )
+            yield _choice(place, one, "state", Choice(value=str(state), options=options(pair)), forms)
+
+
+def _other_attributes(place: TaskPlace, one: NamedThing, values: Values) -> Iterator[TaskDraft]:
+    """Yield questions about kind, material, load and what somebody carries."""
+    category = one.thing.instance.category
+    for key, usual_forms in _ATTRIBUTE_FORMS.items():
+        if (key == "kind" and category not in _OF_KINDS) or (key == "material" and category in _MATERIAL_HARDLY_SHOWS):
+            continue
+        known = values.get((category, key), ())
+        value = one.thing.instance.attributes.get(key)
+        if (
+            isinstance(value, str)
+            and value in known
+            and len(choice := one_of(value, known, category)) >= 2
+            and one.thing.pixels >= (_INSIDE_PX if key == "load" else _STATE_PX)
+            and value not in one.name.lower()
+            and value not in _HELD_AT_THE_FACE
+        ):
+            forms = _ONLY_ONE if key == "kind" and one.name == one.kind.category else usual_forms
+            yield _choice(place, one, key, Choice(value=value, options=choice), forms)
+
+
+_COLOUR_FORMS = (
+    ("what colour is {n}?", "what colour {n} is"),
+    ("what is the colour of {n}?", "the colour of {n}"),
+    ("which colour does {n} have?", "which colour {n} has"),
+)
+_GARMENTS = (
+    ("vest", "hi-vis vest", "wearing"),
+    ("helmet", "helmet", "wearing"),
+    ("coat", "coat", "wearing"),
+    ("jacket", "jacket", "wearing"),
+    ("umbrella", "umbrella", "holding"),
+)
+"""Attribute, noun and verb."""
+
+_GARMENT_PX = 500  # fewest pixels of a person whose clothes are asked about
+
+_STATE_PX, _INSIDE_PX = 1200, 2500
+"""Fewest pixels on which the state or the material of an object can be seen, and what it contains."""
+
+_STATE_HARDLY_SHOWS = frozenset({"gate", "shop", "kiosk", "charging point", "dock light", "taxi sign", "chimney", "gatehouse"})
+"""Categories whose state shows only on a notice, a small lamp or a part that is hard to see."""
+
+_HELD_AT_THE_FACE = frozenset({"phone"})
+"""Things that are hidden by the hand that holds them."""
+
+_MATERIAL_HARDLY_SHOWS = frozenset({"door", "barrier"})
+"""Categories whose material is hidden by paint."""
+
+_OF_KINDS = frozenset({"lorry", "bus", "bicycle", "van", "shop", "container"})
+"""Categories whose kinds people can tell apart from any side, unlike an estate car and an off-roader."""
+
+_ONLY_ONE = (
+    ("what kind of {c} can you see?", "what kind of {c} you can see"),
+    ("which type of {c} is there?", "which type of {c} is there"),
+)
+_ATTRIBUTE_FORMS: dict[str, tuple[tuple[str, str], ...]] = {
+    "kind": (
+        ("what kind of {c} is {n}?", "what kind of {c} {n} is"),
+        ("which type of {c} is {n}?", "which type of {c} {n} is"),
+    ),
+    "material": (
+        ("what is {n} made of?", "what {n} is made of"),
+        ("what material is {n} made of?", "what material {n} is made of"),
+    ),
+    "carrying": (
+        ("what is {n} carrying?", "what {n} is carrying"),
+        ("what does {n} have in their hands?", "what {n} is holding"),
+    ),
+    "load": (("what is on {n}?", "what is on {n}"), ("what does {n} hold?", "what {n} holds")),
+}
+
+
+def _choice(place: TaskPlace, one: NamedThing, key: str, expected: Choice, forms: Sequence[tuple[str, str]]) -> TaskDraft:
+    words = {"n": one.the, "c": one.kind.category}
+    asked = Question(tuple((d.format(**words), i.format(**words)) for d, i in forms))
+    item = place.truth.item(one.thing, expected.value)
+    return TaskDraft(
+        category="descriptor",
+        question_type=key,
+        key=f"{key}:{one.thing.instance.id}",
+        place=place,
+        expected=expected,
+        question=asked,
+        evidence=(evidence_view(place, expected, one.words, [item], whole=one.positional and not place.swept),),
+        perception_calls=(ask_call(asked.forms[0][0], place),),
+        tags=("attribute", key, scope_of(place)),
+        answer_key=expected.value,
+    )
+
+
+def _lists(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield questions that ask which of four kinds are there."""
+    here = [kind for kind, _ in plain_counts(place.truth)]
+    gone = [kind for kind in absent_kinds(place.truth, nouns) if kind.colour is None]
+    rng.shuffle(here)
+    gone = scene_kinds_first(place, gone, rng)
+    for number in (2, 3, 1):
+        if len(here) < number or len(gone) < 4 - number:
+            continue
+        chosen, rest = here[:number], gone[: 4 - number]
+        four = [*chosen, *rest]
+        rng.shuffle(four)
+        names = [article(noun_of(kind)) for kind in four]
+        expected = NameSet(value=tuple(noun_of(k) for k in chosen), options={noun_of(k): () for k in four})
+        items = [place.truth.item(t, True) for k in chosen for t in (place.truth.all_of(k) or ())[:1]]
+        listed = listing(names, "or")
+        yield TaskDraft(
+            category="descriptor",
+            question_type="which-of",
+            key=f"which-of:{'/'.join(sorted(noun_of(k) for k in four))}",
+            place=place,
+            expected=expected,
+            question=Question(
+                (
+                    (f"which of these can be seen: {listed}?", f"which of these can be seen: {listed}"),
+                    (f"what of the following is there: {listed}?", f"what of the following is there: {listed}"),
+                )
+            ),
+            evidence=(evidence_view(place, expected, about(*four), items, whole=True),),
+            perception_calls=tuple(ask_call(f"are there any {many_of(k)}?", place) for k in four),
+            tags=("list",),
+            weight=4,
+            answer_key="/".join(expected.value),
+        )

@@ -1,0 +1,118 @@
+"""Location tasks in pairs of an absence and a presence: in a half of the frame, and in which quarter of it."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from dataclasses import replace
+
+from scope_ptz.bench.tasks.expected import Choice, NoneThere, Options, YesNo
+from scope_ptz.bench.tasks.task import EvidenceView
+from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, ask_call, evidence_view
+from scope_ptz.taskgen.authoring.noun_phrases import about, article, many_of, noun_of, plural, the, unit_of, wordings
+from scope_ptz.taskgen.authoring.object_names import NamedThing
+from scope_ptz.taskgen.authoring.task_places import TaskPlace
+from scope_ptz.taskgen.authoring.view_contents import absent_kinds, countable, scene_kinds_first
+from scope_ptz.taskgen.facts.kinds import Kind
+
+
+def drafts(place: TaskPlace, named: list[NamedThing], nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield the absence of every pair, with the presence as its twin."""
+    yield from _in_half_pairs(place, nouns, rng)
+    yield from _where_if_there(place, named, nouns, rng)
+
+
+def corner_options() -> Options:
+    """Return the quarters of the frame as answer options."""
+    return {
+        f"{level} {side}": (f"{level}-{side}", f"{other} {side}", f"{other}-{side}")
+        for level, other in (("top", "upper"), ("bottom", "lower"))
+        for side in ("left", "right")
+    }
+
+
+def _in_half_pairs(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
+    here = [
+        (k, s)
+        for k, _ in countable(place.truth)
+        if len(s := {place.truth.side(t, 0) for t in place.truth.all_of(k) or ()}) == 1 and None not in s
+    ]
+    gone = scene_kinds_first(place, absent_kinds(place.truth, nouns), rng)
+    for (kind, sides), missing in zip(here, gone, strict=False):
+        side = ("left", "right")[next(iter(sides)) or 0]
+        yield _half_pair(place, missing, side, there=False, twin=_half_pair(place, kind, side, there=True))
+
+
+def _half_pair(place: TaskPlace, kind: Kind, side: str, *, there: bool, twin: TaskDraft | None = None) -> TaskDraft:
+    one, many = noun_of(kind), many_of(kind)
+    expected = YesNo(value=True, affirms=unit_of(kind)[:2]) if there else NoneThere(subject=unit_of(kind)[:2])
+    items = [place.truth.item(t, True) for t in (place.truth.all_of(kind) or ())[:1]] if there else []
+    return TaskDraft(
+        category="location",
+        question_type="half-there" if there else "half-none",
+        key=f"half-there:{one}:{side}",
+        place=place,
+        expected=expected,
+        question=Question(
+            (
+                (
+                    f"is there {article(one)} in the {side} half of the picture?",
+                    f"whether there is {article(one)} in the {side} half of the picture",
+                ),
+                (
+                    f"are there any {many} on the {side} side of the frame?",
+                    f"whether there are any {many} on the {side} side of the frame",
+                ),
+            )
+        ),
+        evidence=(evidence_view(place, expected, about(kind), items, whole=not there),),
+        perception_calls=(ask_call(f"are there any {many} in the {side} half of the picture?", place),),
+        tags=("presence",) if there else ("none-there",),
+        twin=twin,
+        answer_key="yes" if there else "none",
+    )
+
+
+def _where_if_there(place: TaskPlace, named: list[NamedThing], nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield questions about the quarter that an absent object is in, each with a twin about a present one."""
+    missing = scene_kinds_first(place, [kind for kind in absent_kinds(place.truth, nouns) if kind.colour is None], rng)
+    placed = [(n, place.truth.side(n.thing, 0), place.truth.side(n.thing, 1)) for n in named if n.name[-1].isalpha()]
+    for (one, side, level), gone in zip([p for p in placed if None not in p[1:]], missing, strict=False):
+        value = Choice(
+            value=f"{('top', 'bottom')[level or 0]} {('left', 'right')[side or 0]}",
+            options=corner_options(),
+            subject=unit_of(one.kind)[:2],
+        )
+        none = NoneThere(subject=unit_of(gone)[:2], claims=wordings(corner_options()))
+        seen = evidence_view(place, value, one.words, [place.truth.item(one.thing, value.value)], whole=False)
+        twin = _where_if(place, one.name, value, seen, value.value)
+        yield replace(
+            _where_if(place, noun_of(gone), none, evidence_view(place, none, about(gone), whole=True), "none"),
+            question_type="nowhere",
+            twin=twin,
+        )
+
+
+def _where_if(place: TaskPlace, name: str, expected: Choice | NoneThere, seen: EvidenceView, answer_key: str) -> TaskDraft:
+    one = article(name)
+    forms = (
+        (f"in which quarter of the picture is {the(name)}, if there is one?",
+         f"in which quarter of the picture {the(name)} is, if there is one"),
+        (f"if you can see {one}, is it top left, top right, bottom left or bottom right?",
+         f"where in the frame {the(name)} is (top left, top right, bottom left or bottom right), if you can see one"),
+        (f"can you find {one}, and in which quarter of the frame is it?",
+         f"whether you can find {one}, and in which quarter of the frame it is"),
+    )  # fmt: skip
+    look = f"are there any {plural(name)}?" if answer_key == "none" else f"where in the frame is {the(name)}?"
+    return TaskDraft(
+        category="location",
+        question_type="where-if",
+        key=f"where-if:{name}",
+        place=place,
+        expected=expected,
+        question=Question(forms),
+        evidence=(seen,),
+        perception_calls=(ask_call(look, place),),
+        tags=("none-there",) if answer_key == "none" else ("frame",),
+        answer_key=answer_key,
+    )

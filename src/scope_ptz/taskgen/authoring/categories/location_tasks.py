@@ -1,0 +1,249 @@
+"""Location tasks: halves and quarters of the frame, left and right of each other, order across the view."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from itertools import combinations
+
+from scope_ptz.bench.tasks.expected import Choice, Number, Options, Ordering, Relation, YesNo
+from scope_ptz.taskgen.authoring.categories import location_pairs
+from scope_ptz.taskgen.authoring.categories.location_pairs import corner_options
+from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, ask_call, count_call, evidence_view
+from scope_ptz.taskgen.authoring.noun_phrases import about, listing, many_of, noun_of, the, unit_of
+from scope_ptz.taskgen.authoring.object_names import NamedThing, nameable_things
+from scope_ptz.taskgen.authoring.task_places import TaskPlace
+from scope_ptz.taskgen.authoring.view_contents import countable
+
+_SIDES: tuple[tuple[str, str], ...] = (("left", "right"), ("upper", "lower"))
+_SIDE_OPTIONS: tuple[Options, Options] = (
+    {"left": ("left half", "left-hand side", "left side"), "right": ("right half", "right-hand side", "right side")},
+    {"upper": ("upper half", "top half", "top", "above"), "lower": ("lower half", "bottom half", "bottom", "below")},
+)
+
+
+def drafts(place: TaskPlace, nouns: frozenset[str], rng: random.Random) -> list[TaskDraft]:
+    """Return all location drafts for a view. A sweep has none."""
+    if place.swept:
+        return []
+    named = nameable_things(place.truth)
+    return [
+        *_halves(place, named),
+        *_corners(place, named),
+        *_relations(place, named, rng),
+        *_order(place, named, rng),
+        *_in_half(place),
+        *location_pairs.drafts(place, named, nouns, rng),
+    ]
+
+
+def _halves(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
+    for one in named:
+        for axis in (0, 1):
+            side = place.truth.side(one.thing, axis)
+            if side is None:
+                continue
+            expected = Choice(value=_SIDES[axis][side], options=_SIDE_OPTIONS[axis])
+            yield _about(
+                place,
+                one,
+                f"half-{axis}",
+                expected,
+                _half_forms(one.the, axis),
+            )
+
+
+def _half_forms(the: str, axis: int) -> tuple[tuple[str, str], ...]:
+    first, second = _SIDES[axis]
+    if axis == 0:
+        return (
+            (f"on which side of the picture is {the}?", f"on which side of the picture {the} is"),
+            (f"in which half of the frame is {the}, {second} or {first}?", f"in which half of the frame {the} is"),
+            (f"is {the} in the {first} or the {second} half of the picture?",
+             f"whether {the} is in the {first} or the {second} half of the picture"),
+        )  # fmt: skip
+    return (
+        (f"is {the} in the {first} or the {second} half of the picture?",
+         f"whether {the} is in the {first} or the {second} half of the picture"),
+        (f"is {the} above or below the middle of the frame?", f"whether {the} is above or below the middle of the frame"),
+    )  # fmt: skip
+
+
+def _corners(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
+    for one in named:
+        side, level = place.truth.side(one.thing, 0), place.truth.side(one.thing, 1)
+        if side is None or level is None:
+            continue
+        expected = Choice(value=f"{('top', 'bottom')[level]} {('left', 'right')[side]}", options=corner_options())
+        yield _about(
+            place,
+            one,
+            "quarter",
+            expected,
+            (
+                (f"in which quarter of the picture is {one.the}?", f"in which quarter of the picture {one.the} is"),
+                (
+                    f"where in the frame is {one.the}: top left, top right, bottom left or bottom right?",
+                    f"which quarter of the frame holds {one.the}",
+                ),
+            ),
+        )
+
+
+def _relations(place: TaskPlace, named: list[NamedThing], rng: random.Random) -> Iterator[TaskDraft]:
+    for one, two in (tuple(rng.sample(pair, 2)) for pair in combinations(named, 2)):
+        order = place.truth.in_order((one.thing, two.thing), 0, 0.08)
+        if order is None or one.kind.category == two.kind.category:
+            continue
+        left = order[0] is one.thing
+        expected: Relation | YesNo
+        if rng.random() < 0.6:
+            kind, expected = (
+                "beside",
+                Relation(
+                    value="forward" if left else "backward",
+                    subject=(one.name,),
+                    object=(two.name,),
+                    forward=("left",),
+                    backward=("right",),
+                ),
+            )
+            asked = Question(
+                (
+                    (f"on which side of {two.the} is {one.the}?", f"on which side of {two.the} {one.the} is"),
+                    (f"is {one.the} to the left or to the right of {two.the}?",
+                     f"whether {one.the} is to the left or to the right of {two.the}"),
+                )
+            )  # fmt: skip
+        else:
+            kind, side = "is-beside", rng.choice(("left", "right"))
+            expected = YesNo(value=(side == "left") == left)
+            asked = Question(
+                (
+                    (f"is {one.the} to the {side} of {two.the}?",
+                     f"whether {one.the} is to the {side} of {two.the}"),
+                    (f"does {one.the} appear to the {side} of {two.the}?",
+                     f"whether {one.the} appears to the {side} of {two.the}"),
+                )
+            )  # fmt: skip
+        items = [place.truth.item(n.thing) for n in (one, two)]
+        yield TaskDraft(
+            category="location",
+            question_type=kind,
+            key=f"beside:{one.thing.instance.id}:{two.thing.instance.id}",
+            place=place,
+            expected=expected,
+            question=asked,
+            evidence=(evidence_view(place, expected, (*one.words, *two.words), items, whole=False),),
+            perception_calls=(ask_call(asked.forms[0][0], place),),
+            tags=("relation",),
+            answer_key=("yes" if expected.value else "no") if isinstance(expected, YesNo) else "left" if left else "right",
+        )
+
+
+def _order(place: TaskPlace, named: list[NamedThing], rng: random.Random) -> Iterator[TaskDraft]:
+    one_per_category = list({n.kind.category: n for n in named}.values())
+    for three in list(combinations(one_per_category, 3))[:6]:
+        order = place.truth.in_order([n.thing for n in three], 0, 0.06)
+        if order is None:
+            continue
+        names = {n.thing.instance.id: n.name for n in three}
+        value = tuple(names[s.instance.id] for s in order)
+        shuffled = list(value)
+        rng.shuffle(shuffled)
+        listed = listing([the(name) for name in shuffled])
+        items = [place.truth.item(n.thing) for n in three]
+        sets: list[tuple[str, Ordering | Choice, Question]] = [
+            (
+                "row",
+                Ordering(value=value, options=dict.fromkeys(value, ()), first=("left", "leftmost"), last=("right", "rightmost")),
+                Question(
+                    (
+                        (
+                            f"from left to right, in which order do {listed} appear?",
+                            f"in which order {listed} appear from left to right",
+                        ),
+                        (f"what is the order of {listed}, going from left to right?", f"the order of {listed} from left to right"),
+                    )
+                ),
+            ),
+            (
+                "furthest",
+                Choice(
+                    value=value[0], options=dict.fromkeys(value, ()), picks=("leftmost", "furthest left", "furthest to the left")
+                ),
+                Question(
+                    (
+                        (
+                            f"which is furthest to the left: {listed.replace(' and ', ' or ')}?",
+                            f"which is furthest to the left: {listed.replace(' and ', ' or ')}",
+                        ),
+                        (f"out of {listed}, which one is the furthest left?", f"which one of {listed} is the furthest left"),
+                    )
+                ),
+            ),
+        ]
+        for kind, expected, asked in sets:
+            yield TaskDraft(
+                category="location",
+                question_type=kind,
+                key=f"{kind}:{'/'.join(sorted(value))}",
+                place=place,
+                expected=expected,
+                question=asked,
+                evidence=(evidence_view(place, expected, tuple(w for n in three for w in n.words), items, whole=False),),
+                perception_calls=tuple(ask_call(f"where is {n.the}?", place) for n in three),
+                tags=("order",),
+                weight=3,
+                answer_key="/".join(value) if kind == "row" else value[0],
+            )
+
+
+def _in_half(place: TaskPlace) -> Iterator[TaskDraft]:
+    for kind, total in countable(place.truth):
+        sides = [place.truth.side(t, 0, 0.03) for t in place.truth.all_of(kind) or ()]
+        if total < 2 or kind.attribute or None in sides or len(set(sides)) == 1:
+            continue
+        for side, name in enumerate(_SIDES[0]):
+            many, number = many_of(kind), sides.count(side)
+            expected = Number(value=number, unit=unit_of(kind), part=True)
+            things = [t for t, s in zip(place.truth.all_of(kind) or (), sides, strict=True) if s == side]
+            yield TaskDraft(
+                category="location",
+                question_type="count-half",
+                key=f"half-count:{noun_of(kind)}:{name}",
+                place=place,
+                expected=expected,
+                question=Question(
+                    (
+                        (
+                            f"how many {many} are in the {name} half of the picture?",
+                            f"how many {many} are in the {name} half of the picture",
+                        ),
+                        (
+                            f"how many {many} do you see on the {name} side of the frame?",
+                            f"how many {many} there are on the {name} side of the frame",
+                        ),
+                    )
+                ),
+                evidence=(evidence_view(place, expected, about(kind), [place.truth.item(t, True) for t in things], whole=True),),
+                perception_calls=(count_call(f"{many} in the {name} half", place),),
+                tags=("half",),
+                weight=number,
+                answer_key=str(number),
+            )
+
+
+def _about(place: TaskPlace, one: NamedThing, kind: str, expected: Choice, forms: tuple[tuple[str, str], ...]) -> TaskDraft:
+    return TaskDraft(
+        category="location",
+        question_type=kind,
+        key=f"{kind}:{one.thing.instance.id}",
+        place=place,
+        expected=expected,
+        question=Question(forms),
+        evidence=(evidence_view(place, expected, one.words, [place.truth.item(one.thing, expected.value)], whole=False),),
+        perception_calls=(ask_call(forms[0][0], place),),
+        tags=("frame",),
+        answer_key=expected.value,
+    )

@@ -1,0 +1,186 @@
+"""OCR tasks: signs, boards and lettering, in views that are close enough or after zooming in on them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from itertools import pairwise
+
+from scope_ptz.bench.tasks.expected import Text
+from scope_ptz.bench.tasks.task import ProgramCall
+from scope_ptz.simulator.truth import BoxTuple, TextSighting
+from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, ask_call, evidence_view
+from scope_ptz.taskgen.authoring.object_names import NamedThing, coloured_boards, extreme_things, nameable_things
+from scope_ptz.taskgen.authoring.task_places import TaskPlace
+from scope_ptz.taskgen.authoring.zoom_targets import SMALLEST_PX, framed
+from scope_ptz.taskgen.facts.robust import with_parts
+
+LONGEST = 80
+"""Most characters of a text that is asked for. Nobody would dictate a longer one."""
+
+_GUESSED_PX = 5.0
+"""Height of capitals in pixels from which somebody can tell what to zoom in on."""
+
+
+def drafts(place: TaskPlace) -> list[TaskDraft]:
+    """Return the texts to read in a view, and those to read after zooming in. A sweep has none."""
+    if place.swept:
+        return []
+    named = [
+        *nameable_things(place.truth, SMALLEST_PX, _GUESSED_PX),
+        *coloured_boards(place.truth, SMALLEST_PX),
+        *extreme_things(place.truth),
+    ]
+    return [*_in_view(place, named), *_zoomed(place, named)]
+
+
+def _in_view(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
+    for one in named:
+        texts = texts_to_read(one, place)
+        expected = expected_text(one, texts)
+        if texts and expected is not None:
+            yield _draft(place, one, expected, texts, place, ())
+
+
+def _zoomed(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
+    """Yield texts that cannot be read from here, but can be read after zooming in."""
+    if any("zoom_factor" in call.arguments for call in place.calls):
+        return  # operators do not zoom in twice
+    for one in named:
+        family = with_parts(place.scene, one.thing.instance.id)
+        lettered = any(text.parent in family for text in place.scene.file.texts)
+        if one.positional or not lettered or place.truth.texts_on(one.thing.instance):
+            continue
+        close = framed(place, one.thing, one.thing.instance)
+        if close is None:
+            continue
+        texts = texts_to_read(one, close)
+        expected = expected_text(one, texts)
+        if texts and expected is not None:
+            call = ProgramCall(tool="zoom_to_object", arguments={"description": one.name})
+            yield _draft(place, one, expected, texts, close, (call,))
+
+
+def lines(texts: tuple[TextSighting, ...] | None) -> tuple[TextSighting, ...] | None:
+    """Return texts from top to bottom if they are lines of one piece of writing, else None."""
+    if not texts:
+        return None
+    found = {t.text.text.strip(): t for t in texts}
+    order = sorted(found.values(), key=lambda t: t.box[1] + t.box[3])
+    for upper, lower in pairwise(order):
+        height = min(upper.box[3] - upper.box[1], lower.box[3] - lower.box[1])
+        shared = min(upper.box[2], lower.box[2]) - max(upper.box[0], lower.box[0])
+        beside = upper.box[3] - lower.box[1] > height / 2
+        narrow = shared < 0.5 * min(upper.box[2] - upper.box[0], lower.box[2] - lower.box[0])
+        if beside or narrow or lower.box[1] - upper.box[3] > _LINE_GAP * height:
+            return None
+    return tuple(order)
+
+
+_LINE_GAP = 3.0
+"""Largest gap between lines of one piece of writing, as a multiple of their height."""
+
+
+def priced(texts: tuple[TextSighting, ...]) -> tuple[TextSighting, ...]:
+    """Return the prices among the texts of a price card. The rest is in its name."""
+    return tuple(t for t in texts if re.fullmatch(r"\d+\.\d\d", t.text.text.strip()))
+
+
+def expected_text(one: NamedThing, texts: tuple[TextSighting, ...] | None) -> Text | None:
+    """Return the whole text on an object, or None when there is none, too much, or it is mostly in the name."""
+    if not texts:
+        return None
+    pieces = list(dict.fromkeys(t.text.text.strip() for t in texts))
+    whole = " ".join(pieces)
+    name, words = (re.findall(r"\w+", text.lower()) for text in (one.name, whole))
+    if len(whole) > LONGEST or len(pieces) > 4 or 2 * sum(word in name for word in words) >= len(words) or not words:
+        return None
+    return Text(accepted=(whole,), ocr=True)
+
+
+def texts_to_read(one: NamedThing, place: TaskPlace) -> tuple[TextSighting, ...] | None:
+    """Return the lines to read on an object (only the price of a price card), or None when they are not one piece of writing."""
+    found = lines(place.truth.texts_on(one.thing.instance))
+    here = place.truth.first.sightings
+    box = next((s.box for s in here if s.instance.number == one.thing.instance.number), None)
+    if found and not all(on_it(box, text) for text in found):
+        return None
+    return priced(found) if found and one.kind.category == "price card" else found
+
+
+def on_it(box: BoxTuple | None, text: TextSighting) -> bool:
+    """Whether a text lies within the box of an object. A number plate beside it does not show that it belongs to it."""
+    x, y = (text.box[0] + text.box[2]) / 2, (text.box[1] + text.box[3]) / 2
+    return box is not None and box[0] <= x <= box[2] and box[1] <= y <= box[3]
+
+
+_Forms = tuple[tuple[str, str], ...]
+_WRITING: tuple[_Forms, _Forms] = (
+    (
+        ("what does {n} say?", "what {n} says"),
+        ("what is written on {n}?", "what is written on {n}"),
+        ("what text is on {n}?", "what text is on {n}"),
+        ("what can be read on {n}?", "what can be read on {n}"),
+        ("which words or figures are on {n}?", "which words or figures are on {n}"),
+    ),
+    (
+        ("what does {n} say when you zoom in on it?", "what {n} says when you zoom in on it"),
+        ("what can you read on {n} after zooming in on it?", "what you can read on {n} after zooming in on it"),
+        ("what is written on {n}, if you zoom in on it to read?", "what is written on {n}, seen from close up"),
+        ("what does a close-up of {n} say?", "what a close-up of {n} says"),
+    ),
+)
+_PLATES: tuple[_Forms, _Forms] = (
+    (
+        ("what is the number plate of {n}?", "the number plate of {n}"),
+        ("which registration does {n} have?", "the registration of {n}"),
+        ("can you read the number plate of {n}?", "what the number plate of {n} says"),
+    ),
+    (
+        ("what is the number plate of {n}, if you zoom in on it to read?", "the number plate of {n}, seen from close up"),
+        ("which registration does a close-up of {n} show?", "which registration a close-up of {n} shows"),
+    ),
+)
+_PRICES: tuple[_Forms, _Forms] = (
+    (
+        ("what price is on {n}?", "what price is on {n}"),
+        ("which price does {n} show?", "which price {n} shows"),
+        ("can you read the price on {n}?", "the price on {n}"),
+    ),
+    (
+        ("what price is on {n}, if you zoom in on it to read?", "the price on {n}, seen from close up"),
+        ("what price does {n} show when you zoom in on it?", "which price {n} shows when you zoom in on it"),
+        ("which price does a close-up of {n} show?", "the price that a close-up of {n} shows"),
+    ),
+)
+
+
+def _draft(
+    place: TaskPlace,
+    one: NamedThing,
+    expected: Text,
+    texts: tuple[TextSighting, ...],
+    close: TaskPlace,
+    zoom: tuple[ProgramCall, ...],
+) -> TaskDraft:
+    plate = str(one.thing.instance.attributes.get("plate", ""))
+    plated, price = expected.accepted == (plate,), one.kind.category == "price card"
+    forms = (_PLATES if plated else _PRICES if price else _WRITING)[bool(zoom)]
+    forms = tuple((direct.format(n=one.the), inside.format(n=one.the)) for direct, inside in forms)
+    question = f"what is the number plate of {one.the}?" if plated else f"what does {one.the} say?"
+    # Items are measured in the view in which they are read, at its resolution.
+    items = [close.truth.text_item(t) for t in texts]
+    return TaskDraft(
+        category="ocr",
+        question_type=("plate-" if plated else "price-" if price else "") + ("close-up" if zoom else "in-view"),
+        key=f"text:{one.thing.instance.id}",
+        place=place,
+        expected=expected,
+        question=Question(forms),
+        evidence=(evidence_view(close, expected, one.words, items, whole=False),),
+        perception_calls=(*zoom, ask_call(question, place)),
+        needs=tuple(dict.fromkeys((*place.needs, *(("zoom",) if zoom else ())))),
+        tags=("text",),
+        weight=len(texts),
+        answer_key=expected.accepted[0],
+    )

@@ -1,0 +1,76 @@
+"""Comparative tasks between presets: which of two or three shows the most objects of a kind."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator, Sequence
+
+from scope_ptz.bench.tasks.expected import Choice, Options, Wordings
+from scope_ptz.taskgen.authoring.categories.comparative_tasks import SAME, count_evidence
+from scope_ptz.taskgen.authoring.drafts import TaskDraft, count_call
+from scope_ptz.taskgen.authoring.noun_phrases import many_of
+from scope_ptz.taskgen.authoring.task_places import TaskPlace, elsewhere, go
+from scope_ptz.taskgen.authoring.view_contents import countable
+
+_OF_TWO = (
+    "Are there more {many} at the {p} preset or at the {q} preset?",
+    "Compare the presets {p} and {q}: which shows more {many}?",
+    "Which view has more {many}, {p} or {q}?",
+    "Look at the {p} view and then at {q}. Where can you see more {many}?",
+    "Between the {p} and the {q} preset, which one has more {many} in it?",
+    "Go to the {p} preset, then to {q}, and say which shows more {many}.",
+)
+_OF_THREE = (
+    "Which of the presets {p}, {q} and {r} shows the most {many}?",
+    "Go through the presets {p}, {q} and {r}, and tell me which of them has the most {many} in view.",
+    "Compare the {p}, {q} and {r} views. Where are the most {many}?",
+    "I want the preset with the most {many}: {p}, {q} or {r}?",
+    "Check the {p} preset, then {q}, then {r}. Which one has the largest number of {many}?",
+)
+
+_FEWEST = 4
+"""Fewest objects over all presets that are worth a comparison."""
+
+
+def drafts(places: Sequence[TaskPlace], rng: random.Random) -> list[TaskDraft]:
+    """Return comparisons of two or three presets, which are visited one after the other."""
+    found = list(_compared(places))
+    rng.shuffle(found)
+    return found
+
+
+def _compared(places: Sequence[TaskPlace]) -> Iterator[TaskDraft]:
+    names = [str(place.preset) for place in places]
+    start = elsewhere(places[0], places[1])
+    if len(set(names)) < len(places) or (len(places) == 3 and start.start in names[1:]):
+        return
+    known = [dict(countable(place.truth)) for place in places]
+    for kind in known[0]:
+        numbers = [counts.get(kind) for counts in known]
+        found = [number for number in numbers if number is not None]
+        if len(found) < len(places) or sum(found) < _FEWEST or (len(places) == 3 and found.count(max(found)) > 1):
+            continue
+        many = many_of(kind)
+        best = "same" if len(set(found)) == 1 else names[found.index(max(found))]
+        options: Options = {name: _spoken(name) for name in names}
+        if len(places) == 2:
+            options = {**options, "same": SAME}
+        words = dict(zip("pqr", names, strict=False))
+        yield TaskDraft(
+            category="comparative",
+            question_type="between" if len(places) == 2 else "among",
+            key=f"between:{':'.join(names)}:{many}",
+            place=start,
+            expected=Choice(value=best, options=options, picks=("more", "most")),
+            instructions=tuple(text.format(many=many, **words) for text in (_OF_TWO if len(places) == 2 else _OF_THREE)),
+            evidence=tuple(count_evidence(place, kind, n) for place, n in zip(places, found, strict=True)),
+            program=tuple(call for place, name in zip(places, names, strict=True) for call in (go(name), count_call(many, place))),
+            needs=("preset",),
+            tags=("two-views",) if len(places) == 2 else ("three-views",),
+            weight=sum(found),
+            answer_key=best,
+        )
+
+
+def _spoken(name: str) -> Wordings:
+    return (name.replace("-", " "),) if "-" in name else ()

@@ -1,0 +1,282 @@
+"""Multi-step reasoning tasks: sums, differences, conditions, and plans that depend on what the camera sees."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import pairwise
+
+from scope_ptz.bench.tasks.expected import ActionOnly, NoneThere, Number, YesNo
+from scope_ptz.bench.tasks.task import Behaviour, EvidenceView
+from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, count_call, evidence_view
+from scope_ptz.taskgen.authoring.noun_phrases import about, article, many_of, noun_of, unit_of
+from scope_ptz.taskgen.authoring.task_places import ScenePlaces, TaskPlace, elsewhere, go, preset_at
+from scope_ptz.taskgen.authoring.view_contents import absent_kinds, countable, disjoint, plain_counts, scene_kinds_first
+from scope_ptz.taskgen.facts.kinds import GROUPS, Kind
+
+_SUMS = (
+    "How many {many} do the presets {p} and {q} show in total? Those in the one view are not those in the other.",
+    "Add up the {many} in the {p} view and those in the {q} view, which are different ones. What is the total?",
+    "Count the {many} at the {p} preset, then the other ones at the {q} preset, and give me the sum.",
+    "None of the {many} is both in the {q} and in the {p} view. How many are there in the two views together?",
+    "Taking the {p} view and the {q} view together, how many {many} are there? None of them is in both.",
+    "I want one figure: the {many} seen from the {p} preset plus the other ones seen from the {q} preset.",
+)
+_GAPS = (
+    "How many more {many} are there in the {p} view than in the {q} view?",
+    "By how many does the number of {many} at the {p} preset exceed that at the {q} preset?",
+    "Look at the presets {p} and {q}: how many more {many} does the first one show?",
+    "Count the {many} at the {q} preset and at the {p} preset. How many more does {p} have?",
+)
+_BRANCHES = (
+    "Check the {p} preset. If you can see {least} {many} there, go to the {yes} preset; otherwise go to {no}.",
+    "Go to the {p} preset and count the {many}. With {least} of them, switch to the {yes} preset, and with fewer to {no}.",
+    "If there are {least} {many} in the {p} view, move the camera to the preset {yes}. If not, move it to {no}.",
+    "Count the {many} in the {p} view: if there are {least}, bring up the {yes} view, and if there are fewer, the {no} view.",
+)
+_CHECKS = (
+    "Look for {one} at the {p} preset and tell me whether you found one. If so, go on to the {yes} preset; if not, to {no}.",
+    "Is there {one} in the {p} view? Tell me, then switch to the {yes} view if there is, and to {no} if there is not.",
+    "Check the {p} preset for {many}. If you see any, say so and move to the {yes} preset; if not, say that and move to {no}.",
+    "Go to the {p} preset and look for {one}. Found one? Then finish at the {yes} preset. If not, finish at {no}. Report back.",
+    "Please see whether {one} is in the {p} view. If yes, leave the camera at the {yes} preset, else at {no}, and let me know.",
+)
+_WHERE = (
+    "Check the presets {p} and {q}: is there {one} in either of them?",
+    "Is {one} to be seen from the {p} preset or from {q}?",
+    "Look from the {p} preset, then from {q}, and tell me whether {one} is there in one of the views.",
+    "Is there {one} in the {p} view or in the {q} view?",
+    "Have a look at the presets {p} and {q}. Can you find {one}?",
+)
+
+
+def drafts(one: TaskPlace, two: TaskPlace, places: ScenePlaces, nouns: frozenset[str], rng: random.Random) -> list[TaskDraft]:
+    """Return drafts that take two presets."""
+    p, q = one.preset, two.preset
+    if p is None or q is None or p == q:
+        return []
+    return [
+        *_totals(one, two, p, q), *_branches(one, p, places, rng), *_either(one, two, p, q, nouns, rng),
+        *_checks(one, p, places, nouns, rng),
+    ]  # fmt: skip
+
+
+def _count_view(place: TaskPlace, kind: Kind, number: int) -> EvidenceView:
+    shows = Number(value=number, unit=unit_of(kind)) if number else NoneThere(subject=unit_of(kind)[:2])
+    return evidence_view(place, shows, about(kind), [place.truth.item(t, True) for t in place.truth.all_of(kind) or ()], whole=True)
+
+
+def _totals(one: TaskPlace, two: TaskPlace, p: str, q: str) -> Iterator[TaskDraft]:
+    """Yield sums and differences of a kind between two presets."""
+    there = dict(countable(two.truth))
+    start = elsewhere(one, two)
+    for kind, n in countable(one.truth):
+        m = there.get(kind)
+        if m is None:
+            continue
+        many = many_of(kind)
+        program = (go(p), count_call(many, one), go(q), count_call(many, two))
+        seen = (_count_view(one, kind, n), _count_view(two, kind, m))
+        # A sum would count objects twice that show in both views.
+        same = {t.number for t in one.truth.traces if kind.fits(t)} & {t.number for t in two.truth.traces}
+        question_types = [*([("sum", n + m, _SUMS)] if not same else []), *([("difference", n - m, _GAPS)] if n > m else [])]
+        for question_type, value, texts in question_types:
+            yield TaskDraft(
+                category="multi_step_reasoning",
+                question_type=question_type,
+                key=f"{question_type}:{p}:{q}:{many}",
+                place=start,
+                expected=Number(value=value, unit=unit_of(kind)),
+                instructions=tuple(t.format(many=many, p=p, q=q) for t in texts),
+                evidence=seen,
+                program=program,
+                needs=("preset",),
+                tags=("two-views",),
+                weight=n + m,
+                answer_key=str(value),
+            )
+
+
+def within(place: TaskPlace, rng: random.Random) -> list[TaskDraft]:
+    """Return sums and differences within one view."""
+    found = list[TaskDraft]()
+    plain = list(plain_counts(place.truth))
+    rng.shuffle(plain)
+    for (one, n), (two, m) in pairwise(plain):
+        if min(n, m) < 2 or not disjoint(place.truth, (one, two)):
+            continue
+        first, second = many_of(one), many_of(two)
+        if _unlike(one, two):
+            continue
+        together = Question(
+            (
+                (f"how many {first} and {second} are there together?", f"how many {first} and {second} there are together"),
+                (f"what is the total of {first} and {second}?", f"the total of {first} and {second}"),
+            )
+        )
+        difference = Question(
+            (
+                (f"how many more {first} than {second} are there?", f"how many more {first} than {second} there are"),
+                (f"by how many do the {first} outnumber the {second}?", f"by how many the {first} outnumber the {second}"),
+            )
+        )
+        question_types = ([("together", n + m, together)] if n + m > 3 else []) + ([("excess", n - m, difference)] if n > m else [])
+        for question_type, value, asked in question_types:
+            # Without a unit, a reply that states the numbers of the two kinds is not read as their sum or difference.
+            found.append(
+                TaskDraft(
+                    category="multi_step_reasoning",
+                    question_type=question_type,
+                    key=f"{question_type}:{first}:{second}",
+                    place=place,
+                    expected=Number(value=value),
+                    question=asked,
+                    evidence=(_count_view(place, one, n), _count_view(place, two, m)),
+                    perception_calls=(count_call(first, place), count_call(second, place)),
+                    tags=("arithmetic",),
+                    weight=n + m,
+                    answer_key=str(value),
+                )
+            )
+    return found
+
+
+def _unlike(one: Kind, two: Kind) -> bool:
+    """Whether one kind is alive and the other is not. Nobody would add these up."""
+    return (one.category in _ALIVE) != (two.category in _ALIVE)
+
+
+_ALIVE = GROUPS["person"] | {"dog", "pigeon", "cyclist"}
+
+
+def _branches(one: TaskPlace, p: str, places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield commands that go to one of two presets, depending on a count."""
+    others = [name for name in places.presets if name != p and name != one.start]
+    if len(others) < 2:
+        return
+    start = TaskPlace(one.scene, one.start, (), one.at)
+    for kind, n in plain_counts(one.truth):
+        if n < 2:
+            continue
+        yes, no = rng.sample(others, 2)
+        least = n + rng.choice((-1, 0, 2)) if n > 2 else n + rng.choice((0, 1))
+        end = yes if n >= least else no
+        final = TaskPlace(one.scene, one.start, (), preset_at(places.presets[end])).final
+        many = many_of(kind)
+        yield TaskDraft(
+            category="multi_step_reasoning",
+            question_type="condition",
+            key=f"if:{p}:{many}:{least}",
+            place=start,
+            expected=ActionOnly(),
+            instructions=tuple(t.format(p=p, many=many, least=f"at least {least}", yes=yes, no=no) for t in _BRANCHES),
+            evidence=(_count_view(one, kind, n),),
+            program=(go(p), count_call(many, one), go(end)),
+            behaviour=Behaviour(final=final),
+            needs=("preset",),
+            tags=("condition",),
+            weight=n,
+            answer_key=end,
+        )
+
+
+def _checks(one: TaskPlace, p: str, places: ScenePlaces, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield questions about whether something shows at a preset, with a further preset to go to in either case."""
+    others = [name for name in places.presets if name != p and name != one.start]
+    shown = [kind for kind, _ in plain_counts(one.truth)]
+    gone = [kind for kind in absent_kinds(one.truth, nouns) if kind.colour is None]
+    if len(others) < 2:
+        return
+    rng.shuffle(shown)
+    gone = scene_kinds_first(one, gone, rng)
+    for here, missing in zip(shown, gone, strict=False):
+        yes, no = rng.sample(others, 2)
+        things = one.truth.all_of(here) or ()
+        there = YesNo(value=True, affirms=unit_of(here)[:2])
+        none = NoneThere(subject=unit_of(missing)[:2])
+        seen = evidence_view(one, there, about(here), [one.truth.item(things[0], True)], whole=False)
+        twin = _check(one, p, here, there, seen, (yes, no), places)
+        yield replace(
+            _check(one, p, missing, none, evidence_view(one, none, about(missing), whole=True), (yes, no), places),
+            question_type="check-none",
+            twin=twin,
+        )
+
+
+def _check(
+    one: TaskPlace,
+    p: str,
+    kind: Kind,
+    expected: YesNo | NoneThere,
+    seen: EvidenceView,
+    end_presets: tuple[str, str],
+    places: ScenePlaces,
+) -> TaskDraft:
+    yes, no = end_presets
+    end = no if isinstance(expected, NoneThere) else yes
+    start = TaskPlace(one.scene, one.start, (), one.at)
+    words = {"p": p, "one": article(noun_of(kind)), "many": many_of(kind), "yes": yes, "no": no}
+    return TaskDraft(
+        category="multi_step_reasoning",
+        question_type="check",
+        key=f"check:{p}:{noun_of(kind)}",
+        place=start,
+        expected=expected,
+        instructions=tuple(text.format(**words) for text in _CHECKS),
+        evidence=(seen,),
+        program=(go(p), count_call(many_of(kind), one), go(end)),
+        behaviour=Behaviour(final=TaskPlace(one.scene, one.start, (), preset_at(places.presets[end])).final),
+        needs=("preset",),
+        tags=("none-there",) if isinstance(expected, NoneThere) else ("presence",),
+        answer_key=end,
+    )
+
+
+def _either(one: TaskPlace, two: TaskPlace, p: str, q: str, nouns: frozenset[str], rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield questions about whether either preset shows an absent kind, each with a twin about a present one."""
+    missing_there = set(absent_kinds(two.truth, nouns))
+    gone = [kind for kind in absent_kinds(one.truth, nouns) if kind in missing_there]
+    shown = [
+        (kind, place)
+        for place, other in ((one, two), (two, one))
+        for kind, _ in countable(place.truth)
+        if other.truth.all_of(kind) is not None
+    ]
+    gone = scene_kinds_first(one, gone, rng)
+    rng.shuffle(shown)
+    start = elsewhere(one, two)
+    if start.start == q:
+        return  # the start view would answer the question without a move
+    for kind, (present, place) in zip(gone, shown, strict=False):
+        texts = (many_of(kind), many_of(present))
+        yes = YesNo(value=True, affirms=unit_of(present)[:2])
+        first = place.truth.all_of(present) or ()
+        twin = TaskDraft(
+            category="multi_step_reasoning",
+            question_type="either",
+            key=f"either:{p}:{q}:{noun_of(present)}",
+            place=start,
+            expected=yes,
+            instructions=tuple(t.format(p=p, q=q, one=article(noun_of(present))) for t in _WHERE),
+            evidence=(evidence_view(place, yes, about(present), [place.truth.item(first[0], True)], whole=False),),
+            program=(go(p), count_call(texts[1], one), go(q), count_call(texts[1], two)),
+            needs=("preset",),
+            tags=("presence",),
+            answer_key="yes",
+        )
+        none = NoneThere(subject=unit_of(kind)[:2])
+        yield TaskDraft(
+            category="multi_step_reasoning",
+            question_type="neither",
+            key=f"either:{p}:{q}:{noun_of(kind)}",
+            place=start,
+            expected=none,
+            instructions=tuple(t.format(p=p, q=q, one=article(noun_of(kind))) for t in _WHERE),
+            evidence=(evidence_view(one, none, about(kind), [], whole=True), evidence_view(two, none, about(kind), [], whole=True)),
+            program=(go(p), count_call(texts[0], one), go(q), count_call(texts[0], two)),
+            needs=("preset",),
+            tags=("none-there", "two-views"),
+            twin=twin,
+            answer_key="none",
+        )

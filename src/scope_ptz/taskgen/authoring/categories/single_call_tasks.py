@@ -1,0 +1,273 @@
+"""Single-call tasks: moves, presets, home, pictures, close-ups, tracking, and counts that take one tool call."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+
+from scope_ptz.bench.tasks.expected import ActionOnly, Number
+from scope_ptz.bench.tasks.task import Argument, Behaviour, Category, Need, ProgramCall, RequiredCall
+from scope_ptz.simulator.models import SceneActor
+from scope_ptz.taskgen.authoring.drafts import Question, TaskDraft, count_call, evidence_view
+from scope_ptz.taskgen.authoring.noun_phrases import about, capital, many_of, noun_of, unit_of
+from scope_ptz.taskgen.authoring.object_names import nameable_things
+from scope_ptz.taskgen.authoring.task_places import ScenePlaces, TaskPlace, adjust, call_phrases, go, move, preset_at
+from scope_ptz.taskgen.authoring.view_contents import countable
+from scope_ptz.taskgen.authoring.zoom_targets import framing
+from scope_ptz.taskgen.facts.kinds import Kind
+from scope_ptz.taskgen.facts.robust import TRACE_PX
+
+_POLITE = ("{M}.", "Please {m}.", "{M}, please.", "Could you {m}?", "I need you to {m}.", "{M} now.", "Now {m}.")
+
+
+def polite(request: str) -> tuple[str, ...]:
+    """Return a request in several polite forms."""
+    return tuple(form.format(m=request, M=capital(request)) for form in _POLITE)
+
+
+def command(
+    category: Category,
+    question_type: str,
+    key: str,
+    place: TaskPlace,
+    instructions: tuple[str, ...],
+    program: tuple[ProgramCall, ...],
+    behaviour: Behaviour,
+    needs: tuple[Need, ...],
+    tags: tuple[str, ...] = (),
+) -> TaskDraft:
+    """Return a command. It has no answer, and is scored by what the camera does."""
+    return TaskDraft(
+        category=category,
+        question_type=question_type,
+        key=key,
+        place=place,
+        expected=ActionOnly(),
+        instructions=instructions,
+        program=program,
+        behaviour=behaviour,
+        needs=needs,
+        tags=("command", *tags),
+        answer_key=question_type,
+    )
+
+
+def drafts(places: ScenePlaces, pool: list[TaskPlace], rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield drafts of all types in turn."""
+    streams = [
+        _moves(places, rng),
+        _presets(places, rng),
+        _pans(places, rng),
+        _close_ups(pool),
+        _tracking(pool),
+        _sweeps(places),
+        _moves(places, rng),
+        _services(places, rng),
+        _tilts(places, rng),
+    ]
+    while streams:
+        for stream in list(streams):
+            draft = next(stream, None)
+            if draft is None:
+                streams.remove(stream)
+            else:
+                yield draft
+
+
+def _adjusted(places: ScenePlaces, name: str, call: ProgramCall, kind: str, rng: random.Random) -> TaskDraft | None:
+    start = places.stay(name)
+    there = move(start.at, call)
+    if there is None:
+        return None
+    end = TaskPlace(start.scene, name, (call,), there)
+    instructions = tuple(dict.fromkeys(text for _ in range(4) for text in polite(" and ".join(call_phrases(call, rng)))))
+    return command("single_call", kind, f"adjust:{end.key}", start, instructions, (call,), Behaviour(final=end.final), end.needs)
+
+
+def _moves(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield zooms, and moves that combine two of pan, tilt and zoom."""
+    names = list(places.presets)
+    for n in range(60):
+        pan, tilt, factor = (
+            rng.choice((-1, 1)) * rng.choice((8, 12, 16, 22, 35, 55)),
+            rng.choice((-14, -9, -6, 5, 7, 9)),
+            rng.choice((1.2, 1.5, 1.8, 2.0, 2.5, 3.0)),
+        )
+        call = (adjust(factor=factor), adjust(pan, tilt), adjust(pan, 0, factor))[n % 3]
+        draft = _adjusted(places, names[n % len(names)], call, ("zoom", "turn-both", "turn-zoom")[n % 3], rng)
+        if draft is not None:
+            yield draft
+
+
+def _pans(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
+    names = list(places.presets)
+    for _ in range(40):
+        amount = rng.choice((-1, 1)) * rng.choice((5, 8, 15, 20, 24, 33, 45, 65, 80, 100))
+        draft = _adjusted(places, rng.choice(names), adjust(amount), "pan", rng)
+        if draft is not None:
+            yield draft
+
+
+def _tilts(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
+    names = list(places.presets)
+    for _ in range(30):
+        draft = _adjusted(places, rng.choice(names), adjust(0, rng.choice((-18, -11, -7, -4, 3, 6, 9, 12))), "tilt", rng)
+        if draft is not None:
+            yield draft
+
+
+def _presets(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
+    for name, preset in places.presets.items():
+        starts = [other for other in places.presets if other != name]
+        if not starts:
+            continue
+        start = places.stay(rng.choice(starts))
+        end = TaskPlace(start.scene, start.start, (go(name),), preset_at(preset))
+        instructions = tuple(dict.fromkeys(text for _ in range(4) for text in polite(call_phrases(go(name), rng)[0])))
+        yield command(
+            "single_call", "preset", f"go:{name}", start, instructions, (go(name),), Behaviour(final=end.final), ("preset",)
+        )
+
+
+def _services(places: ScenePlaces, rng: random.Random) -> Iterator[TaskDraft]:
+    """Yield commands to go home, to take a picture, and to list the presets."""
+    scene, home = places.scene, places.scene.file.home_preset
+    others = [name for name in places.presets if name != home]
+    rng.shuffle(others)
+    for n, name in enumerate(others[:3]):
+        start = places.stay(name)
+        final = TaskPlace(scene, name, (), preset_at(places.presets[home])).final
+        ways = ("go home", "return to the home position", "take the camera back home", "move back to the home view")
+        instructions = tuple(text for way in ways for text in polite(way))
+        yield command(
+            "single_call",
+            "home",
+            f"home:{name}",
+            start,
+            instructions,
+            (ProgramCall(tool="go_home"),),
+            Behaviour(final=final),
+            ("preset",),
+        )
+        shot = tuple(
+            f"{w} of the {name} view{e}"
+            for w in ("Take a picture", "Save a still", "Capture an image", "Take a snapshot")
+            for e in (".", ", please.", " as it is now.")
+        )
+        yield command(
+            "single_call",
+            "picture",
+            f"picture:{name}",
+            start,
+            shot,
+            (ProgramCall(tool="take_image"),),
+            Behaviour(final=start.final, calls=(RequiredCall(tool="take_image"),), pictures=1),
+            (),
+            ("picture",),
+        )
+        if n == 0:
+            instructions = (
+                f"Which presets are stored for {scene.file.title}?",
+                f"List the preset views of {scene.file.title}.",
+                f"What views have been saved for the camera at {scene.file.title}?",
+            )
+            calls = (ProgramCall(tool="get_presets"),)
+            behaviour = Behaviour(calls=(RequiredCall(tool="get_presets"),), final=start.final)
+            yield command("single_call", "list", "presets", start, instructions, calls, behaviour, (), ("presets",))
+
+
+def _close_ups(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
+    for place in pool:
+        if not place.stays and place.preset is None:
+            continue
+        here = TaskPlace(place.scene, place.preset or place.start, (), place.at)
+        for one in nameable_things(place.truth, 400):
+            target = framing(here, one.thing, one.thing.instance)
+            if target is None or len(one.thing.instance.attributes) == 0:
+                continue
+            instructions = tuple(
+                t
+                for w in (
+                    f"zoom in on {one.the}",
+                    f"get a close-up of {one.the}",
+                    f"frame {one.the}",
+                    f"centre {one.the} and zoom in on it",
+                )
+                for t in polite(w)
+            )
+            call = ProgramCall(tool="zoom_to_object", arguments={"description": one.name})
+            yield command(
+                "single_call",
+                "close-up",
+                f"close-up:{one.thing.instance.id}",
+                here,
+                instructions,
+                (call,),
+                Behaviour(framing=target),
+                ("zoom",),
+                ("framing",),
+            )
+
+
+def _tracking(pool: list[TaskPlace]) -> Iterator[TaskDraft]:
+    """Yield commands to follow a moving object that is the only one of its kind and stays in view for the first seconds."""
+    for n, place in enumerate(pool):
+        here = TaskPlace(place.scene, place.preset or place.start, (), place.at)
+        began = here.truth.samples[0]
+        later = here.truth.read_truth(here.scene, str(here.at.viewpoint), here.truth.projection, here.truth.time_s + 1.5)
+        for sighting in began.visible:
+            actor = sighting.instance
+            kind = Kind(actor.category)
+            if not isinstance(actor, SceneActor) or sighting.pixels < 600 or sighting.share < 0.9:
+                continue
+            others = [s for s in began.sightings if s.instance is not actor]
+            rivals = [s for s in others if kind.fits(s.instance) or kind.ambiguous_with(s.instance)]
+            if any(s.pixels > TRACE_PX for s in rivals) or actor.number not in {s.instance.number for s in later.visible}:
+                continue
+            seconds = (4.0, 5.0, 6.0, 8.0)[n % 4]
+            ways = (
+                f"follow the {kind.category} for {seconds:g} seconds",
+                f"keep the {kind.category} in view for {seconds:g} seconds",
+                f"track the {kind.category} for the next {seconds:g} seconds",
+            )
+            call = ProgramCall(tool="track_object", arguments={"description": kind.category, "duration_s": seconds})
+            required = {"description": Argument(mentions=unit_of(kind)), "duration_s": Argument(equals=seconds, within=0.5)}
+            yield command(
+                "single_call",
+                "follow",
+                f"follow:{actor.id}",
+                here,
+                tuple(text for way in ways for text in polite(way)),
+                (call,),
+                Behaviour(calls=(RequiredCall(tool="track_object", arguments=required),)),
+                ("move",),
+                ("moving",),
+            )
+
+
+def _sweeps(places: ScenePlaces) -> Iterator[TaskDraft]:
+    for place in places.around():
+        if place.calls:
+            continue
+        for kind, number in countable(place.truth)[:40]:
+            many = many_of(kind)
+            expected = Number(value=number, unit=unit_of(kind))
+            items = [place.truth.item(t, True) for t in place.truth.all_of(kind) or ()]
+            yield TaskDraft(
+                category="single_call",
+                question_type="count-all",
+                key=f"count:{noun_of(kind)}",
+                place=place,
+                expected=expected,
+                question=Question(
+                    (
+                        (f"how many {many} are there in all?", f"how many {many} there are in all"),
+                        (f"what is the total of {many}?", f"the total of {many}"),
+                    )
+                ),
+                evidence=(evidence_view(place, expected, about(kind), items, whole=True),),
+                perception_calls=(count_call(many, place),),
+                tags=("full",),
+                weight=number,
+                answer_key=str(number),
+            )

@@ -1,0 +1,159 @@
+"""English phrases for instructions: plurals, articles, lists, names of object kinds, colours and amounts."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from scope_ptz.bench.tasks.expected import Options, Wordings
+from scope_ptz.taskgen.facts.kinds import Kind
+
+_IRREGULAR = {
+    "person": "people", "man": "men", "woman": "women", "child": "children", "shelf": "shelves", "leaf": "leaves", "mouse": "mice",
+    "goose": "geese", "sheep": "sheep", "deer": "deer", "banksman": "banksmen", "aircraft": "aircraft", "knife": "knives",
+    "loaf": "loaves",
+}  # fmt: skip
+UNCOUNTED = frozenset({
+    "tree", "bush", "hedge", "building", "house", "pylon", "guardrail", "bridge", "hill", "road", "pavement", "surface", "fence",
+    "fence panel", "wall", "sky", "field", "grass", "plant", "shrub", "kerb", "roof", "platform", "track", "shopfront", "window",
+    "railing", "bunting", "cable", "puddle", "produce", "goods", "scaffolding", "gravel pile", "sand pile", "ground", "marker post",
+    "warehouse", "church", "station", "flower bed", "box of fruit", "crate", "pipe stack", "terrace", "townhouse", "yew",
+    "door", "price card", "drain", "cup", "shop", "tree grate", "plinth", "tram platform", "notice", "poster", "chimney", "gutter",
+    "weighbridge", "rail", "line", "marking", "kerbstone", "steps", "stairs", "parapet", "box", "bag", "shelf", "sill", "river",
+    "bay number", "hatched zone", "road marking", "dock leveller", "dock shelter", "silo", "dock number", "kerb ramp", "canopy",
+    "pedestrian", "door sign", "window notice", "wall sign", "loaf", "ham", "cake", "book", "bottle", "teapot", "table lamp",
+    "lane signal", "wheel stop", "wheel guide", "walkway", "cycle shelter", "clock tower", "sign", "gantry", "parking space",
+})  # fmt: skip
+"""Categories that people count differently, because the objects run into each other or recede into the distance."""
+
+_FAMILIES: dict[str, Wordings] = {
+    "white": ("off-white",), "black": (), "grey": ("gray", "silver", "dark grey", "light grey"),
+    "red": ("dark red", "maroon", "crimson"),
+    "blue": ("dark blue", "light blue", "navy", "sky blue", "navy blue"), "green": ("dark green", "light green", "lime"),
+    "yellow": ("gold",), "orange": ("amber",), "brown": ("dark brown", "light brown"), "purple": ("violet",), "pink": (),
+}  # fmt: skip
+"""Plain colours and other words for them."""
+
+_FAMILY = {name: plain for plain, others in _FAMILIES.items() for name in (plain, *others)}
+
+
+def plural(noun: str) -> str:
+    """Return the plural of a noun phrase. Its noun is the last word, or the word before "of", "with" and the like."""
+    words = noun.split()
+    head = next((i for i, word in enumerate(words) if i and word in {"of", "with", "in", "on", "for", "carrying"}), len(words)) - 1
+    words[head] = _plural(words[head])
+    return " ".join(words)
+
+
+def _plural(word: str) -> str:
+    if word in _IRREGULAR:
+        return _IRREGULAR[word]
+    if word.endswith("man") and word not in {"human"}:
+        return word[:-3] + "men"
+    if word.endswith("y") and word[-2:-1] not in "aeiou":
+        return word[:-1] + "ies"
+    return word + ("es" if word.endswith(("s", "x", "ch", "sh")) else "s")
+
+
+def article(noun: str) -> str:
+    """Return the noun with "a" or "an"."""
+    first = noun.lower()
+    vowel = first[0] in "aeio" or (first[0] == "u" and not first.startswith(("uni", "use", "uti")))
+    return f"{'an' if vowel or noun.startswith(_SPELT) else 'a'} {noun}"
+
+
+_SPELT = ("SUV", "8", "11 ", "18 ")
+"""Beginnings that are pronounced with a vowel."""
+
+
+def the(name: str) -> str:
+    """Return a name with its article. Numbered names ("dock door 5") take none."""
+    return name if re.search(r"\d$", name) else f"the {name.removeprefix('The ')}"
+
+
+def listing(names: Sequence[str], word: str = "and") -> str:
+    """Join names with commas, and the last two with a conjunction."""
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} {word} {names[-1]}"
+
+
+def called(category: str) -> str:
+    """Return the everyday name of a category, usually the category itself."""
+    return _CALLED.get(category, category)
+
+
+_CALLED = {
+    "cross": "pharmacy cross", "roller": "road roller", "suv": "SUV", "tv": "TV", "cctv camera": "CCTV camera",
+    "a-board": "A-board", "belisha beacon": "Belisha beacon", "tyre stack": "stack of tyres", "pipe stack": "stack of pipes",
+    "pallet stack": "stack of pallets", "gravel pile": "pile of gravel", "sand pile": "pile of sand",
+}  # fmt: skip
+
+
+def noun_of(kind: Kind) -> str:
+    """Return the noun phrase for one object of a kind, with its attributes in their usual order."""
+    noun = called(kind.category)
+    if kind.attribute is not None:
+        key, value = kind.attribute
+        key = "posture" if kind.category == "person" and key == "state" else key
+        return _WITH.get(key, ("{value} {noun}", ""))[0].format(value=value, noun=noun, a=article(value))
+    return f"{kind.colour} {noun}" if kind.colour else noun
+
+
+def many_of(kind: Kind) -> str:
+    """Return the noun phrase for several objects of a kind."""
+    key = kind.attribute[0] if kind.attribute is not None else ""
+    key = "posture" if kind.category == "person" and key == "state" else key
+    if kind.attribute is not None and key in _WITH:
+        return _WITH[key][1].format(value=kind.attribute[1], many=plural(called(kind.category)))
+    return plural(noun_of(kind))
+
+
+_WITH = {
+    "vest": ("{noun} in {a} vest", "{many} in {value} vests"),
+    "helmet": ("{noun} in {a} helmet", "{many} in {value} helmets"),
+    "posture": ("{noun} who is {value}", "{many} who are {value}"),
+    "light": ("{noun} with its roof sign {value}", "{many} with their roof signs {value}"),
+}
+
+
+def unit_of(kind: Kind) -> Wordings:
+    """Return the words that may stand for what is counted: the whole name, the category, and its last word."""
+    return tuple(dict.fromkeys((noun_of(kind), called(kind.category), kind.category, kind.category.split()[-1])))
+
+
+def about(*kinds: Kind) -> Wordings:
+    """Return the words that a perception call about objects of these kinds mentions."""
+    words = (word for kind in kinds for word in (kind.category, kind.category.split()[-1], *_ALSO.get(kind.category, ())))
+    return tuple(dict.fromkeys(words))
+
+
+_ALSO = {"person": ("anyone", "people"), "lorry": ("truck",)}
+
+
+def plain_colour(colour: object) -> str | None:
+    """Return the plain colour for a colour attribute, or None where people would disagree."""
+    return _FAMILY.get(str(colour))
+
+
+def wordings(options: Options) -> Wordings:
+    """Return every word that stands for any of the options."""
+    return tuple(word for name, others in options.items() for word in (name, *others))
+
+
+def colour_options() -> Options:
+    """Return the plain colours as answer options."""
+    return dict(_FAMILIES)
+
+
+def degrees(number: float) -> str:
+    """Return an angle in words."""
+    return f"{number:g} degrees" if number != 1 else "1 degree"
+
+
+def times(factor: float) -> str:
+    """Return a magnification in words: "twice", "three times", "1.5 times"."""
+    return {2.0: "twice", 3.0: "three times", 4.0: "four times"}.get(factor, f"{factor:g} times")
+
+
+def capital(text: str) -> str:
+    """Return the text with a capital first letter."""
+    return text[:1].upper() + text[1:]

@@ -1,0 +1,266 @@
+"""Places: the start preset of a task, the moves from there to the view it is about, and phrases for these moves."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+from scope_ptz.bench.scoring.episode import Standing
+from scope_ptz.bench.tasks.task import Aim, FinalPose, Need, ProgramCall
+from scope_ptz.geometry import Pose
+from scope_ptz.simulator.models import ScenePreset
+from scope_ptz.simulator.pack import Scene
+from scope_ptz.taskgen.authoring.noun_phrases import degrees, times
+from scope_ptz.taskgen.facts.robust import TASK_CAMERA, RobustTruth, robust_truth
+from scope_ptz.tools.adjust_ptz import AdjustPtz, requested_pose
+
+_PRESET = (
+    "go to the {p} preset", "switch to the {p} view", "move to the preset {p}", "select the {p} preset", "bring up the {p} view",
+    "take the camera to the {p} preset", "call up the preset {p}", "change to the {p} view",
+)  # fmt: skip
+_PAN = ("turn {d} to the {s}", "pan {s} by {d}", "swing {d} {s}", "pan {d} to the {s}", "rotate the camera {d} to the {s}")
+_TILT = ("tilt {s} by {d}", "tilt {d} {s}", "aim the camera {d} further {s}", "tip the camera {s} {d}")
+_ZOOM_IN = ("zoom in to {t} the magnification", "zoom in {f}x", "zoom in by a factor of {f}", "magnify the view {f} times")
+_HOME = ("go home", "return to the home view", "go back to the home position")
+_SWEEP = (
+    "look all the way round", "scan the whole scene", "do a full sweep", "check everything around the camera",
+    "sweep the whole scene", "go over the full surroundings",
+)  # fmt: skip
+
+
+_HARDLY_DEG = 2.5  # operators do not bother with smaller turns
+
+
+@dataclass(frozen=True)
+class TaskPlace:
+    """A start preset and the calls that lead from it to a view.
+
+    Attributes:
+        scene: The scene.
+        start: The preset at which the task starts.
+        calls: The calls that lead to the view.
+        at: Viewpoint and pose after these calls.
+        swept: Whether the task is about everything around the viewpoint instead of the view.
+    """
+
+    scene: Scene
+    start: str
+    calls: tuple[ProgramCall, ...]
+    at: Standing
+    swept: bool = False
+
+    @cached_property
+    def truth(self) -> RobustTruth:
+        """The robust ground truth of the view."""
+        return robust_truth(self.scene, self.at, self.scene.file.start_s, swept=self.swept)
+
+    @property
+    def key(self) -> str:
+        """Identify the view, whatever calls lead to it."""
+        pose = self.at.pose
+        view = "all" if self.swept else f"{pose.pan_deg:.1f}/{pose.tilt_deg:.1f}/{pose.zoom:.2f}"
+        return f"{self.scene.name}:{self.at.viewpoint}:{view}"
+
+    @property
+    def stays(self) -> bool:
+        """Whether the task is about the start view."""
+        return not self.calls and not self.swept
+
+    @property
+    def preset(self) -> str | None:
+        """The preset of the view, when a single preset call leads to it."""
+        only = self.calls[0] if len(self.calls) == 1 else None
+        return str(only.arguments["name"]) if only is not None and only.tool == "go_to_preset" else None
+
+    @property
+    def aim(self) -> Aim:
+        """Viewpoint and pose, rounded as tasks store them."""
+        pose = self.at.pose
+        return Aim(
+            viewpoint=str(self.at.viewpoint),
+            pan_deg=round(pose.pan_deg, 4),
+            tilt_deg=round(pose.tilt_deg, 4),
+            zoom=round(pose.zoom, 5),
+        )
+
+    @property
+    def final(self) -> FinalPose:
+        """The pose that a run must end at."""
+        return FinalPose(**self.aim.model_dump())
+
+    @property
+    def hfov_deg(self) -> float:
+        """Horizontal field of view in degrees."""
+        return round(TASK_CAMERA.optics.hfov_deg(self.at.pose.zoom), 4)
+
+    @property
+    def needs(self) -> tuple[Need, ...]:
+        """What an agent must do to see the view: change the preset, move, zoom, sweep."""
+        found: list[Need] = []
+        for call in self.calls:
+            if call.tool in ("go_to_preset", "go_home"):
+                found.append("preset")
+            elif call.arguments.get("pan_deg") or call.arguments.get("tilt_deg"):
+                found.append("move")
+            if "zoom_factor" in call.arguments:
+                found.append("zoom")
+        return tuple(dict.fromkeys([*found, *(["sweep"] if self.swept else [])]))  # type: ignore[list-item]
+
+    def move_phrases(self, rng: random.Random) -> tuple[str, str]:
+        """Return the moves in words, without a capital or a full stop.
+
+        Returns:
+            A complete phrase ("turn left and zoom in 2x"), and one that "and ..." can follow ("turn left, zoom in 2x").
+        """
+        parts = [phrase for call in self.calls for phrase in call_phrases(call, rng)]
+        if self.swept:
+            parts.append(rng.choice(_SWEEP))
+        return joined(parts, rng), ", ".join(parts)
+
+
+def joined(parts: list[str], rng: random.Random) -> str:
+    """Join move phrases into one."""
+    if len(parts) < 3:
+        return rng.choice((" and ", ", then ")).join(parts)
+    return f"{', '.join(parts[:-1])}{rng.choice((' and ', ' and then ', ', and then '))}{parts[-1]}"
+
+
+def call_phrases(call: ProgramCall, rng: random.Random) -> list[str]:
+    """Return a call that moves the camera in words, one phrase per axis."""
+    arguments = call.arguments
+    if call.tool == "go_to_preset":
+        return [rng.choice(_PRESET).format(p=arguments["name"])]
+    if call.tool == "go_home":
+        return [rng.choice(_HOME)]
+    phrases = []
+    for axis, forms, names in (("pan_deg", _PAN, ("right", "left")), ("tilt_deg", _TILT, ("up", "down"))):
+        amount = arguments.get(axis)
+        if isinstance(amount, int | float) and amount:
+            phrases.append(rng.choice(forms).format(d=degrees(abs(amount)), s=names[amount < 0]))
+    factor = arguments.get("zoom_factor")
+    if isinstance(factor, int | float) and factor > 1:
+        phrases.append(rng.choice(_ZOOM_IN).format(f=f"{factor:g}", t=times(float(factor))))
+    elif isinstance(factor, int | float):
+        phrases.append(f"zoom out to {'half' if factor == 0.5 else f'{factor:.0%} of'} the magnification")
+    return phrases
+
+
+def preset_at(preset: ScenePreset) -> Standing:
+    """Return the viewpoint and pose of a preset, within the limits of the camera."""
+    return Standing(preset.viewpoint, TASK_CAMERA.limits.clamp(Pose(preset.pan_deg, preset.tilt_deg, preset.zoom))[0])
+
+
+def move(at: Standing, call: ProgramCall) -> Standing | None:
+    """Return where an adjustment leads, or None when a limit of the camera would clamp it."""
+    pose, cut = TASK_CAMERA.limits.clamp(requested_pose(at.pose, AdjustPtz.model_validate(call.arguments), TASK_CAMERA.limits))
+    return None if cut else Standing(at.viewpoint, pose)
+
+
+def adjust(pan: float = 0.0, tilt: float = 0.0, factor: float | None = None) -> ProgramCall:
+    """Return a call that turns and zooms. Amounts of zero are left out."""
+    given = {"pan_deg": float(pan), "tilt_deg": float(tilt), "zoom_factor": factor}
+    return ProgramCall(tool="adjust_ptz", arguments={k: v for k, v in given.items() if v})
+
+
+def go(preset: str) -> ProgramCall:
+    """Return a call that goes to a preset."""
+    return ProgramCall(tool="go_to_preset", arguments={"name": preset})
+
+
+def elsewhere(one: TaskPlace, two: TaskPlace) -> TaskPlace:
+    """Return the start of a task about two presets: that of the first one, or a third preset where that is the second one."""
+    names = [p.name for p in one.scene.file.presets]
+    others = [name for name in names if name not in (one.preset, two.preset)]
+    if one.start == two.preset and others:
+        # Any other preset will do, but it must be the same in every build and vary between pairs.
+        return TaskPlace(one.scene, others[sum(map(ord, f"{one.preset}{two.preset}")) % len(others)], (), one.at)
+    return TaskPlace(one.scene, one.start, (), one.at)
+
+
+class ScenePlaces:
+    """The places of a scene, drawn in a seeded order."""
+
+    def __init__(self, scene: Scene, rng: random.Random) -> None:
+        self.scene, self.presets = scene, {p.name: p for p in scene.file.presets}
+        self._rng = rng
+
+    def direct(self, name: str) -> TaskPlace:
+        """Return a preset as a place that is reached from another preset."""
+        others = [p for p in self.presets if p != name] or [name]
+        return TaskPlace(self.scene, self._rng.choice(others), (go(name),), preset_at(self.presets[name]))
+
+    def stay(self, name: str) -> TaskPlace:
+        """Return a preset as a place at which the task starts."""
+        return TaskPlace(self.scene, name, (), preset_at(self.presets[name]))
+
+    def around(self) -> list[TaskPlace]:
+        """Return sweeps from every preset, some of them reached from another preset."""
+        places = []
+        for name, preset in self.presets.items():
+            places.append(TaskPlace(self.scene, name, (), preset_at(preset), swept=True))
+            if (start := places[-1].start) and self._rng.random() < 0.3:
+                origin = next((p for p in self.presets if p != start), start)
+                places.append(TaskPlace(self.scene, origin, (go(name),), preset_at(preset), swept=True))
+        self._rng.shuffle(places)
+        return places
+
+    def off(self) -> Iterator[TaskPlace]:
+        """Yield up to 3000 views away from the presets: turned, tilted or zoomed, some of them after a change of preset."""
+        names, tried = list(self.presets), 0
+        while tried < 3000:
+            name = names[tried % len(names)]
+            tried += 1
+            call = self._adjustment()
+            at = preset_at(self.presets[name])
+            there = move(at, call)
+            if there is None:
+                continue
+            if self._rng.random() < 0.45:
+                start = self._rng.choice([p for p in names if p != name] or [name])
+                yield TaskPlace(self.scene, start, (go(name), call), there)
+            else:
+                yield TaskPlace(self.scene, name, (call,), there)
+
+    def _adjustment(self) -> ProgramCall:
+        rng = self._rng
+        pan = rng.choice((-1, 1)) * rng.choice((10, 12, 15, 18, 20, 25, 30, 35, 40, 45, 50, 60, 75, 90, 120))
+        tilt = rng.choice((-15, -12, -10, -8, -5, 4, 5, 8, 10))
+        factor = rng.choice((1.5, 2.0, 2.5, 3.0))
+        shape = rng.random()
+        if shape < 0.4:
+            return adjust(pan)
+        if shape < 0.5:
+            return adjust(0, tilt)
+        if shape < 0.65:
+            return adjust(factor=factor)
+        if shape < 0.85:
+            return adjust(rng.choice((-1, 1)) * rng.choice((10, 15, 20, 25, 30)), 0, factor)
+        return adjust(pan, tilt)
+
+    def towards(self, viewpoint: str, pan_deg: float, tilt_deg: float, zoom: float) -> TaskPlace | None:
+        """Return a view of a direction, whole degrees away from the nearest preset of that viewpoint.
+
+        Returns:
+            The place, or None when the viewpoint has no preset or a limit of the camera is in the way.
+        """
+        near = [p for p in self.presets.values() if p.viewpoint == viewpoint]
+        if not near:
+            return None
+        preset = min(near, key=lambda p: abs((pan_deg - p.pan_deg + 180) % 360 - 180))
+        at = preset_at(preset)
+        pan, tilt = (pan_deg - at.pose.pan_deg + 180) % 360 - 180, tilt_deg - at.pose.tilt_deg
+        factor = next((f for f in (1.5, 2.0, 2.5, 3.0, 4.0) if at.pose.zoom * f >= zoom), None)
+        if factor is None or at.pose.zoom * factor > TASK_CAMERA.limits.max_zoom:
+            return None
+        # Operators do not turn a camera by a degree or two for an object that is in view anyway.
+        pan, tilt = (round(angle) if abs(angle) > _HARDLY_DEG else 0 for angle in (pan, tilt))
+        call = adjust(pan, tilt, factor)
+        there = move(at, call)
+        if there is None:
+            return None
+        if self._rng.random() < 0.4:
+            start = self._rng.choice([p for p in self.presets if p != preset.name] or [preset.name])
+            return TaskPlace(self.scene, start, (go(preset.name), call), there)
+        return TaskPlace(self.scene, preset.name, (call,), there)

@@ -1,0 +1,72 @@
+"""Objects that ``zoom_to_object`` can frame: found for certain, entirely in view, and within the range of the lens."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from scope_ptz.bench.scoring.episode import Standing
+from scope_ptz.bench.tasks.task import Framing
+from scope_ptz.geometry import Perspective, Pose, direction, pan_tilt_deg
+from scope_ptz.simulator.truth import Sighting
+from scope_ptz.taskgen.authoring.task_places import TaskPlace
+from scope_ptz.taskgen.facts.kinds import SceneThing
+from scope_ptz.taskgen.facts.robust import TASK_CAMERA, RobustTruth
+
+FILL = 0.75
+"""Share of the frame that a framed object takes up along its limiting side."""
+
+
+SMALLEST_PX = 150
+"""Objects that cover fewer pixels are too small to be found for certain."""
+
+
+def close_pose(hull_deg: list[tuple[float, float]], zoom_limits: tuple[float, float]) -> tuple[Pose, float] | None:
+    """Return the pose that frames an outline, with the share of the frame that it fills, or None when the pose is out of reach."""
+    outline = direction(*np.array(hull_deg, dtype=np.float64).T)
+    middle = outline.mean(axis=0)
+    pose, fill = Pose(), 0.0
+    for _ in range(10):
+        pan, tilt = (float(v) for v in pan_tilt_deg(middle))
+        wide = Perspective(pan, tilt, TASK_CAMERA.optics.hfov_deg(1.0), TASK_CAMERA.width, TASK_CAMERA.height)
+        points = wide.points(outline)
+        if np.isnan(points).any():
+            return None
+        low, high = points.min(axis=0), points.max(axis=0)
+        middle = wide.directions((low + high) / 2)
+        size = float((high - low).max())
+        zoom = TASK_CAMERA.optics.zoom_for_focal(TASK_CAMERA.optics.focal(1.0) * FILL / max(size, 1e-6))
+        pose = Pose(pan, tilt, min(max(zoom, zoom_limits[0]), zoom_limits[1]))
+        fill = size * TASK_CAMERA.optics.focal(pose.zoom) / TASK_CAMERA.optics.focal(1.0)
+    return pose, fill
+
+
+def framed(place: TaskPlace, sighting: Sighting, thing: SceneThing) -> TaskPlace | None:
+    """Return the view after zooming in on an object.
+
+    Returns:
+        The place, or None when the view cannot be predicted: the object is cut off or partly hidden, or a camera limit applies.
+    """
+    if sighting.cut or sighting.occluded or sighting.pixels < SMALLEST_PX:
+        return None
+    extent = place.scene.viewpoint(str(place.at.viewpoint)).extents.get(thing.number)
+    limits = TASK_CAMERA.limits
+    if extent is None:
+        return None
+    found = close_pose(extent.hull, (limits.min_zoom, limits.max_zoom))
+    if found is None or limits.clamp(found[0])[1] or found[0].zoom < place.at.pose.zoom * 1.1:
+        return None
+    return TaskPlace(place.scene, place.start, place.calls, Standing(place.at.viewpoint, found[0]))
+
+
+def framing(place: TaskPlace, sighting: Sighting, thing: SceneThing) -> Framing | None:
+    """Return the requirement to frame an object, or None when it is partly hidden or the lens has no margin to frame it."""
+    close = framed(place, sighting, thing)
+    extent = place.scene.viewpoint(str(place.at.viewpoint)).extents.get(thing.number)
+    if close is None or extent is None or sighting.share < 0.97:
+        return None
+    fill = (close_pose(extent.hull, (TASK_CAMERA.limits.min_zoom, TASK_CAMERA.limits.max_zoom)) or (Pose(), 0.0))[1]
+    close_truth = RobustTruth(place.scene, str(place.at.viewpoint), close.at.pose, place.truth.time_s)
+    if not 0.7 <= fill <= 0.8 or not close_truth.visibility(thing.number):
+        return None
+    outline = tuple((round(pan, 3), round(tilt, 3)) for pan, tilt in extent.hull)
+    return Framing(instance=thing.id, viewpoint=str(place.at.viewpoint), outline_deg=outline)

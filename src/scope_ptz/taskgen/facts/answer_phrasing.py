@@ -1,0 +1,232 @@
+"""Right and wrong answers in words to any expected value. Validation lets its programs give them."""
+
+from __future__ import annotations
+
+import random
+import re
+from collections.abc import Sequence
+from itertools import pairwise
+
+from scope_ptz.bench.tasks.expected import (
+    ActionOnly,
+    AnyExpected,
+    Choice,
+    Description,
+    NameSet,
+    NoneThere,
+    Number,
+    Ordering,
+    Relation,
+    Text,
+    YesNo,
+)
+
+_SMALL = (
+    "zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve", "thirteen",
+    "fourteen", "fifteen", "sixteen", "seventeen", "eighteen", "nineteen",
+)  # fmt: skip
+_TENS = ("", "", "twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety")
+_PLACES = frozenset({"left", "right", "north", "south", "east", "west", "above", "below", "behind"})
+_UNLIKE = "ACDEFHJKMNPRTUVWXY2346790"
+"""Letters and digits that replace a letter of a text to simulate a misreading."""
+
+
+def right_answers(expected: AnyExpected) -> tuple[str, ...]:
+    """Return five or more wordings of the right answer."""
+    match expected:
+        case Number():
+            return _numbers(expected.value, expected.unit)
+        case YesNo():
+            word = "yes" if expected.value else "no"
+            return (
+                f"{word.capitalize()}.",
+                word,
+                f"**{word.upper()}**",
+                f"{word.capitalize()}, I checked.",
+                f"The answer is {word}.",
+            )
+        case Choice():
+            return _names(expected.value)
+        case Text():
+            text = expected.accepted[0]
+            return f'It reads "{text}".', text, f"The text says '{text}'.", f"It says **{text}**.", f'"{text.upper()}"'
+        case NameSet():
+            return _sets(expected.value)
+        case Ordering():
+            listed = ", ".join(expected.value)
+            then = ", then ".join(expected.value)
+            numbered = "\n".join(f"{n}. {name}" for n, name in enumerate(expected.value, 1))
+            return listed, f"The order is {listed}.", then.capitalize() + ".", " > ".join(expected.value), numbered
+        case Relation():
+            return _relations(expected, expected.value)
+        case Description():
+            return _descriptions([fact.any_of[0] for fact in expected.facts])
+        case NoneThere():
+            many = plural(expected.subject[0])
+            return "None.", "No.", f"There are no {many}.", f"I don't see any {many}.", f"No {many} are visible."
+        case ActionOnly():
+            return "Done.", "Ready.", "The camera is there.", "OK.", "I have done that."
+
+
+def offered(expected: AnyExpected, question: str) -> tuple[str, ...]:
+    """Return the answers that a question offers ("on the left or on the right?") in its order, or nothing without an offer."""
+    if not isinstance(expected, Choice | NameSet | Ordering):
+        return ()
+    found = list[tuple[int, int, str]]()
+    for name, others in expected.options.items():
+        for word in (name, *others):
+            found += [(m.start(), m.end(), name) for m in re.finditer(rf"\b{re.escape(word)}\b", question, re.IGNORECASE)]
+    found.sort(key=lambda at: (at[0], -at[1]))
+    names = list[str]()
+    for (_, end, one), (start, _, other) in pairwise(found):
+        if one != other and 0 < start - end <= _OFFER_GAP and not set(question[end:start]) & set(".?!:;"):
+            names += [other] if names else [one, other]
+        elif len(names) > 1 and start >= end:
+            break
+    return tuple(dict.fromkeys(names))
+
+
+_OFFER_GAP = 26
+"""Most characters between two answers that are offered together: "the red car or the"."""
+
+
+def wrong_answer(expected: AnyExpected, rng: random.Random) -> str | None:
+    """Return a readable answer that is wrong, or None when there is none (no question, or a single option)."""
+    match expected:
+        case Number():
+            steps = [
+                expected.tolerance + rng.choice((1, 2)),
+                *([-expected.tolerance - 1] if expected.value > expected.tolerance else []),
+            ]
+            return rng.choice(_numbers(float(round(expected.value + rng.choice(steps))), expected.unit))
+        case YesNo():
+            return rng.choice(right_answers(expected.model_copy(update={"value": not expected.value})))
+        case Choice():
+            others = [name for name in expected.options if name != expected.value]
+            return rng.choice(_names(rng.choice(others))) if others else None
+        case Text():
+            return f'It reads "{_misread(expected.accepted[0], rng)}".'
+        case NameSet():
+            return rng.choice(_sets(_other_set(expected, rng)))
+        case Ordering():
+            first, second, *rest = expected.value
+            return ", ".join((second, first, *rest))
+        case Relation():
+            return rng.choice(_relations(expected, "backward" if expected.value != "backward" else "forward"))
+        case Description():
+            facts = [fact.any_of[0] for fact in expected.facts]
+            if expected.contradictions and rng.random() < 0.5:
+                return _descriptions([*facts, rng.choice(expected.contradictions).any_of[0]])[0]
+            facts.pop(rng.randrange(len(facts)))
+            return _descriptions(facts)[0] if facts else "A view."
+        case NoneThere():
+            one = expected.subject[0]
+            return rng.choice(("Yes.", f"There is a {one}.", f"I can see 2 {plural(one)}."))
+        case ActionOnly():
+            return None
+
+
+def plural(words: str) -> str:
+    """Return the plural of a noun phrase by simple rules."""
+    noun = re.split(r" (?:in|who|with|of|on|for|carrying) ", words)[0]
+    if noun != words:
+        return plural(noun) + words[len(noun) :].replace(" who is ", " who are ")
+    if words.endswith("person"):
+        return words[:-6] + "people"
+    if words.endswith("f") and words.endswith(("loaf", "leaf", "shelf")):
+        return words[:-1] + "ves"
+    if words.endswith("y") and words[-2:-1] not in "aeiou":
+        return words[:-1] + "ies"
+    return words + ("es" if words.endswith(("s", "x", "ch", "sh")) else "" if words.endswith("people") else "s")
+
+
+def in_words(number: int) -> str:
+    """Return a whole number in words below 100, else in digits."""
+    if not 0 <= number < 100:
+        return str(number)
+    if number < 20:
+        return _SMALL[number]
+    return _TENS[number // 10] + (f"-{_SMALL[number % 10]}" if number % 10 else "")
+
+
+def _numbers(value: float, unit: Sequence[str]) -> tuple[str, ...]:
+    number = f"{value:g}"
+    word = in_words(int(value)) if value == int(value) else number
+    noun = unit[0] if unit else "thing"
+    things = noun if value == 1 else plural(noun)
+    be = "is" if value == 1 else "are"
+    if value == 0 and not unit:
+        return "0", "Zero.", "None.", "The answer is 0.", "It is zero."
+    if value == 0:
+        return f"There are no {things}.", "None.", "0", f"I see no {things}.", f"No {things} are visible."
+    if not unit:
+        return number, f"**{number}**", f"The answer is {number}.", word.capitalize() + ".", f"It is {number}."
+    return (
+        f"There {be} {number} {things}.",
+        number,
+        f"I count {word} {things} in the view.",
+        f"{things}: {number}",
+        f"{word.capitalize()}.",
+    )
+
+
+def _names(name: str) -> tuple[str, ...]:
+    return name, f"It is {name}.", f"**{name.capitalize()}**", f"The answer is {name}.", f"I would say {name}."
+
+
+def _sets(names: Sequence[str]) -> tuple[str, ...]:
+    if not names:
+        return "None.", "Nothing.", "There are none.", "none", "None of them is there."
+    listed = " and ".join([", ".join(names[:-1]), names[-1]]) if len(names) > 1 else names[0]
+    bullets = "\n".join(f"- {name}" for name in names)
+    return listed, f"I can see {listed}.", bullets, f"There are: {', '.join(names)}.", " & ".join(reversed(names))
+
+
+def _relations(expected: Relation, value: str) -> tuple[str, ...]:
+    one, two = expected.subject[0], expected.object[0]
+    if value == "same":
+        return (
+            "The same.",
+            "They are equal.",
+            "Both are the same.",
+            f"The {one} and the {two} are the same.",
+            "There is no difference.",
+        )
+    words = expected.forward if value == "forward" else expected.backward
+    turned = expected.backward if value == "forward" else expected.forward
+    wordings = []
+    for way, this, that in ((words, one, two), (turned, two, one)):
+        for word in way[:2]:
+            link = "of" if word in _PLACES else "than"
+            wordings += [f"The {this} is {word} {link} the {that}.", f"{this}: {word} {link} {that}"]
+    wordings.append(f"I would say that {wordings[0][0].lower()}{wordings[0][1:]}")
+    if not any(word in _PLACES for word in (*words, *turned)):
+        wordings += [f"The {one if value == 'forward' else two}."]
+    return tuple(wordings)
+
+
+def _descriptions(facts: Sequence[str]) -> tuple[str, ...]:
+    listed = ", ".join(facts)
+    return (
+        f"The view shows {listed}.", f"I can see {listed}.", f"{listed}", "\n".join(f"- {fact}" for fact in facts),
+        f"There is {listed}, among other things.",
+    )  # fmt: skip
+
+
+def _other_set(expected: NameSet, rng: random.Random) -> tuple[str, ...]:
+    missing = [name for name in expected.options if name not in expected.value]
+    if missing and (not expected.value or rng.random() < 0.5):
+        return (*expected.value, rng.choice(missing))
+    return (
+        tuple(name for name in expected.value if name != rng.choice(expected.value))
+        if len(expected.value) == 1
+        else expected.value[:-1]
+    )
+
+
+def _misread(text: str, rng: random.Random) -> str:
+    """Return a text with one letter or digit replaced by another that does not look like it."""
+    places = [at for at, letter in enumerate(text) if letter.isalnum()]
+    at = rng.choice(places)
+    others = [letter for letter in _UNLIKE if letter.lower() != text[at].lower() and {letter, text[at].upper()} != {"0", "O"}]
+    return text[:at] + rng.choice(others) + text[at + 1 :]

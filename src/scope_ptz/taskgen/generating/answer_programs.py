@@ -1,0 +1,264 @@
+"""Programs that work out the right answer to a draft from the ground truth, one per program name in the schema.
+
+A program uses robust ground truth only (see ``facts.robust``). A draft with an uncertain answer is rejected.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from scope_ptz.bench.answers.reader import agrees, read
+from scope_ptz.bench.answers.result import Declined, Unreadable
+from scope_ptz.bench.answers.words import names_any
+from scope_ptz.bench.tasks.expected import ActionOnly, AnyExpected, Choice, NoneThere, Number, Text, YesNo
+from scope_ptz.bench.tasks.task import Behaviour, EvidenceView, ProgramCall, Task
+from scope_ptz.simulator.pack import Scene
+from scope_ptz.simulator.truth import Sighting
+from scope_ptz.taskgen.authoring.drafts import ask_call, count_call, difficulty, evidence_view
+from scope_ptz.taskgen.authoring.noun_phrases import about, colour_options, many_of, noun_of, plain_colour, unit_of
+from scope_ptz.taskgen.authoring.task_places import TaskPlace
+from scope_ptz.taskgen.facts.kinds import Kind
+from scope_ptz.taskgen.generating.draft_places import DraftRejectedError, places_of
+from scope_ptz.taskgen.generating.draft_schema import ALLOWED, Draft
+
+_MOST_COUNTED = 15  # people count larger numbers differently
+TAG = "generated"
+
+
+@dataclass(frozen=True)
+class _Solution:
+    """The result of a program.
+
+    Attributes:
+        expected: The right answer.
+        evidence: The views that it rests on.
+        program: The reference program.
+        size: How many objects must be told apart.
+        tags: Tags of the task.
+    """
+
+    expected: AnyExpected
+    evidence: tuple[EvidenceView, ...] = ()
+    program: tuple[ProgramCall, ...] = ()
+    size: int = 1
+    tags: tuple[str, ...] = ()
+
+
+def task_of(draft: Draft, scene: Scene, name: str, dataset: str) -> Task:
+    """Make the task of a draft, with an expected value from the ground truth.
+
+    Raises:
+        DraftRejectedError: The draft cannot become a task.
+    """
+    if draft.program not in ALLOWED[draft.category]:
+        raise DraftRejectedError(f"'{draft.program}' makes no task of the category {draft.category}")
+    places = places_of(draft, scene)
+    known = {thing.category for thing in scene.things} | set(scene.file.absent)
+    for kind in _kinds(draft):
+        if kind.category not in known:
+            raise DraftRejectedError(f"the inventory has no '{kind.category}'")
+        if not names_any(draft.instruction, about(kind)):
+            raise DraftRejectedError(f"the instruction does not name the {kind.category}")
+        if kind.colour is not None and kind.colour not in draft.instruction.lower():
+            raise DraftRejectedError(f"the instruction does not say {kind.colour}")
+    solution = _PROGRAMS[draft.program](draft, places)
+    _compare(draft, solution.expected)
+    last = places[-1]
+    return Task(
+        id=name,
+        dataset=dataset,
+        scene=scene.file.name,
+        variation=scene.variation,
+        preset=draft.start,
+        time_s=scene.file.start_s,
+        instruction=draft.instruction,
+        category=draft.category,
+        scope="full" if last.swept else "current",
+        difficulty=difficulty(solution.program, solution.size, swept=last.swept),
+        expected=solution.expected,
+        # Views that are compared or summed may be visited in any order.
+        behaviour=Behaviour(final=last.final if len(places) == 1 or draft.program == "action" else None),
+        evidence=solution.evidence,
+        reference=solution.program,
+        needs=tuple(dict.fromkeys(need for place in places for need in place.needs)),
+        tags=(TAG, *solution.tags),
+    )
+
+
+def _compare(draft: Draft, expected: AnyExpected) -> None:
+    """Reject a draft whose expected answer is not the right one, or whose instruction contains the answer."""
+    if isinstance(expected, ActionOnly):
+        return
+    reading = read(expected, draft.expected)
+    if isinstance(reading, Unreadable | Declined) or not agrees(expected, reading):
+        right = expected.model_dump(include={"value", "accepted", "subject"})
+        raise DraftRejectedError(f"the draft expects '{draft.expected}', the ground truth says {right or expected.kind}")
+    if isinstance(expected, Text) and any(text.lower() in draft.instruction.lower() for text in expected.accepted):
+        raise DraftRejectedError("the instruction contains its answer")
+
+
+def _kinds(draft: Draft) -> list[Kind]:
+    return [Kind(thing.category, thing.colour) for thing in draft.things]
+
+
+def _one(draft: Draft) -> Kind:
+    if len(draft.things) != 1:
+        raise DraftRejectedError("this program takes exactly one kind of thing")
+    return _kinds(draft)[0]
+
+
+def _single(places: Sequence[TaskPlace]) -> TaskPlace:
+    if len(places) != 1:
+        raise DraftRejectedError("this program takes exactly one view")
+    return places[0]
+
+
+def _counted(place: TaskPlace, kind: Kind) -> tuple[Number | NoneThere, EvidenceView, int]:
+    """Return how many objects of a kind a view certainly shows, with the evidence."""
+    things = place.truth.all_of(kind)
+    if things is None:
+        raise DraftRejectedError(f"the number of {many_of(kind)} in that view is uncertain")
+    if not things:
+        if not place.truth.lacks(kind):
+            raise DraftRejectedError(f"it is uncertain whether that view shows a {noun_of(kind)}")
+        none = NoneThere(subject=unit_of(kind))
+        return none, evidence_view(place, none, about(kind), whole=True), 0
+    if len(things) > _MOST_COUNTED:
+        raise DraftRejectedError(f"there are more than {_MOST_COUNTED} {many_of(kind)}: people would count them differently")
+    number = Number(value=float(len(things)), unit=unit_of(kind))
+    return number, evidence_view(place, number, about(kind), [place.truth.item(t, True) for t in things], whole=True), len(things)
+
+
+def _only_object(place: TaskPlace, kind: Kind) -> Sighting:
+    things = place.truth.all_of(kind)
+    if not things or len(things) > 1:
+        raise DraftRejectedError(f"it is uncertain whether that view shows exactly one {noun_of(kind)}")
+    return things[0]
+
+
+def _count(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
+    place, kind = _single(places), _one(draft)
+    expected, seen, number = _counted(place, kind)
+    tag = "sort:none" if not number else "sort:count"
+    return _Solution(expected, (seen,), (*place.calls, count_call(many_of(kind), place)), number, (tag,))
+
+
+def _exists(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
+    place, kind = _single(places), _one(draft)
+    expected, seen, number = _counted(place, kind)
+    there = YesNo(value=True, affirms=unit_of(kind)) if number else expected
+    seen = seen.model_copy(update={"shows": there})
+    return _Solution(there, (seen,), (*place.calls, count_call(many_of(kind), place)), 1, ("sort:exists",))
+
+
+def _colour(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
+    place, kind = _single(places), _one(draft)
+    thing = _only_object(place, kind)
+    colour = plain_colour(thing.instance.attributes.get("colour"))
+    if colour is None or kind.colour is not None:
+        raise DraftRejectedError(f"the {kind.category} has no plain colour to ask about")
+    if colour in draft.instruction.lower():
+        raise DraftRejectedError("the instruction contains its answer")
+    choice = Choice(value=colour, options=colour_options())
+    seen = evidence_view(place, choice, about(kind), [place.truth.item(thing, colour)], whole=False)
+    question = ask_call(f"what colour is the {noun_of(kind)}?", place)
+    return _Solution(choice, (seen,), (*place.calls, question), 1, ("attribute", "sort:colour"))
+
+
+def _text(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
+    place, kind = _single(places), _one(draft)
+    thing = _only_object(place, kind)
+    texts = place.truth.texts_on(thing.instance)
+    if not texts:
+        raise DraftRejectedError(f"the text on the {noun_of(kind)} is not certainly legible in that view")
+    words = " / ".join(dict.fromkeys(t.text.text.strip() for t in texts))
+    text = Text(accepted=(words,), ocr=True)
+    seen = evidence_view(place, text, about(kind), [place.truth.text_item(t) for t in texts], whole=False)
+    question = ask_call(f"what does the {noun_of(kind)} say?", place)
+    return _Solution(text, (seen,), (*place.calls, question), len(texts), ("sort:text",))
+
+
+def _side(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
+    place, kind = _single(places), _one(draft)
+    if draft.axis is None or place.swept:
+        raise DraftRejectedError("a side is asked about one view, with the axis across or down")
+    thing = _only_object(place, kind)
+    names = ("left", "right") if draft.axis == "across" else ("upper", "lower")
+    side = place.truth.side(thing, 0 if draft.axis == "across" else 1)
+    if side is None:
+        raise DraftRejectedError(f"it is uncertain in which half the {noun_of(kind)} is")
+    further = {"upper": ("top", "above"), "lower": ("bottom", "below")}
+    choice = Choice(value=names[side], options={name: further.get(name, ()) for name in names})
+    seen = evidence_view(place, choice, about(kind), [place.truth.item(thing, names[side])], whole=False)
+    question = ask_call(f"is the {noun_of(kind)} in the {names[0]} or the {names[1]} half of the picture?", place)
+    return _Solution(choice, (seen,), (*place.calls, question), 1, ("frame", "sort:side"))
+
+
+def _most(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
+    """Return which of several kinds in a view is the most numerous, or which of several views shows most of one kind."""
+    kinds = _kinds(draft)
+    if len(places) == 1 and len(kinds) > 1:
+        pairs = [(places[0], kind, many_of(kind)) for kind in kinds]
+    elif len(kinds) == 1 and len(places) > 1:
+        pairs = [(place, kinds[0], _preset_of(place)) for place in places]
+    else:
+        raise DraftRejectedError("'most' compares several kinds in one view, or one kind in several views")
+    if len({name for _, _, name in pairs}) < len(pairs):
+        raise DraftRejectedError("something is compared with itself")
+    found = [_counted(place, kind) for place, kind, _ in pairs]
+    numbers = [number for _, _, number in found]
+    names = [name for _, _, name in pairs]
+    best = max(numbers)
+    if numbers.count(best) > 1:
+        raise DraftRejectedError(f"no number is the single largest: {', '.join(map(str, numbers))}")
+    options: dict[str, tuple[str, ...]] = dict.fromkeys(names, ())
+    choice = Choice(value=names[numbers.index(best)], options=options, picks=("more", "most"))
+    return _Solution(choice, tuple(seen for _, seen, _ in found), _visits(pairs), sum(numbers), ("sort:more",))
+
+
+def _sum(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
+    kind = _one(draft)
+    if len(places) < 2:
+        raise DraftRejectedError("a sum is taken over several views")
+    found = [_counted(place, kind) for place in places]
+    shown = [item.instance for _, seen, _ in found for item in seen.items]
+    if len(set(shown)) < len(shown):
+        raise DraftRejectedError("one thing shows in two of the views: a sum would count it twice")
+    total = sum(number for _, _, number in found)
+    if not 0 < total <= _MOST_COUNTED:
+        raise DraftRejectedError(f"the sum is {total}")
+    number = Number(value=float(total), unit=unit_of(kind))
+    visits = _visits([(place, kind, "") for place in places])
+    return _Solution(number, tuple(seen for _, seen, _ in found), visits, total, ("sort:sum",))
+
+
+def _action(draft: Draft, places: Sequence[TaskPlace]) -> _Solution:
+    if draft.things or any(place.swept for place in places):
+        raise DraftRejectedError("an action has no sweep and no things")
+    calls = places[-1].calls
+    if not calls or (len(calls) == 1) != (draft.category == "single_call"):
+        raise DraftRejectedError("a single call is one move, a multi-step command is more than one")
+    return _Solution(ActionOnly(), program=calls, tags=("sort:action",))
+
+
+def _visits(pairs: Sequence[tuple[TaskPlace, Kind, str]]) -> tuple[ProgramCall, ...]:
+    """Return the moves from view to view, with a count at each."""
+    program, done = list[ProgramCall](), 0
+    for place, kind, _ in pairs:
+        program += [*place.calls[done:], count_call(many_of(kind), place)]
+        done = len(place.calls)
+    return tuple(program)
+
+
+def _preset_of(place: TaskPlace) -> str:
+    last = place.calls[-1] if place.calls else None
+    if last is None or last.tool != "go_to_preset" or place.swept:
+        raise DraftRejectedError("several views are compared by preset name, so each of them must be a preset")
+    return str(last.arguments["name"])
+
+
+_PROGRAMS: dict[str, Callable[[Draft, Sequence[TaskPlace]], _Solution]] = {
+    "count": _count, "exists": _exists, "colour": _colour, "text": _text, "side": _side, "most": _most, "sum": _sum,
+    "action": _action,
+}  # fmt: skip

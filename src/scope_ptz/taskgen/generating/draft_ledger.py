@@ -1,0 +1,130 @@
+"""The record of every draft on disk. It allows resuming after an interruption, and gives a list for human review."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from scope_ptz.bench.tasks.files import dump_tasks
+from scope_ptz.bench.tasks.task import Category, Task
+from scope_ptz.bench.tasks.wording import expected_in_words
+from scope_ptz.errors import InputError, OutputError
+
+RECORD, TASKS, REVIEW = "drafts.jsonl", "tasks.jsonl", "review.md"
+Fate = Literal["kept", "dropped", "near-duplicate", "no reply"]
+
+
+class LedgerEntry(BaseModel):
+    """The record of one draft, or of a reply without drafts.
+
+    Attributes:
+        batch: Number of the request.
+        fate: What happened to the draft.
+        reason: Why it was not kept.
+        draft: The draft as the model wrote it.
+        task: The task made of it, when it was kept.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    batch: int
+    fate: Fate
+    reason: str = ""
+    draft: Any = None
+    task: Task | None = None
+
+
+class DraftLedger:
+    """The record in a folder. Entries are only added, never changed."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            lines = (folder / RECORD).read_text("utf-8").splitlines() if (folder / RECORD).is_file() else []
+        except OSError as error:
+            raise OutputError(f"The folder {folder} cannot be used: {error.strerror}. Choose another with --out.") from error
+        self.entries = [_entry(line, folder / RECORD, number) for number, line in enumerate(lines, 1)]
+
+    @property
+    def kept(self) -> list[Task]:
+        """The tasks of all kept drafts."""
+        return [entry.task for entry in self.entries if entry.task is not None and entry.fate == "kept"]
+
+    @property
+    def batches(self) -> int:
+        """Number of requests so far."""
+        return max((entry.batch for entry in self.entries), default=0)
+
+    def missing(self, requested: dict[Category, int]) -> dict[Category, int]:
+        """Return how many tasks of each category are still missing."""
+        have = Counter(task.category for task in self.kept)
+        return {category: number - have[category] for category, number in requested.items() if number > have[category]}
+
+    def last_reasons(self, most: int = 8) -> list[str]:
+        """Return why the most recent drafts were not kept, each reason once."""
+        reasons = [entry.reason for entry in reversed(self.entries) if entry.fate in ("dropped", "near-duplicate")]
+        return list(dict.fromkeys(reasons))[:most]
+
+    def add(self, entry: LedgerEntry) -> None:
+        """Record a draft on disk immediately."""
+        row = entry.model_dump(mode="json", exclude={"task"})
+        row["task"] = entry.task.model_dump(mode="json", exclude_defaults=True) if entry.task else None
+        try:
+            with (self.folder / RECORD).open("a", encoding="utf-8") as file:
+                file.write(json.dumps(row, ensure_ascii=False) + "\n")
+        except OSError as error:
+            raise OutputError(f"{self.folder / RECORD} cannot be written: {error.strerror}.") from error
+        self.entries.append(entry)
+
+    def finish(self) -> list[Path]:
+        """Write the kept tasks and the list for review, and return their paths."""
+        tasks, review = self.folder / TASKS, self.folder / REVIEW
+        try:
+            dump_tasks(self.kept, tasks)
+            review.write_text("\n".join(_review(self.entries)) + "\n", "utf-8")
+        except OSError as error:
+            raise OutputError(f"The tasks cannot be written to {self.folder}: {error.strerror}.") from error
+        return [tasks, review]
+
+
+def _entry(line: str, path: Path, number: int) -> LedgerEntry:
+    try:
+        return LedgerEntry.model_validate_json(line)
+    except ValidationError as error:
+        raise InputError(
+            f"{path}, line {number} is damaged: {error.errors(include_url=False)[0]['msg']}. Delete the line to continue."
+        ) from error
+
+
+def _review(entries: Sequence[LedgerEntry]) -> list[str]:
+    """Return the review list as Markdown. Text of the model is in code spans, so that it cannot act as markup."""
+    fates = Counter(entry.fate for entry in entries)
+    lines = [
+        "# Drafted tasks for review",
+        "",
+        ", ".join(f"{number} {fate}" for fate, number in fates.most_common()) or "none",
+        "",
+    ]
+    lines += ["Tick the tasks to keep. View each one with `scope bench browse ID --tasks tasks.jsonl --out pictures`.", ""]
+    for entry in entries:
+        if entry.fate == "kept" and entry.task is not None:
+            task = entry.task
+            lines.append(f"- [ ] {task.id} ({task.category}, {task.difficulty}), from {task.preset}: {_code(task.instruction)}")
+            lines.append(f"      expected: {_code(expected_in_words(task.expected))}")
+    lines += ["", "## Not kept", ""]
+    for entry in entries:
+        if entry.fate != "kept":
+            text = entry.draft.get("instruction", entry.draft) if isinstance(entry.draft, dict) else entry.draft
+            lines.append(f"- {entry.fate}: {_code(entry.reason)}" + (f" {_code(str(text)[:200])}" if text else ""))
+    return lines
+
+
+def _code(text: str) -> str:
+    clean = "".join(c if c.isprintable() else " " for c in text).replace("`", "'")
+    return f"`{clean}`"

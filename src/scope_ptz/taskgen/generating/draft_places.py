@@ -1,0 +1,81 @@
+"""The views of a draft as places in the scene, and the check that its instruction states the moves."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from scope_ptz.bench.tasks.task import ProgramCall
+from scope_ptz.simulator.pack import Scene
+from scope_ptz.taskgen.authoring.task_places import TaskPlace, adjust, go, move, preset_at
+from scope_ptz.taskgen.facts.answer_phrasing import in_words
+from scope_ptz.taskgen.generating.draft_schema import Draft, Move
+
+_AROUND = re.compile(
+    r"\b(?:around|round|sweep|whole|everything|entire|everywhere|all directions|every direction|full)\b", re.IGNORECASE
+)
+_TIMES = {2.0: ("twice", "double"), 3.0: ("three times", "triple"), 0.5: ("half",), 4.0: ("four times",)}
+_MOST_CALLS = 6
+
+
+class DraftRejectedError(Exception):
+    """A draft cannot become a task. The message is the reason."""
+
+
+def places_of(draft: Draft, scene: Scene) -> list[TaskPlace]:
+    """Return the views of a draft as places.
+
+    Raises:
+        DraftRejectedError: A move is not possible, or the instruction does not state it.
+    """
+    presets = {preset.name: preset for preset in scene.file.presets}
+    if draft.start not in presets:
+        raise DraftRejectedError(f"the scene has no preset '{draft.start}' to start from")
+    at, calls = preset_at(presets[draft.start]), list[ProgramCall]()
+    places = list[TaskPlace]()
+    for view in draft.views:
+        for step in view.moves:
+            if (step.preset is not None) == step.turns:
+                raise DraftRejectedError("a move either names a preset or turns and zooms")
+            if step.preset is not None:
+                if step.preset not in presets:
+                    raise DraftRejectedError(f"the scene has no preset '{step.preset}'")
+                call, at = go(step.preset), preset_at(presets[step.preset])
+            else:
+                call = adjust(step.pan_deg, step.tilt_deg, step.zoom_factor)
+                there = move(at, call)
+                if there is None:
+                    raise DraftRejectedError("a move goes beyond the camera's limits")
+                at = there
+            calls.append(call)
+        places.append(TaskPlace(scene, draft.start, tuple(calls), at, swept=view.sweep))
+    if len(calls) > _MOST_CALLS:
+        raise DraftRejectedError(f"more than {_MOST_CALLS} moves")
+    if wrong := next(unstated_moves(draft), None):
+        raise DraftRejectedError(wrong)
+    return places
+
+
+def unstated_moves(draft: Draft) -> Iterator[str]:
+    """Yield a reason for every move that the instruction does not state."""
+    text = f" {' '.join(re.findall(r'[a-z0-9.-]+', draft.instruction.lower()))} "
+    for view in draft.views:
+        for step in view.moves:
+            if step.preset is not None and step.preset.lower() not in text and step.preset.lower().replace("-", " ") not in text:
+                yield f"the instruction does not name the preset '{step.preset}'"
+            yield from (f"the instruction does not say {amount:g}" for amount in _amounts(step) if not _states(text, amount))
+        if view.sweep and not _AROUND.search(draft.instruction):
+            yield "the instruction does not say that it is about everything around the camera"
+
+
+def _amounts(step: Move) -> list[float]:
+    return [abs(n) for n in (step.pan_deg, step.tilt_deg, step.zoom_factor) if n]
+
+
+def _states(text: str, amount: float) -> bool:
+    """Whether a text states a number, in digits or in words."""
+    if any(f" {word} " in text for word in _TIMES.get(amount, ())):
+        return True
+    if any(float(number) == amount for number in re.findall(r"\d+(?:\.\d+)?", text)):
+        return True
+    return amount == int(amount) and f" {in_words(int(amount))} " in text

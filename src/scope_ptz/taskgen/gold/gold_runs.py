@@ -1,0 +1,219 @@
+"""Sets of gold runs: making them, scoring them with the rules for error modes, and their file format.
+
+The file is gzipped JSONL: a header with the published result, then one run per line. Observed views are not stored, because they
+follow from the calls. Tasks are referred to by id.
+"""
+
+from __future__ import annotations
+
+import gzip
+import json
+import random
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from scope_ptz.agent.records import Place
+from scope_ptz.bench.programs import seen
+from scope_ptz.bench.scoring.episode import Call, Episode, Picture, Standing
+from scope_ptz.bench.scoring.error_modes import ErrorMode, error_mode
+from scope_ptz.bench.scoring.misperceptions import wrong_counts, wrong_reads
+from scope_ptz.bench.scoring.verdict import judge
+from scope_ptz.bench.tasks.task import Task
+from scope_ptz.errors import InputError
+from scope_ptz.taskgen.facts.robust import TASK_CAMERA
+from scope_ptz.taskgen.gold.mutations import FaultSetting, GoldRun, mutate
+
+PER_MODE = 30  # runs per error mode, 240 in all
+
+OTHER = ("accepted", "not scored")
+"""Outcomes of a faulty run besides the eight error modes: it is judged correct, or not scored at all."""
+
+
+@dataclass(frozen=True)
+class ConfusionMatrix:
+    """Gold runs by the mode of their fault and the mode that the rules assign.
+
+    Attributes:
+        cells: Number of runs by the mode of the fault and the assigned mode, which may be one of ``OTHER``.
+        off_diagonal: Task, fault, mode and assigned mode of every run for which the two differ.
+    """
+
+    cells: Counter[tuple[str, str]]
+    off_diagonal: tuple[tuple[str, str, str, str], ...] = ()
+
+    @property
+    def total(self) -> int:
+        """Number of runs."""
+        return self.cells.total()
+
+    @property
+    def named(self) -> int:
+        """Number of runs whose mode the rules name correctly."""
+        return sum(number for (mode, assigned), number in self.cells.items() if mode == assigned)
+
+    @property
+    def accepted(self) -> int:
+        """Number of runs that were judged correct despite their fault."""
+        return sum(number for (_, assigned), number in self.cells.items() if assigned == OTHER[0])
+
+    @property
+    def false_accept_rate(self) -> float:
+        """Share of runs that were judged correct despite their fault."""
+        return self.accepted / self.total if self.total else 0.0
+
+    def worse_than(self, published: Mapping[str, int]) -> bool:
+        """Whether fewer runs are named correctly, or more are accepted, than in a published header."""
+        return self.named < published["named"] or self.accepted > published["accepted"]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the result as JSON data."""
+        modes = [mode.value for mode in ErrorMode]
+        return {
+            "runs": self.total,
+            "named": self.named,
+            "accepted": self.accepted,
+            "false_accept_rate": self.false_accept_rate,
+            "matrix": {row: {column: n for column in (*modes, *OTHER) if (n := self.cells[row, column])} for row in modes},
+            "astray": [dict(zip(("task", "fault", "mode", "told"), one, strict=True)) for one in self.off_diagonal],
+        }
+
+
+def gold_runs(
+    runs: Sequence[tuple[Task, Episode]], settings: Mapping[str, FaultSetting], seed: int, per_mode: int = PER_MODE
+) -> list[GoldRun]:
+    """Put faults of every mode into runs that pass.
+
+    Runs in which perception was wrong, or could not answer, have a fault already and are left out.
+
+    Args:
+        runs: Tasks with passing runs.
+        settings: The setting of each world.
+        seed: Seed for every random choice.
+        per_mode: Runs per error mode, drawn alternately from the categories.
+    """
+    runs = [(task, run) for task, run in runs if not wrong_counts(task, run, None) and not wrong_reads(task, run)]
+    found = list[GoldRun]()
+    for mode in ErrorMode:
+        rng = random.Random(f"{seed}:{mode}")
+        by_category: dict[str, list[tuple[Task, Episode]]] = {}
+        for task, episode in runs:
+            by_category.setdefault(task.category, []).append((task, episode))
+        for rows in by_category.values():
+            rng.shuffle(rows)
+        made = list[GoldRun]()
+        while len(made) < per_mode and any(by_category.values()):
+            for rows in by_category.values():
+                while rows and len(made) < per_mode:
+                    task, episode = rows.pop()
+                    one = mutate(task, episode, mode, settings[task.world], random.Random(f"{seed}:{mode}:{task.id}"))
+                    if one is not None:
+                        made.append(one)
+                        break
+        found += made
+    return found
+
+
+def confusion_matrix(gold: Iterable[GoldRun]) -> ConfusionMatrix:
+    """Score gold runs with the checks and the rules for error modes."""
+    cells, off_diagonal = Counter[tuple[str, str]](), list[tuple[str, str, str, str]]()
+    for one in gold:
+        assigned = _assigned_mode(one)
+        cells[one.mode.value, assigned] += 1
+        if assigned != one.mode.value:
+            off_diagonal.append((one.task.id, one.fault, one.mode.value, assigned))
+    return ConfusionMatrix(cells, tuple(off_diagonal))
+
+
+def _assigned_mode(one: GoldRun) -> str:
+    mode = error_mode(one.task, one.episode)
+    if mode is not None:
+        return mode.value
+    return OTHER[0] if judge(one.task, one.episode).headline == "correct" else OTHER[1]
+
+
+def write_gold(gold: Sequence[GoldRun], path: Path) -> None:
+    """Write runs with a header that holds their current result. The same runs give the same bytes."""
+    result = confusion_matrix(gold)
+    header = {"gold": 1, "runs": result.total, "named": result.named, "accepted": result.accepted}
+    rows = [header, *({"task": g.task.id, "mode": g.mode.value, "fault": g.fault, "run": _run_data(g.episode)} for g in gold)]
+    text = "".join(json.dumps(row, ensure_ascii=False, separators=(",", ":")) + "\n" for row in rows)
+    path.write_bytes(gzip.compress(text.encode(), mtime=0))
+
+
+def read_gold(path: Path, tasks: Iterable[Task]) -> tuple[dict[str, int], list[GoldRun]]:
+    """Read a file of gold runs.
+
+    Args:
+        path: The file.
+        tasks: The tasks that it refers to.
+
+    Returns:
+        The numbers in the header, and the runs.
+
+    Raises:
+        InputError: The file is damaged, or refers to other tasks.
+    """
+    by_id = {task.id: task for task in tasks}
+    try:
+        header, *rows = [json.loads(line) for line in gzip.decompress(path.read_bytes()).decode().splitlines()]
+        published = {name: int(header[name]) for name in ("runs", "named", "accepted")}
+        gold = [GoldRun(ErrorMode(row["mode"]), by_id[row["task"]], _episode(row["run"]), row["fault"]) for row in rows]
+    except KeyError as error:
+        raise InputError(
+            f"{path} does not belong to these tasks: {error} is missing. Make it again with 'scope bench gold make'."
+        ) from error
+    except (OSError, EOFError, ValueError, TypeError) as error:
+        raise InputError(f"{path} is not a file of gold runs: {error}.") from error
+    if len(gold) != published["runs"]:
+        raise InputError(
+            f"{path} should hold {published['runs']} gold runs, but holds {len(gold)}. Make it again with 'scope bench gold make'."
+        )
+    return published, gold
+
+
+def _run_data(episode: Episode) -> dict[str, Any]:
+    return {
+        "instruction": episode.instruction,
+        "start": _standing_data(episode.start),
+        "calls": [
+            {
+                "name": call.name,
+                "arguments": dict(call.arguments),
+                "after": _standing_data(call.after),
+                **{k: v for k in ("result", "error", "fault") if (v := getattr(call, k)) is not None},
+                "time_s": round(call.time_s, 4),
+            }
+            for call in episode.calls
+        ],
+        "final": _standing_data(episode.final),
+        "text": episode.text,
+        "outcome": episode.outcome,
+        "pictures": [picture.file for picture in episode.pictures],
+    }
+
+
+def _standing_data(at: Standing) -> list[Any]:
+    return [at.viewpoint, round(at.pose.pan_deg, 6), round(at.pose.tilt_deg, 6), round(at.pose.zoom, 6)]
+
+
+def _episode(row: Mapping[str, Any]) -> Episode:
+    def standing(values: Sequence[Any]) -> Standing:
+        viewpoint, *pose = values
+        return Standing(viewpoint, Place(pan_deg=pose[0], tilt_deg=pose[1], zoom=pose[2]).pose())
+
+    at = start = standing(row["start"])
+    calls = list[Call]()
+    for given in row["calls"]:
+        further = {name: given.get(name) for name in ("result", "error", "fault")}
+        calls.append(
+            seen(
+                Call(given["name"], given["arguments"], at, after := standing(given["after"]), time_s=given["time_s"], **further),
+                TASK_CAMERA,
+            )
+        )
+        at = after
+    pictures = tuple(Picture(name) for name in row["pictures"])
+    return Episode(row["instruction"], start, tuple(calls), standing(row["final"]), row["text"], row["outcome"], pictures)

@@ -1,0 +1,236 @@
+"""Accuracy of LLM judges on runs with known faults: false accepts, false rejects, and the error modes that they name."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import zip_longest
+from pathlib import Path
+from typing import Any
+
+import anyio
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from scope_ptz.bench.judging.agreement import Item, Rater, numbered, rate
+from scope_ptz.bench.judging.case import Case, case_of_episode
+from scope_ptz.bench.judging.judge import Judge
+from scope_ptz.bench.judging.kappa import Agreement, cohen
+from scope_ptz.bench.judging.lines import whole_lines
+from scope_ptz.bench.scoring.episode import Episode, Places
+from scope_ptz.bench.scoring.error_modes import ErrorMode
+from scope_ptz.bench.scoring.trials import Judgement
+from scope_ptz.bench.tasks.facts import TaskFacts
+from scope_ptz.bench.tasks.task import Task
+from scope_ptz.bench.tasks.wording import facts_of
+from scope_ptz.errors import InputError
+from scope_ptz.taskgen.gold.mutations import GoldRun
+
+PASSES = "passes"  # stands for the mode of a run without a fault
+WITHOUT_VERDICT = ("unparseable", "failed")
+
+
+class GoldCase(BaseModel):
+    """A run with a known verdict. ``fault`` is the mode of its fault, if any, and ``how`` the name of the fault function."""
+
+    model_config = ConfigDict(frozen=True, arbitrary_types_allowed=True)
+
+    facts: TaskFacts
+    case: Case
+    fault: ErrorMode | None
+    how: str
+
+    @property
+    def key(self) -> str:
+        """Identify the run among gold runs."""
+        return f"{self.facts.id}/{self.fault.value if self.fault else PASSES}/{self.how}"
+
+
+class GoldVerdict(BaseModel):
+    """The judgement of a gold run, as it is stored in a file."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    key: str
+    task: str
+    fault: ErrorMode | None
+    judgement: Judgement
+
+
+def gold_case(gold: GoldRun, places: Places) -> GoldCase:
+    """Return a faulty run as a case for a judge, with the places of its scene."""
+    return _case(gold.task, gold.episode, places, gold.mode, gold.fault)
+
+
+def passing_case(task: Task, episode: Episode, places: Places) -> GoldCase:
+    """Return a run that passes all checks as a case for a judge."""
+    return _case(task, episode, places, None, "reference")
+
+
+def _case(task: Task, episode: Episode, places: Places, fault: ErrorMode | None, how: str) -> GoldCase:
+    facts = facts_of(task, episode.start.viewpoint or "")
+    case = case_of_episode(episode, places)
+    return GoldCase(facts=facts, case=case, fault=fault, how=how)
+
+
+async def judge_gold(
+    judge: Judge, cases: Iterable[GoldCase], *, concurrency: int = 8, repeat: int = 0, note: Callable[[GoldVerdict], None]
+) -> None:
+    """Judge runs concurrently.
+
+    Args:
+        judge: The judge.
+        cases: The runs.
+        concurrency: How many runs are judged at the same time.
+        repeat: Number of this repetition.
+        note: Receives every verdict as soon as it is available, so that an interruption loses nothing.
+
+    Raises:
+        Exception: Whatever ``note`` raises.
+    """
+    limit = anyio.Semaphore(concurrency)
+
+    async def one(gold: GoldCase) -> None:
+        async with limit:
+            judgement = await judge.judge_case(gold.facts, gold.case, repeat=repeat)
+        note(GoldVerdict(key=gold.key, task=gold.facts.id, fault=gold.fault, judgement=judgement))
+
+    try:
+        async with anyio.create_task_group() as group:
+            for gold in cases:
+                group.start_soon(one, gold)
+    except BaseExceptionGroup as errors:
+        raise errors.exceptions[0] from None
+
+
+@dataclass(frozen=True)
+class GoldResult:
+    """The accuracy of one judge.
+
+    Attributes:
+        judge: Name of the judge.
+        runs: Number of runs, each of which may have several judgements.
+        cells: Number of judgements by the mode of the fault ("passes" for none) and by verdict: a mode, "correct", or one of
+            ``WITHOUT_VERDICT``.
+        verdicts: Agreement on whether a run is correct, over all judgements with a verdict.
+        modes: Agreement on the error mode, over faulty runs that were judged incorrect.
+    """
+
+    judge: str
+    runs: int
+    cells: Mapping[tuple[str, str], int]
+    verdicts: Agreement
+    modes: Agreement
+
+    def _count(self, *, faulty: bool, verdicts: tuple[str, ...] | None = None) -> int:
+        return sum(
+            number
+            for (fault, verdict), number in self.cells.items()
+            if (fault != PASSES) is faulty and (verdicts is None or verdict in verdicts)
+        )
+
+    @property
+    def false_accept_rate(self) -> float | None:
+        """Share of faulty runs with a verdict that are judged correct."""
+        given = self._count(faulty=True) - self._count(faulty=True, verdicts=WITHOUT_VERDICT)
+        return self._count(faulty=True, verdicts=("correct",)) / given if given else None
+
+    @property
+    def false_reject_rate(self) -> float | None:
+        """Share of passing runs with a verdict that are not judged correct."""
+        given = self._count(faulty=False) - self._count(faulty=False, verdicts=WITHOUT_VERDICT)
+        return 1 - self._count(faulty=False, verdicts=("correct",)) / given if given else None
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the result as JSON data."""
+        matrix: dict[str, dict[str, int]] = {}
+        for (fault, verdict), number in sorted(self.cells.items()):
+            matrix.setdefault(fault, {})[verdict] = number
+        return {
+            "judge": self.judge,
+            "runs": self.runs,
+            "judgements": sum(self.cells.values()),
+            "false_accept_rate": self.false_accept_rate,
+            "false_reject_rate": self.false_reject_rate,
+            "apart": {
+                name: self._count(faulty=True, verdicts=(name,)) + self._count(faulty=False, verdicts=(name,))
+                for name in WITHOUT_VERDICT
+            },
+            "matrix": matrix,
+            "verdicts": self.verdicts.as_dict(),
+            "modes": self.modes.as_dict(),
+        }
+
+
+def result(judge: str, verdicts: Sequence[GoldVerdict], seed: int = 1) -> GoldResult:
+    """Compare the verdicts of one judge with the known faults."""
+    rows = [(_fault(verdict), _verdict(verdict.judgement), verdict) for verdict in verdicts]
+    given = [row for row in rows if row[1] not in WITHOUT_VERDICT]
+    blamed = [row for row in given if row[0] != PASSES and row[1] != "correct"]
+    return GoldResult(
+        judge=judge,
+        runs=len({verdict.key for verdict in verdicts}),
+        cells=Counter((fault, verdict) for fault, verdict, _ in rows),
+        verdicts=cohen(
+            ["correct" if fault == PASSES else "incorrect" for fault, _, _ in given],
+            ["correct" if verdict == "correct" else "incorrect" for _, verdict, _ in given],
+            [row.task for _, _, row in given],
+            seed,
+        ),
+        modes=cohen([r[0] for r in blamed], [r[1] for r in blamed], [r[2].task for r in blamed], seed),
+    )
+
+
+def results(verdicts: Sequence[GoldVerdict], seed: int = 1) -> list[GoldResult]:
+    """Return the result of every judge over all its repetitions. A failed judgement that was repeated later does not count."""
+    newest = {(v.key, v.judgement.judge, v.judgement.prompt, v.judgement.repeat): v for v in verdicts}
+    by_judge: dict[str, list[GoldVerdict]] = {}
+    for verdict in newest.values():
+        by_judge.setdefault(f"{verdict.judgement.judge} ({verdict.judgement.prompt})", []).append(verdict)
+    return [result(judge, rows, seed) for judge, rows in by_judge.items()]
+
+
+def raters_of_gold(verdicts: Iterable[GoldVerdict]) -> list[Rater]:
+    """Return the known faults as one rater, and every judge as another."""
+    newest = {(v.key, v.judgement.judge, v.judgement.prompt, v.judgement.repeat): v for v in verdicts}
+    known, judges = Rater("the known faults", "gold", "gold"), dict[str, Rater]()
+    by_key: dict[str, list[GoldVerdict]] = {}
+    for verdict in sorted(newest.values(), key=lambda v: v.judgement.repeat):
+        by_key.setdefault(verdict.key, []).append(verdict)
+    for key, rows in by_key.items():
+        item = Item("gold", key, rows[0].task)
+        rate(known, item, "incorrect" if rows[0].fault else "correct", rows[0].fault)
+        for name, group, judgement in numbered([row.judgement for row in rows]):
+            rater = judges.setdefault(name, Rater(name, "judge", f"judge:{group}"))
+            rate(rater, item, judgement.verdict, judgement.error_mode)
+    return [known, *judges.values()] if by_key else []
+
+
+def in_turn(runs: Sequence[GoldRun]) -> list[GoldRun]:
+    """Return the runs alternating between error modes, so that the first few cover all modes."""
+    waiting = [[run for run in runs if run.mode is mode] for mode in ErrorMode]
+    return [run for row in zip_longest(*waiting) for run in row if run is not None]
+
+
+def read_verdicts(path: Path) -> tuple[GoldVerdict, ...]:
+    """Read the verdicts of a file. A last line that was cut off is left out.
+
+    Raises:
+        InputError: The file is damaged otherwise.
+    """
+    rows = list[GoldVerdict]()
+    for number, line in whole_lines(path):
+        try:
+            rows.append(GoldVerdict.model_validate_json(line))
+        except ValidationError as error:
+            first = error.errors(include_url=False, include_input=False)[0]
+            raise InputError(f"{path}, line {number} is not a verdict on a gold run: {first['msg']}.") from error
+    return tuple(rows)
+
+
+def _fault(verdict: GoldVerdict) -> str:
+    return verdict.fault.value if verdict.fault else PASSES
+
+
+def _verdict(judgement: Judgement) -> str:
+    return judgement.error_mode.value if judgement.error_mode else judgement.verdict

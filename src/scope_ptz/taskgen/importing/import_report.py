@@ -1,0 +1,170 @@
+"""The import of a file: every row with its task or the reasons why it has none, and the report."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, get_args
+
+from scope_ptz.bench.tasks.findings import BLOCKING, MEANINGS, Finding, Kind
+from scope_ptz.bench.tasks.imported import ImportedTask
+from scope_ptz.bench.tasks.task import Category
+from scope_ptz.taskgen.importing.csv_table import read_table
+from scope_ptz.taskgen.importing.row_checks import check_rows, comparable
+from scope_ptz.taskgen.importing.row_reading import ParsedRow, ids_of, read_row
+from scope_ptz.taskgen.importing.scene_names import SceneNames
+
+PAPER_COUNTS: dict[Category, int] = {
+    "counting": 95, "descriptor": 89, "location": 53, "ocr": 54, "single_call": 72, "multi_step_command": 57,
+    "multi_step_reasoning": 54, "comparative": 62,
+}  # fmt: skip
+"""Tasks per category in the paper, for comparison."""
+
+_MOST_LISTED = 12  # details and line numbers that the text report lists per finding
+_NAMING_LINES: frozenset[Kind] = frozenset({"duplicate", "contradiction", "same-at-every-preset", "id-repeated"})
+"""Findings whose detail already states the lines."""
+
+
+@dataclass(frozen=True)
+class Imported:
+    """An imported file.
+
+    Attributes:
+        source: Path of the file.
+        encoding: Its encoding.
+        notes: What is unusual about the file as a whole.
+        rows: All rows.
+        ids: Task id by line.
+        findings: Findings of each row by line.
+        tasks: The rows that can be run, in the order of the file.
+    """
+
+    source: str
+    encoding: str
+    notes: tuple[str, ...]
+    rows: tuple[ParsedRow, ...]
+    ids: dict[int, str]
+    findings: dict[int, tuple[Finding, ...]]
+    tasks: tuple[ImportedTask, ...]
+
+    @property
+    def left_out(self) -> tuple[ParsedRow, ...]:
+        """The rows that cannot be run."""
+        ready = {task.line for task in self.tasks}
+        return tuple(row for row in self.rows if row.line not in ready)
+
+    def lines_with(self, kind: Kind) -> list[int]:
+        """Return the lines of the rows with a kind of finding."""
+        return [row.line for row in self.rows if any(finding.kind == kind for finding in self.findings[row.line])]
+
+    def map_to_fill(self) -> dict[str, Any]:
+        """Return a template for a mapping file: the names of scenes and presets that were not found."""
+        presets: dict[str, dict[str, str]] = {}
+        for row in self.rows:
+            if row.scene is not None and row.preset is None:
+                presets.setdefault(row.scene, {})[row.place[1]] = ""
+        return {"scenes": dict.fromkeys(sorted({row.place[0] for row in self.rows if row.scene is None}), ""), "presets": presets}
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the report as JSON data, with the cells of every row."""
+        ready = {task.line for task in self.tasks}
+        return {
+            "source": self.source,
+            "encoding": self.encoding,
+            "notes": list(self.notes),
+            "rows": len(self.rows),
+            "runnable": len(self.tasks),
+            "left_out": len(self.rows) - len(self.tasks),
+            "distinct_questions": len({tuple(comparable(row.question)) for row in self.rows}),
+            "distinct_tasks": len({(tuple(comparable(row.question)), row.view) for row in self.rows}),
+            "by_category": {
+                name: {"rows": sum(row.category == name for row in self.rows), "paper": PAPER_COUNTS[name]}
+                for name in get_args(Category)
+            },
+            "findings": {kind: self.lines_with(kind) for kind in MEANINGS if self.lines_with(kind)},
+            "map_to_fill": self.map_to_fill(),
+            "each": [
+                {
+                    "line": row.line,
+                    "id": self.ids[row.line],
+                    "runs": row.line in ready,
+                    "findings": [finding.model_dump() for finding in self.findings[row.line]],
+                    "cells": row.row.cells,
+                    **({"extra_cells": list(row.row.extra)} if row.row.extra else {}),
+                }
+                for row in self.rows
+            ],
+        }
+
+
+def import_file(path: Path, scene_names: SceneNames) -> Imported:
+    """Read, map and check a file. A row that cannot be run is reported, not raised.
+
+    Raises:
+        InputError: The file cannot be read.
+    """
+    table = read_table(path)
+    dataset = "imported-" + (re.sub(r"[^a-z0-9]+", "-", path.stem.lower()).strip("-")[:40] or "tasks")
+    rows = tuple(read_row(row, scene_names) for row in table.rows)
+    ids = dict(zip((row.line for row in rows), ids_of([row.row for row in rows], dataset), strict=True))
+    doubtful = check_rows(rows)
+    findings = {row.line: (*row.findings, *doubtful.get(row.line, ())) for row in rows}
+    tasks = (row.task(dataset, ids[row.line], scene_names, findings[row.line]) for row in rows)
+    return Imported(
+        source=str(path),
+        encoding=table.encoding,
+        notes=table.notes,
+        rows=rows,
+        ids=ids,
+        findings=findings,
+        tasks=tuple(task for task in tasks if task is not None),
+    )
+
+
+def report_lines(imported: Imported) -> Iterator[str]:
+    """Yield the report as lines of text: counts, rows that cannot be run and why, and doubtful rows."""
+    content = imported.as_dict()
+    runs = f"{content['runnable']} can be run, {content['left_out']} cannot"
+    yield f"{content['rows']} rows in {imported.source} ({imported.encoding}): {runs}"
+    yield from (f"note: {note}" for note in imported.notes)
+    yield f"{content['distinct_questions']} distinct questions, {content['distinct_tasks']} distinct pairs of question and view"
+    yield ""
+    yield f"{'category':<24}{'rows':>6}{'in the paper':>14}"
+    for name, row in content["by_category"].items():
+        yield f"{name:<24}{row['rows']:>6}{row['paper']:>14}"
+    for title, kinds in (
+        ("cannot be run", [kind for kind in MEANINGS if kind in BLOCKING]),
+        ("runs unchanged, but is doubtful", [kind for kind in MEANINGS if kind not in BLOCKING]),
+    ):
+        if any(imported.lines_with(kind) for kind in kinds):
+            yield ""
+            yield title
+        for kind in kinds:
+            yield from _kind_lines(imported, kind)
+
+
+def _kind_lines(imported: Imported, kind: Kind) -> Iterator[str]:
+    lines = imported.lines_with(kind)
+    if not lines:
+        return
+    yield f"  {len(lines):>5}  {kind}: {MEANINGS[kind]}"
+    details: dict[str, list[int]] = {}
+    for line in lines:
+        for finding in imported.findings[line]:
+            if finding.kind == kind:
+                details.setdefault(finding.detail, []).append(line)
+    most_frequent = sorted(details, key=lambda detail: -len(details[detail]))[:_MOST_LISTED]
+    listed = [detail if kind in _NAMING_LINES else f"{detail} ({_lines(details[detail])})" for detail in most_frequent if detail]
+    yield from (f"         {''.join(c if c.isprintable() else ' ' for c in one)}" for one in listed)
+    if not listed:
+        yield f"         {_lines(lines)}"
+    elif len(details) > _MOST_LISTED:
+        yield f"         ... and {len(details) - _MOST_LISTED} more, in the report file"
+
+
+def _lines(lines: Sequence[int]) -> str:
+    """Return "line 7" or "lines 2, 3, 5"."""
+    listed = ", ".join(map(str, lines[:_MOST_LISTED]))
+    return f"line{'s' if len(lines) > 1 else ''} {listed}{' ...' if len(lines) > _MOST_LISTED else ''}"

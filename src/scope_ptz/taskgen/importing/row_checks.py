@@ -1,0 +1,140 @@
+"""Checks for doubtful rows: duplicates, contradictions, answers in the question, requirements that do not fit the question.
+
+No row is changed or dropped. A row with such a finding runs like any other, and the report lists the finding.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from scope_ptz.bench.answers.words import plain_words
+from scope_ptz.bench.tasks.findings import Finding, Kind
+from scope_ptz.taskgen.facts.answer_phrasing import in_words
+from scope_ptz.taskgen.importing.row_reading import ParsedRow
+
+_NOW = re.compile(
+    r"\b(?:right now|at the moment|currently (?:visible|in view|see)|in (?:this|the|your) (?:current )?view|current view)\b",
+    re.IGNORECASE,
+)
+_THEN = re.compile(r"\b(?:then|afterwards?|after that|finally|followed by|once (?:there|done))\b", re.IGNORECASE)
+_DONE = r"(?:followed|completed?|executed|performed|finished|done|carried out)"
+_WORK = r"(?:steps?|instructions?|commands?|tasks?|requests?|actions?|operations?|sequence)"
+_ASSERTS_NOTHING = re.compile(
+    r"\W*(?:(?:ok(?:ay)?|done|ready|sure|complete|completed|finished|success|successful|successfully)"
+    rf"|(?:(?:i|we|the agent|the camera|the system)\W?\s?(?:ve|have|has)? )?(?:successfully )?{_DONE} "
+    rf"(?:all |of |the |your |these |those |requested |given |specified |required )*{_WORK}"
+    r"(?: as [\w ]{0,40}| that [\w ]{0,40}| successfully| in (?:the )?order)?"
+    rf"|(?:the |all )*{_WORK} (?:has |have |had |was |were |is |are )?(?:been )?(?:all )?(?:successfully )?{_DONE}"
+    r"(?: successfully)?)\W*",
+    re.IGNORECASE,
+)
+_QUOTED = re.compile(r"[\"“”'‘]([^\"“”'’]{2,60})[\"“”'’]")
+_NUMBERS = {in_words(number): str(number) for number in range(21)}
+_UNINFORMATIVE = frozenset("the a an is are it there of in on yes no none not say says read reads i see".split())  # noqa: SIM905
+_MOST_ANSWER_WORDS = 6
+
+
+def check_rows(rows: Sequence[ParsedRow]) -> dict[int, tuple[Finding, ...]]:
+    """Return the findings of doubtful rows by line number."""
+    found: dict[int, list[Finding]] = defaultdict(list)
+    for row in rows:
+        found[row.line] += _single_row_findings(row)
+    for line, finding in _row_group_findings(rows):
+        found[line].append(finding)
+    return {line: tuple(findings) for line, findings in found.items()}
+
+
+def _single_row_findings(row: ParsedRow) -> Iterator[Finding]:
+    """Yield the findings of a row by itself."""
+    if _NOW.search(row.question) and row.sweeps:
+        yield _finding("now-but-full")
+    if _THEN.search(row.question) and row.order == "any" and len(row.calls) > 1:
+        yield _finding("then-unordered", ", ".join(call.tool for call in row.calls))
+    if _ASSERTS_NOTHING.fullmatch(row.answer):
+        yield _finding("empty-assertion", row.answer)
+    if (given := answer_in_question(row.question, row.answer)) is not None:
+        yield _finding("answer-in-question", given)
+    if row.question and not row.moves and not row.sweeps:
+        yield _finding("no-viewpoint-change")
+
+
+def answer_in_question(question: str, answer: str) -> str | None:
+    """Return the part of the answer that the question already contains, or None.
+
+    Quoted parts of the answer are checked, and whole answers of up to six words. Yes, no, and options that the question offers do
+    not count.
+    """
+    if re.search(r"\bor\b", question, re.IGNORECASE):
+        return None
+    asked = comparable(question)
+    candidates: list[str] = _QUOTED.findall(answer)
+    words = comparable(answer)
+    if 0 < len(words) <= _MOST_ANSWER_WORDS:
+        candidates.append(answer)
+    for candidate in candidates:
+        words = [word for word in comparable(candidate) if word not in _UNINFORMATIVE]
+        if words and any(asked[at : at + len(words)] == words for at in range(len(asked) - len(words) + 1)):
+            return candidate
+    return None
+
+
+def _row_group_findings(rows: Sequence[ParsedRow]) -> Iterator[tuple[int, Finding]]:
+    """Yield the line and the finding of every row that conflicts with, or repeats, other rows."""
+    by_question: dict[tuple[str, ...], list[ParsedRow]] = defaultdict(list)
+    for row in rows:
+        if row.question:
+            by_question[tuple(comparable(row.question))].append(row)
+    for alike in by_question.values():
+        by_view: dict[tuple[str, ...], list[ParsedRow]] = defaultdict(list)
+        for row in alike:
+            by_view[row.view].append(row)
+        for same in by_view.values():
+            yield from _same_view(same)
+        if len(by_view) > 1 and len({_answer_key(row.answer) for row in alike}) == 1:
+            lines = _line_list(alike)
+            yield from ((row.line, _finding("same-at-every-preset", lines)) for row in alike)
+    for name, same in _by_id(rows).items():
+        if len(same) > 1:
+            yield from ((row.line, _finding("id-repeated", f"{name}: {_line_list(same)}")) for row in same)
+
+
+def _same_view(rows: Sequence[ParsedRow]) -> Iterator[tuple[int, Finding]]:
+    by_answer: dict[tuple[str, ...], list[ParsedRow]] = defaultdict(list)
+    for row in rows:
+        by_answer[_answer_key(row.answer)].append(row)
+    for same in by_answer.values():
+        if len(same) > 1:
+            yield from ((row.line, _finding("duplicate", _line_list(same))) for row in same)
+    if len(by_answer) > 1:
+        answers = "; ".join(f"line {same[0].line}: {same[0].answer[:60]}" for same in by_answer.values())
+        yield from ((row.line, _finding("contradiction", answers)) for row in rows)
+
+
+def _by_id(rows: Iterable[ParsedRow]) -> Mapping[str, list[ParsedRow]]:
+    found: dict[str, list[ParsedRow]] = defaultdict(list)
+    for row in rows:
+        if row.row.cells.get("question_id"):
+            found[row.row.cells["question_id"]].append(row)
+    return found
+
+
+def _answer_key(answer: str) -> tuple[str, ...]:
+    """Return what can be compared of an answer without understanding it: its numbers if it has any, else its words."""
+    words = comparable(answer)
+    numbers = tuple(sorted(word for word in words if word.replace(".", "", 1).isdigit()))
+    return numbers or tuple(words)
+
+
+def comparable(text: str) -> list[str]:
+    """Return the words of a text without differences in case, spelling and punctuation, with numbers in digits."""
+    return [_NUMBERS.get(word, word) for word in plain_words(text)]
+
+
+def _line_list(rows: Sequence[ParsedRow]) -> str:
+    return "lines " + ", ".join(str(row.line) for row in rows)
+
+
+def _finding(kind: Kind, detail: str = "") -> Finding:
+    return Finding(kind=kind, detail=detail[:300])

@@ -1,0 +1,233 @@
+"""Reading of a row: its task, or the reasons why it cannot be run."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from scope_ptz.bench.tasks.facts import TaskFacts
+from scope_ptz.bench.tasks.findings import Finding, Kind
+from scope_ptz.bench.tasks.imported import ImportedTask, Policy
+from scope_ptz.bench.tasks.task import Category, RequiredCall, Scope
+from scope_ptz.bench.tasks.wording import call_in_words
+from scope_ptz.taskgen.importing.call_mapping import Expectation, expected_calls
+from scope_ptz.taskgen.importing.csv_table import Row
+from scope_ptz.taskgen.importing.paper_names import category_of, compares_arguments, order_of, policy_of, scope_of, spelled
+from scope_ptz.taskgen.importing.scene_names import SceneNames
+from scope_ptz.tools.registry import TOOLS
+
+MOVERS = TOOLS.moving
+_DIFFICULTIES: dict[str, Literal["easy", "medium", "hard"]] = {
+    "easy": "easy", "simple": "easy", "low": "easy", "1": "easy", "medium": "medium", "moderate": "medium", "mid": "medium",
+    "normal": "medium", "2": "medium", "hard": "hard", "difficult": "hard", "high": "hard", "3": "hard",
+}  # fmt: skip
+_MOST_CHARS = 4000  # longer questions are cut
+Note = Callable[[Kind, str], None]
+
+
+@dataclass(frozen=True)
+class ParsedRow:
+    """A row as it was understood.
+
+    ``scene`` and ``preset`` are None when they were not found. ``place`` holds their names in the file.
+    """
+
+    row: Row
+    question: str
+    answer: str
+    category: Category | None
+    scope: Scope
+    scene: str | None
+    preset: str | None
+    place: tuple[str, str]
+    calls: tuple[RequiredCall, ...]
+    policy: Policy
+    order: Literal["ordered", "any"]
+    difficulty: Literal["easy", "medium", "hard"]
+    findings: tuple[Finding, ...]
+
+    @property
+    def line(self) -> int:
+        """The line on which the row begins."""
+        return self.row.line
+
+    @property
+    def view(self) -> tuple[str, ...]:
+        """Scene and preset of the question, or their names in the file."""
+        return (self.scene or self.place[0], self.preset or self.place[1])
+
+    @property
+    def sweeps(self) -> bool:
+        """Whether the question is about the whole scene."""
+        return self.scope == "full"
+
+    @property
+    def moves(self) -> bool:
+        """Whether a call that moves the camera is expected."""
+        return any(call.tool in MOVERS for call in self.calls)
+
+    def task(self, dataset: str, name: str, scene_names: SceneNames, findings: tuple[Finding, ...]) -> ImportedTask | None:
+        """Return the task, or None when the row cannot be run."""
+        if self.scene is None or self.preset is None or self.category is None or any(f.blocks for f in findings):
+            return None
+        notes = self.row.cells.get("evaluation_notes", "")
+        facts = TaskFacts(
+            id=name,
+            dataset=dataset,
+            stratum="imported",
+            scene=self.scene,
+            viewpoint=scene_names.viewpoint(self.scene, self.preset),
+            preset=self.preset,
+            instruction=self.question[:_MOST_CHARS],
+            category=self.category,
+            scope=self.scope,
+            difficulty=self.difficulty,
+            expected=self.answer or "no answer is given; the expected calls decide",
+            demands=tuple(_demands(self.calls, self.policy, self.order, notes)),
+        )
+        return ImportedTask(
+            facts=facts,
+            line=self.line,
+            raw=self.row.cells,
+            calls=self.calls,
+            policy=self.policy,
+            order=self.order,
+            start_s=scene_names.scenes[self.scene].start_s,
+            findings=findings,
+        )
+
+
+def read_row(row: Row, scene_names: SceneNames) -> ParsedRow:
+    """Map the cells of a row, and note everything that is unusual about them."""
+    cells, notes = row.cells, list[Finding]()
+
+    def note(kind: Kind, detail: str) -> None:
+        notes.append(Finding(kind=kind, detail=detail[:300]))
+
+    question, answer = cells["question"], cells["expected_answer"]
+    if not question:
+        note("empty-question", "")
+    category = _category(cells, note)
+    scene, preset = _place(cells, scene_names, note)
+    policy, order, compare = _modes(cells, note)
+    expectation = expected_calls(
+        cells.get("expected_tool_order_json", cells.get("expected_tool_order", "")),
+        cells.get("expected_tool_args_json", cells.get("expected_tool_args", "")),
+        compare=compare,
+        preset_of=lambda name: scene_names.preset(scene, name) if scene is not None and name.strip() else name,
+    )
+    notes += expectation.findings
+    if not answer and not expectation.calls:
+        note("nothing-expected", "")
+    if row.extra or row.short:
+        note("ragged-row", f"{len(row.extra)} cells too many" if row.extra else f"{row.short} cells too few")
+    return ParsedRow(
+        row=row,
+        question=question,
+        answer=answer,
+        category=category,
+        scope=_scope(cells, expectation, note),
+        scene=scene,
+        preset=preset,
+        place=(cells.get("file_location", ""), cells.get("preset_start", "")),
+        calls=tuple(expectation.calls),
+        policy=policy,
+        order=order,
+        difficulty=_difficulty(cells.get("difficulty", ""), note),
+        findings=tuple(notes),
+    )
+
+
+def ids_of(rows: list[Row], dataset: str) -> list[str]:
+    """Return an id for every row, made from its own id if it has one. Repeated ids get a number."""
+    named = [f"{dataset}-{_slug(row.cells.get('question_id', '')) or f'line-{row.line}'}" for row in rows]
+    taken, ids = Counter[str](), list[str]()
+    for name in named:
+        taken[name] += 1
+        unique = name if taken[name] == 1 else f"{name}-x{taken[name]}"
+        while unique in ids:
+            unique += "x"
+        ids.append(unique)
+    return ids
+
+
+def _slug(text: str) -> str:
+    return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")[:80]
+
+
+def _category(cells: Mapping[str, str], note: Note) -> Category | None:
+    columns = ("eval_category", "category", "question_type")
+    given = {column: cells[column] for column in columns if cells.get(column)}
+    found = next(((name, category) for name, text in given.items() if (category := category_of(text)) is not None), None)
+    if found is None:
+        note("unknown-category", next(iter(given.values()), ""))
+        return None
+    column, category = found
+    first = next(iter(given))
+    if column != first:
+        note("unknown-value", f"{first}: {given[first]}; read as {category}, by {column}: {given[column]}")
+    return category
+
+
+def _place(cells: Mapping[str, str], scene_names: SceneNames, note: Note) -> tuple[str | None, str | None]:
+    location, start = cells.get("file_location", ""), cells.get("preset_start", "")
+    scene = scene_names.scene(location)
+    if scene is None:
+        note("missing-scene", location)
+        return None, None
+    preset = scene_names.preset(scene, start)
+    if preset is None:
+        note("missing-preset", f"{scene}: {start}")
+    return scene, preset
+
+
+def _modes(cells: Mapping[str, str], note: Note) -> tuple[Policy, Literal["ordered", "any"], bool]:
+    policy_cell, order_cell = cells.get("required_tools_policy", ""), cells.get("multi_step_mode", "")
+    check_cell = cells.get("args_check", "")
+    policy, order, compare = policy_of(policy_cell), order_of(order_cell), compares_arguments(check_cell)
+    for column, cell, read in (
+        ("required_tools_policy", policy_cell, policy),
+        ("multi_step_mode", order_cell, order),
+        ("args_check", check_cell, compare),
+    ):
+        if read is None:
+            note("unknown-value", f"{column}: {cell}")
+    return policy or "all", order or "any", compare if compare is not None else True
+
+
+def _scope(cells: Mapping[str, str], expectation: Expectation, note: Note) -> Scope:
+    """Return the scope in ``answer_view``, or else the full scope if an expected call has it."""
+    given = cells.get("answer_view", "")
+    scope = scope_of(given)
+    if scope is not None:
+        return scope
+    if given and spelled(given) not in ("none", "na", "n_a", "null", "any", "either"):
+        note("unknown-value", f"answer_view: {given}")
+    views = {call.arguments["view"].equals for call in expectation.calls if "view" in call.arguments}
+    return "full" if "full" in views else "current"
+
+
+def _difficulty(given: str, note: Note) -> Literal["easy", "medium", "hard"]:
+    found = _DIFFICULTIES.get(spelled(given))
+    if found is None and given:
+        note("unknown-value", f"difficulty: {given}")
+    return found or "medium"
+
+
+_POLICY_WORDS: dict[Policy, str] = {
+    "all": "All of these calls are expected",
+    "exact": "These calls and no other tools are expected",
+    "any": "One of these calls is expected",
+    "none": "Calls that the author of the task had in mind, which need not be made",
+}
+
+
+def _demands(calls: Sequence[RequiredCall], policy: Policy, order: str, notes: str) -> Iterator[str]:
+    if calls:
+        how = ", in this order" if order == "ordered" and policy in ("all", "exact") and len(calls) > 1 else ""
+        yield f"{_POLICY_WORDS[policy]}{how}: {'; '.join(call_in_words(call) for call in calls)}."
+    if notes:
+        yield f"Notes of the author of the task: {notes}"

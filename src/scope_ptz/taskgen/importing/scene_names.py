@@ -1,0 +1,108 @@
+"""Scenes and presets of imported tasks, found by the names that a file gives them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+import yaml
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from scope_ptz.errors import InputError
+
+ANY = "*"
+
+
+class SceneNameMap(BaseModel):
+    """A mapping file for scenes and presets. "*" stands for every name that is not listed.
+
+    Attributes:
+        scenes: Scene by file location or its stem.
+        presets: Preset by its name in the file, for each scene.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    scenes: dict[str, str] = {}
+    presets: dict[str, dict[str, str]] = {}
+
+
+@dataclass(frozen=True, slots=True)
+class ScenePresets:
+    """The presets of a scene.
+
+    Attributes:
+        presets: Viewpoint by preset.
+        home: The preset at which a run starts when the file names none.
+        start_s: Scene time at the start, in seconds.
+    """
+
+    presets: Mapping[str, str]
+    home: str
+    start_s: float = 0.0
+
+
+@dataclass(frozen=True)
+class SceneNames:
+    """The available scenes by name, and the mapping from the names in a file."""
+
+    scenes: Mapping[str, ScenePresets]
+    mapping: SceneNameMap = field(default_factory=SceneNameMap)
+
+    def scene(self, location: str) -> str | None:
+        """Return the scene for a file location: by the mapping, else by the stem of the file or the name of its folder."""
+        given = self.mapping.scenes
+        path = PurePosixPath(location.replace("\\", "/"))
+        stem = path.stem if path.suffix else path.name
+        for name in (location, path.name, stem):
+            if name in given:
+                return given[name] if given[name] in self.scenes else None
+        by_name = {_normalised(name): name for name in self.scenes}
+        for name in (stem, path.parent.name):
+            if name and _normalised(name) in by_name:
+                return by_name[_normalised(name)]
+        return given[ANY] if given.get(ANY) in self.scenes else None
+
+    def preset(self, scene: str, name: str) -> str | None:
+        """Return the preset of a scene by its name in the file. Without a name it is the home preset."""
+        known, given = self.scenes[scene], self.mapping.presets.get(scene, {})
+        if name in given:
+            return given[name] if given[name] in known.presets else None
+        if not name.strip() or _normalised(name) == "home":
+            return known.home
+        by_name = {_normalised(preset): preset for preset in known.presets}
+        found = by_name.get(_normalised(name)) or by_name.get(
+            _normalised(re.sub(r"(?i)^preset[\s_:-]*|[\s_:-]*preset$", "", name.strip()))
+        )
+        return found or (given[ANY] if given.get(ANY) in known.presets else None)
+
+    def viewpoint(self, scene: str, preset: str) -> str:
+        """Return the viewpoint of a preset."""
+        return self.scenes[scene].presets[preset]
+
+
+def read_scene_names(path: Path) -> SceneNameMap:
+    """Read a mapping file in YAML or JSON.
+
+    Raises:
+        InputError: The file cannot be read or is not a mapping.
+    """
+    try:
+        content: Any = yaml.safe_load(path.read_text("utf-8"))
+        return SceneNameMap.model_validate(content or {})
+    except OSError as error:
+        raise InputError(f"The mapping {path} cannot be read: {error.strerror}.") from error
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        where = ".".join(str(part) for part in first["loc"])
+        raise InputError(f"{path}: {where or 'as a whole'}: {first['msg']}. Known: scenes, presets.") from error
+    except (ValueError, yaml.YAMLError) as error:
+        raise InputError(f"{path} is not a mapping: {str(error)[:200]}.") from error
+
+
+def _normalised(name: str) -> str:
+    """Return a name without case and separators: "Parking_Lot 2", "parkingLot2" and "parking-lot-2" are the same."""
+    return re.sub(r"[^a-z0-9]+", "", name.lower())

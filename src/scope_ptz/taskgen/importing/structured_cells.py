@@ -1,0 +1,64 @@
+"""Parsing of cells that hold JSON, Python literals with single quotes, or plain lists of words."""
+
+from __future__ import annotations
+
+import ast
+import json
+import math
+import re
+from typing import Any
+
+_LIST = re.compile(r"\s*(?:->|→|;|,|\||\n)\s*")
+_MOST_CHARS = 100_000
+_NOTHING = frozenset({"", "null", "none", "n/a", "na", "nan", "-", "[]", "{}"})
+
+
+def structure(text: str) -> Any:
+    """Return the content of a cell, or None for an empty one. Words without brackets are read as a list.
+
+    Raises:
+        ValueError: The cell begins like JSON or a literal and cannot be parsed.
+    """
+    text = text.strip().strip("`")
+    if text.lower() in _NOTHING:
+        return None
+    if text[0] not in "[{(\"'":
+        return [word for word in _LIST.split(text) if word]
+    if len(text) > _MOST_CHARS:
+        raise ValueError(f"it is longer than {_MOST_CHARS} characters")
+    for read in (_json, _literal):
+        try:
+            content = read(text)
+        except (ValueError, SyntaxError, RecursionError, MemoryError):
+            continue
+        return structure(content) if isinstance(content, str) and content.strip()[:1] in ("[", "{") else content
+    raise ValueError("it is neither JSON nor a list")
+
+
+def _json(text: str) -> Any:
+    return json.loads(text, parse_constant=_no_number)
+
+
+def _literal(text: str) -> Any:
+    """Parse a Python literal of types that JSON has as well."""
+    return _plain(ast.literal_eval(re.sub(r"\b(true|false|null)\b(?=\s*[,}\]])", _python_word, text)))
+
+
+def _python_word(word: re.Match[str]) -> str:
+    return {"true": "True", "false": "False", "null": "None"}[word[0]]
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, list | tuple | set | frozenset):
+        return [_plain(item) for item in value]
+    if isinstance(value, dict):
+        return {str(name): _plain(item) for name, item in value.items()}
+    if isinstance(value, float) and not math.isfinite(value):
+        raise ValueError("a number that is not finite")
+    if value is None or isinstance(value, str | int | float | bool):
+        return value
+    raise ValueError(f"{type(value).__name__} is no JSON")
+
+
+def _no_number(name: str) -> Any:
+    raise ValueError(f"{name} is no number")

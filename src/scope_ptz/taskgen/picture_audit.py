@@ -1,0 +1,193 @@
+"""Audit by readers who see only pictures: drawing the questions, and scoring how often their answers agree.
+
+Readers get the instruction and the frames that the reference program observes, under anonymous question numbers. The answer parser
+reads their answers, which are compared with the expected values.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, Any, Literal, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from scope_ptz.bench.answers.reader import agrees, read
+from scope_ptz.bench.tasks.expected import ActionOnly
+from scope_ptz.bench.tasks.files import digest_of
+from scope_ptz.bench.tasks.sampling import stratified
+from scope_ptz.bench.tasks.task import Task
+from scope_ptz.errors import InputError
+from scope_ptz.taskgen.facts.answer_phrasing import right_answers
+
+QUESTIONS, ANSWERS, FINDINGS, DRAW = "questions.jsonl", "answers.jsonl", "findings.jsonl", "draw.json"
+Outcome = Literal["agrees", "disagrees", "not readable", "not answered"]
+
+
+class _Row(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+Row = TypeVar("Row", bound=_Row)
+
+
+class QuestionDraw(_Row):
+    """How questions were drawn. The same tasks, number and seed give the same questions."""
+
+    number: int = Field(ge=1)
+    seed: int
+    tasks: str
+    """SHA-256 of all tasks that the questions were drawn from."""
+
+
+class ReaderAnswer(_Row):
+    """One reader's answer to one question."""
+
+    q: Annotated[str, Field(pattern=r"^q\d{3,}$")]
+    answer: str
+    reader: str = "reader"
+
+
+class DisagreementNote(_Row):
+    """The explanation of a disagreement, found by investigating it."""
+
+    q: str
+    finding: str
+
+
+class AuditedAnswer(_Row):
+    """An answer and whether it agrees with its task.
+
+    ``digest`` covers instruction and expected value. It shows whether the task was corrected after the audit.
+    """
+
+    q: str
+    task: str
+    digest: str
+    category: str
+    scene: str
+    instruction: str
+    expected: str
+    reader: str
+    answer: str
+    outcome: Outcome
+    finding: str = ""
+
+
+class Audit(_Row):
+    """The result of an audit, as it is published."""
+
+    draw: QuestionDraw
+    rows: tuple[AuditedAnswer, ...]
+
+    def share(self, rows: Iterable[AuditedAnswer] | None = None) -> tuple[int, int]:
+        """Return how many answers agree, and how many were given. Unanswered questions are left out."""
+        counted = [row for row in (self.rows if rows is None else rows) if row.outcome != "not answered"]
+        return sum(row.outcome == "agrees" for row in counted), len(counted)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the result as JSON data."""
+        right, of = self.share()
+        categories = sorted({row.category for row in self.rows})
+        by_category = {name: self.share(r for r in self.rows if r.category == name) for name in categories}
+        return {
+            **self.model_dump(mode="json"),
+            "agree": right,
+            "of": of,
+            "outcomes": dict(Counter(row.outcome for row in self.rows)),
+            "by_category": {name: {"agree": agree, "of": total} for name, (agree, total) in by_category.items()},
+        }
+
+
+def draw_questions(tasks: Sequence[Task], number: int, seed: int) -> list[tuple[str, Task]]:
+    """Draw questions, stratified by category, scene and difficulty.
+
+    Only core tasks with an answer are drawn.
+
+    Returns:
+        Question numbers with their tasks. The numbers do not reveal the order of the tasks.
+    """
+    candidates = [task for task in tasks if task.stratum == "core" and not isinstance(task.expected, ActionOnly)]
+    chosen = stratified(candidates, number, seed)
+    mixed = sorted(chosen, key=lambda t: hashlib.sha256(f"order:{seed}:{t.id}".encode()).hexdigest())
+    return [(f"q{n:03d}", task) for n, task in enumerate(mixed, 1)]
+
+
+def task_digest(task: Task) -> str:
+    """Return a short digest of the instruction and the expected value of a task."""
+    return hashlib.sha256(f"{task.instruction}|{task.expected.model_dump_json()}".encode()).hexdigest()[:16]
+
+
+def score_answers(folder: Path, tasks: Sequence[Task]) -> Audit:
+    """Compare the answers in a folder with the tasks that its questions were drawn from.
+
+    Raises:
+        InputError: A file is missing or damaged, or the questions were drawn from other tasks.
+    """
+    (draw,) = _rows(folder / DRAW, QuestionDraw)
+    if draw.tasks != digest_of(tasks):
+        raise InputError(f"The questions in {folder} were drawn from other tasks. Name those with --tasks.")
+    given: dict[str, list[ReaderAnswer]] = {}
+    for answer in _rows(folder / ANSWERS, ReaderAnswer):
+        given.setdefault(answer.q, []).append(answer)
+    findings = {f.q: f.finding for f in _rows(folder / FINDINGS, DisagreementNote)} if (folder / FINDINGS).is_file() else {}
+    questions = dict(draw_questions(tasks, draw.number, draw.seed))
+    if unknown := sorted({*given, *findings} - set(questions)):
+        raise InputError(f"{folder} holds an answer to {unknown[0]}, which was not asked.")
+    rows = [
+        _audited(q, task, answer, findings)
+        for q, task in questions.items()
+        for answer in given.get(q) or [ReaderAnswer(q=q, answer="", reader="")]
+    ]
+    return Audit(draw=draw, rows=tuple(rows))
+
+
+def _audited(q: str, task: Task, answer: ReaderAnswer, findings: Mapping[str, str]) -> AuditedAnswer:
+    agreed = agrees(task.expected, read(task.expected, answer.answer)) if answer.answer.strip() else None
+    outcome: Outcome = "agrees" if agreed else "disagrees" if agreed is False else "not readable"
+    return AuditedAnswer(
+        q=q,
+        task=task.id,
+        digest=task_digest(task),
+        category=task.category,
+        scene=task.scene,
+        instruction=task.instruction,
+        expected=right_answers(task.expected)[0],
+        reader=answer.reader,
+        answer=answer.answer,
+        outcome=outcome if answer.answer.strip() else "not answered",
+        finding=findings.get(q, ""),
+    )
+
+
+def read_audit(path: Path) -> Audit:
+    """Read a published audit.
+
+    Raises:
+        InputError: The file is damaged.
+    """
+    try:
+        content = json.loads(path.read_text("utf-8"))
+        return Audit.model_validate({name: content[name] for name in ("draw", "rows")})
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise InputError(f"{path} is not an audit: {error}.") from error
+
+
+def _rows(path: Path, kind: type[Row]) -> list[Row]:
+    """Return the rows of a JSONL file."""
+    try:
+        lines = path.read_text("utf-8").splitlines()
+    except OSError as error:
+        raise InputError(f"{path} cannot be read: {error.strerror}.") from error
+    rows = []
+    for number, line in enumerate(lines, 1):
+        try:
+            if line.strip():
+                rows.append(kind.model_validate_json(line))
+        except ValidationError as error:
+            first = error.errors(include_url=False)[0]
+            raise InputError(f"{path}, line {number}: {'.'.join(map(str, first['loc'])) or 'row'}: {first['msg']}.") from error
+    return rows

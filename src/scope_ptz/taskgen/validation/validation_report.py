@@ -1,0 +1,98 @@
+"""The result of a validation. ``as_dict`` is the stored form."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+from typing import Any
+
+CORRECT_ATTEMPTS = ("reference", "detour", "twice", "worded")
+"""Names of the attempts that must pass."""
+
+
+@dataclass(frozen=True)
+class ValidationFault:
+    """An attempt that passed or failed against expectation, or a check that a task fails.
+
+    Attributes:
+        task: Id of the task.
+        attempt: Name of the attempt or check.
+        reason: What happened.
+    """
+
+    task: str
+    attempt: str
+    reason: str
+
+
+@dataclass
+class ValidationReport:
+    """Counts and faults of a validation.
+
+    Attributes:
+        tasks: Number of tasks.
+        by_category: Core tasks per category.
+        by_stratum: Tasks per stratum.
+        passed: How often each attempt passed.
+        tried: For how many tasks each attempt was made.
+        absences: Core tasks whose answer is that there is none, each with a twin.
+        from_start: Core tasks that need neither a move, nor a zoom, nor a sweep.
+        guessed: The core tasks that a fixed answer passes, by the name of the guess.
+        pairs_passed: The number of these tasks, where both tasks of a pair must pass to count.
+        faults: Correct attempts that failed, and failed checks.
+        adversarial_passes: Adversarial attempts that passed.
+        disagreements: Where ground-truth perception counts or answers differently from the evidence. They are reported only.
+    """
+
+    tasks: int = 0
+    by_category: Counter[str] = field(default_factory=Counter)
+    by_stratum: Counter[str] = field(default_factory=Counter)
+    passed: Counter[str] = field(default_factory=Counter)
+    tried: Counter[str] = field(default_factory=Counter)
+    absences: int = 0
+    from_start: int = 0
+    guessed: dict[str, set[str]] = field(default_factory=dict)
+    pairs_passed: dict[str, int] = field(default_factory=dict)
+    faults: list[ValidationFault] = field(default_factory=list)
+    adversarial_passes: list[ValidationFault] = field(default_factory=list)
+    disagreements: list[ValidationFault] = field(default_factory=list)
+
+    @property
+    def adversarial_shares(self) -> dict[str, float]:
+        """The share of all tasks that each adversarial attempt passes."""
+        return {name: self.passed[name] / self.tasks for name in sorted(self.tried) if name not in CORRECT_ATTEMPTS and self.tasks}
+
+    @property
+    def sound(self) -> bool:
+        """Whether every correct attempt passed, every check held, and no adversarial attempt passed."""
+        return bool(self.tasks) and not self.faults and not self.adversarial_passes
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the report as JSON data. Its keys are those of the published dataset."""
+        core = max(1, self.by_stratum["core"])
+        correct = [name for name in CORRECT_ATTEMPTS if self.tried[name]]
+        return {
+            "sound": self.sound,
+            "tasks": self.tasks,
+            "by_category": dict(self.by_category),
+            "by_stratum": dict(self.by_stratum),
+            "absences": self.absences,
+            "from_start": self.from_start,
+            "right_ways": {name: {"passed": self.passed[name], "of": self.tried[name]} for name in correct},
+            "cheats": {
+                name: {"passed": self.passed[name], "of": self.tried[name], "share_of_all": share}
+                for name, share in self.adversarial_shares.items()
+            },
+            "looked_and_guessed": {
+                name: {
+                    "passed": len(ids),
+                    "share": len(ids) / core,
+                    "pairs_whole": self.pairs_passed[name],
+                    "share_pairs_whole": self.pairs_passed[name] / core,
+                }
+                for name, ids in self.guessed.items()
+            },
+            "faults": [vars(fault) for fault in self.faults],
+            "cheated": [vars(fault) for fault in self.adversarial_passes],
+            "disagreements": [vars(fault) for fault in self.disagreements],
+        }

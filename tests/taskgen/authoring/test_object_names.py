@@ -1,0 +1,67 @@
+"""Names of objects: a name is not used when it could mean another object in the view."""
+
+from __future__ import annotations
+
+import pytest
+
+from scope_ptz.simulator.models import SceneInstance
+from scope_ptz.taskgen.authoring.noun_phrases import the
+from scope_ptz.taskgen.authoring.object_names import colours_confusable, could_bear_name, spoken
+
+
+def thing(category: str, name: str, **attributes: str) -> SceneInstance:
+    return SceneInstance(
+        id=name, number=1, category=category, name=name, attributes=dict(attributes), box_min_m=(0, 0, 0), box_max_m=(1, 1, 1)
+    )
+
+
+@pytest.mark.parametrize(
+    ("named", "other"),
+    [
+        (("car", "red saloon"), ("car", "dark red hatchback")),
+        (("car", "silver saloon"), ("car", "grey SUV")),
+        (("van", "white van"), ("van", "white security van")),
+        (("person", "person in navy"), ("person", "customer in black")),
+        (("worker", "standing worker"), ("worker", "pointing worker")),
+        (("pickup truck", "grey pickup truck"), ("van", "grey van")),
+        (("lamp post", "tall lamp post"), ("lamp post", "street lamp")),
+    ],
+)
+def test_names_that_could_mean_another_object(named: tuple[str, str], other: tuple[str, str]) -> None:
+    assert could_bear_name(thing(*other), named[1], thing(*named))
+
+
+@pytest.mark.parametrize(
+    ("named", "other"),
+    [
+        (("car", "red saloon"), ("car", "blue saloon")),
+        (("van", "white security van"), ("van", "white van")),
+        (("sign", "visitor parking sign"), ("sign", "staff parking sign")),
+        (("worker", "worker with a shovel"), ("worker", "worker with a clipboard")),
+        (("car", "red saloon"), ("post box", "red post box")),
+    ],
+)
+def test_names_that_mean_one_object_only(named: tuple[str, str], other: tuple[str, str]) -> None:
+    assert not could_bear_name(thing(*other), named[1], thing(*named))
+
+
+def test_attributes_count_as_part_of_a_name() -> None:
+    assert could_bear_name(thing("worker", "kneeling worker", vest="orange"), "worker in an orange vest", thing("worker", "x"))
+    assert not could_bear_name(thing("worker", "kneeling worker", vest="green"), "worker in an orange vest", thing("worker", "x"))
+
+
+def test_articles_before_names() -> None:
+    assert the("bakery sign") == "the bakery sign"
+    assert the("dock door 5") == "dock door 5"
+    assert the(spoken("The Copper Kettle sign")) == "the Copper Kettle sign"
+    assert spoken("price of apples") == "price card for apples"
+    assert spoken("pedestrian waiting") == "waiting pedestrian"
+
+
+@pytest.mark.parametrize(("one", "other"), [("navy", "blue"), ("dark red", "red"), ("grey", "silver"), ("black", None)])
+def test_boards_of_similar_colours_are_confusable(one: str, other: str | None) -> None:
+    assert colours_confusable(one, other)
+
+
+def test_boards_of_different_colours_are_not_confusable() -> None:
+    assert not colours_confusable("navy", "dark red") and not colours_confusable("green", "brown")

@@ -1,0 +1,54 @@
+"""Lines of text are read from top to bottom as one piece of writing, or not asked about."""
+
+from __future__ import annotations
+
+from scope_ptz.simulator.models import SceneText
+from scope_ptz.simulator.truth import BoxTuple, TextSighting
+from scope_ptz.taskgen.authoring.categories.ocr_tasks import lines, on_it, priced
+
+
+def written(text: str, box: BoxTuple) -> TextSighting:
+    source = SceneText(
+        id=text,
+        parent="sign",
+        text=text,
+        centre_m=(0, 0, 0),
+        right=(1, 0, 0),
+        up=(0, 0, 1),
+        width_m=1,
+        height_m=1,
+        cap_height_m=0.1,
+    )
+    return TextSighting(source, box, 20.0, 0.0, 1.0)
+
+
+ROAD, AHEAD, ASIDE = (
+    written("ROAD", (0.4, 0.40, 0.6, 0.44)), written("AHEAD", (0.42, 0.46, 0.6, 0.50)), written("LEFT", (0.7, 0.41, 0.8, 0.45)),
+)  # fmt: skip
+
+
+def test_lines_are_ordered_from_top_to_bottom() -> None:
+    assert lines((AHEAD, ROAD)) == (ROAD, AHEAD)
+
+
+def test_separate_texts_are_not_one_piece_of_writing() -> None:
+    assert lines((ROAD, ASIDE)) is None
+    assert lines((ROAD, written("FOOT", (0.4, 0.9, 0.6, 0.94)))) is None
+    assert lines(()) is None
+
+
+def test_a_repeated_text_counts_once() -> None:
+    again = written("ROAD", (0.1, 0.2, 0.2, 0.24))
+    assert lines((ROAD, again)) == (again,)
+
+
+def test_only_the_price_of_a_price_card_is_read() -> None:
+    price = written("5.00", (0.4, 0.46, 0.6, 0.5))
+    assert priced((written("ROSES", (0.4, 0.4, 0.6, 0.44)), price)) == (price,)
+
+
+def test_a_plate_beside_an_object_is_not_a_text_on_it() -> None:
+    box = (0.4, 0.45, 0.6, 0.9)
+    assert on_it(box, AHEAD)
+    assert not on_it(box, ROAD)
+    assert not on_it(None, AHEAD)

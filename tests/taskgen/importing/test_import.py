@@ -1,0 +1,432 @@
+"""Rows in the paper's format are mapped to tools, scenes and categories, and doubtful ones are reported."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from typer.testing import CliRunner
+
+from scope_ptz.bench.scoring.imported import check_calls_of
+from scope_ptz.bench.tasks.imported import ImportedTask, dump_imported, holds_imported, load_imported
+from scope_ptz.bench.tasks.task import Argument
+from scope_ptz.cli.app import app
+from scope_ptz.errors import InputError
+from scope_ptz.taskgen.importing.import_report import Imported, import_file, report_lines
+from scope_ptz.taskgen.importing.paper_names import category_of, scope_of
+from scope_ptz.taskgen.importing.row_checks import answer_in_question
+from scope_ptz.taskgen.importing.scene_names import SceneNameMap, SceneNames, ScenePresets, read_scene_names
+from tests.bench.making import counted, play
+
+COLUMNS = (
+    "question_id", "file_location", "preset_start", "presets_available", "question", "expected_answer", "question_type",
+    "eval_category", "multi_step_mode", "required_tools_policy", "expected_tool_order_json", "args_check",
+    "expected_tool_args_json", "answer_view", "evaluation_notes", "difficulty",
+)  # fmt: skip
+NAMES = SceneNames({"parking-lot": ScenePresets({"gate": "mast", "highway": "mast", "bridge": "roof"}, "gate", 12.0)})
+TYPICAL = {
+    "file_location": "worlds/Parking_Lot.blend", "preset_start": "Gate", "question": "How many cones are there?",
+    "expected_answer": "There are 5 cones.", "eval_category": "counting", "expected_tool_order_json": '["count_pointing"]',
+}  # fmt: skip
+
+
+def imported(tmp_path: Path, *rows: dict[str, str], names: SceneNames = NAMES) -> Imported:
+    path = tmp_path / "Paper Tasks.csv"
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, COLUMNS)
+        writer.writeheader()
+        writer.writerows({"question_id": str(n), **TYPICAL, **row} for n, row in enumerate(rows, 1))
+    return import_file(path, names)
+
+
+def kinds(done: Imported, at: int = 0) -> set[str]:
+    return {finding.kind for finding in done.findings[done.rows[at].line]}
+
+
+def test_a_typical_row(tmp_path: Path) -> None:
+    done = imported(tmp_path, {"answer_view": "full_scene", "difficulty": "Hard", "evaluation_notes": "Any wording."})
+    (task,) = done.tasks
+    facts = task.facts
+    assert (facts.id, facts.dataset, facts.stratum) == ("imported-paper-tasks-1", "imported-paper-tasks", "imported")
+    assert (facts.scene, facts.preset, facts.viewpoint) == ("parking-lot", "gate", "mast")
+    assert (facts.category, facts.scope, facts.difficulty) == ("counting", "full", "hard")
+    assert facts.expected == "There are 5 cones."
+    assert facts.demands == ("All of these calls are expected: count_objects().", "Notes of the author of the task: Any wording.")
+    assert task.start_s == 12.0
+    assert task.raw["eval_category"] == "counting"
+    assert task.line == 2
+    assert task.findings == ()
+
+
+MAPPED: list[tuple[str, Any, str, dict[str, Argument]]] = [
+    ("ptz_adjust", {"pan_deg": 20, "tilt_deg": "-5"}, "adjust_ptz",
+     {"pan_deg": Argument(equals=20.0, within=0.5), "tilt_deg": Argument(equals=-5.0, within=0.5)}),
+    ("ptz_adjust", {"zoom_factor": 2}, "adjust_ptz", {"zoom_factor": Argument(equals=2.0, within=0.06)}),
+    ("ptz_adjust", {"zoom_percent": -50}, "adjust_ptz", {"zoom_factor": Argument(equals=0.5, within=0.015)}),
+    ("ptz_adjust", {"zoom_full": "in"}, "adjust_ptz", {"zoom_limit": Argument(equals="in")}),
+    ("ptz_adjust", {"zoom_full": "-1"}, "adjust_ptz", {"zoom_limit": Argument(equals="out")}),
+    ("go_to_preset", {"name": "Preset Highway"}, "go_to_preset", {"name": Argument(equals="highway")}),
+    ("home_action", {}, "go_home", {}),
+    ("get_presets", {}, "get_presets", {}),
+    ("take_image", {}, "take_image", {}),
+    ("count_pointing", {"object_of_interest": "the red cars", "view_type": "Full Scene"}, "count_objects",
+     {"description": Argument(mentions=("red cars", "cars")), "view": Argument(equals="full")}),
+    ("query_answer", {"instruction": "what is there?", "view_type": "current"}, "query_answer",
+     {"view": Argument(equals="current")}),
+    ("zoom_bounding", {"object_of_interest": "stop sign"}, "zoom_to_object",
+     {"description": Argument(mentions=("stop sign", "sign"))}),
+    ("track_object", {"object_of_interest": "van", "duration": 0.5, "unit": "minutes"}, "track_object",
+     {"description": Argument(mentions=("van",)), "duration_s": Argument(equals=30.0, within=0.5)}),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("theirs", "arguments", "ours", "required"), MAPPED)
+@pytest.mark.parametrize("form", ["list", "by tool", "inside", "python"])
+def test_tools_and_arguments(
+    tmp_path: Path, form: str, theirs: str, arguments: dict[str, Any], ours: str, required: dict[str, Argument]
+) -> None:
+    cells = {
+        "list": (json.dumps([theirs]), json.dumps([arguments])),
+        "by tool": (json.dumps([theirs]), json.dumps({theirs: arguments})),
+        "inside": (json.dumps([{"tool": theirs, "args": arguments}]), ""),
+        "python": (repr([theirs]), repr([{"tool": theirs, "args": arguments}])),
+    }
+    order, args = cells[form]
+    done = imported(tmp_path, {"expected_tool_order_json": order, "expected_tool_args_json": args})
+    ((call,),) = (task.calls for task in done.tasks)
+    assert (call.tool, call.arguments) == (ours, required)
+    assert not kinds(done) & {"wrong-arguments", "unknown-tool", "unreadable-cell"}
+
+
+@pytest.mark.parametrize(
+    ("tool", "arguments"),
+    [
+        ("ptz_adjust", {"pan_deg": "far"}),
+        ("ptz_adjust", {"speed": 3}),
+        ("ptz_adjust", {"zoom_percent": -100}),
+        ("ptz_adjust", {"zoom_factor": 2, "zoom_full": "in"}),
+        ("ptz_adjust", {"zoom_factor": 2, "zoom_percent": 50}),
+        ("go_to_preset", {"name": "moon"}),
+        ("count_pointing", {"object_of_interest": "cars", "view_type": "sideways"}),
+        ("track_object", {"object_of_interest": "van", "duration": 3, "unit": "fortnights"}),
+        ("track_object", {"object_of_interest": "van", "duration": -3}),
+        ("take_image", {"name": "x"}),
+    ],
+)
+def test_wrong_arguments_are_reported_and_the_row_still_runs(tmp_path: Path, tool: str, arguments: dict[str, Any]) -> None:
+    done = imported(tmp_path, {"expected_tool_order_json": json.dumps([tool]), "expected_tool_args_json": json.dumps([arguments])})
+    assert "wrong-arguments" in kinds(done)
+    assert len(done.tasks) == 1
+
+
+def test_one_tool_is_expected_several_times(tmp_path: Path) -> None:
+    done = imported(
+        tmp_path,
+        {
+            "expected_tool_order_json": '["ptz_adjust", "ptz_adjust"]',
+            "expected_tool_args_json": '{"ptz_adjust": [{"pan_deg": 5}, {"pan_deg": 6}]}',
+        },
+    )
+    assert [call.arguments["pan_deg"].equals for call in done.tasks[0].calls] == [5, 6]
+
+
+@pytest.mark.parametrize("zoom", [{"zoom_percent": 0}, {"zoom_factor": 1}, {}])
+def test_an_expected_zoom_of_zero_is_met_by_a_call_without_zoom(tmp_path: Path, zoom: dict[str, Any]) -> None:
+    wanted = json.dumps([{"pan_deg": 20, "tilt_deg": 0, **zoom}])
+    done = imported(tmp_path, {"expected_tool_order_json": '["ptz_adjust"]', "expected_tool_args_json": wanted})
+    (task,) = done.tasks
+    for further, met in (
+        ({}, True),
+        ({"zoom_percent": 0.0}, True),
+        ({"zoom_factor": 2.0}, not zoom),
+        ({"zoom_limit": "in"}, not zoom),
+    ):
+        check = check_calls_of(task, play([("adjust_ptz", {"pan_deg": 20.0, **further})], "Done."))
+        assert check.passed is met, (further, check.reason)
+
+
+@pytest.mark.parametrize(
+    ("order", "arguments", "kind", "detail"),
+    [
+        (["ptz_adjust", 5], None, "unknown-tool", "5 names no tool"),
+        (["ptz_adjust", None], None, "unknown-tool", "null names no tool"),
+        (["ptz_adjust", True], None, "unknown-tool", "true names no tool"),
+        (["ptz_adjust", {"tool": 7}], None, "unknown-tool", '{"tool": 7} names no tool'),
+        (["count_pointing"], {"object_of_interest": ["a", "b"]}, "wrong-arguments", '["a", "b"], which is no text'),
+        (["count_pointing"], [{"object_of_interest": 5}], "wrong-arguments", "object_of_interest is 5, which is no text"),
+        (["count_pointing"], {"object_of_interest": "a", "name": "b"}, "unchecked-argument", 'name is "b", and object_of_interest'),
+        (["count_pointing"], {"ptz_adjust": {"pan_deg": 5}}, "unchecked-argument", "ptz_adjust: "),
+        (["count_pointing"], [{}, {"pan_deg": 5}], "unchecked-argument", '{"pan_deg": 5} (number 2)'),
+        (["count_pointing"], ["cars"], "unchecked-argument", '"cars" (number 1)'),
+        (["count_pointing"], {"count_pointing": [{}, {"view": "full"}]}, "unchecked-argument", 'count_pointing: {"view": "full"}'),
+        (["count_pointing", "take_image"], {"count_pointing": {}, "take_image": 3}, "unchecked-argument", "take_image: 3: no arg"),
+        (None, {"pan_deg": 5}, "unchecked-argument", '{"pan_deg": 5}: no call is expected'),
+        (["count_pointing"], 7, "unchecked-argument", '"7" (number 1)'),
+    ],
+)
+def test_unused_parts_are_reported(tmp_path: Path, order: Any, arguments: Any, kind: str, detail: str) -> None:
+    cells = {"expected_tool_order_json": json.dumps(order), "expected_tool_args_json": json.dumps(arguments)}
+    done = imported(tmp_path, cells)
+    found = [finding for finding in done.findings[done.rows[0].line] if detail in finding.detail]
+    assert [finding.kind for finding in found] == [kind], done.findings
+    assert len(done.tasks) == 1
+
+
+def test_used_parts_are_not_reported(tmp_path: Path) -> None:
+    """Arguments may be given by position, by tool, by number, and without a name for a single call."""
+    both = '["count_pointing", "ptz_adjust"]'
+    for order, arguments in (
+        (both, [{"object_of_interest": "cars"}, {"pan_deg": 5}]),
+        (both, [{"object_of_interest": "cars"}, None]),
+        (both, {"count_pointing": {"object_of_interest": "cars"}, "ptz_adjust": [{"pan_deg": 5}]}),
+        (both, {"0": {"object_of_interest": "cars"}, "1": {"pan_deg": 5}}),
+        ('["count_pointing"]', {"object_of_interest": "cars", "view_type": "full"}),
+        ('["query_answer"]', {"instruction": "what?", "object_of_interest": "van"}),
+    ):
+        done = imported(tmp_path, {"expected_tool_order_json": order, "expected_tool_args_json": json.dumps(arguments)})
+        assert not kinds(done) & {"wrong-arguments", "unknown-tool", "unchecked-argument"}, (arguments, done.findings)
+
+
+def test_a_file_without_rows_is_reported(tmp_path: Path) -> None:
+    path = tmp_path / "empty.csv"
+    path.write_text("question,expected_answer\n", "utf-8")
+    done = CliRunner().invoke(app, ["bench", "import", str(path), "--out", str(tmp_path / "x.jsonl")])
+    assert done.exit_code == 1
+    assert "has a header and no rows" in done.stderr and "--map" not in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("spelling", "category"),
+    [
+        ("Counting", "counting"), ("Descriptor", "descriptor"), ("Location / Spatial", "location"), ("OCR Identification", "ocr"),
+        ("Single-Call", "single_call"), ("multistep command", "multi_step_command"),
+        ("Multi-step Reasoning", "multi_step_reasoning"),
+        ("Comparative Relational", "comparative"), ("comparative_relational", "comparative"), ("poetry", None), ("", None),
+    ],
+)  # fmt: skip
+def test_categories_by_their_spellings(spelling: str, category: str | None) -> None:
+    assert category_of(spelling) == category
+
+
+def test_views_by_their_spellings() -> None:
+    assert [scope_of(name) for name in ("current_view", "FULL", "360", "full-scene", "", "upstairs")] == [
+        "current", "full", "full", "full", None, None,
+    ]  # fmt: skip
+
+
+FOUND: list[tuple[str, list[dict[str, str]]]] = [
+    ("empty-question", [{"question": ""}]),
+    ("nothing-expected", [{"expected_answer": "", "expected_tool_order_json": ""}]),
+    ("unknown-category", [{"eval_category": "poetry"}]),
+    ("missing-scene", [{"file_location": "moon.blend"}]),
+    ("missing-preset", [{"preset_start": "crater"}]),
+    ("duplicate", [{}, {"question": "how many cones are there", "expected_answer": "5"}]),
+    ("contradiction", [{}, {"expected_answer": "six"}]),
+    ("same-at-every-preset", [{}, {"preset_start": "bridge"}]),
+    ("now-but-full", [{"question": "How many cones are visible right now?", "answer_view": "full"}]),
+    ("answer-in-question", [{"question": "Are there 5 cones?", "expected_answer": "five"}]),
+    ("empty-assertion", [{"expected_answer": "I have followed the steps."}]),
+    ("then-unordered", [{"question": "Go to gate, then take a picture", "multi_step_mode": "unordered",
+                         "expected_tool_order_json": '["go_to_preset", "take_image"]'}]),
+    ("no-viewpoint-change", [{"answer_view": "current"}]),
+    ("unknown-tool", [{"expected_tool_order_json": '["teleport"]'}]),
+    ("unchecked-argument", [{"expected_tool_order_json": '["ptz_adjust"]', "expected_tool_args_json": '[{"zoom_full": true}]'}]),
+    ("unreadable-cell", [{"expected_tool_args_json": "[broken"}]),
+    ("unknown-value", [{"required_tools_policy": "sometimes"}]),
+    ("id-repeated", [{"question_id": "7"}, {"question_id": "7", "question": "What else?"}]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("kind", "rows"), FOUND)
+def test_findings_are_reported_for_every_affected_row(tmp_path: Path, kind: str, rows: list[dict[str, str]]) -> None:
+    done = imported(tmp_path, *rows)
+    assert all(kind in kinds(done, at) for at in range(len(rows)))
+    assert kind in "\n".join(report_lines(done))
+    blocked = any(finding.blocks for finding in done.findings[done.rows[0].line])
+    assert len(done.tasks) == (0 if blocked else len(rows))
+    assert len(done.as_dict()["each"]) == len(rows), "no row is dropped"
+
+
+def test_an_unknown_category_is_reported_when_another_column_replaces_it(tmp_path: Path) -> None:
+    done = imported(tmp_path, {"eval_category": "Telepathy", "question_type": "location"}, {"question_type": "location"})
+    (task, usual) = done.tasks
+    assert (task.facts.category, usual.facts.category) == ("location", "counting")
+    (finding,) = [f for f in done.findings[done.rows[0].line] if f.kind == "unknown-value"]
+    assert finding.detail == "eval_category: Telepathy; read as location, by question_type: location"
+    assert "unknown-value" not in kinds(done, 1)
+
+
+CLEAN = {"answer_view": "full"}
+
+
+@pytest.mark.parametrize(
+    "row",
+    [
+        CLEAN,
+        {**CLEAN, "question": "Which has more cars, gate or highway?", "expected_answer": "gate"},
+        {**CLEAN, "question": "Is there a van?", "expected_answer": "Yes, there is."},
+        {**CLEAN, "question": "Sweep and then count the cones", "multi_step_mode": "ordered"},
+        {"question": "How many cones do you see right now?", "answer_view": "current",
+         "expected_tool_order_json": '["go_to_preset", "count_pointing"]'},
+    ],
+)  # fmt: skip
+def test_sound_rows_have_no_findings(tmp_path: Path, row: dict[str, str]) -> None:
+    done = imported(tmp_path, row)
+    assert kinds(done) == set()
+
+
+def test_answers_in_the_question_are_found() -> None:
+    assert answer_in_question("Zoom in on the STOP sign and read it", 'The sign says "STOP"') == "STOP"
+    assert answer_in_question("Zoom in on the sign and read it", 'The sign says "STOP"') is None
+    assert answer_in_question("Where is the red car?", "to the left of the van") is None
+
+
+def test_ids_are_unique_whatever_the_file_contains(tmp_path: Path) -> None:
+    done = imported(
+        tmp_path, *({"question_id": name, "question": f"{n}?"} for n, name in enumerate(["a b", "A-B", "a-b-x2", "", "../x"]))
+    )
+    ids = [task.facts.id for task in done.tasks]
+    assert len(set(ids)) == 5
+    assert all("/" not in name and "." not in name for name in ids)
+
+
+def test_scenes_and_presets_by_mapping(tmp_path: Path) -> None:
+    path = tmp_path / "map.yaml"
+    path.write_text("scenes: {'moon.blend': parking-lot, '*': parking-lot}\npresets: {parking-lot: {crater: bridge, '*': gate}}\n")
+    names = SceneNames(NAMES.scenes, read_scene_names(path))
+    rows = [{"file_location": "x/moon.blend", "preset_start": "crater"}, {"file_location": "mars.blend", "preset_start": "rim"}]
+    done = imported(tmp_path, *rows, names=names)
+    assert [task.facts.preset for task in done.tasks] == ["bridge", "gate"]
+    without = imported(tmp_path, *rows, {"preset_start": "rim"})
+    assert without.map_to_fill() == {"scenes": {"mars.blend": "", "x/moon.blend": ""}, "presets": {"parking-lot": {"rim": ""}}}
+    assert SceneNameMap.model_validate(without.map_to_fill())
+    wrong = SceneNames(NAMES.scenes, SceneNameMap(scenes={"moon.blend": "nowhere"}))
+    assert "missing-scene" in kinds(imported(tmp_path, rows[0], names=wrong))
+
+
+@pytest.mark.parametrize("content", ["[1]", "scenes: 3", "worlds: {}", "a: [", "\0"])
+def test_wrong_mappings_are_rejected(tmp_path: Path, content: str) -> None:
+    path = tmp_path / "map.yaml"
+    path.write_text(content)
+    with pytest.raises(InputError):
+        read_scene_names(path)
+
+
+def test_imported_tasks_are_stored_without_loss(tmp_path: Path) -> None:
+    done = imported(
+        tmp_path,
+        {"expected_tool_args_json": "[{'object_of_interest': 'cones'}]"},
+        {"question": "Another?", "multi_step_mode": "ordered"},
+    )
+    path = tmp_path / "tasks.jsonl"
+    dump_imported(done.tasks, path)
+    assert holds_imported(path)
+    assert load_imported(path) == done.tasks
+    assert not holds_imported(tmp_path / "none")
+    assert not holds_imported(tmp_path / "Paper Tasks.csv")
+    path.write_text(path.read_text() + '{"imported": 1}\n')
+    with pytest.raises(InputError, match="line 3"):
+        load_imported(path)
+
+
+ODD = st.sampled_from(
+    [
+        '[{"tool": 5}]', '{"ptz_adjust": 7}', '[[["a"]]]', "[null, 1, 2.5, true]", '{"ptz_adjust": {"pan_deg": {"x": 1}}}',
+        '[{"pan_deg": 1e400}]', "[" * 3000, '{"go_to_preset": {"name": ["a"]}}', "{1: 2}", 'b"x"', '{"count_pointing": []}',
+        '[{"name": "ptz_adjust", "arguments": {"zoom_percent": "NaN"}}]', '[{"duration": "inf", "unit": 5}]', "\u2028", "\x1b[2J",
+        '[{"object_of_interest": "°"}]', '[{"object_of_interest": "the ² of"}]', '{"0": {"object_of_interest": "!!"}}',
+        '["count_pointing"]', '["ptz_adjust", "go_to_preset"]', '["track_object"]', "unordered", "exact", "full", "counting",
+    ]
+) | st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0\r"), max_size=12)  # fmt: skip
+
+
+@given(st.lists(st.fixed_dictionaries({}, optional=dict.fromkeys(COLUMNS, ODD)), min_size=1, max_size=4))
+@settings(deadline=None, max_examples=60)
+def test_arbitrary_rows_are_neither_lost_nor_break_the_import(
+    tmp_path_factory: pytest.TempPathFactory, rows: list[dict[str, str]]
+) -> None:
+    folder = tmp_path_factory.mktemp("odd")
+    done = imported(folder, *rows)
+    assert len(done.rows) == len(rows)
+    assert len(done.tasks) + len(done.left_out) == len(rows)
+    assert all(character.isprintable() for line in report_lines(done) for character in line)
+    dump_imported(done.tasks, folder / "tasks.jsonl")
+    assert load_imported(folder / "tasks.jsonl") == done.tasks
+    json.dumps(done.as_dict(), allow_nan=False)
+
+
+# The check of calls
+
+
+def task_with(tmp_path: Path, tools: Sequence[str], arguments: object = "", **cells: str) -> ImportedTask:
+    given = {"expected_tool_order_json": json.dumps(tools), "expected_tool_args_json": json.dumps(arguments) if arguments else ""}
+    return imported(tmp_path, {**given, **cells}).tasks[0]
+
+
+GO, LOOK = ("go_to_preset", {"name": "highway"}), counted(5)
+
+
+@pytest.mark.parametrize(
+    ("cells", "steps", "passed"),
+    [
+        ({}, [GO, LOOK], True),
+        ({}, [LOOK, GO], True),
+        ({"multi_step_mode": "ordered"}, [GO, LOOK], True),
+        ({"multi_step_mode": "ordered"}, [LOOK, GO], False),
+        ({}, [GO], False),
+        ({}, [], False),
+        ({}, [GO, LOOK, ("take_image", {})], True),
+        ({"required_tools_policy": "exact"}, [GO, LOOK, ("take_image", {})], False),
+        ({"required_tools_policy": "exact"}, [GO, LOOK], True),
+        ({"required_tools_policy": "any_of"}, [LOOK], True),
+        ({"required_tools_policy": "any_of"}, [("take_image", {})], False),
+        ({"required_tools_policy": "optional"}, [], None),
+        ({}, [("go_to_preset", {"name": "gate"}), LOOK], False),
+        ({"args_check": "off"}, [("go_to_preset", {"name": "gate"}), LOOK], True),
+        ({}, [("go_to_preset", {"name": "highway"}, {"error": "no"}), LOOK], False),
+    ],
+)
+def test_check_of_required_calls(tmp_path: Path, cells: dict[str, str], steps: list[Any], passed: bool | None) -> None:
+    task = task_with(tmp_path, ["go_to_preset", "count_pointing"], {"go_to_preset": {"name": "Highway"}}, **cells)
+    check = check_calls_of(task, play(steps, "5"))
+    assert (check.name, check.passed) == ("calls", passed)
+    assert check.reason
+
+
+def test_without_expected_calls_the_check_has_no_result(tmp_path: Path) -> None:
+    assert check_calls_of(task_with(tmp_path, []), play([LOOK], "5")).passed is None
+
+
+# The command
+
+
+def test_the_command_writes_tasks_and_a_report(tmp_path: Path, analytic_folder: Path) -> None:
+    imported(tmp_path, {"file_location": "analytic_yard.blend", "preset_start": ""}, {"file_location": "moon.blend"})
+    out = tmp_path / "new" / "tasks.jsonl"
+    command = ["bench", "import", str(tmp_path / "Paper Tasks.csv"), "--scenes", str(analytic_folder.parent), "--out", str(out)]
+    done = CliRunner().invoke(app, command)
+    assert done.exit_code == 0, done.output
+    assert "2 rows in" in done.output
+    assert "1 can be run, 1 cannot" in done.output
+    (task,) = load_imported(out)
+    assert task.facts.scene == "analytic-yard"
+    report = json.loads((tmp_path / "new" / "tasks.report.json").read_text())
+    assert [row["runs"] for row in report["each"]] == [True, False]
+    assert json.loads(CliRunner().invoke(app, [*command, "--json"]).stdout) == report
+
+
+def test_the_command_fails_when_no_row_can_be_run(tmp_path: Path) -> None:
+    imported(tmp_path, {})
+    done = CliRunner().invoke(app, ["bench", "import", str(tmp_path / "Paper Tasks.csv"), "--out", str(tmp_path / "x.jsonl")])
+    assert done.exit_code == 1
+    assert "no row can be run" in done.output
+    assert (tmp_path / "x.report.json").is_file()
+    for options in (["--scenes", str(tmp_path / "none")], ["--map", str(tmp_path / "none")]):
+        wrong = CliRunner().invoke(app, ["bench", "import", str(tmp_path / "Paper Tasks.csv"), *options])
+        assert wrong.exit_code == 2
