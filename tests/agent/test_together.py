@@ -8,10 +8,10 @@ from typing import Any
 import anyio
 import pytest
 
-from scope_ptz.agent.calls import MOST_AT_ONCE, batches
 from scope_ptz.agent.records import Budgets, Called, Decided, Run
 from scope_ptz.agent.replay import replay
 from scope_ptz.agent.store import NoImages, RunFolder
+from scope_ptz.agent.tool_calls import MOST_AT_ONCE, batches
 from scope_ptz.agent.trace import TraceWriter, read_trace
 from scope_ptz.camera.base import Frame
 from scope_ptz.endpoints.failures import Attempt, FailureKind

@@ -13,10 +13,10 @@ from datetime import UTC, datetime
 import anyio
 
 from scope_ptz import __version__
-from scope_ptz.agent.calls import Calls, End, RunTool, in_words
+from scope_ptz.agent.planner_views import newest_view
 from scope_ptz.agent.records import Budgets, Decided, Ended, Labels, Listener, Place, Run, Started
-from scope_ptz.agent.seeing import newest_view
 from scope_ptz.agent.timing import Stopwatch, server_events, wasted
+from scope_ptz.agent.tool_calls import Calls, End, RunTool, in_words
 from scope_ptz.camera.base import Camera
 from scope_ptz.endpoints.failures import count_failures
 from scope_ptz.errors import CameraError, InputError, OutputError, PackError, PlannerError

@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 
 import anyio
 
+from scope_ptz.agent.planner_views import OneView, PictureStore
 from scope_ptz.agent.records import Called, Fault, Listener, Outcome, Place
-from scope_ptz.agent.seeing import OneView, PictureStore
 from scope_ptz.agent.timing import Reply, Stopwatch, TimedCamera, TimedPerception, Timings
 from scope_ptz.camera.base import Camera
 from scope_ptz.errors import CameraError, OutputError, PackError, PerceptionError, ToolCallError, UnknownNameError
