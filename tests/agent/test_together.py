@@ -8,7 +8,7 @@ from typing import Any
 import anyio
 import pytest
 
-from scope_ptz.agent.records import Budgets, Called, Decided, Run
+from scope_ptz.agent.records import Budgets, Called, Decided, RunResult
 from scope_ptz.agent.replay import replay
 from scope_ptz.agent.store import NoImages, RunFolder
 from scope_ptz.agent.tool_calls import MOST_AT_ONCE, batches
@@ -58,7 +58,7 @@ class SlowEyes(ScriptedPerception):
         return Answer(source=self.name, text=str(await self._look(frame, question)))
 
 
-def run(*script: Any, eyes: Any = None, **options: Any) -> tuple[Run, list[Any]]:
+def run(*script: Any, eyes: Any = None, **options: Any) -> tuple[RunResult, list[Any]]:
     records: list[Any] = []
     agent = make_agent(*script, **options)
     agent.perception = eyes or SlowEyes()

@@ -14,9 +14,9 @@ import anyio
 
 from scope_ptz import __version__
 from scope_ptz.agent.planner_views import newest_view
-from scope_ptz.agent.records import Budgets, Decided, Ended, Labels, Listener, Place, Run, Started
+from scope_ptz.agent.records import Budgets, Decided, Ended, Listener, RecordedPose, RunLabels, RunResult, Started
 from scope_ptz.agent.timing import Stopwatch, server_events, wasted
-from scope_ptz.agent.tool_calls import Calls, End, RunTool, in_words
+from scope_ptz.agent.tool_calls import CallRunner, RunEnd, RunTool, in_words
 from scope_ptz.camera.base import Camera
 from scope_ptz.endpoints.failures import count_failures
 from scope_ptz.errors import CameraError, InputError, OutputError, PackError, PlannerError
@@ -41,7 +41,7 @@ class Agent:
         images: ImageStore,
         *,
         budgets: Budgets | None = None,
-        labels: Labels | None = None,
+        labels: RunLabels | None = None,
         snapshots: bool = True,
         tools: ToolRegistry = TOOLS,
         run_tool: RunTool | None = None,
@@ -51,10 +51,12 @@ class Agent:
         ``tools``: the tools that the planner can call. ``run_tool``: runs the calls in place of ``tools.run``.
         """
         self.planner, self.camera, self.perception, self.images = planner, camera, perception, images
-        self.budgets, self.labels, self.snapshots = budgets or Budgets(), labels or Labels(), snapshots
+        self.budgets, self.labels, self.snapshots = budgets or Budgets(), labels or RunLabels(), snapshots
         self.tools, self.run_tool = tools, run_tool
 
-    async def run(self, instruction: str, *, conversation: tuple[PastTurn, ...] = (), listener: Listener = lambda _: None) -> Run:
+    async def run(
+        self, instruction: str, *, conversation: tuple[PastTurn, ...] = (), listener: Listener = lambda _: None
+    ) -> RunResult:
         """Carry out an instruction.
 
         Raises:
@@ -77,7 +79,7 @@ class _Episode:
     def __init__(self, agent: Agent, instruction: str, conversation: tuple[PastTurn, ...], listener: Listener) -> None:
         self.agent, self.instruction, self.conversation, self.emit = agent, instruction, conversation, listener
         self.watch = Stopwatch()
-        self.calls = Calls(
+        self.calls = CallRunner(
             agent.camera,
             agent.perception,
             agent.images,
@@ -94,24 +96,24 @@ class _Episode:
         self.steps = 0
         self.usage = Usage()
 
-    async def run(self) -> Run:
+    async def run(self) -> RunResult:
         briefing = await self._start()
         try:
             with anyio.move_on_after(self.agent.budgets.time_s) as time_limit:
                 end = await self._steps(briefing)
             if time_limit.cancelled_caught:
-                end = End("budget", f"The time budget of {self.agent.budgets.time_s:g} s is spent.")
+                end = RunEnd("budget", f"The time budget of {self.agent.budgets.time_s:g} s is spent.")
         except anyio.get_cancelled_exc_class():
-            await self._finish(End("cancelled", "The run was cancelled."))
+            await self._finish(RunEnd("cancelled", "The run was cancelled."))
             raise
         except (PackError, OutputError) as error:
             # Not the agent's doing and not to be tried again: it is recorded and whoever started the run hears of it.
             with suppress(OutputError):
-                await self._finish(End("camera_error", str(error)))
+                await self._finish(RunEnd("camera_error", str(error)))
             raise
         ended = await self._finish(end)
-        start = Place.of(self.start)
-        return Run(instruction=self.instruction, start=start, exchanges=tuple(self.history), ended=ended)
+        start = RecordedPose.of(self.start)
+        return RunResult(instruction=self.instruction, start=start, exchanges=tuple(self.history), ended=ended)
 
     async def _start(self) -> Briefing:
         agent, info = self.agent, self.camera.info
@@ -135,7 +137,7 @@ class _Episode:
                 scene=frame.origin.scene if frame.origin else None,
                 viewpoint=frame.origin.viewpoint if frame.origin else None,
                 scene_time_s=self.camera.clock.now_s(),
-                pose=Place.of(self.start),
+                pose=RecordedPose.of(self.start),
                 presets=presets,
                 budgets=agent.budgets,
                 labels=agent.labels,
@@ -145,7 +147,7 @@ class _Episode:
         )
         return Briefing(presets=presets, pose=self.start, limits=info.limits)
 
-    async def _steps(self, briefing: Briefing) -> End:
+    async def _steps(self, briefing: Briefing) -> RunEnd:
         budgets, tools = self.agent.budgets, tuple(self.agent.tools.schemas())
         for self.steps in range(1, budgets.max_steps + 1):
             state = State(
@@ -158,22 +160,22 @@ class _Episode:
             try:
                 decision = await self._decide(state)
             except CameraError as error:
-                return End("camera_error", str(error))
+                return RunEnd("camera_error", str(error))
             except PlannerError as error:
                 self.calls.events.update(server_events(error))
                 self.usage += wasted(error.attempts)
-                return End("planner_error", str(error), kind=error.kind)
+                return RunEnd("planner_error", str(error), kind=error.kind)
             except Exception as error:  # The episode's border: a planner's fault is an outcome, not a crash
-                return End("planner_error", f"The planner failed: {in_words(error)}", traceback.format_exc())
+                return RunEnd("planner_error", f"The planner failed: {in_words(error)}", traceback.format_exc())
             if isinstance(decision, Finish):
-                return End(decision.kind, decision.text)
+                return RunEnd(decision.kind, decision.text)
             spent = self.usage.input_tokens + self.usage.output_tokens
             if budgets.tokens is not None and spent > budgets.tokens:
-                return End("budget", f"The token budget of {budgets.tokens} is spent ({spent}).")
+                return RunEnd("budget", f"The token budget of {budgets.tokens} is spent ({spent}).")
             failure = await self.calls.carry_out(self.steps, decision, self.history)
             if failure is not None:
                 return failure
-        return End("step_limit", f"No answer within {budgets.max_steps} steps.")
+        return RunEnd("step_limit", f"No answer within {budgets.max_steps} steps.")
 
     async def _decide(self, state: State) -> Decision:
         planner, shown = self.agent.planner, None
@@ -194,7 +196,7 @@ class _Episode:
         self.emit(Decided(step=self.steps, decision=decision, planner_s=(self.watch.read() - before).planner_s, view=shown))
         return decision
 
-    async def _finish(self, end: End) -> Ended:
+    async def _finish(self, end: RunEnd) -> Ended:
         with anyio.CancelScope(shield=True), anyio.move_on_after(STOP_TIMEOUT_S), suppress(CameraError):
             if end.outcome not in ("answered", "clarification", "refused"):
                 await self.camera.stop()
@@ -209,7 +211,7 @@ class _Episode:
             perception_failures=self.calls.perception_failures,
             server_events=dict(sorted(self.calls.events.items())),
             usage=self.usage,
-            pose=Place.of(self.calls.pose),
+            pose=RecordedPose.of(self.calls.pose),
             scene_time_s=self.camera.clock.now_s(),
             timings=self.watch.read(),
             ended=datetime.now(UTC),

@@ -8,7 +8,7 @@ from typing import Annotated, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
-from scope_ptz.agent.timing import Reply, Timings
+from scope_ptz.agent.timing import PerceptionReply, Timings
 from scope_ptz.geometry import Pose
 from scope_ptz.planner.base import CallTools, Exchange, Finish, PastTurn, ToolOutcome, Usage
 
@@ -18,7 +18,7 @@ FORMAT_VERSION = 1
 Outcome = Literal["answered", "clarification", "refused", "step_limit", "budget", "planner_error", "camera_error", "cancelled"]
 OUTCOMES: tuple[str, ...] = get_args(Outcome)
 
-Fault = Literal["bad_call", "perception", "camera", "skipped", "cancelled"]
+CallFault = Literal["bad_call", "perception", "camera", "skipped", "cancelled"]
 """Why a call failed: it was wrong, the view could not be read, the camera failed, a call before it in the step had failed, or the
 run was cancelled or out of time while it went on."""
 
@@ -27,7 +27,7 @@ class _Record(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
 
-class Place(_Record):
+class RecordedPose(_Record):
     """A pose in full precision, so that a replay starts exactly there."""
 
     pan_deg: float
@@ -35,7 +35,7 @@ class Place(_Record):
     zoom: float
 
     @classmethod
-    def of(cls, pose: Pose) -> Place:
+    def of(cls, pose: Pose) -> RecordedPose:
         return cls(pan_deg=pose.pan_deg, tilt_deg=pose.tilt_deg, zoom=pose.zoom)
 
     def pose(self) -> Pose:
@@ -50,7 +50,7 @@ class Budgets(_Record):
     tokens: int | None = Field(default=None, gt=0)
 
 
-class Labels(_Record):
+class RunLabels(_Record):
     """What a trace should say about a run beyond what the loop can see.
 
     ``home_viewpoint``: the viewpoint that the camera was put at, when that is not where the scene's home is.
@@ -83,10 +83,10 @@ class Started(_Record):
     scene: str | None
     viewpoint: str | None
     scene_time_s: float
-    pose: Place
+    pose: RecordedPose
     presets: tuple[str, ...]
     budgets: Budgets
-    labels: Labels
+    labels: RunLabels
     conversation: tuple[PastTurn, ...] = ()
     frame: str | None = None
 
@@ -108,15 +108,15 @@ class Called(_Record):
     step: int
     index: int
     outcome: ToolOutcome
-    fault: Fault | None = None
+    fault: CallFault | None = None
     scene_time_s: float
-    pose: Place
+    pose: RecordedPose
     timings: Timings
-    replies: tuple[Reply, ...] = ()
+    replies: tuple[PerceptionReply, ...] = ()
     frame: str | None = None
 
     @property
-    def eyes_s(self) -> float:
+    def perception_s(self) -> float:
         """Wall seconds that perception took for what this call asked it; what other calls asked meanwhile is not in it."""
         return sum(reply.wall_s for reply in self.replies)
 
@@ -138,7 +138,7 @@ class Ended(_Record):
     perception_failures: int
     server_events: dict[str, int] = {}
     usage: Usage
-    pose: Place
+    pose: RecordedPose
     scene_time_s: float
     timings: Timings
     ended: datetime
@@ -149,11 +149,11 @@ RECORD: TypeAdapter[Started | Decided | Called | Ended] = TypeAdapter(Record)
 Listener = Callable[[Started | Decided | Called | Ended], None]
 
 
-class Run(_Record):
+class RunResult(_Record):
     """A finished run. ``start``: where the camera looked when it began."""
 
     instruction: str
-    start: Place
+    start: RecordedPose
     exchanges: tuple[Exchange, ...]
     ended: Ended
 

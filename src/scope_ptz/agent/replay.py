@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 from scope_ptz.agent.loop import Agent
 from scope_ptz.agent.records import Budgets, Called, Decided, Ended, Started
 from scope_ptz.agent.store import NoImages
-from scope_ptz.agent.timing import Question, Reply, Stopwatch, TimedCamera
+from scope_ptz.agent.timing import PerceptionMethod, PerceptionReply, Stopwatch, TimedCamera
 from scope_ptz.agent.trace import Trace
 from scope_ptz.camera.base import Camera, Frame
 from scope_ptz.errors import PerceptionError, PlannerError, TraceError
@@ -30,7 +30,7 @@ _TOLERANCE = 0.011
 
 
 @dataclass(frozen=True, slots=True)
-class Comparison:
+class CallComparison:
     """One recorded call beside its repetition; ``difference`` is empty when they agree."""
 
     recorded: Called
@@ -41,7 +41,7 @@ class Comparison:
 class Replay:
     """What a replay found."""
 
-    comparisons: tuple[Comparison, ...]
+    comparisons: tuple[CallComparison, ...]
     outcome_difference: str
 
     @property
@@ -75,7 +75,7 @@ async def replay(trace: Trace, camera: Camera) -> Replay:
 
     run = await agent.run(trace.started.instruction, listener=listen)
     pairs = [(recorded, made[i] if i < len(made) else None) for i, recorded in enumerate(calls)]
-    comparisons = tuple(Comparison(recorded, _difference(recorded, again)) for recorded, again in pairs)
+    comparisons = tuple(CallComparison(recorded, _difference(recorded, again)) for recorded, again in pairs)
     return Replay(comparisons, _outcome_difference(trace.ended, run.ended))
 
 
@@ -85,7 +85,9 @@ class _Script:
     def __init__(self, trace: Trace, camera: Camera) -> None:
         self.decisions = _complete_decisions(trace)
         self.times_s = {call.step: call.scene_time_s for call in reversed(trace.calls)}
-        self.replies: deque[tuple[int, Reply]] = deque((call.step, reply) for call in trace.calls for reply in call.replies)
+        self.replies: deque[tuple[int, PerceptionReply]] = deque(
+            (call.step, reply) for call in trace.calls for reply in call.replies
+        )
         self.end = trace.ended.text if trace.ended else "The recording was cut off."
         self._camera = camera
 
@@ -143,7 +145,7 @@ class _RecordedPerception(Perception):
     async def point(self, frame: Frame, description: str) -> Points:
         return self._next(frame, "point", description, Points)
 
-    def _next(self, frame: Frame, kind: Question, asked: str, as_type: type[_Looked]) -> _Looked:
+    def _next(self, frame: Frame, kind: PerceptionMethod, asked: str, as_type: type[_Looked]) -> _Looked:
         # Looks that were made at the same time may ask in another order now; they are all of one step.
         step = self._replies[0][0] if self._replies else 0
         fitting = (i for i, (at, reply) in enumerate(self._replies) if at == step and (reply.kind, reply.asked) == (kind, asked))

@@ -16,9 +16,9 @@ from scope_ptz.geometry import Pose
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
 from scope_ptz.planner.base import Usage
 
-Part = Literal["planner", "perception", "camera", "render"]
-Question = Literal["caption", "query", "detect", "point"]
-Seen = Caption | Answer | Detections | Points
+TimedPart = Literal["planner", "perception", "camera", "render"]
+PerceptionMethod = Literal["caption", "query", "detect", "point"]
+Observation = Caption | Answer | Detections | Points
 _Looked = TypeVar("_Looked", Caption, Answer, Detections, Points)
 
 
@@ -62,13 +62,13 @@ class Stopwatch:
 
     def __init__(self) -> None:
         self._began = perf_counter()
-        self._spent: dict[Part, float] = {"planner": 0.0, "perception": 0.0, "camera": 0.0, "render": 0.0}
-        self._under_way: dict[Part, int] = dict.fromkeys(self._spent, 0)
-        self._since: dict[Part, float] = dict.fromkeys(self._spent, 0.0)
+        self._spent: dict[TimedPart, float] = {"planner": 0.0, "perception": 0.0, "camera": 0.0, "render": 0.0}
+        self._under_way: dict[TimedPart, int] = dict.fromkeys(self._spent, 0)
+        self._since: dict[TimedPart, float] = dict.fromkeys(self._spent, 0.0)
         self._first_tokens_s = 0.0
 
     @contextmanager
-    def measure(self, part: Part) -> Iterator[None]:
+    def measure(self, part: TimedPart) -> Iterator[None]:
         if not self._under_way[part]:
             self._since[part] = perf_counter()
         self._under_way[part] += 1
@@ -98,7 +98,7 @@ class TimedCamera(Camera):
     def __init__(self, camera: Camera, watch: Stopwatch) -> None:
         self._camera, self._watch = camera, watch
         self.clock = camera.clock
-        self._frame_part: Part = "render" if camera.info.simulated else "camera"
+        self._frame_part: TimedPart = "render" if camera.info.simulated else "camera"
 
     @property
     def info(self) -> CameraInfo:
@@ -138,7 +138,7 @@ class TimedCamera(Camera):
             yield
 
 
-class Reply(BaseModel):
+class PerceptionReply(BaseModel):
     """What perception was asked and what it said: ``result`` or ``error`` is set. ``frame_time_s``: scene time of the frame.
 
     ``server_events``: how often a model server failed at it, by kind, those included that a further attempt made good.
@@ -146,7 +146,7 @@ class Reply(BaseModel):
 
     model_config = ConfigDict(frozen=True)
 
-    kind: Question
+    kind: PerceptionMethod
     asked: str = ""
     result: dict[str, Any] | None = None
     error: str | None = None
@@ -170,9 +170,9 @@ class TimedPerception(Perception):
     def __init__(self, perception: Perception, watch: Stopwatch) -> None:
         self._perception, self._watch = perception, watch
         self.name = perception.name
-        self._replies: list[Reply] = []
+        self._replies: list[PerceptionReply] = []
 
-    def drain(self) -> tuple[Reply, ...]:
+    def drain(self) -> tuple[PerceptionReply, ...]:
         """The replies since the last call, oldest first."""
         replies, self._replies = tuple(self._replies), []
         return replies
@@ -189,7 +189,7 @@ class TimedPerception(Perception):
     async def point(self, frame: Frame, description: str) -> Points:
         return await self._ask("point", description, frame, lambda: self._perception.point(frame, description))
 
-    async def _ask(self, kind: Question, asked: str, frame: Frame, look: Callable[[], Awaitable[_Looked]]) -> _Looked:
+    async def _ask(self, kind: PerceptionMethod, asked: str, frame: Frame, look: Callable[[], Awaitable[_Looked]]) -> _Looked:
         began, result, error, events = perf_counter(), None, None, dict[str, int]()
         try:
             with self._watch.measure("perception"):
@@ -203,7 +203,7 @@ class TimedPerception(Perception):
             if result is not None or error is not None:
                 wall_s = round(perf_counter() - began, 6)
                 self._replies.append(
-                    Reply(
+                    PerceptionReply(
                         kind=kind,
                         asked=asked,
                         result=result,

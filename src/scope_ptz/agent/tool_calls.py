@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 import anyio
 
 from scope_ptz.agent.planner_views import OneView, PictureStore
-from scope_ptz.agent.records import Called, Fault, Listener, Outcome, Place
-from scope_ptz.agent.timing import Reply, Stopwatch, TimedCamera, TimedPerception, Timings
+from scope_ptz.agent.records import Called, CallFault, Listener, Outcome, RecordedPose
+from scope_ptz.agent.timing import PerceptionReply, Stopwatch, TimedCamera, TimedPerception, Timings
 from scope_ptz.camera.base import Camera
 from scope_ptz.errors import CameraError, OutputError, PackError, PerceptionError, ToolCallError, UnknownNameError
 from scope_ptz.geometry import Pose
@@ -31,7 +31,7 @@ RunTool = Callable[[ToolContext, str, Any], Awaitable[Result]]
 _NOT_DONE = "Not done, because the call before it failed."
 
 
-class End(NamedTuple):
+class RunEnd(NamedTuple):
     """How a run ends. ``kind``: the way in which a planner's server failed."""
 
     outcome: Outcome
@@ -46,16 +46,16 @@ class _Done:
     it."""
 
     outcome: ToolOutcome
-    fault: Fault | None
+    fault: CallFault | None
     time_s: float
     timings: Timings
-    replies: tuple[Reply, ...] = ()
+    replies: tuple[PerceptionReply, ...] = ()
     frame: str | None = None
-    end: End | None = None
+    end: RunEnd | None = None
     raised: Exception | None = None
 
 
-class Calls:
+class CallRunner:
     """Makes the calls of one run and keeps count of what went wrong. ``pose``: where the camera looks, as far as calls have
     told."""
 
@@ -79,7 +79,7 @@ class Calls:
         self.bad_calls = self.perception_failures = 0
         self.events: Counter[str] = Counter()
 
-    async def carry_out(self, step: int, decision: CallTools, history: list[Exchange]) -> End | None:
+    async def carry_out(self, step: int, decision: CallTools, history: list[Exchange]) -> RunEnd | None:
         """Run the calls of a step in order. After one that failed the rest is not done: it was planned for another state."""
         done: dict[int, _Done] = {}
         try:
@@ -118,8 +118,8 @@ class Calls:
         """Make a call and put down what came of it. Nothing but a cancellation gets out."""
         time_s, before, pose = camera.clock.now_s(), self._watch.read(), self.pose
         eyes, images = TimedPerception(self._perception, self._watch), PictureStore(self._images)
-        fault: Fault | None = None
-        end: End | None = None
+        fault: CallFault | None = None
+        end: RunEnd | None = None
         raised: Exception | None = None
         frame: str | None = None
         try:
@@ -142,11 +142,11 @@ class Calls:
         except (PackError, OutputError) as error:
             outcome, raised = ToolOutcome(call=call, error=str(error)), error
         except CameraError as error:
-            outcome, fault, end = ToolOutcome(call=call, error=str(error)), "camera", End("camera_error", str(error))
+            outcome, fault, end = ToolOutcome(call=call, error=str(error)), "camera", RunEnd("camera_error", str(error))
         except Exception as error:  # The episode's border: what breaks below the tools ends the run, recorded
             words = f"{call.name} broke down: {in_words(error)}"
             outcome, fault = ToolOutcome(call=call, error=words), "camera"
-            end = End("camera_error", words, traceback.format_exc())
+            end = RunEnd("camera_error", words, traceback.format_exc())
         made[index] = _Done(outcome, fault, time_s, self._watch.read() - before, eyes.drain(), frame, end, raised)
 
     async def _run(self, call: ToolCall, context: ToolContext) -> Result:
@@ -171,7 +171,7 @@ class Calls:
                 outcome=done.outcome,
                 fault=done.fault,
                 scene_time_s=done.time_s,
-                pose=Place.of(self.pose),
+                pose=RecordedPose.of(self.pose),
                 timings=done.timings,
                 replies=done.replies,
                 frame=done.frame,
