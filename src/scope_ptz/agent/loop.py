@@ -1,6 +1,6 @@
 """The agent loop: the paper's recurrence over S_t = (U, H_t, O_t), with budgets and typed outcomes.
 
-There is one code path. Who wants to watch passes a listener, who does not simply awaits the end.
+Every run takes the same code path. A listener receives each record as it is made; without a listener, the caller awaits the result.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ from scope_ptz.planner.base import Briefing, CallTools, Decision, Exchange, Fini
 from scope_ptz.tools.context import ImageStore
 from scope_ptz.tools.registry import TOOLS, ToolRegistry
 
-MAX_INSTRUCTION_CHARS = 4000
-STOP_TIMEOUT_S = 5.0
+MAX_INSTRUCTION_CHARS = 4000  # longer instructions raise InputError
+STOP_TIMEOUT_S = 5.0  # limit for stopping the camera and reading its pose at the end of a run
 
 
 class Agent:
-    """A planner, a camera and perception put together. Holds nothing between runs."""
+    """A planner, a camera and a perception backend that carry out instructions. An agent keeps no state between runs."""
 
     def __init__(
         self,
@@ -46,9 +46,18 @@ class Agent:
         tools: ToolRegistry = TOOLS,
         run_tool: RunTool | None = None,
     ) -> None:
-        """``snapshots``: keep the first view and the view after each move; tools keep what perception looks at in any case.
+        """Put an agent together.
 
-        ``tools``: the tools that the planner can call. ``run_tool``: runs the calls in place of ``tools.run``.
+        Args:
+            planner: decides on the next step.
+            camera: carries out the moves and takes the frames.
+            perception: answers questions about frames.
+            images: stores the pictures of the run.
+            budgets: limits on steps, time and tokens; the defaults of ``Budgets`` when None.
+            labels: facts about the run that the loop cannot know and that the trace should hold.
+            snapshots: whether to store the first view and the view after each move. Frames that perception reads are always stored.
+            tools: the tools that the planner can call.
+            run_tool: runs the calls in place of ``tools.run``. Pass a wrapper around it to observe the calls.
         """
         self.planner, self.camera, self.perception, self.images = planner, camera, perception, images
         self.budgets, self.labels, self.snapshots = budgets or Budgets(), labels or RunLabels(), snapshots
@@ -59,12 +68,20 @@ class Agent:
     ) -> RunResult:
         """Carry out an instruction.
 
+        Args:
+            instruction: what the camera should do, in plain language.
+            conversation: earlier turns that the instruction may refer to.
+            listener: receives each record of the run as it is made.
+
+        Returns:
+            The finished run. A planner or camera that fails during the run gives an outcome, not an exception.
+
         Raises:
             InputError: the instruction is empty or too long, or a file cannot be written.
             PackError: the scene's files are damaged.
-            CameraError: the camera does not answer before the first step. Later failures are outcomes of the run.
+            CameraError: the camera does not answer before the first step.
         """
-        # Bytes of a command line that are no text become "?": no file and no server takes them.
+        # Undecodable bytes of a command line become "?", because neither files nor servers accept them.
         instruction = instruction.encode("utf-8", "replace").decode().strip()
         if not instruction:
             raise InputError("The instruction is empty. Say what the camera should do.")
@@ -74,7 +91,7 @@ class Agent:
 
 
 class _Episode:
-    """One run's state."""
+    """The state of one run."""
 
     def __init__(self, agent: Agent, instruction: str, conversation: tuple[PastTurn, ...], listener: Listener) -> None:
         self.agent, self.instruction, self.conversation, self.emit = agent, instruction, conversation, listener
@@ -107,7 +124,7 @@ class _Episode:
             await self._finish(RunEnd("cancelled", "The run was cancelled."))
             raise
         except (PackError, OutputError) as error:
-            # Not the agent's doing and not to be tried again: it is recorded and whoever started the run hears of it.
+            # The agent did not cause this and cannot recover from it: record it, then raise it to the caller.
             with suppress(OutputError):
                 await self._finish(RunEnd("camera_error", str(error)))
             raise
@@ -119,7 +136,7 @@ class _Episode:
         agent, info = self.agent, self.camera.info
         presets = tuple(p.name for p in await self.camera.presets())
         self.start = self.calls.pose = await self.camera.pose()
-        # The first frame tells scene and viewpoint, and shows before anything moves that pictures can be had.
+        # The first frame names the scene and the viewpoint, and proves that the camera delivers frames before anything moves.
         frame = await self.camera.frame()
         self.emit(
             Started(
@@ -165,7 +182,7 @@ class _Episode:
                 self.calls.events.update(server_events(error))
                 self.usage += wasted(error.attempts)
                 return RunEnd("planner_error", str(error), kind=error.kind)
-            except Exception as error:  # The episode's border: a planner's fault is an outcome, not a crash
+            except Exception as error:  # a planner that fails in any way is an outcome of the run, not a crash
                 return RunEnd("planner_error", f"The planner failed: {in_words(error)}", traceback.format_exc())
             if isinstance(decision, Finish):
                 return RunEnd(decision.kind, decision.text)
