@@ -87,7 +87,7 @@ def draw_filmstrip(trace: Trace, files: Mapping[str, bytes] | None = None) -> Im
     if not panels:
         return None
     shown, left_out = _elide(panels)
-    rows = _rows([_Tile(panel, open_picture(trace, panel.file or "", files)) for panel in shown])
+    rows = _rows([_Tile(panel, open_picture(panel.file or "", trace.folder, files)) for panel in shown])
     heights = [_row_height(row) for row in rows]
     head = _Banner("INSTRUCTION", CYAN, trace.started.instruction)
     label, colour = _HEADLINES[trace.ended.outcome] if trace.ended else ("INTERRUPTED", RED)
@@ -132,18 +132,18 @@ class _Banner:
             canvas.text(MARGIN + 34, y + 40 + (number + 0.85) * self._size * 1.3, line, self._size, INK, bold=True)
 
 
-def open_picture(trace: Trace, name: str, files: Mapping[str, bytes] | None = None) -> Image.Image:
+def open_picture(name: str, folder: Path, files: Mapping[str, bytes] | None = None) -> Image.Image:
     """Open a picture of a run.
 
     Args:
-        trace: the run.
         name: name of the picture in the trace.
+        folder: the run folder.
         files: encoded pictures by name, of a run that was kept in memory; None reads the run folder.
 
     Raises:
         TraceError: the picture is missing or damaged.
     """
-    path = picture_of(trace.folder, name)
+    path = picture_of(folder, name)
     try:
         with Image.open(path if files is None else BytesIO(files.get(name, b""))) as image:
             return image.convert("RGB")

@@ -12,7 +12,7 @@ from datetime import UTC, datetime
 
 import anyio
 
-from scope_ptz import __version__
+from scope_ptz.version import __version__
 from scope_ptz.agent.planner_views import newest_view
 from scope_ptz.agent.records import Budgets, Decided, Ended, Listener, RecordedPose, RunLabels, RunResult, Started
 from scope_ptz.agent.timing import Stopwatch, server_events, wasted

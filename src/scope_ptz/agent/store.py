@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 import secrets
+import shutil
 from abc import ABC, abstractmethod
 from datetime import UTC, datetime
 from pathlib import Path
@@ -144,6 +145,11 @@ class RunFolder(EncodedImages):
         """Remove the folder if the run failed before anything was stored."""
         if self.path.is_dir() and not any(self.path.iterdir()):
             self.path.rmdir()
+
+    def discard_if_not_started(self) -> None:
+        """Remove the folder if the run failed or was cancelled before the first line of its trace was written."""
+        if not self.trace.is_file() or self.trace.stat().st_size == 0:
+            shutil.rmtree(self.path, ignore_errors=True)
 
     def write(self, name: str, data: bytes) -> None:
         """Write an encoded picture to a new file. Raises ``OutputError``."""

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from scope_ptz import __version__
+from scope_ptz.version import __version__
 from scope_ptz.agent.timing import Timings
 from scope_ptz.agent.trace import Trace, picture_of, read_trace
 from scope_ptz.bench.scoring.episode import Places, episode_of

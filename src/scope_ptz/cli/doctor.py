@@ -15,7 +15,7 @@ from typing import Literal
 from rich.console import Console
 from rich.text import Text
 
-from scope_ptz import __version__
+from scope_ptz.version import __version__
 from scope_ptz.cli.cards import folder_bytes
 from scope_ptz.cli.endings import FAILED, put_json
 from scope_ptz.errors import PackError

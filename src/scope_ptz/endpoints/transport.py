@@ -7,7 +7,7 @@ from typing import Any
 
 import httpx2
 
-from scope_ptz import __version__
+from scope_ptz.version import __version__
 from scope_ptz.endpoints.bodies import too_large
 from scope_ptz.endpoints.endpoint import MAX_BODY_BYTES, Endpoint
 from scope_ptz.endpoints.failures import FailureKind, ServerFailure

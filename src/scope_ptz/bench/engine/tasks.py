@@ -8,7 +8,7 @@ from typing import Any
 
 from inspect_ai import Epochs, Task
 
-from scope_ptz import __version__
+from scope_ptz.version import __version__
 from scope_ptz.bench.engine.cards import AGENT_SOURCE
 from scope_ptz.bench.engine.entries import Entry, datasets, digest
 from scope_ptz.bench.engine.external_agents import source_digest

@@ -11,7 +11,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from scope_ptz import __version__
+from scope_ptz.version import __version__
 from scope_ptz.bench.reports.submission import LINE, Header, TrialLine, secrets_in, tasks_digest, totals_of
 from scope_ptz.bench.reports.submission_trials import trial_faults
 from scope_ptz.bench.tasks.splits import SPLITS, load_split

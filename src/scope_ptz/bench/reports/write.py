@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from scope_ptz import __version__
+from scope_ptz.version import __version__
 from scope_ptz.bench.reports.build import Report, build_report
 from scope_ptz.bench.reports.tables import MISSING, Column, Marked, Value, as_csv, as_markdown, bare, escape, in_words, interval
 from scope_ptz.bench.reports.task_pages import FrameStore, OpenSample, page_files, task_pages
