@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from scope_ptz.endpoints.endpoint import Endpoint
     from scope_ptz.perception.backends.spec import BackendSpec
+    from scope_ptz.perception.base import Perception
+    from scope_ptz.planner.base import Planner
     from scope_ptz.planner.chat import ChatOptions
     from scope_ptz.planner.spec import PlannerSpec
     from scope_ptz.registry import Model
@@ -52,6 +54,7 @@ class ResolvedPlanner:
         options: The chat model's options, None for other planners.
         model: The registry's entry, None for a model that it does not list.
         plugin: What a plug-in's factory receives, None for other planners.
+        instance: A planner that exists already, such as one of a Python user's own. The other fields are empty then.
     """
 
     name: str
@@ -59,6 +62,7 @@ class ResolvedPlanner:
     options: ChatOptions | None = None
     model: Model | None = None
     plugin: PlannerSpec | None = None
+    instance: Planner | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,11 +73,13 @@ class ResolvedPerception:
         name: The name in traces and reports.
         spec: The backend's spec, None for built-in perception.
         model: The registry's entry, None for a model that it does not list.
+        instance: Perception that exists already, such as a Python user's own. The other fields are empty then.
     """
 
     name: str
     spec: BackendSpec | None = None
     model: Model | None = None
+    instance: Perception | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -68,6 +68,8 @@ def make_planner(resolved: ResolvedPlanner) -> Planner:
     Raises:
         ConfigError: A plug-in cannot be loaded or does not return a planner.
     """
+    if resolved.instance is not None:
+        return resolved.instance
     if resolved.plugin is not None:
         return make_plugin_planner(resolved.plugin)
     if resolved.endpoint is None:
@@ -109,6 +111,8 @@ def make_perception(
         InputError: Built-in perception is requested for a camera without ground truth.
         ConfigError: A backend's options are wrong, or a package is missing or broken.
     """
+    if resolved.instance is not None:
+        return resolved.instance
     if resolved.spec is not None:
         from scope_ptz.perception.backends import make_backend
 
@@ -130,4 +134,4 @@ def make_perception(
 
 def perception_note(resolved: ResolvedPerception) -> str:
     """Return the sentence that says that perception is not a model, empty for models."""
-    return _NOTES.get(resolved.name, "") if resolved.spec is None else ""
+    return _NOTES.get(resolved.name, "") if resolved.spec is None and resolved.instance is None else ""
