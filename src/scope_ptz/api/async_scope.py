@@ -26,7 +26,16 @@ from scope_ptz.perception.base import Perception
 from scope_ptz.planner.base import PastTurn, Planner
 from scope_ptz.tools.context import ToolContext
 from scope_ptz.tools.registry import TOOLS, run_tool
-from scope_ptz.tools.results import AnswerResult, CountResult, ImageResult, MoveResult, PresetsResult, Result, TrackResult, ZoomResult
+from scope_ptz.tools.results import (
+    AnswerResult,
+    CountResult,
+    ImageResult,
+    MoveResult,
+    PresetsResult,
+    Result,
+    TrackResult,
+    ZoomResult,
+)
 
 if TYPE_CHECKING:
     from anyio.streams.memory import MemoryObjectSendStream

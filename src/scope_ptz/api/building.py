@@ -4,14 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Awaitable, Callable
 from contextlib import AsyncExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from scope_ptz.api.options import SessionOptions
+from scope_ptz.api.options import ServedModels, SessionOptions
 from scope_ptz.camera.base import Camera
 from scope_ptz.errors import InputError
-from scope_ptz.factory.models import ResolvedPerception, resolve_models
-from scope_ptz.factory.session import Start, make_perception, make_planner, open_camera, open_scene, scene_search
+from scope_ptz.factory.cameras import OpenCamera, open_camera
+from scope_ptz.factory.models import (
+    ResolvedPair,
+    ResolvedPerception,
+    ResolvedPlanner,
+    make_perception,
+    make_planner,
+    perception_note,
+    resolve_models,
+)
 from scope_ptz.perception.base import Perception
 from scope_ptz.planner.base import Planner
 
@@ -24,7 +32,7 @@ class Parts:
     """The parts of an open session.
 
     Attributes:
-        scene: the scene of a simulated camera, else None.
+        scene: the scene of a camera in a scene, else None.
         note: a sentence on what perception is, empty for models.
         release: closes the parts that were made for the session. Objects that the caller passed stay open.
     """
@@ -44,43 +52,78 @@ async def build(options: SessionOptions) -> Parts:
         InputError: an option is wrong.
         PackError: the files of a scene are damaged.
         CameraError: the camera does not answer.
+        BlenderError: Blender cannot be started, or cannot open the scene or the file.
     """
-    pair = await resolve_models(options.served.model_options(options.planner, options.perception))
+    pair = await resolve_pair(options.planner, options.perception, options.served)
     async with AsyncExitStack() as stack:
-        camera, scene = await _camera(options, stack)
-        if isinstance(options.planner, Planner):
-            planner = options.planner
-        else:
-            planner = make_planner(pair.planner)
+        camera, opened = await _camera(options, stack)
+        planner = make_planner(pair.planner)
+        if pair.planner.instance is None:
             stack.push_async_callback(planner.close)
-        if isinstance(options.perception, Perception):
-            perception, note = options.perception, ""
-        else:
-            perception, note = _perception(pair.eyes, camera, scene, options.seed)
+        perception = _perception(pair.perception, camera, opened, options.seed)
+        if pair.perception.instance is None:
             stack.push_async_callback(perception.close)
-        return Parts(camera, planner, perception, scene, note, stack.pop_all().aclose)
+        scene = opened.scene if opened is not None else None
+        return Parts(camera, planner, perception, scene, perception_note(pair.perception), stack.pop_all().aclose)
 
 
-async def _camera(options: SessionOptions, stack: AsyncExitStack) -> tuple[Camera, Scene | None]:
-    if isinstance(options.camera, Camera):
-        placed = [name for name in ("viewpoint", "time_s") if getattr(options, name) is not None]
-        if placed:
-            raise InputError(f"The camera is an object of your own, so {' and '.join(placed)} has no effect. Leave it out.")
-        if options.preset is not None:
-            await options.camera.go_to_preset(options.preset)
-        return options.camera, None
-    name = options.camera.removeprefix("sim:")
-    scene = open_scene(name)
-    start = Start(name, options.viewpoint, options.preset, options.time_s)
-    camera = await open_camera(start, scene, realtime=options.realtime)
-    stack.push_async_callback(camera.close)
-    return camera, scene
+async def resolve_pair(planner: Planner | str | None, perception: Perception | str | None, served: ServedModels) -> ResolvedPair:
+    """Resolve the planner and perception, where either may be a name or an object.
+
+    Raises:
+        InputError: a name, an address or a combination of options is wrong.
+    """
+    _check_type("planner", planner, Planner)
+    _check_type("perception", perception, Perception)
+    pair = await resolve_models(served.model_options(planner, perception))
+    if isinstance(planner, Planner):
+        pair = replace(pair, planner=ResolvedPlanner(planner.name, instance=planner))
+    if isinstance(perception, Perception):
+        pair = replace(pair, perception=ResolvedPerception(perception.name, instance=perception))
+    return pair
 
 
-def _perception(resolved: ResolvedPerception, camera: Camera, scene: Scene | None, seed: int) -> tuple[Perception, str]:
-    if scene is None and resolved.spec is None:
-        raise InputError(
-            f"The camera '{camera.info.name}' has no ground truth for '{resolved.name}' to read. Pass perception=, "
-            "the name of a vision model or an object of your own."
+def _check_type(name: str, given: object, contract: type) -> None:
+    if not isinstance(given, str | contract | None):
+        base = f"scope_ptz.{contract.__name__}"
+        hint = "an object of the class, not the class itself" if isinstance(given, type) else f"an object of a subclass of {base}"
+        raise InputError(f"{name}= takes a name or {hint}, got {given!r}.")
+
+
+async def _camera(options: SessionOptions, stack: AsyncExitStack) -> tuple[Camera, OpenCamera | None]:
+    _check_type("camera", options.camera, Camera)
+    if not isinstance(options.camera, Camera):
+        opened = await open_camera(
+            options.camera,
+            viewpoint=options.viewpoint,
+            preset=options.preset,
+            time_s=options.time_s,
+            realtime=options.realtime,
         )
-    return make_perception(resolved, scene, seed)  # type: ignore[arg-type]
+        stack.push_async_callback(opened.aclose)
+        return opened.camera, opened
+    given = [name for name in ("viewpoint", "time_s") if getattr(options, name) is not None]
+    if given:
+        raise InputError(f"The camera is an object of your own, so {' and '.join(given)} has no effect. Leave it out.")
+    if options.preset is not None:
+        await options.camera.go_to_preset(options.preset)
+    return options.camera, None
+
+
+def _perception(resolved: ResolvedPerception, camera: Camera, opened: OpenCamera | None, seed: int) -> Perception:
+    scenes = opened.scenes if opened is not None else _scenes_by_name() if camera.info.simulated else None
+    if scenes is None and resolved.spec is None and resolved.instance is None:
+        raise InputError(
+            f"The perception '{resolved.name}' reads the ground truth of a simulated scene, and the camera '{camera.info.name}' "
+            "has none. Pass perception=, the name of a vision model or an object of your own."
+        )
+    return make_perception(resolved, scenes, seed)
+
+
+def _scenes_by_name() -> Callable[[str], Scene]:
+    """Return a function that opens scenes, for the frames of a simulated camera that the caller made."""
+    from scope_ptz.factory.scenes import scene_search
+    from scope_ptz.settings import load_settings
+    from scope_ptz.simulator.library import Library
+
+    return Library(scene_search(load_settings()))

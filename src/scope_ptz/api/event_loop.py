@@ -84,3 +84,15 @@ class EventLoopThread:
         if self._thread.is_alive() and self._stop is not None:
             self._portal.call(self._stop.set)
             self._thread.join()
+
+
+def run_in_thread(work: Callable[[], Awaitable[_T]]) -> _T:
+    """Run a coroutine in an event loop of its own, also where an event loop is running already."""
+
+    async def nothing() -> None: ...
+
+    loop = EventLoopThread(nothing)
+    try:
+        return loop.call(work)
+    finally:
+        loop.stop()

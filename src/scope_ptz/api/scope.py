@@ -18,7 +18,16 @@ from scope_ptz.geometry import Pose
 from scope_ptz.perception.base import Perception
 from scope_ptz.planner.base import Planner
 from scope_ptz.tools.registry import TOOLS
-from scope_ptz.tools.results import AnswerResult, CountResult, ImageResult, MoveResult, PresetsResult, Result, TrackResult, ZoomResult
+from scope_ptz.tools.results import (
+    AnswerResult,
+    CountResult,
+    ImageResult,
+    MoveResult,
+    PresetsResult,
+    Result,
+    TrackResult,
+    ZoomResult,
+)
 
 if TYPE_CHECKING:
     from PIL import Image

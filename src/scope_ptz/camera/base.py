@@ -6,8 +6,10 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from time import monotonic
 from typing import Protocol
 
+import anyio
 import numpy as np
 from numpy.typing import NDArray
 
@@ -81,6 +83,12 @@ class Frame:
     def height(self) -> int:
         return int(self.image.shape[0])
 
+    def _repr_html_(self) -> str:
+        """Return the frame as a notebook shows it: the picture, with pose and field of view below."""
+        from scope_ptz.camera.notebook import frame_html
+
+        return frame_html(self)
+
 
 @dataclass(frozen=True, slots=True)
 class PresetInfo:
@@ -106,6 +114,21 @@ class Clock(Protocol):
     async def sleep(self, seconds: float) -> None:
         """Wait for this much time of the camera's world."""
         ...
+
+
+class WallClock:
+    """A clock for cameras in the real world. It starts at zero and follows the wall clock."""
+
+    def __init__(self) -> None:
+        self._started_s = monotonic()
+
+    def now_s(self) -> float:
+        """Return the seconds since the clock was made."""
+        return monotonic() - self._started_s
+
+    async def sleep(self, seconds: float) -> None:
+        """Wait."""
+        await anyio.sleep(max(0.0, seconds))
 
 
 class Camera(ABC):
