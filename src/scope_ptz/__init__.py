@@ -26,7 +26,7 @@ from scope_ptz.version import __version__
 if TYPE_CHECKING:
     from scope_ptz.api.async_scope import AsyncScope
     from scope_ptz.api.evaluations import EvaluationResults, evaluate, load_results, load_tasks
-    from scope_ptz.api.opening import open, open_async
+    from scope_ptz.api.opening import open, open_async  # noqa: A004 - used as scope_ptz.open
     from scope_ptz.api.run import CallResult, Event, Run
     from scope_ptz.api.scenes import SceneInfo, models, scenes, tool_schemas
     from scope_ptz.api.scope import Scope

@@ -12,7 +12,6 @@ from datetime import UTC, datetime
 
 import anyio
 
-from scope_ptz.version import __version__
 from scope_ptz.agent.planner_views import newest_view
 from scope_ptz.agent.records import Budgets, Decided, Ended, Listener, RecordedPose, RunLabels, RunResult, Started
 from scope_ptz.agent.timing import Stopwatch, server_events, wasted
@@ -25,6 +24,7 @@ from scope_ptz.perception.base import Perception
 from scope_ptz.planner.base import Briefing, CallTools, Decision, Exchange, Finish, PastTurn, Planner, State, Usage
 from scope_ptz.tools.context import ImageStore
 from scope_ptz.tools.registry import TOOLS, ToolRegistry
+from scope_ptz.version import __version__
 
 MAX_INSTRUCTION_CHARS = 4000  # longer instructions raise InputError
 STOP_TIMEOUT_S = 5.0  # limit for stopping the camera and reading its pose at the end of a run

@@ -43,7 +43,6 @@ if TYPE_CHECKING:
 
     from scope_ptz.api.scenes import SceneInfo
 
-POLL_S = 0.005  # how often close() looks whether a cancelled run has ended
 EventListener = Callable[[Event], None]
 View = Literal["current", "full"]
 _R = TypeVar("_R", bound=Result)
@@ -69,6 +68,7 @@ class AsyncScope:
         self._parts: Parts | None = None
         self._closed = False
         self._work: anyio.CancelScope | None = None
+        self._finished: anyio.Event | None = None
         self._runs: tuple[Run, ...] = ()
         self._conversation: tuple[PastTurn, ...] = ()
         self._images: MemoryImages | RunFolder | None = None
@@ -91,8 +91,8 @@ class AsyncScope:
         self._closed = True
         self.cancel()
         with anyio.CancelScope(shield=True):
-            while self._work is not None:
-                await anyio.sleep(POLL_S)
+            if self._finished is not None:
+                await self._finished.wait()
             parts, self._parts = self._parts, None
             if parts is not None:
                 await parts.release()
@@ -307,11 +307,13 @@ class AsyncScope:
     def _working(self) -> Iterator[None]:
         """Mark the session as busy. ``cancel`` leaves the block silently."""
         self._idle()
+        self._finished = anyio.Event()
         try:
             with anyio.CancelScope() as self._work:
                 yield
         finally:
             self._work = None
+            self._finished.set()
 
     def _opened(self) -> Parts:
         if self._parts is None:
@@ -347,7 +349,8 @@ class _Recorder:
     """Collects the records of a run, writes its trace when there is a folder, and passes events on."""
 
     def __init__(self, options: SessionOptions, instruction: str, listener: EventListener) -> None:
-        self.images = MemoryImages() if options.runs_dir is None else RunFolder.create(options.runs_dir, instruction)
+        folder = options.runs_dir
+        self.images: MemoryImages | RunFolder = MemoryImages() if folder is None else RunFolder.create(folder, instruction)
         self._listener = listener
         self._records: list[Started | Decided | Called | Ended] = []
         self._stack = ExitStack()
@@ -372,6 +375,6 @@ class _Recorder:
         """Return the run, None when it never began or its end could not be recorded."""
         if not self._records or not isinstance(ended := self._records[-1], Ended):
             return None
-        in_memory = isinstance(self.images, MemoryImages)
-        trace = trace_of(self._records, self.images.path if isinstance(self.images, RunFolder) else Path())
-        return Run(trace, ended, self.images.files if in_memory else None)
+        if isinstance(self.images, RunFolder):
+            return Run(trace_of(self._records, self.images.path), ended)
+        return Run(trace_of(self._records, Path()), ended, self.images.files)

@@ -4,22 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Awaitable, Callable
 from contextlib import AsyncExitStack
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from scope_ptz.api.options import ServedModels, SessionOptions
+from scope_ptz.api.options import SessionOptions, check_type
 from scope_ptz.camera.base import Camera
 from scope_ptz.errors import InputError
 from scope_ptz.factory.cameras import OpenCamera, open_camera
-from scope_ptz.factory.models import (
-    ResolvedPair,
-    ResolvedPerception,
-    ResolvedPlanner,
-    make_perception,
-    make_planner,
-    perception_note,
-    resolve_models,
-)
+from scope_ptz.factory.models import ResolvedPerception, make_perception, make_planner, perception_note, resolve_models
 from scope_ptz.perception.base import Perception
 from scope_ptz.planner.base import Planner
 
@@ -54,7 +46,7 @@ async def build(options: SessionOptions) -> Parts:
         CameraError: the camera does not answer.
         BlenderError: Blender cannot be started, or cannot open the scene or the file.
     """
-    pair = await resolve_pair(options.planner, options.perception, options.served)
+    pair = await resolve_models(options.served.model_options(options.planner, options.perception))
     async with AsyncExitStack() as stack:
         camera, opened = await _camera(options, stack)
         planner = make_planner(pair.planner)
@@ -67,31 +59,8 @@ async def build(options: SessionOptions) -> Parts:
         return Parts(camera, planner, perception, scene, perception_note(pair.perception), stack.pop_all().aclose)
 
 
-async def resolve_pair(planner: Planner | str | None, perception: Perception | str | None, served: ServedModels) -> ResolvedPair:
-    """Resolve the planner and perception, where either may be a name or an object.
-
-    Raises:
-        InputError: a name, an address or a combination of options is wrong.
-    """
-    _check_type("planner", planner, Planner)
-    _check_type("perception", perception, Perception)
-    pair = await resolve_models(served.model_options(planner, perception))
-    if isinstance(planner, Planner):
-        pair = replace(pair, planner=ResolvedPlanner(planner.name, instance=planner))
-    if isinstance(perception, Perception):
-        pair = replace(pair, perception=ResolvedPerception(perception.name, instance=perception))
-    return pair
-
-
-def _check_type(name: str, given: object, contract: type) -> None:
-    if not isinstance(given, str | contract | None):
-        base = f"scope_ptz.{contract.__name__}"
-        hint = "an object of the class, not the class itself" if isinstance(given, type) else f"an object of a subclass of {base}"
-        raise InputError(f"{name}= takes a name or {hint}, got {given!r}.")
-
-
 async def _camera(options: SessionOptions, stack: AsyncExitStack) -> tuple[Camera, OpenCamera | None]:
-    _check_type("camera", options.camera, Camera)
+    check_type("camera", options.camera, Camera)
     if not isinstance(options.camera, Camera):
         opened = await open_camera(
             options.camera,

@@ -28,7 +28,7 @@ _CELL = "text-align:left;vertical-align:top;padding:3px 14px 3px 0"
 
 
 def run_html(run: Run) -> str:
-    """Return a run as HTML: the answer, the filmstrip, and a table of the tool calls."""
+    """Return a run as HTML: the answer, the filmstrip and a table of the tool calls."""
     colour = _COLOURS.get(run.outcome, _FAILED)
     took = f"{run.timings.total_s:.1f} s"
     facts = [f"planner {run.planner}", run.note.rstrip(".") or f"perception {run.perception}", took]
@@ -38,12 +38,12 @@ def run_html(run: Run) -> str:
         f'<div style="font-size:1.15em;font-weight:600">{escape(run.answer)}</div>',
         f'<div style="{_FAINT};font-size:.85em">{escape(run.outcome.replace("_", " "))} · {escape(" · ".join(facts))}</div></div>',
     ]
-    if run.calls:
-        parts.append(_table(("step", "tool", "arguments", "result", "seconds"), [_call_row(call) for call in run.calls]))
     try:
         parts.append(picture_html(run.filmstrip, "filmstrip"))
     except TraceError as error:
         parts.append(f'<div style="{_FAINT}">{escape(str(error))}</div>')
+    if run.calls:
+        parts.append(_table(("step", "tool", "arguments", "result", "seconds"), [_call_row(call) for call in run.calls]))
     return _block(parts)
 
 
@@ -93,14 +93,15 @@ def _call_row(call: CallResult) -> tuple[str, str, str, str, str]:
 
 def _table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     head = "".join(f'<th style="{_CELL};{_FAINT};font-weight:400">{escape(name)}</th>' for name in header)
-    body = "".join(f"<tr>{''.join(_cell(text) for text in row)}</tr>" for row in rows)
+    body = "".join(f"<tr>{''.join(_cell(text, first=number == 0) for number, text in enumerate(row))}</tr>" for row in rows)
     top = f"<thead><tr>{head}</tr></thead>" if head else ""
-    return f'<table style="border-collapse:collapse;margin:0;font-size:.95em">{top}<tbody>{body}</tbody></table>'
+    return f'<table style="border-collapse:collapse;margin:8px 0 0;font-size:.95em">{top}<tbody>{body}</tbody></table>'
 
 
-def _cell(text: str) -> str:
+def _cell(text: str, *, first: bool) -> str:
     shown = text if len(text) <= MAX_TEXT_CHARS else text[: MAX_TEXT_CHARS - 1] + "…"
-    return f'<td style="{_CELL}">{escape(shown)}</td>'
+    nowrap = ";white-space:nowrap" if first else ""
+    return f'<td style="{_CELL}{nowrap}">{escape(shown)}</td>'
 
 
 def _block(parts: Iterable[str]) -> str:

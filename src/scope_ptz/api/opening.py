@@ -18,7 +18,7 @@ from scope_ptz.perception.base import Perception
 from scope_ptz.planner.base import Planner
 
 
-def open(
+def open(  # noqa: A001 - the public name, used as scope_ptz.open
     camera: Camera | str = "highway-works",
     *,
     planner: Planner | str | None = None,

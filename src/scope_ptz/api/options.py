@@ -46,6 +46,8 @@ class ServedModels:
         Raises:
             InputError: an object is combined with options that only apply to names.
         """
+        check_type("planner", planner, Planner)
+        check_type("perception", perception, Perception)
         own = [role for role, given in (("planner", planner), ("perception", perception)) if not isinstance(given, str | None)]
         for role in own:
             options = (f"{role}_url", f"{role}_model", f"{role}_key_file", f"{role}_options")
@@ -68,6 +70,8 @@ class ServedModels:
             reader=self.reader,
             detector=self.detector,
             timeout_s=self.timeout_s,
+            own_planner=planner if isinstance(planner, Planner) else None,
+            own_perception=perception if isinstance(perception, Perception) else None,
         )
 
 
@@ -86,6 +90,13 @@ class SessionOptions:
     realtime: bool = False
     runs_dir: Path | None = None
     budgets: Budgets = field(default_factory=Budgets)
+
+
+def check_type(option: str, given: object, contract: type) -> None:
+    """Raise ``InputError`` unless an option is a name, None, or an object of the contract's class."""
+    if not isinstance(given, str | contract | None):
+        wanted = "an object of the class, not the class itself" if isinstance(given, type) else f"a scope_ptz.{contract.__name__}"
+        raise InputError(f"{option}= takes a name or {wanted}, got {given!r}.")
 
 
 def _path(given: StrPath | None) -> Path | None:

@@ -52,7 +52,8 @@ class SceneInfo:
     def objects(self) -> dict[str, int]:
         """Number of objects in the scene by category, the most frequent first. Moving objects are included."""
         file = self._scene.file
-        return dict(Counter([thing.category for thing in (*file.instances, *file.actors)]).most_common())
+        categories = [instance.category for instance in file.instances] + [actor.category for actor in file.actors]
+        return dict(Counter(categories).most_common())
 
     @cached_property
     def contact_sheet(self) -> Image.Image:

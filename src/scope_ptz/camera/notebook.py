@@ -27,6 +27,7 @@ def frame_html(frame: Frame) -> str:
     place = f"{frame.origin.scene} / {frame.origin.viewpoint} · " if frame.origin else ""
     return (
         '<figure style="margin:0;font-family:system-ui,sans-serif">'
-        f'<img alt="frame at {where}" style="max-width:100%;border-radius:8px;display:block" src="data:image/jpeg;base64,{encoded}">'
+        f'<img alt="frame at {where}" style="max-width:100%;border-radius:8px;display:block" '
+        f'src="data:image/jpeg;base64,{encoded}">'
         f'<figcaption style="opacity:.65;font-size:.9em;margin-top:4px">{place}{where} · {what}</figcaption></figure>'
     )

@@ -26,7 +26,10 @@ BUILT_IN_PERCEPTION = ("ground-truth", "noisy")
 
 @dataclass(frozen=True, slots=True)
 class ModelOptions:
-    """Options about planner, perception and their servers, as the user gave them."""
+    """Options about planner, perception and their servers, as the user gave them.
+
+    ``own_planner`` and ``own_perception`` are objects of a Python user's own, which take the place of names.
+    """
 
     planner: str | None = None
     perception: str | None = None
@@ -42,6 +45,8 @@ class ModelOptions:
     reader: str | None = None
     detector: str | None = None
     timeout_s: float | None = None
+    own_planner: Planner | None = None
+    own_perception: Perception | None = None
 
 
 @dataclass(frozen=True, slots=True)

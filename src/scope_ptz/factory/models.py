@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from scope_ptz.errors import ConfigError, InputError
@@ -48,6 +49,13 @@ async def resolve_models(options: ModelOptions) -> ResolvedPair:
     Raises:
         InputError: A name, an address or a combination of options is wrong.
     """
+    if options.own_planner is not None or options.own_perception is not None:
+        pair = await resolve_models(replace(options, own_planner=None, own_perception=None))
+        if (planner := options.own_planner) is not None:
+            pair = replace(pair, planner=ResolvedPlanner(planner.name, instance=planner))
+        if (perception := options.own_perception) is not None:
+            pair = replace(pair, perception=ResolvedPerception(perception.name, instance=perception))
+        return pair
     if _only_built_in(options):
         return ResolvedPair(ResolvedPlanner(GRAMMAR), ResolvedPerception(options.perception or BUILT_IN_PERCEPTION[0]))
     from scope_ptz.factory.model_resolver import ModelResolver
