@@ -7,6 +7,7 @@ from contextlib import AsyncExitStack
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from scope_ptz.api.no_perception import NoPerception
 from scope_ptz.api.options import SessionOptions, check_type
 from scope_ptz.camera.base import Camera
 from scope_ptz.errors import InputError
@@ -52,11 +53,12 @@ async def build(options: SessionOptions) -> Parts:
         planner = make_planner(pair.planner)
         if pair.planner.instance is None:
             stack.push_async_callback(planner.close)
-        perception = _perception(pair.perception, camera, opened, options.seed)
+        perception = _perception(options, pair.perception, camera, opened)
         if pair.perception.instance is None:
             stack.push_async_callback(perception.close)
         scene = opened.scene if opened is not None else None
-        return Parts(camera, planner, perception, scene, perception_note(pair.perception), stack.pop_all().aclose)
+        note = "" if isinstance(perception, NoPerception) else perception_note(pair.perception)
+        return Parts(camera, planner, perception, scene, note, stack.pop_all().aclose)
 
 
 async def _camera(options: SessionOptions, stack: AsyncExitStack) -> tuple[Camera, OpenCamera | None]:
@@ -79,14 +81,16 @@ async def _camera(options: SessionOptions, stack: AsyncExitStack) -> tuple[Camer
     return options.camera, None
 
 
-def _perception(resolved: ResolvedPerception, camera: Camera, opened: OpenCamera | None, seed: int) -> Perception:
+def _perception(options: SessionOptions, resolved: ResolvedPerception, camera: Camera, opened: OpenCamera | None) -> Perception:
     scenes = opened.scenes if opened is not None else _scenes_by_name() if camera.info.simulated else None
     if scenes is None and resolved.spec is None and resolved.instance is None:
+        if options.perception is None:
+            return NoPerception()
         raise InputError(
             f"The perception '{resolved.name}' reads the ground truth of a simulated scene, and the camera '{camera.info.name}' "
             "has none. Pass perception=, the name of a vision model or an object of your own."
         )
-    return make_perception(resolved, scenes, seed)
+    return make_perception(resolved, scenes, options.seed)
 
 
 def _scenes_by_name() -> Callable[[str], Scene]:

@@ -48,7 +48,8 @@ def open(  # noqa: A001 - the public name, used as scope_ptz.open
     """Open a session with a camera.
 
     Without options, the built-in rule-based planner plans, and perception is the simulator's ground truth. No model, key or network
-    is needed for that.
+    is needed for that. A camera without ground truth has no perception unless you name one: it moves and takes frames, and
+    questions about what it sees raise ``PerceptionError``.
 
     Args:
         camera: a scene ("highway-works"), any other camera spec ("blender:yard.blend"), or a ``Camera`` object.

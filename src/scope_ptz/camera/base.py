@@ -85,9 +85,12 @@ class Frame:
 
     def _repr_html_(self) -> str:
         """Return the frame as a notebook shows it: the picture, with pose and field of view below."""
-        from scope_ptz.camera.notebook import frame_html
+        from scope_ptz.camera.notebook import figure_html
 
-        return frame_html(self)
+        pose = self.pose.as_dict()
+        where = f"pan {pose['pan_deg']:+.1f}° · tilt {pose['tilt_deg']:+.1f}° · zoom {pose['zoom']:.1f}x"
+        place = f"{self.origin.scene} / {self.origin.viewpoint} · " if self.origin else ""
+        return figure_html(self.image, f"{place}{where} · {self.hfov_deg:.0f}° wide · {self.time_s:.1f} s")
 
 
 @dataclass(frozen=True, slots=True)
