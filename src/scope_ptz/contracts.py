@@ -2,7 +2,7 @@
 
 - A camera subclasses ``Camera`` and returns ``CameraInfo``, ``PresetInfo``, ``Arrival`` and ``Frame``. It has a ``Clock``;
   ``WallClock`` suits real cameras. ``Limits``, ``Optics``, ``Pose`` and ``Perspective`` describe its geometry.
-- A planner subclasses ``Planner``. Its ``step`` receives a ``State`` and returns ``CallTools``, made of ``ToolCall``, or ``Finish``.
+- A planner subclasses ``Planner``. Its ``step`` receives a ``State`` and returns ``CallTools`` (of ``ToolCall``) or ``Finish``.
 - A perception backend subclasses ``Perception`` and returns ``Caption``, ``Answer``, ``Detections`` (of ``Box``) and ``Points``
   (of ``Point``). It raises ``PerceptionError`` when it cannot read a frame.
 

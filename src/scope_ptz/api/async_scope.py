@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 
 import anyio
 
-from scope_ptz.agent.filmstrip import open_picture
 from scope_ptz.agent.loop import Agent
 from scope_ptz.agent.records import Called, Decided, Ended, RunLabels, Started
 from scope_ptz.agent.store import MemoryImages, RunFolder
 from scope_ptz.agent.trace import TraceWriter, trace_of
 from scope_ptz.api.building import Parts, build
 from scope_ptz.api.options import SessionOptions
+from scope_ptz.api.pictures import ToolCallImages
 from scope_ptz.api.run import Event, Run, event_of
 from scope_ptz.camera.base import Camera, Frame
 from scope_ptz.errors import InputError, ScopeError
@@ -71,7 +71,7 @@ class AsyncScope:
         self._finished: anyio.Event | None = None
         self._runs: tuple[Run, ...] = ()
         self._conversation: tuple[PastTurn, ...] = ()
-        self._images: MemoryImages | RunFolder | None = None
+        self._images = ToolCallImages(options.runs_dir)
 
     async def __aenter__(self) -> Self:
         if self._closed:
@@ -284,24 +284,15 @@ class AsyncScope:
         """Run a tool without the planner."""
         parts = self._opened()
         with self._working():
-            context = ToolContext(parts.camera, parts.perception, self._tool_images())
+            context = ToolContext(parts.camera, parts.perception, self._images)
             result = await run_tool(context, name, arguments)
             assert isinstance(result, kind), f"{name} returned a {type(result).__name__}"  # noqa: S101 - a defect of the tool
             return result
         raise _cancelled_call()
 
-    def _tool_images(self) -> MemoryImages | RunFolder:
-        """Return the store for the pictures of tool calls that do not belong to a run."""
-        if self._images is None:
-            folder = self._options.runs_dir
-            self._images = _RequestedPictures() if folder is None else RunFolder.create(folder, "tool calls")
-        return self._images
-
     def picture(self, name: str) -> Image.Image:
         """Open a picture that ``take_image`` stored outside a run. See ``Scope.picture``."""
-        if isinstance(self._images, RunFolder):
-            return open_picture(name, self._images.path)
-        return open_picture(name, Path(), {} if self._images is None else self._images.files)
+        return self._images.picture(name)
 
     @contextmanager
     def _working(self) -> Iterator[None]:
@@ -325,14 +316,6 @@ class AsyncScope:
         self._opened()
         if self._work is not None:
             raise InputError("A run or tool call is in progress in this session. Wait for it, call cancel(), or open another one.")
-
-
-class _RequestedPictures(MemoryImages):
-    """Stores the pictures of ``take_image`` only. Frames that perception reads would fill the memory of a long session."""
-
-    def write(self, name: str, data: bytes) -> None:
-        if name.startswith("pictures/"):
-            super().write(name, data)
 
 
 def _send(stream: MemoryObjectSendStream[Event], event: Event) -> None:

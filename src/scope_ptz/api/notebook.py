@@ -6,20 +6,12 @@ import base64
 import io
 from collections.abc import Iterable, Sequence
 from html import escape
-from typing import TYPE_CHECKING
 
 from PIL import Image
-
-from scope_ptz.errors import TraceError
-
-if TYPE_CHECKING:
-    from scope_ptz.api.run import CallResult, Run
-    from scope_ptz.api.scenes import SceneInfo
 
 PICTURE_WIDTH = 1100  # pixels; wider pictures are scaled down to keep notebooks small
 JPEG_QUALITY = 85
 MAX_TEXT_CHARS = 300  # longer cells of a table are cut
-MAX_OBJECTS = 10  # categories in the card of a scene
 
 _COLOURS = {"answered": "#2e9e5b", "clarification": "#c98a00", "refused": "#c98a00"}
 _FAILED = "#d5483b"
@@ -27,43 +19,36 @@ _FAINT = "opacity:.65"
 _CELL = "text-align:left;vertical-align:top;padding:3px 14px 3px 0"
 
 
-def run_html(run: Run) -> str:
-    """Return a run as HTML: the answer, the filmstrip and a table of the tool calls."""
-    colour = _COLOURS.get(run.outcome, _FAILED)
-    took = f"{run.timings.total_s:.1f} s"
-    facts = [f"planner {run.planner}", run.note.rstrip(".") or f"perception {run.perception}", took]
+def run_html(
+    instruction: str, answer: str, outcome: str, facts: Sequence[str], filmstrip: Image.Image | str, calls: Sequence[Sequence[str]]
+) -> str:
+    """Return a run as HTML: the answer, the filmstrip and a table of the tool calls.
+
+    Args:
+        instruction: the instruction.
+        answer: the final text.
+        outcome: the outcome, which decides the colour.
+        facts: short phrases on planner, perception and duration.
+        filmstrip: the filmstrip, or a sentence that says why there is none.
+        calls: step, tool, arguments, result and seconds of each tool call.
+    """
+    colour = _COLOURS.get(outcome, _FAILED)
     parts = [
         f'<div style="border-left:4px solid {colour};padding-left:10px;margin:4px 0 10px">',
-        f'<div style="{_FAINT}">{escape(run.instruction)}</div>',
-        f'<div style="font-size:1.15em;font-weight:600">{escape(run.answer)}</div>',
-        f'<div style="{_FAINT};font-size:.85em">{escape(run.outcome.replace("_", " "))} · {escape(" · ".join(facts))}</div></div>',
+        f'<div style="{_FAINT}">{escape(instruction)}</div>',
+        f'<div style="font-size:1.15em;font-weight:600">{escape(answer)}</div>',
+        f'<div style="{_FAINT};font-size:.85em">{escape(" · ".join((outcome.replace("_", " "), *facts)))}</div></div>',
+        f'<div style="{_FAINT}">{escape(filmstrip)}</div>' if isinstance(filmstrip, str) else picture_html(filmstrip, "filmstrip"),
     ]
-    try:
-        parts.append(picture_html(run.filmstrip, "filmstrip"))
-    except TraceError as error:
-        parts.append(f'<div style="{_FAINT}">{escape(str(error))}</div>')
-    if run.calls:
-        parts.append(_table(("step", "tool", "arguments", "result", "seconds"), [_call_row(call) for call in run.calls]))
+    if calls:
+        parts.append(_table(("step", "tool", "arguments", "result", "seconds"), calls))
     return _block(parts)
 
 
-def scene_html(scene: SceneInfo) -> str:
-    """Return a scene as HTML: a short card and the contact sheet of its presets."""
-    objects = list(scene.objects.items())
-    listed = ", ".join(f"{count} {name}" for name, count in objects[:MAX_OBJECTS])
-    more = f" and {len(objects) - MAX_OBJECTS} more categories" if len(objects) > MAX_OBJECTS else ""
-    places = "; ".join(
-        f"{viewpoint}: {', '.join(name for name, of in scene.presets.items() if of == viewpoint) or 'no presets'}"
-        for viewpoint in scene.viewpoints
-    )
-    rows = [("open with", f'scope_ptz.open("{scene.name}")'), ("presets", places), ("objects", listed + more)]
-    return _block(
-        [
-            f'<div style="font-size:1.15em;font-weight:600;margin-bottom:4px">{escape(scene.title)}</div>',
-            _table((), rows),
-            picture_html(scene.contact_sheet, f"presets of {scene.name}"),
-        ]
-    )
+def card_html(title: str, rows: Iterable[Sequence[str]], picture: Image.Image) -> str:
+    """Return a card as HTML: a title, labelled lines and a picture."""
+    heading = f'<div style="font-size:1.15em;font-weight:600;margin-bottom:4px">{escape(title)}</div>'
+    return _block([heading, _table((), rows), picture_html(picture, title)])
 
 
 def table_html(title: str, header: Sequence[str], rows: Iterable[Sequence[str]], note: str = "") -> str:
@@ -83,12 +68,6 @@ def picture_html(image: Image.Image, alt: str) -> str:
     data = base64.b64encode(buffer.getvalue()).decode()
     style = "max-width:100%;border-radius:8px;margin-top:8px;display:block"
     return f'<img alt="{escape(alt)}" style="{style}" src="data:image/jpeg;base64,{data}">'
-
-
-def _call_row(call: CallResult) -> tuple[str, str, str, str, str]:
-    arguments = ", ".join(f"{name}={value}" for name, value in call.arguments.items())
-    message = call.message if call.ok else f"failed: {call.message}"
-    return str(call.step), call.name, arguments, message, f"{call.duration_s:.2f}"
 
 
 def _table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

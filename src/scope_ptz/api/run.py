@@ -235,7 +235,13 @@ class Run:
     def _repr_html_(self) -> str:
         from scope_ptz.api.notebook import run_html
 
-        return run_html(self)
+        perception = self.note.rstrip(".") or f"perception {self.perception}"
+        facts = (f"planner {self.planner}", perception, f"{self.timings.total_s:.1f} s")
+        try:
+            filmstrip: Image.Image | str = self.filmstrip
+        except TraceError as error:
+            filmstrip = str(error)
+        return run_html(self.instruction, self.answer, self.outcome, facts, filmstrip, [_row(call) for call in self.calls])
 
 
 @dataclass(frozen=True, slots=True)
@@ -281,3 +287,10 @@ def event_of(record: Started | Decided | Called) -> Event:
         case Called():
             call = CallResult.of(record)
             return Event("called", str(call), call=call)
+
+
+def _row(call: CallResult) -> tuple[str, str, str, str, str]:
+    """Return a call as a row of the table that a notebook shows."""
+    arguments = ", ".join(f"{name}={value}" for name, value in call.arguments.items())
+    message = call.message if call.ok else f"failed: {call.message}"
+    return str(call.step), call.name, arguments, message, f"{call.duration_s:.2f}"

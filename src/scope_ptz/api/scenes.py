@@ -14,6 +14,8 @@ from scope_ptz.simulator.pack import Scene, list_scenes
 if TYPE_CHECKING:
     from PIL import Image
 
+MAX_CATEGORIES = 10  # categories of objects in the card of a scene
+
 
 class SceneInfo:
     """A simulated scene: its presets and what it contains. In a notebook, a scene shows its contact sheet.
@@ -80,9 +82,16 @@ class SceneInfo:
         return f"<SceneInfo {self.name}: {len(self.viewpoints)} viewpoints, {len(self.presets)} presets>"
 
     def _repr_html_(self) -> str:
-        from scope_ptz.api.notebook import scene_html
+        from scope_ptz.api.notebook import card_html
 
-        return scene_html(self)
+        objects = list(self.objects.items())
+        listed = ", ".join(f"{count} {name}" for name, count in objects[:MAX_CATEGORIES])
+        more = f" and {len(objects) - MAX_CATEGORIES} more categories" if len(objects) > MAX_CATEGORIES else ""
+        rows = [("open with", f'scope_ptz.open("{self.name}")')]
+        for viewpoint in self.viewpoints:
+            presets = ", ".join(name for name, of in self.presets.items() if of == viewpoint)
+            rows.append((f"presets at {viewpoint}", presets or "none"))
+        return card_html(self.title, [*rows, ("objects", listed + more)], self.contact_sheet)
 
 
 def scenes() -> dict[str, SceneInfo]:
