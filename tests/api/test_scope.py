@@ -97,10 +97,20 @@ def test_frames_can_be_taken_during_a_run_but_no_second_run_begins(analytic_scen
                 break
 
 
+def cancel_when(event: threading.Event, scope: Scope) -> None:
+    """Cancel from another thread as soon as an event is set."""
+
+    def cancel() -> None:
+        event.wait()
+        scope.cancel()
+
+    threading.Thread(target=cancel).start()
+
+
 def test_cancel_from_another_thread_ends_the_run(analytic_scene: Scene) -> None:
     planner = WaitingPlanner()
     with opened(analytic_scene, planner) as scope:
-        threading.Thread(target=lambda: (planner.asked.wait(), scope.cancel())).start()
+        cancel_when(planner.asked, scope)
         run = scope.ask("wait")
     assert run.outcome == "cancelled"
     assert not run.ok
@@ -340,7 +350,7 @@ def test_a_cancelled_tool_call_is_an_error(analytic_scene: Scene) -> None:
 
     perception = WaitingPerception()
     with opened(analytic_scene, perception=perception) as scope:
-        threading.Thread(target=lambda: (perception.asked.wait(), scope.cancel())).start()
+        cancel_when(perception.asked, scope)
         with pytest.raises(ScopeError, match="cancelled"):
             scope.query_answer("what?")
 
