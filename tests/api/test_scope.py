@@ -272,7 +272,7 @@ def test_every_tool_has_a_method_with_its_arguments(name: str) -> None:
 
 
 def test_a_tool_without_a_method_is_a_method_all_the_same(analytic_scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(TOOLS, "look_home", TOOLS["go_home"])
+    monkeypatch.setitem(TOOLS._tools, "look_home", TOOLS["go_home"])
     with opened(analytic_scene) as scope:
         assert "look_home" in dir(scope)
         assert scope.look_home().message
