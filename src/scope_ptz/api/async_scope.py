@@ -25,23 +25,14 @@ from scope_ptz.geometry import Pose
 from scope_ptz.perception.base import Perception
 from scope_ptz.planner.base import PastTurn, Planner
 from scope_ptz.tools.context import ToolContext
-from scope_ptz.tools.registry import TOOLS, run_tool
 from scope_ptz.tools.count_objects import CountResult
 from scope_ptz.tools.get_presets import PresetsResult
 from scope_ptz.tools.query_answer import AnswerResult
+from scope_ptz.tools.registry import TOOLS, run_tool
 from scope_ptz.tools.results import MoveResult, Result
 from scope_ptz.tools.take_image import ImageResult
 from scope_ptz.tools.track_object import TrackResult
 from scope_ptz.tools.zoom_to_object import ZoomResult
-    AnswerResult,
-    CountResult,
-    ImageResult,
-    MoveResult,
-    PresetsResult,
-    Result,
-    TrackResult,
-    ZoomResult,
-)
 
 if TYPE_CHECKING:
     from anyio.streams.memory import MemoryObjectSendStream
