@@ -1,25 +1,35 @@
-"""Measure a planner and perception on benchmark tasks, and compare perception with and without mistakes."""
+"""Measure two planners on the same benchmark tasks and compare them by category."""
 
 import tempfile
 
 import scope_ptz
+from scope_ptz.contracts import Decision, Finish, State
+
+
+class SaysNo(scope_ptz.Planner):
+    """The baseline that never looks."""
+
+    name = "says-no"
+
+    async def step(self, state: State) -> Decision:
+        return Finish(kind="answered", text="No, there is none.")
 
 
 def main() -> None:
-    tasks = scope_ptz.load_tasks("core", limit=16)
+    tasks = scope_ptz.load_tasks("core", limit=24)
     print(f"{len(tasks)} tasks, for example: {tasks[0].instruction!r}")
 
     with tempfile.TemporaryDirectory() as out:
-        for perception in ("ground-truth", "noisy"):
-            results = scope_ptz.evaluate("grammar", perception, tasks=tasks, out=out)
-            print(f"\n{results.pair}: {results.macro:.0%} (mean of {len(results.scores)} categories)")
-            for trial in results.trials:
-                if trial.headline == "incorrect":
-                    print(f"  {trial.task.instruction!r}\n    expected {trial.task.expected!r}, got {trial.answer!r}")
+        ours = scope_ptz.evaluate("grammar", "ground-truth", tasks=tasks, out=out, pictures=False)
+        baseline = scope_ptz.evaluate(SaysNo(), "ground-truth", tasks=tasks, out=out, pictures=False)
+        print(f"\n{'category':<24}{'grammar':>10}{'says-no':>10}")
+        for category, score in ours.scores.items():
+            print(f"{category:<24}{score:>10.0%}{baseline.scores[category]:>10.0%}")
+        print(f"{'macro':<24}{ours.macro:>10.0%}{baseline.macro:>10.0%}")
 
-        table = scope_ptz.load_results(results.log).to_pandas()
-        print("\nMean duration of a run by category, in seconds:")
-        print(table.groupby("category")["total_s"].mean().round(2).to_string())
+        table = scope_ptz.load_results(ours.log).to_pandas()
+        print("\nWhy runs of the grammar failed:")
+        print(table["error_mode"].value_counts().to_string())
 
 
 if __name__ == "__main__":

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from scope_ptz.api.borrowed import BorrowedPerception, BorrowedPlanner
 from scope_ptz.api.event_loop import run_in_thread
 from scope_ptz.api.options import ServedModels
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import OutputError, TraceError
+from scope_ptz.factory.models import ModelOptions
 from scope_ptz.perception.base import Perception
 from scope_ptz.planner.base import Planner
 
@@ -86,7 +88,7 @@ def _options(request: EvaluationRequest) -> EvaluationOptions:
         timeout_s=request.timeout_s,
     )
     return EvaluationOptions(
-        models=served.model_options(request.planner, request.perception),
+        models=_borrowed(served.model_options(request.planner, request.perception)),
         out=request.out,
         tasks=_task_file(request.tasks, request.out) if isinstance(request.tasks, tuple) else str(request.tasks),
         categories=request.categories,
@@ -100,6 +102,16 @@ def _options(request: EvaluationRequest) -> EvaluationOptions:
         concurrency=request.concurrency,
         pictures=request.pictures,
         fresh=request.fresh,
+    )
+
+
+def _borrowed(models: ModelOptions) -> ModelOptions:
+    """Protect the caller's objects from being closed at the end of the evaluation."""
+    planner, perception = models.own_planner, models.own_perception
+    return replace(
+        models,
+        own_planner=None if planner is None else BorrowedPlanner(planner),
+        own_perception=None if perception is None else BorrowedPerception(perception),
     )
 
 

@@ -28,10 +28,10 @@ class EvaluationResults:
 
     Example:
         >>> import scope_ptz, tempfile
-        >>> tasks = scope_ptz.load_tasks("core", categories=["spatial_navigation"], limit=2)
+        >>> tasks = scope_ptz.load_tasks("core", categories=["single_call"], limit=2)
         >>> results = scope_ptz.evaluate(tasks=tasks, out=tempfile.mkdtemp(), pictures=False)
         >>> results.scores
-        {'spatial_navigation': 1.0}
+        {'single_call': 1.0}
         >>> [trial.headline for trial in results.trials]
         ['correct', 'correct']
     """
@@ -145,14 +145,14 @@ def load_tasks(
         >>> len(tasks), len({task.category for task in tasks})
         (8, 8)
     """
-    from scope_ptz.bench.engine.entries import chosen
+    from scope_ptz.bench.engine.entries import select
     from scope_ptz.factory.evaluation import tasks_of
     from scope_ptz.factory.scenes import scene_search
     from scope_ptz.settings import load_settings
     from scope_ptz.simulator.library import Library
 
     entries = tasks_of(str(tasks), Library(scene_search(load_settings())))
-    selected = chosen(entries, _names("categories", categories), _names("scenes", scenes), limit)
+    selected = select(entries, _names("categories", categories), _names("scenes", scenes), limit)
     loaded = tuple(entry.task for entry in selected if entry.task is not None)
     if len(loaded) < len(selected):
         raise InputError(f"{tasks} holds imported tasks, which only a judge can score. Pass its path to evaluate(tasks=...).")
@@ -221,7 +221,7 @@ def evaluate(
 
     Example:
         >>> import scope_ptz, tempfile
-        >>> tasks = scope_ptz.load_tasks("core", categories=["spatial_navigation"], limit=2)
+        >>> tasks = scope_ptz.load_tasks("core", categories=["single_call"], limit=2)
         >>> results = scope_ptz.evaluate("grammar", "ground-truth", tasks=tasks, out=tempfile.mkdtemp(), pictures=False)
         >>> results.macro
         1.0
@@ -254,7 +254,7 @@ def load_results(path: str | PathLike[str]) -> EvaluationResults:
     Example:
         >>> import scope_ptz, tempfile
         >>> out = tempfile.mkdtemp()
-        >>> tasks = scope_ptz.load_tasks("core", categories=["spatial_navigation"], limit=1)
+        >>> tasks = scope_ptz.load_tasks("core", categories=["single_call"], limit=1)
         >>> ran = scope_ptz.evaluate(tasks=tasks, out=out, pictures=False)
         >>> scope_ptz.load_results(out).scores == ran.scores
         True
