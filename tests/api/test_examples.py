@@ -24,6 +24,7 @@ def test_every_example_is_run() -> None:
     assert {path.name for path in EXAMPLES.glob("*.py")} == set(EXPECTED)
 
 
+@pytest.mark.usefixtures("opened_once")
 @pytest.mark.parametrize("name", EXPECTED)
 def test_programs(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.chdir(tmp_path)
@@ -31,7 +32,6 @@ def test_programs(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ca
     assert EXPECTED[name] in capsys.readouterr().out
 
 
-@pytest.mark.filterwarnings("default")  # the kernel's client uses what newer versions of its own parts deprecate
 def test_the_notebook(tmp_path: Path) -> None:
     notebook = nbformat.read(EXAMPLES / "tutorial.ipynb", as_version=4)
     cells = [cell for cell in notebook.cells if cell.cell_type == "code"]

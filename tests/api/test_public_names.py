@@ -87,11 +87,12 @@ def test_members_of_classes_are_documented(name: str) -> None:
             assert inspect.getdoc(getattr(kind, member)), f"{name}.{member}"
 
 
-@pytest.mark.parametrize("name", CLASSES)
+@pytest.mark.parametrize("name", [*OURS, *ERRORS])
 def test_classes_say_what_they_are(name: str) -> None:
     assert (inspect.getdoc(getattr(scope_ptz, name)) or "").split("\n")[0].strip().endswith(".")
 
 
+@pytest.mark.usefixtures("opened_once")
 @pytest.mark.parametrize("name", [*FUNCTIONS, *OURS])
 def test_examples_in_docstrings_run(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
