@@ -33,7 +33,7 @@ def test_programs(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ca
 
 
 def test_the_notebook(tmp_path: Path) -> None:
-    notebook = nbformat.read(EXAMPLES / "tutorial.ipynb", as_version=4)
+    notebook = nbformat.read(EXAMPLES / "tutorial.ipynb", as_version=4)  # type: ignore[no-untyped-call]
     cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
     assert not any(cell.outputs for cell in cells), "outputs are not stored: the documentation runs the notebook"
     NotebookClient(notebook, timeout=300, kernel_name="python3", resources={"metadata": {"path": str(tmp_path)}}).execute()
