@@ -9,7 +9,7 @@ import anyio
 import numpy as np
 
 from scope_ptz.agent.loop import Agent
-from scope_ptz.agent.records import Budgets, Labels
+from scope_ptz.agent.records import Budgets, RunLabels
 from scope_ptz.agent.store import NoImages
 from scope_ptz.camera.base import Arrival, Camera, CameraInfo, Frame, PresetInfo
 from scope_ptz.errors import UnknownNameError
@@ -137,5 +137,5 @@ def make_agent(
 ) -> Agent:
     """An agent of stand-ins."""
     planner, eyes = ScriptedPlanner(*script), ScriptedPerception(*counts)
-    labels = Labels(perception_note="scripted, for tests", seed=7)
+    labels = RunLabels(perception_note="scripted, for tests", seed=7)
     return Agent(planner, camera or ScriptedCamera(), eyes, images or NoImages(), budgets=budgets, labels=labels)

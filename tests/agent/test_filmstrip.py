@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from scope_ptz.agent.contact_sheet import contact_sheet
 from scope_ptz.agent.drawing import cut, drawable, width_of, wrap
 from scope_ptz.agent.filmstrip import WIDTH, draw_filmstrip, write_filmstrip
 from scope_ptz.agent.panels import panels_of
 from scope_ptz.agent.records import Budgets
-from scope_ptz.agent.sheet import contact_sheet
 from scope_ptz.agent.store import RunFolder
 from scope_ptz.agent.trace import Trace, TraceWriter, read_trace
 from scope_ptz.errors import TraceError

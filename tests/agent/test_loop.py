@@ -7,7 +7,7 @@ from typing import Any
 import anyio
 import pytest
 
-from scope_ptz.agent.records import Budgets, Called, Ended, Run, Started
+from scope_ptz.agent.records import Budgets, Called, Ended, RunResult, Started
 from scope_ptz.camera.base import Arrival
 from scope_ptz.errors import CameraError, InputError, PackError, PerceptionError, PlannerError
 from scope_ptz.geometry import Pose
@@ -18,11 +18,11 @@ MOVE = ("adjust_ptz", {"pan_deg": 15.0})
 COUNT = ("count_objects", {"description": "cones"})
 
 
-def run(*script: Any, **options: Any) -> tuple[Run, list[Any]]:
+def run(*script: Any, **options: Any) -> tuple[RunResult, list[Any]]:
     records: list[Any] = []
     conversation = options.pop("conversation", ())
 
-    async def work() -> Run:
+    async def work() -> RunResult:
         return await make_agent(*script, **options).run("do it", conversation=conversation, listener=records.append)
 
     return anyio.run(work), records

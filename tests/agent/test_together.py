@@ -8,10 +8,10 @@ from typing import Any
 import anyio
 import pytest
 
-from scope_ptz.agent.calls import MOST_AT_ONCE, batches
-from scope_ptz.agent.records import Budgets, Called, Decided, Run
+from scope_ptz.agent.records import Budgets, Called, Decided, RunResult
 from scope_ptz.agent.replay import replay
 from scope_ptz.agent.store import NoImages, RunFolder
+from scope_ptz.agent.tool_calls import MAX_CONCURRENT_CALLS, batches
 from scope_ptz.agent.trace import TraceWriter, read_trace
 from scope_ptz.camera.base import Frame
 from scope_ptz.endpoints.failures import Attempt, FailureKind
@@ -58,7 +58,7 @@ class SlowEyes(ScriptedPerception):
         return Answer(source=self.name, text=str(await self._look(frame, question)))
 
 
-def run(*script: Any, eyes: Any = None, **options: Any) -> tuple[Run, list[Any]]:
+def run(*script: Any, eyes: Any = None, **options: Any) -> tuple[RunResult, list[Any]]:
     records: list[Any] = []
     agent = make_agent(*script, **options)
     agent.perception = eyes or SlowEyes()
@@ -74,7 +74,10 @@ def test_only_neighbours_that_look_at_the_view_of_now_go_together() -> None:
     assert named(CONES, MOVE, CARS, COLOUR) == [[0], [1], [2, 3]]
     assert named(CONES, SWEEP, CARS) == [[0], [1], [2]]
     assert named(CONES, WRONG, ("nonsense", {}), CARS) == [[0], [1], [2], [3]]
-    assert named(*[CONES] * (MOST_AT_ONCE + 2)) == [list(range(MOST_AT_ONCE)), [MOST_AT_ONCE, MOST_AT_ONCE + 1]]
+    assert named(*[CONES] * (MAX_CONCURRENT_CALLS + 2)) == [
+        list(range(MAX_CONCURRENT_CALLS)),
+        [MAX_CONCURRENT_CALLS, MAX_CONCURRENT_CALLS + 1],
+    ]
     broken = ToolCall(id="a", name="count_objects", arguments={"description": "cones"}, problem="cut off")
     assert list(batches([broken, *calls(CARS).calls])) == [[0], [1]]
 

@@ -43,7 +43,7 @@ def test_the_entry_point_is_installed() -> None:
 
 
 def test_version(scope: Scope) -> None:
-    from scope_ptz import __version__
+    from scope_ptz.version import __version__
 
     done = scope("--version")
     assert (done.code, done.out) == (0, f"scope-ptz {__version__}\n")

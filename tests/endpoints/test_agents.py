@@ -11,7 +11,7 @@ import pytest
 from pydantic import SecretStr
 
 from scope_ptz.agent.loop import Agent
-from scope_ptz.agent.records import Called, Ended, Run
+from scope_ptz.agent.records import Called, Ended, RunResult
 from scope_ptz.agent.store import NoImages
 from scope_ptz.agent.trace import TraceWriter
 from scope_ptz.endpoints.calls import Caller
@@ -56,7 +56,7 @@ def eyes_at(url: str, backend: str, patience: Timeouts = PATIENT) -> Perception:
 class Told:
     """A finished run, all that was recorded of it, and the trace that was written."""
 
-    def __init__(self, run: Run, records: list[Any], trace: str) -> None:
+    def __init__(self, run: RunResult, records: list[Any], trace: str) -> None:
         self.run, self.ended, self.trace = run, run.ended, trace
         self.calls = [record for record in records if isinstance(record, Called)]
 

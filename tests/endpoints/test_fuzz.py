@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from scope_ptz.agent.loop import Agent
-from scope_ptz.agent.records import Called, Run
+from scope_ptz.agent.records import Called, RunResult
 from scope_ptz.agent.store import NoImages
 from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.perception.backends import make_backend
@@ -93,7 +93,7 @@ def ruined_chat(say: Say, rng: random.Random) -> Behaviour:
     return behave
 
 
-async def run(planner: Planner, eyes: Perception) -> tuple[Run, list[Called]]:
+async def run(planner: Planner, eyes: Perception) -> tuple[RunResult, list[Called]]:
     records: list[Any] = []
     try:
         done = await Agent(planner, ScriptedCamera(), eyes, NoImages()).run("count the cones", listener=records.append)

@@ -11,7 +11,7 @@ import pytest
 from pydantic import SecretStr
 
 from scope_ptz.agent.loop import Agent
-from scope_ptz.agent.records import Budgets, Decided, Run, Started
+from scope_ptz.agent.records import Budgets, Decided, RunResult, Started
 from scope_ptz.agent.store import NoImages
 from scope_ptz.endpoints.endpoint import Endpoint, Timeouts
 from scope_ptz.planner.chat import ChatOptions, ChatPlanner
@@ -27,7 +27,7 @@ LOOK = ("count_objects", {"description": "cones"})
 
 async def ask(
     url: str, *, instruction: str = "find the cones", counts: Sequence[int] = (4,), records: list[Any] | None = None, **options: Any
-) -> Run:
+) -> RunResult:
     patience = Timeouts(first_byte_s=5, total_s=10)
     endpoint = Endpoint(url=url, model=options.pop("model", "m"), key=SecretStr(KEY), retries=1, timeouts=patience)
     planner = ChatPlanner(endpoint, ChatOptions(**options))

@@ -1,1 +1,1 @@
-"""The agent loop: state, budgets, trace, replay."""
+"""The agent: the loop that carries out an instruction, the trace that records it, replays and filmstrips."""

@@ -1,4 +1,4 @@
-"""Typography and marks of the filmstrip. Everything is drawn at twice its size and scaled down, which smooths edges and text."""
+"""Drawing primitives of filmstrips. Everything is drawn at twice its size and scaled down, which smooths edges and text."""
 
 from __future__ import annotations
 
@@ -7,8 +7,7 @@ from functools import lru_cache
 
 from PIL import Image, ImageDraw, ImageFont
 
-SCALE = 2
-"""Drawing pixels per picture pixel."""
+SCALE = 2  # drawing pixels per picture pixel
 
 GROUND = "#0E131A"
 SURFACE = "#18202B"
@@ -21,11 +20,11 @@ AMBER = "#FFC94A"
 RED = "#FF7B6E"
 
 _STAND_INS = str.maketrans({"×": "x", "–": "-", "—": "-", "−": "-", "→": ">", "‑": "-"})
-_BOLD = 0.28  # Width of the stroke that thickens the one built-in weight, per picture pixel of line width at size 16.
+_BOLD = 0.28  # picture pixels; stroke width that makes the built-in font bold at size 16
 
 
 def drawable(text: str) -> str:
-    """The text on one line, in characters that the built-in font has: accents are dropped, unknown ones become "?"."""
+    """Return the text on one line in characters that the built-in font has. Accents are dropped; other characters become "?"."""
     return "".join(_drawable(c) for c in " ".join(text.translate(_STAND_INS).split()))
 
 
@@ -38,17 +37,17 @@ def _drawable(character: str) -> str:
 
 @lru_cache(maxsize=32)
 def _font(size: float) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
-    """The font that Pillow carries, ``size`` in picture pixels: the same on every machine."""
+    """Return Pillow's built-in font, which is the same on every machine. ``size`` is in picture pixels."""
     return ImageFont.load_default(size * SCALE)
 
 
 def width_of(text: str, size: float) -> float:
-    """Width of a line in picture pixels."""
+    """Return the width of a line of text in picture pixels."""
     return _font(size).getlength(text) / SCALE
 
 
 def cut(text: str, size: float, width: float) -> str:
-    """The text, ended by an ellipsis when it is wider than ``width``."""
+    """Shorten a text to ``width`` picture pixels. A shortened text ends with an ellipsis."""
     if width_of(text, size) <= width:
         return text
     while text and width_of(text + "…", size) > width:
@@ -57,7 +56,7 @@ def cut(text: str, size: float, width: float) -> str:
 
 
 def wrap(text: str, size: float, width: float, max_lines: int) -> list[str]:
-    """Lines no wider than ``width``; the last one is cut when there are more."""
+    """Wrap a text into at most ``max_lines`` lines of ``width`` picture pixels. The last line of a longer text is shortened."""
     lines, words = [""], drawable(text).split()
     for word in words:
         longer = f"{lines[-1]} {word}".strip()
@@ -71,7 +70,7 @@ def wrap(text: str, size: float, width: float, max_lines: int) -> list[str]:
 
 
 class Canvas:
-    """A picture under way. All lengths are in picture pixels."""
+    """A picture that is being drawn. All lengths are in picture pixels."""
 
     def __init__(self, width: float, height: float) -> None:
         self.width, self.height = width, height
@@ -81,12 +80,12 @@ class Canvas:
     def panel(
         self, x: float, y: float, width: float, height: float, fill: str, *, radius: float = 10, edge: str | None = None
     ) -> None:
-        """A rounded rectangle; ``fill`` may carry alpha (#RRGGBBAA)."""
+        """Draw a rounded rectangle. ``fill`` may have an alpha channel (#RRGGBBAA)."""
         box = tuple(round(v * SCALE) for v in (x, y, x + width, y + height))
         self._draw.rounded_rectangle(box, round(radius * SCALE), fill=fill, outline=edge, width=SCALE)
 
     def text(self, x: float, y: float, text: str, size: float, fill: str = INK, *, bold: bool = False, anchor: str = "ls") -> None:
-        """A line of text; ``anchor`` as in Pillow ("ls": left end of the baseline)."""
+        """Draw a line of text. ``anchor`` is Pillow's text anchor ("ls": left end of the baseline)."""
         stroke = _BOLD * SCALE * size / 16 if bold else 0
         self._draw.text(
             (x * SCALE, y * SCALE),
@@ -99,21 +98,32 @@ class Canvas:
         )
 
     def picture(self, image: Image.Image, x: float, y: float, width: float, height: float, *, radius: float = 10) -> None:
-        """An image, scaled to fit, with rounded corners."""
+        """Draw an image, scaled to the given size, with rounded corners."""
         size = (round(width * SCALE), round(height * SCALE))
         mask = Image.new("L", size, 0)
         ImageDraw.Draw(mask).rounded_rectangle((0, 0, size[0] - 1, size[1] - 1), round(radius * SCALE), fill=255)
         self._image.paste(image.resize(size, Image.Resampling.LANCZOS), (round(x * SCALE), round(y * SCALE)), mask)
 
     def frame(self, x: float, y: float, width: float, height: float, colour: str) -> None:
-        """A thin box around something, legible on light and dark ground."""
+        """Draw a thin box that shows on light and dark backgrounds."""
         for grow, thickness, fill in ((1.2, 4.2, "#0E131AB0"), (0.0, 2.0, colour)):
             edges = (x - grow, y - grow, x + width + grow, y + height + grow)
             box = tuple(round(v * SCALE) for v in edges)
             self._draw.rounded_rectangle(box, round(3 * SCALE), outline=fill, width=round(thickness * SCALE))
 
     def tag(self, x: float, y: float, text: str, size: float, *, fill: str, ink: str, pad: float = 7, anchor: str = "l") -> float:
-        """A pill with text whose middle line is at ``y``; ``anchor`` says which end is at ``x``. Gives its width."""
+        """Draw a text on a rounded background and return its width.
+
+        Args:
+            x: position of the left end, right end or middle, as ``anchor`` says.
+            y: position of the vertical middle.
+            text: the text.
+            size: font size.
+            fill: background colour.
+            ink: text colour.
+            pad: space on each side of the text.
+            anchor: "l", "r" or "m".
+        """
         text = drawable(text)
         width, height = max(width_of(text, size) + 2 * pad, size * 1.55), size * 1.55
         left = {"l": x, "r": x - width, "m": x - width / 2}[anchor]
@@ -122,7 +132,7 @@ class Canvas:
         return width
 
     def arrow(self, x: float, y: float, colour: str) -> float:
-        """A small arrow pointing right, its shaft at ``y``. Gives its width."""
+        """Draw a small arrow that points right, with its shaft at ``y``, and return its width."""
         width = 16.0
         points = [(x + width - 6, y - 4.5), (x + width, y), (x + width - 6, y + 4.5)]
         self._draw.line([(x * SCALE, y * SCALE), ((x + width - 1) * SCALE, y * SCALE)], fill=colour, width=2 * SCALE)
@@ -130,5 +140,5 @@ class Canvas:
         return width
 
     def finish(self) -> Image.Image:
-        """The picture at its own size."""
+        """Return the finished picture, scaled down to its own size."""
         return self._image.resize((round(self.width), round(self.height)), Image.Resampling.LANCZOS)

@@ -1,8 +1,10 @@
-"""``filmstrip.png``: a whole run in one picture, in the manner of the paper's Figure 1."""
+"""Filmstrips: a whole run in one picture, in the style of the paper's Figure 1."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 
 from PIL import Image
@@ -32,10 +34,9 @@ MARGIN = 32
 GAP = 20
 CAPTION = 60
 MAX_PANELS = 12
-NUMBERED_UP_TO = 40
-"""Boxes are numbered up to this many; more would be clutter."""
+MAX_NUMBERED_BOXES = 40  # boxes in a panel; numbers on more of them would cover the picture
 
-_AIR = 2.0  # Between a thing and its box, so that the box does not cover small things.
+_AIR = 2.0  # picture pixels between an object and its box, so that the box does not cover small objects
 _HEADLINES = {
     "answered": ("ANSWER", GREEN),
     "clarification": ("QUESTION BACK", AMBER),
@@ -49,7 +50,15 @@ _HEADLINES = {
 
 
 def write_filmstrip(trace: Trace) -> Path | None:
-    """Draw the filmstrip into the run folder. None when the run kept no picture at all."""
+    """Draw the filmstrip of a run and write it to the run folder.
+
+    Returns:
+        The path, or None when the run has no pictures.
+
+    Raises:
+        OutputError: the file cannot be written.
+        TraceError: a picture of the run is missing or damaged.
+    """
     image = draw_filmstrip(trace)
     if image is None:
         return None
@@ -61,17 +70,28 @@ def write_filmstrip(trace: Trace) -> Path | None:
     return path
 
 
-def draw_filmstrip(trace: Trace) -> Image.Image | None:
-    """The picture, ``WIDTH`` pixels wide."""
+def draw_filmstrip(trace: Trace, files: Mapping[str, bytes] | None = None) -> Image.Image | None:
+    """Draw the filmstrip of a run, ``WIDTH`` pixels wide.
+
+    Args:
+        trace: the run.
+        files: encoded pictures by name, of a run that was kept in memory; None reads them from the run folder.
+
+    Returns:
+        The picture, or None when the run has no pictures.
+
+    Raises:
+        TraceError: a picture of the run is missing or damaged.
+    """
     panels = [p for p in panels_of(trace) if p.file is not None]
     if not panels:
         return None
     shown, left_out = _elide(panels)
-    rows = _rows([_Tile(panel, _open(trace.folder, panel)) for panel in shown])
+    rows = _rows([_Tile(panel, open_picture(panel.file or "", trace.folder, files)) for panel in shown])
     heights = [_row_height(row) for row in rows]
     head = _Banner("INSTRUCTION", CYAN, trace.started.instruction)
-    label, colour = _HEADLINES[trace.ended.outcome] if trace.ended else ("CUT OFF", RED)
-    tail = _Banner(label, colour, trace.ended.text if trace.ended else "The program ended before the run was over.")
+    label, colour = _HEADLINES[trace.ended.outcome] if trace.ended else ("INTERRUPTED", RED)
+    tail = _Banner(label, colour, trace.ended.text if trace.ended else "The program ended before the run did.")
     total = MARGIN + head.height + GAP + sum(heights) + GAP * len(rows) + tail.height + 22 + MARGIN
     canvas = Canvas(WIDTH, total)
     head.draw(canvas, MARGIN)
@@ -95,7 +115,7 @@ class _Tile:
 
 
 class _Banner:
-    """A labelled line or three of text across the whole picture."""
+    """A labelled panel with up to three lines of text across the whole picture."""
 
     def __init__(self, label: str, colour: str, text: str) -> None:
         self._label, self._colour = label, colour
@@ -112,17 +132,27 @@ class _Banner:
             canvas.text(MARGIN + 34, y + 40 + (number + 0.85) * self._size * 1.3, line, self._size, INK, bold=True)
 
 
-def _open(folder: Path, panel: Panel) -> Image.Image:
-    path = picture_of(folder, panel.file or "")
+def open_picture(name: str, folder: Path, files: Mapping[str, bytes] | None = None) -> Image.Image:
+    """Open a picture of a run.
+
+    Args:
+        name: name of the picture in the trace.
+        folder: the run folder.
+        files: encoded pictures by name, of a run that was kept in memory; None reads the run folder.
+
+    Raises:
+        TraceError: the picture is missing or damaged.
+    """
+    path = picture_of(folder, name)
     try:
-        with Image.open(path) as image:
+        with Image.open(path if files is None else BytesIO(files.get(name, b""))) as image:
             return image.convert("RGB")
     except OSError as error:
         raise TraceError(f"The picture {path} of the run is missing or damaged.") from error
 
 
 def _elide(panels: list[Panel]) -> tuple[list[Panel], int]:
-    """At most ``MAX_PANELS``: the beginning and the end of a longer run, and how many are left out."""
+    """Return at most ``MAX_PANELS`` panels, the first and the last of a longer run, and the number of omitted panels."""
     if len(panels) <= MAX_PANELS:
         return panels, 0
     first = MAX_PANELS // 2 - 1
@@ -130,7 +160,7 @@ def _elide(panels: list[Panel]) -> tuple[list[Panel], int]:
 
 
 def _rows(tiles: list[_Tile]) -> list[list[_Tile]]:
-    """Panoramas get a row each; what stands between them is spread evenly over rows, fuller ones first."""
+    """Arrange tiles in rows. Each panorama has a row of its own; the tiles between panoramas fill rows evenly."""
     rows: list[list[_Tile]] = []
     group: list[_Tile] = []
     for tile in [*tiles, None]:
@@ -158,7 +188,7 @@ def _spread(group: list[_Tile]) -> list[list[_Tile]]:
 
 
 def _picture_height(row: list[_Tile]) -> float:
-    """Height at which the pictures of a row fill its width side by side; a lone picture is kept from being huge."""
+    """Return the height at which the pictures of a row fill its width. The limit keeps a single picture from being huge."""
     return min((WIDTH - 2 * MARGIN - GAP * (len(row) - 1)) / sum(tile.aspect for tile in row), 640.0)
 
 
@@ -195,9 +225,9 @@ def _draw_boxes(canvas: Canvas, panel: Panel, x: float, y: float, width: float, 
     for box in panel.boxes:
         left, top = x + box.x_min * width - _AIR, y + box.y_min * height - _AIR
         canvas.frame(left, top, box.width * width + 2 * _AIR, box.height * height + 2 * _AIR, AMBER)
-    if not panel.badge or len(panel.boxes) > NUMBERED_UP_TO:
+    if not panel.badge or len(panel.boxes) > MAX_NUMBERED_BOXES:
         return
-    # Numbers run from left to right, as people count, whatever order perception found the things in.
+    # Numbers run from left to right, as people count, whatever the order of the detections.
     for number, box in enumerate(sorted(panel.boxes, key=lambda b: b.centre[0]), 1):
         top = y + box.y_min * height - 11 - _AIR
         at_y = top if top > y + 10 else y + box.y_max * height + 11 + _AIR
@@ -205,27 +235,27 @@ def _draw_boxes(canvas: Canvas, panel: Panel, x: float, y: float, width: float, 
 
 
 def _draw_caption(canvas: Canvas, panel: Panel, x: float, y: float, width: float) -> None:
-    """``2  pan right 15° -> 4 cones``; the finding goes to a second line when both do not fit on one."""
+    """Draw ``2  pan right 15° -> 4 cones``. The finding goes to a second line when both halves do not fit on one."""
     chip = canvas.tag(x, y, str(panel.number), 17, fill=CYAN, ink=GROUND, pad=7) + 12 if panel.number else 0.0
-    left, room, colour = x + chip, width - chip, RED if panel.failed else AMBER
+    left, available, colour = x + chip, width - chip, RED if panel.failed else AMBER
     action, finding = drawable(panel.action), drawable(panel.finding)
-    if width_of(action, 20) + 36 + width_of(finding, 20) <= room or not finding:
-        shown = cut(action, 20, room)
+    if width_of(action, 20) + 36 + width_of(finding, 20) <= available or not finding:
+        shown = cut(action, 20, available)
         canvas.text(left, y, shown, 20, INK, anchor="lm")
         if finding:
             at = left + width_of(shown, 20) + 12
             at += canvas.arrow(at, y, FAINT) + 9
             canvas.text(at, y, finding, 20, colour, bold=True, anchor="lm")
         return
-    canvas.text(left, y - 13, cut(action, 18, room), 18, INK, anchor="lm")
+    canvas.text(left, y - 13, cut(action, 18, available), 18, INK, anchor="lm")
     at = left + canvas.arrow(left, y + 13, FAINT) + 8
-    canvas.text(at, y + 13, cut(finding, 18, room - 26), 18, colour, bold=True, anchor="lm")
+    canvas.text(at, y + 13, cut(finding, 18, available - 26), 18, colour, bold=True, anchor="lm")
 
 
 def _draw_footer(canvas: Canvas, trace: Trace, left_out: int, y: float) -> None:
     started = trace.started
-    eyes = started.labels.perception_note.rstrip(".") or f"Perception: {started.perception}"
-    canvas.text(MARGIN + 4, y, f"SCOPE · {started.camera} · Planner: {started.planner} · {eyes}", 15, FAINT)
+    perception = started.labels.perception_note.rstrip(".") or f"Perception: {started.perception}"
+    canvas.text(MARGIN + 4, y, f"SCOPE · {started.camera} · Planner: {started.planner} · {perception}", 15, FAINT)
     if left_out:
         note = f"steps {MAX_PANELS // 2} to {MAX_PANELS // 2 + left_out - 1} are not shown"
         canvas.text(WIDTH - MARGIN - 4, y, note, 15, FAINT, anchor="rs")

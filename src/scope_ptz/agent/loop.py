@@ -1,6 +1,6 @@
 """The agent loop: the paper's recurrence over S_t = (U, H_t, O_t), with budgets and typed outcomes.
 
-There is one code path. Who wants to watch passes a listener, who does not simply awaits the end.
+Every run takes the same code path. A listener receives each record as it is made; without a listener, the caller awaits the result.
 """
 
 from __future__ import annotations
@@ -12,11 +12,10 @@ from datetime import UTC, datetime
 
 import anyio
 
-from scope_ptz import __version__
-from scope_ptz.agent.calls import Calls, End, RunTool, in_words
-from scope_ptz.agent.records import Budgets, Decided, Ended, Labels, Listener, Place, Run, Started
-from scope_ptz.agent.seeing import newest_view
+from scope_ptz.agent.planner_views import newest_view
+from scope_ptz.agent.records import Budgets, Decided, Ended, Listener, RecordedPose, RunLabels, RunResult, Started
 from scope_ptz.agent.timing import Stopwatch, server_events, wasted
+from scope_ptz.agent.tool_calls import CallRunner, RunEnd, RunTool, in_words
 from scope_ptz.camera.base import Camera
 from scope_ptz.endpoints.failures import count_failures
 from scope_ptz.errors import CameraError, InputError, OutputError, PackError, PlannerError
@@ -25,13 +24,14 @@ from scope_ptz.perception.base import Perception
 from scope_ptz.planner.base import Briefing, CallTools, Decision, Exchange, Finish, PastTurn, Planner, State, Usage
 from scope_ptz.tools.context import ImageStore
 from scope_ptz.tools.registry import TOOLS, ToolRegistry
+from scope_ptz.version import __version__
 
-MAX_INSTRUCTION_CHARS = 4000
-STOP_TIMEOUT_S = 5.0
+MAX_INSTRUCTION_CHARS = 4000  # longer instructions raise InputError
+STOP_TIMEOUT_S = 5.0  # limit for stopping the camera and reading its pose at the end of a run
 
 
 class Agent:
-    """A planner, a camera and perception put together. Holds nothing between runs."""
+    """A planner, a camera and a perception backend that carry out instructions. An agent keeps no state between runs."""
 
     def __init__(
         self,
@@ -41,28 +41,47 @@ class Agent:
         images: ImageStore,
         *,
         budgets: Budgets | None = None,
-        labels: Labels | None = None,
+        labels: RunLabels | None = None,
         snapshots: bool = True,
         tools: ToolRegistry = TOOLS,
         run_tool: RunTool | None = None,
     ) -> None:
-        """``snapshots``: keep the first view and the view after each move; tools keep what perception looks at in any case.
+        """Put an agent together.
 
-        ``tools``: the tools that the planner can call. ``run_tool``: runs the calls in place of ``tools.run``.
+        Args:
+            planner: decides on the next step.
+            camera: carries out the moves and takes the frames.
+            perception: answers questions about frames.
+            images: stores the pictures of the run.
+            budgets: limits on steps, time and tokens; the defaults of ``Budgets`` when None.
+            labels: facts about the run that the loop cannot know and that the trace should hold.
+            snapshots: whether to store the first view and the view after each move. Frames that perception reads are always stored.
+            tools: the tools that the planner can call.
+            run_tool: runs the calls in place of ``tools.run``. Pass a wrapper around it to observe the calls.
         """
         self.planner, self.camera, self.perception, self.images = planner, camera, perception, images
-        self.budgets, self.labels, self.snapshots = budgets or Budgets(), labels or Labels(), snapshots
+        self.budgets, self.labels, self.snapshots = budgets or Budgets(), labels or RunLabels(), snapshots
         self.tools, self.run_tool = tools, run_tool
 
-    async def run(self, instruction: str, *, conversation: tuple[PastTurn, ...] = (), listener: Listener = lambda _: None) -> Run:
+    async def run(
+        self, instruction: str, *, conversation: tuple[PastTurn, ...] = (), listener: Listener = lambda _: None
+    ) -> RunResult:
         """Carry out an instruction.
+
+        Args:
+            instruction: what the camera should do, in plain language.
+            conversation: earlier turns that the instruction may refer to.
+            listener: receives each record of the run as it is made.
+
+        Returns:
+            The finished run. A planner or camera that fails during the run gives an outcome, not an exception.
 
         Raises:
             InputError: the instruction is empty or too long, or a file cannot be written.
             PackError: the scene's files are damaged.
-            CameraError: the camera does not answer before the first step. Later failures are outcomes of the run.
+            CameraError: the camera does not answer before the first step.
         """
-        # Bytes of a command line that are no text become "?": no file and no server takes them.
+        # Undecodable bytes of a command line become "?", because neither files nor servers accept them.
         instruction = instruction.encode("utf-8", "replace").decode().strip()
         if not instruction:
             raise InputError("The instruction is empty. Say what the camera should do.")
@@ -72,12 +91,12 @@ class Agent:
 
 
 class _Episode:
-    """One run's state."""
+    """The state of one run."""
 
     def __init__(self, agent: Agent, instruction: str, conversation: tuple[PastTurn, ...], listener: Listener) -> None:
         self.agent, self.instruction, self.conversation, self.emit = agent, instruction, conversation, listener
         self.watch = Stopwatch()
-        self.calls = Calls(
+        self.calls = CallRunner(
             agent.camera,
             agent.perception,
             agent.images,
@@ -94,30 +113,30 @@ class _Episode:
         self.steps = 0
         self.usage = Usage()
 
-    async def run(self) -> Run:
+    async def run(self) -> RunResult:
         briefing = await self._start()
         try:
             with anyio.move_on_after(self.agent.budgets.time_s) as time_limit:
                 end = await self._steps(briefing)
             if time_limit.cancelled_caught:
-                end = End("budget", f"The time budget of {self.agent.budgets.time_s:g} s is spent.")
+                end = RunEnd("budget", f"The time budget of {self.agent.budgets.time_s:g} s is spent.")
         except anyio.get_cancelled_exc_class():
-            await self._finish(End("cancelled", "The run was cancelled."))
+            await self._finish(RunEnd("cancelled", "The run was cancelled."))
             raise
         except (PackError, OutputError) as error:
-            # Not the agent's doing and not to be tried again: it is recorded and whoever started the run hears of it.
+            # The agent did not cause this and cannot recover from it: record it, then raise it to the caller.
             with suppress(OutputError):
-                await self._finish(End("camera_error", str(error)))
+                await self._finish(RunEnd("camera_error", str(error)))
             raise
         ended = await self._finish(end)
-        start = Place.of(self.start)
-        return Run(instruction=self.instruction, start=start, exchanges=tuple(self.history), ended=ended)
+        start = RecordedPose.of(self.start)
+        return RunResult(instruction=self.instruction, start=start, exchanges=tuple(self.history), ended=ended)
 
     async def _start(self) -> Briefing:
         agent, info = self.agent, self.camera.info
         presets = tuple(p.name for p in await self.camera.presets())
         self.start = self.calls.pose = await self.camera.pose()
-        # The first frame tells scene and viewpoint, and shows before anything moves that pictures can be had.
+        # The first frame names the scene and the viewpoint, and proves that the camera delivers frames before anything moves.
         frame = await self.camera.frame()
         self.emit(
             Started(
@@ -135,7 +154,7 @@ class _Episode:
                 scene=frame.origin.scene if frame.origin else None,
                 viewpoint=frame.origin.viewpoint if frame.origin else None,
                 scene_time_s=self.camera.clock.now_s(),
-                pose=Place.of(self.start),
+                pose=RecordedPose.of(self.start),
                 presets=presets,
                 budgets=agent.budgets,
                 labels=agent.labels,
@@ -145,7 +164,7 @@ class _Episode:
         )
         return Briefing(presets=presets, pose=self.start, limits=info.limits)
 
-    async def _steps(self, briefing: Briefing) -> End:
+    async def _steps(self, briefing: Briefing) -> RunEnd:
         budgets, tools = self.agent.budgets, tuple(self.agent.tools.schemas())
         for self.steps in range(1, budgets.max_steps + 1):
             state = State(
@@ -158,22 +177,22 @@ class _Episode:
             try:
                 decision = await self._decide(state)
             except CameraError as error:
-                return End("camera_error", str(error))
+                return RunEnd("camera_error", str(error))
             except PlannerError as error:
                 self.calls.events.update(server_events(error))
                 self.usage += wasted(error.attempts)
-                return End("planner_error", str(error), kind=error.kind)
-            except Exception as error:  # The episode's border: a planner's fault is an outcome, not a crash
-                return End("planner_error", f"The planner failed: {in_words(error)}", traceback.format_exc())
+                return RunEnd("planner_error", str(error), kind=error.kind)
+            except Exception as error:  # a planner that fails in any way is an outcome of the run, not a crash
+                return RunEnd("planner_error", f"The planner failed: {in_words(error)}", traceback.format_exc())
             if isinstance(decision, Finish):
-                return End(decision.kind, decision.text)
+                return RunEnd(decision.kind, decision.text)
             spent = self.usage.input_tokens + self.usage.output_tokens
             if budgets.tokens is not None and spent > budgets.tokens:
-                return End("budget", f"The token budget of {budgets.tokens} is spent ({spent}).")
+                return RunEnd("budget", f"The token budget of {budgets.tokens} is spent ({spent}).")
             failure = await self.calls.carry_out(self.steps, decision, self.history)
             if failure is not None:
                 return failure
-        return End("step_limit", f"No answer within {budgets.max_steps} steps.")
+        return RunEnd("step_limit", f"No answer within {budgets.max_steps} steps.")
 
     async def _decide(self, state: State) -> Decision:
         planner, shown = self.agent.planner, None
@@ -194,7 +213,7 @@ class _Episode:
         self.emit(Decided(step=self.steps, decision=decision, planner_s=(self.watch.read() - before).planner_s, view=shown))
         return decision
 
-    async def _finish(self, end: End) -> Ended:
+    async def _finish(self, end: RunEnd) -> Ended:
         with anyio.CancelScope(shield=True), anyio.move_on_after(STOP_TIMEOUT_S), suppress(CameraError):
             if end.outcome not in ("answered", "clarification", "refused"):
                 await self.camera.stop()
@@ -209,7 +228,7 @@ class _Episode:
             perception_failures=self.calls.perception_failures,
             server_events=dict(sorted(self.calls.events.items())),
             usage=self.usage,
-            pose=Place.of(self.calls.pose),
+            pose=RecordedPose.of(self.calls.pose),
             scene_time_s=self.camera.clock.now_s(),
             timings=self.watch.read(),
             ended=datetime.now(UTC),

@@ -1,4 +1,4 @@
-"""What a filmstrip shows of a run: one captioned panel a step, where a move and the look after it are one step."""
+"""The panels of a filmstrip: one captioned picture per step. A move and the perception call after it share a panel."""
 
 from __future__ import annotations
 
@@ -19,9 +19,16 @@ _MOVES = ("adjust_ptz", "go_to_preset", "go_home")
 
 @dataclass(frozen=True, slots=True)
 class Panel:
-    """``action`` and ``finding`` are the caption's two halves; ``file`` a picture in the run folder; ``badge`` a count, in words.
+    """One picture of a filmstrip with its caption.
 
-    ``whole``: the picture is a panorama of the full scene. ``failed``: the finding is an error.
+    Attributes:
+        number: number of the panel, 0 for the view at the start.
+        action: what was done, the first half of the caption.
+        file: name of the picture in the run folder.
+        finding: the result, the second half of the caption.
+        badge: a count in words ("4 cones"), drawn in a corner.
+        whole: whether the picture is a panorama of the full scene.
+        failed: whether the finding is an error.
     """
 
     number: int
@@ -36,7 +43,7 @@ class Panel:
 
 
 def panels_of(trace: Trace) -> list[Panel]:
-    """Panels in order. A run without any step has one: what the camera saw at the start."""
+    """Return the panels of a run in order. A run without steps has one panel, the view at the start."""
     panels: list[Panel] = []
     mergeable = False
     for call in trace.calls:
@@ -44,8 +51,8 @@ def panels_of(trace: Trace) -> list[Panel]:
         if name == "get_presets" and call.outcome.error is None:
             continue
         panel = _panel(call)
-        looks_here = name not in _MOVES and call.outcome.error is None and not panel.whole and name != "zoom_to_object"
-        if mergeable and looks_here:
+        reads_view = name not in _MOVES and call.outcome.error is None and not panel.whole and name != "zoom_to_object"
+        if mergeable and reads_view:
             panels[-1] = replace(panel, number=panels[-1].number, action=_joined(panels[-1], panel))
         else:
             panels.append(replace(panel, number=len(panels) + 1))
@@ -55,13 +62,13 @@ def panels_of(trace: Trace) -> list[Panel]:
     return _with_pictures(panels, trace.started.frame)
 
 
-def _joined(move: Panel, look: Panel) -> str:
+def _joined(move: Panel, call: Panel) -> str:
     action = f"{move.action} ({move.finding})" if move.finding else move.action
-    return action if look.badge else f"{action}, {look.action}"
+    return action if call.badge else f"{action}, {call.action}"
 
 
 def _with_pictures(panels: list[Panel], first: str | None) -> list[Panel]:
-    """A step that left no picture (an error, a move that changed nothing) shows the last view before it."""
+    """Give steps without a picture (an error, a move that changed nothing) the last view before them."""
     shown, last = [], first
     for panel in panels:
         shown.append(panel if panel.file else replace(panel, file=last))
@@ -72,12 +79,12 @@ def _with_pictures(panels: list[Panel], first: str | None) -> list[Panel]:
 def _panel(call: Called) -> Panel:
     outcome, pose = call.outcome, call.pose.pose()
     if outcome.error is not None or outcome.result is None:
-        return Panel(0, _action(outcome), pose, None, finding=outcome.error or "", failed=True)
+        return Panel(0, action_of(outcome), pose, None, finding=outcome.error or "", failed=True)
     result = outcome.result
     frames = result.get("frames") or [None]
     return Panel(
         number=0,
-        action=_action(outcome),
+        action=action_of(outcome),
         pose=pose,
         file=call.frame or frames[-1] or result.get("file"),
         finding=_finding(outcome.call.name, result),
@@ -114,8 +121,8 @@ def _finding(name: str, result: dict[str, Any]) -> str:
     return f"at the {' and '.join(clamped)} limit" if clamped else ""
 
 
-def _action(outcome: ToolOutcome) -> str:
-    """A call in a few words."""
+def action_of(outcome: ToolOutcome) -> str:
+    """Describe a call in a few words."""
     name, arguments = outcome.call.name, outcome.call.arguments
     full = "sweep, " if arguments.get("view") == "full" else ""
     match name:
@@ -154,5 +161,5 @@ def _turns(arguments: dict[str, Any]) -> list[str]:
 
 
 def _number(value: Any) -> str:
-    """A number without needless zeros; what a planner gave instead of one as it is (calls may be wrong)."""
+    """Format a number without trailing zeros. Other values of a wrong call are shown unchanged."""
     return f"{value:g}" if isinstance(value, int | float) else str(value)

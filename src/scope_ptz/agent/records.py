@@ -1,4 +1,4 @@
-"""What happens in a run, as records: the loop emits them, a trace is a file of them, and whoever watches listens to them."""
+"""The records of a run. The loop emits them, a trace file stores them, and listeners receive them."""
 
 from __future__ import annotations
 
@@ -8,52 +8,63 @@ from typing import Annotated, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
-from scope_ptz.agent.timing import Reply, Timings
+from scope_ptz.agent.timing import PerceptionReply, Timings
 from scope_ptz.geometry import Pose
 from scope_ptz.planner.base import CallTools, Exchange, Finish, PastTurn, ToolOutcome, Usage
 
 FORMAT_VERSION = 1
-"""Raised when an older program could misread a trace."""
+"""Version of the trace format. A change that an older program could misread raises it."""
 
 Outcome = Literal["answered", "clarification", "refused", "step_limit", "budget", "planner_error", "camera_error", "cancelled"]
 OUTCOMES: tuple[str, ...] = get_args(Outcome)
 
-Fault = Literal["bad_call", "perception", "camera", "skipped", "cancelled"]
-"""Why a call failed: it was wrong, the view could not be read, the camera failed, a call before it in the step had failed, or the
-run was cancelled or out of time while it went on."""
+CallFault = Literal["bad_call", "perception", "camera", "skipped", "cancelled"]
+"""Why a call failed.
+
+- ``bad_call``: the call itself was wrong.
+- ``perception``: perception could not read the view.
+- ``camera``: the camera failed.
+- ``skipped``: an earlier call of the same step failed.
+- ``cancelled``: the run was cancelled or ran out of time during the call.
+"""
 
 
 class _Record(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
 
-class Place(_Record):
-    """A pose in full precision, so that a replay starts exactly there."""
+class RecordedPose(_Record):
+    """A pose in full precision, so that a replay starts from exactly the same pose."""
 
     pan_deg: float
     tilt_deg: float
     zoom: float
 
     @classmethod
-    def of(cls, pose: Pose) -> Place:
+    def of(cls, pose: Pose) -> RecordedPose:
+        """Return the record of a pose."""
         return cls(pan_deg=pose.pan_deg, tilt_deg=pose.tilt_deg, zoom=pose.zoom)
 
     def pose(self) -> Pose:
+        """Return the recorded pose."""
         return Pose(self.pan_deg, self.tilt_deg, self.zoom)
 
 
 class Budgets(_Record):
-    """When a run is over without an answer: planner steps (T_max), wall seconds, tokens in and out together."""
+    """Limits of a run: planner steps (T_max), wall seconds, and input plus output tokens of the planner."""
 
     max_steps: int = Field(default=60, ge=1)
     time_s: float | None = Field(default=None, gt=0)
     tokens: int | None = Field(default=None, gt=0)
 
 
-class Labels(_Record):
-    """What a trace should say about a run beyond what the loop can see.
+class RunLabels(_Record):
+    """Facts about a run that the loop cannot know and that its trace stores.
 
-    ``home_viewpoint``: the viewpoint that the camera was put at, when that is not where the scene's home is.
+    Attributes:
+        perception_note: a sentence on what the perception backend is, shown with the answer.
+        seed: seed of the run's random choices.
+        home_viewpoint: the requested viewpoint of the camera, when it is not the scene's home.
     """
 
     perception_note: str = ""
@@ -62,9 +73,13 @@ class Labels(_Record):
 
 
 class Started(_Record):
-    """The header. ``scene`` and ``viewpoint``: simulated cameras only. ``frame``: the picture before the first step.
+    """The header of a trace.
 
-    ``planner_details``: what made the planner plan as it did, such as the exact prompt.
+    Attributes:
+        planner_details: what determines the planner's decisions, such as the exact prompt.
+        scene: the scene of a simulated camera, else None.
+        viewpoint: the viewpoint of a simulated camera, else None.
+        frame: name of the picture that was taken before the first step.
     """
 
     event: Literal["start"] = "start"
@@ -83,16 +98,16 @@ class Started(_Record):
     scene: str | None
     viewpoint: str | None
     scene_time_s: float
-    pose: Place
+    pose: RecordedPose
     presets: tuple[str, ...]
     budgets: Budgets
-    labels: Labels
+    labels: RunLabels
     conversation: tuple[PastTurn, ...] = ()
     frame: str | None = None
 
 
 class Decided(_Record):
-    """What the planner wants at a step. ``view``: the picture that it was shown, for planners that see."""
+    """The planner's decision at a step. ``view`` names the picture that a planner with vision was shown."""
 
     event: Literal["decision"] = "decision"
     step: int
@@ -102,30 +117,39 @@ class Decided(_Record):
 
 
 class Called(_Record):
-    """A call and what came back. ``scene_time_s``: when it began; ``frame``: the view after it, kept when the pose changed."""
+    """A tool call and its outcome.
+
+    Attributes:
+        scene_time_s: scene time at the start of the call.
+        pose: pose of the camera after the call.
+        frame: name of the picture of the view after the call, stored when the pose changed.
+    """
 
     event: Literal["call"] = "call"
     step: int
     index: int
     outcome: ToolOutcome
-    fault: Fault | None = None
+    fault: CallFault | None = None
     scene_time_s: float
-    pose: Place
+    pose: RecordedPose
     timings: Timings
-    replies: tuple[Reply, ...] = ()
+    replies: tuple[PerceptionReply, ...] = ()
     frame: str | None = None
 
     @property
-    def eyes_s(self) -> float:
-        """Wall seconds that perception took for what this call asked it; what other calls asked meanwhile is not in it."""
+    def perception_s(self) -> float:
+        """Wall seconds of this call's own perception calls, without those of calls that ran at the same time."""
         return sum(reply.wall_s for reply in self.replies)
 
 
 class Ended(_Record):
-    """How it ended. ``text``: the answer, question or reason; ``detail``: for whoever has to find a fault.
+    """The end of a run.
 
-    ``kind``: in which way a planner's model server failed (``endpoints.FailureKind``: "context-overflow", "refused", ...),
-    where one did; ``server_events``: how often servers failed in the run, by kind, also where a further attempt made it good.
+    Attributes:
+        text: the answer, the clarifying question, or the reason why there is none.
+        detail: a traceback or other details for debugging.
+        kind: failure kind of the planner's model server (``endpoints.FailureKind``, such as "refused"), if it failed.
+        server_events: number of failed requests to model servers by failure kind, including those that a retry recovered.
     """
 
     event: Literal["end"] = "end"
@@ -138,7 +162,7 @@ class Ended(_Record):
     perception_failures: int
     server_events: dict[str, int] = {}
     usage: Usage
-    pose: Place
+    pose: RecordedPose
     scene_time_s: float
     timings: Timings
     ended: datetime
@@ -149,14 +173,14 @@ RECORD: TypeAdapter[Started | Decided | Called | Ended] = TypeAdapter(Record)
 Listener = Callable[[Started | Decided | Called | Ended], None]
 
 
-class Run(_Record):
-    """A finished run. ``start``: where the camera looked when it began."""
+class RunResult(_Record):
+    """A finished run as the loop returns it. ``start`` is the camera's pose at the beginning."""
 
     instruction: str
-    start: Place
+    start: RecordedPose
     exchanges: tuple[Exchange, ...]
     ended: Ended
 
     def past_turn(self) -> PastTurn:
-        """The run as an earlier turn of a conversation."""
+        """Return the run as an earlier turn of a conversation."""
         return PastTurn(instruction=self.instruction, exchanges=self.exchanges, reply=self.ended.text, start=self.start.pose())

@@ -1,6 +1,6 @@
-"""Repeating a run without models: the same loop with the recorded planner and the recorded eyes on a fresh simulated camera.
+"""Replay a run without models: the recorded decisions and perception replies drive a fresh simulated camera.
 
-What must come out again are the results of every call (poses, counts, answers, what was clamped) and its errors.
+A replay is equal when every call gives the same result (poses, counts, answers, clamped axes) or the same error.
 """
 
 from __future__ import annotations
@@ -12,26 +12,25 @@ from typing import Any, TypeVar
 from scope_ptz.agent.loop import Agent
 from scope_ptz.agent.records import Budgets, Called, Decided, Ended, Started
 from scope_ptz.agent.store import NoImages
-from scope_ptz.agent.timing import Question, Reply, Stopwatch, TimedCamera
+from scope_ptz.agent.timing import PerceptionMethod, PerceptionReply, Stopwatch, TimedCamera
 from scope_ptz.agent.trace import Trace
 from scope_ptz.camera.base import Camera, Frame
 from scope_ptz.errors import PerceptionError, PlannerError, TraceError
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
 from scope_ptz.planner.base import CallTools, Decision, Planner, State
 
-_Looked = TypeVar("_Looked", Caption, Answer, Detections, Points)
+_PerceptionResult = TypeVar("_PerceptionResult", Caption, Answer, Detections, Points)
 
 REPEATABLE = ("answered", "clarification", "refused", "step_limit")
-"""Outcomes that a replay must reach again. The others came from outside: a budget, a failure, a hand on the keyboard."""
+"""Outcomes that a replay must reach again. The other outcomes have causes outside the run: budgets, failures, cancellation."""
 
-_NAMES_OF_FILES = ("frames", "file")
-_TOLERANCE = 0.011
-"""Numbers in results are rounded to hundredths and finer; two that differ by less than this are the same."""
+_FILE_NAME_FIELDS = ("frames", "file")
+_TOLERANCE = 0.011  # results are rounded to hundredths or finer, so smaller differences are rounding
 
 
 @dataclass(frozen=True, slots=True)
-class Comparison:
-    """One recorded call beside its repetition; ``difference`` is empty when they agree."""
+class CallComparison:
+    """A recorded call and how its repetition differs from it. ``difference`` is empty when they agree."""
 
     recorded: Called
     difference: str
@@ -39,24 +38,33 @@ class Comparison:
 
 @dataclass(frozen=True, slots=True)
 class Replay:
-    """What a replay found."""
+    """The result of a replay. ``outcome_difference`` is empty when the outcomes agree."""
 
-    comparisons: tuple[Comparison, ...]
+    comparisons: tuple[CallComparison, ...]
     outcome_difference: str
 
     @property
     def equal(self) -> bool:
+        """Whether the outcome and all calls agree."""
         return not self.outcome_difference and not any(c.difference for c in self.comparisons)
 
 
 async def replay(trace: Trace, camera: Camera) -> Replay:
-    """Repeat a recorded run on a camera that stands where the recorded one stood, at the same scene time.
+    """Repeat a recorded run.
 
-    Raises ``TraceError`` for a run of a real camera: its world cannot be had again.
+    Args:
+        trace: the recorded run.
+        camera: a simulated camera at the recorded start pose and scene time.
+
+    Returns:
+        The differences between the recorded and the repeated calls.
+
+    Raises:
+        TraceError: the run was made with a real camera, which cannot show the same world again.
     """
     if not trace.started.simulated:
         raise TraceError("This run was made with a real camera: it can be shown, not repeated.")
-    # A call that failed for a reason outside the scene cannot fail again; what came before it can be repeated.
+    # Calls that failed for a reason outside the scene would not fail again, so they are not repeated.
     calls = tuple(call for call in trace.calls if call.fault not in ("camera", "cancelled"))
     script = _Script(replace(trace, calls=calls), camera)
     agent = Agent(
@@ -75,29 +83,31 @@ async def replay(trace: Trace, camera: Camera) -> Replay:
 
     run = await agent.run(trace.started.instruction, listener=listen)
     pairs = [(recorded, made[i] if i < len(made) else None) for i, recorded in enumerate(calls)]
-    comparisons = tuple(Comparison(recorded, _difference(recorded, again)) for recorded, again in pairs)
+    comparisons = tuple(CallComparison(recorded, _difference(recorded, again)) for recorded, again in pairs)
     return Replay(comparisons, _outcome_difference(trace.ended, run.ended))
 
 
 class _Script:
-    """The recorded decisions and replies, and how far the replay has come."""
+    """The recorded decisions and the replies that are still to be given."""
 
     def __init__(self, trace: Trace, camera: Camera) -> None:
         self.decisions = _complete_decisions(trace)
         self.times_s = {call.step: call.scene_time_s for call in reversed(trace.calls)}
-        self.replies: deque[tuple[int, Reply]] = deque((call.step, reply) for call in trace.calls for reply in call.replies)
+        self.replies: deque[tuple[int, PerceptionReply]] = deque(
+            (call.step, reply) for call in trace.calls for reply in call.replies
+        )
         self.end = trace.ended.text if trace.ended else "The recording was cut off."
         self._camera = camera
 
     async def wait_until(self, time_s: float) -> None:
-        """Let scene time go on to where it was when this happened; the recorded run may have been slower."""
+        """Advance scene time to the recorded time; the recorded run may have been slower than the replay."""
         behind_s = time_s - self._camera.clock.now_s()
         if behind_s > 0:
             await self._camera.clock.sleep(behind_s)
 
 
 def _complete_decisions(trace: Trace) -> list[Decision]:
-    """The recorded decisions; of a step that was broken off only the calls that were made."""
+    """Return the recorded decisions, without the calls that an interrupted step did not make."""
     made = {(call.step, call.index) for call in trace.calls}
     decisions: list[Decision] = []
     for record in trace.decisions:
@@ -143,8 +153,8 @@ class _RecordedPerception(Perception):
     async def point(self, frame: Frame, description: str) -> Points:
         return self._next(frame, "point", description, Points)
 
-    def _next(self, frame: Frame, kind: Question, asked: str, as_type: type[_Looked]) -> _Looked:
-        # Looks that were made at the same time may ask in another order now; they are all of one step.
+    def _next(self, frame: Frame, kind: PerceptionMethod, asked: str, as_type: type[_PerceptionResult]) -> _PerceptionResult:
+        # Calls that run at the same time may come in another order now, but they all belong to one step.
         step = self._replies[0][0] if self._replies else 0
         fitting = (i for i, (at, reply) in enumerate(self._replies) if at == step and (reply.kind, reply.asked) == (kind, asked))
         index = next(fitting, None)
@@ -156,7 +166,7 @@ class _RecordedPerception(Perception):
 
 
 class _PacedCamera(TimedCamera):
-    """Takes each frame that perception will look at no earlier than the recorded one was taken: it paces what is tracked."""
+    """A camera that takes each frame no earlier than the recorded one, so that tracking sees the same motion."""
 
     def __init__(self, camera: Camera, script: _Script) -> None:
         super().__init__(camera, Stopwatch())
@@ -169,16 +179,16 @@ class _PacedCamera(TimedCamera):
 
 
 def _difference(recorded: Called, again: Called | None) -> str:
-    """What differs between a call and its repetition, in words; empty when nothing does."""
+    """Describe how a call differs from its repetition; empty when they agree."""
     if again is None:
         return "not reached"
     before, now = recorded.outcome, again.outcome
     if before.error != now.error:
         return f"error was {before.error!r}, now {now.error!r}"
     old, new = before.result or {}, now.result or {}
-    keys = [key for key in sorted(old.keys() | new.keys()) if key not in _NAMES_OF_FILES]
+    keys = [key for key in sorted(old.keys() | new.keys()) if key not in _FILE_NAME_FIELDS]
     changed = [key for key in keys if not _same(old.get(key), new.get(key))]
-    # Sentences repeat the numbers beside them; they are named only when nothing else says what changed.
+    # The message repeats the numbers of the other fields, so it is not compared by itself.
     named = [key for key in changed if key != "message"]
     return "; ".join(f"{key} was {old.get(key)}, now {new.get(key)}" for key in named[:3])
 

@@ -1,9 +1,14 @@
-"""Run folders: where a run's trace and pictures are kept. Names are made here; no text from outside becomes a path as it is."""
+"""Image stores of runs: a folder, memory, or nothing.
+
+This module makes all names of files. Text from users and models never becomes a path unchanged.
+"""
 
 from __future__ import annotations
 
 import re
 import secrets
+import shutil
+from abc import ABC, abstractmethod
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -14,11 +19,11 @@ from scope_ptz.errors import OutputError
 from scope_ptz.geometry import Perspective
 
 JPEG_QUALITY = 92
-_SLUG_CHARS = 40
+_SLUG_CHARS = 40  # longer names of run folders are cut at a word
 
 
 def slug(text: str) -> str:
-    """The first words of a text in lower-case letters and digits joined by hyphens; "run" when none are left."""
+    """Return the first words of a text in lower-case letters and digits, joined by hyphens; "run" when there are none."""
     words = re.findall(r"[a-z0-9]+", text.lower())
     kept = ""
     for word in words:
@@ -29,22 +34,24 @@ def slug(text: str) -> str:
 
 
 class Numbering:
-    """Names for pictures in the order in which they are kept."""
+    """Names for pictures, numbered in the order in which they are stored."""
 
     def __init__(self) -> None:
         self._looks = self._pictures = 0
 
     def look(self, frame: Frame) -> str:
+        """Return the name for the next frame that perception reads."""
         self._looks += 1
         return f"frames/{self._looks:03d}-{'view' if isinstance(frame.projection, Perspective) else 'full'}.jpg"
 
     def picture(self) -> str:
+        """Return the name for the next picture that the user asked for."""
         self._pictures += 1
         return f"pictures/{self._pictures:03d}.png"
 
 
 class NoImages:
-    """Keeps nothing but gives the names that a run folder would give: for replays and evaluation."""
+    """An image store that stores nothing and returns the names that a run folder would, for replays and evaluations."""
 
     def __init__(self) -> None:
         self._names = Numbering()
@@ -56,16 +63,59 @@ class NoImages:
         return self._names.picture()
 
 
-class RunFolder:
-    """A fresh folder of one run. It implements the tools' image store."""
+class EncodedImages(ABC):
+    """An image store that encodes frames as JPEG and pictures that the user asked for as PNG."""
+
+    def __init__(self) -> None:
+        self._names = Numbering()
+
+    def save_look(self, frame: Frame) -> str:
+        """Store a frame that perception reads and return its name. Raises ``OutputError``."""
+        return self._store(self._names.look(frame), frame, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
+
+    def save_picture(self, frame: Frame) -> str:
+        """Store a picture that the user asked for and return its name. Raises ``OutputError``."""
+        return self._store(self._names.picture(), frame, [])
+
+    def _store(self, name: str, frame: Frame, options: list[int]) -> str:
+        suffix = Path(name).suffix
+        encoded, data = cv2.imencode(suffix, cv2.cvtColor(frame.image, cv2.COLOR_RGB2BGR), options)
+        if not encoded:
+            raise OutputError(f"A frame of {frame.width}x{frame.height} pixels cannot be coded as {suffix}.")
+        self.write(name, data.tobytes())
+        return name
+
+    @abstractmethod
+    def write(self, name: str, data: bytes) -> None:
+        """Store an encoded picture under its name."""
+
+
+class MemoryImages(EncodedImages):
+    """An image store in memory. ``files`` maps the names of pictures to their encoded bytes."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.files: dict[str, bytes] = {}
+
+    def write(self, name: str, data: bytes) -> None:
+        """Store an encoded picture under its name."""
+        self.files[name] = data
+
+
+class RunFolder(EncodedImages):
+    """A new folder for one run: its trace, frames, pictures and filmstrip."""
 
     def __init__(self, path: Path) -> None:
+        super().__init__()
         self.path = path
-        self._names = Numbering()
 
     @classmethod
     def create(cls, root: Path, instruction: str) -> RunFolder:
-        """Make ``root/<UTC time>-<first words>-<random>``; two runs never share one. Raises ``OutputError``."""
+        """Create ``root/<UTC time>-<first words>-<random>``. Two runs never share a folder.
+
+        Raises:
+            OutputError: the folder cannot be created.
+        """
         stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")
         try:
             root.mkdir(parents=True, exist_ok=True)
@@ -83,32 +133,30 @@ class RunFolder:
 
     @property
     def trace(self) -> Path:
+        """Path of the trace."""
         return self.path / "trace.jsonl"
 
     @property
     def filmstrip(self) -> Path:
+        """Path of the filmstrip."""
         return self.path / "filmstrip.png"
 
-    def save_look(self, frame: Frame) -> str:
-        return self._write(self._names.look(frame), frame, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
-
-    def save_picture(self, frame: Frame) -> str:
-        return self._write(self._names.picture(), frame, [])
-
     def discard_if_empty(self) -> None:
-        """Take the folder away again when the run failed before anything was kept."""
+        """Remove the folder if the run failed before anything was stored."""
         if self.path.is_dir() and not any(self.path.iterdir()):
             self.path.rmdir()
 
-    def _write(self, name: str, frame: Frame, options: list[int]) -> str:
+    def discard_if_not_started(self) -> None:
+        """Remove the folder if the run failed or was cancelled before the first line of its trace was written."""
+        if not self.trace.is_file() or self.trace.stat().st_size == 0:
+            shutil.rmtree(self.path, ignore_errors=True)
+
+    def write(self, name: str, data: bytes) -> None:
+        """Write an encoded picture to a new file. Raises ``OutputError``."""
         target = self.path / name
-        coded, data = cv2.imencode(target.suffix, cv2.cvtColor(frame.image, cv2.COLOR_RGB2BGR), options)
-        if not coded:
-            raise OutputError(f"A frame of {frame.width}x{frame.height} pixels cannot be coded as {target.suffix}.")
         try:
             target.parent.mkdir(exist_ok=True)
             with target.open("xb") as file:
-                file.write(data.tobytes())
+                file.write(data)
         except OSError as error:
             raise OutputError(f"{target} cannot be written: {error.strerror}.") from error
-        return name

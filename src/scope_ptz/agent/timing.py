@@ -1,4 +1,4 @@
-"""Where the time of a run goes: proxies around the two contracts that measure what passes through them."""
+"""Timing of runs: wrappers around a camera and a perception backend that measure every call."""
 
 from __future__ import annotations
 
@@ -16,17 +16,22 @@ from scope_ptz.geometry import Pose
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
 from scope_ptz.planner.base import Usage
 
-Part = Literal["planner", "perception", "camera", "render"]
-Question = Literal["caption", "query", "detect", "point"]
-Seen = Caption | Answer | Detections | Points
-_Looked = TypeVar("_Looked", Caption, Answer, Detections, Points)
+TimedPart = Literal["planner", "perception", "camera", "render"]
+PerceptionMethod = Literal["caption", "query", "detect", "point"]
+Observation = Caption | Answer | Detections | Points
+_PerceptionResult = TypeVar("_PerceptionResult", Caption, Answer, Detections, Points)
 
 
 class Timings(BaseModel):
-    """Wall seconds. ``render_s`` is the making of simulated frames; what is left of ``total_s`` is the loop's own work.
+    """Wall seconds by part of the system. Calls that overlap count once.
 
-    What goes on at the same time counts once. ``first_token_s``: the part of ``planner_s`` that was spent before first tokens,
-    as far as the planner's server streams.
+    Attributes:
+        planner_s: decisions of the planner.
+        perception_s: perception calls.
+        camera_s: moves, and frames of a real camera.
+        render_s: frames of a simulated camera.
+        total_s: the whole run. The rest beyond the parts is the work of the loop and the tools.
+        first_token_s: the part of ``planner_s`` before the first tokens arrived, when the planner's server streams.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -40,17 +45,17 @@ class Timings(BaseModel):
 
     @property
     def capture_s(self) -> float:
-        """The camera's part: moves and frames, those of a simulated one included. Which views were asked for decides it."""
+        """Time of the camera: moves and frames, including simulated frames."""
         return self.camera_s + self.render_s
 
     @property
     def own_s(self) -> float:
-        """What is left without the camera: planner, perception, and the loop's and tools' own work."""
+        """Time without the camera: planner, perception, and the work of the loop and the tools."""
         return max(self.planner_s + self.perception_s, self.total_s - self.capture_s)
 
     @property
     def tools_s(self) -> float:
-        """The loop's and tools' own work, such as stitching a panorama and writing pictures."""
+        """Time of the loop and the tools themselves, such as stitching a panorama and writing pictures."""
         return self.own_s - self.planner_s - self.perception_s
 
     def __sub__(self, earlier: Timings) -> Timings:
@@ -58,17 +63,18 @@ class Timings(BaseModel):
 
 
 class Stopwatch:
-    """Adds up wall time by part of the system. Calls of one part that overlap count once."""
+    """Adds up wall time by part of the system. Overlapping calls of one part count once."""
 
     def __init__(self) -> None:
         self._began = perf_counter()
-        self._spent: dict[Part, float] = {"planner": 0.0, "perception": 0.0, "camera": 0.0, "render": 0.0}
-        self._under_way: dict[Part, int] = dict.fromkeys(self._spent, 0)
-        self._since: dict[Part, float] = dict.fromkeys(self._spent, 0.0)
+        self._spent: dict[TimedPart, float] = {"planner": 0.0, "perception": 0.0, "camera": 0.0, "render": 0.0}
+        self._under_way: dict[TimedPart, int] = dict.fromkeys(self._spent, 0)
+        self._since: dict[TimedPart, float] = dict.fromkeys(self._spent, 0.0)
         self._first_tokens_s = 0.0
 
     @contextmanager
-    def measure(self, part: Part) -> Iterator[None]:
+    def measure(self, part: TimedPart) -> Iterator[None]:
+        """Count the time inside the ``with`` block for a part."""
         if not self._under_way[part]:
             self._since[part] = perf_counter()
         self._under_way[part] += 1
@@ -80,10 +86,11 @@ class Stopwatch:
                 self._spent[part] += perf_counter() - self._since[part]
 
     def waited_for_first_token(self, seconds: float) -> None:
+        """Count time that passed before the first token of a streamed reply."""
         self._first_tokens_s += seconds
 
     def read(self) -> Timings:
-        """What was spent so far, measurements that are under way included."""
+        """Return the time so far, including measurements in progress."""
         now = perf_counter()
         spent = {
             f"{part}_s": round(seconds + (now - self._since[part] if self._under_way[part] else 0.0), 6)
@@ -93,12 +100,12 @@ class Stopwatch:
 
 
 class TimedCamera(Camera):
-    """A camera whose calls are timed: frames of a simulated one as rendering, everything else as the camera."""
+    """A camera whose calls are timed. Frames of a simulated camera count as rendering, everything else as camera time."""
 
     def __init__(self, camera: Camera, watch: Stopwatch) -> None:
         self._camera, self._watch = camera, watch
         self.clock = camera.clock
-        self._frame_part: Part = "render" if camera.info.simulated else "camera"
+        self._frame_part: TimedPart = "render" if camera.info.simulated else "camera"
 
     @property
     def info(self) -> CameraInfo:
@@ -138,15 +145,20 @@ class TimedCamera(Camera):
             yield
 
 
-class Reply(BaseModel):
-    """What perception was asked and what it said: ``result`` or ``error`` is set. ``frame_time_s``: scene time of the frame.
+class PerceptionReply(BaseModel):
+    """A perception call and its reply. Either ``result`` or ``error`` is set.
 
-    ``server_events``: how often a model server failed at it, by kind, those included that a further attempt made good.
+    Attributes:
+        kind: the method that was called.
+        asked: the question or description; empty for captions.
+        frame_time_s: scene time of the frame.
+        wall_s: wall seconds of the call.
+        server_events: number of failed requests to the model server by failure kind, including those that a retry recovered.
     """
 
     model_config = ConfigDict(frozen=True)
 
-    kind: Question
+    kind: PerceptionMethod
     asked: str = ""
     result: dict[str, Any] | None = None
     error: str | None = None
@@ -154,8 +166,13 @@ class Reply(BaseModel):
     wall_s: float
     server_events: dict[str, int] = {}
 
-    def restore(self, as_type: type[_Looked]) -> _Looked:
-        """The typed result; an error is raised again as ``PerceptionError``."""
+    def restore(self, as_type: type[_PerceptionResult]) -> _PerceptionResult:
+        """Return the typed result.
+
+        Raises:
+            PerceptionError: the recorded call failed.
+            TraceError: the recorded result is damaged.
+        """
         if self.error is not None or self.result is None:
             raise PerceptionError(self.error or "The recorded reply is empty.")
         try:
@@ -165,15 +182,15 @@ class Reply(BaseModel):
 
 
 class TimedPerception(Perception):
-    """Perception whose calls are timed and whose replies are kept for the trace until they are drained."""
+    """A perception backend whose calls are timed. It keeps the replies for the trace until ``drain`` is called."""
 
     def __init__(self, perception: Perception, watch: Stopwatch) -> None:
         self._perception, self._watch = perception, watch
         self.name = perception.name
-        self._replies: list[Reply] = []
+        self._replies: list[PerceptionReply] = []
 
-    def drain(self) -> tuple[Reply, ...]:
-        """The replies since the last call, oldest first."""
+    def drain(self) -> tuple[PerceptionReply, ...]:
+        """Return the replies since the last call of this method, oldest first."""
         replies, self._replies = tuple(self._replies), []
         return replies
 
@@ -189,13 +206,15 @@ class TimedPerception(Perception):
     async def point(self, frame: Frame, description: str) -> Points:
         return await self._ask("point", description, frame, lambda: self._perception.point(frame, description))
 
-    async def _ask(self, kind: Question, asked: str, frame: Frame, look: Callable[[], Awaitable[_Looked]]) -> _Looked:
+    async def _ask(
+        self, kind: PerceptionMethod, asked: str, frame: Frame, call: Callable[[], Awaitable[_PerceptionResult]]
+    ) -> _PerceptionResult:
         began, result, error, events = perf_counter(), None, None, dict[str, int]()
         try:
             with self._watch.measure("perception"):
-                seen = await look()
-            result = seen.model_dump(mode="json")
-            events = count_failures(seen.attempts)
+                observation = await call()
+            result = observation.model_dump(mode="json")
+            events = count_failures(observation.attempts)
         except PerceptionError as failure:
             error, events = str(failure), server_events(failure)
             raise
@@ -203,7 +222,7 @@ class TimedPerception(Perception):
             if result is not None or error is not None:
                 wall_s = round(perf_counter() - began, 6)
                 self._replies.append(
-                    Reply(
+                    PerceptionReply(
                         kind=kind,
                         asked=asked,
                         result=result,
@@ -213,16 +232,16 @@ class TimedPerception(Perception):
                         server_events=events,
                     )
                 )
-        return seen
+        return observation
 
 
 def wasted(attempts: Iterable[object]) -> Usage:
-    """The tokens of replies that were of no use."""
+    """Return the tokens of failed requests."""
     spent = [a for a in attempts if isinstance(a, Attempt)]
     return Usage(input_tokens=sum(a.input_tokens for a in spent), output_tokens=sum(a.output_tokens for a in spent))
 
 
 def server_events(error: PerceptionError | PlannerError) -> dict[str, int]:
-    """How often a model server failed, by kind, before an error came of it. A reply that came and was of no use counts as well."""
+    """Return the number of failed requests by failure kind that led to an error. Unusable replies count as failures."""
     events = count_failures(a for a in error.attempts if isinstance(a, Attempt))
     return events if error.kind is None or error.kind in events else {**events, str(error.kind): 1}

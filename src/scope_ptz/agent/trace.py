@@ -1,8 +1,9 @@
-"""Traces on disk: one JSON record a line, appended and flushed as the run goes, so that a crash leaves all that happened."""
+"""Trace files: one JSON record per line. Each line is flushed at once, so that a crash loses nothing that was recorded."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -17,7 +18,7 @@ FILE_NAME = "trace.jsonl"
 
 
 class TraceWriter:
-    """A listener that appends each record to a new file."""
+    """A listener that appends each record to a new file. Raises ``OutputError`` when the file cannot be written."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
@@ -34,6 +35,7 @@ class TraceWriter:
             raise OutputError(f"The trace {self._path} cannot be written: {error.strerror}.") from error
 
     def close(self) -> None:
+        """Close the file."""
         self._file.close()
 
     def __enter__(self) -> TraceWriter:
@@ -45,7 +47,12 @@ class TraceWriter:
 
 @dataclass(frozen=True, slots=True)
 class Trace:
-    """A run as it was recorded. ``ended`` is None when the program was killed before the run was over."""
+    """A recorded run.
+
+    Attributes:
+        folder: folder of the run's pictures; ``Path()`` for a run that was kept in memory.
+        ended: the end of the run, None when the program was killed before it.
+    """
 
     folder: Path
     started: Started
@@ -55,7 +62,11 @@ class Trace:
 
 
 def picture_of(folder: Path, name: str) -> Path:
-    """Where a picture lies that a trace in a run's folder names. Raises ``TraceError`` when that is outside the folder."""
+    """Return the path of a picture that a trace names.
+
+    Raises:
+        TraceError: the name points outside the folder of the run.
+    """
     path = (folder / name).resolve()
     if not path.is_relative_to(folder.resolve()):
         raise TraceError(f"The trace in {folder} names a picture outside its own folder: {name}.")
@@ -63,25 +74,52 @@ def picture_of(folder: Path, name: str) -> Path:
 
 
 def read_trace(run: Path) -> Trace:
-    """Read the trace of a run folder (or the file itself). A last line that was cut off is left out; other damage is an error."""
+    """Read a trace. An incomplete last line is ignored, because a killed program leaves one.
+
+    Args:
+        run: a run folder, or the trace file itself.
+
+    Returns:
+        The recorded run.
+
+    Raises:
+        TraceError: the file is missing, damaged, or not a trace.
+    """
     path = run / FILE_NAME if run.is_dir() else run
     try:
         lines = path.read_bytes().decode("utf-8", errors="replace").split("\n")
     except OSError as error:
         raise TraceError(f"There is no trace at {path} ({error.strerror}).") from error
-    cut = lines.pop()  # What follows the last newline: nothing, or a line that was never finished.
+    cut = lines.pop()  # the text after the last newline: nothing, or an incomplete line
     records = [_parse(line, number, path) for number, line in enumerate(lines, 1) if line.strip()]
     if not records or not isinstance(records[0], Started):
         raise TraceError(f"{path} does not begin with a header{' (it was cut off)' if cut else ''}: it is no trace of a run.")
     if any(isinstance(record, Started) for record in records[1:]) or any(isinstance(r, Ended) for r in records[:-1]):
         raise TraceError(f"{path} holds more than one run, or goes on after its end.")
-    last = records[-1]
+    return trace_of(records, path.parent)
+
+
+def trace_of(records: Sequence[Started | Decided | Called | Ended], folder: Path) -> Trace:
+    """Put the records of one run together.
+
+    Args:
+        records: the records in order. The first one is the header.
+        folder: folder of the pictures; ``Path()`` for a run that was kept in memory.
+
+    Returns:
+        The recorded run.
+
+    Raises:
+        TraceError: the first record is not a header.
+    """
+    if not records or not isinstance(records[0], Started):
+        raise TraceError("These records do not begin with a header: they are not a run.")
     return Trace(
-        folder=path.parent,
+        folder=folder,
         started=records[0],
         decisions=tuple(r for r in records if isinstance(r, Decided)),
         calls=tuple(r for r in records if isinstance(r, Called)),
-        ended=last if isinstance(last, Ended) else None,
+        ended=records[-1] if isinstance(records[-1], Ended) else None,
     )
 
 

@@ -9,7 +9,6 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from scope_ptz import __version__
 from scope_ptz.agent.timing import Timings
 from scope_ptz.agent.trace import Trace, picture_of, read_trace
 from scope_ptz.bench.scoring.episode import Places, episode_of
@@ -21,6 +20,7 @@ from scope_ptz.bench.tasks.task import Task
 from scope_ptz.bench.tasks.wording import facts_of
 from scope_ptz.errors import InputError, OutputError, TraceError
 from scope_ptz.simulator.models import SceneFile
+from scope_ptz.version import __version__
 
 RESULT = "evaluation.json"
 DIGEST_CHARS = 16

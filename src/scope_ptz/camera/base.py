@@ -6,8 +6,10 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from time import monotonic
 from typing import Protocol
 
+import anyio
 import numpy as np
 from numpy.typing import NDArray
 
@@ -81,6 +83,15 @@ class Frame:
     def height(self) -> int:
         return int(self.image.shape[0])
 
+    def _repr_html_(self) -> str:
+        """Return the frame as a notebook shows it: the picture, with pose and field of view below."""
+        from scope_ptz.camera.notebook import figure_html
+
+        pose = self.pose.as_dict()
+        where = f"pan {pose['pan_deg']:+.1f}° · tilt {pose['tilt_deg']:+.1f}° · zoom {pose['zoom']:.1f}x"
+        place = f"{self.origin.scene} / {self.origin.viewpoint} · " if self.origin else ""
+        return figure_html(self.image, f"{place}{where} · {self.hfov_deg:.0f}° wide · {self.time_s:.1f} s")
+
 
 @dataclass(frozen=True, slots=True)
 class PresetInfo:
@@ -106,6 +117,21 @@ class Clock(Protocol):
     async def sleep(self, seconds: float) -> None:
         """Wait for this much time of the camera's world."""
         ...
+
+
+class WallClock:
+    """A clock for cameras in the real world. It starts at zero and follows the wall clock."""
+
+    def __init__(self) -> None:
+        self._started_s = monotonic()
+
+    def now_s(self) -> float:
+        """Return the seconds since the clock was made."""
+        return monotonic() - self._started_s
+
+    async def sleep(self, seconds: float) -> None:
+        """Wait."""
+        await anyio.sleep(max(0.0, seconds))
 
 
 class Camera(ABC):

@@ -72,7 +72,7 @@ SceneSource = Annotated[str, typer.Argument(help="Name of a built-in scene, or a
 
 def _version(wanted: bool) -> None:
     if wanted:
-        from scope_ptz import __version__
+        from scope_ptz.version import __version__
 
         sys.stdout.write(f"scope-ptz {__version__}\n")
         raise typer.Exit

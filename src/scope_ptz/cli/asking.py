@@ -12,7 +12,7 @@ from rich.console import Console
 
 from scope_ptz.agent.filmstrip import write_filmstrip
 from scope_ptz.agent.loop import Agent
-from scope_ptz.agent.records import Budgets, Called, Decided, Ended, Labels, Listener, Run, Started
+from scope_ptz.agent.records import Budgets, Called, Decided, Ended, Listener, RunLabels, RunResult, Started
 from scope_ptz.agent.store import RunFolder
 from scope_ptz.agent.trace import TraceWriter, read_trace
 from scope_ptz.camera.base import Camera
@@ -70,9 +70,11 @@ class Session:
             raise
         return cls(options, opened, perception, planner, perception_note(choice.perception))
 
-    async def run(self, instruction: str, folder: RunFolder, listener: Listener, conversation: tuple[PastTurn, ...] = ()) -> Run:
+    async def run(
+        self, instruction: str, folder: RunFolder, listener: Listener, conversation: tuple[PastTurn, ...] = ()
+    ) -> RunResult:
         """One run, recorded in ``folder``."""
-        labels = Labels(perception_note=self.note, seed=self.options.seed, home_viewpoint=self.options.viewpoint)
+        labels = RunLabels(perception_note=self.note, seed=self.options.seed, home_viewpoint=self.options.viewpoint)
         agent = Agent(self.planner, self.camera, self.perception, folder, budgets=self.options.budgets, labels=labels)
         with TraceWriter(folder.trace) as trace:
 

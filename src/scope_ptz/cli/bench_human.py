@@ -131,7 +131,7 @@ class _Sitting:
 async def run_by_person(task: Task, scene: Scene, folder: Path, by: str) -> Left | None:
     """A run in which the person decides and looks, recorded in ``folder``; how it was left, if it was."""
     from scope_ptz.agent.loop import Agent
-    from scope_ptz.agent.records import Budgets, Labels
+    from scope_ptz.agent.records import Budgets, RunLabels
     from scope_ptz.agent.store import RunFolder
     from scope_ptz.agent.trace import TraceWriter
     from scope_ptz.camera.simulated import SimulatedCamera
@@ -148,7 +148,7 @@ async def run_by_person(task: Task, scene: Scene, folder: Path, by: str) -> Left
     viewer = Viewer(folder / "shown", terminal, inline_pictures())
     eyes = HumanPerception(by, viewer, input, put)
     planner = HumanPlanner(by, camera, viewer, eyes, input, put)
-    labels = Labels(perception_note="A person looked.")
+    labels = RunLabels(perception_note="A person looked.")
     agent = Agent(planner, camera, eyes, RunFolder(folder), budgets=Budgets(max_steps=MAX_STEPS), labels=labels)
     with TraceWriter(folder / "trace.jsonl") as trace:
         await agent.run(task.instruction, listener=trace)

@@ -15,12 +15,12 @@ from typing import Literal
 from rich.console import Console
 from rich.text import Text
 
-from scope_ptz import __version__
 from scope_ptz.cli.cards import folder_bytes
 from scope_ptz.cli.endings import FAILED, put_json
 from scope_ptz.errors import PackError
 from scope_ptz.factory.scenes import DEFAULT_SCENE, open_scene, scene_search
 from scope_ptz.settings import ScopeSettings, load_settings
+from scope_ptz.version import __version__
 
 Verdict = Literal["ok", "optional", "missing"]
 _MARKS: dict[Verdict, tuple[str, str]] = {"ok": ("ok", "green"), "optional": ("--", "yellow"), "missing": ("!!", "bold red")}

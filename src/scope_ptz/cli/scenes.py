@@ -92,7 +92,7 @@ def _cached_sheet(scene: Scene) -> Path:
 async def _write_contact_sheet(scene: Scene, path: Path) -> None:
     from PIL import Image
 
-    from scope_ptz.agent.sheet import contact_sheet
+    from scope_ptz.agent.contact_sheet import contact_sheet
 
     camera = (await open_camera(f"sim:{scene.name}")).camera
     pictures = []

@@ -7,10 +7,10 @@ from typing import Any
 
 import httpx2
 
-from scope_ptz import __version__
 from scope_ptz.endpoints.bodies import too_large
 from scope_ptz.endpoints.endpoint import MAX_BODY_BYTES, Endpoint
 from scope_ptz.endpoints.failures import FailureKind, ServerFailure
+from scope_ptz.version import __version__
 
 _KEPT_HEADERS = frozenset(
     {"host", "accept", "accept-encoding", "connection", "content-type", "content-length", "transfer-encoding", "user-agent"}

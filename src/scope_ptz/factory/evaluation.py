@@ -54,7 +54,7 @@ class ThreadedPlanner(Planner):
 
 def planner_for(resolved: ResolvedPlanner) -> Planner:
     """Make a planner for an evaluation: it does not block other runs, and its requests are in the log."""
-    if resolved.plugin is not None:
+    if resolved.plugin is not None or resolved.instance is not None:
         return make_planner(resolved)
     if resolved.endpoint is None:
         from scope_ptz.planner.grammar import decide

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from scope_ptz.endpoints.endpoint import Endpoint
     from scope_ptz.perception.backends.spec import BackendSpec
+    from scope_ptz.perception.base import Perception
+    from scope_ptz.planner.base import Planner
     from scope_ptz.planner.chat import ChatOptions
     from scope_ptz.planner.spec import PlannerSpec
     from scope_ptz.registry import Model
@@ -24,7 +26,10 @@ BUILT_IN_PERCEPTION = ("ground-truth", "noisy")
 
 @dataclass(frozen=True, slots=True)
 class ModelOptions:
-    """Options about planner, perception and their servers, as the user gave them."""
+    """Options about planner, perception and their servers, as the user gave them.
+
+    ``own_planner`` and ``own_perception`` are objects of a Python user's own, which take the place of names.
+    """
 
     planner: str | None = None
     perception: str | None = None
@@ -40,6 +45,8 @@ class ModelOptions:
     reader: str | None = None
     detector: str | None = None
     timeout_s: float | None = None
+    own_planner: Planner | None = None
+    own_perception: Perception | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +59,7 @@ class ResolvedPlanner:
         options: The chat model's options, None for other planners.
         model: The registry's entry, None for a model that it does not list.
         plugin: What a plug-in's factory receives, None for other planners.
+        instance: A planner that exists already, such as one of a Python user's own. The other fields are empty then.
     """
 
     name: str
@@ -59,6 +67,7 @@ class ResolvedPlanner:
     options: ChatOptions | None = None
     model: Model | None = None
     plugin: PlannerSpec | None = None
+    instance: Planner | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,11 +78,13 @@ class ResolvedPerception:
         name: The name in traces and reports.
         spec: The backend's spec, None for built-in perception.
         model: The registry's entry, None for a model that it does not list.
+        instance: Perception that exists already, such as a Python user's own. The other fields are empty then.
     """
 
     name: str
     spec: BackendSpec | None = None
     model: Model | None = None
+    instance: Perception | None = None
 
 
 @dataclass(frozen=True, slots=True)

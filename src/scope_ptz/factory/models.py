@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from scope_ptz.errors import ConfigError, InputError
@@ -48,6 +49,13 @@ async def resolve_models(options: ModelOptions) -> ResolvedPair:
     Raises:
         InputError: A name, an address or a combination of options is wrong.
     """
+    if options.own_planner is not None or options.own_perception is not None:
+        pair = await resolve_models(replace(options, own_planner=None, own_perception=None))
+        if (planner := options.own_planner) is not None:
+            pair = replace(pair, planner=ResolvedPlanner(planner.name, instance=planner))
+        if (perception := options.own_perception) is not None:
+            pair = replace(pair, perception=ResolvedPerception(perception.name, instance=perception))
+        return pair
     if _only_built_in(options):
         return ResolvedPair(ResolvedPlanner(GRAMMAR), ResolvedPerception(options.perception or BUILT_IN_PERCEPTION[0]))
     from scope_ptz.factory.model_resolver import ModelResolver
@@ -68,6 +76,8 @@ def make_planner(resolved: ResolvedPlanner) -> Planner:
     Raises:
         ConfigError: A plug-in cannot be loaded or does not return a planner.
     """
+    if resolved.instance is not None:
+        return resolved.instance
     if resolved.plugin is not None:
         return make_plugin_planner(resolved.plugin)
     if resolved.endpoint is None:
@@ -109,6 +119,8 @@ def make_perception(
         InputError: Built-in perception is requested for a camera without ground truth.
         ConfigError: A backend's options are wrong, or a package is missing or broken.
     """
+    if resolved.instance is not None:
+        return resolved.instance
     if resolved.spec is not None:
         from scope_ptz.perception.backends import make_backend
 
@@ -130,4 +142,4 @@ def make_perception(
 
 def perception_note(resolved: ResolvedPerception) -> str:
     """Return the sentence that says that perception is not a model, empty for models."""
-    return _NOTES.get(resolved.name, "") if resolved.spec is None else ""
+    return _NOTES.get(resolved.name, "") if resolved.spec is None and resolved.instance is None else ""

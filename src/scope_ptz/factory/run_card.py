@@ -9,7 +9,6 @@ from typing import Any
 
 import anyio
 
-from scope_ptz import __version__
 from scope_ptz.bench.engine.cards import AGENT_SOURCE, DETERMINISTIC, PRICE, engine_version
 from scope_ptz.bench.engine.entries import Entry, datasets, digest
 from scope_ptz.bench.engine.estimate import Price
@@ -17,6 +16,7 @@ from scope_ptz.bench.scoring.trials import ModelCard, RunCard
 from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.factory.models import ResolvedPair, ResolvedPerception, ResolvedPlanner
 from scope_ptz.planner.base import Planner
+from scope_ptz.version import __version__
 
 PATIENCE_S = 10.0
 """For servers that do not say how they were set up."""

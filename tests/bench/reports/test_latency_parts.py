@@ -6,8 +6,8 @@ from statistics import median
 
 import pytest
 
-from scope_ptz.agent.records import Called, Place
-from scope_ptz.agent.timing import Reply, Timings
+from scope_ptz.agent.records import Called, RecordedPose
+from scope_ptz.agent.timing import PerceptionReply, Timings
 from scope_ptz.bench.reports.build import Report, build_report
 from scope_ptz.bench.reports.tables import Value, bare
 from scope_ptz.bench.scoring.trials import Evaluation, LookTime, Trial
@@ -39,11 +39,11 @@ def test_the_camera_is_apart_and_what_is_left_is_the_pairs_own() -> None:
 
 
 def test_the_eyes_time_of_a_call_is_that_of_its_own_replies() -> None:
-    replies = tuple(Reply(kind="detect", result={}, frame_time_s=0, wall_s=wall_s) for wall_s in (0.02, 0.03))
+    replies = tuple(PerceptionReply(kind="detect", result={}, frame_time_s=0, wall_s=wall_s) for wall_s in (0.02, 0.03))
     outcome = ToolOutcome(call=ToolCall(id="1", name="count_objects", arguments={}), result={})
-    place = Place(pan_deg=0, tilt_deg=0, zoom=1)
+    place = RecordedPose(pan_deg=0, tilt_deg=0, zoom=1)
     made = Called(step=1, index=0, outcome=outcome, scene_time_s=0, pose=place, timings=PATIENT, replies=replies)
-    assert made.eyes_s == pytest.approx(0.05)
+    assert made.perception_s == pytest.approx(0.05)
 
 
 def test_rendering_neither_counts_nor_ranks() -> None:

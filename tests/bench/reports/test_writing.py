@@ -12,8 +12,8 @@ from typing import Any
 import pytest
 from PIL import Image
 
-from scope_ptz.agent.records import Budgets, Called, Decided, Labels, Place, Started
-from scope_ptz.agent.timing import Reply, Timings
+from scope_ptz.agent.records import Budgets, Called, Decided, RecordedPose, RunLabels, Started
+from scope_ptz.agent.timing import PerceptionReply, Timings
 from scope_ptz.agent.trace import Trace
 from scope_ptz.bench.reports.build import Report
 from scope_ptz.bench.reports.task_pages import FrameStore, file_name
@@ -57,15 +57,15 @@ class Sample:
     """A run's trace and pictures, with things in them that are meant to do harm."""
 
     def __init__(self) -> None:
-        place = Place(pan_deg=1, tilt_deg=2, zoom=1)
+        place = RecordedPose(pan_deg=1, tilt_deg=2, zoom=1)
         call = ToolCall(id="1", name="query_answer", arguments={"question": EVIL, "view": "current"})
-        said = Reply(kind="query", asked=EVIL, result={"text": f"A sign says: {EVIL}"}, frame_time_s=0, wall_s=0.5)
+        said = PerceptionReply(kind="query", asked=EVIL, result={"text": f"A sign says: {EVIL}"}, frame_time_s=0, wall_s=0.5)
         self.trace = Trace(
             folder=Path("/nowhere"),
             started=Started(
                 version="0", python="3", started=datetime.now(UTC), instruction=EVIL, planner="p", perception="e", camera="c",
                 simulated=True, frame_width=1280, frame_height=720, scene="s", viewpoint="v", scene_time_s=0, pose=place,
-                presets=(), budgets=Budgets(), labels=Labels(), frame="../../start.jpg",
+                presets=(), budgets=Budgets(), labels=RunLabels(), frame="../../start.jpg",
             ),
             decisions=(
                 Decided(step=1, decision=CallTools(calls=(call,), thought=EVIL), planner_s=1, view="view.jpg"),

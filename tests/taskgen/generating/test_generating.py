@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from scope_ptz.agent.records import Labels
+from scope_ptz.agent.records import RunLabels
 from scope_ptz.bench.tasks.files import load_tasks
 from scope_ptz.errors import InputError
 from scope_ptz.taskgen.generating.draft_ledger import DraftLedger
@@ -173,7 +173,7 @@ def test_operator_runs_are_summarised_with_their_feedback(scope: Scope, tmp_path
     feedback.write_text(json.dumps({"run": run.name, "rating": "bad", "note": "It missed one."}) + "\n")
     (read,) = read_runs(tmp_path / "runs", feedback)
     assert read.summary()["asked"] == "count the balls" and read.summary()["operator said"] == "bad: It missed one."
-    assert read.trace.started.labels == Labels(perception_note=read.trace.started.labels.perception_note, seed=0)
+    assert read.trace.started.labels == RunLabels(perception_note=read.trace.started.labels.perception_note, seed=0)
     feedback.write_text(json.dumps({"run": "../elsewhere", "rating": "bad"}) + "\n")
     with pytest.raises(InputError, match="not in"):
         read_runs(tmp_path / "runs", feedback)

@@ -10,7 +10,7 @@ from anyio import to_thread
 from inspect_ai._util.hash import mm3_hash
 from inspect_ai.log._condense import ATTACHMENT_PROTOCOL
 
-from scope_ptz.agent.seeing import LONGEST_SIDE, picture
+from scope_ptz.agent.planner_views import LONGEST_SIDE, picture
 from scope_ptz.agent.store import Numbering
 from scope_ptz.camera.base import Frame
 

@@ -91,7 +91,7 @@ def _look_times(trace: Trace) -> tuple[LookTime, ...]:
     return tuple(
         LookTime(
             view="full" if called.outcome.call.arguments.get("view") == "full" else "current",
-            eyes_s=called.eyes_s,
+            eyes_s=called.perception_s,
             capture_s=max(called.timings.capture_s, 0.0),
             call_s=max(called.timings.total_s, 0.0),
         )

@@ -6,7 +6,7 @@ from inspect_ai.model import ModelOutput, get_model
 from inspect_ai.solver import Generate, Solver, TaskState, solver
 
 from scope_ptz.agent.loop import Agent
-from scope_ptz.agent.records import Budgets, Labels, Run
+from scope_ptz.agent.records import Budgets, RunLabels, RunResult
 from scope_ptz.agent.store import NoImages
 from scope_ptz.bench.engine.context import EvalContext, equipment
 from scope_ptz.bench.engine.entries import Entry
@@ -85,7 +85,7 @@ class _Sample:
         self.pictures = KeptPictures() if pictures else None
         self._records: list[Record] = []
 
-    async def go(self, budgets: Budgets) -> Run:
+    async def go(self, budgets: Budgets) -> RunResult:
         model = get_model(role="eyes", required=True)
         if not isinstance(model.api, ScopeModel):
             raise ConfigError(f"The role 'eyes' wants a model of this project (scope_ptz/...), not {model}.")
@@ -98,7 +98,7 @@ class _Sample:
             eyes,
             self.pictures or NoImages(),
             budgets=budgets,
-            labels=Labels(seed=self.seed, perception_note=self.note),
+            labels=RunLabels(seed=self.seed, perception_note=self.note),
             snapshots=self.pictures is not None,
             run_tool=ToolLog(self.pictures).run,
         )

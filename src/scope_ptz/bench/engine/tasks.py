@@ -8,7 +8,6 @@ from typing import Any
 
 from inspect_ai import Epochs, Task
 
-from scope_ptz import __version__
 from scope_ptz.bench.engine.cards import AGENT_SOURCE
 from scope_ptz.bench.engine.entries import Entry, datasets, digest
 from scope_ptz.bench.engine.external_agents import source_digest
@@ -16,6 +15,7 @@ from scope_ptz.bench.engine.judging import judge
 from scope_ptz.bench.engine.sampling import dataset_of
 from scope_ptz.bench.engine.scorers import checks
 from scope_ptz.bench.engine.solver import OWN_AGENT, scope_agent
+from scope_ptz.version import __version__
 
 MOST_BROKEN = 0.1
 """Share of runs that infrastructure may break before the evaluation as a whole counts as failed."""

@@ -11,12 +11,12 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from scope_ptz import __version__
 from scope_ptz.bench.reports.submission import LINE, Header, TrialLine, secrets_in, tasks_digest, totals_of
 from scope_ptz.bench.reports.submission_trials import trial_faults
 from scope_ptz.bench.tasks.splits import SPLITS, load_split
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import InputError
+from scope_ptz.version import __version__
 
 MOST_BYTES = 200_000_000
 NOT_RANKED = "not ranked: {pair} uses the grammar planner or ground-truth eyes, which are no models"

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from scope_ptz import __version__
 from scope_ptz.bench.reports.build import Report, build_report
 from scope_ptz.bench.reports.tables import MISSING, Column, Marked, Value, as_csv, as_markdown, bare, escape, in_words, interval
 from scope_ptz.bench.reports.task_pages import FrameStore, OpenSample, page_files, task_pages
@@ -15,6 +14,7 @@ from scope_ptz.bench.statistics.clustered import Estimate
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import OutputError
 from scope_ptz.registry import Registry
+from scope_ptz.version import __version__
 
 if TYPE_CHECKING:
     from jinja2 import Environment

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from scope_ptz.agent.records import Called, Decided, Place
+from scope_ptz.agent.records import Called, Decided, RecordedPose
 from scope_ptz.agent.trace import Trace
 from scope_ptz.camera.base import CameraInfo
 from scope_ptz.geometry import AXIS_M5075_G, Equirectangular, Limits, Optics, Perspective, Pose
@@ -191,7 +191,7 @@ def looks_of(call: Call, eyes: Eyes) -> tuple[Look, ...]:
     asked = str(call.arguments.get("description", call.arguments.get("question", "")))
     place = call.before.viewpoint
     if how == "track":
-        path = result.get("path") or [{"time_s": 0.0, "pose": Place.of(call.before.pose).model_dump()}]
+        path = result.get("path") or [{"time_s": 0.0, "pose": RecordedPose.of(call.before.pose).model_dump()}]
         return tuple(
             Look(place, eyes.view(Pose(**point["pose"])), call.time_s + float(point["time_s"]), how, asked) for point in path
         )

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from scope_ptz.agent.records import Place
+from scope_ptz.agent.records import RecordedPose
 from scope_ptz.bench.programs import seen
 from scope_ptz.bench.scoring.episode import Call, Episode, Picture, Standing
 from scope_ptz.bench.scoring.error_modes import ErrorMode, error_mode
@@ -202,7 +202,7 @@ def _standing_data(at: Standing) -> list[Any]:
 def _episode(row: Mapping[str, Any]) -> Episode:
     def standing(values: Sequence[Any]) -> Standing:
         viewpoint, *pose = values
-        return Standing(viewpoint, Place(pan_deg=pose[0], tilt_deg=pose[1], zoom=pose[2]).pose())
+        return Standing(viewpoint, RecordedPose(pan_deg=pose[0], tilt_deg=pose[1], zoom=pose[2]).pose())
 
     at = start = standing(row["start"])
     calls = list[Call]()

@@ -1,4 +1,4 @@
-"""Frames for planners that see, and the one frame that calls made at the same time look at."""
+"""Pictures for planners with vision, and the shared frame of calls that run at the same time."""
 
 from __future__ import annotations
 
@@ -10,19 +10,18 @@ from scope_ptz.perception.encoding import picture_of
 from scope_ptz.planner.base import Picture
 from scope_ptz.tools.context import ImageStore
 
-LONGEST_SIDE = 1280
-"""Pixels. Vision models scale larger frames down themselves, after they were sent."""
+LONGEST_SIDE = 1280  # pixels; vision models scale larger pictures down, so sending them only costs time
 
 
 async def picture(frame: Frame, caption: str) -> Picture:
-    """A frame as a planner gets it, no larger than models look at."""
+    """Return a frame as the captioned JPEG that a planner receives, at most ``LONGEST_SIDE`` pixels wide or high."""
     scale = min(1.0, LONGEST_SIDE / max(frame.width, frame.height))
     coded = await picture_of(frame, (round(frame.width * scale), round(frame.height * scale)))
     return Picture(data_url=coded.data_url, caption=caption)
 
 
 async def newest_view(frame: Frame) -> Picture:
-    """The view of now, with the pose that it was taken at."""
+    """Return the current view with its pose in the caption."""
     pose = frame.pose.as_dict()
     return await picture(
         frame, f"The camera's view now, at pan {pose['pan_deg']:g}, tilt {pose['tilt_deg']:g}, zoom {pose['zoom']:g}:"
@@ -30,7 +29,7 @@ async def newest_view(frame: Frame) -> Picture:
 
 
 class PictureStore:
-    """An image store that remembers the last picture that a tool kept, so that a planner can be shown it."""
+    """An image store that remembers the last picture of ``take_image``, so that it can be shown to the planner."""
 
     def __init__(self, images: ImageStore) -> None:
         self._images = images
@@ -45,6 +44,7 @@ class PictureStore:
         return name
 
     async def shown(self) -> Picture | None:
+        """Return the remembered picture for the planner, None when no picture was taken."""
         if self.kept is None:
             return None
         name, frame = self.kept
@@ -52,7 +52,7 @@ class PictureStore:
 
 
 class OneView(TimedCamera):
-    """A camera for calls that are made at the same time: the first that wants a frame takes it, and all look at that one."""
+    """A camera for calls that run at the same time. The first request takes a frame, and every later request returns it."""
 
     def __init__(self, camera: Camera, watch: Stopwatch) -> None:
         super().__init__(camera, watch)

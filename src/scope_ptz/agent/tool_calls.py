@@ -1,4 +1,4 @@
-"""Carrying out the calls of a step: one after the other, looks that do not depend on each other at the same time."""
+"""Run the tool calls of a step. Calls run in order; perception calls on the current view run at the same time."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 
 import anyio
 
-from scope_ptz.agent.records import Called, Fault, Listener, Outcome, Place
-from scope_ptz.agent.seeing import OneView, PictureStore
-from scope_ptz.agent.timing import Reply, Stopwatch, TimedCamera, TimedPerception, Timings
+from scope_ptz.agent.planner_views import OneView, PictureStore
+from scope_ptz.agent.records import Called, CallFault, Listener, Outcome, RecordedPose
+from scope_ptz.agent.timing import PerceptionReply, Stopwatch, TimedCamera, TimedPerception, Timings
 from scope_ptz.camera.base import Camera
 from scope_ptz.errors import CameraError, OutputError, PackError, PerceptionError, ToolCallError, UnknownNameError
 from scope_ptz.geometry import Pose
@@ -22,17 +22,16 @@ from scope_ptz.tools.context import ImageStore, ToolContext
 from scope_ptz.tools.registry import TOOLS, ToolRegistry
 from scope_ptz.tools.results import Result
 
-MOST_AT_ONCE = 8
-"""Looks. A model server answers more of them no sooner."""
+MAX_CONCURRENT_CALLS = 8  # perception calls at a time; a model server does not answer more of them any faster
 
 RunTool = Callable[[ToolContext, str, Any], Awaitable[Result]]
-"""How a checked call is made: ``tools.registry.run_tool``, or something around it that watches."""
+"""The function that runs a call: ``ToolRegistry.run`` or a wrapper around it."""
 
 _NOT_DONE = "Not done, because the call before it failed."
 
 
-class End(NamedTuple):
-    """How a run ends. ``kind``: the way in which a planner's server failed."""
+class RunEnd(NamedTuple):
+    """The end of a run. ``kind`` is the failure kind of the planner's model server, if it failed."""
 
     outcome: Outcome
     text: str
@@ -42,22 +41,20 @@ class End(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class _Done:
-    """A call that was made or broken off. ``end``: it ends the run; ``raised``: it ends the run and whoever started it hears of
-    it."""
+    """A finished or cancelled call. ``end`` is set when the call ends the run, ``raised`` when its error goes to the caller."""
 
     outcome: ToolOutcome
-    fault: Fault | None
+    fault: CallFault | None
     time_s: float
     timings: Timings
-    replies: tuple[Reply, ...] = ()
+    replies: tuple[PerceptionReply, ...] = ()
     frame: str | None = None
-    end: End | None = None
+    end: RunEnd | None = None
     raised: Exception | None = None
 
 
-class Calls:
-    """Makes the calls of one run and keeps count of what went wrong. ``pose``: where the camera looks, as far as calls have
-    told."""
+class CallRunner:
+    """Runs the tool calls of one run and counts their failures. ``pose`` is the camera's pose after the last call."""
 
     def __init__(
         self,
@@ -79,8 +76,19 @@ class Calls:
         self.bad_calls = self.perception_failures = 0
         self.events: Counter[str] = Counter()
 
-    async def carry_out(self, step: int, decision: CallTools, history: list[Exchange]) -> End | None:
-        """Run the calls of a step in order. After one that failed the rest is not done: it was planned for another state."""
+    async def carry_out(self, step: int, decision: CallTools, history: list[Exchange]) -> RunEnd | None:
+        """Run the calls of a step in order and append them to the history.
+
+        After a failed call the remaining calls are skipped, because the planner planned them for another state.
+
+        Args:
+            step: number of the step, from 1.
+            decision: the calls to run.
+            history: the exchanges of the run; the step is appended, also when the run is cancelled between two calls.
+
+        Returns:
+            The end of the run when a call ended it, else None.
+        """
         done: dict[int, _Done] = {}
         try:
             for batch in batches(decision.calls, self._tools):
@@ -90,7 +98,6 @@ class Calls:
                     self._skip(step, decision.calls, batch[-1] + 1, done)
                     return next((d.end for d in failed if d.end is not None), None)
         finally:
-            # Also when the run is cancelled between two calls: what was done is history.
             outcomes = tuple(d.outcome for _, d in sorted(done.items()) if d.fault != "cancelled")
             history.append(Exchange(outcomes=outcomes, thought=decision.thought))
         return None
@@ -115,15 +122,15 @@ class Calls:
                 raise call.raised
 
     async def _make(self, call: ToolCall, index: int, camera: TimedCamera, made: dict[int, _Done]) -> None:
-        """Make a call and put down what came of it. Nothing but a cancellation gets out."""
+        """Run one call and store the result in ``made``. Only a cancellation is raised."""
         time_s, before, pose = camera.clock.now_s(), self._watch.read(), self.pose
-        eyes, images = TimedPerception(self._perception, self._watch), PictureStore(self._images)
-        fault: Fault | None = None
-        end: End | None = None
+        perception, images = TimedPerception(self._perception, self._watch), PictureStore(self._images)
+        fault: CallFault | None = None
+        end: RunEnd | None = None
         raised: Exception | None = None
         frame: str | None = None
         try:
-            result = await self._run(call, ToolContext(camera, eyes, images))
+            result = await self._run(call, ToolContext(camera, perception, images))
             self.pose = await camera.pose()
             if self._snapshots and self.pose != pose and not getattr(result, "frames", ()):
                 frame = self._images.save_look(await camera.frame())
@@ -137,17 +144,17 @@ class Calls:
             self.perception_failures += 1
         except anyio.get_cancelled_exc_class():
             outcome = ToolOutcome(call=call, error="Broken off.")
-            made[index] = _Done(outcome, "cancelled", time_s, self._watch.read() - before, eyes.drain())
+            made[index] = _Done(outcome, "cancelled", time_s, self._watch.read() - before, perception.drain())
             raise
         except (PackError, OutputError) as error:
             outcome, raised = ToolOutcome(call=call, error=str(error)), error
         except CameraError as error:
-            outcome, fault, end = ToolOutcome(call=call, error=str(error)), "camera", End("camera_error", str(error))
-        except Exception as error:  # The episode's border: what breaks below the tools ends the run, recorded
+            outcome, fault, end = ToolOutcome(call=call, error=str(error)), "camera", RunEnd("camera_error", str(error))
+        except Exception as error:  # any other failure below the tools ends the run and is recorded
             words = f"{call.name} broke down: {in_words(error)}"
             outcome, fault = ToolOutcome(call=call, error=words), "camera"
-            end = End("camera_error", words, traceback.format_exc())
-        made[index] = _Done(outcome, fault, time_s, self._watch.read() - before, eyes.drain(), frame, end, raised)
+            end = RunEnd("camera_error", words, traceback.format_exc())
+        made[index] = _Done(outcome, fault, time_s, self._watch.read() - before, perception.drain(), frame, end, raised)
 
     async def _run(self, call: ToolCall, context: ToolContext) -> Result:
         if call.problem is not None:
@@ -171,7 +178,7 @@ class Calls:
                 outcome=done.outcome,
                 fault=done.fault,
                 scene_time_s=done.time_s,
-                pose=Place.of(self.pose),
+                pose=RecordedPose.of(self.pose),
                 timings=done.timings,
                 replies=done.replies,
                 frame=done.frame,
@@ -180,12 +187,15 @@ class Calls:
 
 
 def batches(calls: Sequence[ToolCall], tools: ToolRegistry = TOOLS) -> Iterator[list[int]]:
-    """The calls by index, those together that can be made at the same time: neighbours that only look, at the view of now."""
+    """Yield the indices of the calls in batches; the calls of one batch can run at the same time.
+
+    Neighbouring calls that only read the current view share a batch. Every other call is a batch of its own.
+    """
     together: list[int] = []
     for index, call in enumerate(calls):
-        if _only_reads(call, tools):
+        if _only_reads_view(call, tools):
             together.append(index)
-            if len(together) == MOST_AT_ONCE:
+            if len(together) == MAX_CONCURRENT_CALLS:
                 yield together
                 together = []
             continue
@@ -197,7 +207,7 @@ def batches(calls: Sequence[ToolCall], tools: ToolRegistry = TOOLS) -> Iterator[
         yield together
 
 
-def _only_reads(call: ToolCall, tools: ToolRegistry) -> bool:
+def _only_reads_view(call: ToolCall, tools: ToolRegistry) -> bool:
     if call.problem is not None:
         return False
     try:
@@ -208,4 +218,5 @@ def _only_reads(call: ToolCall, tools: ToolRegistry) -> bool:
 
 
 def in_words(error: Exception) -> str:
+    """Return the type and the message of an error as one line."""
     return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__

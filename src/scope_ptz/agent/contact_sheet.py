@@ -1,4 +1,4 @@
-"""A sheet of captioned pictures, in the manner of the filmstrip."""
+"""Contact sheets: captioned pictures in a grid, in the style of the filmstrip."""
 
 from __future__ import annotations
 
@@ -12,7 +12,15 @@ _WIDTH, _MARGIN, _GAP, _CAPTION, _TITLE, _COLUMNS = 1600, 32, 20, 44, 64, 3
 
 
 def contact_sheet(title: str, pictures: Sequence[tuple[str, Image.Image]]) -> Image.Image:
-    """``pictures``: captions and images of one size."""
+    """Draw a contact sheet, three pictures a row.
+
+    Args:
+        title: the heading.
+        pictures: captions and images. All images have the same size, and there is at least one.
+
+    Returns:
+        The sheet, 1600 pixels wide.
+    """
     width = (_WIDTH - 2 * _MARGIN - _GAP * (_COLUMNS - 1)) / _COLUMNS
     height = width * pictures[0][1].height / pictures[0][1].width
     rows = -(-len(pictures) // _COLUMNS)

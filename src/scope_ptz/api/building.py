@@ -1,0 +1,102 @@
+"""Turn the options of a session into a camera, a planner and perception."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from contextlib import AsyncExitStack
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from scope_ptz.api.no_perception import NoPerception
+from scope_ptz.api.options import SessionOptions, check_type
+from scope_ptz.camera.base import Camera
+from scope_ptz.errors import InputError
+from scope_ptz.factory.cameras import OpenCamera, open_camera
+from scope_ptz.factory.models import ResolvedPerception, make_perception, make_planner, perception_note, resolve_models
+from scope_ptz.perception.base import Perception
+from scope_ptz.planner.base import Planner
+
+if TYPE_CHECKING:
+    from scope_ptz.simulator.pack import Scene
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """The parts of an open session.
+
+    Attributes:
+        scene: the scene of a camera in a scene, else None.
+        note: a sentence on what perception is, empty for models.
+        release: closes the parts that were made for the session. Objects that the caller passed stay open.
+    """
+
+    camera: Camera
+    planner: Planner
+    perception: Perception
+    scene: Scene | None
+    note: str
+    release: Callable[[], Awaitable[None]]
+
+
+async def build(options: SessionOptions) -> Parts:
+    """Open the camera and make the planner and perception.
+
+    Raises:
+        InputError: an option is wrong.
+        PackError: the files of a scene are damaged.
+        CameraError: the camera does not answer.
+        BlenderError: Blender cannot be started, or cannot open the scene or the file.
+    """
+    pair = await resolve_models(options.served.model_options(options.planner, options.perception))
+    async with AsyncExitStack() as stack:
+        camera, opened = await _camera(options, stack)
+        planner = make_planner(pair.planner)
+        if pair.planner.instance is None:
+            stack.push_async_callback(planner.close)
+        perception = _perception(options, pair.perception, camera, opened)
+        if pair.perception.instance is None:
+            stack.push_async_callback(perception.close)
+        scene = opened.scene if opened is not None else None
+        note = "" if isinstance(perception, NoPerception) else perception_note(pair.perception)
+        return Parts(camera, planner, perception, scene, note, stack.pop_all().aclose)
+
+
+async def _camera(options: SessionOptions, stack: AsyncExitStack) -> tuple[Camera, OpenCamera | None]:
+    check_type("camera", options.camera, Camera)
+    if not isinstance(options.camera, Camera):
+        opened = await open_camera(
+            options.camera,
+            viewpoint=options.viewpoint,
+            preset=options.preset,
+            time_s=options.time_s,
+            realtime=options.realtime,
+        )
+        stack.push_async_callback(opened.aclose)
+        return opened.camera, opened
+    given = [name for name in ("viewpoint", "time_s") if getattr(options, name) is not None]
+    if given:
+        raise InputError(f"The camera is an object of your own, so {' and '.join(given)} has no effect. Leave it out.")
+    if options.preset is not None:
+        await options.camera.go_to_preset(options.preset)
+    return options.camera, None
+
+
+def _perception(options: SessionOptions, resolved: ResolvedPerception, camera: Camera, opened: OpenCamera | None) -> Perception:
+    scenes = opened.scenes if opened is not None else _scenes_by_name() if camera.info.simulated else None
+    if scenes is None and resolved.spec is None and resolved.instance is None:
+        if options.perception is None:
+            return NoPerception()
+        raise InputError(
+            f"The perception '{resolved.name}' reads the ground truth of a simulated scene, and the camera '{camera.info.name}' "
+            "has none. Pass perception=, the name of a vision model or an object of your own."
+        )
+    return make_perception(resolved, scenes, options.seed)
+
+
+def _scenes_by_name() -> Callable[[str], Scene]:
+    """Return a function that opens scenes, for the frames of a simulated camera that the caller made."""
+    from scope_ptz.factory.scenes import scene_search
+    from scope_ptz.settings import load_settings
+    from scope_ptz.simulator.library import Library
+
+    return Library(scene_search(load_settings()))

@@ -1,0 +1,296 @@
+"""Evaluations from Python: load tasks, run a planner and perception on them, and read the results."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, get_args
+
+from scope_ptz.bench.scoring.trials import Evaluation, Trial
+from scope_ptz.bench.tasks.task import Category, Task
+from scope_ptz.errors import ConfigError, InputError
+from scope_ptz.perception.base import Perception
+from scope_ptz.planner.base import Planner
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+CATEGORIES: tuple[str, ...] = get_args(Category)
+
+
+class EvaluationResults:
+    """The results of an evaluation: scores by category, and every trial. In a notebook, it shows a table of scores.
+
+    ``evaluate`` and ``load_results`` return it. A score is the share of correct trials among those that were scored. Trials that
+    failed for reasons of infrastructure are left out, and so are those that wait for a judge.
+
+    Example:
+        >>> import scope_ptz, tempfile
+        >>> tasks = scope_ptz.load_tasks("core", categories=["single_call"], limit=2)
+        >>> results = scope_ptz.evaluate(tasks=tasks, out=tempfile.mkdtemp(), pictures=False)
+        >>> results.scores
+        {'single_call': 1.0}
+        >>> [trial.headline for trial in results.trials]
+        ['correct', 'correct']
+    """
+
+    def __init__(self, evaluation: Evaluation) -> None:
+        self._evaluation = evaluation
+
+    @property
+    def trials(self) -> tuple[Trial, ...]:
+        """The trials: one run of one task each, with its verdict, answer, error mode and timings."""
+        return self._evaluation.trials
+
+    @property
+    def pair(self) -> str:
+        """The planner and perception that were evaluated."""
+        return self._evaluation.card.pair
+
+    @property
+    def log(self) -> Path:
+        """The log file, which ``load_results`` and ``scope bench report`` read."""
+        return Path(self._evaluation.log)
+
+    @property
+    def finished(self) -> bool:
+        """Whether the evaluation has all of its trials. Running it again resumes an unfinished one."""
+        return self._evaluation.finished
+
+    @cached_property
+    def scores(self) -> dict[str, float]:
+        """Score of each category, from 0 to 1. Categories without scored trials are missing."""
+        scored = {category: score(self._of(category)) for category in CATEGORIES}
+        return {category: value for category, value in scored.items() if value is not None}
+
+    @property
+    def macro(self) -> float | None:
+        """Unweighted mean of the scores of the categories; None when nothing was scored."""
+        return sum(self.scores.values()) / len(self.scores) if self.scores else None
+
+    @property
+    def micro(self) -> float | None:
+        """Score of all trials together; None when nothing was scored."""
+        return score(self.trials)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return the trials as a data frame, one row each.
+
+        Returns:
+            The data frame.
+
+        Raises:
+            ConfigError: pandas is not installed.
+        """
+        try:
+            import pandas as pd
+        except ImportError:
+            raise ConfigError("to_pandas() needs pandas. Install it with: pip install pandas") from None
+        return pd.DataFrame([_row(trial) for trial in self.trials], columns=list(_COLUMNS))
+
+    def __len__(self) -> int:
+        return len(self.trials)
+
+    def __iter__(self) -> Iterator[Trial]:
+        return iter(self.trials)
+
+    def __repr__(self) -> str:
+        macro = f"{self.macro:.1%}" if self.macro is not None else "not scored"
+        return f"<EvaluationResults {self.pair}: {len(self)} trials, macro {macro}>"
+
+    def _repr_html_(self) -> str:
+        from scope_ptz.api.notebook import table_html
+
+        rows = [self._counts(name.replace("_", " "), self._of(name), value) for name, value in self.scores.items()]
+        rows.append(self._counts("macro (mean of categories)", (), self.macro))
+        rows.append(self._counts("micro (all trials)", self.trials, self.micro))
+        return table_html(self.pair, ("category", "trials", "correct", "score"), rows, f"log: {self.log}")
+
+    def _of(self, category: str) -> tuple[Trial, ...]:
+        return tuple(trial for trial in self.trials if trial.task.category == category)
+
+    @staticmethod
+    def _counts(name: str, trials: Sequence[Trial], value: float | None) -> tuple[str, str, str, str]:
+        correct = sum(trial.headline == "correct" for trial in trials)
+        numbers = (str(len(trials)), str(correct)) if trials else ("", "")
+        return name, *numbers, "-" if value is None else f"{value:.1%}"
+
+
+def load_tasks(
+    tasks: str | PathLike[str] = "core",
+    *,
+    categories: Sequence[str] = (),
+    scenes: Sequence[str] = (),
+    limit: int | None = None,
+) -> tuple[Task, ...]:
+    """Load benchmark tasks.
+
+    Args:
+        tasks: a split ("core", "lite", "paraphrase", "reaction", "unseen" or "all"), or a task file (JSONL or YAML).
+        categories: only tasks of these categories; all by default.
+        scenes: only tasks of these scenes; all by default.
+        limit: at most this many tasks, sampled evenly across the selected categories and scenes.
+
+    Returns:
+        The tasks, always the same ones for the same arguments.
+
+    Raises:
+        InputError: a name is unknown, a file is missing or damaged, or no task is left.
+
+    Example:
+        >>> import scope_ptz
+        >>> tasks = scope_ptz.load_tasks("core", limit=8)
+        >>> len(tasks), len({task.category for task in tasks})
+        (8, 8)
+    """
+    from scope_ptz.bench.engine.entries import select
+    from scope_ptz.factory.evaluation import tasks_of
+    from scope_ptz.factory.scenes import scene_search
+    from scope_ptz.settings import load_settings
+    from scope_ptz.simulator.library import Library
+
+    entries = tasks_of(str(tasks), Library(scene_search(load_settings())))
+    selected = select(entries, _names("categories", categories), _names("scenes", scenes), limit)
+    loaded = tuple(entry.task for entry in selected if entry.task is not None)
+    if len(loaded) < len(selected):
+        raise InputError(f"{tasks} holds imported tasks, which only a judge can score. Pass its path to evaluate(tasks=...).")
+    return loaded
+
+
+def evaluate(
+    planner: Planner | str | None = None,
+    perception: Perception | str | None = None,
+    *,
+    tasks: str | PathLike[str] | Sequence[Task] = "core",
+    out: str | PathLike[str] = "evaluations",
+    pair: str | None = None,
+    agent: str | None = None,
+    categories: Sequence[str] = (),
+    scenes: Sequence[str] = (),
+    limit: int | None = None,
+    epochs: int = 1,
+    seed: int = 1,
+    max_steps: int = 60,
+    time_budget_s: float | None = None,
+    concurrency: int | None = None,
+    pictures: bool = True,
+    fresh: bool = False,
+    planner_url: str | None = None,
+    planner_model: str | None = None,
+    perception_url: str | None = None,
+    perception_model: str | None = None,
+    timeout_s: float | None = None,
+) -> EvaluationResults:
+    """Run a planner and perception on benchmark tasks and score every run.
+
+    The log in ``out`` grows as runs end. Calling this again with the same arguments resumes an interrupted evaluation, and reads
+    the results of a complete one.
+
+    Args:
+        planner: name of a planner or model, or a ``Planner`` object; the built-in rule-based planner by default.
+        perception: name of a backend or model, or a ``Perception`` object; the simulator's ground truth by default.
+        tasks: a split, a task file, or tasks of ``load_tasks``.
+        out: folder of the logs.
+        pair: planner and perception in one name, "PLANNER+PERCEPTION", or one model that is both.
+        agent: "module:Class" of an agent of your own, which replaces the planner and the loop around it.
+        categories: only tasks of these categories; all by default.
+        scenes: only tasks of these scenes; all by default.
+        limit: at most this many tasks, sampled evenly across the selected categories and scenes.
+        epochs: number of runs of each task.
+        seed: seed for every random choice.
+        max_steps: planner steps after which a run ends.
+        time_budget_s: wall seconds after which a run ends; no limit by default.
+        concurrency: number of runs at a time; by default a number that suits the models.
+        pictures: whether to render and log frames. Ground truth needs none, and is faster without.
+        fresh: start again even if there is a log of the same evaluation.
+        planner_url: address of the planner's model server.
+        planner_model: the server's name for the planner.
+        perception_url: address of perception's model server.
+        perception_model: the server's name for the vision model.
+        timeout_s: seconds after which a request to a model server fails.
+
+    Returns:
+        The results.
+
+    Raises:
+        ConfigError: the evaluation engine is not installed, or a model is not configured.
+        InputError: an option is wrong, or a name is unknown.
+        ScopeError: too many runs in a row failed for reasons of infrastructure.
+
+    Example:
+        >>> import scope_ptz, tempfile
+        >>> tasks = scope_ptz.load_tasks("core", categories=["single_call"], limit=2)
+        >>> results = scope_ptz.evaluate("grammar", "ground-truth", tasks=tasks, out=tempfile.mkdtemp(), pictures=False)
+        >>> results.macro
+        1.0
+    """
+    from scope_ptz.api.evaluating import EvaluationRequest, run_evaluation
+
+    request = EvaluationRequest(
+        planner=planner, perception=perception, pair=pair, tasks=tasks if isinstance(tasks, str | PathLike) else tuple(tasks),
+        out=Path(out), agent=agent, categories=_names("categories", categories), scenes=_names("scenes", scenes), limit=limit,
+        epochs=epochs, seed=seed, max_steps=max_steps, time_budget_s=time_budget_s, concurrency=concurrency, pictures=pictures,
+        fresh=fresh, planner_url=planner_url, planner_model=planner_model, perception_url=perception_url,
+        perception_model=perception_model, timeout_s=timeout_s,
+    )  # fmt: skip
+    return EvaluationResults(run_evaluation(request))
+
+
+def load_results(path: str | PathLike[str]) -> EvaluationResults:
+    """Read the results of an evaluation.
+
+    Args:
+        path: a log file, or a folder with logs, of which the newest is read.
+
+    Returns:
+        The results. Those of an unfinished evaluation have ``finished`` False.
+
+    Raises:
+        TraceError: there is no log, or it is damaged.
+        ConfigError: the evaluation engine is not installed.
+
+    Example:
+        >>> import scope_ptz, tempfile
+        >>> out = tempfile.mkdtemp()
+        >>> tasks = scope_ptz.load_tasks("core", categories=["single_call"], limit=1)
+        >>> ran = scope_ptz.evaluate(tasks=tasks, out=out, pictures=False)
+        >>> scope_ptz.load_results(out).scores == ran.scores
+        True
+    """
+    from scope_ptz.api.evaluating import read_results
+
+    return EvaluationResults(read_results(Path(path)))
+
+
+def score(trials: Sequence[Trial]) -> float | None:
+    """Return the share of correct trials among the scored ones; None when none is scored."""
+    from scope_ptz.bench.judging.tally import without_verdict
+
+    scored = [trial for trial in trials if trial.headline != "infrastructure" and not without_verdict(trial)]
+    return sum(trial.headline == "correct" for trial in scored) / len(scored) if scored else None
+
+
+_COLUMNS = (
+    "task", "category", "scope", "scene", "viewpoint", "difficulty", "epoch", "instruction", "expected", "answer", "outcome",
+    "headline", "correct", "error_mode", "steps", "calls", "bad_calls", "planner_s", "perception_s", "total_s", "input_tokens",
+    "output_tokens",
+)  # fmt: skip
+
+
+def _row(trial: Trial) -> dict[str, Any]:
+    task, timings = trial.task, trial.timings
+    values: tuple[Any, ...] = (
+        task.id, task.category, task.scope, task.scene, task.viewpoint, task.difficulty, trial.epoch, task.instruction,
+        task.expected, trial.answer, trial.outcome, trial.headline, trial.headline == "correct", trial.error_mode, trial.steps,
+        sum(trial.tool_calls.values()), trial.bad_calls, timings.planner_s, timings.perception_s, timings.total_s,
+        trial.input_tokens, trial.output_tokens,
+    )  # fmt: skip
+    return dict(zip(_COLUMNS, values, strict=True))
+
+
+def _names(option: str, names: Sequence[str]) -> tuple[str, ...]:
+    if isinstance(names, str):
+        raise InputError(f"{option}= takes a list of names: write {option}=[{names!r}].")
+    return tuple(names)

@@ -1,0 +1,98 @@
+"""An event loop in a thread of its own, for the synchronous session."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Awaitable, Callable
+from concurrent.futures import CancelledError, Future
+from typing import TypeVar
+
+import anyio
+from anyio.from_thread import BlockingPortal
+
+CHECK_S = 0.5  # how often the thread looks whether the main thread has ended
+_T = TypeVar("_T")
+
+
+class EventLoopThread:
+    """Runs coroutines in another thread, so that synchronous code works inside a running event loop, such as Jupyter's.
+
+    The thread ends with ``stop``. It also ends by itself when the main thread does, because the interpreter would otherwise wait
+    at exit for a session that was never closed.
+    """
+
+    def __init__(self, at_exit: Callable[[], Awaitable[None]]) -> None:
+        """``at_exit`` runs in the thread before it ends."""
+        self._at_exit = at_exit
+        self._ready: Future[BlockingPortal] = Future()
+        self._stop: anyio.Event | None = None
+        self._thread = threading.Thread(target=self._run, daemon=True, name="scope-ptz session")
+        self._thread.start()
+        self._portal = self._ready.result()
+
+    def _run(self) -> None:
+        try:
+            anyio.run(self._serve)
+        except BaseException as error:  # the thread that waits for the portal has to hear of any failure
+            if not self._ready.done():
+                self._ready.set_exception(error)
+
+    async def _serve(self) -> None:
+        self._stop = anyio.Event()
+        async with BlockingPortal() as portal:
+            self._ready.set_result(portal)
+            while not self._stop.is_set() and threading.main_thread().is_alive():
+                with anyio.move_on_after(CHECK_S):
+                    await self._stop.wait()
+            await self._at_exit()
+
+    def call(self, work: Callable[[], Awaitable[_T]]) -> _T:
+        """Run a coroutine and return its result.
+
+        An exception in the waiting thread, such as KeyboardInterrupt, cancels the coroutine. It is raised after the coroutine has
+        finished, so that a cancelled run has a complete trace.
+        """
+        future, finished = self.start(work)
+        try:
+            return future.result()
+        except CancelledError:
+            raise
+        except BaseException:
+            if not future.done():
+                future.cancel()
+                finished.wait()
+            raise
+
+    def start(self, work: Callable[[], Awaitable[_T]]) -> tuple[Future[_T], threading.Event]:
+        """Start a coroutine. Return its future and an event that is set when it has finished, also after a cancellation."""
+        finished = threading.Event()
+
+        async def run() -> _T:
+            try:
+                return await work()
+            finally:
+                finished.set()
+
+        return self._portal.start_task_soon(run), finished
+
+    def call_function(self, function: Callable[[], None]) -> None:
+        """Run a function in the thread."""
+        self._portal.call(function)
+
+    def stop(self) -> None:
+        """End the thread and wait for it. Stopping twice is allowed."""
+        if self._thread.is_alive() and self._stop is not None:
+            self._portal.call(self._stop.set)
+            self._thread.join()
+
+
+def run_in_thread(work: Callable[[], Awaitable[_T]]) -> _T:
+    """Run a coroutine in an event loop of its own, also where an event loop is running already."""
+
+    async def nothing() -> None: ...
+
+    loop = EventLoopThread(nothing)
+    try:
+        return loop.call(work)
+    finally:
+        loop.stop()

@@ -1,0 +1,87 @@
+"""How runs, scenes and results show themselves in a notebook: HTML with embedded pictures, for light and dark themes."""
+
+from __future__ import annotations
+
+import base64
+import io
+from collections.abc import Iterable, Sequence
+from html import escape
+
+from PIL import Image
+
+PICTURE_WIDTH = 1100  # pixels; wider pictures are scaled down to keep notebooks small
+JPEG_QUALITY = 85
+MAX_TEXT_CHARS = 300  # longer cells of a table are cut
+
+_COLOURS = {"answered": "#2e9e5b", "clarification": "#c98a00", "refused": "#c98a00"}
+_FAILED = "#d5483b"
+_FAINT = "opacity:.65"
+_CELL = "text-align:left;vertical-align:top;padding:3px 14px 3px 0"
+
+
+def run_html(
+    instruction: str, answer: str, outcome: str, facts: Sequence[str], filmstrip: Image.Image | str, calls: Sequence[Sequence[str]]
+) -> str:
+    """Return a run as HTML: the answer, the filmstrip and a table of the tool calls.
+
+    Args:
+        instruction: the instruction.
+        answer: the final text.
+        outcome: the outcome, which decides the colour.
+        facts: short phrases on planner, perception and duration.
+        filmstrip: the filmstrip, or a sentence that says why there is none.
+        calls: step, tool, arguments, result and seconds of each tool call.
+    """
+    colour = _COLOURS.get(outcome, _FAILED)
+    parts = [
+        f'<div style="border-left:4px solid {colour};padding-left:10px;margin:4px 0 10px">',
+        f'<div style="{_FAINT}">{escape(instruction)}</div>',
+        f'<div style="font-size:1.15em;font-weight:600">{escape(answer)}</div>',
+        f'<div style="{_FAINT};font-size:.85em">{escape(" · ".join((outcome.replace("_", " "), *facts)))}</div></div>',
+        f'<div style="{_FAINT}">{escape(filmstrip)}</div>' if isinstance(filmstrip, str) else picture_html(filmstrip, "filmstrip"),
+    ]
+    if calls:
+        parts.append(_table(("step", "tool", "arguments", "result", "seconds"), calls))
+    return _block(parts)
+
+
+def card_html(title: str, rows: Iterable[Sequence[str]], picture: Image.Image) -> str:
+    """Return a card as HTML: a title, labelled lines and a picture."""
+    heading = f'<div style="font-size:1.15em;font-weight:600;margin-bottom:4px">{escape(title)}</div>'
+    return _block([heading, _table((), rows), picture_html(picture, title)])
+
+
+def table_html(title: str, header: Sequence[str], rows: Iterable[Sequence[str]], note: str = "") -> str:
+    """Return a titled table as HTML."""
+    parts = [f'<div style="font-size:1.15em;font-weight:600;margin-bottom:4px">{escape(title)}</div>', _table(header, rows)]
+    if note:
+        parts.append(f'<div style="{_FAINT};font-size:.85em;margin-top:6px">{escape(note)}</div>')
+    return _block(parts)
+
+
+def picture_html(image: Image.Image, alt: str) -> str:
+    """Return a picture as an HTML image with its data in it."""
+    if image.width > PICTURE_WIDTH:
+        image = image.resize((PICTURE_WIDTH, round(image.height * PICTURE_WIDTH / image.width)), Image.Resampling.LANCZOS)
+    buffer = io.BytesIO()
+    image.save(buffer, "JPEG", quality=JPEG_QUALITY)
+    data = base64.b64encode(buffer.getvalue()).decode()
+    style = "max-width:100%;border-radius:8px;margin-top:8px;display:block"
+    return f'<img alt="{escape(alt)}" style="{style}" src="data:image/jpeg;base64,{data}">'
+
+
+def _table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    head = "".join(f'<th style="{_CELL};{_FAINT};font-weight:400">{escape(name)}</th>' for name in header)
+    body = "".join(f"<tr>{''.join(_cell(text, first=number == 0) for number, text in enumerate(row))}</tr>" for row in rows)
+    top = f"<thead><tr>{head}</tr></thead>" if head else ""
+    return f'<table style="border-collapse:collapse;margin:8px 0 0;font-size:.95em">{top}<tbody>{body}</tbody></table>'
+
+
+def _cell(text: str, *, first: bool) -> str:
+    shown = text if len(text) <= MAX_TEXT_CHARS else text[: MAX_TEXT_CHARS - 1] + "…"
+    nowrap = ";white-space:nowrap" if first else ""
+    return f'<td style="{_CELL}{nowrap}">{escape(shown)}</td>'
+
+
+def _block(parts: Iterable[str]) -> str:
+    return f'<div style="font-family:system-ui,sans-serif;max-width:{PICTURE_WIDTH}px">{"".join(parts)}</div>'

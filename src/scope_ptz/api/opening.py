@@ -1,0 +1,183 @@
+"""``open`` and ``open_async``: make a session."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from scope_ptz.agent.records import Budgets
+from scope_ptz.api.async_scope import AsyncScope
+from scope_ptz.api.options import ServedModels, SessionOptions, StrPath
+from scope_ptz.api.scope import Scope
+from scope_ptz.camera.base import Camera
+from scope_ptz.errors import InputError
+from scope_ptz.perception.base import Perception
+from scope_ptz.planner.base import Planner
+
+
+def open(  # noqa: A001 - the public name, used as scope_ptz.open
+    camera: Camera | str = "highway-works",
+    *,
+    planner: Planner | str | None = None,
+    perception: Perception | str | None = None,
+    pair: str | None = None,
+    viewpoint: str | None = None,
+    preset: str | None = None,
+    time_s: float | None = None,
+    seed: int = 0,
+    realtime: bool = False,
+    runs_dir: StrPath | None = None,
+    max_steps: int = 60,
+    time_budget_s: float | None = None,
+    token_budget: int | None = None,
+    planner_url: str | None = None,
+    planner_model: str | None = None,
+    planner_key_file: StrPath | None = None,
+    planner_options: Mapping[str, Any] | None = None,
+    perception_url: str | None = None,
+    perception_model: str | None = None,
+    perception_key_file: StrPath | None = None,
+    perception_options: Mapping[str, Any] | None = None,
+    reader: str | None = None,
+    detector: str | None = None,
+    timeout_s: float | None = None,
+) -> Scope:
+    """Open a session with a camera.
+
+    Without options, the built-in rule-based planner plans, and perception is the simulator's ground truth. No model, key or network
+    is needed for that. A camera without ground truth has no perception unless you name one: it moves and takes frames, and
+    questions about what it sees raise ``PerceptionError``.
+
+    Args:
+        camera: a scene ("highway-works"), any other camera spec ("blender:yard.blend"), or a ``Camera`` object.
+        planner: name of a planner or model ("grammar", "qwen3-4b"), or a ``Planner`` object.
+        perception: name of a backend or model ("ground-truth", "noisy", "moondream3"), or a ``Perception`` object.
+        pair: planner and perception in one name, "PLANNER+PERCEPTION", or one model that is both.
+        viewpoint: where the camera stands in a scene; the scene's home by default.
+        preset: the preset to start at. A preset names its viewpoint.
+        time_s: scene time at the start, in seconds; the scene's own start by default.
+        seed: seed for every random choice.
+        realtime: whether moves take as long as those of a real camera and scene time follows the wall clock.
+        runs_dir: folder in which every run gets a folder with trace and pictures; by default runs are kept in memory.
+        max_steps: planner steps after which a run ends.
+        time_budget_s: wall seconds after which a run ends; no limit by default.
+        token_budget: planner tokens after which a run ends; no limit by default.
+        planner_url: address of the planner's model server.
+        planner_model: the server's name for the planner.
+        planner_key_file: file with the key of the planner's server.
+        planner_options: further options of the planner, such as ``{"temperature": 0.2}``.
+        perception_url: address of perception's model server.
+        perception_model: the server's name for the vision model.
+        perception_key_file: file with the key of perception's server.
+        perception_options: further options of perception.
+        reader: name of a second backend that reads text.
+        detector: name of a second backend that finds objects.
+        timeout_s: seconds after which a request to a model server fails.
+
+    Returns:
+        An open session. Use it in a ``with`` statement, or call its ``close``.
+
+    Raises:
+        InputError: an option is wrong, or a name is unknown.
+        PackError: the files of a scene are damaged.
+        CameraError: the camera does not answer.
+
+    Example:
+        >>> import scope_ptz
+        >>> with scope_ptz.open("highway-works", preset="gate") as scope:
+        ...     run = scope.ask("how many cones are there?")
+        >>> run.ok
+        True
+    """
+    return Scope(_session_options(**locals()))
+
+
+def open_async(
+    camera: Camera | str = "highway-works",
+    *,
+    planner: Planner | str | None = None,
+    perception: Perception | str | None = None,
+    pair: str | None = None,
+    viewpoint: str | None = None,
+    preset: str | None = None,
+    time_s: float | None = None,
+    seed: int = 0,
+    realtime: bool = False,
+    runs_dir: StrPath | None = None,
+    max_steps: int = 60,
+    time_budget_s: float | None = None,
+    token_budget: int | None = None,
+    planner_url: str | None = None,
+    planner_model: str | None = None,
+    planner_key_file: StrPath | None = None,
+    planner_options: Mapping[str, Any] | None = None,
+    perception_url: str | None = None,
+    perception_model: str | None = None,
+    perception_key_file: StrPath | None = None,
+    perception_options: Mapping[str, Any] | None = None,
+    reader: str | None = None,
+    detector: str | None = None,
+    timeout_s: float | None = None,
+) -> AsyncScope:
+    """Open a session for asynchronous code. The arguments are those of ``open``.
+
+    Args:
+        camera: as in ``open``.
+        **options: as in ``open``.
+
+    Returns:
+        A session for ``async with``, or to be awaited and closed later.
+
+    Raises:
+        InputError: an option is wrong. Errors of opening, as in ``open``, are raised by ``async with`` or ``await``.
+
+    Example:
+        >>> import asyncio, scope_ptz
+        >>> async def main():
+        ...     async with scope_ptz.open_async("highway-works") as scope:
+        ...         print((await scope.ask("zoom in 2x")).pose.zoom)
+        >>> asyncio.run(main())
+        2.0
+    """
+    return AsyncScope(_session_options(**locals()))
+
+
+def _session_options(
+    *,
+    camera: Camera | str,
+    planner: Planner | str | None,
+    perception: Perception | str | None,
+    viewpoint: str | None,
+    preset: str | None,
+    time_s: float | None,
+    seed: int,
+    realtime: bool,
+    runs_dir: StrPath | None,
+    max_steps: int,
+    time_budget_s: float | None,
+    token_budget: int | None,
+    **served: Any,
+) -> SessionOptions:
+    try:
+        budgets = Budgets(max_steps=max_steps, time_s=time_budget_s, tokens=token_budget)
+    except ValidationError as error:
+        names = {"time_s": "time_budget_s", "tokens": "token_budget"}
+        first = error.errors(include_url=False)[0]
+        field = str(first["loc"][0])
+        raise InputError(f"{names.get(field, field)} is wrong: {first['msg']}.") from None
+    return SessionOptions(
+        camera=camera,
+        planner=planner,
+        perception=perception,
+        served=ServedModels(**served),
+        viewpoint=viewpoint,
+        preset=preset,
+        time_s=time_s,
+        seed=seed,
+        realtime=realtime,
+        runs_dir=None if runs_dir is None else Path(runs_dir),
+        budgets=budgets,
+    )

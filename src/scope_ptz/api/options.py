@@ -1,0 +1,108 @@
+"""The options of a session, as ``scope_ptz.open`` and ``scope_ptz.open_async`` take them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from scope_ptz.agent.records import Budgets
+from scope_ptz.camera.base import Camera
+from scope_ptz.errors import InputError
+from scope_ptz.factory.models import ModelOptions
+from scope_ptz.perception.base import Perception
+from scope_ptz.planner.base import Planner
+
+StrPath = str | PathLike[str]
+
+
+@dataclass(frozen=True, slots=True)
+class ServedModels:
+    """Where models are served and how they are called. The fields are those of ``ModelOptions`` in plain Python types."""
+
+    pair: str | None = None
+    planner_url: str | None = None
+    perception_url: str | None = None
+    planner_model: str | None = None
+    perception_model: str | None = None
+    planner_key_file: StrPath | None = None
+    perception_key_file: StrPath | None = None
+    planner_options: Mapping[str, Any] | None = None
+    perception_options: Mapping[str, Any] | None = None
+    reader: str | None = None
+    detector: str | None = None
+    timeout_s: float | None = None
+
+    def model_options(self, planner: Planner | str | None, perception: Perception | str | None) -> ModelOptions:
+        """Return the options in the form in which the factory takes them.
+
+        Args:
+            planner: a name, None for the default, or an object, which needs no resolution.
+            perception: the same for perception.
+
+        Raises:
+            InputError: an object is combined with options that only apply to names.
+        """
+        check_type("planner", planner, Planner)
+        check_type("perception", perception, Perception)
+        own = [role for role, given in (("planner", planner), ("perception", perception)) if not isinstance(given, str | None)]
+        for role in own:
+            options = (f"{role}_url", f"{role}_model", f"{role}_key_file", f"{role}_options")
+            extra = [name for name in (*options, "pair") if getattr(self, name)]
+            extra += [name for name in ("reader", "detector") if role == "perception" and getattr(self, name)]
+            if extra:
+                raise InputError(f"{role}= is an object of your own, so {', '.join(extra)} has no effect. Leave it out.")
+        return ModelOptions(
+            planner=planner if isinstance(planner, str) else None,
+            perception=perception if isinstance(perception, str) else None,
+            pair=self.pair,
+            planner_url=self.planner_url,
+            perception_url=self.perception_url,
+            planner_model=self.planner_model,
+            perception_model=self.perception_model,
+            planner_key_file=_path(self.planner_key_file),
+            perception_key_file=_path(self.perception_key_file),
+            planner_options=_pairs(self.planner_options),
+            perception_options=_pairs(self.perception_options),
+            reader=self.reader,
+            detector=self.detector,
+            timeout_s=self.timeout_s,
+            own_planner=planner if isinstance(planner, Planner) else None,
+            own_perception=perception if isinstance(perception, Perception) else None,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class SessionOptions:
+    """Everything that a session needs to open."""
+
+    camera: Camera | str
+    planner: Planner | str | None = None
+    perception: Perception | str | None = None
+    served: ServedModels = field(default_factory=ServedModels)
+    viewpoint: str | None = None
+    preset: str | None = None
+    time_s: float | None = None
+    seed: int = 0
+    realtime: bool = False
+    runs_dir: Path | None = None
+    budgets: Budgets = field(default_factory=Budgets)
+
+
+def check_type(option: str, given: object, contract: type) -> None:
+    """Raise ``InputError`` unless an option is a name, None, or an object of the contract's class."""
+    if not isinstance(given, str | contract | None):
+        wanted = "an object of the class, not the class itself" if isinstance(given, type) else f"a scope_ptz.{contract.__name__}"
+        raise InputError(f"{option}= takes a name or {wanted}, got {given!r}.")
+
+
+def _path(given: StrPath | None) -> Path | None:
+    return None if given is None else Path(given)
+
+
+def _pairs(options: Mapping[str, Any] | None) -> tuple[str, ...]:
+    """Return options as ``NAME=JSON``, which the factory parses back to the same values."""
+    return tuple(f"{name}={json.dumps(value)}" for name, value in (options or {}).items())

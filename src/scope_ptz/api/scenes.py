@@ -1,0 +1,149 @@
+"""What there is to open: scenes, models, and the schemas of the tools."""
+
+from __future__ import annotations
+
+from collections import Counter
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from scope_ptz.factory.scenes import open_scene, scene_search
+from scope_ptz.registry import Model, Role, load_registry
+from scope_ptz.settings import load_settings
+from scope_ptz.simulator.pack import Scene, list_scenes
+
+if TYPE_CHECKING:
+    from PIL import Image
+
+MAX_CATEGORIES = 10  # categories of objects in the card of a scene
+
+
+class SceneInfo:
+    """A simulated scene: its presets and what it contains. In a notebook, a scene shows its contact sheet.
+
+    Example:
+        >>> import scope_ptz
+        >>> scene = scope_ptz.scenes()["highway-works"]
+        >>> scene.title, len(scene.viewpoints)
+        ('Highway works', 3)
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self._scene = scene
+
+    @property
+    def name(self) -> str:
+        """Name of the scene, which ``scope_ptz.open`` takes."""
+        return self._scene.name
+
+    @property
+    def title(self) -> str:
+        """The scene's title."""
+        return self._scene.file.title
+
+    @property
+    def viewpoints(self) -> tuple[str, ...]:
+        """Names of the viewpoints, the places at which a camera can stand."""
+        return tuple(viewpoint.name for viewpoint in self._scene.file.viewpoints)
+
+    @property
+    def presets(self) -> dict[str, str]:
+        """Names of the presets, and the viewpoint of each."""
+        return {preset.name: preset.viewpoint for preset in self._scene.file.presets}
+
+    @cached_property
+    def objects(self) -> dict[str, int]:
+        """Number of objects in the scene by category, the most frequent first. Moving objects are included."""
+        file = self._scene.file
+        categories = [instance.category for instance in file.instances] + [actor.category for actor in file.actors]
+        return dict(Counter(categories).most_common())
+
+    @cached_property
+    def contact_sheet(self) -> Image.Image:
+        """A picture with the views of all presets, drawn on first use."""
+        from scope_ptz.api.event_loop import run_in_thread
+
+        return run_in_thread(self._draw)
+
+    async def _draw(self) -> Image.Image:
+        from PIL import Image
+
+        from scope_ptz.agent.contact_sheet import contact_sheet
+        from scope_ptz.camera.simulated import SimulatedCamera
+        from scope_ptz.simulator.clock import SceneClock
+
+        camera = SimulatedCamera(self._scene, clock=SceneClock(self._scene.file.start_s))
+        pictures = []
+        for name, viewpoint in self.presets.items():
+            await camera.go_to_preset(name)
+            pictures.append((f"{name} · {viewpoint}", Image.fromarray((await camera.frame()).image)))
+        return contact_sheet(self.title, pictures)
+
+    def __repr__(self) -> str:
+        return f"<SceneInfo {self.name}: {len(self.viewpoints)} viewpoints, {len(self.presets)} presets>"
+
+    def _repr_html_(self) -> str:
+        from scope_ptz.api.notebook import card_html
+
+        objects = list(self.objects.items())
+        listed = ", ".join(f"{count} {name}" for name, count in objects[:MAX_CATEGORIES])
+        more = f" and {len(objects) - MAX_CATEGORIES} more categories" if len(objects) > MAX_CATEGORIES else ""
+        rows = [("open with", f'scope_ptz.open("{self.name}")')]
+        for viewpoint in self.viewpoints:
+            presets = ", ".join(name for name, of in self.presets.items() if of == viewpoint)
+            rows.append((f"presets at {viewpoint}", presets or "none"))
+        return card_html(self.title, [*rows, ("objects", listed + more)], self.contact_sheet)
+
+
+def scenes() -> dict[str, SceneInfo]:
+    """Return all scenes by name: the built-in ones and those of the folder that SCOPE_SCENES_DIR names.
+
+    Returns:
+        The scenes. Their pictures are not loaded before they are needed.
+
+    Raises:
+        PackError: the files of a scene are damaged.
+
+    Example:
+        >>> import scope_ptz
+        >>> "highway-works" in scope_ptz.scenes()
+        True
+    """
+    return {name: SceneInfo(open_scene(name)) for name in list_scenes(scene_search(load_settings()))}
+
+
+def models(role: Role | None = None) -> dict[str, Model]:
+    """Return the registered models by name: the built-in list and the user's own models file.
+
+    Args:
+        role: "planner" or "perception" for models of that role only.
+
+    Returns:
+        The models. ``model.memory_for()`` is the memory in GB that serving one needs.
+
+    Raises:
+        ConfigError: the user's models file is wrong.
+
+    Example:
+        >>> import scope_ptz
+        >>> model = scope_ptz.models(role="planner")["qwen3-4b"]
+        >>> model.size_b
+        4.0
+    """
+    registry = load_registry(load_settings().models_file())
+    return {name: model for name, model in registry.models.items() if role is None or role in model.roles}
+
+
+def tool_schemas() -> list[dict[str, Any]]:
+    """Return the schemas of the nine tools in the OpenAI function format, as planners receive them.
+
+    Returns:
+        One schema per tool.
+
+    Example:
+        >>> import scope_ptz
+        >>> scope_ptz.tool_schemas()[0]["function"]["name"]
+        'adjust_ptz'
+    """
+    from scope_ptz.tools.registry import schemas
+
+    return schemas()

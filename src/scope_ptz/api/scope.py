@@ -1,0 +1,372 @@
+"""The synchronous session."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable, Iterator
+from contextlib import suppress
+from functools import partial
+from queue import SimpleQueue
+from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
+
+from scope_ptz.api.async_scope import AsyncScope, View
+from scope_ptz.api.event_loop import EventLoopThread
+from scope_ptz.api.options import SessionOptions
+from scope_ptz.api.run import Event, Run
+from scope_ptz.camera.base import Camera, Frame
+from scope_ptz.errors import InputError
+from scope_ptz.geometry import Pose
+from scope_ptz.perception.base import Perception
+from scope_ptz.planner.base import Planner
+from scope_ptz.tools.count_objects import CountResult
+from scope_ptz.tools.get_presets import PresetsResult
+from scope_ptz.tools.query_answer import AnswerResult
+from scope_ptz.tools.registry import TOOLS
+from scope_ptz.tools.results import MoveResult, Result
+from scope_ptz.tools.take_image import ImageResult
+from scope_ptz.tools.track_object import TrackResult
+from scope_ptz.tools.zoom_to_object import ZoomResult
+
+if TYPE_CHECKING:
+    from PIL import Image
+
+    from scope_ptz.api.scenes import SceneInfo
+
+_T = TypeVar("_T")
+
+
+class Scope:
+    """A session: a camera, a planner and perception that stay open for several runs. ``scope_ptz.open`` makes one.
+
+    ``ask`` and ``stream`` give an instruction to the planner, which remembers the earlier ones of the session. The nine tools are
+    methods, too: they move the camera and ask perception without the planner.
+
+    A session works in scripts and in notebooks. Ctrl-C cancels the run in progress and leaves a complete trace. One run or tool
+    call can be in progress at a time; open several sessions to work with several cameras.
+
+    Example:
+        >>> import scope_ptz
+        >>> with scope_ptz.open("highway-works") as scope:
+        ...     run = scope.ask("pan right 20 degrees and count the workers")
+        ...     moved = scope.move(pan_deg=-20)
+        ...     cones = scope.count_objects("cones", view="full")
+        >>> [call.name for call in run.calls]
+        ['adjust_ptz', 'count_objects']
+        >>> moved.pose.pan_deg, cones.complete
+        (8.0, True)
+    """
+
+    def __init__(self, options: SessionOptions) -> None:
+        self._session = AsyncScope(options)
+        self._loop = EventLoopThread(self._session.close)
+        self._closed = False
+        try:
+            self._loop.call(self._session.__aenter__)
+        except BaseException:
+            self.close()
+            raise
+
+    def __enter__(self) -> Self:
+        self._open()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Cancel what is in progress, then close the camera and the connections to models. Closing twice is allowed.
+
+        Objects that you passed to ``scope_ptz.open`` stay open.
+        """
+        if not self._closed:
+            self._closed = True
+            self._loop.stop()
+
+    def ask(self, instruction: str) -> Run:
+        """Carry out an instruction.
+
+        A planner or camera that fails during the run is an outcome of the run, not an exception: see ``Run.outcome``.
+
+        Args:
+            instruction: what the camera should do, in plain language. It may refer to earlier instructions of the session.
+
+        Returns:
+            The finished run.
+
+        Raises:
+            InputError: the instruction is empty or too long, the session is closed or busy, or a file cannot be written.
+            PackError: the files of a scene are damaged.
+            CameraError: the camera does not answer before the first step.
+            KeyboardInterrupt: Ctrl-C was pressed. The cancelled run is the last one of ``runs``.
+
+        Example:
+            >>> import scope_ptz
+            >>> with scope_ptz.open("highway-works") as scope:
+            ...     print(scope.ask("zoom in 2x").outcome)
+            answered
+        """
+        return self._call(partial(self._session.ask, instruction))
+
+    def stream(self, instruction: str) -> Iterator[Event]:
+        """Carry out an instruction and yield its events as they happen.
+
+        The run starts with the first event that is requested. Leaving the loop early cancels the run.
+
+        Args:
+            instruction: what the camera should do, in plain language.
+
+        Yields:
+            Events. The last one has the finished run in ``event.run``.
+
+        Raises:
+            InputError: the instruction is empty or too long, the session is closed or busy, or a file cannot be written.
+            PackError: the files of a scene are damaged.
+            CameraError: the camera does not answer before the first step.
+
+        Example:
+            >>> import scope_ptz
+            >>> with scope_ptz.open("highway-works") as scope:
+            ...     for event in scope.stream("count all workers"):
+            ...         if event.call is not None:
+            ...             print(event.call.name)
+            count_objects
+        """
+        self._open()
+        events: SimpleQueue[Event | None] = SimpleQueue()
+        future, finished = self._loop.start(partial(self._session.run_with_events, instruction, events.put))
+        future.add_done_callback(lambda _: events.put(None))
+        try:
+            while (event := events.get()) is not None:
+                yield event
+            future.result()
+        finally:
+            if not future.done():
+                future.cancel()
+                finished.wait()
+
+    def cancel(self) -> None:
+        """Cancel the run or tool call in progress, if any. Call it from another thread.
+
+        A cancelled run ends with the outcome "cancelled", and ``ask`` returns it. A cancelled tool call raises ``ScopeError``.
+        """
+        if not self._closed:
+            with suppress(RuntimeError):  # the session was closed at the same time
+                self._loop.call_function(self._session.cancel)
+
+    def forget(self) -> None:
+        """Forget the conversation, so that the next instruction cannot refer to earlier ones. ``runs`` keeps its runs."""
+        self._session.forget()
+
+    @property
+    def runs(self) -> tuple[Run, ...]:
+        """All runs of this session in order, including cancelled ones."""
+        return self._session.runs
+
+    @property
+    def camera(self) -> Camera:
+        """The camera."""
+        return self._session.camera
+
+    @property
+    def planner(self) -> Planner:
+        """The planner."""
+        return self._session.planner
+
+    @property
+    def perception(self) -> Perception:
+        """The perception backend."""
+        return self._session.perception
+
+    @property
+    def scene(self) -> SceneInfo | None:
+        """The scene of a simulated camera, None for other cameras."""
+        return self._session.scene
+
+    def pose(self) -> Pose:
+        """Return the camera's pose."""
+        return self._call(self._session.pose)
+
+    def frame(self) -> Frame:
+        """Take a frame of the current view.
+
+        Returns:
+            The frame. ``frame.image`` is an ``(H, W, 3)`` uint8 RGB array; in a notebook, the frame shows itself.
+        """
+        return self._call(self._session.frame)
+
+    def picture(self, name: str) -> Image.Image:
+        """Open a picture that ``take_image`` stored.
+
+        Args:
+            name: ``file`` of the result of ``take_image``.
+
+        Raises:
+            TraceError: there is no such picture.
+        """
+        return self._session.picture(name)
+
+    def move(
+        self,
+        pan_deg: float = 0.0,
+        tilt_deg: float = 0.0,
+        zoom_factor: float | None = None,
+        zoom_percent: float | None = None,
+        zoom_limit: Literal["in", "out"] | None = None,
+    ) -> MoveResult:
+        """Turn and zoom the camera relative to its pose. This is the short name of ``adjust_ptz``, with the same arguments."""
+        return self.adjust_ptz(pan_deg, tilt_deg, zoom_factor, zoom_percent, zoom_limit)
+
+    def move_to(self, pan_deg: float | None = None, tilt_deg: float | None = None, zoom: float | None = None) -> Pose:
+        """Move the camera to an absolute pose. Axes that are not given stay as they are.
+
+        Args:
+            pan_deg: pan; positive is right of the camera's zero.
+            tilt_deg: tilt; 0 is the horizon, positive is up.
+            zoom: magnification; 1 is the widest.
+
+        Returns:
+            The pose reached, which the camera's limits may have cut.
+
+        Raises:
+            InputError: the pose is not made of finite numbers, or the session is closed or busy.
+            CameraError: the camera did not move.
+        """
+        return self._call(partial(self._session.move_to, pan_deg, tilt_deg, zoom))
+
+    def adjust_ptz(
+        self,
+        pan_deg: float = 0.0,
+        tilt_deg: float = 0.0,
+        zoom_factor: float | None = None,
+        zoom_percent: float | None = None,
+        zoom_limit: Literal["in", "out"] | None = None,
+    ) -> MoveResult:
+        """Turn and zoom the camera relative to its pose.
+
+        Args:
+            pan_deg: degrees to turn right; negative turns left.
+            tilt_deg: degrees to turn up; negative turns down.
+            zoom_factor: factor on the magnification: 2.0 is twice as close.
+            zoom_percent: change of the magnification in percent: 50 is 1.5 times as close.
+            zoom_limit: "in" zooms as close as possible, "out" as wide as possible.
+
+        Returns:
+            The pose reached and the axes that a limit cut.
+
+        Raises:
+            ToolCallError: the arguments are wrong, such as two of the three zoom arguments.
+            CameraError: the camera did not move.
+        """
+        return self._call(partial(self._session.adjust_ptz, pan_deg, tilt_deg, zoom_factor, zoom_percent, zoom_limit))
+
+    def go_to_preset(self, name: str) -> MoveResult:
+        """Go to a named preset view.
+
+        Args:
+            name: one of the names that ``get_presets`` lists.
+
+        Raises:
+            UnknownNameError: there is no such preset.
+            CameraError: the camera did not move.
+        """
+        return self._call(partial(self._session.go_to_preset, name))
+
+    def go_home(self) -> MoveResult:
+        """Return to the home view."""
+        return self._call(self._session.go_home)
+
+    def get_presets(self) -> PresetsResult:
+        """List the named preset views."""
+        return self._call(self._session.get_presets)
+
+    def take_image(self) -> ImageResult:
+        """Store a picture of the current view.
+
+        Returns:
+            The name of the picture in ``file``; ``picture(name)`` opens it.
+        """
+        return self._call(self._session.take_image)
+
+    def count_objects(self, description: str, view: View = "current") -> CountResult:
+        """Count the objects that fit a description.
+
+        Args:
+            description: what to count, for example "traffic cones".
+            view: "current" for this view, "full" to sweep everything around the camera.
+
+        Returns:
+            The count and the boxes of the objects.
+
+        Raises:
+            PerceptionError: the view could not be read.
+            ToolCallError: the arguments are wrong.
+        """
+        return self._call(partial(self._session.count_objects, description, view))
+
+    def query_answer(self, question: str, view: View = "current") -> AnswerResult:
+        """Answer a question about what the camera sees: existence, colour, text, position, state.
+
+        Args:
+            question: the question in plain words.
+            view: "current" for this view, "full" to sweep everything around the camera.
+
+        Returns:
+            The answer. ``known`` is False when the view does not tell.
+
+        Raises:
+            PerceptionError: the view could not be read.
+            ToolCallError: the arguments are wrong.
+        """
+        return self._call(partial(self._session.query_answer, question, view))
+
+    def zoom_to_object(self, description: str) -> ZoomResult:
+        """Find an object in the current view, centre it and zoom in on it.
+
+        Args:
+            description: what to zoom in on, for example "the white van".
+
+        Returns:
+            Whether the object was found, and how much of the frame it fills.
+
+        Raises:
+            PerceptionError: the view could not be read.
+            ToolCallError: the arguments are wrong.
+        """
+        return self._call(partial(self._session.zoom_to_object, description))
+
+    def track_object(self, description: str, duration_s: float = 10.0) -> TrackResult:
+        """Keep a moving object in the middle of the view for some time.
+
+        Args:
+            description: what to follow, for example "the white van".
+            duration_s: for how many seconds of scene time, at most 600.
+
+        Returns:
+            The camera's path and the share of the time during which the object was in view.
+
+        Raises:
+            PerceptionError: the view could not be read.
+            ToolCallError: the arguments are wrong.
+        """
+        return self._call(partial(self._session.track_object, description, duration_s))
+
+    def __getattr__(self, name: str) -> Any:
+        """Return a method for a tool of the registry that has no method above, such as the tool of a newer release."""
+        if name in TOOLS:
+
+            def run_tool(**arguments: Any) -> Result:
+                result: Result = self._call(partial(getattr(self._session, name), **arguments))
+                return result
+
+            return run_tool
+        raise AttributeError(f"A session has no attribute '{name}'.")
+
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__(), *TOOLS})
+
+    def _open(self) -> None:
+        if self._closed:
+            raise InputError("This session is closed. Open another one with scope_ptz.open().")
+
+    def _call(self, work: Callable[[], Awaitable[_T]]) -> _T:
+        self._open()
+        return self._loop.call(work)

@@ -1,0 +1,49 @@
+"""The types that a camera, a planner or a perception backend of your own needs. This module is public.
+
+- A camera subclasses ``Camera`` and returns ``CameraInfo``, ``PresetInfo``, ``Arrival`` and ``Frame``. It has a ``Clock``;
+  ``WallClock`` suits real cameras. ``Limits``, ``Optics``, ``Pose`` and ``Perspective`` describe its geometry.
+- A planner subclasses ``Planner``. Its ``step`` receives a ``State`` and returns ``CallTools`` (of ``ToolCall``) or ``Finish``.
+- A perception backend subclasses ``Perception`` and returns ``Caption``, ``Answer``, ``Detections`` (of ``Box``) and ``Points``
+  (of ``Point``). It raises ``PerceptionError`` when it cannot read a frame.
+
+``CameraConformance`` and ``PerceptionConformance`` of ``scope_ptz`` check an implementation.
+"""
+
+from scope_ptz.camera.base import Arrival, Camera, CameraInfo, Clock, Frame, PresetInfo, WallClock
+from scope_ptz.errors import CameraError, PerceptionError, PlannerError, UnknownNameError
+from scope_ptz.geometry import Limits, Optics, Perspective, Pose
+from scope_ptz.perception.base import Answer, Box, Caption, Detections, Perception, Point, Points
+from scope_ptz.planner.base import CallTools, Decision, Exchange, Finish, Planner, State, ToolCall, ToolOutcome
+
+__all__ = [
+    "Answer",
+    "Arrival",
+    "Box",
+    "CallTools",
+    "Camera",
+    "CameraError",
+    "CameraInfo",
+    "Caption",
+    "Clock",
+    "Decision",
+    "Detections",
+    "Exchange",
+    "Finish",
+    "Frame",
+    "Limits",
+    "Optics",
+    "Perception",
+    "PerceptionError",
+    "Perspective",
+    "Planner",
+    "PlannerError",
+    "Point",
+    "Points",
+    "Pose",
+    "PresetInfo",
+    "State",
+    "ToolCall",
+    "ToolOutcome",
+    "UnknownNameError",
+    "WallClock",
+]

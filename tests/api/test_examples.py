@@ -1,0 +1,42 @@
+"""The programs of ``examples/`` and the notebook run and print something worth reading."""
+
+from __future__ import annotations
+
+import runpy
+from pathlib import Path
+
+import nbformat
+import pytest
+from nbclient import NotebookClient
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+EXPECTED = {
+    "ask.py": "I can see 7 cones now, after two pans of 15 degrees to the right.",
+    "batch_over_views.py": "Most workers are in view at 'overview'.",
+    "evaluate.py": "Why runs of the grammar failed:",
+    "own_camera.py": "Broken promises of the contract: none",
+    "own_perception.py": "Broken promises of the contract: none",
+    "own_planner.py": "Most cars are at bridge-south: 8.",
+}
+
+
+def test_every_example_is_run() -> None:
+    assert {path.name for path in EXAMPLES.glob("*.py")} == set(EXPECTED)
+
+
+@pytest.mark.usefixtures("opened_once")
+@pytest.mark.parametrize("name", EXPECTED)
+def test_programs(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.chdir(tmp_path)
+    runpy.run_path(str(EXAMPLES / name), run_name="__main__")
+    assert EXPECTED[name] in capsys.readouterr().out
+
+
+def test_the_notebook(tmp_path: Path) -> None:
+    notebook = nbformat.read(EXAMPLES / "tutorial.ipynb", as_version=4)  # type: ignore[no-untyped-call]
+    cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    assert not any(cell.outputs for cell in cells), "outputs are not stored: the documentation runs the notebook"
+    NotebookClient(notebook, timeout=300, kernel_name="python3", resources={"metadata": {"path": str(tmp_path)}}).execute()
+    shown = [output.data for cell in cells for output in cell.outputs if output.output_type == "execute_result"]
+    pictures = [data["text/html"] for data in shown if "data:image/jpeg" in data.get("text/html", "")]
+    assert len(pictures) == 3  # the scene, the run, and the frame
