@@ -11,13 +11,13 @@ import pytest
 from scope_ptz.agent.records import Budgets
 from scope_ptz.agent.store import RunFolder
 from scope_ptz.agent.trace import TraceWriter, read_trace
-from scope_ptz.bench.scoring.episode import Episode, Eyes, Places, episode_of
+from scope_ptz.bench.scoring.episode import Episode, FrameGeometry, PresetViewpoints, episode_of
 from scope_ptz.errors import PerceptionError
 from scope_ptz.geometry import Equirectangular, Perspective, Pose
 from scope_ptz.tools.sweep import sweep
 from tests.agent.scripted import ScriptedCamera, answer, calls, make_agent
 
-PLACES = Places({"gate": "mast", "highway": "bridge"}, "mast")
+PLACES = PresetViewpoints({"gate": "mast", "highway": "bridge"}, "mast")
 COUNT = ("count_objects", {"description": "cones"})
 
 
@@ -115,7 +115,7 @@ def test_the_sweep_of_an_episode_is_the_sweep_that_the_tool_takes(size: tuple[in
     camera = ScriptedCamera()
     taken = anyio.run(sweep, camera).projection
     assert isinstance(taken, Equirectangular)
-    assert Eyes(64, 36).sweep() == taken
-    band = Eyes(*size).sweep()
+    assert FrameGeometry(64, 36).sweep() == taken
+    band = FrameGeometry(*size).sweep()
     assert band.pan_span_deg == 360.0
     assert band.bottom_tilt_deg < -60

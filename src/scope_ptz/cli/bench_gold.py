@@ -70,8 +70,8 @@ def check(
 
 async def made_gold(tasks: Sequence[Task], seed: int) -> list[Gold]:
     """Gold runs of tasks: their reference programs through the tools with the ground truth for eyes, then the faults."""
-    from scope_ptz.bench.programs import Stage
-    from scope_ptz.bench.scoring.verdict import judge
+    from scope_ptz.bench.program_runner import ProgramRunner
+    from scope_ptz.bench.scoring.verdict import score_episode
     from scope_ptz.factory.validation_perception import KnownViews, equip_with_truth
     from scope_ptz.taskgen.authoring.places import preset_at
     from scope_ptz.taskgen.facts.phrasing import right_answers
@@ -80,13 +80,13 @@ async def made_gold(tasks: Sequence[Task], seed: int) -> list[Gold]:
 
     worlds = worlds_of(tasks)
     equip = equip_with_truth(worlds, KnownViews())
-    stages = {name: Stage(world, equip, EYES) for name, world in worlds.items()}
+    stages = {name: ProgramRunner(world, equip, EYES) for name, world in worlds.items()}
     settings = {name: Setting({p.name: preset_at(p) for p in world.file.presets}, EYES) for name, world in worlds.items()}
     runs = []
     for task in tasks:
         if task.stratum == "core" and task.reference:
             episode = await stages[task.world].run(task, task.reference, right_answers(task.expected)[0])
-            if judge(task, episode).headline == "correct":
+            if score_episode(task, episode).headline == "correct":
                 runs.append((task, episode))
     return gold_runs(runs, settings, seed)
 

@@ -11,7 +11,7 @@ from scope_ptz.errors import ConfigError, InputError, ScopeError
 from scope_ptz.factory.option_values import parse_options
 
 if TYPE_CHECKING:
-    from scope_ptz.bench.judging.server import ServerPort
+    from scope_ptz.bench.judging.server import JudgeServer
     from scope_ptz.endpoints.endpoint import Endpoint
 
 TIMEOUT_S = 300.0
@@ -32,7 +32,7 @@ class UnnamedJudgeError(ScopeError):
 
 async def open_judge(
     url: str | None, model: str | None, key_file: Path | None, timeout_s: float, options: Iterable[str] | None = None
-) -> ServerPort:
+) -> JudgeServer:
     """Open the port to a judge's server. The caller closes it.
 
     Args:
@@ -51,7 +51,7 @@ async def open_judge(
     """
     from pydantic import ValidationError
 
-    from scope_ptz.bench.judging.server import JudgeOptions, ServerPort
+    from scope_ptz.bench.judging.server import JudgeOptions, JudgeServer
     from scope_ptz.endpoints.endpoint import Endpoint, Timeouts, key_from_file
     from scope_ptz.settings import load_settings
 
@@ -67,7 +67,7 @@ async def open_judge(
         where = ".".join(str(part) for part in first["loc"])
         raise ConfigError(f"--judge-option {where}: {first['msg']}. Known: {', '.join(JudgeOptions.model_fields)}.") from None
     endpoint = Endpoint(url=address, key=key, timeouts=Timeouts.within(timeout_s))
-    return ServerPort(await _with_judge_name(endpoint, model or settings.judge_model), judge_options)
+    return JudgeServer(await _with_judge_name(endpoint, model or settings.judge_model), judge_options)
 
 
 async def _with_judge_name(endpoint: Endpoint, name: str) -> Endpoint:

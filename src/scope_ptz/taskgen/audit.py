@@ -15,10 +15,10 @@ from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from scope_ptz.bench.answers.reader import agrees, read
+from scope_ptz.bench.answers import agrees, parse_answer
 from scope_ptz.bench.tasks.expected import ActionOnly
 from scope_ptz.bench.tasks.files import digest_of
-from scope_ptz.bench.tasks.sampling import stratified
+from scope_ptz.bench.tasks.stratified import stratified_sample
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import InputError
 from scope_ptz.taskgen.facts.phrasing import right_answers
@@ -101,7 +101,7 @@ class Audit(_Row):
 def drawn(tasks: Sequence[Task], number: int, seed: int) -> list[tuple[str, Task]]:
     """Numbers and tasks that want an answer, by category, scene and difficulty; the numbers follow no order of the tasks."""
     wanted = [task for task in tasks if task.stratum == "core" and not isinstance(task.expected, ActionOnly)]
-    chosen = stratified(wanted, number, seed)
+    chosen = stratified_sample(wanted, number, seed)
     mixed = sorted(chosen, key=lambda t: hashlib.sha256(f"order:{seed}:{t.id}".encode()).hexdigest())
     return [(f"q{n:03d}", task) for n, task in enumerate(mixed, 1)]
 
@@ -136,7 +136,7 @@ def score(folder: Path, tasks: Sequence[Task]) -> Audit:
 
 
 def _held(q: str, task: Task, answer: Answer, findings: Mapping[str, str]) -> Held:
-    agreed = agrees(task.expected, read(task.expected, answer.answer)) if answer.answer.strip() else None
+    agreed = agrees(task.expected, parse_answer(task.expected, answer.answer)) if answer.answer.strip() else None
     outcome: Outcome = "agrees" if agreed else "disagrees" if agreed is False else "not readable"
     return Held(
         q=q,

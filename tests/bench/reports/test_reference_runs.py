@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from scope_ptz.agent.timing import Timings
-from scope_ptz.bench.reports.build import Report, build_report
-from scope_ptz.bench.reports.runs import collect
+from scope_ptz.bench.reports.assemble import EvaluationReport, build_report
+from scope_ptz.bench.reports.report_runs import report_runs
 from scope_ptz.bench.scoring.trials import Evaluation, ModelCard
 from scope_ptz.registry import load_registry
 from tests.bench.reports.making import card, evaluation, facts, trial
@@ -28,15 +28,15 @@ def whole(planner: str, eyes: str, headline: str, **further: Any) -> Evaluation:
     return Evaluation(card=made, trials=tuple(trial(t, headline) for t in TASKS), wanted=len(TASKS))
 
 
-def build(*evaluations: Evaluation) -> Report:
+def build(*evaluations: Evaluation) -> EvaluationReport:
     return build_report(evaluations, load_registry())
 
 
-def chart(report: Report, key: str) -> Any:
+def chart(report: EvaluationReport, key: str) -> Any:
     return next(c for section in report.sections for c in section.charts if c.key == key)
 
 
-def words(report: Report, key: str) -> str:
+def words(report: EvaluationReport, key: str) -> str:
     return " ".join(next(section for section in report.sections if section.key == key).text)
 
 
@@ -56,7 +56,7 @@ def test_the_audit_sets_beside_a_task_only_what_no_model_and_no_noise_took_part_
     made = build(*pairs, *noise, whole("grammar", "ground-truth", "correct"))
     assert {row(made, "audit", t.id)["reference"] for t in TASKS} == {1.0}
     assert {row(build(*pairs, *noise), "audit", t.id)["reference"] for t in TASKS} == {None}
-    assert [r.label for r in collect([*pairs, *noise], load_registry()) if r.exact] == []
+    assert [r.label for r in report_runs([*pairs, *noise], load_registry()) if r.exact] == []
     assert "grammar planner with ground-truth eyes" in words(made, "audit") and "exact reference" not in words(made, "audit")
 
 
@@ -120,7 +120,7 @@ def test_a_bar_of_no_height_is_not_drawn() -> None:
 def test_a_ring_around_a_filling_is_apart_from_it() -> None:
     from scope_ptz.bench.reports.recommendations import candidates
 
-    runs = collect([evaluation(*pair, TASKS, 0.6, spoiled=0.0) for pair in PAIRS[:1]], load_registry())
+    runs = report_runs([evaluation(*pair, TASKS, 0.6, spoiled=0.0) for pair in PAIRS[:1]], load_registry())
     (found,) = candidates(runs, runs)
     assert found.on_front and found.contended
     svg = chart(build(*(r.evaluation for r in runs)), "chart-front").svg

@@ -20,11 +20,11 @@ from scope_ptz.bench.reports.submission import secrets_in, submission_lines, sub
 from scope_ptz.bench.reports.submission_checks import BUILT_IN, check_submission
 from scope_ptz.bench.reports.submission_trials import checks_of
 from scope_ptz.bench.scoring.checks import run_checks
-from scope_ptz.bench.scoring.trials import Check, Evaluation, Trial
-from scope_ptz.bench.scoring.verdict import judge
-from scope_ptz.bench.tasks.facts import TaskFacts
+from scope_ptz.bench.scoring.trials import CheckRecord, Evaluation, Trial
+from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.files import dump_tasks
 from scope_ptz.bench.tasks.task import Task
+from scope_ptz.bench.tasks.task_facts import TaskFacts
 from scope_ptz.cli.app import app
 from scope_ptz.errors import InputError
 from tests.bench.making import samples
@@ -44,8 +44,8 @@ def made(epochs: int = 2) -> Evaluation:
             id=task.id, dataset=task.dataset, stratum=task.stratum, scene=task.scene, viewpoint="v", preset=task.preset,
             instruction=task.instruction, category=task.category, scope=task.scope, difficulty=task.difficulty, expected="x",
         )  # fmt: skip
-        checks = tuple(Check(name=c.name, passed=c.passed, reason=c.reason) for c in run_checks(task, episode))
-        assert judge(task, episode).headline == "correct"
+        checks = tuple(CheckRecord(name=c.name, passed=c.passed, reason=c.reason) for c in run_checks(task, episode))
+        assert score_episode(task, episode).headline == "correct"
         assert {check.name for check in checks} == checks_of(task)
         calls = dict(Counter(call.name for call in episode.calls))
         further: dict[str, Any] = {"outcome": episode.outcome, "tool_calls": calls, "steps": 1 + len(episode.calls)}

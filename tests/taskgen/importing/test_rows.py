@@ -17,7 +17,7 @@ from scope_ptz.bench.tasks.imported import ImportedTask, dump_imported
 from scope_ptz.bench.tasks.task import Argument
 from scope_ptz.cli.app import app
 from scope_ptz.errors import InputError
-from scope_ptz.taskgen.importing import check_calls_of, holds_imported, load_imported
+from scope_ptz.taskgen.importing import check_imported_calls, holds_imported, load_imported
 from scope_ptz.taskgen.importing.audit import given_away
 from scope_ptz.taskgen.importing.mapping import category_of, scope_of
 from scope_ptz.taskgen.importing.places import PlaceMap, Places, ScenePresets, read_place_map
@@ -147,7 +147,7 @@ def test_an_expected_zoom_of_nothing_is_met_by_a_call_that_leaves_the_zoom(tmp_p
         ({"zoom_factor": 2.0}, not zoom),
         ({"zoom_limit": "in"}, not zoom),
     ):
-        check = check_calls_of(task, play([("adjust_ptz", {"pan_deg": 20.0, **further})], "Done."))
+        check = check_imported_calls(task, play([("adjust_ptz", {"pan_deg": 20.0, **further})], "Done."))
         assert check.passed is met, (further, check.reason)
 
 
@@ -392,13 +392,13 @@ GO, LOOK = ("go_to_preset", {"name": "highway"}), counted(5)
 )
 def test_the_check_of_calls(tmp_path: Path, cells: dict[str, str], steps: list[Any], passed: bool | None) -> None:
     task = task_with(tmp_path, ["go_to_preset", "count_pointing"], {"go_to_preset": {"name": "Highway"}}, **cells)
-    check = check_calls_of(task, play(steps, "5"))
+    check = check_imported_calls(task, play(steps, "5"))
     assert (check.name, check.passed) == ("calls", passed)
     assert check.reason
 
 
 def test_nothing_expected_is_not_told(tmp_path: Path) -> None:
-    assert check_calls_of(task_with(tmp_path, []), play([LOOK], "5")).passed is None
+    assert check_imported_calls(task_with(tmp_path, []), play([LOOK], "5")).passed is None
 
 
 # The command

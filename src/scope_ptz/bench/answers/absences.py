@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from scope_ptz.bench.answers.words import Word
+from scope_ptz.bench.answers.tokenizer import Word
 
 MARK = re.compile(r"[(:=|→]|\s[-–—]\s|—")
 """Between a thing and what is noted of it in a list."""

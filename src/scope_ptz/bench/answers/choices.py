@@ -8,11 +8,12 @@ from itertools import pairwise
 
 from scope_ptz.bench.answers.comparisons import bearer_of, comparators, reference_of, ways
 from scope_ptz.bench.answers.denials import says_none, says_yes
-from scope_ptz.bench.answers.numbers import find_quantities
+from scope_ptz.bench.answers.numbers import find_numbers
 from scope_ptz.bench.answers.options import option_mentions
+from scope_ptz.bench.answers.parsed import ParsedAnswer, ParsedValue, Unreadable
 from scope_ptz.bench.answers.presence import says_that_none
-from scope_ptz.bench.answers.result import Reading, Unreadable, Value
-from scope_ptz.bench.answers.text import Mention, Script, wordings_of
+from scope_ptz.bench.answers.text import AnswerText, NameMention
+from scope_ptz.bench.answers.tokenizer import all_wordings
 from scope_ptz.bench.tasks.expected import Choice, Description, Fact, NameSet
 
 SAME = (
@@ -26,7 +27,7 @@ _MARKED_NONE = ("none", "0", "zero")
 _ALL = re.compile(r"\b(all|everything|both|each|every)\b")
 
 
-def read_choice(expected: Choice, script: Script) -> Reading:
+def parse_choice(expected: Choice, script: AnswerText) -> ParsedAnswer:
     """The one option that is named and not denied; where several are, the one that is picked or concluded on."""
     if expected.subject and True in says_that_none(script, expected.subject):
         return Unreadable("it says that there is none")
@@ -39,7 +40,7 @@ def read_choice(expected: Choice, script: Script) -> Reading:
     rest = [m for m in mentions if m.name != "same" and alike and m.start > alike[-1].start]
     only_both = all(script.words[m.start].text == "both" for m in alike)
     if alike and not (only_both and len({m.name for m in rest}) == 1):
-        return Value("same")
+        return ParsedValue("same")
     if alike and not _compared(expected, script, rest)[0]:
         # Unlike "I looked at both presets. The gate has more."
         return Unreadable("whether both are meant is not clear")
@@ -56,7 +57,7 @@ def read_choice(expected: Choice, script: Script) -> Reading:
                 m for m in mentions if (against and _heads(script, m)) or not _is_only_counted(script, m, expected.options[m.name])
             ]
         if len(picked) == 1:
-            return Value(picked.pop())
+            return ParsedValue(picked.pop())
     named = {m.name for m in mentions}
     if len(named) > 1:
         named = {m.name for m in mentions if not _is_added(script, m)} or named
@@ -66,11 +67,11 @@ def read_choice(expected: Choice, script: Script) -> Reading:
         last = max((i for i, w in enumerate(script.words) if w.text in _CONCLUDES), default=len(script.words))
         named = {m.name for m in mentions if m.start > last} or named
     if len(named) == 1:
-        return Value(named.pop())
+        return ParsedValue(named.pop())
     return Unreadable("several options: " + ", ".join(sorted(named)) if named else "no option is named")
 
 
-def _compared(expected: Choice, script: Script, mentions: Sequence[Mention]) -> tuple[set[str], set[str]]:
+def _compared(expected: Choice, script: AnswerText, mentions: Sequence[NameMention]) -> tuple[set[str], set[str]]:
     """The options that a comparison picks and those that it rules out. Of two options the one that is not "farther" is "closer"."""
     picked, out = set[str](), set[str]()
     pair = {name for name in expected.options if name != "same"}
@@ -90,19 +91,19 @@ def _compared(expected: Choice, script: Script, mentions: Sequence[Mention]) -> 
     return picked, out
 
 
-def _heads(script: Script, mention: Mention) -> bool:
+def _heads(script: AnswerText, mention: NameMention) -> bool:
     """ "Cones: two of them, against one bollard": what is named first and by itself is the answer, the rest is why."""
     after = script.words[mention.end : mention.end + 1]
     return mention.start <= 1 and bool(after) and after[0].gap.strip() == ":"
 
 
-def _is_only_counted(script: Script, mention: Mention, further: Sequence[str]) -> bool:
+def _is_only_counted(script: AnswerText, mention: NameMention, further: Sequence[str]) -> bool:
     """ "9 skips", "skips: 9": that tells how many there are, not that they are what is chosen."""
-    own = [q for q in find_quantities(script, (mention.name, *further)) if q.own]
+    own = [q for q in find_numbers(script, (mention.name, *further)) if q.own]
     return any(0 <= mention.start - q.end <= 3 or q.start == mention.end for q in own)
 
 
-def _is_added(script: Script, mention: Mention) -> bool:
+def _is_added(script: AnswerText, mention: NameMention) -> bool:
     """ "Green (the wall above is red)": what is added in brackets is not what is chosen; "green (or red)" is an alternative."""
     before = script.words[mention.start - 1].text if mention.start else ""
     return script.in_brackets(mention.start) and before not in _ALTERNATIVES
@@ -111,9 +112,9 @@ def _is_added(script: Script, mention: Mention) -> bool:
 _ALTERNATIVES = frozenset({"or", "maybe", "perhaps", "possibly", "probably", "rather", "actually"})
 
 
-def _of_parts(script: Script, mentions: Sequence[Mention]) -> list[Mention]:
+def _of_parts(script: AnswerText, mentions: Sequence[NameMention]) -> list[NameMention]:
     """Those said of a part, or of what something stands on: the yellow of "blue, with a yellow top"."""
-    found = list[Mention]()
+    found = list[NameMention]()
     for at, mention in enumerate(mentions):
         after = script.words[mention.end : mention.end + 1]
         goes_on = bool(after) and after[0].clause == script.words[mention.start].clause and after[0].text not in _JOINS
@@ -129,29 +130,29 @@ _ATTACHED = re.compile(r"\b(with( an?| the| its)?|on an?)$")
 _JOINS = frozenset({"and", "or", "with", "on", "in", "at", "is", "are", "but"})
 
 
-def after_than(script: Script, mention: Mention) -> bool:
+def after_than(script: AnswerText, mention: NameMention) -> bool:
     """Whether something is named only to be compared with."""
     clause = script.words[mention.start].clause
     before = [w.text for w in script.words[max(0, mention.start - 6) : mention.start] if w.clause == clause]
     return "than" in before[-4:] or bool({"compared", "versus", "against"} & set(before))
 
 
-def read_name_set(expected: NameSet, script: Script) -> Reading:
+def parse_name_set(expected: NameSet, script: AnswerText) -> ParsedAnswer:
     """All that are named and not denied."""
-    names = {name: wordings_of(name, further) for name, further in expected.options.items()}
+    names = {name: all_wordings(name, further) for name, further in expected.options.items()}
     mentions = [m for m in script.mentions(names) if not m.denied and not m.aside and not script.is_marked(m.end, _MARKED_NONE)]
     named = frozenset(m.name for m in mentions)
     for one, two in pairwise(mentions):
         if any(w.text == "or" for w in script.words[one.end : two.start]):
             return Unreadable("an alternative")
     if named:
-        return Value(named)
+        return ParsedValue(named)
     if _ALL.search(script.text()):
         return Unreadable("it does not say which")
     if (not says_yes(script) and (says_none(script) or _denies_all(script))) or any(
         m.denied or script.is_marked(m.end, _MARKED_NONE) for m in script.mentions(names)
     ):
-        return Value(frozenset[str]())
+        return ParsedValue(frozenset[str]())
     return Unreadable("nothing is named")
 
 
@@ -161,16 +162,16 @@ _DENIES_ALL = re.compile(
 )
 
 
-def _denies_all(script: Script) -> bool:
+def _denies_all(script: AnswerText) -> bool:
     return _DENIES_ALL.search(script.text()) is not None
 
 
-def read_description(expected: Description, script: Script) -> Reading:
+def parse_description(expected: Description, script: AnswerText) -> ParsedAnswer:
     """Which of the facts and which of the contradictions are stated."""
-    return Value((_stated(expected.facts, script), _stated(expected.contradictions, script)))
+    return ParsedValue((_stated(expected.facts, script), _stated(expected.contradictions, script)))
 
 
-def _stated(facts: Sequence[Fact], script: Script) -> frozenset[int]:
+def _stated(facts: Sequence[Fact], script: AnswerText) -> frozenset[int]:
     stated = set[int]()
     for number, fact in enumerate(facts):
         if any(not m.denied and not m.aside for m in script.mentions({"fact": fact.any_of})):

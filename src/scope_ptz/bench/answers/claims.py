@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from enum import Enum, auto
 
-from scope_ptz.bench.answers.words import Word
+from scope_ptz.bench.answers.tokenizer import Word
 
 
 class Claim(Enum):

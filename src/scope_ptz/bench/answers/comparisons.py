@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 
-from scope_ptz.bench.answers.text import Mention, Script
+from scope_ptz.bench.answers.text import AnswerText, NameMention
 
 _OPPOSITES = (
     ({"more", "most", "greater", "greatest", "higher", "highest", "busier", "busiest"},
@@ -32,9 +32,9 @@ def ways(picks: Iterable[str]) -> dict[str, tuple[str, ...]]:
     return {"forward": tuple(sorted(forward)), "backward": tuple(sorted(backward - forward))}
 
 
-def comparators(script: Script, wordings: dict[str, tuple[str, ...]]) -> list[Mention]:
+def comparators(script: AnswerText, wordings: dict[str, tuple[str, ...]]) -> list[NameMention]:
     """Where the words stand; "at least", "at most" and "more or less" compare nothing."""
-    found = list[Mention]()
+    found = list[NameMention]()
     for mention in script.mentions(wordings):
         before = script.words[mention.start - 1].text if mention.start else ""
         after = " ".join(w.text for w in script.words[mention.end : mention.end + 2])
@@ -43,7 +43,7 @@ def comparators(script: Script, wordings: dict[str, tuple[str, ...]]) -> list[Me
     return found
 
 
-def bearer_of(script: Script, comparator: Mention, things: Sequence[Mention]) -> Mention | None:
+def bearer_of(script: AnswerText, comparator: NameMention, things: Sequence[NameMention]) -> NameMention | None:
     """Of what a comparing word is said: of the noun that it counts ("fewer skips"), else of what is named before it, else after."""
     words, reference = script.words, reference_of(script, comparator, things)
     clause = [m for m in things if words[m.start].clause == words[comparator.start].clause and m != reference]
@@ -56,7 +56,7 @@ def bearer_of(script: Script, comparator: Mention, things: Sequence[Mention]) ->
     return before[-1] if before else near[0] if near else None
 
 
-def reference_of(script: Script, comparator: Mention, things: Sequence[Mention]) -> Mention | None:
+def reference_of(script: AnswerText, comparator: NameMention, things: Sequence[NameMention]) -> NameMention | None:
     """What the comparator compares with: "more than B", "left of B", "compared with B"."""
     for mention in (m for m in things if script.words[m.start].clause == script.words[comparator.start].clause):
         between = [w.text for w in script.words[comparator.end : mention.start]] if mention.start > comparator.end - 1 else []

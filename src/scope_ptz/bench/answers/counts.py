@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from scope_ptz.bench.answers.denials import denies_flatly, says_none, says_yes
-from scope_ptz.bench.answers.numbers import Quantity, find_quantities
-from scope_ptz.bench.answers.text import Mention, Script
-from scope_ptz.bench.answers.words import plain_words
+from scope_ptz.bench.answers.numbers import NumberMention, find_numbers
+from scope_ptz.bench.answers.text import AnswerText, NameMention
+from scope_ptz.bench.answers.tokenizer import plain_words
 
 
-def read_number(script: Script, unit: Sequence[str], *, part: bool = False) -> float | str:
+def parse_number(script: AnswerText, unit: Sequence[str], *, part: bool = False) -> float | str:
     """The number that a text gives as its answer, or the reason why there is none. ``part``: "5 of the 7" means 5."""
     number = _told(script, unit, part=part)
     if isinstance(number, float) and number > 0 and denies_flatly(script, unit):
@@ -20,8 +20,8 @@ def read_number(script: Script, unit: Sequence[str], *, part: bool = False) -> f
     return number
 
 
-def _told(script: Script, unit: Sequence[str], *, part: bool) -> float | str:
-    quantities = [q for q in find_quantities(script, unit) if not (q.denied or _is_absent(script, unit, q))]
+def _told(script: AnswerText, unit: Sequence[str], *, part: bool) -> float | str:
+    quantities = [q for q in find_numbers(script, unit) if not (q.denied or _is_absent(script, unit, q))]
     wholes = _wholes(script, quantities)
     if wholes and not part:
         return "a part of a number"
@@ -54,14 +54,14 @@ def _told(script: Script, unit: Sequence[str], *, part: bool) -> float | str:
     return 1.0 if _single(script, unit) else "no number"
 
 
-def _wholes(script: Script, quantities: Sequence[Quantity]) -> list[Quantity]:
+def _wholes(script: AnswerText, quantities: Sequence[NumberMention]) -> list[NumberMention]:
     """The 7 of "5 of the 7 cones" and "5 out of 7"."""
     links = (["of", "the"], ["of"], ["out", "of"], ["out", "of", "the"], ["of", "these"], ["of", "those"])
     pairs = pairwise(quantities)
     return [two for one, two in pairs if [w.text for w in script.words[one.end : two.start]] in links]
 
 
-def _breakdown(script: Script, quantities: Sequence[Quantity]) -> bool | None:
+def _breakdown(script: AnswerText, quantities: Sequence[NumberMention]) -> bool | None:
     """Whether what follows the first number after a colon or in brackets makes it up: "7: 5 bollards, 2 cones", "4 more (7 to 3)",
     "4 more: 7 cones, 3 bollards", "by 4: 7 cones against 3".
 
@@ -82,7 +82,7 @@ def _breakdown(script: Script, quantities: Sequence[Quantity]) -> bool | None:
     return whole.value in (sum(q.value for q in parts), apart)
 
 
-def _is_range(script: Script, quantities: Sequence[Quantity]) -> bool:
+def _is_range(script: AnswerText, quantities: Sequence[NumberMention]) -> bool:
     for one, two in pairwise(quantities):
         if one.other or two.other or one.value == two.value:
             continue
@@ -94,21 +94,21 @@ def _is_range(script: Script, quantities: Sequence[Quantity]) -> bool:
     return False
 
 
-def _is_absent(script: Script, unit: Sequence[str], quantity: Quantity) -> bool:
+def _is_absent(script: AnswerText, unit: Sequence[str], quantity: NumberMention) -> bool:
     """ "3 cones are missing"."""
     near = [m for m in script.mentions({"own": unit}) if 0 <= m.start - quantity.end <= 4] if unit and quantity.own else []
     return any(script.denied_after(m.end) for m in near[:1])
 
 
-def is_miscounted(script: Script, mention: Mention, unit: Sequence[str]) -> bool:
+def is_miscounted(script: AnswerText, mention: NameMention, unit: Sequence[str]) -> bool:
     """Whether only a number of a thing is denied, not that there is one: "not 5 cones", "5 cones are missing"."""
-    numbers = [q for q in find_quantities(script, unit) if q.own and 0 <= mention.start - q.end <= 4 and q.value > 0]
+    numbers = [q for q in find_numbers(script, unit) if q.own and 0 <= mention.start - q.end <= 4 and q.value > 0]
     return any(q.value > 1 or not q.denied for q in numbers)
 
 
-def _operands(script: Script, quantities: Sequence[Quantity]) -> list[Quantity]:
+def _operands(script: AnswerText, quantities: Sequence[NumberMention]) -> list[NumberMention]:
     """Numbers to be reckoned with: "seven minus four", "2 + 1", "3 on the left and 3 on the right"."""
-    found = list[Quantity]()
+    found = list[NumberMention]()
     for one, two in pairwise(quantities):
         if script.words[one.start].clause != script.words[two.start].clause or one.other or two.other:
             continue
@@ -127,7 +127,7 @@ _ARITHMETIC = re.compile(
 )
 
 
-def _single(script: Script, unit: Sequence[str]) -> bool:
+def _single(script: AnswerText, unit: Sequence[str]) -> bool:
     """ "a dog", "only a bus": one, as long as it is not a row, a number or a group of them."""
     for mention in script.mentions({"own": unit}) if unit else ():
         words = [script.words[i] for i in range(max(0, mention.start - 4), mention.start)]

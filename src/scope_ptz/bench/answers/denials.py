@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from scope_ptz.bench.answers.numbers import find_quantities
-from scope_ptz.bench.answers.text import Script
+from scope_ptz.bench.answers.numbers import find_numbers
+from scope_ptz.bench.answers.text import AnswerText
 
 _NONE = re.compile(
     r"^(no|nope|none|nothing|nobody|no one|zero)$|^(none|nothing|nobody|no one)\b(?! (of (?!them|these|those)|but|else))"
@@ -19,22 +19,22 @@ _NONE = re.compile(
 _OF_OTHERS = re.compile(r"\b(others?|else|elsewhere)\b")
 
 
-def says_none(script: Script) -> bool:
+def says_none(script: AnswerText) -> bool:
     """Whether a sentence of the text is nothing but "none" ("No.", "There are none", "Nothing like that is visible")."""
     parts = [" ".join(script.words[i].text for i in group) for group in (*script.segments(), *script.clauses())]
     return any(_NONE.search(part) and not _OF_OTHERS.search(part) for part in parts)
 
 
-def says_yes(script: Script) -> bool:
+def says_yes(script: AnswerText) -> bool:
     return any(word.text in ("yes", "yeah", "yep", "yup") for word in script.words)
 
 
-def denies_flatly(script: Script, subject: Sequence[str]) -> bool:
+def denies_flatly(script: AnswerText, subject: Sequence[str]) -> bool:
     """Whether a clause says that there is none and neither where ("at the gate") nor of which ("red ones")."""
     denied = [m for m in script.mentions({"subject": subject}) if m.denied and not m.aside] if subject else []
-    zeros = [q for q in find_quantities(script, subject) if q.value == 0 and not (q.other or q.bound or q.denied)]
+    zeros = [q for q in find_numbers(script, subject) if q.value == 0 and not (q.other or q.bound or q.denied)]
     named = {i for m in script.mentions({"subject": subject}) for i in range(m.start, m.end)} if subject else set[int]()
-    numbers = {i for q in find_quantities(script, subject) for i in range(q.start, q.end)}
+    numbers = {i for q in find_numbers(script, subject) for i in range(q.start, q.end)}
     segments = script.segments()
     for clause in script.clauses():
         parts = [" ".join(script.words[i].text for i in group) for group in segments if group[0] in clause]

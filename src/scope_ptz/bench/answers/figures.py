@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from scope_ptz.bench.answers.numbers import Quantity, find_quantities
-from scope_ptz.bench.answers.result import Reading, Unreadable, Value
-from scope_ptz.bench.answers.text import NEGATORS, Script, script
-from scope_ptz.bench.answers.words import clean
+from scope_ptz.bench.answers.numbers import NumberMention, find_numbers
+from scope_ptz.bench.answers.parsed import ParsedAnswer, ParsedValue, Unreadable
+from scope_ptz.bench.answers.text import NEGATORS, AnswerText, answer_text
+from scope_ptz.bench.answers.tokenizer import clean
 from scope_ptz.bench.tasks.expected import Text
 
 _FIGURE = re.compile(r"[£$€]?\s*\d+(?:\.(\d+))?")
@@ -22,7 +22,7 @@ def is_figure(accepted: Sequence[str]) -> bool:
     return all(_FIGURE.fullmatch(text) for text in accepted)
 
 
-def read_figure(expected: Text, answer: str) -> Reading | None:
+def parse_figure(expected: Text, answer: str) -> ParsedAnswer | None:
     """The number of the answer, written with as many decimals as the figure has; None where it has no number."""
     found = _FIGURE.fullmatch(expected.accepted[0])
     places = len(found.group(1) or "") if found else 0
@@ -31,8 +31,8 @@ def read_figure(expected: Text, answer: str) -> Reading | None:
         text = _PENCE.sub(lambda m: f"{int(m[1]) / 100:.2f}", text)
         text = re.sub(r"(?<=\d\.\d\d)\s?p\b", "", text)
         text = re.sub(r"(?<![\w.,])\.(?=\d\d\b)", "0.", re.sub(r"(?<![\d.,])(\d+),(?=\d\d(?!\d))", r"\1.", text))
-    said = script(text)
-    quantities = find_quantities(said, ())
+    said = answer_text(text)
+    quantities = find_numbers(said, ())
     told = [q for q in quantities if not _is_denied(said, q)]
     if not quantities or _MIXED.search(_MEASURE.sub("", text)):
         return None  # "O.95" is for what knows which letters look alike, and "5.C0" is no 5.
@@ -42,9 +42,9 @@ def read_figure(expected: Text, answer: str) -> Reading | None:
     if len(values) != 1:
         return Unreadable("several numbers: " + ", ".join(f"{v:g}" for v in sorted(values)) if values else "only what is denied")
     value = values.pop()
-    return Value(f"{value:.{places}f}" if abs(round(value, places) - value) < 1e-9 else f"{value:g}")
+    return ParsedValue(f"{value:.{places}f}" if abs(round(value, places) - value) < 1e-9 else f"{value:g}")
 
 
-def _is_denied(said: Script, quantity: Quantity) -> bool:
+def _is_denied(said: AnswerText, quantity: NumberMention) -> bool:
     segment = said.words[quantity.start].segment
     return quantity.denied or any(w.text in NEGATORS - {"0", "zero"} for w in said.words[: quantity.start] if w.segment == segment)

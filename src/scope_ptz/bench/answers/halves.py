@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from scope_ptz.bench.answers.text import Script
+from scope_ptz.bench.answers.text import AnswerText
 
 _SIDE = (
     r"(on|in|at|to|from) (the |its )?(far |very )?(left|right|upper|lower|top|bottom|other)( hand)?( side| half| part)?\b"
@@ -22,7 +22,7 @@ _DEFINITE = re.compile(
 )
 
 
-def leaves_the_half_open(script: Script, subject: Sequence[str]) -> bool:
+def leaves_the_half_open(script: AnswerText, subject: Sequence[str]) -> bool:
     """Whether a text only tells the halves apart ("one on the left, none on the right"), or says of all that they are in one half.
 
     What that answers depends on which half was asked about.

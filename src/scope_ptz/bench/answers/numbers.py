@@ -6,9 +6,9 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from scope_ptz.bench.answers.numerals import number_at
-from scope_ptz.bench.answers.text import Script
-from scope_ptz.bench.answers.words import Word, plain_words, same_word
+from scope_ptz.bench.answers.number_words import number_at
+from scope_ptz.bench.answers.text import AnswerText
+from scope_ptz.bench.answers.tokenizer import Word, plain_words, same_word
 
 _MEASURES = ("degree", "percent", "x", "second", "minute", "metre", "kilometre", "px", "pixel", "time")
 _LABELS = frozenset({
@@ -48,7 +48,7 @@ _ANYTHING = frozenset({"object", "objects", "item", "items", "thing", "things"})
 
 
 @dataclass(frozen=True, slots=True)
-class Quantity:
+class NumberMention:
     """A number in a text, words ``start`` to ``end`` (exclusive). ``own``: it counts what was asked for; ``other``: not.
 
     ``bound``: it stands in place of a number that is not told ("at least 3", "<3", "3 and a half").
@@ -64,10 +64,10 @@ class Quantity:
     total: bool = False
 
 
-def find_quantities(script: Script, unit: Sequence[str]) -> list[Quantity]:
+def find_numbers(script: AnswerText, unit: Sequence[str]) -> list[NumberMention]:
     """Every number that could be a count, in order; measures (15 degrees, 2x) not asked for, ordinals, labels and numbers glued to
     letters ("0x3", "A4") are none."""
-    words, found, at = script.words, list[Quantity](), 0
+    words, found, at = script.words, list[NumberMention](), 0
     while at < len(words):
         value, end = number_at(words, at)
         if value is None:
@@ -80,7 +80,7 @@ def find_quantities(script: Script, unit: Sequence[str]) -> list[Quantity]:
     return found
 
 
-def _quantity(script: Script, value: float, start: int, end: int, unit: Sequence[str]) -> Quantity:
+def _quantity(script: AnswerText, value: float, start: int, end: int, unit: Sequence[str]) -> NumberMention:
     words = script.words
     owned = _followed_by(words, end, unit) or _announced(words, start, unit)
     after = words[end].text if end < len(words) and words[end].segment == words[end - 1].segment else ""
@@ -90,7 +90,7 @@ def _quantity(script: Script, value: float, start: int, end: int, unit: Sequence
     segment = " ".join(w.text for w in words if w.segment == words[start].segment)
     announced_total = _ANNOUNCES.search(before) is not None
     bare = bare or (announced_total and after in _ANYTHING)
-    return Quantity(
+    return NumberMention(
         value=value,
         start=start,
         end=end,

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from itertools import combinations
 
-from scope_ptz.bench.answers.text import Mention, Script, wordings_of
-from scope_ptz.bench.answers.words import plain_words, same_word
+from scope_ptz.bench.answers.text import AnswerText, NameMention
+from scope_ptz.bench.answers.tokenizer import all_wordings, plain_words, same_word
 
 _LINKS = frozenset({"with", "in", "of", "on", "at", "from", "who", "carrying", "and"})
 _BEFORE = frozenset({
@@ -22,15 +22,15 @@ _AFTER = frozenset({
 """What may stand around a shortening; any other word would make it the name of another thing ("the Whitlock sign", "bus stop")."""
 
 
-def option_mentions(script: Script, options: Mapping[str, Sequence[str]]) -> list[Mention]:
+def option_mentions(script: AnswerText, options: Mapping[str, Sequence[str]]) -> list[NameMention]:
     """Every place where an option is named. "The bus" names the red double-decker bus where there is no other bus."""
-    whole = {name: wordings_of(name, further) for name, further in options.items()}
+    whole = {name: all_wordings(name, further) for name, further in options.items()}
     short = _shortenings(whole)
     found = script.mentions({name: (*wordings, *short[name]) for name, wordings in whole.items()})
     return [m for m in found if _is_one_of(script, m, whole[m.name]) or _stands_alone(script, m)]
 
 
-def _is_one_of(script: Script, mention: Mention, wordings: Sequence[str]) -> bool:
+def _is_one_of(script: AnswerText, mention: NameMention, wordings: Sequence[str]) -> bool:
     said = [w.text for w in script.words[mention.start : mention.end]]
     return any(len(words) == len(said) and _begins(words, said) for words in map(plain_words, wordings))
 
@@ -40,7 +40,7 @@ def _begins(words: Sequence[str], said: Sequence[str]) -> bool:
     return all(same_word(one, other) or {one, other} in articles for one, other in zip(words, said, strict=True))
 
 
-def _stands_alone(script: Script, mention: Mention) -> bool:
+def _stands_alone(script: AnswerText, mention: NameMention) -> bool:
     words = script.words
     before = words[mention.start - 1 : mention.start] if mention.start else ()
     plural = words[mention.end - 1].text.endswith("s")

@@ -8,11 +8,11 @@ from itertools import pairwise
 
 from scope_ptz.bench.answers.choices import SAME
 from scope_ptz.bench.answers.comparisons import bearer_of, reference_of
-from scope_ptz.bench.answers.numbers import find_quantities
+from scope_ptz.bench.answers.numbers import find_numbers
 from scope_ptz.bench.answers.options import option_mentions
-from scope_ptz.bench.answers.ranks import concluding, contradicts_its_numbers
-from scope_ptz.bench.answers.result import Reading, Unreadable, Value
-from scope_ptz.bench.answers.text import Mention, Script
+from scope_ptz.bench.answers.order_numbers import concluding, contradicts_its_numbers
+from scope_ptz.bench.answers.parsed import ParsedAnswer, ParsedValue, Unreadable
+from scope_ptz.bench.answers.text import AnswerText, NameMention
 from scope_ptz.bench.tasks.expected import Ordering, Relation
 
 _FILLERS = frozenset({
@@ -25,7 +25,7 @@ _NAMING = frozenset({
 _TURNED = {"forward": "backward", "backward": "forward"}
 
 
-def read_ordering(expected: Ordering, script: Script) -> Reading:
+def parse_ordering(expected: Ordering, script: AnswerText) -> ParsedAnswer:
     """The options in the order that the answer gives them, turned round where it begins at the other end."""
     everything = [m for m in option_mentions(script, expected.options) if not m.denied or _is_counted(script, m)]
     begins = concluding(script, everything, set(expected.options))
@@ -39,11 +39,11 @@ def read_ordering(expected: Ordering, script: Script) -> Reading:
         return Unreadable(told)
     if contradicts_its_numbers(script, everything, told, expected.first):
         return Unreadable("its own numbers contradict the order")
-    return Value(told)
+    return ParsedValue(told)
 
 
 def _told(
-    script: Script, mentions: Sequence[Mention], ends: Sequence[Mention], order: list[str], begins: int
+    script: AnswerText, mentions: Sequence[NameMention], ends: Sequence[NameMention], order: list[str], begins: int
 ) -> tuple[str, ...] | str:
     """The order that is told, or the reason why none is."""
     thans = sum(w.text == "than" for w in script.words[begins:])
@@ -65,13 +65,13 @@ def _told(
     return tuple(order)
 
 
-def _is_counted(script: Script, mention: Mention) -> bool:
+def _is_counted(script: AnswerText, mention: NameMention) -> bool:
     """Whether a number of none stands beside a thing: "cabinets (none)" has a place in an order, and denies nothing."""
     after = script.words[mention.end] if mention.end < len(script.words) else None
     return after is not None and after.text in ("none", "0", "zero") and re.search(r"[(:=]", after.gap) is not None
 
 
-def _placed(script: Script, mentions: Sequence[Mention], ends: Sequence[Mention]) -> dict[str, str | None]:
+def _placed(script: AnswerText, mentions: Sequence[NameMention], ends: Sequence[NameMention]) -> dict[str, str | None]:
     """Which option is said to be at which end: in a segment what is named before it, else, where it has one end, after it."""
     placed: dict[str, str | None] = {}
     for group in script.segments():
@@ -88,13 +88,13 @@ def _placed(script: Script, mentions: Sequence[Mention], ends: Sequence[Mention]
     return placed
 
 
-def _heading_is_turned(mentions: Sequence[Mention], ends: Sequence[Mention]) -> bool:
+def _heading_is_turned(mentions: Sequence[NameMention], ends: Sequence[NameMention]) -> bool:
     """ "From fewest to most: ..."."""
     before = [m.name for m in ends if m.start < mentions[0].start]
     return before[:2] == ["last", "first"] or before == ["last"]
 
 
-def read_relation(expected: Relation, script: Script) -> Reading:
+def parse_relation(expected: Relation, script: AnswerText) -> ParsedAnswer:
     """How the subject stands to the object, as every clause of the answer that says so agrees."""
     said = set[str]()
     names = {"subject": expected.subject, "object": expected.object}
@@ -108,25 +108,25 @@ def read_relation(expected: Relation, script: Script) -> Reading:
         said.add(way)
     alike = [m for m in script.mentions({"same": (*expected.same, *SAME)}) if not m.denied]
     if alike and not comparators:
-        return Value("same")
+        return ParsedValue("same")
     denied = any(m.denied for m in script.mentions({**ways, "same": SAME}))
     if not comparators and not denied and not any(w.text == "or" for w in script.words):
         named = {m.name for m in things if not m.denied}
         if len(named) == 1 and _is_bare(script, things):
             said.add("forward" if named == {"subject"} else "backward")
     if len(said) == 1:
-        return Value(said.pop())
+        return ParsedValue(said.pop())
     return Unreadable("it says both" if said else "no comparison")
 
 
-def _is_bare(script: Script, things: Sequence[Mention]) -> bool:
+def _is_bare(script: AnswerText, things: Sequence[NameMention]) -> bool:
     """Whether a text does no more than name a thing ("The gate.", "At the gate, by two")."""
     named = {i for m in things for i in range(m.start, m.end)}
-    counted = {i for q in find_quantities(script, ()) for i in range(q.start, q.end)}
+    counted = {i for q in find_numbers(script, ()) for i in range(q.start, q.end)}
     return all(w.text in _NAMING for i, w in enumerate(script.words) if i not in named | counted)
 
 
-def _way(script: Script, comparator: Mention, things: Sequence[Mention]) -> str | None:
+def _way(script: AnswerText, comparator: NameMention, things: Sequence[NameMention]) -> str | None:
     """The relation of subject to object that one comparator states; None when it does not say of which of them."""
     reference = reference_of(script, comparator, things)
     if reference is not None:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from scope_ptz.bench.answers.counts import is_miscounted, read_number
+from scope_ptz.bench.answers.counts import is_miscounted, parse_number
 from scope_ptz.bench.answers.denials import denies_flatly, says_none, says_yes
 from scope_ptz.bench.answers.halves import leaves_the_half_open
-from scope_ptz.bench.answers.numbers import find_quantities
-from scope_ptz.bench.answers.result import Reading, Unreadable, Value
-from scope_ptz.bench.answers.text import Mention, Script
-from scope_ptz.bench.answers.words import plain_words
+from scope_ptz.bench.answers.numbers import find_numbers
+from scope_ptz.bench.answers.parsed import ParsedAnswer, ParsedValue, Unreadable
+from scope_ptz.bench.answers.text import AnswerText, NameMention
+from scope_ptz.bench.answers.tokenizer import plain_words
 from scope_ptz.bench.tasks.expected import NoneThere, YesNo
 
 _YES = frozenset({"yes", "yeah", "yep", "yup", "correct", "affirmative", "true", "indeed"})
@@ -20,7 +20,7 @@ _NO_LAST = frozenset({"no", "nope", "nah"})
 """At the end of a piece they deny nothing that follows: "I say no", "it is a no"."""
 
 
-def verdict_words(script: Script) -> set[bool]:
+def verdict_words(script: AnswerText) -> set[bool]:
     """The yes and no that stand by themselves: at the beginning before a comma, or as a whole clause."""
     said = {True} if says_yes(script) else set[bool]()
     for group in script.segments():
@@ -45,7 +45,7 @@ _ELLIPSIS = re.compile(
 _REFUTED = re.compile(r"^((and|so|but) )*(it|this|that|the (claim|statement)) (is|was) (false|untrue|incorrect|wrong)$")
 
 
-def _short_answers(script: Script) -> set[bool]:
+def _short_answers(script: AnswerText) -> set[bool]:
     """ "It is not.", "They do.", "That is not the case." """
     said = set[bool]()
     for group in script.segments():
@@ -57,7 +57,7 @@ def _short_answers(script: Script) -> set[bool]:
     return said
 
 
-def read_yes_no(expected: YesNo, script: Script) -> Reading:
+def parse_yes_no(expected: YesNo, script: AnswerText) -> ParsedAnswer:
     """A bare yes or no, and what is stated about the thing; they must not contradict each other."""
     said = verdict_words(script) | _short_answers(script)
     if not said and leaves_the_half_open(script, expected.affirms):
@@ -65,7 +65,7 @@ def read_yes_no(expected: YesNo, script: Script) -> Reading:
     mentions = script.mentions({"yes": expected.affirms, "no": expected.denies})
     stated = {(mention.name == "yes") != (mention.denied or mention.aside) for mention in mentions}
     if len(stated) == 2 and len(said) == 1 and (last := script.segments()[-1:]) and _CONCLUDED.match(_text_of(script, last[0])):
-        return Value(said.pop())  # "At the gate: no van. At the works: 1 van. So yes."
+        return ParsedValue(said.pop())  # "At the gate: no van. At the works: 1 van. So yes."
     said |= stated
     if not said and says_none(script):
         said = {False}
@@ -75,18 +75,18 @@ def read_yes_no(expected: YesNo, script: Script) -> Reading:
         if re.search(r"\bthere (is|are) (none|not any)( here| there| visible| in view)?$", _text_of(script, clause)):
             said.add(False)
     if len(said) == 1:
-        return Value(said.pop())
+        return ParsedValue(said.pop())
     return Unreadable("both yes and no" if said else "neither yes nor no")
 
 
 _CONCLUDED = re.compile(r"^(so|therefore|thus|hence|overall) (the answer is |it is )?(yes|no)$")
 
 
-def _text_of(script: Script, group: Sequence[int]) -> str:
+def _text_of(script: AnswerText, group: Sequence[int]) -> str:
     return " ".join(script.words[i].text for i in group)
 
 
-def read_none_there(expected: NoneThere, script: Script) -> Reading:
+def parse_none_there(expected: NoneThere, script: AnswerText) -> ParsedAnswer:
     """True when the answer says that there is none and nothing that is only said of one that is there; False when there is one."""
     if re.search(r"\b(none|no|nothing|zero|0) or (one|two|some|several|a few|1|2)\b", script.text()):
         return Unreadable("an alternative")
@@ -96,33 +96,33 @@ def read_none_there(expected: NoneThere, script: Script) -> Reading:
     if True in said and (_counts_some(script, expected.subject) or _claims(script, expected)):
         said = {True, False}
     if len(said) == 1:
-        return Value(said.pop())
+        return ParsedValue(said.pop())
     return Unreadable(
         "both that there is one and that there is none" if said else "neither that there is one nor that there is none"
     )
 
 
-def says_that_none(script: Script, subject: Sequence[str]) -> set[bool]:
+def says_that_none(script: AnswerText, subject: Sequence[str]) -> set[bool]:
     """True: somewhere the text says that there is none; False: that there is one."""
     mentions = script.mentions({"subject": subject})
     said = {not v for v in verdict_words(script)}
     mentions = [m for m in mentions if m.denied or not _is_another(script, m, subject)]
     said |= {m.denied for m in mentions if not (m.aside or (m.denied and _is_partial(script, m, subject)))}
-    numbers = [q for q in find_quantities(script, subject) if not (q.other or q.bound or q.denied)]
+    numbers = [q for q in find_numbers(script, subject) if not (q.other or q.bound or q.denied)]
     said |= {q.value == 0 for q in numbers if not mentions or q.value == 0}
     if says_none(script):
         said.add(True)
     return said
 
 
-def _is_another(script: Script, mention: Mention, subject: Sequence[str]) -> bool:
+def _is_another(script: AnswerText, mention: NameMention, subject: Sequence[str]) -> bool:
     """ "The only van is red", where green vans are asked after: it is said of one that is not meant."""
     before = script.words[max(0, mention.start - 1) : mention.start]
     is_short = mention.end - mention.start < len(plain_words(subject[0]))
     return is_short and any(w.text in ("only", "other") for w in before)
 
 
-def _is_partial(script: Script, mention: Mention, subject: Sequence[str]) -> bool:
+def _is_partial(script: AnswerText, mention: NameMention, subject: Sequence[str]) -> bool:
     """ "No kite is in the other quarters", "not 5 kites": that does not say that there is none."""
     clause = script.words[mention.start].clause
     after = " ".join(w.text for w in script.words[mention.end : mention.end + 8] if w.clause == clause)
@@ -130,14 +130,14 @@ def _is_partial(script: Script, mention: Mention, subject: Sequence[str]) -> boo
     return elsewhere is not None or is_miscounted(script, mention, subject)
 
 
-def _counts_some(script: Script, subject: Sequence[str]) -> bool:
+def _counts_some(script: AnswerText, subject: Sequence[str]) -> bool:
     """Whether a number above zero is told that could count what is said not to be there."""
-    number = read_number(script, subject)
+    number = parse_number(script, subject)
     some = isinstance(number, float) and number > 0
-    return some or any(q.value > 0 and not (q.other or q.denied) for q in find_quantities(script, subject))
+    return some or any(q.value > 0 and not (q.other or q.denied) for q in find_numbers(script, subject))
 
 
-def _claims(script: Script, expected: NoneThere) -> bool:
+def _claims(script: AnswerText, expected: NoneThere) -> bool:
     """Whether something is stated that could only be said of one that is there; said of a named other thing it is no such claim."""
     mentions = script.mentions({"claim": expected.claims, "subject": expected.subject})
     denials = [m for m in mentions if m.name == "subject" and m.denied]
@@ -148,7 +148,7 @@ def _claims(script: Script, expected: NoneThere) -> bool:
     )
 
 
-def _is_of_another(script: Script, claim: Mention) -> bool:
+def _is_of_another(script: AnswerText, claim: NameMention) -> bool:
     """ "A green van", "a van stands top left": something else is named in the piece."""
     segment = script.words[claim.start].segment
     before = "".join(f"{w.text} " for w in script.words[: claim.start] if w.segment == segment)
@@ -160,7 +160,7 @@ def _is_of_another(script: Script, claim: Mention) -> bool:
     return not (after[0].text in _OF_THE_SUBJECT or after[0].text.endswith("ly"))
 
 
-def _is_where(script: Script, claim: Mention, denial: Mention) -> bool:
+def _is_where(script: AnswerText, claim: NameMention, denial: NameMention) -> bool:
     """Whether a claim tells where or of which the denial is: "top left: no kite", "the kite is absent from the top left"."""
     words, between = script.words, script.words[min(claim.end, denial.end) : max(claim.start, denial.start)]
     if claim.start < denial.start and words[claim.end].gap.strip() == ":" and words[claim.end].clause == words[denial.start].clause:

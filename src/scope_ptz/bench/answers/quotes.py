@@ -63,7 +63,7 @@ def _close(text: str, start: int, end: int, found: list[Quote]) -> None:
         found.append(Quote(text[start + 1 : end - 1], start, end))
 
 
-def readings_of(quotes: list[Quote], text: str) -> list[Quote]:
+def quoted_lettering(quotes: list[Quote], text: str) -> list[Quote]:
     """Those quotes that tell what is read: not what is denied, nor the names of presets, nor what it is that reads so."""
     kept = list[Quote]()
     for number, quote in enumerate(quotes):

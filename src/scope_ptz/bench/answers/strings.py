@@ -5,14 +5,14 @@ from __future__ import annotations
 import re
 from itertools import pairwise
 
-from scope_ptz.bench.answers.figures import is_figure, read_figure
-from scope_ptz.bench.answers.quotes import Quote, quotes_of, readings_of
-from scope_ptz.bench.answers.result import Reading, Unreadable, Value
-from scope_ptz.bench.answers.text import Script
-from scope_ptz.bench.answers.words import clean
+from scope_ptz.bench.answers.figures import is_figure, parse_figure
+from scope_ptz.bench.answers.parsed import ParsedAnswer, ParsedValue, Unreadable
+from scope_ptz.bench.answers.quotes import Quote, quoted_lettering, quotes_of
+from scope_ptz.bench.answers.text import AnswerText
+from scope_ptz.bench.answers.tokenizer import clean
 from scope_ptz.bench.tasks.expected import Text
 
-APART = " / "
+TEXT_SEPARATOR = " / "
 """Between texts that stand apart from each other."""
 
 _LOOK_ALIKES = str.maketrans({"o": "0", "i": "1", "l": "1", "|": "1", "s": "5", "b": "8"})
@@ -59,36 +59,36 @@ def same_text(one: str, other: str, *, ocr: bool) -> bool:
 
     Parts that stand apart (" / ") may come in any order.
     """
-    parts, others = ([folded(part, ocr) for part in text.split(APART)] for text in (one, other))
+    parts, others = ([normalized_text(part, ocr) for part in text.split(TEXT_SEPARATOR)] for text in (one, other))
     return "".join(parts) == "".join(others) or sorted(parts) == sorted(others)
 
 
-def folded(text: str, ocr: bool) -> str:
+def normalized_text(text: str, ocr: bool) -> str:
     words = re.findall(r"[^\W_]+", re.sub(r"(?<=\w)'(?=\w)", "", clean(text).lower()))
     joined = "".join(_DIGITS.get(word, word) for word in words)
     return joined.translate(_LOOK_ALIKES) if ocr else joined
 
 
-def read_text(expected: Text, script: Script, answer: str) -> Reading:
+def parse_text(expected: Text, script: AnswerText, answer: str) -> ParsedAnswer:
     """What the answer quotes; else what follows "reads", "says" or "is"; else a short answer as a whole."""
     text = clean(answer)
     quotes = quotes_of(text)
     if script.declined and not quotes:
         return Unreadable("declined")
-    if is_figure(expected.accepted) and (figure := Unreadable("a guess") if script.hedged else read_figure(expected, answer)):
+    if is_figure(expected.accepted) and (figure := Unreadable("a guess") if script.hedged else parse_figure(expected, answer)):
         return figure
     if quotes:
         return _from_quotes(quotes, text)
     if re.search(r"\b(?:no (?:text|letters|writing)|blank|nothing (?:is )?written)\b", text, re.IGNORECASE):
-        return Value("")
+        return ParsedValue("")
     begins = _WRITTEN.match(text)
     candidate, most = (begins.group(1), _MOST_ALONE) if begins else _after_cue(text)
     if most == 0:
         return Unreadable("only what it does not read is told")
     candidate = _NEXT_SENTENCE.split(candidate)[0]
     candidate = _TRAILERS.sub("", candidate.strip().strip(".!,")).strip()
-    candidate = _LEADS.sub("", re.sub(r"\s*\n\s*", APART, candidate))
-    words = [word for word in candidate.split() if word != APART.strip()]
+    candidate = _LEADS.sub("", re.sub(r"\s*\n\s*", TEXT_SEPARATOR, candidate))
+    words = [word for word in candidate.split() if word != TEXT_SEPARATOR.strip()]
     if candidate.isupper():
         # Nobody writes prose in capitals: this is the lettering itself.
         most = max(most, _MOST_IN_CAPITALS)
@@ -98,7 +98,7 @@ def read_text(expected: Text, script: Script, answer: str) -> Reading:
         return Unreadable("no text is quoted")
     if "or" in [w.lower() for w in words] and not any("or" in a.lower().split() for a in expected.accepted):
         return Unreadable("an alternative")
-    return Value(candidate)
+    return ParsedValue(candidate)
 
 
 def _after_cue(text: str) -> tuple[str, int]:
@@ -114,14 +114,14 @@ def _after_cue(text: str) -> tuple[str, int]:
     return text, _MOST_ALONE
 
 
-def _from_quotes(quotes: list[Quote], text: str) -> Reading:
-    readings = readings_of(quotes, text)
+def _from_quotes(quotes: list[Quote], text: str) -> ParsedAnswer:
+    readings = quoted_lettering(quotes, text)
     if not readings:
         return Unreadable("only what it does not read is quoted")
     between = [text[one.end : two.start] for one, two in pairwise(quotes)]
-    if len({folded(q.text, ocr=False) for q in quotes}) > 1 and any(
+    if len({normalized_text(q.text, ocr=False) for q in quotes}) > 1 and any(
         re.fullmatch(r"\s*,?\s+(?:or|and then)\s+", b) for b in between
     ):
         return Unreadable("an alternative")
-    said = {folded(quote.text, ocr=False): quote.text for quote in reversed(readings)}
-    return Value(APART.join(reversed(said.values())))
+    said = {normalized_text(quote.text, ocr=False): quote.text for quote in reversed(readings)}
+    return ParsedValue(TEXT_SEPARATOR.join(reversed(said.values())))

@@ -6,12 +6,12 @@ This is the benchmark's own reading of English. It shares nothing with the langu
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from scope_ptz.bench.answers.absences import MARK, is_denied_jointly, is_listed_as_absent, uncrossed
 from scope_ptz.bench.answers.claims import Claim, claim_of
-from scope_ptz.bench.answers.words import Word, clean, plain_words, same_word, words_of
+from scope_ptz.bench.answers.tokenizer import Word, clean, plain_words, same_word, words_of
 
 NEGATORS = frozenset({"no", "not", "never", "without", "neither", "nor", "none", "nobody", "nothing", "zero", "0", "lacks", "lack"})
 _ASIDE = (
@@ -61,7 +61,7 @@ _CAN_WHAT = frozenset({
 
 
 @dataclass(frozen=True, slots=True)
-class Mention:
+class NameMention:
     """Words ``start`` to ``end`` (exclusive) name ``name``. ``denied``: said not to be so; ``aside``: named to be told apart."""
 
     name: str
@@ -72,19 +72,19 @@ class Mention:
 
 
 @dataclass(frozen=True, slots=True)
-class Script:
+class AnswerText:
     """A text made ready for reading. ``declined``/``hedged``: something in it was, and those clauses are left out of ``words``."""
 
     words: tuple[Word, ...]
     declined: bool
     hedged: bool
 
-    def mentions(self, names: Mapping[str, Sequence[str]]) -> list[Mention]:
+    def mentions(self, names: Mapping[str, Sequence[str]]) -> list[NameMention]:
         """Every place where one of the wordings of a name stands; of overlapping ones the longest. "No cone is missing" says
         nothing of cones, nor does "I looked for cones"."""
         phrases = [(tuple(plain_words(w)), name) for name, wordings in names.items() for w in wordings]
         phrases.sort(key=lambda p: -len(p[0]))
-        found, taken = list[Mention](), set[int]()
+        found, taken = list[NameMention](), set[int]()
         for start in range(len(self.words)):
             for phrase, name in phrases:
                 end = start + len(phrase)
@@ -94,7 +94,7 @@ class Script:
                     if claim is Claim.NOTHING or self._denied_twice(start, end):
                         break
                     denied = self.denied(start, end) if claim is Claim.STATED else claim is Claim.MISSED
-                    found.append(Mention(name, start, end, denied, self._aside(start)))
+                    found.append(NameMention(name, start, end, denied, self._aside(start)))
                     break
         return found
 
@@ -202,7 +202,7 @@ def _grouped(labels: Sequence[int]) -> list[list[int]]:
     return list(groups.values())
 
 
-def script(text: str) -> Script:
+def answer_text(text: str) -> AnswerText:
     """Make a text ready for reading. Questions are left out: they claim nothing."""
     cleaned = re.sub(r"\s*\(with [^()]*\)", "", uncrossed(clean(text)))  # "white (with black letters)" is white
     cleaned = cleaned[max((match.end() for match in _CORRECTED.finditer(cleaned)), default=0) :]
@@ -219,7 +219,7 @@ def script(text: str) -> Script:
             hedged = True
         else:
             kept += [words[i] for i in positions]
-    return Script(tuple(kept), declined, hedged)
+    return AnswerText(tuple(kept), declined, hedged)
 
 
 def _ground(words: Sequence[Word], refused: int) -> Sequence[Word]:
@@ -233,7 +233,3 @@ def _reason(words: Sequence[Word], start: int) -> Sequence[Word]:
     """What stands after "I cannot tell:" or "... because"; nothing when no reason is given."""
     begins = (at for at in range(start, len(words)) if ":" in words[at].gap or words[at].text == "because")
     return words[next(begins, len(words)) :]
-
-
-def wordings_of(name: str, further: Iterable[str]) -> tuple[str, ...]:
-    return name, *further

@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 from itertools import combinations
 from typing import Any, Literal
 
-from scope_ptz.bench.judging.kappa import Agreement, cohen, fleiss
+from scope_ptz.bench.judging.kappa import KappaResult, cohen, fleiss
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Evaluation, Judgement, Trial
 
 CORRECT, INCORRECT = "correct", "incorrect"
-Kind = Literal["checks", "judge", "person", "gold"]
+RaterKind = Literal["checks", "judge", "person", "gold"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,7 @@ class Rating:
 
 
 @dataclass(frozen=True, slots=True)
-class Item:
+class RatedRun:
     """A run that is rated: ``cluster`` is the task that it is of, whose runs are alike."""
 
     log: str
@@ -42,37 +42,37 @@ class Rater:
     """``group``: raters that are repeats of one another share it. ``apart``: what was no rating, by its name."""
 
     name: str
-    kind: Kind
+    kind: RaterKind
     group: str
-    ratings: dict[Item, Rating] = field(default_factory=dict)
+    ratings: dict[RatedRun, Rating] = field(default_factory=dict)
     apart: Counter[str] = field(default_factory=Counter)
 
 
 @dataclass(frozen=True)
-class Pair:
+class RaterPair:
     """Two raters about the runs that both rated. ``modes``: of those that both call incorrect and give a mode, the modes."""
 
     first: str
     second: str
-    verdicts: Agreement
-    modes: Agreement
+    verdicts: KappaResult
+    modes: KappaResult
 
 
 @dataclass(frozen=True)
-class Group:
+class RaterGroup:
     """Several raters about the runs that all of them rated, and how many runs only some of them did."""
 
     raters: tuple[str, ...]
     what: str
-    verdicts: Agreement
+    verdicts: KappaResult
     left_out: int
 
 
 @dataclass(frozen=True)
-class Report:
+class AgreementReport:
     raters: tuple[Rater, ...]
-    pairs: tuple[Pair, ...]
-    groups: tuple[Group, ...]
+    pairs: tuple[RaterPair, ...]
+    groups: tuple[RaterGroup, ...]
 
     def as_dict(self) -> dict[str, Any]:
         """As JSON data."""
@@ -97,7 +97,7 @@ class Report:
         }
 
 
-def agreement(raters: Sequence[Rater], seed: int = 1) -> Report:
+def measure_agreement(raters: Sequence[Rater], seed: int = 1) -> AgreementReport:
     """All of it. Of a judge's repeats the first stands for it against others; the repeats are compared with one another."""
     first = {rater.group: rater for rater in reversed(raters)}
     leading = [rater for rater in raters if first[rater.group] is rater]
@@ -111,14 +111,14 @@ def agreement(raters: Sequence[Rater], seed: int = 1) -> Report:
         alike = [rater for rater in leading if rater.kind == kind]
         if len(alike) > 1:
             groups.append(_group(alike, what, seed))
-    return Report(tuple(raters), tuple(p for p in pairs if p.verdicts.runs), tuple(g for g in groups if g.verdicts.runs))
+    return AgreementReport(tuple(raters), tuple(p for p in pairs if p.verdicts.runs), tuple(g for g in groups if g.verdicts.runs))
 
 
-def _pair(one: Rater, two: Rater, seed: int) -> Pair:
+def _pair(one: Rater, two: Rater, seed: int) -> RaterPair:
     shared = [item for item in one.ratings if item in two.ratings]
     both = [(item, one.ratings[item], two.ratings[item]) for item in shared]
     blamed = [(item, a.mode.value, b.mode.value) for item, a, b in both if a.mode is not None and b.mode is not None]
-    return Pair(
+    return RaterPair(
         one.name,
         two.name,
         cohen([a.verdict for _, a, _ in both], [b.verdict for _, _, b in both], [item.cluster for item, _, _ in both], seed),
@@ -126,12 +126,12 @@ def _pair(one: Rater, two: Rater, seed: int) -> Pair:
     )
 
 
-def _group(raters: Sequence[Rater], what: str, seed: int) -> Group:
+def _group(raters: Sequence[Rater], what: str, seed: int) -> RaterGroup:
     anyone = {item for rater in raters for item in rater.ratings}
     shared = [item for item in raters[0].ratings if all(item in rater.ratings for rater in raters)]
     rows = [[rater.ratings[item].verdict for rater in raters] for item in shared]
     agreed = fleiss(rows, [item.cluster for item in shared], seed)
-    return Group(tuple(rater.name for rater in raters), what, agreed, len(anyone) - len(shared))
+    return RaterGroup(tuple(rater.name for rater in raters), what, agreed, len(anyone) - len(shared))
 
 
 def raters_of(evaluations: Iterable[Evaluation]) -> list[Rater]:
@@ -151,7 +151,7 @@ class _Found:
         self.raters: dict[str, Rater] = {}
 
     def take(self, trial: Trial, log: str) -> None:
-        item = Item(log, trial.sample, trial.task.paraphrase_of or trial.task.id)
+        item = RatedRun(log, trial.sample, trial.task.paraphrase_of or trial.task.id)
         if trial.scored_by == "checks":
             self._rate("the checks", "checks", "the checks", item, trial.headline, trial.error_mode)
         for name, group, judgement in numbered(trial.judgements):
@@ -159,12 +159,12 @@ class _Found:
         for label in trial.labels:
             self._rate(label.by, "person", label.by, item, label.verdict, label.error_mode)
 
-    def _rate(self, name: str, kind: Kind, group: str, item: Item, verdict: str, mode: ErrorMode | None) -> None:
+    def _rate(self, name: str, kind: RaterKind, group: str, item: RatedRun, verdict: str, mode: ErrorMode | None) -> None:
         rater = self.raters.setdefault(f"{kind}:{name}", Rater(name, kind, f"{kind}:{group}"))
-        rate(rater, item, verdict, mode)
+        add_rating(rater, item, verdict, mode)
 
 
-def rate(rater: Rater, item: Item, verdict: str, mode: ErrorMode | None) -> None:
+def add_rating(rater: Rater, item: RatedRun, verdict: str, mode: ErrorMode | None) -> None:
     """Note a rating, or what is none ("unscored", "unparseable", "failed", "unclear", ...), which is counted apart."""
     if verdict in (CORRECT, INCORRECT):
         rater.ratings[item] = Rating(verdict == CORRECT, mode)

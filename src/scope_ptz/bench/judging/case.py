@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from scope_ptz.agent.trace import Trace
-from scope_ptz.bench.scoring.episode import Episode, Places, Standing
+from scope_ptz.bench.scoring.episode import CameraState, Episode, PresetViewpoints
 from scope_ptz.geometry import Pose
 from scope_ptz.planner.base import ToolOutcome
 
@@ -25,7 +25,7 @@ class CaseCall:
 
 
 @dataclass(frozen=True, slots=True)
-class Case:
+class JudgeCase:
     """``outcome``: how the run ended, None when it was cut off. ``viewpoint``: the optical centre that it started from, if known.
 
     ``sees``: the agent was shown pictures itself, and may answer from them. ``places``: the viewpoints of presets, if known.
@@ -40,10 +40,10 @@ class Case:
     answer: str
     outcome: str | None
     sees: bool = False
-    places: Places | None = None
+    places: PresetViewpoints | None = None
 
 
-def case_of(trace: Trace, places: Places | None = None) -> Case:
+def case_of(trace: Trace, places: PresetViewpoints | None = None) -> JudgeCase:
     """The run of a trace. ``places``: which viewpoint each preset has; without it, it is known only as long as none is gone to."""
     started, ended = trace.started, trace.ended
     at, calls = started.viewpoint, list[CaseCall]()
@@ -61,7 +61,7 @@ def case_of(trace: Trace, places: Places | None = None) -> Case:
             )
         )
     last = calls[-1].pose if calls else started.pose.pose()
-    return Case(
+    return JudgeCase(
         instruction=started.instruction,
         start=started.pose.pose(),
         viewpoint=started.viewpoint,
@@ -75,9 +75,9 @@ def case_of(trace: Trace, places: Places | None = None) -> Case:
     )
 
 
-def case_of_episode(episode: Episode, places: Places) -> Case:
+def case_of_episode(episode: Episode, places: PresetViewpoints) -> JudgeCase:
     """A run that was made without a trace, such as a gold run. ``places``: of its scene."""
-    return Case(
+    return JudgeCase(
         instruction=episode.instruction,
         start=episode.start.pose,
         viewpoint=episode.start.viewpoint,
@@ -92,12 +92,12 @@ def case_of_episode(episode: Episode, places: Places) -> Case:
 
 
 def _call(
-    name: str, arguments: Mapping[str, Any], result: Mapping[str, Any] | None, error: str | None, after: Standing
+    name: str, arguments: Mapping[str, Any], result: Mapping[str, Any] | None, error: str | None, after: CameraState
 ) -> CaseCall:
     return CaseCall(name=name, arguments=arguments, result=result, error=error, pose=after.pose, viewpoint=after.viewpoint)
 
 
-def _viewpoint_after(outcome: ToolOutcome, before: str | None, places: Places | None, home: str | None) -> str | None:
+def _viewpoint_after(outcome: ToolOutcome, before: str | None, places: PresetViewpoints | None, home: str | None) -> str | None:
     name = outcome.call.name
     if outcome.error is not None or name not in ("go_to_preset", "go_home"):
         return before

@@ -9,14 +9,14 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict
 
 from scope_ptz.agent.trace import Trace
-from scope_ptz.bench.judging.case import Case, case_of
+from scope_ptz.bench.judging.case import JudgeCase, case_of
+from scope_ptz.bench.judging.judge_replies import REPLY_SCHEMA, JudgeReply, parse_judge_reply
 from scope_ptz.bench.judging.quoting import cut
 from scope_ptz.bench.judging.rendering import LEAST_CHARS, render
-from scope_ptz.bench.judging.replies import REPLY_SCHEMA, JudgeReply, read_reply
 from scope_ptz.bench.judging.rubrics import prompt_version, system_prompt
-from scope_ptz.bench.scoring.episode import Places
+from scope_ptz.bench.scoring.episode import PresetViewpoints
 from scope_ptz.bench.scoring.trials import Judgement
-from scope_ptz.bench.tasks.facts import TaskFacts
+from scope_ptz.bench.tasks.task_facts import TaskFacts
 from scope_ptz.errors import ScopeError
 
 DEFAULT_JUDGE = "gpt-oss-120b"
@@ -27,10 +27,10 @@ BUDGET_CHARS = 60_000
 """Of a run as it is told; some 15 thousand tokens."""
 
 _ECHO_CHARS = 2_000
-Message = dict[str, Any]
+JudgeMessage = dict[str, Any]
 
 
-class Reply(BaseModel):
+class Completion(BaseModel):
     """What a judge's model said, without its reasoning. ``cut_off``: it was stopped at a limit of tokens."""
 
     model_config = ConfigDict(frozen=True)
@@ -49,7 +49,7 @@ class NoReplyError(ScopeError):
         super().__init__(message)
 
 
-Complete = Callable[[list[Message], dict[str, Any]], Awaitable[Reply]]
+Complete = Callable[[list[JudgeMessage], dict[str, Any]], Awaitable[Completion]]
 """The port: messages and the reply's JSON schema in, a reply out. It raises ``NoReplyError`` and nothing else."""
 
 
@@ -59,14 +59,14 @@ class Judge:
     def __init__(self, name: str, complete: Complete, *, attempts: int = ATTEMPTS, budget_chars: int = BUDGET_CHARS) -> None:
         self.name, self.complete, self.attempts, self.budget_chars = name, complete, attempts, budget_chars
 
-    async def judge(self, facts: TaskFacts, trace: Trace, *, repeat: int = 0, places: Places | None = None) -> Judgement:
+    async def judge(self, facts: TaskFacts, trace: Trace, *, repeat: int = 0, places: PresetViewpoints | None = None) -> Judgement:
         """The judgement on a recorded run. Never raises for what a model or server does: see ``Judgement.verdict``.
 
         ``places``: which viewpoint each preset has, so that the judge is told where the camera stood.
         """
         return await self.judge_case(facts, case_of(trace, places), repeat=repeat)
 
-    async def judge_case(self, facts: TaskFacts, case: Case, *, repeat: int = 0) -> Judgement:
+    async def judge_case(self, facts: TaskFacts, case: JudgeCase, *, repeat: int = 0) -> Judgement:
         """The judgement on a run. ``repeat``: number of the judgement, where one judge gives several."""
         session = _Session(self, repeat)
         began = perf_counter()
@@ -81,9 +81,9 @@ class _Session:
         self.judge, self.repeat = judge, repeat
         self.asked = self.input_tokens = self.output_tokens = 0
 
-    async def run(self, facts: TaskFacts, case: Case) -> Judgement:
+    async def run(self, facts: TaskFacts, case: JudgeCase) -> Judgement:
         budget, problem = self.judge.budget_chars, ""
-        begun = messages(facts, case, budget)
+        begun = judge_messages(facts, case, budget)
         now, answers = begun, 0
         while answers < self.judge.attempts:
             self.asked += 1
@@ -92,13 +92,13 @@ class _Session:
             except NoReplyError as failure:
                 if failure.overflow and budget > LEAST_CHARS:
                     budget = max(budget // 2, LEAST_CHARS)
-                    now = begun = messages(facts, case, budget)
+                    now = begun = judge_messages(facts, case, budget)
                     continue
                 return self._made("failed", str(failure))
             answers += 1
             self.input_tokens += reply.input_tokens
             self.output_tokens += reply.output_tokens
-            read = "it was cut off at the limit of tokens" if reply.cut_off else read_reply(reply.text)
+            read = "it was cut off at the limit of tokens" if reply.cut_off else parse_judge_reply(reply.text)
             if isinstance(read, JudgeReply):
                 made = self._made(read.verdict, read.reason)
                 return made.model_copy(update={"error_mode": read.error_mode})
@@ -121,7 +121,7 @@ class _Session:
         )
 
 
-def messages(facts: TaskFacts, case: Case, budget_chars: int = BUDGET_CHARS) -> list[Message]:
+def judge_messages(facts: TaskFacts, case: JudgeCase, budget_chars: int = BUDGET_CHARS) -> list[JudgeMessage]:
     """What a judge is sent about a run."""
     return [
         {"role": "system", "content": system_prompt(facts.category)},
@@ -129,7 +129,7 @@ def messages(facts: TaskFacts, case: Case, budget_chars: int = BUDGET_CHARS) -> 
     ]
 
 
-def _told_back(said: str, problem: str) -> list[Message]:
+def _told_back(said: str, problem: str) -> list[JudgeMessage]:
     return [
         {"role": "assistant", "content": cut(said, _ECHO_CHARS) or "(nothing)"},
         {

@@ -24,7 +24,7 @@ Numbers = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
-class Agreement:
+class KappaResult:
     """``raw``: share of runs (of pairs of ratings, for more than two raters) that agree; ``kappa``: None where it has no value.
 
     ``confusion``: of two raters, how often the first said one label and the second another; empty for more.
@@ -45,10 +45,10 @@ class Agreement:
         return {**figures, **({"confusion": confusion} if confusion else {})}
 
 
-def cohen(first: Sequence[str], second: Sequence[str], clusters: Sequence[Hashable], seed: int = 1) -> Agreement:
+def cohen(first: Sequence[str], second: Sequence[str], clusters: Sequence[Hashable], seed: int = 1) -> KappaResult:
     """Agreement of two raters. All three sequences have one element a run; ``clusters``: which runs belong together."""
     if not first:
-        return Agreement(0, 2, None, None)
+        return KappaResult(0, 2, None, None)
     labels = sorted({*first, *second})
     place = {label: at for at, label in enumerate(labels)}
     tables = _by_cluster(
@@ -56,7 +56,7 @@ def cohen(first: Sequence[str], second: Sequence[str], clusters: Sequence[Hashab
     )
     table = tables.sum(axis=0).reshape(len(labels), len(labels))
     counted = Counter(zip(first, second, strict=True))
-    return Agreement(
+    return KappaResult(
         runs=len(first),
         raters=2,
         raw=float(np.trace(table) / table.sum()),
@@ -66,10 +66,10 @@ def cohen(first: Sequence[str], second: Sequence[str], clusters: Sequence[Hashab
     )
 
 
-def fleiss(ratings: Sequence[Sequence[str]], clusters: Sequence[Hashable], seed: int = 1) -> Agreement:
+def fleiss(ratings: Sequence[Sequence[str]], clusters: Sequence[Hashable], seed: int = 1) -> KappaResult:
     """Agreement of any number of raters. ``ratings``: of each run the labels, as many for every run."""
     if not ratings:
-        return Agreement(0, 0, None, None)
+        return KappaResult(0, 0, None, None)
     raters = len(ratings[0])
     labels = sorted({label for row in ratings for label in row})
     counts = np.array([[row.count(label) for label in labels] for row in map(list, ratings)], dtype=float)
@@ -80,7 +80,7 @@ def fleiss(ratings: Sequence[Sequence[str]], clusters: Sequence[Hashable], seed:
     names = list(dict.fromkeys(clusters))
     sums = np.zeros((len(names), rows.shape[1]))
     np.add.at(sums, [names.index(cluster) for cluster in clusters], rows)
-    return Agreement(
+    return KappaResult(
         runs=len(ratings),
         raters=raters,
         raw=float(pairs.mean()),

@@ -13,10 +13,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from scope_ptz.bench.judging.case import Case, CaseCall
+from scope_ptz.bench.judging.case import CaseCall, JudgeCase
 from scope_ptz.bench.judging.quoting import cut, inline, quoted
-from scope_ptz.bench.scoring.episode import Places
-from scope_ptz.bench.tasks.facts import TaskFacts
+from scope_ptz.bench.scoring.episode import PresetViewpoints
+from scope_ptz.bench.tasks.task_facts import TaskFacts
 from scope_ptz.geometry import Pose
 
 LEAST_CHARS = 6_000
@@ -44,14 +44,14 @@ _ENDINGS = {
 }
 
 
-def render(facts: TaskFacts, case: Case, budget: int) -> str:
+def render(facts: TaskFacts, case: JudgeCase, budget: int) -> str:
     """The task and the run. ``budget``: characters; at least ``LEAST_CHARS`` are used."""
     head, tail = _task_part(facts, case), _end_part(case)
     room = max(budget, LEAST_CHARS) - len(head) - len(tail)
     return f"{head}\n\n{_calls_part(case.calls, max(room, LEAST_CHARS // 4))}\n\n{tail}"
 
 
-def _task_part(facts: TaskFacts, case: Case) -> str:
+def _task_part(facts: TaskFacts, case: JudgeCase) -> str:
     names = [_preset(name, case) for name in case.presets[:_MOST_PRESETS]]
     more = len(case.presets) - len(names)
     presets = ", ".join(names) + (f" and {more} more" if more > 0 else "") if names else "none"
@@ -78,13 +78,13 @@ def _task_part(facts: TaskFacts, case: Case) -> str:
     return "\n".join(lines)
 
 
-def _preset(name: str, case: Case) -> str:
+def _preset(name: str, case: JudgeCase) -> str:
     """A preset with the viewpoint that it is at, where that is known."""
     at = case.places.presets.get(name) if case.places is not None else None
     return inline(name, _NAME_CHARS) + (f" (viewpoint {inline(at, _NAME_CHARS)})" if at else "")
 
 
-def _end_part(case: Case) -> str:
+def _end_part(case: JudgeCase) -> str:
     viewpoint = case.calls[-1].viewpoint if case.calls else case.viewpoint
     ending = _ENDINGS.get(case.outcome or "", "the run was cut off before its end")
     return "\n".join(
@@ -175,5 +175,7 @@ def specimen() -> str:
     )  # fmt: skip
     calls = [CaseCall("tool", {"a": 1}, {"message": "Done.", "box": [0]}, None, pose, "mast")]
     calls += [CaseCall("tool", {}, None, "It failed.", pose)] * LEAST_CHARS
-    case = Case("Look.", pose, "mast", ("gate",), tuple(calls), pose, "Five.", "answered", True, Places({"gate": "mast"}, "mast"))
+    case = JudgeCase(
+        "Look.", pose, "mast", ("gate",), tuple(calls), pose, "Five.", "answered", True, PresetViewpoints({"gate": "mast"}, "mast")
+    )
     return "\n\n".join(render(facts, shown, LEAST_CHARS) for shown in (case, replace(case, calls=(), outcome=None, answer="")))

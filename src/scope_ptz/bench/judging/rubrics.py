@@ -11,8 +11,8 @@ import re
 from functools import cache
 from importlib.resources import files
 
+from scope_ptz.bench.judging.judge_replies import REPLY_SCHEMA
 from scope_ptz.bench.judging.rendering import specimen
-from scope_ptz.bench.judging.replies import REPLY_SCHEMA
 from scope_ptz.bench.tasks.task import Category
 
 PROMPT = "judge-1"

@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from scope_ptz.bench.judging.judge import Message, NoReplyError, Reply
+from scope_ptz.bench.judging.judge import Completion, JudgeMessage, NoReplyError
 from scope_ptz.endpoints.chat import ChatClient
 from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.endpoints.failures import FailureKind, ServerFailure
@@ -48,19 +48,19 @@ class _Known:
     form: int = 0
 
 
-class ServerPort:
+class JudgeServer:
     """Callable as the judge's port; may be shared by concurrent judgements. It keeps connections, and what the server refuses."""
 
     def __init__(self, endpoint: Endpoint, options: JudgeOptions | None = None) -> None:
         self.options, self.client, self._known = options or JudgeOptions(), ChatClient(endpoint), _Known()
 
-    def repeated(self, repeat: int) -> ServerPort:
+    def repeated(self, repeat: int) -> JudgeServer:
         """The port for a further judgement by the same judge: another seed, the same connections."""
         port = copy(self)
         port.options = self.options.model_copy(update={"seed": self.options.seed + repeat})
         return port
 
-    async def __call__(self, messages: list[Message], schema: dict[str, Any]) -> Reply:
+    async def __call__(self, messages: list[JudgeMessage], schema: dict[str, Any]) -> Completion:
         """Ask. Raises ``NoReplyError``."""
         form, quiet, dialect = self._known.form, False, self._known.dialect
         for _ in range(_MOST_LESSONS):
@@ -76,7 +76,7 @@ class ServerPort:
                     form, quiet = form + 1, quiet or failure.kind is K.EMPTY
                     continue
                 if failure.kind is K.EMPTY:
-                    return Reply(text="")
+                    return Completion(text="")
                 raise NoReplyError(str(failure), overflow=failure.kind is K.CONTEXT_OVERFLOW) from None
             if not quiet:  # Silence may pass; a refusal stays.
                 self._known.form = max(self._known.form, form)
@@ -101,8 +101,8 @@ def _response_format(form: Form, schema: dict[str, Any]) -> dict[str, Any]:
     return {"response_format": {"type": "json_schema", "json_schema": {"name": "verdict", "strict": True, "schema": schema}}}
 
 
-def _read(reply: ChatReply) -> Reply:
-    return Reply(
+def _read(reply: ChatReply) -> Completion:
+    return Completion(
         text=part(reply.text, reply.reasoning).text,
         input_tokens=reply.input_tokens,
         output_tokens=reply.output_tokens,

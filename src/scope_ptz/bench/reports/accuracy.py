@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from scope_ptz.bench.reports import charts as drawing
-from scope_ptz.bench.reports.judged import judge_name, verdicts
-from scope_ptz.bench.reports.runs import CATEGORY_TITLES, Run, macro, of_main_set, scores_of
+from scope_ptz.bench.reports.report_judge import judge_name, verdicts
+from scope_ptz.bench.reports.report_runs import CATEGORY_TITLES, ReportRun, macro, of_main_set, scores_of
 from scope_ptz.bench.reports.sections import Section
-from scope_ptz.bench.reports.tables import Column, Marked, Table, Value, bare
+from scope_ptz.bench.reports.tables import CellValue, Column, MarkedCell, ReportTable, unmarked
 from scope_ptz.bench.scoring.trials import Trial
-from scope_ptz.bench.statistics.clustered import Estimate, share
+from scope_ptz.bench.statistics.clustered import IntervalEstimate, share
 
 KIND_WORDS = {
     "models": "models",
@@ -29,7 +29,7 @@ INTERVALS = (
 )
 
 
-def accuracy_section(runs: Sequence[Run]) -> Section:
+def accuracy_section(runs: Sequence[ReportRun]) -> Section:
     """Accuracy of every run that has core tasks, model pairs apart from what is no model pair."""
     having = [run for run in runs if run.scored]
     ranked, others = [r for r in having if r.ranked], [r for r in having if not r.ranked]
@@ -67,7 +67,7 @@ def accuracy_section(runs: Sequence[Run]) -> Section:
     return Section("accuracy", "Accuracy", tuple(text), charts, tuple(tables))
 
 
-def category_table(key: str, title: str, runs: Sequence[Run], *, rank: bool) -> Table:
+def category_table(key: str, title: str, runs: Sequence[ReportRun], *, rank: bool) -> ReportTable:
     """A row a run, grouped by eyes. Best of its eyes: bold; best of its task set: underlined too."""
     columns = [Column("run", "Run"), Column("macro", "Macro average", "share"), Column("micro", "Micro average", "share")]
     columns += [Column(name, words, "share") for name, words in CATEGORY_TITLES.items()]
@@ -83,20 +83,22 @@ def category_table(key: str, title: str, runs: Sequence[Run], *, rank: bool) -> 
         cells[0] = _partial_macro(cells[0], run)
         rows.append((run.label, *cells, len(run.tasks)))
     notes = (INTERVALS, "Bold: the best with these eyes; underlined: the best of all on these tasks; only where there is another.")
-    return Table(key, title, tuple(columns), tuple(rows), notes if rank else (INTERVALS,), groups)
+    return ReportTable(key, title, tuple(columns), tuple(rows), notes if rank else (INTERVALS,), groups)
 
 
-def _category(run: Run, name: str) -> Estimate | None:
+def _category(run: ReportRun, name: str) -> IntervalEstimate | None:
     return share(scores_of([t for t in run.scored if t.task.category == name]))
 
 
-def _marked(value: Estimate | None, index: int, run: Run, raw: Sequence[tuple[Run, list[Estimate | None]]]) -> Value:
+def _marked(
+    value: IntervalEstimate | None, index: int, run: ReportRun, raw: Sequence[tuple[ReportRun, list[IntervalEstimate | None]]]
+) -> CellValue:
     if value is None:
         return None
     same_tasks = [(r, v[index]) for r, v in raw if r.task_set == run.task_set and r.tasks == run.tasks]
     alike = [v.value for r, v in same_tasks if v and r.eyes_name == run.eyes_name]
     every = [v.value for _, v in same_tasks if v]
-    return Marked(value, _is_best(value.value, alike), _is_best(value.value, every))
+    return MarkedCell(value, _is_best(value.value, alike), _is_best(value.value, every))
 
 
 def _is_best(value: float, among: Sequence[float]) -> bool:
@@ -104,16 +106,16 @@ def _is_best(value: float, among: Sequence[float]) -> bool:
     return len(among) > 1 and value > max(among) - ROUNDING
 
 
-def _partial_macro(value: Value, run: Run) -> Value:
+def _partial_macro(value: CellValue, run: ReportRun) -> CellValue:
     """A macro average that lacks categories says so."""
     number = len({t.task.category for t in run.scored})
     if number == len(CATEGORY_TITLES):
         return value
-    marks = value if isinstance(value, Marked) else Marked(bare(value))
+    marks = value if isinstance(value, MarkedCell) else MarkedCell(unmarked(value))
     return replace(marks, note=f"over {number} of {len(CATEGORY_TITLES)} categories")
 
 
-def _bounds(runs: Sequence[Run]) -> Table:
+def _bounds(runs: Sequence[ReportRun]) -> ReportTable:
     columns = (
         Column("run", "Run"), Column("trials", "Trials", "count"), Column("correct", "Correct", "count"),
         Column("incorrect", "Incorrect", "count"), Column("unscored", "Unscored", "count"),
@@ -125,10 +127,10 @@ def _bounds(runs: Sequence[Run]) -> Table:
         "says nothing "
         "about the agent. At least and at most: all of these wrong, or all of them right.",
     )
-    return Table("outcomes", "What came of the trials, with bounds", columns, tuple(_counted(run) for run in runs), notes)
+    return ReportTable("outcomes", "What came of the trials, with bounds", columns, tuple(_counted(run) for run in runs), notes)
 
 
-def _counted(run: Run) -> tuple[Value, ...]:
+def _counted(run: ReportRun) -> tuple[CellValue, ...]:
     found = Counter(t.headline for t in run.headline)
     total = len(run.headline)
     ran = len(run.scored)
@@ -138,7 +140,7 @@ def _counted(run: Run) -> tuple[Value, ...]:
     )  # fmt: skip
 
 
-def _by_judge(runs: Sequence[Run]) -> Table:
+def _by_judge(runs: Sequence[ReportRun]) -> ReportTable:
     columns = (
         Column("run", "Run"), Column("judge", "Judge"), Column("judged", "Judged", "count"),
         Column("unparseable", "Unparseable", "count"), Column("failed", "Judge failed", "count"),
@@ -150,10 +152,10 @@ def _by_judge(runs: Sequence[Run]) -> Table:
         "judgements are in neither. Trials that a judge scored, for want of a check of the answer, are not in the macro by checks "
         "and not in the agreement.",
     )
-    return Table("judge", "The judge's verdicts beside the checks'", columns, tuple(_judged_row(run) for run in runs), notes)
+    return ReportTable("judge", "The judge's verdicts beside the checks'", columns, tuple(_judged_row(run) for run in runs), notes)
 
 
-def _judged_row(run: Run) -> tuple[Value, ...]:
+def _judged_row(run: ReportRun) -> tuple[CellValue, ...]:
     name = judge_name([run])
     if name is None:
         return run.label, None, 0, 0, 0, None, None, None

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
-from scope_ptz.bench.reports.runs import Run
+from scope_ptz.bench.reports.report_runs import ReportRun
 from scope_ptz.bench.reports.sections import Chart
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def as_chart(key: str, title: str, alt: str, figure: Figure) -> Chart:
     return Chart(key, title, alt, svg, round(figure.get_figwidth() * PX))
 
 
-def colours(runs: Sequence[Run]) -> dict[str, str]:
+def colours(runs: Sequence[ReportRun]) -> dict[str, str]:
     """A hue for each pair of eyes, lighter for smaller planners, as in the paper's figure; grey for what is not ranked."""
     eyes = list(dict.fromkeys(run.eyes_name for run in runs if run.ranked))
     found = {}
@@ -93,7 +93,7 @@ def _mixed(colour: str, share: float) -> str:
     return "#" + "".join(f"{round(part * share + 205 * (1 - share)):02x}" for part in parts)
 
 
-def shades(runs: Sequence[Run]) -> list[tuple[str, str | None]]:
+def shades(runs: Sequence[ReportRun]) -> list[tuple[str, str | None]]:
     """Fill and hatch for the bars of each run. What is not ranked has no hue: its greys and hatches tell it apart."""
     tint, others = colours(runs), [run for run in runs if not run.ranked]
     found: list[tuple[str, str | None]] = []

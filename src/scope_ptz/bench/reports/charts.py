@@ -25,11 +25,11 @@ from scope_ptz.bench.reports.chart_style import (
     shades,
     short,
 )
-from scope_ptz.bench.reports.runs import Run
+from scope_ptz.bench.reports.report_runs import ReportRun
 from scope_ptz.bench.reports.sections import Chart
-from scope_ptz.bench.reports.tables import Marked, Table, bare
+from scope_ptz.bench.reports.tables import MarkedCell, ReportTable, unmarked
 from scope_ptz.bench.scoring.error_modes import ErrorMode
-from scope_ptz.bench.statistics.clustered import Estimate
+from scope_ptz.bench.statistics.clustered import IntervalEstimate
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from scope_ptz.bench.reports.recommendations import Candidate
 
 
-def accuracy_chart(runs: Sequence[Run]) -> Chart:
+def accuracy_chart(runs: Sequence[ReportRun]) -> Chart:
     """Macro accuracy with its interval, the best on top; runs over other tasks below and hollow, reference runs last and grey."""
     ordered = sorted(runs, key=lambda r: (r.ranked, not r.elsewhere, r.macro.value if r.macro else 0.0))
     tint = colours(runs)
@@ -65,11 +65,11 @@ def accuracy_chart(runs: Sequence[Run]) -> Chart:
 def mode_chart(
     key: str,
     title: str,
-    runs: Sequence[Run],
+    runs: Sequence[ReportRun],
     counted: Mapping[str, Counter[ErrorMode]],
     of: Mapping[str, int],
     titles: Mapping[ErrorMode, str],
-    among: Sequence[Run],
+    among: Sequence[ReportRun],
 ) -> Chart:
     """Grouped bars, a group for each error mode; ``of``: how many trials a run's counts are out of; ``among``: the runs of all such
     charts, so that a run looks alike in each."""
@@ -112,7 +112,7 @@ ORACLE_PANELS = (
 """Each by verdicts of one kind, so that what is compared differs in nothing else."""
 
 
-def oracle_chart(table: Table) -> Chart:
+def oracle_chart(table: ReportTable) -> Chart:
     """Accuracy as it is beside perfect perception, by the checks and by the judge in panels of their own. ``table``: of pairs."""
     names = [column.name for column in table.columns]
     rows = [(str(row[0]), {name: _whole(cell) for name, cell in zip(names, row, strict=True)}) for row in reversed(table.rows)]
@@ -139,17 +139,17 @@ def oracle_chart(table: Table) -> Chart:
 
 def _whole(cell: Any) -> float | None:
     """A value that is of all tasks of the run: one that is of some says so in its note."""
-    return None if isinstance(cell, Marked) and cell.note else _value(cell)
+    return None if isinstance(cell, MarkedCell) and cell.note else _value(cell)
 
 
 def _value(cell: Any) -> float | None:
-    found = bare(cell)
-    if isinstance(found, Estimate):
+    found = unmarked(cell)
+    if isinstance(found, IntervalEstimate):
         return found.value
     return float(found) if isinstance(found, int | float) else None
 
 
-def time_chart(runs: Sequence[Run], titles: Mapping[str, str]) -> Chart:
+def time_chart(runs: Sequence[ReportRun], titles: Mapping[str, str]) -> Chart:
     """Mean seconds by stage, stacked, without the camera; what the camera took stands beside the bar in figures."""
     stages = ("planner_s", "perception_s", "tools_s")
     timed = [(run, [t.timings for t in run.scored if t.timings.total_s > 0]) for run in runs]
@@ -227,7 +227,7 @@ def _point(axes: Axes, at: tuple[float, ...], area: float, shade: str, of: Candi
     return ring, axes.scatter(x, y, s=(sqrt(area) - 3 * width) ** 2, facecolor=shade, edgecolor="none", alpha=0.85)
 
 
-def repeats_chart(table: Table, most: int) -> Chart:
+def repeats_chart(table: ReportTable, most: int) -> Chart:
     """pass^k by k."""
     labels = [short(str(row[0]), 100) for row in table.rows]
     with canvas(880, 330 + legend_px(labels)) as (figure, axes):

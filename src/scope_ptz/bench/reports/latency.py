@@ -12,10 +12,10 @@ from statistics import fmean
 import numpy as np
 
 from scope_ptz.bench.reports import charts as drawing
-from scope_ptz.bench.reports.runs import Run, pairs_of, timed
+from scope_ptz.bench.reports.report_runs import ReportRun, pairs_of, timing_run
 from scope_ptz.bench.reports.sections import Section
-from scope_ptz.bench.reports.tables import Column, Table, Value
-from scope_ptz.bench.scoring.trials import LookTime, Trial
+from scope_ptz.bench.reports.tables import CellValue, Column, ReportTable
+from scope_ptz.bench.scoring.trials import ObservationTime, Trial
 from scope_ptz.bench.tasks.task import Scope
 
 STAGE_TITLES = {
@@ -40,7 +40,7 @@ LOOKS = (
 )
 
 
-def stage_seconds(run: Run, stage: str) -> list[float]:
+def stage_seconds(run: ReportRun, stage: str) -> list[float]:
     """Wall seconds of a stage by trial: of trials that were timed, and that used the stage at all."""
     seconds = [float(getattr(t.timings, stage)) for t in run.scored if t.timings.total_s > 0]
     return [value for value in seconds if value > 0]
@@ -61,10 +61,10 @@ def calls_made(trials: Sequence[Trial]) -> float | None:
     return fmean(sum(t.tool_calls.values()) for t in trials) if trials else None
 
 
-def latency_section(runs: Sequence[Run]) -> Section:
+def latency_section(runs: Sequence[ReportRun]) -> Section:
     """All runs; the tables by model are of ranked ones only."""
     having = [run for run in runs if run.scored]
-    pairs = [(run, timed(run, having)) for run in pairs_of(having)]
+    pairs = [(run, timing_run(run, having)) for run in pairs_of(having)]
     sources = [source for _, source in pairs]
     tables = (_by_stage(having), _by_planner(pairs), _by_eyes(pairs), _views(sources))
     shared = [run.label for run in sources if run.evaluation.card.contended]
@@ -82,17 +82,17 @@ def latency_section(runs: Sequence[Run]) -> Section:
     return Section("latency", "Latency and tool calls", tuple(text), charts, tables)
 
 
-def _contended(runs: Sequence[Run]) -> str:
+def _contended(runs: Sequence[ReportRun]) -> str:
     states = {run.evaluation.card.contended for run in runs}
     return "some contended" if len(states) > 1 else "contended" if states == {True} else "alone"
 
 
-def _alone(runs: Sequence[Run]) -> Sequence[Run]:
+def _alone(runs: Sequence[ReportRun]) -> Sequence[ReportRun]:
     """The runs without contention, if there are any; else all."""
     return [run for run in runs if not run.evaluation.card.contended] or runs
 
 
-def _by_stage(runs: Sequence[Run]) -> Table:
+def _by_stage(runs: Sequence[ReportRun]) -> ReportTable:
     columns = [Column("run", "Run"), Column("contended", "Measured"), Column("timed", "Timed trials", "count")]
     for stage, words in STAGE_TITLES.items():
         columns += [
@@ -105,22 +105,22 @@ def _by_stage(runs: Sequence[Run]) -> Table:
     ]
     rows = []
     for run in runs:
-        cells: list[Value] = [run.label, _contended([run]), len(stage_seconds(run, "total_s"))]
+        cells: list[CellValue] = [run.label, _contended([run]), len(stage_seconds(run, "total_s"))]
         for stage in STAGE_TITLES:
             seconds = stage_seconds(run, stage)
             cells += [middle(seconds), tail(seconds)]
         rows.append((*cells, middle(stage_seconds(run, "first_token_s")), calls_made(run.scored)))
-    return Table("latency_stages", "By stage (seconds a trial)", tuple(columns), tuple(rows))
+    return ReportTable("latency_stages", "By stage (seconds a trial)", tuple(columns), tuple(rows))
 
 
-Timed = tuple[Run, Run]
+Timed = tuple[ReportRun, ReportRun]
 """A pair's run over the most tasks, and the run from which its latency is taken, which may be the same."""
 
 
-def _by_planner(pairs: Sequence[Timed]) -> Table:
+def _by_planner(pairs: Sequence[Timed]) -> ReportTable:
     steps = (Column("step_median", "Seconds a step, median", "seconds"), Column("step_p95", "Seconds a step, p95", "seconds"))
 
-    def cells(own: Sequence[Run]) -> tuple[Value, ...]:
+    def cells(own: Sequence[ReportRun]) -> tuple[CellValue, ...]:
         timed_trials = [t for run in own for t in run.scored if t.steps and t.timings.planner_s > 0]
         seconds = [t.timings.planner_s / t.steps for t in timed_trials]
         return middle(seconds), tail(seconds)
@@ -129,7 +129,7 @@ def _by_planner(pairs: Sequence[Timed]) -> Table:
     return _by_model("latency_planner", "By planner", pairs, lambda r: r.planner_name, "planner_s", steps, cells, notes)
 
 
-def _by_eyes(pairs: Sequence[Timed]) -> Table:
+def _by_eyes(pairs: Sequence[Timed]) -> ReportTable:
     looks = (
         Column("look_median", "Eyes, seconds a look, median", "seconds"),
         Column("look_p95", "Eyes, seconds a look, p95", "seconds"),
@@ -137,7 +137,7 @@ def _by_eyes(pairs: Sequence[Timed]) -> Table:
         Column("capture_p95", "Capture, seconds a look, p95", "seconds"),
     )
 
-    def cells(own: Sequence[Run]) -> tuple[Value, ...]:
+    def cells(own: Sequence[ReportRun]) -> tuple[CellValue, ...]:
         made = _looks(own)
         eyes, capture = [look.eyes_s for look in made], [look.capture_s for look in made]
         return middle(eyes), tail(eyes), middle(capture), tail(capture)
@@ -155,9 +155,9 @@ def _pooled(what: str) -> str:
 
 
 def _by_model(
-    key: str, title: str, pairs: Sequence[Timed], name: Callable[[Run], str], stage: str,
-    single: tuple[Column, ...], cells: Callable[[Sequence[Run]], tuple[Value, ...]], notes: tuple[str, ...],
-) -> Table:  # fmt: skip
+    key: str, title: str, pairs: Sequence[Timed], name: Callable[[ReportRun], str], stage: str,
+    single: tuple[Column, ...], cells: Callable[[Sequence[ReportRun]], tuple[CellValue, ...]], notes: tuple[str, ...],
+) -> ReportTable:  # fmt: skip
     """A row a model. ``single``: columns about single steps or looks, filled by ``cells``."""
     columns = (
         Column("model", "Model"),
@@ -176,14 +176,14 @@ def _by_model(
         seconds = [s for run in own for s in stage_seconds(run, stage)]
         calls = fmean(made for run in whole if (made := calls_made(run.scored)) is not None)
         rows.append((model, _contended(own), len(own), len(whole), middle(seconds), tail(seconds), *cells(own), calls))
-    return Table(key, title, columns, tuple(rows), notes)
+    return ReportTable(key, title, columns, tuple(rows), notes)
 
 
-def _looks(runs: Sequence[Run], view: Scope | None = None) -> list[LookTime]:
+def _looks(runs: Sequence[ReportRun], view: Scope | None = None) -> list[ObservationTime]:
     return [look for run in runs for t in run.scored for look in t.looks if view in (None, look.view)]
 
 
-def _views(runs: Sequence[Run]) -> Table:
+def _views(runs: Sequence[ReportRun]) -> ReportTable:
     """What the panorama costs the eyes and the camera, by eyes and over all of them."""
     columns = (
         Column("view", "View"),
@@ -203,10 +203,10 @@ def _views(runs: Sequence[Run]) -> Table:
     rows = [_view_row(view, words, own) for _, own in parts for view, words in VIEWS]
     groups = {len(VIEWS) * number: name for number, (name, _) in enumerate(parts)}
     notes = (f"{LOOKS} Whole call: both, and the tool's own work.",)
-    return Table("latency_views", "Current view against panorama", columns, tuple(rows), notes, groups)
+    return ReportTable("latency_views", "Current view against panorama", columns, tuple(rows), notes, groups)
 
 
-def _view_row(view: Scope, words: str, runs: Sequence[Run]) -> tuple[Value, ...]:
+def _view_row(view: Scope, words: str, runs: Sequence[ReportRun]) -> tuple[CellValue, ...]:
     made = _looks(runs, view)
     eyes, capture, whole = ([getattr(look, part) for look in made] for part in ("eyes_s", "capture_s", "call_s"))
     base, own = middle([look.eyes_s for look in _looks(runs, "current")]), middle(eyes)

@@ -7,9 +7,9 @@ from importlib.resources import files
 
 from pydantic import BaseModel, ConfigDict
 
-from scope_ptz.bench.reports.runs import CATEGORY_TITLES
+from scope_ptz.bench.reports.report_runs import CATEGORY_TITLES
 from scope_ptz.bench.reports.sections import Section
-from scope_ptz.bench.reports.tables import Column, Marked, Table, Value
+from scope_ptz.bench.reports.tables import CellValue, Column, MarkedCell, ReportTable
 
 
 class _Row(BaseModel):
@@ -119,7 +119,7 @@ def paper_section() -> Section:
     )
 
 
-def _accuracy(paper: Paper) -> Table:
+def _accuracy(paper: Paper) -> ReportTable:
     columns = [Column("planner", "Planner"), *(Column(n, words, "share") for n, words in CATEGORY_TITLES.items())]
     columns += [Column("average", "Average (macro)", "share"), Column("micro", "Micro, computed from these", "share")]
     columns.append(Column("line", "Line", "count"))
@@ -129,8 +129,8 @@ def _accuracy(paper: Paper) -> Table:
             groups[number] = previous = row.eyes
         own = [other for other in paper.accuracy if other.eyes == row.eyes]
         names = (*CATEGORY_TITLES, "average")
-        cells: list[Value] = [
-            Marked(
+        cells: list[CellValue] = [
+            MarkedCell(
                 float(getattr(row, name)) / 100,
                 best=getattr(row, name) >= max(getattr(other, name) for other in own),
                 best_of_all=getattr(row, name) >= max(getattr(other, name) for other in paper.accuracy),
@@ -142,43 +142,43 @@ def _accuracy(paper: Paper) -> Table:
         "Percent. The paper's average is the macro average. 36.5 (qwen3-next-80b-a3b with moondream2-4bit, comparative) is "
         "no share of 62.",
     )
-    return Table("paper_accuracy", "The paper: accuracy by category", tuple(columns), tuple(rows), notes, groups)
+    return ReportTable("paper_accuracy", "The paper: accuracy by category", tuple(columns), tuple(rows), notes, groups)
 
 
-def _latency(paper: Paper) -> Table:
+def _latency(paper: Paper) -> ReportTable:
     columns = (
         Column("model", "Model"), Column("role", "Role"), Column("median_s", "Median latency (s)", "seconds"),
         Column("tool_calls", "Tool calls, mean", "number"), Column("line", "Line", "count"),
     )  # fmt: skip
     rows = tuple((row.name, row.role, row.median_s, row.tool_calls, row.line) for row in paper.latency)
     notes = ("Inference latency in its serving set-up, partly under contention, as its own limitations say.",)
-    return Table("paper_latency", "The paper: latency and tool calls", columns, rows, notes)
+    return ReportTable("paper_latency", "The paper: latency and tool calls", columns, rows, notes)
 
 
-def _figures(paper: Paper) -> Table:
+def _figures(paper: Paper) -> ReportTable:
     columns = (Column("what", "Figure"), Column("value", "Value"), Column("line", "Line", "count"))
     rows = tuple((figure.what, figure.value, figure.line) for figure in paper.figures)
-    return Table("paper_figures", "The paper: further figures", columns, rows)
+    return ReportTable("paper_figures", "The paper: further figures", columns, rows)
 
 
-def _models(paper: Paper) -> Table:
+def _models(paper: Paper) -> ReportTable:
     columns = (
         Column("title", "Model"), Column("name", "Name in the registry"), Column("role", "Role"),
         Column("size_b", "Parameters (10^9)", "number"), Column("active_b", "Active (10^9)", "number"),
         Column("precision", "Precision"), Column("line", "Line", "count"),
     )  # fmt: skip
     rows = tuple((m.title, m.name, m.role, m.size_b, m.active_b, m.precision, m.line) for m in paper.models)
-    return Table("paper_models", "The paper: models", columns, rows)
+    return ReportTable("paper_models", "The paper: models", columns, rows)
 
 
-def _categories(paper: Paper) -> Table:
+def _categories(paper: Paper) -> ReportTable:
     columns = (Column("category", "Category"), Column("tasks", "Tasks", "count"), Column("line", "Line", "count"))
     rows = tuple((CATEGORY_TITLES[c.category], c.tasks, c.line) for c in paper.categories)
-    return Table("paper_categories", "The paper: tasks by category", columns, rows)
+    return ReportTable("paper_categories", "The paper: tasks by category", columns, rows)
 
 
-def _modes(paper: Paper) -> Table:
+def _modes(paper: Paper) -> ReportTable:
     columns = (Column("mode", "Error mode"), Column("description", "Meaning"), Column("line", "Line", "count"))
-    return Table(
+    return ReportTable(
         "paper_modes", "The paper: error modes", columns, tuple((m.mode, m.description, m.line) for m in paper.error_modes)
     )

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from statistics import fmean
 
 from scope_ptz.bench.reports import charts as drawing
-from scope_ptz.bench.reports.comparing import compare, comparison_table
 from scope_ptz.bench.reports.latency import middle, stage_seconds
-from scope_ptz.bench.reports.runs import FULL_PRECISION, Run, is_mixture, scores_of, timed
+from scope_ptz.bench.reports.paired_comparison import compare, comparison_table
+from scope_ptz.bench.reports.report_runs import FULL_PRECISION, ReportRun, is_mixture, scores_of, timing_run
 from scope_ptz.bench.reports.sections import Section
-from scope_ptz.bench.reports.tables import Column, Table, Value
-from scope_ptz.bench.statistics.choice import undominated
-from scope_ptz.bench.statistics.clustered import gap, share
+from scope_ptz.bench.reports.tables import CellValue, Column, ReportTable
+from scope_ptz.bench.statistics.clustered import share, share_difference
+from scope_ptz.bench.statistics.pareto import undominated
 from scope_ptz.registry import Model
 
 LATENCY = "trial without the camera, median (s)"
@@ -25,7 +25,7 @@ SIZES_GB = (8, 16, 24, 48, 80, 160)
 class Candidate:
     """A pair with what it is chosen by; None: not measured or not in the registry. ``latency_s``: a trial without the camera."""
 
-    run: Run
+    run: ReportRun
     accuracy: float | None
     latency_s: float | None
     memory_gb: float | None
@@ -37,11 +37,11 @@ class Candidate:
         return None not in (self.accuracy, self.latency_s, self.memory_gb)
 
 
-def candidates(ranked: Sequence[Run], every: Sequence[Run]) -> list[Candidate]:
+def candidates(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> list[Candidate]:
     """Ranked runs with accuracy, latency and memory, and which of them no other beats in all three."""
     found = []
     for run in ranked:
-        source = timed(run, every)
+        source = timing_run(run, every)
         seconds = middle(stage_seconds(source, "own_s"))
         accuracy = run.macro.value if run.macro else None
         found.append(Candidate(run, accuracy, seconds, run.memory_gb, source.evaluation.card.contended))
@@ -52,7 +52,7 @@ def candidates(ranked: Sequence[Run], every: Sequence[Run]) -> list[Candidate]:
     return [Candidate(c.run, c.accuracy, c.latency_s, c.memory_gb, c.contended, id(c) in front) for c in found]
 
 
-def design_section(ranked: Sequence[Run], every: Sequence[Run]) -> Section:
+def design_section(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> Section:
     """Accuracy, latency and memory together, and what fits into how much memory."""
     found = candidates(ranked, every)
     columns = (
@@ -89,11 +89,11 @@ def design_section(ranked: Sequence[Run], every: Sequence[Run]) -> Section:
         "and would rank pairs by the views that they asked for.",
     )
     charts = (drawing.front_chart(found),) if any(c.complete for c in found) else ()
-    tables = (Table("design_points", "Accuracy, latency and memory", columns, rows, notes), _fitting(found))
+    tables = (ReportTable("design_points", "Accuracy, latency and memory", columns, rows, notes), _fitting(found))
     return Section("design", "Accuracy, latency, memory", text, charts, tables)
 
 
-def _fitting(found: Sequence[Candidate]) -> Table:
+def _fitting(found: Sequence[Candidate]) -> ReportTable:
     columns = (
         Column("memory", "Memory"),
         Column("run", "Most accurate pair that fits"),
@@ -101,17 +101,17 @@ def _fitting(found: Sequence[Candidate]) -> Table:
         Column("latency_s", LATENCY.capitalize(), "seconds"),
         Column("memory_gb", "Memory (GB, computed)", "gb"),
     )
-    rows: list[tuple[Value, ...]] = []
+    rows: list[tuple[CellValue, ...]] = []
     for size in SIZES_GB:
         fitting = [c for c in found if c.memory_gb is not None and c.memory_gb <= size and c.accuracy is not None]
         if fitting:
             best = max(fitting, key=lambda c: (round(c.accuracy or 0.0, 9), -(c.latency_s or 0.0)))
             rows.append((f"{size} GB", best.run.label, best.accuracy, best.latency_s, best.memory_gb))
     notes = (f"Tried: {', '.join(map(str, SIZES_GB))} GB. A size that is not listed holds none of these pairs.",)
-    return Table("memory_fits", "What fits into how much memory", columns, tuple(rows), notes)
+    return ReportTable("memory_fits", "What fits into how much memory", columns, tuple(rows), notes)
 
 
-def spread_section(ranked: Sequence[Run]) -> Section:
+def spread_section(ranked: Sequence[ReportRun]) -> Section:
     """How much the planner matters, and how much the eyes."""
     tables = (
         _spread("spread_planner", "Changing only the planner", "Eyes held", ranked, lambda r: r.system[1], lambda r: r.system[0]),
@@ -126,8 +126,13 @@ def spread_section(ranked: Sequence[Run]) -> Section:
 
 
 def _spread(
-    key: str, title: str, held_title: str, runs: Sequence[Run], held: Callable[[Run], str], changed: Callable[[Run], str]
-) -> Table:
+    key: str,
+    title: str,
+    held_title: str,
+    runs: Sequence[ReportRun],
+    held: Callable[[ReportRun], str],
+    changed: Callable[[ReportRun], str],
+) -> ReportTable:
     columns = (
         Column("held", held_title),
         Column("pairs", "Pairs", "count"),
@@ -137,7 +142,7 @@ def _spread(
         Column("high", "Macro (%)", "share"),
         Column("spread", "Spread (points)", "points"),
     )
-    rows: list[tuple[Value, ...]] = []
+    rows: list[tuple[CellValue, ...]] = []
     for name in dict.fromkeys(held(run) for run in runs):
         own = [
             (run.macro.value, changed(run)) for run in runs if held(run) == name and run.macro and run.system[2:] == ("scope", "")
@@ -147,10 +152,10 @@ def _spread(
             rows.append((name, len(own), worst, low, best, high, high - low))
         else:
             rows.append((name, len(own), None, None, None, None, None))
-    return Table(key, title, columns, tuple(rows), ("Our own loop with its standard prompt only.",))
+    return ReportTable(key, title, columns, tuple(rows), ("Our own loop with its standard prompt only.",))
 
 
-def scope_section(runs: Sequence[Run]) -> Section:
+def scope_section(runs: Sequence[ReportRun]) -> Section:
     """Current view against full scene."""
     columns = (
         Column("run", "Run"),
@@ -171,21 +176,21 @@ def scope_section(runs: Sequence[Run]) -> Section:
         "panorama's alone. The interval of the difference joins those of its two sides (Newcombe 1998), so that it is no more "
         "certain than either; where one of them has none, neither has the difference.",
     )
-    return Section("scope", "Current view against full scene", text, (), (Table("scope", "By scope", columns, tuple(rows)),))
+    return Section("scope", "Current view against full scene", text, (), (ReportTable("scope", "By scope", columns, tuple(rows)),))
 
 
-def _scope_row(run: Run) -> tuple[Value, ...]:
+def _scope_row(run: ReportRun) -> tuple[CellValue, ...]:
     parts = {scope: [t for t in run.scored if t.task.scope == scope] for scope in ("current", "full")}
     current, full = (scores_of(parts[scope]) for scope in ("current", "full"))
-    return run.label, len(parts["current"]), share(current), len(parts["full"]), share(full), gap(current, full)
+    return run.label, len(parts["current"]), share(current), len(parts["full"]), share(full), share_difference(current, full)
 
 
-def _mean(rows: Sequence[tuple[Value, ...]], index: int) -> float | None:
+def _mean(rows: Sequence[tuple[CellValue, ...]], index: int) -> float | None:
     known = [v for row in rows if (v := getattr(row[index], "value", None)) is not None]
     return fmean(known) if known else None
 
 
-def architecture_section(ranked: Sequence[Run], every: Sequence[Run]) -> Section:
+def architecture_section(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> Section:
     """Mixtures of experts against dense models, quantised against full precision, as far as the registry knows the models."""
     pairs = [(q, f) for q in ranked for f in ranked if _is_quantised_of(q, f)]
     found = [c for quantised, full in pairs if (c := compare(quantised, full)) is not None]
@@ -201,7 +206,7 @@ def architecture_section(ranked: Sequence[Run], every: Sequence[Run]) -> Section
     return Section("architecture", "Mixtures against dense, quantised against full", tuple(text), (), tables)
 
 
-def _is_quantised_of(one: Run, other: Run) -> bool:
+def _is_quantised_of(one: ReportRun, other: ReportRun) -> bool:
     """Whether a pair is another with one of its models quantised and nothing else changed."""
     if one.task_set != other.task_set or one.system[2:] != other.system[2:]:
         return False
@@ -216,7 +221,7 @@ def _quantised_of(one: Model | None, other: Model | None) -> bool:
     return bool(one.family) and one.precision not in FULL_PRECISION and other.precision in FULL_PRECISION
 
 
-def _mixtures(ranked: Sequence[Run], every: Sequence[Run]) -> Table:
+def _mixtures(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> ReportTable:
     """A row for each model that is held while mixtures and dense models change on the other side."""
     columns = [Column("held", "Held"), Column("changed", "Changed")]
     for key, words in (("moe", "Mixtures"), ("dense", "Dense")):
@@ -228,7 +233,7 @@ def _mixtures(ranked: Sequence[Run], every: Sequence[Run]) -> Table:
         ]
     columns.append(Column("difference", "Mixtures minus dense (points)", "points"))
     found = candidates(ranked, every)
-    rows: list[tuple[Value, ...]] = []
+    rows: list[tuple[CellValue, ...]] = []
     for side, other in (("planner", 1), ("eyes", 0)):
         for name in dict.fromkeys(c.run.system[other] for c in found):
             own = [c for c in found if c.run.system[other] == name and getattr(c.run, side)]
@@ -241,7 +246,7 @@ def _mixtures(ranked: Sequence[Run], every: Sequence[Run]) -> Table:
     notes = (
         "Means over the pairs of each kind. Where a model that is held had only one kind beside it, there is nothing to compare.",
     )
-    return Table("mixtures", "Mixtures of experts against dense models", tuple(columns), tuple(rows), notes)
+    return ReportTable("mixtures", "Mixtures of experts against dense models", tuple(columns), tuple(rows), notes)
 
 
 def _average(found: Sequence[Candidate], what: str) -> float | None:

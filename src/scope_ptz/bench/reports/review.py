@@ -6,10 +6,10 @@ from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
 from statistics import fmean
 
-from scope_ptz.bench.reports.failures import MODE_TITLES
-from scope_ptz.bench.reports.runs import CATEGORY_TITLES, Run
+from scope_ptz.bench.reports.error_analysis import MODE_TITLES
+from scope_ptz.bench.reports.report_runs import CATEGORY_TITLES, ReportRun
 from scope_ptz.bench.reports.sections import Section
-from scope_ptz.bench.reports.tables import Column, Marked, Table, Value
+from scope_ptz.bench.reports.tables import CellValue, Column, MarkedCell, ReportTable
 from scope_ptz.bench.scoring.trials import Trial
 
 LOW = 0.25
@@ -17,7 +17,7 @@ LOW = 0.25
 MOST_LISTED = 60
 
 
-def audit_section(ranked: Sequence[Run], reference: Sequence[Run], pages: Mapping[str, str]) -> Section:
+def audit_section(ranked: Sequence[ReportRun], reference: Sequence[ReportRun], pages: Mapping[str, str]) -> Section:
     """Tasks with low success across pairs. ``reference``: runs of the grammar planner with ground-truth eyes, exact ones only;
     ``pages``: the page of a failed task, by its id."""
     text = [
@@ -50,11 +50,13 @@ def audit_section(ranked: Sequence[Run], reference: Sequence[Run], pages: Mappin
     text.append(
         f"{len(chosen)} of {len(by_task)} tasks." + (f" The first {MOST_LISTED} are listed." if len(chosen) > MOST_LISTED else "")
     )
-    return Section("audit", "Tasks that nearly every pair fails", tuple(text), (), (Table("audit", "For audit", columns, rows),))
+    return Section(
+        "audit", "Tasks that nearly every pair fails", tuple(text), (), (ReportTable("audit", "For audit", columns, rows),)
+    )
 
 
-def _by_task(runs: Sequence[Run]) -> dict[str, list[tuple[Run, Trial]]]:
-    found: dict[str, list[tuple[Run, Trial]]] = defaultdict(list)
+def _by_task(runs: Sequence[ReportRun]) -> dict[str, list[tuple[ReportRun, Trial]]]:
+    found: dict[str, list[tuple[ReportRun, Trial]]] = defaultdict(list)
     for run in runs:
         for trial in run.scored:
             found[trial.task.id].append((run, trial))
@@ -62,15 +64,19 @@ def _by_task(runs: Sequence[Run]) -> dict[str, list[tuple[Run, Trial]]]:
 
 
 def _audit_row(
-    task: str, success: float, own: Sequence[tuple[Run, Trial]], exact: Sequence[tuple[Run, Trial]], pages: Mapping[str, str]
-) -> tuple[Value, ...]:
+    task: str,
+    success: float,
+    own: Sequence[tuple[ReportRun, Trial]],
+    exact: Sequence[tuple[ReportRun, Trial]],
+    pages: Mapping[str, str],
+) -> tuple[CellValue, ...]:
     facts = own[0][1].task
     passed = list(dict.fromkeys(run.label for run, trial in own if trial.headline == "correct"))
     modes = Counter(trial.error_mode for _, trial in own if trial.error_mode)
     named = ", ".join(f"{MODE_TITLES[mode]} {number}" for mode, number in modes.most_common())
     reference = fmean(trial.headline == "correct" for _, trial in exact) if exact else None
     return (
-        Marked(task, link=pages.get(task, "")),
+        MarkedCell(task, link=pages.get(task, "")),
         CATEGORY_TITLES[facts.category],
         facts.scope,
         facts.instruction,
@@ -83,7 +89,7 @@ def _audit_row(
     )
 
 
-def costs_section(runs: Sequence[Run]) -> Section:
+def costs_section(runs: Sequence[ReportRun]) -> Section:
     """Tokens and money."""
     columns = (
         Column("run", "Run"),
@@ -102,10 +108,12 @@ def costs_section(runs: Sequence[Run]) -> Section:
         "counted, whether their server reports it or not. A cost is that of the planner's tokens, and stands only where the log "
         "has one.",
     )
-    return Section("costs", "Cost", (), (), (Table("costs", "Tokens and cost", columns, tuple(_cost_row(r) for r in runs), notes),))
+    return Section(
+        "costs", "Cost", (), (), (ReportTable("costs", "Tokens and cost", columns, tuple(_cost_row(r) for r in runs), notes),)
+    )
 
 
-def _cost_row(run: Run) -> tuple[Value, ...]:
+def _cost_row(run: ReportRun) -> tuple[CellValue, ...]:
     trials = run.evaluation.trials
     given, taken = sum(t.input_tokens for t in trials), sum(t.output_tokens for t in trials)
     counted = given + taken > 0
@@ -127,7 +135,7 @@ def _cost_row(run: Run) -> tuple[Value, ...]:
     )
 
 
-def conduct_section(runs: Sequence[Run]) -> Section:
+def conduct_section(runs: Sequence[ReportRun]) -> Section:
     """Collateral change, wrong calls, failed looks and failing servers."""
     columns = (
         Column("run", "Run"),
@@ -146,11 +154,15 @@ def conduct_section(runs: Sequence[Run]) -> Section:
     having = [run for run in runs if run.evaluation.trials]
     rows = tuple(_conduct_row(run) for run in having)
     return Section(
-        "conduct", "Side effects and incidents", (), (), (Table("conduct", "Side effects and incidents", columns, rows, notes),)
+        "conduct",
+        "Side effects and incidents",
+        (),
+        (),
+        (ReportTable("conduct", "Side effects and incidents", columns, rows, notes),),
     )
 
 
-def _conduct_row(run: Run) -> tuple[Value, ...]:
+def _conduct_row(run: ReportRun) -> tuple[CellValue, ...]:
     trials = [t for t in run.evaluation.trials if t.headline != "infrastructure"]
     events = sum((Counter(t.server_events) for t in run.evaluation.trials), Counter[str]())
     told = ", ".join(f"{kind} {number}" for kind, number in sorted(events.items())) or "none"

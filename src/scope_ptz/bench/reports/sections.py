@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from scope_ptz.bench.reports.tables import Table
+from scope_ptz.bench.reports.tables import ReportTable
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,5 +26,5 @@ class Section:
     title: str
     text: tuple[str, ...] = ()
     charts: tuple[Chart, ...] = ()
-    tables: tuple[Table, ...] = ()
+    tables: tuple[ReportTable, ...] = ()
     folded: frozenset[str] = frozenset()

@@ -8,17 +8,17 @@ from statistics import fmean
 
 from scope_ptz.bench.reports import charts as drawing
 from scope_ptz.bench.reports.accuracy import share_correct
-from scope_ptz.bench.reports.comparing import compare, comparison_table
-from scope_ptz.bench.reports.runs import CATEGORY_TITLES, Run
+from scope_ptz.bench.reports.paired_comparison import compare, comparison_table
+from scope_ptz.bench.reports.report_runs import CATEGORY_TITLES, ReportRun
 from scope_ptz.bench.reports.sections import Section
-from scope_ptz.bench.reports.tables import Column, Table, Value
+from scope_ptz.bench.reports.tables import CellValue, Column, ReportTable
 from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.bench.statistics.repeats import mean_pass_all
 
 System = tuple[str, str, str, str]
 
 
-def sensitivity_section(runs: Sequence[Run]) -> Section:
+def sensitivity_section(runs: Sequence[ReportRun]) -> Section:
     """Paraphrases and prompts."""
     text = [
         "A scenario is a task together with its other wordings; it succeeds when every wording does, in the first trial of each."
@@ -33,7 +33,7 @@ def sensitivity_section(runs: Sequence[Run]) -> Section:
     return Section("sensitivity", "Sensitivity to wording and prompt", tuple(text), (), tables)
 
 
-def _by_system(runs: Sequence[Run]) -> dict[System, list[Trial]]:
+def _by_system(runs: Sequence[ReportRun]) -> dict[System, list[Trial]]:
     """First trials of each task of a system, infrastructure left out, whichever logs hold them; of several logs the first."""
     found: dict[System, dict[str, Trial]] = defaultdict(dict)
     for run in runs:
@@ -52,7 +52,7 @@ def _scenarios(trials: Sequence[Trial]) -> list[list[bool]]:
     return [[t.headline == "correct" for t in group] for group in whole]
 
 
-def _wordings(runs: Sequence[Run]) -> Table:
+def _wordings(runs: Sequence[ReportRun]) -> ReportTable:
     columns = (
         Column("system", "Pair"),
         Column("scenarios", "Scenarios", "count"),
@@ -62,14 +62,14 @@ def _wordings(runs: Sequence[Run]) -> Table:
         Column("any", "Some wording right (%)", "share"),
         Column("mixed", "Depends on the wording (%)", "share"),
     )
-    rows: list[tuple[Value, ...]] = []
+    rows: list[tuple[CellValue, ...]] = []
     for system, trials in _by_system(runs).items():
         found = _scenarios(trials)
         if found:
             every, some = fmean(all(g) for g in found), fmean(any(g) for g in found)
             mean = fmean(fmean(g) for g in found)
             rows.append((_name(system), len(found), sum(map(len, found)), mean, every, some, some - every))
-    return Table("wording", "Other wordings of the same task", columns, tuple(rows))
+    return ReportTable("wording", "Other wordings of the same task", columns, tuple(rows))
 
 
 def _name(system: System) -> str:
@@ -77,7 +77,7 @@ def _name(system: System) -> str:
     return ", ".join([f"{planner} + {eyes}", *([f"agent {agent}"] if agent != "scope" else []), *([variant] if variant else [])])
 
 
-def _variants(runs: Sequence[Run]) -> Table:
+def _variants(runs: Sequence[ReportRun]) -> ReportTable:
     """Every variant of a pair against the pair as it is."""
     found = []
     for run in runs:
@@ -87,7 +87,7 @@ def _variants(runs: Sequence[Run]) -> Table:
     return comparison_table("prompts", "Prompts and settings: each variant minus the pair as it is", found)
 
 
-def repeats_section(runs: Sequence[Run]) -> Section:
+def repeats_section(runs: Sequence[ReportRun]) -> Section:
     """pass^k where tasks were repeated."""
     repeated = [run for run in runs if _most(run) > 1]
     most = max((_most(run) for run in repeated), default=0)
@@ -104,11 +104,11 @@ def repeats_section(runs: Sequence[Run]) -> Section:
         "with at least k "
         "trials that infrastructure did not break. pass^1 is the mean over tasks. Runs without repeats are left out.",
     )
-    table = Table("repeats", "pass^k", tuple(columns), tuple(rows))
+    table = ReportTable("repeats", "pass^k", tuple(columns), tuple(rows))
     return Section("repeats", "Repeats", text, (drawing.repeats_chart(table, most),), (table,))
 
 
-def _passed(run: Run) -> list[tuple[int, int]]:
+def _passed(run: ReportRun) -> list[tuple[int, int]]:
     """Trials and correct trials of each task."""
     found: dict[str, list[bool]] = defaultdict(list)
     for trial in run.scored:
@@ -116,11 +116,11 @@ def _passed(run: Run) -> list[tuple[int, int]]:
     return [(len(values), sum(values)) for values in found.values()]
 
 
-def _most(run: Run) -> int:
+def _most(run: ReportRun) -> int:
     return max((runs for runs, _ in _passed(run)), default=0)
 
 
-def reaction_section(runs: Sequence[Run]) -> Section | None:
+def reaction_section(runs: Sequence[ReportRun]) -> Section | None:
     """Requests that want a question back or a refusal. None where no run holds any."""
     having = [(run, own) for run in runs if (own := _reactions(run))]
     if not having:
@@ -147,15 +147,15 @@ def reaction_section(runs: Sequence[Run]) -> Section | None:
         "where it is. "
         "They are no part of accuracy.",
     )
-    table = Table("reactions", "Requests that want a question or a refusal", columns, rows)
+    table = ReportTable("reactions", "Requests that want a question or a refusal", columns, rows)
     return Section("reactions", "Unclear, impossible and forbidden requests", text, (), (table,))
 
 
-def _reactions(run: Run) -> list[Trial]:
+def _reactions(run: ReportRun) -> list[Trial]:
     return [t for t in run.evaluation.trials if t.task.stratum == "reaction" and t.headline != "infrastructure"]
 
 
-def baseline_section(runs: Sequence[Run]) -> Section | None:
+def baseline_section(runs: Sequence[ReportRun]) -> Section | None:
     """What can be had without seeing, and what a person gets. None where no such run was given."""
     having = [run for run in runs if run.kind in ("blind", "person") and run.scored]
     if not having:
@@ -174,4 +174,6 @@ def baseline_section(runs: Sequence[Run]) -> Section | None:
     text = (
         "What a planner gets right without seeing anything is no merit of the eyes; what a person gets right is what can be had.",
     )
-    return Section("baselines", "Baselines", text, (), (Table("baselines", "Blind and human baselines", tuple(columns), rows),))
+    return Section(
+        "baselines", "Baselines", text, (), (ReportTable("baselines", "Blind and human baselines", tuple(columns), rows),)
+    )

@@ -14,9 +14,9 @@ from typing import Annotated, Any, Literal, Protocol, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
-from scope_ptz.bench.reports.labels import split_name
+from scope_ptz.bench.reports.display_names import split_name
 from scope_ptz.bench.scoring.error_modes import ErrorMode
-from scope_ptz.bench.scoring.trials import Check, Count, Evaluation, ModelCard, RunCard, Seconds, Trial
+from scope_ptz.bench.scoring.trials import CheckRecord, Count, Evaluation, ModelCard, RunCard, Seconds, Trial
 from scope_ptz.bench.scoring.verdict import Headline
 from scope_ptz.bench.tasks.task import CANARY, Category, ToolName
 from scope_ptz.errors import InputError, OutputError
@@ -204,7 +204,7 @@ def _line(trial: Trial) -> TrialLine:
     )
 
 
-def _verdicts(checks: Sequence[Check]) -> dict[str, bool | None]:
+def _verdicts(checks: Sequence[CheckRecord]) -> dict[str, bool | None]:
     return {check.name: check.passed for check in checks}
 
 

@@ -25,7 +25,7 @@ BUILT_IN = ("grammar", "ground-truth", "noisy")
 
 
 @dataclass(frozen=True, slots=True)
-class Findings:
+class SubmissionFindings:
     """``faults``: one sentence each, with the line; ``counts``: what the file comes to when it is counted again."""
 
     file: str
@@ -49,7 +49,7 @@ class Findings:
         }
 
 
-def check_submission(path: Path, tasks: Sequence[Task] | None = None) -> Findings:
+def check_submission(path: Path, tasks: Sequence[Task] | None = None) -> SubmissionFindings:
     """Check a file. ``tasks``: what it should have run; without them the published split that it names.
 
     Raises ``InputError`` when there is no file, or its split is not known and no tasks are given.
@@ -60,7 +60,7 @@ def check_submission(path: Path, tasks: Sequence[Task] | None = None) -> Finding
     if len(headers) != 1 or headers[0][0] != 1:
         faults.append(f"line 1: a submission begins with its only header; this one has {len(headers)}")
     if not headers:
-        return Findings(path.name, tuple(faults))
+        return SubmissionFindings(path.name, tuple(faults))
     header = headers[0][1]
     known = {task.id: task for task in (tasks if tasks is not None else _published(header))}
     faults += [f"line 1: {fault}" for fault in _header_faults(header, [row for _, row in lines], known)]
@@ -73,7 +73,7 @@ def check_submission(path: Path, tasks: Sequence[Task] | None = None) -> Finding
     if broken := counted.headlines.get("infrastructure", 0):
         notes.append(f"{broken} of {counted.trials} trials were broken by infrastructure and are in no share")
     counts = {"trials": counted.trials, **{str(name): number for name, number in counted.headlines.items()}}
-    return Findings(path.name, tuple(faults), counts, tuple(notes))
+    return SubmissionFindings(path.name, tuple(faults), counts, tuple(notes))
 
 
 def coverage(header: Header, lines: Sequence[TrialLine], tasks: Sequence[Task] | None = None) -> list[str]:

@@ -6,8 +6,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 from scope_ptz.agent.records import OUTCOMES
-from scope_ptz.bench.answers.reader import agrees, read
-from scope_ptz.bench.answers.result import Value
+from scope_ptz.bench.answers import ParsedValue, agrees, parse_answer
 from scope_ptz.bench.reports.submission import CUT, TOOLS, UNKNOWN_TOOL, Header, TrialLine
 from scope_ptz.bench.scoring.trials import RunCard
 from scope_ptz.bench.scoring.verdict import MOVERS
@@ -78,7 +77,7 @@ def _answer_faults(line: TrialLine, task: Task) -> Iterator[str]:
             yield "the task wants an answer and there is no answer check"
         return
     ended = line.outcome in ("answered", "clarification", "refused")
-    found = agrees(task.expected, read(task.expected, line.answer)) if ended else False
+    found = agrees(task.expected, parse_answer(task.expected, line.answer)) if ended else False
     if found != line.checks["answer"]:
         yield f"the answer reads as {_words(found)} and its check says {_words(line.checks['answer'])}"
 
@@ -127,7 +126,7 @@ def _broken_faults(line: TrialLine, task: Task) -> Iterator[str]:
     if (
         not line.perception_failures
         or line.checks.get("coverage") is not False
-        or (claimed and isinstance(read(task.expected, line.answer), Value))
+        or (claimed and isinstance(parse_answer(task.expected, line.answer), ParsedValue))
     ):
         yield f"broken by infrastructure although it ended {line.outcome} and perception did not fail it"
 

@@ -7,26 +7,26 @@ import io
 from dataclasses import dataclass, field
 from typing import Literal
 
-from scope_ptz.bench.statistics.clustered import Estimate
+from scope_ptz.bench.statistics.clustered import IntervalEstimate
 
 MISSING = "not measured"
-Kind = Literal["text", "prose", "count", "share", "points", "width", "seconds", "number", "gb", "usd", "p", "ratio"]
+ColumnKind = Literal["text", "prose", "count", "share", "points", "width", "seconds", "number", "gb", "usd", "p", "ratio"]
 """``prose``: text of a sentence or more;
 ``share``: 0..1, shown in percent; ``points``: a difference, in percentage points; ``width``: that without a sign."""
 
 
 @dataclass(frozen=True, slots=True)
-class Marked:
+class MarkedCell:
     """A value with what the page adds to it. ``best``: in its group; ``best_of_all``: in the table; ``link``: a page."""
 
-    value: str | int | float | Estimate | None
+    value: str | int | float | IntervalEstimate | None
     best: bool = False
     best_of_all: bool = False
     link: str = ""
     note: str = ""
 
 
-Value = str | int | float | Estimate | Marked | None
+CellValue = str | int | float | IntervalEstimate | MarkedCell | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class Column:
 
     name: str
     title: str
-    kind: Kind = "text"
+    kind: ColumnKind = "text"
 
     @property
     def worded(self) -> bool:
@@ -44,13 +44,13 @@ class Column:
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class ReportTable:
     """``key``: its file name; ``notes``: how to read it. The first column names the row."""
 
     key: str
     title: str
     columns: tuple[Column, ...]
-    rows: tuple[tuple[Value, ...], ...]
+    rows: tuple[tuple[CellValue, ...], ...]
     notes: tuple[str, ...] = ()
     groups: dict[int, str] = field(default_factory=dict)
     """Headings before rows, by the number of the row."""
@@ -61,25 +61,25 @@ class Table:
                 raise ValueError(f"table {self.key}: a row of {len(row)} values for {len(self.columns)} columns")
 
 
-def bare(value: Value) -> str | int | float | Estimate | None:
+def unmarked(value: CellValue) -> str | int | float | IntervalEstimate | None:
     """A value without its marks."""
-    return value.value if isinstance(value, Marked) else value
+    return value.value if isinstance(value, MarkedCell) else value
 
 
-def in_words(value: Value, kind: Kind) -> str:
+def in_words(value: CellValue, kind: ColumnKind) -> str:
     """A cell as a person reads it; what is missing is said to be."""
-    plain = bare(value)
+    plain = unmarked(value)
     if plain is None:
         return MISSING
     if isinstance(plain, str):
         return plain
-    if isinstance(plain, Estimate):
+    if isinstance(plain, IntervalEstimate):
         told = ", ".join(filter(None, interval(plain, kind)))
         return f"{_number(plain.value, kind)} ({told})"
     return _number(plain, kind)
 
 
-def interval(found: Estimate, kind: Kind) -> tuple[str, str]:
+def interval(found: IntervalEstimate, kind: ColumnKind) -> tuple[str, str]:
     """The interval of an estimate in words, empty where there is none; and what must be known of it."""
     if found.low is None or found.high is None:
         return "", "interval not known"
@@ -87,7 +87,7 @@ def interval(found: Estimate, kind: Kind) -> tuple[str, str]:
     return f"{_number(found.low, kind)} to {_number(found.high, kind)}", f"without {lacking}" if lacking else ""
 
 
-def _number(value: float, kind: Kind) -> str:
+def _number(value: float, kind: ColumnKind) -> str:
     match kind:
         case "share" | "width":
             return f"{100 * value:.1f}"
@@ -109,11 +109,11 @@ def _number(value: float, kind: Kind) -> str:
             return f"{value:,}" if isinstance(value, int) else f"{value:.2f}"
 
 
-def as_csv(table: Table) -> str:
+def as_csv(table: ReportTable) -> str:
     """RFC 4180, numbers in full precision, shares as 0..1, missing values empty. Estimates take three columns, and a fourth where
     an interval is without some strata."""
-    cells_of = [[bare(row[index]) for row in table.rows] for index in range(len(table.columns))]
-    endings = [_endings([cell for cell in cells if isinstance(cell, Estimate)]) for cells in cells_of]
+    cells_of = [[unmarked(row[index]) for row in table.rows] for index in range(len(table.columns))]
+    endings = [_endings([cell for cell in cells if isinstance(cell, IntervalEstimate)]) for cells in cells_of]
     out = io.StringIO()
     writer = csv.writer(out)
     heads = (["group"] if table.groups else []) + [
@@ -127,8 +127,8 @@ def as_csv(table: Table) -> str:
         group = table.groups.get(number, group)
         cells: list[str | int | float | None] = [_inert(group)] if table.groups else []
         for value, further in zip(row, endings, strict=True):
-            plain = bare(value)
-            if isinstance(plain, Estimate):
+            plain = unmarked(value)
+            if isinstance(plain, IntervalEstimate):
                 cells += [plain.value, plain.low, plain.high, " ".join(plain.without)][: 1 + len(further)]
             else:
                 cells += [_inert(plain) if isinstance(plain, str) else plain, *(None for _ in further)]
@@ -136,7 +136,7 @@ def as_csv(table: Table) -> str:
     return out.getvalue()
 
 
-def _endings(estimates: list[Estimate]) -> tuple[str, ...]:
+def _endings(estimates: list[IntervalEstimate]) -> tuple[str, ...]:
     """The further columns that these estimates of one column take."""
     if not estimates:
         return ()
@@ -148,7 +148,7 @@ def _inert(text: str) -> str:
     return f"'{text}" if text.startswith(("=", "+", "-", "@", "\t", "\r")) else text
 
 
-def as_markdown(table: Table) -> str:
+def as_markdown(table: ReportTable) -> str:
     """A pipe table with its heading and notes. Text is escaped, so that it is shown and never acts."""
     lines = [f"### {escape(table.title)}", ""]
     lines += ["| " + " | ".join(escape(column.title) for column in table.columns) + " |"]
@@ -162,9 +162,9 @@ def as_markdown(table: Table) -> str:
     return "\n".join([*lines, "", *(f"*{escape(note)}*\n" for note in table.notes)])
 
 
-def _markdown_cell(value: Value, column: Column) -> str:
+def _markdown_cell(value: CellValue, column: Column) -> str:
     words = escape(in_words(value, column.kind))
-    if isinstance(value, Marked):
+    if isinstance(value, MarkedCell):
         words = f"[{words}]({value.link})" if value.link else words
         words = f"**{words}**" if value.best else words
         words = f"<u>{words}</u>" if value.best_of_all else words

@@ -15,7 +15,7 @@ from typing import Any, Protocol
 
 from scope_ptz.agent.records import Called
 from scope_ptz.agent.trace import Trace
-from scope_ptz.bench.reports.runs import Run
+from scope_ptz.bench.reports.report_runs import ReportRun
 from scope_ptz.bench.scoring.trials import Evaluation, Trial
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import ScopeError
@@ -25,7 +25,7 @@ MOST_PIXELS = 64_000_000
 MOST_TEXT = 2_000
 
 
-class SampleFiles(Protocol):
+class StoredRun(Protocol):
     """What a log keeps of one run: its trace, and its pictures by the names that the trace uses."""
 
     @property
@@ -34,7 +34,7 @@ class SampleFiles(Protocol):
     def picture(self, name: str) -> bytes | None: ...
 
 
-OpenSample = Callable[[Evaluation, Trial], SampleFiles]
+OpenSample = Callable[[Evaluation, Trial], StoredRun]
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,7 @@ class StepShown:
 class FailedRun:
     """``missing``: why the trajectory cannot be shown."""
 
-    run: Run
+    run: ReportRun
     trial: Trial
     steps: tuple[StepShown, ...] = ()
     first_frame: str | None = None
@@ -125,10 +125,14 @@ class FrameStore:
 
 
 def task_pages(
-    runs: Sequence[Run], files: Mapping[str, str], open_sample: OpenSample | None, frames: FrameStore, tasks: Mapping[str, Task]
+    runs: Sequence[ReportRun],
+    files: Mapping[str, str],
+    open_sample: OpenSample | None,
+    frames: FrameStore,
+    tasks: Mapping[str, Task],
 ) -> list[Callable[[], TaskPage]]:
     """Pages, made one at a time when they are called for, because pictures take memory."""
-    failed: dict[str, list[tuple[Run, Trial]]] = defaultdict(list)
+    failed: dict[str, list[tuple[ReportRun, Trial]]] = defaultdict(list)
     for run in runs:
         for trial in run.evaluation.trials:
             if trial.task.id in files and trial.headline in ("incorrect", "unscored"):
@@ -141,7 +145,7 @@ def task_pages(
     return [partial(page, task) for task in sorted(failed)]
 
 
-def _failed_run(run: Run, trial: Trial, open_sample: OpenSample | None, frames: FrameStore) -> FailedRun:
+def _failed_run(run: ReportRun, trial: Trial, open_sample: OpenSample | None, frames: FrameStore) -> FailedRun:
     if open_sample is None:
         return FailedRun(run, trial, missing="Trajectories were left out of this report.")
     try:
@@ -152,11 +156,11 @@ def _failed_run(run: Run, trial: Trial, open_sample: OpenSample | None, frames: 
         return FailedRun(run, trial, missing=f"The log does not give the trajectory: {error}")
 
 
-def _kept(name: str | None, sample: SampleFiles, frames: FrameStore) -> str | None:
+def _kept(name: str | None, sample: StoredRun, frames: FrameStore) -> str | None:
     return None if name is None else frames.keep(sample.picture(name))
 
 
-def _steps(trace: Trace, sample: SampleFiles, frames: FrameStore) -> tuple[StepShown, ...]:
+def _steps(trace: Trace, sample: StoredRun, frames: FrameStore) -> tuple[StepShown, ...]:
     shown = []
     for decided in trace.decisions:
         calls = tuple(_call(called, sample, frames) for called in trace.calls if called.step == decided.step)
@@ -166,7 +170,7 @@ def _steps(trace: Trace, sample: SampleFiles, frames: FrameStore) -> tuple[StepS
     return tuple(shown)
 
 
-def _call(called: Called, sample: SampleFiles, frames: FrameStore) -> CallShown:
+def _call(called: Called, sample: StoredRun, frames: FrameStore) -> CallShown:
     outcome = called.outcome
     arguments = ", ".join(f"{key}={json.dumps(value, ensure_ascii=False)}" for key, value in outcome.call.arguments.items())
     failed = outcome.error is not None

@@ -8,11 +8,10 @@ from typing import Literal
 
 import numpy as np
 
-from scope_ptz.bench.answers.reader import agrees, read
-from scope_ptz.bench.answers.result import Declined, Unreadable
-from scope_ptz.bench.scoring.coverage import gap
-from scope_ptz.bench.scoring.episode import Episode, Standing
-from scope_ptz.bench.scoring.matching import in_any_order, in_order
+from scope_ptz.bench.answers import Declined, Unreadable, agrees, parse_answer
+from scope_ptz.bench.scoring.coverage import uncovered_part
+from scope_ptz.bench.scoring.episode import CameraState, Episode
+from scope_ptz.bench.scoring.required_calls import missing_in_any_order, missing_in_order
 from scope_ptz.bench.tasks.expected import ActionOnly
 from scope_ptz.bench.tasks.task import FinalPose, RunOutcome, Task
 from scope_ptz.geometry import Perspective, direction, wrap_pan_deg
@@ -51,7 +50,7 @@ def check_answer(task: Task, episode: Episode) -> CheckResult | None:
         return None
     if episode.outcome not in ("answered", "clarification", "refused"):
         return CheckResult("answer", False, "there is no answer")
-    reading = read(task.expected, episode.text)
+    reading = parse_answer(task.expected, episode.text)
     passed = agrees(task.expected, reading)
     if isinstance(reading, Unreadable):
         return CheckResult("answer", None, f"cannot be read: {reading.reason}")
@@ -72,7 +71,7 @@ def check_coverage(task: Task, episode: Episode) -> CheckResult | None:
     wanted = [view for view in task.evidence if view.must_look]
     if not wanted:
         return None
-    gaps = [found for view in wanted if (found := gap(view, episode.looks)) is not None]
+    gaps = [found for view in wanted if (found := uncovered_part(view, episode.looks)) is not None]
     return CheckResult("coverage", not gaps, "; ".join(gaps) or "everything asked about was looked at")
 
 
@@ -85,7 +84,7 @@ def check_pose(task: Task, episode: Episode) -> CheckResult | None:
     return CheckResult("pose", not wrong, "; ".join(wrong) or "the final pose is as wanted")
 
 
-def pose_difference(wanted: FinalPose, is_at: Standing) -> list[str]:
+def pose_difference(wanted: FinalPose, is_at: CameraState) -> list[str]:
     """What of a pose is not as wanted, in words."""
     wrong = []
     if is_at.viewpoint != wanted.viewpoint:
@@ -107,7 +106,7 @@ def check_calls(task: Task, episode: Episode) -> CheckResult | None:
     behaviour = task.behaviour
     if not behaviour.calls:
         return None
-    missing = (in_order if behaviour.order == "ordered" else in_any_order)(behaviour.calls, episode.calls)
+    missing = (missing_in_order if behaviour.order == "ordered" else missing_in_any_order)(behaviour.calls, episode.calls)
     return CheckResult("calls", missing is None, missing or "every required call was made")
 
 
@@ -122,7 +121,7 @@ def check_forbidden(task: Task, episode: Episode) -> CheckResult | None:
     return CheckResult("forbidden", not wrong, "; ".join(wrong) or "nothing forbidden happened")
 
 
-def changes(before: Standing, after: Standing) -> list[str]:
+def changes(before: CameraState, after: CameraState) -> list[str]:
     """Which of viewpoint, pan, tilt and zoom differ."""
     one, two = before.pose, after.pose
     differs = {

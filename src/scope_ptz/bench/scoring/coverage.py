@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from scope_ptz.bench.answers.words import names_any
-from scope_ptz.bench.scoring.episode import Look
+from scope_ptz.bench.answers import names_any
+from scope_ptz.bench.scoring.episode import Observation
 from scope_ptz.bench.tasks.task import EvidenceView, Item
 from scope_ptz.geometry import Equirectangular, Perspective, direction
 
@@ -24,7 +24,7 @@ _EDGE = 1e-6
 Floats = NDArray[np.float64]
 
 
-def gap(view: EvidenceView, looks: Sequence[Look]) -> str | None:
+def uncovered_part(view: EvidenceView, looks: Sequence[Observation]) -> str | None:
     """What of a view the looks leave uncovered, in words; None when they cover it all."""
     here = [look for look in looks if look.known and counts_for(view, look)]
     if not here:
@@ -43,7 +43,7 @@ def gap(view: EvidenceView, looks: Sequence[Look]) -> str | None:
     return None
 
 
-def counts_for(view: EvidenceView, look: Look) -> bool:
+def counts_for(view: EvidenceView, look: Observation) -> bool:
     """Whether a look is from the right place, at the right time, and about the right thing."""
     if look.viewpoint != view.aim.viewpoint:
         return False
@@ -64,19 +64,19 @@ def reference_directions(view: EvidenceView) -> Floats:
     return frame.directions(np.stack([xs.ravel(), ys.ravel()], axis=-1))
 
 
-def inside(look: Look, directions: Floats) -> NDArray[np.bool_]:
+def inside(look: Observation, directions: Floats) -> NDArray[np.bool_]:
     """Which of some directions (n, 3) lie in the picture of a look."""
     points = look.projection.points(directions)
     with np.errstate(invalid="ignore"):
         return np.asarray(np.all((points >= -_EDGE) & (points <= 1 + _EDGE), axis=-1))
 
 
-def is_within(item: Item, look: Look) -> bool:
+def is_within(item: Item, look: Observation) -> bool:
     """Whether a piece of evidence is wholly in the picture of a look, of whatever size."""
     return bool(inside(look, box_directions(item.box_deg)).all())
 
 
-def shows(item: Item, look: Look) -> bool:
+def shows(item: Item, look: Observation) -> bool:
     """Whether a piece of evidence is wholly in the picture of a look and large enough there."""
     if not is_within(item, look):
         return False
@@ -101,6 +101,6 @@ def box_directions(box_deg: tuple[float, float, float, float], per_side: int = 5
     return direction(pans, tilts)
 
 
-def density_px_deg(look: Look) -> float:
+def density_px_deg(look: Observation) -> float:
     """Pixels per degree in the middle of a look's picture."""
     return look.projection.density * math.pi / 180

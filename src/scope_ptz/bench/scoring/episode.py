@@ -22,7 +22,7 @@ _HOW: dict[str, How] = {"count_objects": "count", "query_answer": "query", "zoom
 
 
 @dataclass(frozen=True, slots=True)
-class Standing:
+class CameraState:
     """Where the camera is: optical centre and pose."""
 
     viewpoint: str | None
@@ -30,7 +30,7 @@ class Standing:
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
+class Observation:
     """One successful look of perception (or of a planner that sees): from where, at what, when, and what it was asked.
 
     ``known``: what was asked could be told; a look that brought no answer covers nothing.
@@ -49,18 +49,18 @@ class Look:
 
 
 @dataclass(frozen=True, slots=True)
-class Call:
+class EpisodeCall:
     """A tool call. ``fault`` says whose doing an ``error`` was, as in the trace; ``looks`` are those that succeeded."""
 
     name: str
     arguments: Mapping[str, Any]
-    before: Standing
-    after: Standing
+    before: CameraState
+    after: CameraState
     result: Mapping[str, Any] | None = None
     error: str | None = None
     fault: str | None = None
     time_s: float = 0.0
-    looks: tuple[Look, ...] = ()
+    looks: tuple[Observation, ...] = ()
 
     @property
     def succeeded(self) -> bool:
@@ -68,7 +68,7 @@ class Call:
 
 
 @dataclass(frozen=True, slots=True)
-class Picture:
+class SavedPicture:
     """A file that ``take_image`` reported. ``exists``: None where nothing was kept on purpose."""
 
     file: str
@@ -80,38 +80,38 @@ class Episode:
     """A run. ``outcome`` is None when it was cut off; ``failure`` is how a planner's server failed, if one did."""
 
     instruction: str
-    start: Standing
-    calls: tuple[Call, ...]
-    final: Standing
+    start: CameraState
+    calls: tuple[EpisodeCall, ...]
+    final: CameraState
     text: str
     outcome: str | None
-    pictures: tuple[Picture, ...] = ()
-    seen: tuple[Look, ...] = ()
+    pictures: tuple[SavedPicture, ...] = ()
+    seen: tuple[Observation, ...] = ()
     failure: str | None = None
     aspect: float = 16 / 9
     optics: Optics = field(default=AXIS_M5075_G)
 
     @property
-    def looks(self) -> tuple[Look, ...]:
+    def looks(self) -> tuple[Observation, ...]:
         """Every successful look, those of a seeing planner included."""
         return (*self.seen, *(look for call in self.calls for look in call.looks))
 
 
 @dataclass(frozen=True, slots=True)
-class Places:
+class PresetViewpoints:
     """Which optical centre each preset and home belong to, as the scene says it."""
 
     presets: Mapping[str, str]
     home: str
 
     @classmethod
-    def of(cls, scene: SceneFile) -> Places:
+    def of(cls, scene: SceneFile) -> PresetViewpoints:
         presets = {p.name: p.viewpoint for p in scene.presets}
         return cls(presets, presets[scene.home_preset])
 
 
 @dataclass(frozen=True, slots=True)
-class Eyes:
+class FrameGeometry:
     """What frames of a run look like: lens, limits and size in pixels."""
 
     width: int
@@ -131,13 +131,13 @@ class Eyes:
         return Equirectangular(left, span, top, bottom, round(span * density), round((top - bottom) * density))
 
 
-def episode_of(trace: Trace, places: Places, *, planner_sees: bool = False, keeps_files: bool = True) -> Episode:
+def episode_of(trace: Trace, places: PresetViewpoints, *, planner_sees: bool = False, keeps_files: bool = True) -> Episode:
     """The run of a trace. ``planner_sees``: its planner was shown frames; ``keeps_files``: pictures are kept in the run folder."""
     started = trace.started
-    eyes = Eyes(started.frame_width, started.frame_height)
-    at = start = Standing(started.viewpoint, started.pose.pose())
+    eyes = FrameGeometry(started.frame_width, started.frame_height)
+    at = start = CameraState(started.viewpoint, started.pose.pose())
     home = started.labels.home_viewpoint or places.home
-    calls, seen, stands = list[Call](), list[Look](), {0: start}
+    calls, seen, stands = list[EpisodeCall](), list[Observation](), {0: start}
     for called in trace.calls:
         call = _call(called, at, places, home, eyes)
         at = stands[called.step] = call.after
@@ -150,17 +150,17 @@ def episode_of(trace: Trace, places: Places, *, planner_sees: bool = False, keep
         instruction=started.instruction,
         start=start,
         calls=tuple(calls),
-        final=Standing(at.viewpoint, ended.pose.pose() if ended else at.pose),
+        final=CameraState(at.viewpoint, ended.pose.pose() if ended else at.pose),
         text=ended.text if ended else "",
         outcome=ended.outcome if ended else None,
-        pictures=tuple(Picture(name, (trace.folder / name).is_file() if keeps_files else None) for name in files),
+        pictures=tuple(SavedPicture(name, (trace.folder / name).is_file() if keeps_files else None) for name in files),
         seen=tuple(seen),
         failure=ended.kind if ended else None,
         aspect=started.frame_width / started.frame_height,
     )
 
 
-def _call(called: Called, before: Standing, places: Places, home: str, eyes: Eyes) -> Call:
+def _call(called: Called, before: CameraState, places: PresetViewpoints, home: str, eyes: FrameGeometry) -> EpisodeCall:
     outcome = called.outcome
     done = outcome.error is None
     viewpoint = before.viewpoint
@@ -168,8 +168,8 @@ def _call(called: Called, before: Standing, places: Places, home: str, eyes: Eye
         viewpoint = places.presets.get(str(outcome.call.arguments.get("name")), viewpoint)
     elif done and outcome.call.name == "go_home":
         viewpoint = home
-    after = Standing(viewpoint, called.pose.pose())
-    call = Call(
+    after = CameraState(viewpoint, called.pose.pose())
+    call = EpisodeCall(
         name=outcome.call.name,
         arguments=outcome.call.arguments,
         before=before,
@@ -179,11 +179,11 @@ def _call(called: Called, before: Standing, places: Places, home: str, eyes: Eye
         fault=called.fault,
         time_s=called.scene_time_s,
     )
-    looks = looks_of(call, eyes) if call.succeeded else ()
-    return Call(**{name: getattr(call, name) for name in Call.__slots__ if name != "looks"}, looks=looks)
+    looks = observations_of(call, eyes) if call.succeeded else ()
+    return EpisodeCall(**{name: getattr(call, name) for name in EpisodeCall.__slots__ if name != "looks"}, looks=looks)
 
 
-def looks_of(call: Call, eyes: Eyes) -> tuple[Look, ...]:
+def observations_of(call: EpisodeCall, eyes: FrameGeometry) -> tuple[Observation, ...]:
     """What perception looked at in a call that succeeded: of a zoom only the first look is sure, of a track all of its path."""
     how, result = _HOW.get(call.name), call.result or {}
     if how is None:
@@ -193,16 +193,20 @@ def looks_of(call: Call, eyes: Eyes) -> tuple[Look, ...]:
     if how == "track":
         path = result.get("path") or [{"time_s": 0.0, "pose": Place.of(call.before.pose).model_dump()}]
         return tuple(
-            Look(place, eyes.view(Pose(**point["pose"])), call.time_s + float(point["time_s"]), how, asked) for point in path
+            Observation(place, eyes.view(Pose(**point["pose"])), call.time_s + float(point["time_s"]), how, asked) for point in path
         )
     swept = how in ("count", "query") and call.arguments.get("view", "current") == "full"
     known = how != "query" or result.get("known") is not False
-    return (Look(place, eyes.sweep() if swept else eyes.view(call.before.pose), call.time_s, how, asked, known),)
+    return (Observation(place, eyes.sweep() if swept else eyes.view(call.before.pose), call.time_s, how, asked, known),)
 
 
 def _views(
-    decisions: tuple[Decided, ...], calls: tuple[Called, ...], stands: Mapping[int, Standing], eyes: Eyes, start_s: float
-) -> Iterator[Look]:
+    decisions: tuple[Decided, ...],
+    calls: tuple[Called, ...],
+    stands: Mapping[int, CameraState],
+    eyes: FrameGeometry,
+    start_s: float,
+) -> Iterator[Observation]:
     """What a seeing planner was shown before each of its decisions."""
     for decided in decisions:
         if decided.decision.opened is False:
@@ -210,4 +214,4 @@ def _views(
         step = max(s for s in stands if s < decided.step)
         times = [c.scene_time_s for c in calls if c.step <= step]
         stand = stands[step]
-        yield Look(stand.viewpoint, eyes.view(stand.pose), max(times, default=start_s), "planner")
+        yield Observation(stand.viewpoint, eyes.view(stand.pose), max(times, default=start_s), "planner")

@@ -10,14 +10,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
-from scope_ptz.bench.answers.words import plain_words
+from scope_ptz.bench.answers import plain_words
 from scope_ptz.bench.scoring.checks import check_framing
-from scope_ptz.bench.scoring.coverage import gap
-from scope_ptz.bench.scoring.episode import Call, Episode, Look
-from scope_ptz.bench.scoring.evidence import is_grounded
-from scope_ptz.bench.scoring.matching import fits, in_any_order, in_order
+from scope_ptz.bench.scoring.coverage import uncovered_part
+from scope_ptz.bench.scoring.episode import Episode, EpisodeCall, Observation
+from scope_ptz.bench.scoring.evidence import is_supported_by_tools
 from scope_ptz.bench.scoring.misperceptions import CountTruth, target_in, target_shown, wrong_counts, wrong_reads
-from scope_ptz.bench.scoring.verdict import Verdict, claims, judge
+from scope_ptz.bench.scoring.required_calls import call_matches, missing_in_any_order, missing_in_order
+from scope_ptz.bench.scoring.verdict import Verdict, claims, score_episode
 from scope_ptz.bench.tasks.task import ProgramCall, RequiredCall, Task
 from scope_ptz.geometry import Perspective
 
@@ -89,7 +89,7 @@ def error_mode(task: Task, episode: Episode, truth: CountTruth | None = None) ->
 
     ``truth`` tells how many of what was asked really show in the very picture of a look; without it the evidence is asked.
     """
-    verdict = judge(task, episode)
+    verdict = score_episode(task, episode)
     if verdict.headline != "incorrect":
         return None
     case = _Case(task, episode, verdict, truth)
@@ -109,7 +109,7 @@ def _routed_wrongly(case: _Case) -> bool:
     if forbidden or case.verdict.failed("pictures"):
         return True
     calls = case.task.behaviour.calls
-    is_order = case.task.behaviour.order == "ordered" and in_any_order(calls, case.episode.calls) is None
+    is_order = case.task.behaviour.order == "ordered" and missing_in_any_order(calls, case.episode.calls) is None
     return case.verdict.failed("calls") and is_order
 
 
@@ -129,7 +129,7 @@ def _wrong_scope(case: _Case) -> bool:
 
 
 def _missing(case: _Case, calls: tuple[RequiredCall, ...], leave_out: set[str]) -> str | None:
-    order = in_order if case.task.behaviour.order == "ordered" else in_any_order
+    order = missing_in_order if case.task.behaviour.order == "ordered" else missing_in_any_order
     return order(calls, case.episode.calls, leave_out)
 
 
@@ -147,7 +147,7 @@ def _was_left_unanswered(case: _Case) -> bool:
     """All that is wrong beside the answer is that perception, asked about the right thing in the right view, could not tell."""
     wrong = {check.name for check in case.verdict.checks if check.passed is False} - {"answer", "outcome"}
     looks = [replace(look, known=True) for look in case.episode.looks]
-    return wrong == {"coverage"} and all(gap(view, looks) is None for view in case.task.evidence if view.must_look)
+    return wrong == {"coverage"} and all(uncovered_part(view, looks) is None for view in case.task.evidence if view.must_look)
 
 
 def _was_misled(case: _Case) -> bool:
@@ -160,23 +160,23 @@ def _was_misled(case: _Case) -> bool:
         if call.name not in wanted or not call.looks or not target_in(case.task, call.looks[0]):
             continue
         fixed = [spec for spec in required if spec.tool == call.name]
-        asked_right = all(fits(spec, call, {"found"}) for spec in fixed) if fixed else _asks_as_reference(case.task, call)
+        asked_right = all(call_matches(spec, call, {"found"}) for spec in fixed) if fixed else _asks_as_reference(case.task, call)
         if asked_right and not _got_there(case, call):
             return True
     return False
 
 
-def _asks_as_reference(task: Task, call: Call) -> bool:
+def _asks_as_reference(task: Task, call: EpisodeCall) -> bool:
     """Whether a call describes what the reference describes, in more or fewer words."""
     asked = _content(call)
     return any(asked <= wanted or wanted <= asked for wanted in (_content(c) for c in task.reference if c.tool == call.name))
 
 
-def _content(call: Call | ProgramCall) -> set[str]:
+def _content(call: EpisodeCall | ProgramCall) -> set[str]:
     return set(plain_words(str(call.arguments.get("description", "")))) - {"a", "an", "the"}
 
 
-def _got_there(case: _Case, call: Call) -> bool:
+def _got_there(case: _Case, call: EpisodeCall) -> bool:
     """Whether a search found something and left the target framed, or in view where the task does not say how large."""
     if (call.result or {}).get("found") is False:
         return False
@@ -184,7 +184,7 @@ def _got_there(case: _Case, call: Call) -> bool:
     return framing.passed is True if framing is not None else target_shown(case.task, _view_after(case.episode, call))
 
 
-def _view_after(episode: Episode, call: Call) -> Look:
+def _view_after(episode: Episode, call: EpisodeCall) -> Observation:
     pose, seen = call.after.pose, call.looks[0].projection
     width = seen.width if isinstance(seen, Perspective) else 1280
     view = Perspective(pose.pan_deg, pose.tilt_deg, episode.optics.hfov_deg(pose.zoom), width, round(width / episode.aspect))
@@ -199,7 +199,7 @@ def _made_up(case: _Case) -> bool:
         return True
     if _was_left_unanswered(case) and not any(look.known for look in case.episode.looks):
         return claims(case.task, case.episode)
-    return case.verdict.failed("answer") and not is_grounded(case.task, case.episode)
+    return case.verdict.failed("answer") and not is_supported_by_tools(case.task, case.episode)
 
 
 def _miscounted(case: _Case) -> bool:

@@ -5,16 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 
-from scope_ptz.bench.answers.reader import agrees, read
-from scope_ptz.bench.answers.result import Value
-from scope_ptz.bench.answers.text import wordings_of
-from scope_ptz.bench.answers.words import names_any
+from scope_ptz.bench.answers import ParsedValue, agrees, all_wordings, names_any, parse_answer
 from scope_ptz.bench.scoring.coverage import counts_for, inside, is_within, reference_directions, shows
-from scope_ptz.bench.scoring.episode import Call, Episode, Look
+from scope_ptz.bench.scoring.episode import Episode, EpisodeCall, Observation
 from scope_ptz.bench.tasks.expected import AnyExpected, Choice, NameSet, NoneThere, Number, Ordering, YesNo
 from scope_ptz.bench.tasks.task import EvidenceView, Item, Task
 
-CountTruth = Callable[[Look], int | None]
+CountTruth = Callable[[Observation], int | None]
 """How many of what was asked really show in the very picture of a look; None when the truth cannot say."""
 
 
@@ -61,17 +58,17 @@ def wrong_reads(task: Task, episode: Episode) -> bool:
     return False
 
 
-def _answers_wrongly(view: EvidenceView, look: Look, call: Call) -> bool:
+def _answers_wrongly(view: EvidenceView, look: Observation, call: EpisodeCall) -> bool:
     """Whether a reply is wrong about a view; of a question about one of several things, what it says of that thing counts."""
     one = _asked_of(view, look.asked)
     if one is None:
         return _misreads(view.shows, call)
     options, reply = view.shows.options, str((call.result or {}).get("answer", ""))  # type: ignore[union-attr]
-    wordings = wordings_of(one, options[one])
+    wordings = all_wordings(one, options[one])
     there = one in view.shows.value if isinstance(view.shows, NameSet) else True
-    if (call.result or {}).get("known") is False or read(NoneThere(subject=wordings), reply) == Value(there):
+    if (call.result or {}).get("known") is False or parse_answer(NoneThere(subject=wordings), reply) == ParsedValue(there):
         return True
-    if not there and read(YesNo(value=True, affirms=wordings), reply) == Value(True):
+    if not there and parse_answer(YesNo(value=True, affirms=wordings), reply) == ParsedValue(True):
         return True
     told_elsewise = isinstance(view.shows, Ordering) or not names_any(reply, wordings)
     return told_elsewise and not isinstance(view.shows, NameSet) and _misreads(view.shows, call)
@@ -81,18 +78,18 @@ def _asked_of(view: EvidenceView, asked: str) -> str | None:
     """The only one of several compared or listed things that a question names; None when it names none or more."""
     if not isinstance(view.shows, Choice | Ordering | NameSet) or (not isinstance(view.shows, NameSet) and len(view.items) < 2):
         return None
-    named = [name for name, further in view.shows.options.items() if names_any(asked, wordings_of(name, further))]
+    named = [name for name, further in view.shows.options.items() if names_any(asked, all_wordings(name, further))]
     return named[0] if len(named) == 1 else None
 
 
-def _misreads(right: AnyExpected | None, call: Call) -> bool:
+def _misreads(right: AnyExpected | None, call: EpisodeCall) -> bool:
     answer = (call.result or {}).get("answer")
     if right is None or not isinstance(answer, str):
         return False
-    return (call.result or {}).get("known") is False or agrees(right, read(right, answer)) is False
+    return (call.result or {}).get("known") is False or agrees(right, parse_answer(right, answer)) is False
 
 
-def shown_by(task: Task, look: Look) -> Iterator[EvidenceView]:
+def shown_by(task: Task, look: Observation) -> Iterator[EvidenceView]:
     """The evidence that a look is of: same place, same scope, asked about it, and the frame holds the items or the whole view."""
     for view in task.evidence:
         if (view.scope == "full") == look.swept and counts_for(view, look):
@@ -102,7 +99,7 @@ def shown_by(task: Task, look: Look) -> Iterator[EvidenceView]:
                 yield view
 
 
-def look_is_as_wide(view: EvidenceView, look: Look) -> bool:
+def look_is_as_wide(view: EvidenceView, look: Observation) -> bool:
     """Whether a frame holds little more than the reference view: a count of more is not the count of that view."""
     return look.swept or look.projection.reach_deg <= 1.1 * _reach_deg(view)
 
@@ -112,23 +109,23 @@ def _reach_deg(view: EvidenceView) -> float:
     return math.degrees(math.atan(half * math.hypot(1.0, 1 / view.aspect)))
 
 
-def target_in(task: Task, look: Look) -> bool:
+def target_in(task: Task, look: Observation) -> bool:
     """Whether something that the task is about is in the picture of a look, however small: that is what a search is for. Taken for
     granted where the evidence names nothing."""
     return _has_target(task, look, is_within)
 
 
-def target_shown(task: Task, look: Look) -> bool:
+def target_shown(task: Task, look: Observation) -> bool:
     """Whether it is in the picture and large enough to be told or read."""
     return _has_target(task, look, shows)
 
 
-def _has_target(task: Task, look: Look, has: Callable[[Item, Look], bool]) -> bool:
+def _has_target(task: Task, look: Observation, has: Callable[[Item, Observation], bool]) -> bool:
     items = [item for view in task.evidence for item in view.items if view.aim.viewpoint == look.viewpoint]
     return any(has(item, look) for item in items) if items else not any(view.items for view in task.evidence)
 
 
-def _looks(episode: Episode) -> Iterator[tuple[Call, Look]]:
+def _looks(episode: Episode) -> Iterator[tuple[EpisodeCall, Observation]]:
     for call in episode.calls:
         for look in call.looks[:1]:
             yield call, look

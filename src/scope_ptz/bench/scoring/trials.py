@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from scope_ptz.agent.timing import Timings
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.verdict import Headline
-from scope_ptz.bench.tasks.facts import TaskFacts
+from scope_ptz.bench.tasks.task_facts import TaskFacts
 
 Count = Annotated[int, Field(ge=0)]
 Seconds = Annotated[float, Field(ge=0, allow_inf_nan=False)]
@@ -22,7 +22,7 @@ class _Record(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
 
-class Check(_Record):
+class CheckRecord(_Record):
     """One executable check: passed, failed, or (None) it cannot be told."""
 
     name: str
@@ -57,7 +57,7 @@ class Label(_Record):
     note: str = ""
 
 
-class LookTime(_Record):
+class ObservationTime(_Record):
     """Where the wall seconds of one look went. ``eyes_s``: what perception took; ``capture_s``: camera moves and frames,
     simulated ones included; ``call_s``: the whole call, with the tool's own work. Looks made at the same time share a frame, and
     with it its capture."""
@@ -83,7 +83,7 @@ class Trial(_Record):
     scored_by: Literal["checks", "judge"] = "checks"
     reason: str
     error_mode: ErrorMode | None = None
-    checks: tuple[Check, ...] = ()
+    checks: tuple[CheckRecord, ...] = ()
     collateral: bool = False
     outcome: str | None
     answer: str
@@ -96,7 +96,7 @@ class Trial(_Record):
     output_tokens: Count = 0
     cost_usd: Annotated[float, Field(ge=0, allow_inf_nan=False)] | None = None
     timings: Timings = Timings()
-    looks: tuple[LookTime, ...] = ()
+    looks: tuple[ObservationTime, ...] = ()
     judgements: tuple[Judgement, ...] = ()
     labels: tuple[Label, ...] = ()
 

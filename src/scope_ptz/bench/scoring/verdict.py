@@ -8,8 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
-from scope_ptz.bench.answers.reader import read
-from scope_ptz.bench.answers.result import Value
+from scope_ptz.bench.answers import ParsedValue, parse_answer
 from scope_ptz.bench.scoring.checks import CheckResult, changes, run_checks
 from scope_ptz.bench.scoring.episode import Episode
 from scope_ptz.bench.tasks.expected import ActionOnly
@@ -69,7 +68,7 @@ def tally(verdicts: Iterable[Verdict]) -> Tally:
     return Tally({name: counted[name] for name in every})
 
 
-def judge(task: Task, episode: Episode) -> Verdict:
+def score_episode(task: Task, episode: Episode) -> Verdict:
     """The verdict on a run. Raises ``ScopeError`` when the task has nothing that could be checked."""
     checks = run_checks(task, episode)
     if all(check.name == "outcome" for check in checks) and task.behaviour.outcomes == ("answered",):
@@ -106,7 +105,7 @@ def claims(task: Task, episode: Episode) -> bool:
     """Whether the final text claims a value."""
     if isinstance(task.expected, ActionOnly) or episode.outcome != "answered":
         return False
-    return isinstance(read(task.expected, episode.text), Value)
+    return isinstance(parse_answer(task.expected, episode.text), ParsedValue)
 
 
 def collateral(task: Task, episode: Episode) -> bool:

@@ -47,7 +47,7 @@ class Scores:
 
 
 @dataclass(frozen=True, slots=True)
-class Estimate:
+class IntervalEstimate:
     """``low`` and ``high``: the 95% interval, None where it is not known. ``se``: standard error; ``n``: units (tasks).
 
     ``without``: strata of which all outcomes are of one cluster. They are in the value, but nothing is known of how they vary
@@ -131,7 +131,7 @@ def standard_error(scores: Scores, weights: Mapping[Any, float]) -> float | None
     return sqrt(variance) if variance > _ROUNDING else 0.0
 
 
-def share(scores: Scores, weights: Mapping[Any, float] | None = None) -> Estimate | None:
+def share(scores: Scores, weights: Mapping[Any, float] | None = None) -> IntervalEstimate | None:
     """A share in [0, 1] with a Wilson interval at the effective sample size p(1-p)/se^2 (Dean and Pagano 2015); None without data.
 
     ``weights``: of strata, taken relative to their sum; none means that all outcomes are pooled. Where every unit of a stratum is
@@ -146,10 +146,10 @@ def share(scores: Scores, weights: Mapping[Any, float] | None = None) -> Estimat
     if se is not None:
         size = value * (1 - value) / se**2 if se > 0 else float(units)
         low, high = wilson(value, size, t_quantile(clusters))
-    return Estimate(value, low, high, se, units, clusters, _without(scores, weights))
+    return IntervalEstimate(value, low, high, se, units, clusters, _without(scores, weights))
 
 
-def difference(scores: Scores, weights: Mapping[Any, float] | None = None) -> Estimate | None:
+def difference(scores: Scores, weights: Mapping[Any, float] | None = None) -> IntervalEstimate | None:
     """A mean difference or contrast of shares with the interval value +- t se, cut at -1 and 1; None without data.
 
     There is no interval where every outcome is alike: a variance of 0 would feign that the difference is known.
@@ -160,10 +160,10 @@ def difference(scores: Scores, weights: Mapping[Any, float] | None = None) -> Es
     value, se, clusters = weighted_mean(scores, weights), standard_error(scores, weights), len(set(scores.clusters))
     half = se * t_quantile(clusters) if se else None
     low, high = (None, None) if half is None else (max(-1.0, value - half), min(1.0, value + half))
-    return Estimate(value, low, high, se, len(set(scores.observed)), clusters, _without(scores, weights))
+    return IntervalEstimate(value, low, high, se, len(set(scores.observed)), clusters, _without(scores, weights))
 
 
-def gap(first: Scores, second: Scores) -> Estimate | None:
+def share_difference(first: Scores, second: Scores) -> IntervalEstimate | None:
     """Share of ``first`` minus that of ``second``, which are of different outcomes; None without data of one of them.
 
     The interval joins those of the two shares as if they were independent (Newcombe 1998, method 10; Zou and Donner 2008): unlike
@@ -215,7 +215,7 @@ def t_quantile(clusters: int, level: float = LEVEL) -> float:
     return float(stdtrit(clusters - 1, 0.5 + level / 2))
 
 
-def two_sided_p(estimate: Estimate) -> float | None:
+def two_sided_p(estimate: IntervalEstimate) -> float | None:
     """P value of the hypothesis that a difference is 0; None where there is no standard error."""
     if estimate.se is None:
         return None

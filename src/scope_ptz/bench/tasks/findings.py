@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict
 
-Kind = Literal[
+FindingKind = Literal[
     "empty-question",
     "nothing-expected",
     "unknown-category",
@@ -28,10 +28,12 @@ Kind = Literal[
     "ragged-row",
     "id-repeated",
 ]
-BLOCKING: frozenset[Kind] = frozenset({"empty-question", "nothing-expected", "unknown-category", "missing-scene", "missing-preset"})
+BLOCKING: frozenset[FindingKind] = frozenset(
+    {"empty-question", "nothing-expected", "unknown-category", "missing-scene", "missing-preset"}
+)
 """A row with one of these cannot be run."""
 
-MEANINGS: dict[Kind, str] = {
+MEANINGS: dict[FindingKind, str] = {
     "empty-question": "there is no question",
     "nothing-expected": "neither an answer nor a tool call is expected, so that nothing could be judged",
     "unknown-category": "the category is none of the eight",
@@ -55,12 +57,12 @@ MEANINGS: dict[Kind, str] = {
 }
 
 
-class Finding(BaseModel):
+class RowFinding(BaseModel):
     """``detail``: what it is about in this row."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    kind: Kind
+    kind: FindingKind
     detail: str = ""
 
     @property

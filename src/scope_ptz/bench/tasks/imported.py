@@ -9,9 +9,9 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from scope_ptz.bench.tasks.facts import TaskFacts
-from scope_ptz.bench.tasks.findings import Finding
+from scope_ptz.bench.tasks.findings import RowFinding
 from scope_ptz.bench.tasks.task import RequiredCall
+from scope_ptz.bench.tasks.task_facts import TaskFacts
 from scope_ptz.errors import InputError, OutputError
 
 Policy = Literal["all", "exact", "any", "none"]
@@ -35,7 +35,7 @@ class ImportedTask(BaseModel):
     policy: Policy = "all"
     order: Literal["ordered", "any"] = "any"
     start_s: float = 0.0
-    findings: tuple[Finding, ...] = ()
+    findings: tuple[RowFinding, ...] = ()
 
 
 def holds_imported(path: Path) -> bool:

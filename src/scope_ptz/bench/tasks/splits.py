@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from scope_ptz.bench.tasks.files import dump_tasks, load_tasks
-from scope_ptz.bench.tasks.sampling import stratified
+from scope_ptz.bench.tasks.stratified import stratified_sample
 from scope_ptz.bench.tasks.task import CANARY, Stratum, Task
 from scope_ptz.errors import InputError, OutputError, UnknownNameError
 from scope_ptz.simulator.pack import Scene
@@ -73,7 +73,7 @@ def _named(tasks: Iterable[Task], path: Path) -> tuple[Task, ...]:
 def lite(tasks: Sequence[Task], seed: int) -> tuple[Task, ...]:
     """A stratified tenth of the core tasks."""
     core = of_stratum(tasks, "core")
-    return stratified(core, round(len(core) * LITE_SHARE), seed)
+    return stratified_sample(core, round(len(core) * LITE_SHARE), seed)
 
 
 def of_stratum(tasks: Iterable[Task], stratum: Stratum) -> tuple[Task, ...]:

@@ -7,8 +7,8 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, field
 
-from scope_ptz.bench.scoring.coverage import gap
-from scope_ptz.bench.scoring.episode import Look
+from scope_ptz.bench.scoring.coverage import uncovered_part
+from scope_ptz.bench.scoring.episode import Observation
 from scope_ptz.bench.tasks.task import Category
 from scope_ptz.taskgen.authoring.drafts import Draft, Frames
 from scope_ptz.taskgen.authoring.places import preset_at
@@ -212,5 +212,7 @@ def seen_from_start(draft: Draft) -> bool:
     moved = draft.program is None and not draft.looks_closer and place.at != start
     if not needs or not views or moved or (draft.behaviour is not None and draft.behaviour.final is not None):
         return False
-    looks = (Look(start.viewpoint, EYES.view(start.pose), place.scene.file.start_s, "query", " ".join(v.about)) for v in views)
-    return all(gap(view, [look]) is None for view, look in zip(views, looks, strict=True))
+    looks = (
+        Observation(start.viewpoint, EYES.view(start.pose), place.scene.file.start_s, "query", " ".join(v.about)) for v in views
+    )
+    return all(uncovered_part(view, [look]) is None for view, look in zip(views, looks, strict=True))

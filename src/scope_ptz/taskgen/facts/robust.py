@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.bench.scoring.coverage import box_directions
-from scope_ptz.bench.scoring.episode import Eyes, Standing
+from scope_ptz.bench.scoring.episode import CameraState, FrameGeometry
 from scope_ptz.bench.tasks.task import Item
 from scope_ptz.geometry import Equirectangular, Perspective, Pose, pan_tilt_deg
 from scope_ptz.simulator.actors import Appearance, appearances, shows
@@ -34,7 +34,7 @@ from scope_ptz.simulator.truth import (
 )
 from scope_ptz.taskgen.facts.kinds import BACKDROP, FACELESS, KNOWN_BY_THEIR_FACE, Kind, Thing
 
-EYES = Eyes(1280, 720)
+EYES = FrameGeometry(1280, 720)
 """The frames in which tasks are set."""
 
 JITTER_DEG, JITTER_ZOOM = 0.5, 0.03
@@ -319,6 +319,6 @@ def legible(text: TextSighting, scale: float = 1.0) -> bool:
 
 
 @lru_cache(maxsize=600)
-def sight(scene: Scene, at: Standing, time_s: float, *, swept: bool = False) -> Sight:
+def sight(scene: Scene, at: CameraState, time_s: float, *, swept: bool = False) -> Sight:
     """The sight of a standing, or of everything around it."""
     return Sight(scene, at.viewpoint or "", None if swept else at.pose, time_s)

@@ -10,10 +10,9 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from scope_ptz.bench.answers.reader import read
-from scope_ptz.bench.answers.result import Value
-from scope_ptz.bench.scoring.episode import Call, Episode, Eyes, Standing, looks_of
-from scope_ptz.bench.scoring.matching import in_order
+from scope_ptz.bench.answers import ParsedValue, parse_answer
+from scope_ptz.bench.scoring.episode import CameraState, Episode, EpisodeCall, FrameGeometry, observations_of
+from scope_ptz.bench.scoring.required_calls import missing_in_order
 from scope_ptz.bench.scoring.verdict import MOVERS
 from scope_ptz.bench.tasks.expected import (
     ActionOnly,
@@ -31,23 +30,23 @@ TURNS = ("pan_deg", "tilt_deg")
 class Setting:
     """What a mutation may know of the world of a run: where presets are and what frames look like."""
 
-    presets: Mapping[str, Standing]
-    eyes: Eyes
+    presets: Mapping[str, CameraState]
+    eyes: FrameGeometry
 
 
-def replayed(episode: Episode, calls: Iterable[Call], setting: Setting) -> Episode:
+def replayed(episode: Episode, calls: Iterable[EpisodeCall], setting: Setting) -> Episode:
     """The run with other calls: poses follow on from each other again, and looks are where the camera then is."""
-    at, made = episode.start, list[Call]()
+    at, made = episode.start, list[EpisodeCall]()
     for call in calls:
         after = _after(call, at, episode, setting)
         moved = replace(call, before=at, after=after, looks=())
-        made.append(replace(moved, looks=looks_of(moved, setting.eyes) if moved.succeeded else ()))
+        made.append(replace(moved, looks=observations_of(moved, setting.eyes) if moved.succeeded else ()))
         at = after
     kept = {str((call.result or {}).get("file")) for call in made if call.name == "take_image"}
     return replace(episode, calls=tuple(made), final=at, pictures=tuple(p for p in episode.pictures if p.file in kept))
 
 
-def _after(call: Call, at: Standing, episode: Episode, setting: Setting) -> Standing:
+def _after(call: EpisodeCall, at: CameraState, episode: Episode, setting: Setting) -> CameraState:
     if not call.succeeded or call.name not in MOVERS:
         return at
     if call.name == "go_to_preset":
@@ -58,15 +57,15 @@ def _after(call: Call, at: Standing, episode: Episode, setting: Setting) -> Stan
         one, two = call.before.pose, call.after.pose
         pan, tilt, zoom = two.pan_deg - one.pan_deg, two.tilt_deg - one.tilt_deg, two.zoom / one.zoom
         limits = setting.eyes.limits
-        return Standing(at.viewpoint, limits.clamp(at.pose.turned(pan, tilt).zoomed(zoom))[0])
-    return Standing(at.viewpoint, call.after.pose)
+        return CameraState(at.viewpoint, limits.clamp(at.pose.turned(pan, tilt).zoomed(zoom))[0])
+    return CameraState(at.viewpoint, call.after.pose)
 
 
-def retold(call: Call, **said: Any) -> Call:
+def retold(call: EpisodeCall, **said: Any) -> EpisodeCall:
     return replace(call, result={**(call.result or {}), **said})
 
 
-def changed(episode: Episode, setting: Setting, change: Callable[[Call], Call | None]) -> Episode:
+def changed(episode: Episode, setting: Setting, change: Callable[[EpisodeCall], EpisodeCall | None]) -> Episode:
     """The run with each call changed, or left out where the change gives None."""
     return replayed(episode, [new for call in episode.calls if (new := change(call)) is not None], setting)
 
@@ -106,11 +105,11 @@ def swap_tools(task: Task, episode: Episode, setting: Setting, rng: random.Rando
     if any(call.name == other for call in episode.calls):
         return None
 
-    def swap(call: Call) -> Call:
+    def swap(call: EpisodeCall) -> EpisodeCall:
         if call.name != name:
             return call
         pose = call.before.pose.zoomed(1.2) if other == "adjust_ptz" else call.before.pose
-        return replace(call, name=other, arguments=arguments, after=Standing(call.before.viewpoint, pose), result=said)
+        return replace(call, name=other, arguments=arguments, after=CameraState(call.before.viewpoint, pose), result=said)
 
     return changed(episode, setting, swap)
 
@@ -123,7 +122,7 @@ def swap_order(task: Task, episode: Episode, setting: Setting, rng: random.Rando
     for at in places:
         calls = list(episode.calls)
         calls[at], calls[at + 1] = calls[at + 1], calls[at]
-        if in_order(task.behaviour.calls, calls) is not None:
+        if missing_in_order(task.behaviour.calls, calls) is not None:
             return replayed(episode, calls, setting)
     return None
 
@@ -138,7 +137,7 @@ def flip_scope(task: Task, episode: Episode, setting: Setting, rng: random.Rando
     if told is None:
         return None
 
-    def flip(call: Call) -> Call:
+    def flip(call: EpisodeCall) -> EpisodeCall:
         if call.name not in LOOKERS:
             return call
         view = "full" if call.arguments.get("view", "current") == "current" else "current"
@@ -148,9 +147,9 @@ def flip_scope(task: Task, episode: Episode, setting: Setting, rng: random.Rando
     return replace(changed(episode, setting, flip), text=told)
 
 
-def count_of(expected: AnyExpected, told: str, call: Call) -> int:
-    reading, counted = read(expected, told), int((call.result or {}).get("count", 0))
-    if isinstance(reading, Value) and isinstance(reading.value, float):
+def count_of(expected: AnyExpected, told: str, call: EpisodeCall) -> int:
+    reading, counted = parse_answer(expected, told), int((call.result or {}).get("count", 0))
+    if isinstance(reading, ParsedValue) and isinstance(reading.value, float):
         return round(reading.value)
     return 0 if counted else 2
 
@@ -165,7 +164,7 @@ def other_preset(task: Task, episode: Episode, setting: Setting, rng: random.Ran
     right = rng.choice(visited)
     wrong = rng.choice([name for name in setting.presets if name != right])
 
-    def go(call: Call) -> Call:
+    def go(call: EpisodeCall) -> EpisodeCall:
         if call.name != "go_to_preset" or call.arguments["name"] != right:
             return call
         return retold(replace(call, arguments={"name": wrong}), message=f"At preset {wrong}.")
@@ -178,18 +177,18 @@ def turned_round(task: Task, episode: Episode, setting: Setting, rng: random.Ran
     if not any(call.name == "adjust_ptz" and turns(call) for call in episode.calls):
         return None
 
-    def turn(call: Call) -> Call:
+    def turn(call: EpisodeCall) -> EpisodeCall:
         if call.name != "adjust_ptz":
             return call
         one, two = call.before.pose, call.after.pose
         arguments = {k: -v if k in TURNS else v for k, v in call.arguments.items()}
         pose = Pose(2 * one.pan_deg - two.pan_deg, 2 * one.tilt_deg - two.tilt_deg, two.zoom)
-        return replace(call, arguments=arguments, after=Standing(call.after.viewpoint, pose))
+        return replace(call, arguments=arguments, after=CameraState(call.after.viewpoint, pose))
 
     return changed(episode, setting, turn)
 
 
-def turns(call: Call) -> bool:
+def turns(call: EpisodeCall) -> bool:
     """Whether an adjustment changes the direction, not the magnification alone."""
     return any(call.arguments.get(name) for name in TURNS)
 
@@ -200,7 +199,7 @@ def other_target(task: Task, episode: Episode, setting: Setting, rng: random.Ran
     if told is None or not any(view.about for view in task.evidence) or not any(call.name in LOOKERS for call in episode.calls):
         return None
 
-    def aside(call: Call) -> Call:
+    def aside(call: EpisodeCall) -> EpisodeCall:
         if call.name == "count_objects":
             arguments = {**call.arguments, "description": "clouds"}
             return retold(replace(call, arguments=arguments), count=count_of(task.expected, told, call), message=told)

@@ -9,8 +9,8 @@ import random
 from collections.abc import Iterator
 from dataclasses import replace
 
-from scope_ptz.bench.scoring.episode import Call, Episode
-from scope_ptz.bench.scoring.evidence import is_grounded, numbers_said
+from scope_ptz.bench.scoring.episode import Episode, EpisodeCall
+from scope_ptz.bench.scoring.evidence import is_supported_by_tools, numbers_from_tools
 from scope_ptz.bench.tasks.expected import ActionOnly, AnyExpected, NoneThere, Number, Relation, YesNo
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.taskgen.facts.phrasing import right_answers, wrong_answer
@@ -33,12 +33,12 @@ def miscount(task: Task, episode: Episode, setting: Setting, rng: random.Random)
         for n, number in zip(counts, wrong, strict=True):
             calls[n] = recounted(calls[n], number)
         made = replace(replayed(episode, calls, setting), text=told)
-        if is_grounded(task, made):
+        if is_supported_by_tools(task, made):
             return made
     return None
 
 
-def _miscounts(expected: AnyExpected, told: str, counts: list[Call]) -> Iterator[list[int]]:
+def _miscounts(expected: AnyExpected, told: str, counts: list[EpisodeCall]) -> Iterator[list[int]]:
     """Wrong counts that could lead to what is told."""
     numbers = [int((call.result or {})["count"]) for call in counts]
     if not isinstance(expected, Number | NoneThere | YesNo):
@@ -52,7 +52,7 @@ def _miscounts(expected: AnyExpected, told: str, counts: list[Call]) -> Iterator
             yield [*numbers[:-1], number]
 
 
-def recounted(call: Call, number: int) -> Call:
+def recounted(call: EpisodeCall, number: int) -> EpisodeCall:
     return retold(call, count=number, message=f"{number} of '{call.arguments.get('description')}' in view.")
 
 
@@ -61,7 +61,7 @@ def misread(task: Task, episode: Episode, setting: Setting, rng: random.Random) 
     if told is None or not any(call.name == "query_answer" for call in episode.calls):
         return None
 
-    def misread(call: Call) -> Call:
+    def misread(call: EpisodeCall) -> EpisodeCall:
         return retold(call, answer=told, message=told) if call.name == "query_answer" else call
 
     return replace(changed(episode, setting, misread), text=told)
@@ -72,7 +72,7 @@ def overlook(task: Task, episode: Episode, setting: Setting, rng: random.Random)
     if not any(call.name == "zoom_to_object" for call in episode.calls) or not isinstance(task.expected, ActionOnly):
         return None
 
-    def overlook(call: Call) -> Call:
+    def overlook(call: EpisodeCall) -> EpisodeCall:
         if call.name != "zoom_to_object":
             return call
         said = {"message": "Nothing that fits is in view.", "found": False, "matches": 0}
@@ -89,7 +89,7 @@ def make_up(task: Task, episode: Episode, setting: Setting, rng: random.Random) 
         told = wrong_answer(task.expected, rng)
         if told is None:
             return None
-        if not is_grounded(task, replace(episode, text=told)):
+        if not is_supported_by_tools(task, replace(episode, text=told)):
             return replace(episode, text=told)
     return None
 
@@ -99,10 +99,10 @@ def conclude_wrongly(task: Task, episode: Episode, setting: Setting, rng: random
     if isinstance(expected, ActionOnly):
         return None
     if isinstance(expected, Number):
-        others = sorted(n for n in numbers_said(episode) if abs(n - expected.value) > expected.tolerance)
+        others = sorted(n for n in numbers_from_tools(episode) if abs(n - expected.value) > expected.tolerance)
         if others and rng.random() < 0.5:
             return replace(episode, text=right_answers(expected.model_copy(update={"value": rng.choice(others)}))[0])
     told = wrong_answer(expected, rng)
-    if told is not None and rng.random() < 0.5 and is_grounded(task, replace(episode, text=told)):
+    if told is not None and rng.random() < 0.5 and is_supported_by_tools(task, replace(episode, text=told)):
         return replace(episode, text=told)
     return replace(episode, text=rng.choice(_DECLINES))

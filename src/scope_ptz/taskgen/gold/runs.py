@@ -16,16 +16,16 @@ from pathlib import Path
 from typing import Any
 
 from scope_ptz.agent.records import Place
-from scope_ptz.bench.programs import seen
-from scope_ptz.bench.scoring.episode import Call, Episode, Eyes, Picture, Standing
+from scope_ptz.bench.program_runner import with_observations
+from scope_ptz.bench.scoring.episode import CameraState, Episode, EpisodeCall, FrameGeometry, SavedPicture
 from scope_ptz.bench.scoring.error_modes import ErrorMode, error_mode
 from scope_ptz.bench.scoring.misperceptions import wrong_counts, wrong_reads
-from scope_ptz.bench.scoring.verdict import judge
+from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import InputError
 from scope_ptz.taskgen.gold.mutations import Gold, Setting, mutate
 
-EYES = Eyes(1280, 720)
+EYES = FrameGeometry(1280, 720)
 PER_MODE = 30
 """Runs of each mode that are wanted: 240 in all."""
 
@@ -119,7 +119,7 @@ def _told(one: Gold) -> str:
     mode = error_mode(one.task, one.episode)
     if mode is not None:
         return mode.value
-    return OTHER[0] if judge(one.task, one.episode).headline == "correct" else OTHER[1]
+    return OTHER[0] if score_episode(one.task, one.episode).headline == "correct" else OTHER[1]
 
 
 def write_gold(gold: Sequence[Gold], path: Path) -> None:
@@ -170,24 +170,27 @@ def _run(episode: Episode) -> dict[str, Any]:
     }
 
 
-def _stand(at: Standing) -> list[Any]:
+def _stand(at: CameraState) -> list[Any]:
     return [at.viewpoint, round(at.pose.pan_deg, 6), round(at.pose.tilt_deg, 6), round(at.pose.zoom, 6)]
 
 
 def _episode(row: Mapping[str, Any]) -> Episode:
-    def stand(values: Sequence[Any]) -> Standing:
+    def stand(values: Sequence[Any]) -> CameraState:
         viewpoint, *pose = values
-        return Standing(viewpoint, Place(pan_deg=pose[0], tilt_deg=pose[1], zoom=pose[2]).pose())
+        return CameraState(viewpoint, Place(pan_deg=pose[0], tilt_deg=pose[1], zoom=pose[2]).pose())
 
     at = start = stand(row["start"])
-    calls = list[Call]()
+    calls = list[EpisodeCall]()
     for given in row["calls"]:
         further = {name: given.get(name) for name in ("result", "error", "fault")}
         calls.append(
-            seen(
-                Call(given["name"], given["arguments"], at, after := stand(given["after"]), time_s=given["time_s"], **further), EYES
+            with_observations(
+                EpisodeCall(
+                    given["name"], given["arguments"], at, after := stand(given["after"]), time_s=given["time_s"], **further
+                ),
+                EYES,
             )
         )
         at = after
-    pictures = tuple(Picture(name) for name in row["pictures"])
+    pictures = tuple(SavedPicture(name) for name in row["pictures"])
     return Episode(row["instruction"], start, tuple(calls), stand(row["final"]), row["text"], row["outcome"], pictures)

@@ -9,8 +9,8 @@ import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from scope_ptz.bench.answers.words import plain_words
-from scope_ptz.bench.tasks.findings import Finding, Kind
+from scope_ptz.bench.answers import plain_words
+from scope_ptz.bench.tasks.findings import FindingKind, RowFinding
 from scope_ptz.taskgen.importing.rows import RowRead
 
 _NOW = re.compile(
@@ -62,9 +62,9 @@ _SLIGHT = frozenset("the a an is are it there of in on yes no none not say says 
 _MOST_ANSWER_WORDS = 6
 
 
-def audit(rows: Sequence[RowRead]) -> dict[int, tuple[Finding, ...]]:
+def audit(rows: Sequence[RowRead]) -> dict[int, tuple[RowFinding, ...]]:
     """Findings by the row's line."""
-    found: dict[int, list[Finding]] = defaultdict(list)
+    found: dict[int, list[RowFinding]] = defaultdict(list)
     for row in rows:
         found[row.line] += _alone(row)
     for line, finding in _together(rows):
@@ -72,7 +72,7 @@ def audit(rows: Sequence[RowRead]) -> dict[int, tuple[Finding, ...]]:
     return {line: tuple(findings) for line, findings in found.items()}
 
 
-def _alone(row: RowRead) -> Iterator[Finding]:
+def _alone(row: RowRead) -> Iterator[RowFinding]:
     """What can be said of a row without the others."""
     if _NOW.search(row.question) and row.sweeps:
         yield _finding("now-but-full")
@@ -106,7 +106,7 @@ def given_away(question: str, answer: str) -> str | None:
     return None
 
 
-def _together(rows: Sequence[RowRead]) -> Iterator[tuple[int, Finding]]:
+def _together(rows: Sequence[RowRead]) -> Iterator[tuple[int, RowFinding]]:
     """What can be said of rows only beside others."""
     by_question: dict[tuple[str, ...], list[RowRead]] = defaultdict(list)
     for row in rows:
@@ -126,7 +126,7 @@ def _together(rows: Sequence[RowRead]) -> Iterator[tuple[int, Finding]]:
             yield from ((row.line, _finding("id-repeated", f"{name}: {_lines(same)}")) for row in same)
 
 
-def _same_view(rows: Sequence[RowRead]) -> Iterator[tuple[int, Finding]]:
+def _same_view(rows: Sequence[RowRead]) -> Iterator[tuple[int, RowFinding]]:
     by_answer: dict[tuple[str, ...], list[RowRead]] = defaultdict(list)
     for row in rows:
         by_answer[_told(row.answer)].append(row)
@@ -162,5 +162,5 @@ def _lines(rows: Sequence[RowRead]) -> str:
     return "lines " + ", ".join(str(row.line) for row in rows)
 
 
-def _finding(kind: Kind, detail: str = "") -> Finding:
-    return Finding(kind=kind, detail=detail[:300])
+def _finding(kind: FindingKind, detail: str = "") -> RowFinding:
+    return RowFinding(kind=kind, detail=detail[:300])

@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from scope_ptz.bench.answers.words import plain_words
-from scope_ptz.bench.tasks.findings import Finding
+from scope_ptz.bench.answers import plain_words
+from scope_ptz.bench.tasks.findings import RowFinding
 from scope_ptz.bench.tasks.task import Argument, RequiredCall, ToolName
 from scope_ptz.errors import ToolCallError
 from scope_ptz.taskgen.importing.cells import structure
@@ -38,10 +38,10 @@ class Expectation:
     """``calls``: as far as they could be mapped."""
 
     calls: list[RequiredCall] = field(default_factory=list)
-    findings: list[Finding] = field(default_factory=list)
+    findings: list[RowFinding] = field(default_factory=list)
 
     def note(self, kind: Any, detail: str) -> None:
-        self.findings.append(Finding(kind=kind, detail=detail[:300]))
+        self.findings.append(RowFinding(kind=kind, detail=detail[:300]))
 
 
 def expected_calls(order_cell: str, arguments_cell: str, *, compare: bool, preset_of: PresetOf) -> Expectation:

@@ -8,11 +8,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from scope_ptz.bench.tasks.facts import TaskFacts
-from scope_ptz.bench.tasks.findings import Finding, Kind
+from scope_ptz.bench.tasks.findings import FindingKind, RowFinding
 from scope_ptz.bench.tasks.imported import ImportedTask, Policy
 from scope_ptz.bench.tasks.task import Category, RequiredCall, Scope
-from scope_ptz.bench.tasks.wording import call_in_words
+from scope_ptz.bench.tasks.task_facts import TaskFacts
+from scope_ptz.bench.tasks.task_wording import call_in_words
 from scope_ptz.taskgen.importing.calls import Expectation, expected_calls
 from scope_ptz.taskgen.importing.mapping import category_of, compares_arguments, order_of, policy_of, scope_of, spelled
 from scope_ptz.taskgen.importing.places import Places
@@ -25,7 +25,7 @@ _DIFFICULTIES: dict[str, Literal["easy", "medium", "hard"]] = {
     "normal": "medium", "2": "medium", "hard": "hard", "difficult": "hard", "high": "hard", "3": "hard",
 }  # fmt: skip
 _MOST_CHARS = 4000
-Note = Callable[[Kind, str], None]
+Note = Callable[[FindingKind, str], None]
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class RowRead:
     policy: Policy
     order: Literal["ordered", "any"]
     difficulty: Literal["easy", "medium", "hard"]
-    findings: tuple[Finding, ...]
+    findings: tuple[RowFinding, ...]
 
     @property
     def line(self) -> int:
@@ -65,7 +65,7 @@ class RowRead:
         """Whether a call that moves the camera is expected."""
         return any(call.tool in MOVERS for call in self.calls)
 
-    def task(self, dataset: str, name: str, places: Places, findings: tuple[Finding, ...]) -> ImportedTask | None:
+    def task(self, dataset: str, name: str, places: Places, findings: tuple[RowFinding, ...]) -> ImportedTask | None:
         """The task; None when something is in its way."""
         if self.scene is None or self.preset is None or self.category is None or any(f.blocks for f in findings):
             return None
@@ -98,10 +98,10 @@ class RowRead:
 
 def read_row(row: Row, places: Places) -> RowRead:
     """What a row says, in our words, with everything that is odd about its cells."""
-    cells, notes = row.cells, list[Finding]()
+    cells, notes = row.cells, list[RowFinding]()
 
-    def note(kind: Kind, detail: str) -> None:
-        notes.append(Finding(kind=kind, detail=detail[:300]))
+    def note(kind: FindingKind, detail: str) -> None:
+        notes.append(RowFinding(kind=kind, detail=detail[:300]))
 
     question, answer = cells["question"], cells["expected_answer"]
     if not question:

@@ -8,11 +8,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from scope_ptz.bench.answers.reader import agrees, read
-from scope_ptz.bench.programs import Equip, Stage
-from scope_ptz.bench.scoring.episode import Episode, Eyes
+from scope_ptz.bench.answers import agrees, parse_answer
+from scope_ptz.bench.program_runner import MakeToolContext, ProgramRunner
+from scope_ptz.bench.scoring.episode import Episode, FrameGeometry
 from scope_ptz.bench.scoring.misperceptions import wrong_reads
-from scope_ptz.bench.scoring.verdict import judge
+from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.expected import ActionOnly, NoneThere, Number
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.simulator.pack import Scene
@@ -27,7 +27,7 @@ MOST_GUESSED = 0.03
 ENOUGH = 300
 """Of fewer core tasks such a share says nothing."""
 
-EYES = Eyes(1280, 720)
+EYES = FrameGeometry(1280, 720)
 Say = Callable[[int, int], None]
 
 
@@ -107,7 +107,7 @@ _HONEST = ("reference", "detour", "twice", "worded")
 async def validate(
     tasks: Sequence[Task],
     scenes: Mapping[str, Scene],
-    equip: Equip,
+    equip: MakeToolContext,
     *,
     seed: int = 1,
     look: Look = view_truth,
@@ -122,7 +122,7 @@ async def validate(
     """
     report, common, usual = Report(), common_answers(tasks), common_answers(tasks, presences=True)
     siblings = sibling_answers(tasks)
-    stages = {name: Stage(scene, equip, EYES) for name, scene in scenes.items()}
+    stages = {name: ProgramRunner(scene, equip, EYES) for name, scene in scenes.items()}
     world = ""
     # World by world, whose layers are let go of after it: all of them together are large.
     for number, task in enumerate(sorted(tasks, key=lambda task: task.world), 1):
@@ -165,7 +165,7 @@ def _weigh_guesses(report: Report, tasks: Sequence[Task]) -> None:
 class _Proof:
     """All attempts at one task. Programs that several attempts share are run once."""
 
-    def __init__(self, report: Report, task: Task, stage: Stage) -> None:
+    def __init__(self, report: Report, task: Task, stage: ProgramRunner) -> None:
         self.report, self.task, self.stage = report, task, stage
         self._ran: dict[str, Episode] = {}
 
@@ -186,7 +186,7 @@ class _Proof:
         """Which answers happen to be right."""
         for attempt in guesses(self.task, usual):
             passed = self.report.guessed.setdefault(attempt.name, set())
-            if judge(self.task, await self._episode(attempt)).headline == "correct":
+            if score_episode(self.task, await self._episode(attempt)).headline == "correct":
                 passed.add(self.task.id)
 
     async def _episode(self, attempt: Attempt) -> Episode:
@@ -196,7 +196,7 @@ class _Proof:
         return replace(self._ran[key], text=attempt.text, outcome=attempt.outcome)
 
     async def _hold(self, attempt: Attempt, name: str, *, passes: bool, again: bool = False) -> None:
-        verdict = judge(self.task, await self._episode(attempt))
+        verdict = score_episode(self.task, await self._episode(attempt))
         passed = verdict.headline == "correct"
         self.report.tried[name] += not again
         self.report.passed[name] += passed
@@ -231,7 +231,7 @@ def sibling_answers(tasks: Sequence[Task]) -> dict[str, str]:
         others = [twin] if twin else [t for t in later if t.category == task.category and t.expected.kind == task.expected.kind]
         for other in others:
             text = right_answers(other.expected)[0]
-            if agrees(task.expected, read(task.expected, text)) is not True:
+            if agrees(task.expected, parse_answer(task.expected, text)) is not True:
                 found[task.id] = text
                 break
     return found

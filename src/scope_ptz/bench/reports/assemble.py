@@ -8,17 +8,25 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from scope_ptz.bench.reports.accuracy import KIND_WORDS, accuracy_section
-from scope_ptz.bench.reports.comparing import compare, comparison_section, comparison_table
-from scope_ptz.bench.reports.failures import MODE_TITLES, by_rules, error_section, oracle_section
-from scope_ptz.bench.reports.labels import served_instead
+from scope_ptz.bench.reports.display_names import served_instead
+from scope_ptz.bench.reports.error_analysis import MODE_TITLES, by_rules, error_section, oracle_section
 from scope_ptz.bench.reports.latency import latency_section
+from scope_ptz.bench.reports.paired_comparison import compare, comparison_section, comparison_table
 from scope_ptz.bench.reports.paper import paper_section
 from scope_ptz.bench.reports.recommendations import architecture_section, design_section, scope_section, spread_section
+from scope_ptz.bench.reports.report_runs import (
+    CATEGORY_TITLES,
+    ReportRun,
+    main_task_set,
+    of_main_set,
+    on_the_same_tasks,
+    pairs_of,
+    report_runs,
+)
 from scope_ptz.bench.reports.review import audit_section, conduct_section, costs_section
-from scope_ptz.bench.reports.runs import CATEGORY_TITLES, Run, collect, main_task_set, of_main_set, on_the_same_tasks, pairs_of
 from scope_ptz.bench.reports.sections import Section
 from scope_ptz.bench.reports.sensitivity import baseline_section, reaction_section, repeats_section, sensitivity_section
-from scope_ptz.bench.reports.tables import Column, Marked, Table, Value, interval
+from scope_ptz.bench.reports.tables import CellValue, Column, MarkedCell, ReportTable, interval
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Evaluation
 from scope_ptz.errors import InputError
@@ -26,22 +34,22 @@ from scope_ptz.registry import Registry
 
 
 @dataclass(frozen=True, slots=True)
-class Report:
+class EvaluationReport:
     """``summary``: what a hurried reader should know; ``warnings``: what to know before believing any of it."""
 
-    runs: tuple[Run, ...]
+    runs: tuple[ReportRun, ...]
     summary: tuple[str, ...]
     warnings: tuple[str, ...]
     sections: tuple[Section, ...]
 
     @property
-    def tables(self) -> tuple[Table, ...]:
+    def tables(self) -> tuple[ReportTable, ...]:
         return tuple(table for section in self.sections for table in section.tables)
 
 
-def build_report(evaluations: Sequence[Evaluation], registry: Registry, pages: Mapping[str, str] | None = None) -> Report:
+def build_report(evaluations: Sequence[Evaluation], registry: Registry, pages: Mapping[str, str] | None = None) -> EvaluationReport:
     """All sections. ``pages``: the page of each failed task, by the task's id. Raises ``InputError`` without any trial."""
-    runs = collect(evaluations, registry)
+    runs = report_runs(evaluations, registry)
     if not any(run.evaluation.trials for run in runs):
         raise InputError("These logs hold no finished run of a task. Finish one with 'scope bench run' first.")
     main = of_main_set(runs)
@@ -71,7 +79,7 @@ def build_report(evaluations: Sequence[Evaluation], registry: Registry, pages: M
         _overview(runs),
         paper_section(),
     ]
-    return Report(
+    return EvaluationReport(
         runs, _summary(runs, ranked, alike), _warnings(runs, ranked, alike), tuple(_told(s) for s in sections if s is not None)
     )
 
@@ -85,7 +93,7 @@ def _told(section: Section) -> Section:
     return replace(section, text=text, tables=tuple(table for table in section.tables if table.rows))
 
 
-def _overview(runs: Sequence[Run]) -> Section:
+def _overview(runs: Sequence[ReportRun]) -> Section:
     columns = (
         Column("run", "Run"),
         Column("kind", "What it is"),
@@ -111,11 +119,11 @@ def _overview(runs: Sequence[Run]) -> Section:
         Column("host", "Host"),
     )
     text = ("Under what conditions each run was made, from its run card.",)
-    table = Table("runs", "Runs and their conditions", columns, tuple(_card_row(run) for run in runs))
+    table = ReportTable("runs", "Runs and their conditions", columns, tuple(_card_row(run) for run in runs))
     return Section("runs", "Conditions", text, (), (table,), frozenset({"runs"}))
 
 
-def _card_row(run: Run) -> tuple[Value, ...]:
+def _card_row(run: ReportRun) -> tuple[CellValue, ...]:
     card = run.evaluation.card
     sampling = ", ".join(f"{key} {value}" for key, value in _flat(card.sampling))
     return (
@@ -157,7 +165,7 @@ def _reported(said: Mapping[str, str]) -> str | None:
     return ", ".join(f"{key} {value}" for key, value in sorted(said.items())) or None
 
 
-def _warnings(runs: Sequence[Run], ranked: Sequence[Run], alike: Sequence[Run]) -> tuple[str, ...]:
+def _warnings(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], alike: Sequence[ReportRun]) -> tuple[str, ...]:
     told = [
         f"{run.label} is unfinished: {len(run.evaluation.trials)} of {run.evaluation.wanted} trials."
         for run in runs
@@ -189,7 +197,7 @@ def _warnings(runs: Sequence[Run], ranked: Sequence[Run], alike: Sequence[Run]) 
     return tuple(told)
 
 
-def _served_otherwise(runs: Sequence[Run]) -> list[str]:
+def _served_otherwise(runs: Sequence[ReportRun]) -> list[str]:
     """Models in whose place a server named another one."""
     found: dict[str, str] = {}
     for run in runs:
@@ -206,7 +214,7 @@ def _served_otherwise(runs: Sequence[Run]) -> list[str]:
     ]
 
 
-def _summary(runs: Sequence[Run], ranked: Sequence[Run], alike: Sequence[Run]) -> tuple[str, ...]:
+def _summary(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], alike: Sequence[ReportRun]) -> tuple[str, ...]:
     trials = sum(len(run.evaluation.trials) for run in runs)
     told = [
         f"{_number(len(runs), 'run')} with {_number(trials, 'trial')} (a trial is one run of one task); "
@@ -235,7 +243,7 @@ def _summary(runs: Sequence[Run], ranked: Sequence[Run], alike: Sequence[Run]) -
     return tuple(told)
 
 
-def _percent(run: Run) -> str:
+def _percent(run: ReportRun) -> str:
     found = run.macro
     if found is None:
         return "not measured"
@@ -248,7 +256,7 @@ def _number(count: int, one: str, many: str = "") -> str:
     return f"{count:,} {one if count == 1 else many or one + 's'}"
 
 
-def _failed_tasks(runs: Sequence[Run], pages: Mapping[str, str]) -> Section:
+def _failed_tasks(runs: Sequence[ReportRun], pages: Mapping[str, str]) -> Section:
     """Every task that some run failed, with its page."""
     columns = (
         Column("task", "Task"),
@@ -273,7 +281,7 @@ def _failed_tasks(runs: Sequence[Run], pages: Mapping[str, str]) -> Section:
             names = "; ".join(dict.fromkeys(failed))
             rows.append(
                 (
-                    Marked(task, link=pages.get(task, "")),
+                    MarkedCell(task, link=pages.get(task, "")),
                     CATEGORY_TITLES[facts.category],
                     facts.instruction,
                     facts.expected,
@@ -287,5 +295,5 @@ def _failed_tasks(runs: Sequence[Run], pages: Mapping[str, str]) -> Section:
         f"{_number(len(rows), 'task')} failed at least once. Failed trials are the incorrect and the unscored ones."
         + (" Each has a page with its frames." if pages else ""),
     )
-    table = Table("failed_tasks", "Failed tasks", columns, tuple(rows))
+    table = ReportTable("failed_tasks", "Failed tasks", columns, tuple(rows))
     return Section("failed", "Failed tasks", text, (), (table,) if rows else (), frozenset({"failed_tasks"}))

@@ -64,7 +64,7 @@ class JudgeReply(BaseModel):
         return self
 
 
-def read_reply(text: str) -> JudgeReply | str:
+def parse_judge_reply(text: str) -> JudgeReply | str:
     """The verdict in a text, or what is wrong with it, in words for the judge.
 
     One JSON object is looked for, alone or with words or a code fence around it. Two objects with different verdicts are none.

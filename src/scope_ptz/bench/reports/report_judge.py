@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from scope_ptz.bench.judging.deciding import first_verdict
-from scope_ptz.bench.judging.tally import VERDICTS
-from scope_ptz.bench.reports.runs import Run
+from scope_ptz.bench.judging.deciding_judge import first_verdict
+from scope_ptz.bench.judging.judgement_tally import VERDICTS
+from scope_ptz.bench.reports.report_runs import ReportRun
 from scope_ptz.bench.scoring.trials import Judgement, Trial
 
 
-def judge_name(runs: Sequence[Run]) -> str | None:
+def judge_name(runs: Sequence[ReportRun]) -> str | None:
     """The judge that decides on most trials that only a judge can score; else the one with a verdict on most trials, of equals the
     first by name. None where there is no judge. One whose server always failed is named only where there is no other."""
     decides, gave, asked = Counter[str](), Counter[str](), Counter[str]()

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-Payload = float | bool | str | frozenset[str] | tuple[str, ...] | tuple[frozenset[int], frozenset[int]]
+AnswerValue = float | bool | str | frozenset[str] | tuple[str, ...] | tuple[frozenset[int], frozenset[int]]
 
 
 @dataclass(frozen=True, slots=True)
-class Value:
+class ParsedValue:
     """The answer says this. Of a description: the numbers of the facts stated and of the contradictions stated."""
 
-    value: Payload
+    value: AnswerValue
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,4 +26,4 @@ class Unreadable:
     reason: str
 
 
-Reading = Value | Declined | Unreadable
+ParsedAnswer = ParsedValue | Declined | Unreadable

@@ -13,7 +13,7 @@ _MOST_CHARS = 300
 
 
 @dataclass(frozen=True, slots=True)
-class Tally:
+class JudgementTally:
     """Judgements by what came of them. ``failure``: what the first failed one says, on one line."""
 
     verdicts: int = 0
@@ -22,7 +22,7 @@ class Tally:
     failure: str = ""
 
     @classmethod
-    def of(cls, judgements: Iterable[Judgement]) -> Tally:
+    def of(cls, judgements: Iterable[Judgement]) -> JudgementTally:
         made = list(judgements)
         failed = [judgement.reason for judgement in made if judgement.verdict == "failed"]
         return cls(
@@ -32,8 +32,8 @@ class Tally:
             failure=" ".join(failed[0].split())[:_MOST_CHARS] if failed else "",
         )
 
-    def __add__(self, other: Tally) -> Tally:
-        return Tally(
+    def __add__(self, other: JudgementTally) -> JudgementTally:
+        return JudgementTally(
             self.verdicts + other.verdicts, self.unparseable + other.unparseable, self.failed + other.failed,
             self.failure or other.failure,
         )  # fmt: skip
@@ -59,7 +59,7 @@ def not_judged(trial: Trial) -> bool:
     return without_verdict(trial) and not any(judgement.verdict == "unparseable" for judgement in trial.judgements)
 
 
-def wanted(trials: Iterable[Trial], judge: str, repeats: int) -> list[Judgement | None]:
+def requested_judgements(trials: Iterable[Trial], judge: str, repeats: int) -> list[Judgement | None]:
     """The first ``repeats`` judgements of every run by a judge and today's prompt; None for those it was not asked for yet. Runs
     that infrastructure broke are not judged."""
     found: list[Judgement | None] = []
@@ -74,4 +74,6 @@ def judged_by(trials: Iterable[Trial], judge: str, repeats: int) -> str | None:
     """Who has judged every run so often, without a failure: the ``judge`` of that name, or anyone where it is empty."""
     rows = list(trials)
     names = [judge] if judge else dict.fromkeys(j.judge for trial in rows for j in trial.judgements)
-    return next((n for n in names if all(j is not None and j.verdict != "failed" for j in wanted(rows, n, repeats))), None)
+    return next(
+        (n for n in names if all(j is not None and j.verdict != "failed" for j in requested_judgements(rows, n, repeats))), None
+    )

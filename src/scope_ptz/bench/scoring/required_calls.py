@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
-from scope_ptz.bench.answers.words import names_any
-from scope_ptz.bench.scoring.episode import Call
+from scope_ptz.bench.answers import names_any
+from scope_ptz.bench.scoring.episode import EpisodeCall
 from scope_ptz.bench.tasks.task import Argument, RequiredCall
 from scope_ptz.tools.registry import TOOLS
 
 _DEFAULTS: dict[str, dict[str, Any]] = {name: tool.defaults() for name, tool in TOOLS.items()}
 
 
-def arguments_of(call: Call) -> Mapping[str, Any]:
+def arguments_of(call: EpisodeCall) -> Mapping[str, Any]:
     """The arguments of a call with defaults filled in; a zoom by percent is also given as its factor, and so is one that is left
     as it is."""
     arguments = {**_DEFAULTS.get(call.name, {}), **{k: v for k, v in call.arguments.items() if v is not None}}
@@ -25,7 +25,7 @@ def arguments_of(call: Call) -> Mapping[str, Any]:
     return arguments
 
 
-def fits(wanted: RequiredCall, call: Call, leave_out: Collection[str] = ()) -> bool:
+def call_matches(wanted: RequiredCall, call: EpisodeCall, leave_out: Collection[str] = ()) -> bool:
     """Whether a call is the required one and found its target, if it has one. ``leave_out``: arguments that are not compared."""
     if not call.succeeded or call.name != wanted.tool:
         return False
@@ -44,12 +44,12 @@ def _fits_argument(spec: Argument, given: Any) -> bool:
     return is_number and spec.equals is not None and abs(given - spec.equals) <= spec.within + 1e-6
 
 
-def in_order(wanted: Sequence[RequiredCall], calls: Sequence[Call], leave_out: Collection[str] = ()) -> str | None:
+def missing_in_order(wanted: Sequence[RequiredCall], calls: Sequence[EpisodeCall], leave_out: Collection[str] = ()) -> str | None:
     """What is missing of the required calls as a subsequence of the calls made; None when all are there."""
     at = 0
     for spec in wanted:
         for number in range(spec.times):
-            while at < len(calls) and not fits(spec, calls[at], leave_out):
+            while at < len(calls) and not call_matches(spec, calls[at], leave_out):
                 at += 1
             if at == len(calls):
                 time = f" (time {number + 1} of {spec.times})" if spec.times > 1 else ""
@@ -58,14 +58,16 @@ def in_order(wanted: Sequence[RequiredCall], calls: Sequence[Call], leave_out: C
     return None
 
 
-def in_any_order(wanted: Sequence[RequiredCall], calls: Sequence[Call], leave_out: Collection[str] = ()) -> str | None:
+def missing_in_any_order(
+    wanted: Sequence[RequiredCall], calls: Sequence[EpisodeCall], leave_out: Collection[str] = ()
+) -> str | None:
     """What is missing of the required calls when each takes a call of its own; None when all are there."""
     slots = [spec for spec in wanted for _ in range(spec.times)]
     taken: dict[int, int] = {}
 
     def place(slot: int, tried: set[int]) -> bool:
         for number, call in enumerate(calls):
-            if number not in tried and fits(slots[slot], call, leave_out):
+            if number not in tried and call_matches(slots[slot], call, leave_out):
                 tried.add(number)
                 if number not in taken or place(taken[number], tried):
                     taken[number] = slot

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from scope_ptz.bench.answers.choices import read_choice, read_description, read_name_set
-from scope_ptz.bench.answers.counts import read_number
-from scope_ptz.bench.answers.orders import read_ordering, read_relation
-from scope_ptz.bench.answers.presence import read_none_there, read_yes_no
-from scope_ptz.bench.answers.result import Declined, Reading, Unreadable, Value
-from scope_ptz.bench.answers.strings import read_text, same_text
-from scope_ptz.bench.answers.text import Script, script
+from scope_ptz.bench.answers.choices import parse_choice, parse_description, parse_name_set
+from scope_ptz.bench.answers.counts import parse_number
+from scope_ptz.bench.answers.orders import parse_ordering, parse_relation
+from scope_ptz.bench.answers.parsed import Declined, ParsedAnswer, ParsedValue, Unreadable
+from scope_ptz.bench.answers.presence import parse_none_there, parse_yes_no
+from scope_ptz.bench.answers.strings import parse_text, same_text
+from scope_ptz.bench.answers.text import AnswerText, answer_text
 from scope_ptz.bench.tasks.expected import (
     ActionOnly,
     AnyExpected,
@@ -26,11 +26,11 @@ from scope_ptz.bench.tasks.expected import (
 _EPSILON = 1e-9
 
 
-def read(expected: AnyExpected, answer: str) -> Reading:
+def parse_answer(expected: AnyExpected, answer: str) -> ParsedAnswer:
     """What an answer says, as the type of value that is expected. Which value is expected plays no part in it."""
-    said = script(answer)
+    said = answer_text(answer)
     reading = _read(expected, said, answer)
-    nothing_said = isinstance(expected, Description) and reading == Value((frozenset[int](), frozenset[int]()))
+    nothing_said = isinstance(expected, Description) and reading == ParsedValue((frozenset[int](), frozenset[int]()))
     if said.declined and (isinstance(reading, Unreadable) or nothing_said):
         return Declined()
     if said.hedged and isinstance(reading, Unreadable):
@@ -38,32 +38,34 @@ def read(expected: AnyExpected, answer: str) -> Reading:
     return reading
 
 
-def _read(expected: AnyExpected, said: Script, answer: str) -> Reading:
+def _read(expected: AnyExpected, said: AnswerText, answer: str) -> ParsedAnswer:
     match expected:
         case Number():
-            number = Unreadable("only a guess") if said.hedged else read_number(said, expected.unit, part=expected.part)
-            return number if isinstance(number, Unreadable) else Unreadable(number) if isinstance(number, str) else Value(number)
+            number = Unreadable("only a guess") if said.hedged else parse_number(said, expected.unit, part=expected.part)
+            return (
+                number if isinstance(number, Unreadable) else Unreadable(number) if isinstance(number, str) else ParsedValue(number)
+            )
         case YesNo():
-            return read_yes_no(expected, said)
+            return parse_yes_no(expected, said)
         case Choice():
-            return read_choice(expected, said)
+            return parse_choice(expected, said)
         case Text():
-            return read_text(expected, said, answer)
+            return parse_text(expected, said, answer)
         case NameSet():
-            return read_name_set(expected, said)
+            return parse_name_set(expected, said)
         case Ordering():
-            return read_ordering(expected, said)
+            return parse_ordering(expected, said)
         case Relation():
-            return read_relation(expected, said)
+            return parse_relation(expected, said)
         case Description():
-            return read_description(expected, said)
+            return parse_description(expected, said)
         case NoneThere():
-            return read_none_there(expected, said)
+            return parse_none_there(expected, said)
         case ActionOnly():
             return Unreadable("no answer is wanted")
 
 
-def agrees(expected: AnyExpected, reading: Reading) -> bool | None:
+def agrees(expected: AnyExpected, reading: ParsedAnswer) -> bool | None:
     """Whether a reading is what was expected; None when nothing could be read. Declining is an answer, and a wrong one."""
     if isinstance(reading, Unreadable):
         return None

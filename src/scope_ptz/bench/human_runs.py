@@ -12,13 +12,13 @@ from pydantic import ValidationError
 from scope_ptz import __version__
 from scope_ptz.agent.timing import Timings
 from scope_ptz.agent.trace import Trace, picture_of, read_trace
-from scope_ptz.bench.scoring.episode import Places, episode_of
+from scope_ptz.bench.scoring.episode import PresetViewpoints, episode_of
 from scope_ptz.bench.scoring.error_modes import error_mode
-from scope_ptz.bench.scoring.trials import Check, Evaluation, ModelCard, RunCard, Trial
-from scope_ptz.bench.scoring.verdict import judge
+from scope_ptz.bench.scoring.trials import CheckRecord, Evaluation, ModelCard, RunCard, Trial
+from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.files import digest_of
 from scope_ptz.bench.tasks.task import Task
-from scope_ptz.bench.tasks.wording import facts_of
+from scope_ptz.bench.tasks.task_wording import facts_of
 from scope_ptz.errors import InputError, OutputError, TraceError
 from scope_ptz.simulator.models import SceneFile
 
@@ -26,7 +26,7 @@ RESULT = "evaluation.json"
 DIGEST_CHARS = 16
 
 
-def card(by: str, split: str, tasks: Sequence[Task], started: str, max_steps: int) -> RunCard:
+def human_run_card(by: str, split: str, tasks: Sequence[Task], started: str, max_steps: int) -> RunCard:
     """The run card of a person: planner and eyes are one."""
     who = ModelCard(name=by, provider="person")
     return RunCard(
@@ -44,10 +44,10 @@ def card(by: str, split: str, tasks: Sequence[Task], started: str, max_steps: in
     )
 
 
-def trial(task: Task, scene: SceneFile, trace: Trace, sample: str) -> Trial:
+def human_trial(task: Task, scene: SceneFile, trace: Trace, sample: str) -> Trial:
     """A finished run, judged by the task's checks. The person saw every view that the camera showed before a decision."""
-    episode = episode_of(trace, Places.of(scene), planner_sees=True)
-    verdict, ended = judge(task, episode), trace.ended
+    episode = episode_of(trace, PresetViewpoints.of(scene), planner_sees=True)
+    verdict, ended = score_episode(task, episode), trace.ended
     viewpoint = next(preset.viewpoint for preset in scene.presets if preset.name == task.preset)
     return Trial(
         task=facts_of(task, viewpoint),
@@ -55,7 +55,7 @@ def trial(task: Task, scene: SceneFile, trace: Trace, sample: str) -> Trial:
         headline=verdict.headline,
         reason=verdict.reason,
         error_mode=error_mode(task, episode),
-        checks=tuple(Check(name=c.name, passed=c.passed, reason=c.reason) for c in verdict.checks),
+        checks=tuple(CheckRecord(name=c.name, passed=c.passed, reason=c.reason) for c in verdict.checks),
         collateral=verdict.collateral,
         outcome=episode.outcome,
         answer=episode.text,
@@ -68,7 +68,7 @@ def trial(task: Task, scene: SceneFile, trace: Trace, sample: str) -> Trial:
 
 
 @dataclass(frozen=True, slots=True)
-class KeptRun:
+class StoredHumanRun:
     """A person's run as reports show it: its trace, and the pictures in its folder."""
 
     trace: Trace
@@ -82,12 +82,12 @@ class KeptRun:
             return None
 
 
-def open_run(result: Path, sample: str) -> KeptRun:
+def open_run(result: Path, sample: str) -> StoredHumanRun:
     """A run of a result by its name (``Trial.sample``), from its folder beside the result. Raises ``TraceError``."""
     folder = result.parent / sample
     if sample in {"", ".", ".."} or Path(sample).name != sample:
         raise TraceError(f"{result} names a run outside its own folder: {sample}.")
-    return KeptRun(read_trace(folder))
+    return StoredHumanRun(read_trace(folder))
 
 
 def write_result(evaluation: Evaluation, folder: Path) -> Path:

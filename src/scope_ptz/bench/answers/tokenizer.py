@@ -128,3 +128,8 @@ def _forms(word: str) -> frozenset[str]:
 def same_word(one: str, other: str) -> bool:
     """Whether two words are the same but for their number."""
     return one == other or one in _forms(other) or other in _forms(one)
+
+
+def all_wordings(name: str, further: Iterable[str]) -> tuple[str, ...]:
+    """Return all wordings of an option: its name, then its further wordings."""
+    return name, *further

@@ -6,8 +6,8 @@ import re
 from collections.abc import Sequence
 from itertools import pairwise
 
-from scope_ptz.bench.answers.numerals import number_at
-from scope_ptz.bench.answers.text import Mention, Script
+from scope_ptz.bench.answers.number_words import number_at
+from scope_ptz.bench.answers.text import AnswerText, NameMention
 
 _CONCLUDES = frozenset(
     {"so", "therefore", "thus", "hence", "order", "ordering", "ranking", "ranked", "answer", "sorted", "conclusion", "from"}
@@ -20,7 +20,7 @@ _SAID_OF = frozenset(
 )
 
 
-def concluding(script: Script, mentions: Sequence[Mention], names: set[str]) -> int:
+def concluding(script: AnswerText, mentions: Sequence[NameMention], names: set[str]) -> int:
     """The word from which the order counts: after the last word that concludes and still has all of the names after it; else where,
     after a table of numbers, all are listed without numbers; else 0."""
     last = 0
@@ -32,7 +32,7 @@ def concluding(script: Script, mentions: Sequence[Mention], names: set[str]) -> 
     return last or _listed_after_numbers(script, mentions, names)
 
 
-def _listed_after_numbers(script: Script, mentions: Sequence[Mention], names: set[str]) -> int:
+def _listed_after_numbers(script: AnswerText, mentions: Sequence[NameMention], names: set[str]) -> int:
     numbered = [bool(_numbers(script, [m])) for m in mentions]
     begins = numbered.index(False) if False in numbered else 0
     listed = mentions[begins : begins + len(names)]
@@ -42,7 +42,9 @@ def _listed_after_numbers(script: Script, mentions: Sequence[Mention], names: se
     return next(at for at, word in enumerate(script.words) if word.clause in clauses)
 
 
-def contradicts_its_numbers(script: Script, mentions: Sequence[Mention], order: Sequence[str], first: Sequence[str]) -> bool:
+def contradicts_its_numbers(
+    script: AnswerText, mentions: Sequence[NameMention], order: Sequence[str], first: Sequence[str]
+) -> bool:
     """Whether the numbers told of the things, metres or how many, run against an order from "most" or from "nearest"."""
     falling, rising = bool(_FAR_FIRST.intersection(first)), bool(_NEAR_FIRST.intersection(first))
     if falling == rising:
@@ -52,7 +54,7 @@ def contradicts_its_numbers(script: Script, mentions: Sequence[Mention], order: 
     return any(max(one) < min(two) if falling else min(one) > max(two) for one, two in pairwise(values))
 
 
-def _numbers(script: Script, mentions: Sequence[Mention]) -> dict[str, set[float]]:
+def _numbers(script: AnswerText, mentions: Sequence[NameMention]) -> dict[str, set[float]]:
     """The numbers that stand with each thing: "4 skips", "skips (4)", "skips: 4", "the skip is 11 m away"."""
     told = dict[str, set[float]]()
     words = script.words
@@ -71,7 +73,7 @@ def _numbers(script: Script, mentions: Sequence[Mention]) -> dict[str, set[float
     return told
 
 
-def _after(script: Script, mention: Mention) -> float | None:
+def _after(script: AnswerText, mention: NameMention) -> float | None:
     words, at = script.words, mention.end
     if at >= len(words):
         return None

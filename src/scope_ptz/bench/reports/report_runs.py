@@ -11,14 +11,14 @@ from typing import Literal
 
 import numpy as np
 
-from scope_ptz.bench.judging.tally import without_verdict
-from scope_ptz.bench.reports.labels import served_instead, split_name
+from scope_ptz.bench.judging.judgement_tally import without_verdict
+from scope_ptz.bench.reports.display_names import served_instead, split_name
 from scope_ptz.bench.scoring.trials import Evaluation, ModelCard, Trial
-from scope_ptz.bench.statistics.clustered import Estimate, Scores, macro_weights, share
+from scope_ptz.bench.statistics.clustered import IntervalEstimate, Scores, macro_weights, share
 from scope_ptz.errors import UnknownNameError
 from scope_ptz.registry import Model, Registry
 
-Kind = Literal["models", "reference", "blind", "person"]
+RunKind = Literal["models", "reference", "blind", "person"]
 """``reference``: the grammar planner or ground-truth eyes took part; ``blind``: nothing was seen; ``person``: a human baseline."""
 PERSON = "person"
 GRAMMAR, GROUND_TRUTH = "grammar", "ground-truth"
@@ -34,7 +34,7 @@ CATEGORY_TITLES = {
 
 
 @dataclass(frozen=True, eq=False)
-class Run:
+class ReportRun:
     """One evaluation; a trial is one run of one task in it.
 
     ``label``: how the report calls it, unlike any other; it says what sets the run apart from others wherever it stands.
@@ -49,7 +49,7 @@ class Run:
     elsewhere: str = ""
 
     @property
-    def kind(self) -> Kind:
+    def kind(self) -> RunKind:
         card = self.evaluation.card
         if card.planner.provider == PERSON:
             return "person"
@@ -123,12 +123,12 @@ class Run:
         return tuple(t for t in self.scored if t.scored_by == "checks")
 
     @cached_property
-    def macro(self) -> Estimate | None:
+    def macro(self) -> IntervalEstimate | None:
         """Unweighted mean over the categories that occur."""
         return macro(scores_of(self.scored)) if self.scored else None
 
     @cached_property
-    def micro(self) -> Estimate | None:
+    def micro(self) -> IntervalEstimate | None:
         return share(scores_of(self.scored))
 
 
@@ -143,7 +143,7 @@ def scores_of(trials: Sequence[Trial], right: Iterable[bool] | None = None) -> S
     )
 
 
-def macro(scores: Scores) -> Estimate | None:
+def macro(scores: Scores) -> IntervalEstimate | None:
     """Macro accuracy with its interval; None without data."""
     return share(scores, macro_weights(scores)) if len(scores.values) else None
 
@@ -153,10 +153,10 @@ def viewpoint(trial: Trial) -> str:
     return f"{trial.task.scene}/{trial.task.viewpoint}"
 
 
-def collect(evaluations: Sequence[Evaluation], registry: Registry) -> tuple[Run, ...]:
+def report_runs(evaluations: Sequence[Evaluation], registry: Registry) -> tuple[ReportRun, ...]:
     """Runs in the order of the paper's table: by eyes, then by the planner's size; other splits and reference runs last."""
     splits = {split_name(e.card.split) for e in evaluations}
-    bare = [Run(0, e, "", _known(e.card.planner, registry), _known(e.card.perception, registry)) for e in evaluations]
+    bare = [ReportRun(0, e, "", _known(e.card.planner, registry), _known(e.card.perception, registry)) for e in evaluations]
     wanted = [_label(run, with_split=len(splits) > 1) for run in bare]
     shared = {label for label, number in Counter(wanted).items() if number > 1}
     wanted = [
@@ -182,7 +182,7 @@ def _named(card: ModelCard, model: Model | None) -> str:
     return card.name if served is None else f"{card.name} (served: {served})"
 
 
-def _elsewhere(run: Run, common: frozenset[str]) -> str:
+def _elsewhere(run: ReportRun, common: frozenset[str]) -> str:
     """What a run did in place of the common tasks; empty when it did these."""
     if run.tasks == common:
         return ""
@@ -191,7 +191,7 @@ def _elsewhere(run: Run, common: frozenset[str]) -> str:
     return f"{len(run.tasks)} tasks, {len(run.tasks & common)} of the {len(common)} shared"
 
 
-def _label(run: Run, *, with_split: bool) -> str:
+def _label(run: ReportRun, *, with_split: bool) -> str:
     card = run.evaluation.card
     pair = f"{run.planner_name} + {run.eyes_name}"
     parts = [f"person {card.planner.name}" if card.planner.provider == PERSON else pair]
@@ -208,13 +208,13 @@ def _known(card: ModelCard, registry: Registry) -> Model | None:
         return None
 
 
-def _order(run: Run) -> tuple[bool, bool, str, str, float, str, str]:
+def _order(run: ReportRun) -> tuple[bool, bool, str, str, float, str, str]:
     card = run.evaluation.card
     size = run.planner.size_b if run.planner else 0.0
     return not run.ranked, card.split != "core", card.split, run.eyes_name, size, run.planner_name, run.label
 
 
-def main_task_set(runs: Sequence[Run]) -> tuple[str, str] | None:
+def main_task_set(runs: Sequence[ReportRun]) -> tuple[str, str] | None:
     """The task set with the most ranked runs that have headline tasks; of equals the one with more trials."""
     having = [run for run in runs if run.headline]
     weight: dict[tuple[str, str], tuple[int, int]] = {}
@@ -224,36 +224,36 @@ def main_task_set(runs: Sequence[Run]) -> tuple[str, str] | None:
     return max(weight, key=lambda key: weight[key]) if weight else None
 
 
-def of_main_set(runs: Sequence[Run]) -> tuple[Run, ...]:
+def of_main_set(runs: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
     """The runs of the main task set that have anything to tell."""
     main = main_task_set(runs)
     return tuple(run for run in runs if run.task_set == main and run.scored)
 
 
-def main_tasks(runs: Sequence[Run]) -> frozenset[str]:
+def main_tasks(runs: Sequence[ReportRun]) -> frozenset[str]:
     """The tasks that most model pairs of the main task set did; without any pair, that most of its runs did."""
     main = of_main_set(runs)
     alike = on_the_same_tasks(pairs_of(main)) or on_the_same_tasks(main)
     return alike[0].tasks if alike else frozenset()
 
 
-def primary(runs: Sequence[Run]) -> tuple[Run, ...]:
+def primary(runs: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
     """One run a system: the one with the most headline tasks scored, of equals the first."""
-    best: dict[tuple[str, str, str, str], Run] = {}
+    best: dict[tuple[str, str, str, str], ReportRun] = {}
     for run in runs:
         if run.system not in best or len(run.scored) > len(best[run.system].scored):
             best[run.system] = run
     return tuple(run for run in runs if best[run.system] is run)
 
 
-def pairs_of(main: Sequence[Run]) -> tuple[Run, ...]:
+def pairs_of(main: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
     """The ranked systems of a task set; a variant of a pair that is there as it is belongs to the sensitivity section."""
     ranked = [run for run in main if run.ranked]
     plain = {run.system[:3] for run in ranked if not run.system[3]}
     return primary([run for run in ranked if not run.system[3] or run.system[:3] not in plain])
 
 
-def on_the_same_tasks(ranked: Sequence[Run]) -> tuple[Run, ...]:
+def on_the_same_tasks(ranked: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
     """The runs over the set of tasks that most of them did, of equals the larger set: means over others are not comparable."""
     if not ranked:
         return ()
@@ -262,7 +262,7 @@ def on_the_same_tasks(ranked: Sequence[Run]) -> tuple[Run, ...]:
     return tuple(run for run in ranked if run.tasks == common)
 
 
-def timed(run: Run, runs: Sequence[Run]) -> Run:
+def timing_run(run: ReportRun, runs: Sequence[ReportRun]) -> ReportRun:
     """The run from which a system's latency is taken: a finished one without contention if there is any, of these the longest."""
     same = [other for other in runs if other.system == run.system and other.headline]
     alone = [other for other in same if not other.evaluation.card.contended and other.evaluation.finished]

@@ -8,14 +8,14 @@ from dataclasses import replace
 from statistics import fmean
 
 from scope_ptz.bench.reports import charts as drawing
-from scope_ptz.bench.reports.comparing import Comparison, compare
-from scope_ptz.bench.reports.judged import judge_name, verdicts
-from scope_ptz.bench.reports.runs import Run, macro, scores_of
+from scope_ptz.bench.reports.paired_comparison import PairedComparison, compare
+from scope_ptz.bench.reports.report_judge import judge_name, verdicts
+from scope_ptz.bench.reports.report_runs import ReportRun, macro, scores_of
 from scope_ptz.bench.reports.sections import Section
-from scope_ptz.bench.reports.tables import Column, Marked, Table, Value, bare
+from scope_ptz.bench.reports.tables import CellValue, Column, MarkedCell, ReportTable, unmarked
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Judgement, Trial
-from scope_ptz.bench.statistics.clustered import Estimate
+from scope_ptz.bench.statistics.clustered import IntervalEstimate
 
 MODE_TITLES = {
     ErrorMode.VLM_QUERY: "VLM query", ErrorMode.VLM_COUNTING: "VLM counting", ErrorMode.REASONING: "Reasoning",
@@ -27,18 +27,18 @@ BY_RULES = "Incorrect trials by error mode, by the rules"
 PERCEPTION = frozenset({ErrorMode.VLM_QUERY, ErrorMode.VLM_COUNTING})
 
 
-def by_rules(run: Run) -> Counter[ErrorMode]:
+def by_rules(run: ReportRun) -> Counter[ErrorMode]:
     """Incorrect trials by mode, as the rules say; unscored ones have none, and those that a judge scored have the judge's."""
     return Counter(t.error_mode for t in run.checked if t.error_mode is not None)
 
 
-def by_judge(run: Run, judge: str) -> Counter[ErrorMode]:
+def by_judge(run: ReportRun, judge: str) -> Counter[ErrorMode]:
     """Trials that a judge failed, by the mode that it named."""
     said = [j for _, j in verdicts(run.scored, judge) if j.verdict == "incorrect"]
     return Counter(j.error_mode for j in said if j.error_mode is not None)
 
 
-def error_section(runs: Sequence[Run]) -> Section:
+def error_section(runs: Sequence[ReportRun]) -> Section:
     """Error modes of runs of the main task set."""
     checked = [run for run in runs if run.checked]
     rules = {run.label: by_rules(run) for run in checked}
@@ -64,7 +64,7 @@ def error_section(runs: Sequence[Run]) -> Section:
     return Section("errors", "Error modes", text, tuple(charts), tuple(tables))
 
 
-def _mode_table(key: str, title: str, counted: Mapping[str, Counter[ErrorMode]]) -> Table:
+def _mode_table(key: str, title: str, counted: Mapping[str, Counter[ErrorMode]]) -> ReportTable:
     columns = [Column("run", "Run"), *(Column(mode.value, words, "count") for mode, words in MODE_TITLES.items())]
     columns += [Column("failed", "All incorrect", "count"), Column("perception", "VLM query and counting (%)", "share")]
     rows = tuple(
@@ -76,10 +76,10 @@ def _mode_table(key: str, title: str, counted: Mapping[str, Counter[ErrorMode]])
         )
         for label, found in counted.items()
     )
-    return Table(key, title, tuple(columns), rows)
+    return ReportTable(key, title, tuple(columns), rows)
 
 
-def oracle_section(ranked: Sequence[Run], every: Sequence[Run]) -> Section:
+def oracle_section(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> Section:
     """The oracle setting in both ways. ``every``: all runs, among which those with ground-truth eyes are looked for."""
     judge = judge_name(ranked)
     columns = (
@@ -104,7 +104,7 @@ def oracle_section(ranked: Sequence[Run], every: Sequence[Run]) -> Section:
     )
     names = [column.name for column in columns]
     rows = [_oracle_row(run, _by_rules_oracle(run), _judge_oracle(run, judge), _rerun(run, every)) for run in ranked]
-    table = Table("oracle", "The oracle setting", columns, tuple(rows))
+    table = ReportTable("oracle", "The oracle setting", columns, tuple(rows))
     charts = (drawing.oracle_chart(table),) if rows else ()
     if len(rows) > 1:
         table = replace(table, rows=(*rows, *_means(names, rows)), notes=(MEANS,))
@@ -117,16 +117,16 @@ MEANS = (
 )
 
 
-Oracle = tuple[Estimate | None, Estimate | None, float | None]
+Oracle = tuple[IntervalEstimate | None, IntervalEstimate | None, float | None]
 """Macro as it is, macro with perception's failures as right, and perception's share of all errors."""
 
 
-def _by_rules_oracle(run: Run) -> Oracle:
+def _by_rules_oracle(run: ReportRun) -> Oracle:
     right = [t.headline == "correct" or t.error_mode in PERCEPTION for t in run.checked]
     return macro(scores_of(run.checked)), macro(scores_of(run.checked, right)), _perception_share(by_rules(run))
 
 
-def _judge_oracle(run: Run, judge: str | None) -> Oracle:
+def _judge_oracle(run: ReportRun, judge: str | None) -> Oracle:
     said = _clear(run, judge)
     trials = [t for t, _ in said]
     plain = macro(scores_of(trials, [j.verdict == "correct" for _, j in said]))
@@ -134,7 +134,7 @@ def _judge_oracle(run: Run, judge: str | None) -> Oracle:
     return plain, lifted, _perception_share(by_judge(run, judge) if judge else Counter())
 
 
-def _clear(run: Run, judge: str | None) -> list[tuple[Trial, Judgement]]:
+def _clear(run: ReportRun, judge: str | None) -> list[tuple[Trial, Judgement]]:
     """Trials on which the judge gave a verdict."""
     return [(t, j) for t, j in verdicts(run.scored, judge or "") if j.verdict in ("correct", "incorrect")]
 
@@ -143,7 +143,7 @@ def _perception_share(failed: Counter[ErrorMode]) -> float | None:
     return sum(failed[mode] for mode in PERCEPTION) / failed.total() if failed else None
 
 
-def _rerun(run: Run, every: Sequence[Run]) -> tuple[Run, Comparison | None] | None:
+def _rerun(run: ReportRun, every: Sequence[ReportRun]) -> tuple[ReportRun, PairedComparison | None] | None:
     """The run of the same planner with ground-truth eyes over the same task set that shares most tasks with this one, compared."""
     planner, _, agent, variant = run.system
     found = []
@@ -156,32 +156,34 @@ def _rerun(run: Run, every: Sequence[Run]) -> tuple[Run, Comparison | None] | No
     return None if best is None else (best, compare(best, run))
 
 
-def _oracle_row(run: Run, rules: Oracle, judged: Oracle, again: tuple[Run, Comparison | None] | None) -> tuple[Value, ...]:
+def _oracle_row(
+    run: ReportRun, rules: Oracle, judged: Oracle, again: tuple[ReportRun, PairedComparison | None] | None
+) -> tuple[CellValue, ...]:
     gain = again[1].macro if again and again[1] else None
     return run.label, judged[0], judged[1], judged[2], rules[0], rules[1], rules[2], _shared_macro(run, again), gain
 
 
-def _shared_macro(run: Run, again: tuple[Run, Comparison | None] | None) -> Value:
+def _shared_macro(run: ReportRun, again: tuple[ReportRun, PairedComparison | None] | None) -> CellValue:
     """Macro of the run that was made again, on the tasks that both did; it says when these are not all."""
     if again is None:
         return None
     found = macro(scores_of([t for t in again[0].scored if t.task.id in run.tasks]))
     shared = len(again[0].tasks & run.tasks)
-    return found if shared == len(run.tasks) else Marked(found, note=f"on {shared} of its {len(run.tasks)} tasks")
+    return found if shared == len(run.tasks) else MarkedCell(found, note=f"on {shared} of its {len(run.tasks)} tasks")
 
 
-def _means(names: Sequence[str], rows: Sequence[tuple[Value, ...]]) -> list[tuple[Value, ...]]:
+def _means(names: Sequence[str], rows: Sequence[tuple[CellValue, ...]]) -> list[tuple[CellValue, ...]]:
     """Means over pairs, as the paper gives them. Both sides of a comparison are of the same pairs; what is not there is blank."""
     values = [{name: _complete(cell) for name, cell in zip(names, row, strict=True)} for row in rows]
 
-    def means(title: str, *groups: tuple[str, ...]) -> tuple[Value, ...]:
-        cells: dict[str, Value] = {**dict.fromkeys(names, ""), "run": title}
+    def means(title: str, *groups: tuple[str, ...]) -> tuple[CellValue, ...]:
+        cells: dict[str, CellValue] = {**dict.fromkeys(names, ""), "run": title}
         for group in groups:
             having = [row for row in values if all(row[name] is not None for name in group[:2])]
             note = f"of {len(having)} of {len(values)} pairs" if len(having) < len(values) else ""
             for name in group:
                 known = [value for row in having if (value := row[name]) is not None]
-                cells[name] = Marked(fmean(known), note=note) if known else None
+                cells[name] = MarkedCell(fmean(known), note=note) if known else None
         return tuple(cells[name] for name in names)
 
     by_judge, by_rules = (("macro_judge", "oracle_judge", "perception_judge"), ("macro_checks", "oracle_rules", "perception_rules"))
@@ -191,9 +193,9 @@ def _means(names: Sequence[str], rows: Sequence[tuple[Value, ...]]) -> list[tupl
     return found
 
 
-def _complete(cell: Value) -> float | None:
+def _complete(cell: CellValue) -> float | None:
     """A figure that is of all tasks of its run; None for one that says that it is of some."""
-    plain = bare(cell)
-    if isinstance(cell, Marked) and cell.note:
+    plain = unmarked(cell)
+    if isinstance(cell, MarkedCell) and cell.note:
         return None
-    return plain.value if isinstance(plain, Estimate) else plain if isinstance(plain, float) else None
+    return plain.value if isinstance(plain, IntervalEstimate) else plain if isinstance(plain, float) else None

@@ -12,7 +12,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from scope_ptz.bench.judging.lines import append_line, whole_lines
+from scope_ptz.bench.judging.json_lines import append_line, whole_lines
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Evaluation, Label
 from scope_ptz.errors import InputError

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from scope_ptz.bench.scoring.episode import Call, Episode, Eyes, Picture, Standing, looks_of
+from scope_ptz.bench.scoring.episode import CameraState, Episode, EpisodeCall, FrameGeometry, SavedPicture, observations_of
 from scope_ptz.bench.tasks.task import ProgramCall, Task
 from scope_ptz.camera.base import Camera, Frame, FrameOrigin
 from scope_ptz.camera.simulated import SimulatedCamera
@@ -20,7 +20,7 @@ from scope_ptz.simulator.pack import Scene
 from scope_ptz.tools.context import ToolContext
 from scope_ptz.tools.registry import run_tool
 
-Equip = Callable[[Camera], ToolContext]
+MakeToolContext = Callable[[Camera], ToolContext]
 """Gives a camera eyes and a place for its pictures."""
 
 
@@ -40,10 +40,10 @@ class BlankCamera(SimulatedCamera):
         return Frame(image=self._blank, pose=pose, hfov_deg=hfov_deg, time_s=time_s, projection=view, origin=origin)
 
 
-class Stage:
+class ProgramRunner:
     """A scene on which programs are run."""
 
-    def __init__(self, scene: Scene, equip: Equip, eyes: Eyes) -> None:
+    def __init__(self, scene: Scene, equip: MakeToolContext, eyes: FrameGeometry) -> None:
         self.scene, self.equip, self.eyes = scene, equip, eyes
 
     async def run(self, task: Task, program: Sequence[ProgramCall], text: str, outcome: str = "answered") -> Episode:
@@ -53,8 +53,8 @@ class Stage:
         with clock.hold():
             await camera.go_to_preset(task.preset)
         context = self.equip(camera)
-        start = Standing(camera.viewpoint, await camera.pose())
-        calls, pictures, before = list[Call](), list[Picture](), start
+        start = CameraState(camera.viewpoint, await camera.pose())
+        calls, pictures, before = list[EpisodeCall](), list[SavedPicture](), start
         for step in program:
             time_s = clock.now_s()
             result, error, fault = None, None, None
@@ -64,16 +64,16 @@ class Stage:
                 error, fault = str(wrong), "bad_call"
             except PerceptionError as failed:
                 error, fault = str(failed), "perception"
-            after = Standing(camera.viewpoint, await camera.pose())
-            call = Call(step.tool, step.arguments, before, after, result, error, fault, time_s)
-            calls.append(seen(call, self.eyes))
+            after = CameraState(camera.viewpoint, await camera.pose())
+            call = EpisodeCall(step.tool, step.arguments, before, after, result, error, fault, time_s)
+            calls.append(with_observations(call, self.eyes))
             if result is not None and step.tool == "take_image":
-                pictures.append(Picture(str(result["file"])))
+                pictures.append(SavedPicture(str(result["file"])))
             before = after
         return Episode(task.instruction, start, tuple(calls), before, text, outcome, tuple(pictures))
 
 
-def seen(call: Call, eyes: Eyes) -> Call:
+def with_observations(call: EpisodeCall, eyes: FrameGeometry) -> EpisodeCall:
     """A call with the looks that it took."""
-    looks = looks_of(call, eyes) if call.succeeded else ()
-    return Call(call.name, call.arguments, call.before, call.after, call.result, call.error, call.fault, call.time_s, looks)
+    looks = observations_of(call, eyes) if call.succeeded else ()
+    return EpisodeCall(call.name, call.arguments, call.before, call.after, call.result, call.error, call.fault, call.time_s, looks)

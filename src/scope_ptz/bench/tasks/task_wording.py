@@ -18,8 +18,8 @@ from scope_ptz.bench.tasks.expected import (
     Text,
     YesNo,
 )
-from scope_ptz.bench.tasks.facts import TaskFacts
 from scope_ptz.bench.tasks.task import Argument, EvidenceView, RequiredCall, Task
+from scope_ptz.bench.tasks.task_facts import TaskFacts
 
 _OUTCOMES = {"answered": "with an answer", "clarification": "with a question back", "refused": "by declining the request"}
 

@@ -10,10 +10,10 @@ from statistics import median
 
 import numpy as np
 
-from scope_ptz.bench.reports.runs import Run, viewpoint
+from scope_ptz.bench.reports.report_runs import ReportRun, viewpoint
 from scope_ptz.bench.reports.sections import Section
-from scope_ptz.bench.reports.tables import Column, Table
-from scope_ptz.bench.statistics.clustered import Estimate, Scores, detectable, difference, macro_weights, two_sided_p
+from scope_ptz.bench.reports.tables import Column, ReportTable
+from scope_ptz.bench.statistics.clustered import IntervalEstimate, Scores, detectable, difference, macro_weights, two_sided_p
 from scope_ptz.bench.statistics.paired import cluster_bootstrap, holm, mcnemar_exact
 
 ALPHA = 0.05
@@ -21,14 +21,14 @@ SEED = 0
 
 
 @dataclass(frozen=True, slots=True)
-class Comparison:
+class PairedComparison:
     """``macro``: first minus second over shared tasks; ``bootstrap``: the same by drawing viewpoints; ``least``: smallest
     difference found with 80% power."""
 
     first: str
     second: str
     shared: int
-    macro: Estimate
+    macro: IntervalEstimate
     bootstrap: tuple[float, float] | None
     only_first: int
     only_second: int
@@ -37,7 +37,7 @@ class Comparison:
     least: float | None
 
 
-def compare(first: Run, second: Run) -> Comparison | None:
+def compare(first: ReportRun, second: ReportRun) -> PairedComparison | None:
     """Compare two runs of one dataset over the tasks that both did; None when there are none."""
     return compare_scores(first.label, second.label, _task_means(first), _task_means(second))
 
@@ -45,7 +45,7 @@ def compare(first: Run, second: Run) -> Comparison | None:
 TaskMeans = dict[str, tuple[str, str, float]]
 
 
-def _task_means(run: Run) -> TaskMeans:
+def _task_means(run: ReportRun) -> TaskMeans:
     """Category, viewpoint and mean outcome by task: repeats of a task are one observation."""
     found: dict[str, list[bool]] = {}
     about = {t.task.id: (t.task.category, viewpoint(t)) for t in run.scored}
@@ -54,7 +54,7 @@ def _task_means(run: Run) -> TaskMeans:
     return {task: (*about[task], sum(values) / len(values)) for task, values in found.items()}
 
 
-def compare_scores(first: str, second: str, one: TaskMeans, other: TaskMeans) -> Comparison | None:
+def compare_scores(first: str, second: str, one: TaskMeans, other: TaskMeans) -> PairedComparison | None:
     """The same for outcomes by task, given as category, viewpoint and mean outcome."""
     shared = sorted(one.keys() & other.keys())
     if not shared:
@@ -68,10 +68,10 @@ def compare_scores(first: str, second: str, one: TaskMeans, other: TaskMeans) ->
     least = None if not found.se else detectable(found.se, found.clusters)
     drawn = cluster_bootstrap(scores, seed=SEED)
     p_mcnemar, p_clustered = mcnemar_exact(better, worse), two_sided_p(found)
-    return Comparison(first, second, len(shared), found, drawn, better, worse, p_mcnemar, p_clustered, least)
+    return PairedComparison(first, second, len(shared), found, drawn, better, worse, p_mcnemar, p_clustered, least)
 
 
-def comparison_table(key: str, title: str, found: Sequence[Comparison], notes: tuple[str, ...] = ()) -> Table:
+def comparison_table(key: str, title: str, found: Sequence[PairedComparison], notes: tuple[str, ...] = ()) -> ReportTable:
     """A row a comparison, p values adjusted among all of them."""
     columns = (
         Column("first", "First"),
@@ -91,7 +91,7 @@ def comparison_table(key: str, title: str, found: Sequence[Comparison], notes: t
         )
         for n, c in enumerate(found)
     )  # fmt: skip
-    return Table(key, title, columns, rows, notes)
+    return ReportTable(key, title, columns, rows, notes)
 
 
 def differ(*adjusted: float | None) -> str:
@@ -103,7 +103,7 @@ def _interval(bounds: tuple[float, float] | None) -> str | None:
     return None if bounds is None else f"{100 * bounds[0]:+.1f} to {100 * bounds[1]:+.1f}"
 
 
-def comparison_section(runs: Sequence[Run]) -> Section:
+def comparison_section(runs: Sequence[ReportRun]) -> Section:
     """Every two ranked runs of the main task set."""
     found = [c for one, two in combinations(runs, 2) if (c := compare(one, two)) is not None]
     text = [
@@ -138,7 +138,7 @@ def comparison_section(runs: Sequence[Run]) -> Section:
     return Section("comparison", "Differences between model pairs", tuple(text), (), (table, single), folded)
 
 
-def _resolution(runs: Sequence[Run]) -> Table:
+def _resolution(runs: Sequence[ReportRun]) -> ReportTable:
     """What an unpaired comparison with a run of the same precision could see."""
     columns = (
         Column("run", "Run"), Column("se", "Standard error of macro (points)", "width"),
@@ -154,4 +154,4 @@ def _resolution(runs: Sequence[Run]) -> Table:
         "The difference to another run of the same precision over other tasks that would be found with 80% power. Pairing by task "
         "usually sees smaller ones.",
     )
-    return Table("resolution", "Smallest difference that could be seen", columns, tuple(rows), notes)
+    return ReportTable("resolution", "Smallest difference that could be seen", columns, tuple(rows), notes)

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from scope_ptz.bench.tasks.task import Task
 
 
-def stratified(tasks: Sequence[Task], number: int, seed: int) -> tuple[Task, ...]:
+def stratified_sample(tasks: Sequence[Task], number: int, seed: int) -> tuple[Task, ...]:
     """``number`` of some tasks, in their order: of every category, scene and difficulty, and of every combination, as near to its
     share as may be.
 

@@ -7,11 +7,22 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from scope_ptz import __version__
-from scope_ptz.bench.reports.build import Report, build_report
-from scope_ptz.bench.reports.tables import MISSING, Column, Marked, Value, as_csv, as_markdown, bare, escape, in_words, interval
+from scope_ptz.bench.reports.assemble import EvaluationReport, build_report
+from scope_ptz.bench.reports.tables import (
+    MISSING,
+    CellValue,
+    Column,
+    MarkedCell,
+    as_csv,
+    as_markdown,
+    escape,
+    in_words,
+    interval,
+    unmarked,
+)
 from scope_ptz.bench.reports.task_pages import FrameStore, OpenSample, page_files, task_pages
 from scope_ptz.bench.scoring.trials import Evaluation
-from scope_ptz.bench.statistics.clustered import Estimate
+from scope_ptz.bench.statistics.clustered import IntervalEstimate
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import OutputError
 from scope_ptz.registry import Registry
@@ -32,7 +43,7 @@ def write_report(
     tasks: Mapping[str, Task] | None = None,
     progress: Callable[[int, int], None] | None = None,
     pages: bool = True,
-) -> Report:
+) -> EvaluationReport:
     """Write ``index.html``, ``report.md``, ``tables/*.csv``, ``tasks/*.html`` and ``frames/*.jpg`` into ``out``.
 
     ``tasks``: the tasks themselves by id, for the evidence on their pages. ``progress`` is told how many pages are done, and of how
@@ -76,13 +87,13 @@ def _clear(out: Path) -> None:
             old.unlink()
 
 
-def html(report: Report, environment: Environment | None = None) -> str:
+def html(report: EvaluationReport, environment: Environment | None = None) -> str:
     """The page, on its own: no script, nothing loaded from anywhere."""
     template = (environment or _environment()).get_template("index.html.j2")
     return template.render(report=report, version=__version__, generator=GENERATOR)
 
 
-def markdown(report: Report) -> str:
+def markdown(report: EvaluationReport) -> str:
     """The same in Markdown, without charts."""
     parts = ["# SCOPE benchmark report", *(escape(line) for line in report.summary)]
     parts += ["> " + escape(line) for line in report.warnings]
@@ -109,12 +120,12 @@ def _environment() -> Environment:
     return found
 
 
-def cell(value: Value, column: Column) -> dict[str, Any]:
+def cell(value: CellValue, column: Column) -> dict[str, Any]:
     """A cell for the template: words, interval and what must be known of it apart, and how it is marked."""
-    plain = bare(value)
-    marks = value if isinstance(value, Marked) else Marked(None)
+    plain = unmarked(value)
+    marks = value if isinstance(value, MarkedCell) else MarkedCell(None)
     bounds = limits = ""
-    if isinstance(plain, Estimate):
+    if isinstance(plain, IntervalEstimate):
         bounds, limits = interval(plain, column.kind)
         plain = plain.value
     words = in_words(plain, column.kind)

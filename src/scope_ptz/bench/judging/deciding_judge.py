@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from scope_ptz.bench.judging.tally import VERDICTS
+from scope_ptz.bench.judging.judgement_tally import VERDICTS
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Judgement, Trial
 from scope_ptz.errors import InputError
@@ -26,7 +26,7 @@ def first_verdict(judgements: Iterable[Judgement]) -> Judgement | None:
     return next((j for j in judgements if j.verdict in VERDICTS), None)
 
 
-def deciding(trials: Iterable[Trial], wanted: str = "") -> str | None:
+def deciding_judge(trials: Iterable[Trial], wanted: str = "") -> str | None:
     """The judge that decides on runs of a log that only a judge can score; None where none has given a verdict on any.
 
     ``wanted``: its name, with or without its prompt; of several prompts that which was first. As long as it has given no verdict,
@@ -61,9 +61,9 @@ def verdict_by(judgements: Sequence[Judgement], judge: str | None = None) -> dic
     return {"headline": "unscored", "reason": reason, "error_mode": None}
 
 
-def decided(trials: Sequence[Trial], wanted: str = "") -> list[Trial]:
+def decided_by_one_judge(trials: Sequence[Trial], wanted: str = "") -> list[Trial]:
     """The runs of a log, those that only a judge can score by the judge that decides. Its judgements stand first in each."""
-    judge = deciding(trials, wanted)
+    judge = deciding_judge(trials, wanted)
     if judge is None:
         return list(trials)
     return [_by(trial, judge) if trial.scored_by == "judge" else trial for trial in trials]
@@ -77,7 +77,7 @@ def _by(trial: Trial, judge: str) -> Trial:
 
 def check_decides(trials: Sequence[Trial], wanted: str) -> None:
     """Raises ``InputError`` unless this judge has given a verdict on a run that only a judge can score."""
-    found = deciding(trials, wanted)
+    found = deciding_judge(trials, wanted)
     if found is None or wanted not in (found, found.partition(" (")[0]):
         known = dict.fromkeys(judge_of(j) for t in trials if t.scored_by == "judge" for j in t.judgements if j.verdict in VERDICTS)
         raise InputError(
@@ -92,7 +92,7 @@ def decider_of(trials: Iterable[Trial]) -> str | None:
     return next((judge_of(said) for trial in rows if (said := first_verdict(trial.judgements)) is not None), None)
 
 
-def beside(trials: Sequence[Trial]) -> str:
+def other_judges_note(trials: Sequence[Trial]) -> str:
     """What is to be said where several judges have given verdicts on runs that only a judge can score; empty where not."""
     judge = decider_of(trials)
     rows = [trial for trial in trials if trial.scored_by == "judge"]

@@ -14,8 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import TypeAdapter
 
-from scope_ptz.bench.answers.reader import agrees, read
-from scope_ptz.bench.answers.result import Declined, Unreadable, Value
+from scope_ptz.bench.answers import Declined, ParsedValue, Unreadable, agrees, parse_answer
 from scope_ptz.bench.tasks.expected import (
     ActionOnly,
     AnyExpected,
@@ -48,7 +47,7 @@ ANSWERED = {name: expected for name, expected in EXPECTATIONS.items() if not isi
 def verdict(expected: AnyExpected, answer: str) -> str:
     if isinstance(expected, ActionOnly):
         return "right"
-    reading = read(expected, answer)
+    reading = parse_answer(expected, answer)
     if isinstance(reading, Declined):
         return "declined"
     return {True: "right", False: "wrong", None: "unscored"}[agrees(expected, reading)]
@@ -57,7 +56,7 @@ def verdict(expected: AnyExpected, answer: str) -> str:
 @pytest.mark.parametrize("case", ANSWERS, ids=[f"{c['expected']}-{i}" for i, c in enumerate(ANSWERS)])
 def test_an_answer_is_read_as_a_person_reads_it(case: dict[str, str]) -> None:
     expected = EXPECTATIONS[case["expected"]]
-    assert verdict(expected, case["answer"]) == case["verdict"], (case["answer"], read(expected, case["answer"]))
+    assert verdict(expected, case["answer"]) == case["verdict"], (case["answer"], parse_answer(expected, case["answer"]))
 
 
 @pytest.mark.parametrize("note", [" (Source: the simulator's ground truth.)", " (seen by moondream3)", "\n"])
@@ -76,8 +75,8 @@ def test_lettering_in_capitals_is_an_answer_however_long() -> None:
 def test_lettering_that_holds_a_verb_is_read_as_a_whole() -> None:
     board = Text(accepted=("DAILY COURIER MARKET IS 300 YEARS OLD",), ocr=True)
     for answer in ("DAILY COURIER MARKET IS 300 YEARS OLD", "The board says DAILY COURIER MARKET IS 300 YEARS OLD."):
-        assert agrees(board, read(board, answer)) is True
-    assert agrees(board, read(board, "The board says DAILY COURIER MARKET IS 500 YEARS OLD.")) is False
+        assert agrees(board, parse_answer(board, answer)) is True
+    assert agrees(board, parse_answer(board, "The board says DAILY COURIER MARKET IS 500 YEARS OLD.")) is False
 
 
 def test_the_answers_are_many_and_of_every_kind() -> None:
@@ -154,7 +153,7 @@ def test_any_number_plate(plate: str, seed: int) -> None:
 @settings(max_examples=300, deadline=None)
 def test_no_text_breaks_the_reader(text: str) -> None:
     for expected in ANSWERED.values():
-        assert isinstance(read(expected, text), Value | Declined | Unreadable)
+        assert isinstance(parse_answer(expected, text), ParsedValue | Declined | Unreadable)
 
 
 WORDS = [
@@ -184,10 +183,10 @@ WORDS = [
 @settings(max_examples=300, deadline=None)
 def test_what_is_read_does_not_depend_on_what_is_right(text: str) -> None:
     for value in (1, 5):
-        assert read(Number(value=value, unit=("cone",)), text) == read(Number(value=9, unit=("cone",)), text)
-    assert read(YesNo(value=True, affirms=("van",)), text) == read(YesNo(value=False, affirms=("van",)), text)
+        assert parse_answer(Number(value=value, unit=("cone",)), text) == parse_answer(Number(value=9, unit=("cone",)), text)
+    assert parse_answer(YesNo(value=True, affirms=("van",)), text) == parse_answer(YesNo(value=False, affirms=("van",)), text)
     options: dict[str, tuple[str, ...]] = {"red": (), "blue": (), "left": ()}
-    assert read(Choice(value="red", options=options), text) == read(Choice(value="left", options=options), text)
+    assert parse_answer(Choice(value="red", options=options), text) == parse_answer(Choice(value="left", options=options), text)
 
 
 @pytest.mark.parametrize("joint", [" ", ", ", " or ", "; ", ". ", " and ", "\n", " / "])
