@@ -1,4 +1,4 @@
-"""Numerals in words and digits ("a dozen", "one hundred and two", "1,031") as values."""
+"""Parse numbers in words and in digits: "a dozen", "one hundred and two", "1,031"."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _BEFORE_ONE = frozenset({
 
 
 def number_at(words: Sequence[Word], at: int) -> tuple[float | None, int]:
-    """The number that begins at a word and the position after it; None when none does."""
+    """Return the number that begins at a word, or None, and the position after it."""
     if at >= len(words):
         return None, at
     text, after = words[at].text, [w.text for w in words[at + 1 : at + 3]]

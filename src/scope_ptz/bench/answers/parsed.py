@@ -1,4 +1,4 @@
-"""What reading an answer can come to: a typed value, "I cannot tell", or something that cannot be read and is never guessed."""
+"""The results of parsing an answer: a typed value, a declined answer, or an unreadable one."""
 
 from __future__ import annotations
 
@@ -9,19 +9,22 @@ AnswerValue = float | bool | str | frozenset[str] | tuple[str, ...] | tuple[froz
 
 @dataclass(frozen=True, slots=True)
 class ParsedValue:
-    """The answer says this. Of a description: the numbers of the facts stated and of the contradictions stated."""
+    """The value that an answer states.
+
+    For a description the value is a pair: the indices of the facts that are stated, and of the contradictions that are stated.
+    """
 
     value: AnswerValue
 
 
 @dataclass(frozen=True, slots=True)
 class Declined:
-    """The answer says that it cannot tell."""
+    """An answer that says that it cannot tell."""
 
 
 @dataclass(frozen=True, slots=True)
 class Unreadable:
-    """The answer cannot be read as a value, and why."""
+    """An answer that is not clearly one value, with the reason. It is never guessed."""
 
     reason: str
 

@@ -1,4 +1,4 @@
-"""The deterministic reader: free text in, a typed value out, or the reason why it cannot be read. It never guesses."""
+"""The entry of the answer parser: it selects the parser for the type of the expected answer, and compares the result with it."""
 
 from __future__ import annotations
 
@@ -27,51 +27,73 @@ _EPSILON = 1e-9
 
 
 def parse_answer(expected: AnyExpected, answer: str) -> ParsedAnswer:
-    """What an answer says, as the type of value that is expected. Which value is expected plays no part in it."""
-    said = answer_text(answer)
-    reading = _read(expected, said, answer)
-    nothing_said = isinstance(expected, Description) and reading == ParsedValue((frozenset[int](), frozenset[int]()))
-    if said.declined and (isinstance(reading, Unreadable) or nothing_said):
+    """Parse an answer as a value of the type that a task expects.
+
+    The expected value itself plays no part, so a wrong answer is parsed as well as a right one. The parser never guesses.
+
+    Args:
+        expected: The task's expected answer. Its type and its wordings are used.
+        answer: The agent's final answer.
+
+    Returns:
+        The parsed value, ``Declined`` if the answer says that it cannot tell, or ``Unreadable`` with the reason.
+    """
+    text = answer_text(answer)
+    parsed = _parse(expected, text, answer)
+    states_nothing = isinstance(expected, Description) and parsed == ParsedValue((frozenset[int](), frozenset[int]()))
+    if text.declined and (isinstance(parsed, Unreadable) or states_nothing):
         return Declined()
-    if said.hedged and isinstance(reading, Unreadable):
+    if text.hedged and isinstance(parsed, Unreadable):
         return Unreadable("only a guess")
-    return reading
+    return parsed
 
 
-def _read(expected: AnyExpected, said: AnswerText, answer: str) -> ParsedAnswer:
+def _parse(expected: AnyExpected, text: AnswerText, answer: str) -> ParsedAnswer:
     match expected:
         case Number():
-            number = Unreadable("only a guess") if said.hedged else parse_number(said, expected.unit, part=expected.part)
-            return (
-                number if isinstance(number, Unreadable) else Unreadable(number) if isinstance(number, str) else ParsedValue(number)
-            )
+            return _parse_number(expected, text)
         case YesNo():
-            return parse_yes_no(expected, said)
+            return parse_yes_no(expected, text)
         case Choice():
-            return parse_choice(expected, said)
+            return parse_choice(expected, text)
         case Text():
-            return parse_text(expected, said, answer)
+            return parse_text(expected, text, answer)
         case NameSet():
-            return parse_name_set(expected, said)
+            return parse_name_set(expected, text)
         case Ordering():
-            return parse_ordering(expected, said)
+            return parse_ordering(expected, text)
         case Relation():
-            return parse_relation(expected, said)
+            return parse_relation(expected, text)
         case Description():
-            return parse_description(expected, said)
+            return parse_description(expected, text)
         case NoneThere():
-            return parse_none_there(expected, said)
+            return parse_none_there(expected, text)
         case ActionOnly():
             return Unreadable("no answer is wanted")
 
 
-def agrees(expected: AnyExpected, reading: ParsedAnswer) -> bool | None:
-    """Whether a reading is what was expected; None when nothing could be read. Declining is an answer, and a wrong one."""
-    if isinstance(reading, Unreadable):
+def _parse_number(expected: Number, text: AnswerText) -> ParsedAnswer:
+    if text.hedged:
+        return Unreadable("only a guess")
+    number = parse_number(text, expected.unit, part=expected.part)
+    return Unreadable(number) if isinstance(number, str) else ParsedValue(number)
+
+
+def agrees(expected: AnyExpected, parsed: ParsedAnswer) -> bool | None:
+    """Compare a parsed answer with the expected one.
+
+    Args:
+        expected: The task's expected answer.
+        parsed: The result of ``parse_answer``.
+
+    Returns:
+        Whether they agree. None if the answer is unreadable or the task expects no answer. A declined answer is wrong.
+    """
+    if isinstance(parsed, Unreadable):
         return None
-    if isinstance(reading, Declined):
+    if isinstance(parsed, Declined):
         return False
-    value = reading.value
+    value = parsed.value
     match expected:
         case Number():
             return isinstance(value, float) and abs(value - expected.value) <= expected.tolerance + _EPSILON
