@@ -72,7 +72,7 @@ def play(steps: Sequence[Step], text: str, *, instruction: str = "do it", outcom
             time_s=float(len(calls)),
         )
         looks = observations_of(call, EYES) if call.succeeded else ()
-        calls.append(EpisodeCall(**{n: getattr(call, n) for n in EpisodeCall.__slots__ if n != "looks"}, looks=looks))
+        calls.append(EpisodeCall(**{n: getattr(call, n) for n in EpisodeCall.__slots__ if n != "observations"}, observations=looks))
         at = after
     return Episode(instruction, START, tuple(calls), at, text, outcome, tuple(pictures))
 

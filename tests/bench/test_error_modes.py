@@ -58,7 +58,7 @@ def test_a_run_that_passes_or_cannot_be_scored_has_no_mode() -> None:
     for of, episode in SAMPLES:
         assert error_mode(of, episode) is None
     of, episode = SAMPLES[0]
-    assert error_mode(of, replace(episode, text="several cones")) is None
+    assert error_mode(of, replace(episode, answer="several cones")) is None
     assert error_mode(of, replace(episode, outcome="camera_error")) is None
 
 

@@ -58,7 +58,7 @@ def human_trial(task: Task, scene: SceneFile, trace: Trace, sample: str) -> Tria
         checks=tuple(CheckRecord(name=c.name, passed=c.passed, reason=c.reason) for c in verdict.checks),
         collateral=verdict.collateral,
         outcome=episode.outcome,
-        answer=episode.text,
+        answer=episode.answer,
         steps=ended.steps if ended else len(trace.decisions),
         tool_calls=dict(Counter(call.outcome.call.name for call in trace.calls if call.fault != "skipped")),
         bad_calls=sum(call.fault == "bad_call" for call in trace.calls),

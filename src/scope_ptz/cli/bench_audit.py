@@ -104,7 +104,7 @@ async def _question(q: str, task: Task, stage: ProgramRunner, out: Path) -> dict
     from scope_ptz.simulator.views import picture
 
     episode = await stage.run(task, task.reference, "")
-    looks = list({(look.viewpoint, look.projection): look for call in episode.calls for look in call.looks[:1]}.values())
+    looks = list({(look.viewpoint, look.projection): look for call in episode.calls for look in call.observations[:1]}.values())
     shown = []
     for number, look in enumerate(looks, 1):
         name = f"{q}-{number}.jpg"

@@ -50,7 +50,7 @@ def made(epochs: int = 2) -> Evaluation:
         calls = dict(Counter(call.name for call in episode.calls))
         further: dict[str, Any] = {"outcome": episode.outcome, "tool_calls": calls, "steps": 1 + len(episode.calls)}
         for epoch in range(1, epochs + 1):
-            trials.append(trial(known, epoch=epoch, checks=checks, answer=episode.text, **further))
+            trials.append(trial(known, epoch=epoch, checks=checks, answer=episode.answer, **further))
     trials.sort(key=lambda t: (t.task.id, t.epoch))
     first = trials[0]
     failed = tuple(c.model_copy(update={"passed": False}) if c.name == "coverage" else c for c in first.checks)

@@ -93,7 +93,7 @@ def _text_of(text: AnswerText, group: Sequence[int]) -> str:
 def parse_none_there(expected: NoneThere, text: AnswerText) -> ParsedAnswer:
     """Parse whether an answer says that there is none.
 
-    The value is True if it says so and claims nothing that only a present thing could have. It is False if it says that there is one.
+    The value is True if it says so and claims nothing that only a present thing could have. It is False if it says the opposite.
     """
     if re.search(r"\b(none|no|nothing|zero|0) or (one|two|some|several|a few|1|2)\b", text.joined()):
         return Unreadable("an alternative")

@@ -59,7 +59,7 @@ class _Truths:
     """The truth of the looks of a run, as it was looked up when the run was over."""
 
     def __init__(self, episode: Episode, truths: Mapping[str, int | None]) -> None:
-        looks = [(look, truths.get(str(number))) for number, call in enumerate(episode.calls) for look in call.looks]
+        looks = [(look, truths.get(str(number))) for number, call in enumerate(episode.calls) for look in call.observations]
         self._known = {id(look): really for look, really in looks}
         self._looks = [look for look, _ in looks]
 

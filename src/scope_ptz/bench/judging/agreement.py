@@ -1,4 +1,4 @@
-"""Who agrees with whom about runs: judges, their repeats, the executable checks, people, and the known faults of gold runs."""
+"""Agreement between raters of runs: the executable checks, judges and their repeats, people, and the known faults of gold runs."""
 
 from __future__ import annotations
 
@@ -18,19 +18,20 @@ RaterKind = Literal["checks", "judge", "person", "gold"]
 
 @dataclass(frozen=True, slots=True)
 class Rating:
-    """``mode``: of an incorrect run, None where the rater names none."""
+    """A rating of a run. ``mode`` is the error mode of an incorrect run, None if the rater names none."""
 
     correct: bool
     mode: ErrorMode | None = None
 
     @property
     def verdict(self) -> str:
+        """The rating in words."""
         return CORRECT if self.correct else INCORRECT
 
 
 @dataclass(frozen=True, slots=True)
 class RatedRun:
-    """A run that is rated: ``cluster`` is the task that it is of, whose runs are alike."""
+    """A run that is rated. ``cluster`` is its task, because runs of one task are alike."""
 
     log: str
     sample: str
@@ -39,7 +40,15 @@ class RatedRun:
 
 @dataclass
 class Rater:
-    """``group``: raters that are repeats of one another share it. ``apart``: what was no rating, by its name."""
+    """A rater and its ratings.
+
+    Attributes:
+        name: Name of the rater.
+        kind: What the rater is.
+        group: Shared by raters that are repeats of one another.
+        ratings: The rating of each run.
+        apart: How many verdicts are not ratings, by verdict ("unscored", "failed", ...).
+    """
 
     name: str
     kind: RaterKind
@@ -50,7 +59,10 @@ class Rater:
 
 @dataclass(frozen=True)
 class RaterPair:
-    """Two raters about the runs that both rated. ``modes``: of those that both call incorrect and give a mode, the modes."""
+    """The agreement of two raters on the runs that both rated.
+
+    ``modes`` covers the runs for which both name an error mode.
+    """
 
     first: str
     second: str
@@ -60,7 +72,7 @@ class RaterPair:
 
 @dataclass(frozen=True)
 class RaterGroup:
-    """Several raters about the runs that all of them rated, and how many runs only some of them did."""
+    """The agreement of several raters on the runs that all of them rated. ``left_out`` counts the runs that only some rated."""
 
     raters: tuple[str, ...]
     what: str
@@ -70,12 +82,14 @@ class RaterGroup:
 
 @dataclass(frozen=True)
 class AgreementReport:
+    """The agreement of all raters, in pairs and in groups."""
+
     raters: tuple[Rater, ...]
     pairs: tuple[RaterPair, ...]
     groups: tuple[RaterGroup, ...]
 
     def as_dict(self) -> dict[str, Any]:
-        """As JSON data."""
+        """Return the report as JSON data."""
         return {
             "raters": [
                 {
@@ -98,7 +112,14 @@ class AgreementReport:
 
 
 def measure_agreement(raters: Sequence[Rater], seed: int = 1) -> AgreementReport:
-    """All of it. Of a judge's repeats the first stands for it against others; the repeats are compared with one another."""
+    """Measure the agreement of raters in pairs and in groups.
+
+    Only the first repeat of a judge is compared with other raters. Its repeats are compared with one another.
+
+    Args:
+        raters: The raters.
+        seed: Seed of the bootstrap intervals.
+    """
     first = {rater.group: rater for rater in reversed(raters)}
     leading = [rater for rater in raters if first[rater.group] is rater]
     repeats: dict[str, list[Rater]] = {}
@@ -135,7 +156,7 @@ def _group(raters: Sequence[Rater], what: str, seed: int) -> RaterGroup:
 
 
 def raters_of(evaluations: Iterable[Evaluation]) -> list[Rater]:
-    """Everyone who rated runs of these evaluations: the checks first, then judges, then people."""
+    """Return everyone who rated runs of these evaluations: the checks first, then judges, then people."""
     found = _Found()
     for evaluation in evaluations:
         for trial in evaluation.trials:
@@ -145,7 +166,7 @@ def raters_of(evaluations: Iterable[Evaluation]) -> list[Rater]:
 
 
 class _Found:
-    """Raters as they turn up."""
+    """Collects raters and their ratings."""
 
     def __init__(self) -> None:
         self.raters: dict[str, Rater] = {}
@@ -165,7 +186,7 @@ class _Found:
 
 
 def add_rating(rater: Rater, item: RatedRun, verdict: str, mode: ErrorMode | None) -> None:
-    """Note a rating, or what is none ("unscored", "unparseable", "failed", "unclear", ...), which is counted apart."""
+    """Add a rating. Verdicts that are not ratings ("unscored", "unparseable", "failed", "unclear") are counted separately."""
     if verdict in (CORRECT, INCORRECT):
         rater.ratings[item] = Rating(verdict == CORRECT, mode)
     else:
@@ -173,9 +194,12 @@ def add_rating(rater: Rater, item: RatedRun, verdict: str, mode: ErrorMode | Non
 
 
 def numbered(judgements: Sequence[Judgement]) -> Iterator[tuple[str, str, Judgement]]:
-    """Judgements of one run with the name of the rater, "gpt-oss-120b #2" for a second judgement, and that of the judge.
+    """Yield the judgements of one run with the names of their raters.
 
-    One model under two prompts is two judges.
+    One model with two prompts counts as two judges.
+
+    Yields:
+        The rater ("gpt-oss-120b (judge-1) #2" for a second judgement), the judge, and the judgement.
     """
     times = Counter[str]()
     for judgement in judgements:

@@ -1,4 +1,4 @@
-"""A run as a judge sees it: what was asked, what was called, what came back, what was said. From a trace, or without one."""
+"""A run as a judge sees it: the instruction, the calls with their results, and the final answer."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from scope_ptz.planner.base import ToolOutcome
 
 @dataclass(frozen=True, slots=True)
 class CaseCall:
-    """A tool call. ``error``: why it failed; ``pose``: where the camera looked afterwards, ``viewpoint``: from where, if known."""
+    """A tool call. ``pose`` and ``viewpoint`` (if known) are those after the call; ``error`` says why it failed."""
 
     name: str
     arguments: Mapping[str, Any]
@@ -26,9 +26,19 @@ class CaseCall:
 
 @dataclass(frozen=True, slots=True)
 class JudgeCase:
-    """``outcome``: how the run ended, None when it was cut off. ``viewpoint``: the optical centre that it started from, if known.
+    """A run to be judged.
 
-    ``sees``: the agent was shown pictures itself, and may answer from them. ``places``: the viewpoints of presets, if known.
+    Attributes:
+        instruction: What the agent was asked to do.
+        start: The camera's first pose.
+        viewpoint: The viewpoint at the start, if known.
+        presets: Names of the presets.
+        calls: The tool calls in order.
+        final: The camera's last pose.
+        answer: The agent's final answer.
+        outcome: How the run ended; None if it was interrupted.
+        sees: Whether the agent was shown pictures and may answer from them.
+        places: The viewpoints of the presets, if known.
     """
 
     instruction: str
@@ -44,7 +54,12 @@ class JudgeCase:
 
 
 def case_of(trace: Trace, places: PresetViewpoints | None = None) -> JudgeCase:
-    """The run of a trace. ``places``: which viewpoint each preset has; without it, it is known only as long as none is gone to."""
+    """Build a case from a trace.
+
+    Args:
+        trace: The recorded run.
+        places: The viewpoints of the presets. Without them the viewpoint is unknown after the first move to a preset.
+    """
     started, ended = trace.started, trace.ended
     at, calls = started.viewpoint, list[CaseCall]()
     for called in trace.calls:
@@ -76,7 +91,7 @@ def case_of(trace: Trace, places: PresetViewpoints | None = None) -> JudgeCase:
 
 
 def case_of_episode(episode: Episode, places: PresetViewpoints) -> JudgeCase:
-    """A run that was made without a trace, such as a gold run. ``places``: of its scene."""
+    """Build a case from a run without a trace, such as a gold run. ``places`` are the presets of its scene."""
     return JudgeCase(
         instruction=episode.instruction,
         start=episode.start.pose,
@@ -84,9 +99,9 @@ def case_of_episode(episode: Episode, places: PresetViewpoints) -> JudgeCase:
         presets=tuple(places.presets),
         calls=tuple(_call(call.name, call.arguments, call.result, call.error, call.after) for call in episode.calls),
         final=episode.final.pose,
-        answer=episode.text,
+        answer=episode.answer,
         outcome=episode.outcome,
-        sees=bool(episode.seen),
+        sees=bool(episode.planner_views),
         places=places,
     )
 

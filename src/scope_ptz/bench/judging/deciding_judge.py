@@ -1,7 +1,7 @@
-"""Whose verdict is a run's where only a judge can score it, and several have judged.
+"""The deciding judge: whose verdict counts for runs that only a judge can score, if several judges have judged them.
 
-One judge decides for all such runs of a log, so that no share mixes two: the one that is asked for by name, else the one that was
-first with a verdict on most of them. It does not change when another judge is added.
+One judge decides all such runs of a log, so that no accuracy mixes two judges. It is the judge that was requested by name, else the
+one that gave the first verdict on most of the runs. Adding another judge does not change it.
 """
 
 from __future__ import annotations
@@ -17,20 +17,24 @@ from scope_ptz.errors import InputError
 
 
 def judge_of(judgement: Judgement) -> str:
-    """Who judged: one model under two prompts is two judges."""
+    """Return the name of the judge. One model with two prompts counts as two judges."""
     return f"{judgement.judge} ({judgement.prompt})"
 
 
 def first_verdict(judgements: Iterable[Judgement]) -> Judgement | None:
-    """The first judgement that is a verdict."""
+    """Return the first judgement that is a verdict."""
     return next((j for j in judgements if j.verdict in VERDICTS), None)
 
 
 def deciding_judge(trials: Iterable[Trial], wanted: str = "") -> str | None:
-    """The judge that decides on runs of a log that only a judge can score; None where none has given a verdict on any.
+    """Return the judge that decides the runs of a log that only a judge can score.
 
-    ``wanted``: its name, with or without its prompt; of several prompts that which was first. As long as it has given no verdict,
-    another decides.
+    Args:
+        trials: The trials of the log.
+        wanted: The requested judge, with or without its prompt. Without a verdict of this judge, another one decides.
+
+    Returns:
+        None if no judge has given a verdict on such a run.
     """
     first, further = Counter[str](), Counter[str]()
     for trial in trials:
@@ -44,13 +48,19 @@ def deciding_judge(trials: Iterable[Trial], wanted: str = "") -> str | None:
 
 
 def verdict_by(judgements: Sequence[Judgement], judge: str | None = None) -> dict[str, Any]:
-    """Headline, reason and error mode of a run that only a judge can score. ``judge``: the one that decides; None for whoever was
-    first. A judge whose server failed takes nothing back of what it has said before."""
+    """Return the headline, the reason and the error mode of a run that only a judge can score.
+
+    A later failure of the judge's server does not withdraw an earlier verdict.
+
+    Args:
+        judgements: The judgements of the run.
+        judge: The deciding judge; None for the judge that came first.
+    """
     own = [j for j in judgements if judge is None or judge_of(j) == judge]
-    said = first_verdict(own)
-    if said is not None:
-        mode = (said.error_mode or ErrorMode.REASONING) if said.verdict == "incorrect" else None
-        return {"headline": said.verdict, "reason": said.reason or f"said {said.judge}", "error_mode": mode}
+    verdict = first_verdict(own)
+    if verdict is not None:
+        mode = (verdict.error_mode or ErrorMode.REASONING) if verdict.verdict == "incorrect" else None
+        return {"headline": verdict.verdict, "reason": verdict.reason or f"said {verdict.judge}", "error_mode": mode}
     last = next((j for j in reversed(own) if j.verdict != "failed"), own[-1] if own else None)
     if last is not None:
         reason = f"the judge {last.judge} gave no verdict ({last.verdict})"
@@ -62,7 +72,10 @@ def verdict_by(judgements: Sequence[Judgement], judge: str | None = None) -> dic
 
 
 def decided_by_one_judge(trials: Sequence[Trial], wanted: str = "") -> list[Trial]:
-    """The runs of a log, those that only a judge can score by the judge that decides. Its judgements stand first in each."""
+    """Return the trials of a log with the verdicts of the deciding judge where only a judge can score them.
+
+    In these trials the judgements of the deciding judge come first.
+    """
     judge = deciding_judge(trials, wanted)
     if judge is None:
         return list(trials)
@@ -76,7 +89,11 @@ def _by(trial: Trial, judge: str) -> Trial:
 
 
 def check_decides(trials: Sequence[Trial], wanted: str) -> None:
-    """Raises ``InputError`` unless this judge has given a verdict on a run that only a judge can score."""
+    """Check that a judge can decide.
+
+    Raises:
+        InputError: The judge has given no verdict on a run that only a judge can score.
+    """
     found = deciding_judge(trials, wanted)
     if found is None or wanted not in (found, found.partition(" (")[0]):
         known = dict.fromkeys(judge_of(j) for t in trials if t.scored_by == "judge" for j in t.judgements if j.verdict in VERDICTS)
@@ -87,13 +104,13 @@ def check_decides(trials: Sequence[Trial], wanted: str) -> None:
 
 
 def decider_of(trials: Iterable[Trial]) -> str | None:
-    """The judge whose verdicts the headlines of a log's runs are, where only a judge can score them."""
+    """Return the judge whose verdicts are the headlines of the runs that only a judge can score."""
     rows = (t for t in trials if t.scored_by == "judge" and t.headline in VERDICTS)
     return next((judge_of(said) for trial in rows if (said := first_verdict(trial.judgements)) is not None), None)
 
 
 def other_judges_note(trials: Sequence[Trial]) -> str:
-    """What is to be said where several judges have given verdicts on runs that only a judge can score; empty where not."""
+    """Return a note about judges that do not decide; empty if there are none."""
     judge = decider_of(trials)
     rows = [trial for trial in trials if trial.scored_by == "judge"]
     others = [o for o in dict.fromkeys(judge_of(j) for t in rows for j in t.judgements if j.verdict in VERDICTS) if o != judge]
@@ -101,6 +118,6 @@ def other_judges_note(trials: Sequence[Trial]) -> str:
         return ""
     runs = f"the {len(rows)} runs that only a judge can score" if len(rows) > 1 else "the run that only a judge can score"
     return (
-        f"{judge} decides on {runs}; what {', '.join(others)} said stands beside it and changes no share "
-        "(another decides with: scope bench rescore LOG --decides NAME)"
+        f"{judge} decides {runs}; the verdicts of {', '.join(others)} are kept and do not change the accuracy "
+        "(to let another judge decide: scope bench rescore LOG --decides NAME)"
     )

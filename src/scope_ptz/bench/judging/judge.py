@@ -1,4 +1,4 @@
-"""A judge: a run in, a judgement out. It knows neither the evaluation engine nor a server, only a port that completes messages."""
+"""A judge turns a run into a judgement. It depends on neither the evaluation engine nor a server, only on a completion function."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ from scope_ptz.errors import ScopeError
 
 DEFAULT_JUDGE = "gpt-oss-120b"
 ATTEMPTS = 3
-"""How often a judge may answer before its verdict counts as unparseable."""
+"""Replies that a judge may give before its verdict counts as unparseable."""
 
 BUDGET_CHARS = 60_000
-"""Of a run as it is told; some 15 thousand tokens."""
+"""Maximum length of the description of a run; about 15,000 tokens."""
 
 _ECHO_CHARS = 2_000
 JudgeMessage = dict[str, Any]
 
 
 class Completion(BaseModel):
-    """What a judge's model said, without its reasoning. ``cut_off``: it was stopped at a limit of tokens."""
+    """A reply of a judge's model, without its reasoning. ``cut_off`` is true if it reached the token limit."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -42,7 +42,7 @@ class Completion(BaseModel):
 
 
 class NoReplyError(ScopeError):
-    """A judge's server gave no usable reply. ``overflow``: the messages outgrew the model's context."""
+    """A judge's server gave no usable reply. ``overflow`` is true if the messages exceed the model's context."""
 
     def __init__(self, message: str, *, overflow: bool = False) -> None:
         self.overflow = overflow
@@ -50,24 +50,35 @@ class NoReplyError(ScopeError):
 
 
 Complete = Callable[[list[JudgeMessage], dict[str, Any]], Awaitable[Completion]]
-"""The port: messages and the reply's JSON schema in, a reply out. It raises ``NoReplyError`` and nothing else."""
+"""Completes messages under the JSON schema of the reply. It raises ``NoReplyError`` and nothing else."""
 
 
 class Judge:
-    """May judge many runs at once; it keeps nothing between them. ``name``: of its model, as judgements are to tell it."""
+    """A judge. It may judge many runs concurrently and keeps no state between them.
+
+    Args:
+        name: Name of its model, as recorded in judgements.
+        complete: Completes messages.
+        attempts: Replies that it may give for one judgement.
+        budget_chars: Maximum length of the description of a run.
+    """
 
     def __init__(self, name: str, complete: Complete, *, attempts: int = ATTEMPTS, budget_chars: int = BUDGET_CHARS) -> None:
         self.name, self.complete, self.attempts, self.budget_chars = name, complete, attempts, budget_chars
 
     async def judge(self, facts: TaskFacts, trace: Trace, *, repeat: int = 0, places: PresetViewpoints | None = None) -> Judgement:
-        """The judgement on a recorded run. Never raises for what a model or server does: see ``Judgement.verdict``.
+        """Judge a recorded run. Errors of models and servers are part of the judgement and never raised.
 
-        ``places``: which viewpoint each preset has, so that the judge is told where the camera stood.
+        Args:
+            facts: The facts about the task.
+            trace: The recorded run.
+            repeat: Number of the judgement, if one judge gives several.
+            places: The viewpoints of the presets, so that the judge knows where the camera stood.
         """
         return await self.judge_case(facts, case_of(trace, places), repeat=repeat)
 
     async def judge_case(self, facts: TaskFacts, case: JudgeCase, *, repeat: int = 0) -> Judgement:
-        """The judgement on a run. ``repeat``: number of the judgement, where one judge gives several."""
+        """Judge a run. ``repeat`` is the number of the judgement, if one judge gives several."""
         session = _Session(self, repeat)
         began = perf_counter()
         judgement = await session.run(facts, case)
@@ -103,7 +114,7 @@ class _Session:
                 made = self._made(read.verdict, read.reason)
                 return made.model_copy(update={"error_mode": read.error_mode})
             problem = read
-            now = [*begun, *_told_back(reply.text, problem)]
+            now = [*begun, *_correction(reply.text, problem)]
         return self._made("unparseable", problem)
 
     def _made(self, verdict: str, reason: str) -> Judgement:
@@ -122,16 +133,17 @@ class _Session:
 
 
 def judge_messages(facts: TaskFacts, case: JudgeCase, budget_chars: int = BUDGET_CHARS) -> list[JudgeMessage]:
-    """What a judge is sent about a run."""
+    """Return the messages that a judge receives about a run."""
     return [
         {"role": "system", "content": system_prompt(facts.category)},
         {"role": "user", "content": render(facts, case, budget_chars)},
     ]
 
 
-def _told_back(said: str, problem: str) -> list[JudgeMessage]:
+def _correction(reply: str, problem: str) -> list[JudgeMessage]:
+    """Return the invalid reply and a request for a valid one."""
     return [
-        {"role": "assistant", "content": cut(said, _ECHO_CHARS) or "(nothing)"},
+        {"role": "assistant", "content": cut(reply, _ECHO_CHARS) or "(nothing)"},
         {
             "role": "user",
             "content": f"This is no valid verdict: {problem}. Reply again with one JSON object in the given schema, nothing else.",

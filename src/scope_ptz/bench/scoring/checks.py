@@ -1,4 +1,4 @@
-"""The checks: one function a kind, each on a task and a run. None is "cannot be told", which is never a pass."""
+"""The executable checks. Each function checks one aspect of a run against its task."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from scope_ptz.geometry import Perspective, direction, wrap_pan_deg
 CheckName = Literal["outcome", "answer", "coverage", "pose", "calls", "forbidden", "pictures", "framing"]
 SAME_ANGLE_DEG = 0.5
 SAME_ZOOM_SHARE = 0.03
-"""Within these two poses are the same."""
+"""Two poses within these tolerances are the same."""
 
 
 @dataclass(frozen=True, slots=True)
 class CheckResult:
-    """``passed`` is None when it cannot be told (an answer that cannot be read)."""
+    """The result of one check. ``passed`` is None if the check cannot decide, because the answer is unreadable."""
 
     name: CheckName
     passed: bool | None
@@ -32,30 +32,30 @@ class CheckResult:
 
 
 def run_checks(task: Task, episode: Episode) -> tuple[CheckResult, ...]:
-    """Every check that the task calls for, in a fixed order."""
+    """Run every check that applies to a task, in a fixed order."""
     results = (check(task, episode) for check in _CHECKS)
     return tuple(result for result in results if result is not None)
 
 
 def check_outcome(task: Task, episode: Episode) -> CheckResult:
-    """The run ended as it should: answered, or where the task wants that with a question or a refusal."""
+    """Check that the run ended as required: with an answer, or with a question or a refusal where the task asks for one."""
     wanted: tuple[RunOutcome, ...] = task.behaviour.outcomes
     passed = episode.outcome in wanted
     return CheckResult("outcome", passed, "as wanted" if passed else f"ended {episode.outcome}, not {' or '.join(wanted)}")
 
 
 def check_answer(task: Task, episode: Episode) -> CheckResult | None:
-    """The answer, read by the deterministic reader, is the expected one."""
+    """Check that the final answer, as parsed, agrees with the expected answer."""
     if isinstance(task.expected, ActionOnly):
         return None
     if episode.outcome not in ("answered", "clarification", "refused"):
         return CheckResult("answer", False, "there is no answer")
-    reading = parse_answer(task.expected, episode.text)
-    passed = agrees(task.expected, reading)
-    if isinstance(reading, Unreadable):
-        return CheckResult("answer", None, f"cannot be read: {reading.reason}")
-    said = "declined" if isinstance(reading, Declined) else f"read as {_plain(reading.value)}"
-    return CheckResult("answer", passed, said if passed else f"{said}, which is not what is expected")
+    parsed = parse_answer(task.expected, episode.answer)
+    passed = agrees(task.expected, parsed)
+    if isinstance(parsed, Unreadable):
+        return CheckResult("answer", None, f"cannot be read: {parsed.reason}")
+    stated = "declined" if isinstance(parsed, Declined) else f"read as {_plain(parsed.value)}"
+    return CheckResult("answer", passed, stated if passed else f"{stated}, which is not what is expected")
 
 
 def _plain(value: object) -> str:
@@ -67,16 +67,16 @@ def _plain(value: object) -> str:
 
 
 def check_coverage(task: Task, episode: Episode) -> CheckResult | None:
-    """Perception looked, successfully, at everything that the answer rests on."""
+    """Check that perception successfully observed everything that the answer rests on."""
     wanted = [view for view in task.evidence if view.must_look]
     if not wanted:
         return None
-    gaps = [found for view in wanted if (found := uncovered_part(view, episode.looks)) is not None]
+    gaps = [found for view in wanted if (found := uncovered_part(view, episode.observations)) is not None]
     return CheckResult("coverage", not gaps, "; ".join(gaps) or "everything asked about was looked at")
 
 
 def check_pose(task: Task, episode: Episode) -> CheckResult | None:
-    """The camera ends where the instruction wants it."""
+    """Check that the camera ends at the pose that the instruction asks for."""
     final = task.behaviour.final
     if final is None:
         return None
@@ -85,7 +85,7 @@ def check_pose(task: Task, episode: Episode) -> CheckResult | None:
 
 
 def pose_difference(wanted: FinalPose, is_at: CameraState) -> list[str]:
-    """What of a pose is not as wanted, in words."""
+    """Return how a camera state differs from the required one, in words; empty if it is within tolerance."""
     wrong = []
     if is_at.viewpoint != wanted.viewpoint:
         wrong.append(f"at viewpoint {is_at.viewpoint}, not {wanted.viewpoint}")
@@ -102,7 +102,7 @@ def pose_difference(wanted: FinalPose, is_at: CameraState) -> list[str]:
 
 
 def check_calls(task: Task, episode: Episode) -> CheckResult | None:
-    """The calls that the instruction fixes were made with success, in order where it fixes the order."""
+    """Check that the calls that the instruction requires succeeded, in order if the instruction gives one."""
     behaviour = task.behaviour
     if not behaviour.calls:
         return None
@@ -111,7 +111,7 @@ def check_calls(task: Task, episode: Episode) -> CheckResult | None:
 
 
 def check_forbidden(task: Task, episode: Episode) -> CheckResult | None:
-    """Nothing happened that must not."""
+    """Check that no forbidden tool was used and no forbidden change remained."""
     forbidden = task.behaviour.forbidden
     if not forbidden.tools and not forbidden.changes:
         return None
@@ -122,7 +122,7 @@ def check_forbidden(task: Task, episode: Episode) -> CheckResult | None:
 
 
 def changes(before: CameraState, after: CameraState) -> list[str]:
-    """Which of viewpoint, pan, tilt and zoom differ."""
+    """Return which of viewpoint, pan, tilt and zoom differ between two states."""
     one, two = before.pose, after.pose
     differs = {
         "viewpoint": before.viewpoint != after.viewpoint,
@@ -134,7 +134,7 @@ def changes(before: CameraState, after: CameraState) -> list[str]:
 
 
 def check_pictures(task: Task, episode: Episode) -> CheckResult | None:
-    """As many pictures were taken as were asked for, and their files are there."""
+    """Check that the requested number of pictures was taken and that their files exist."""
     wanted = task.behaviour.pictures
     if wanted is None:
         return None
@@ -146,7 +146,7 @@ def check_pictures(task: Task, episode: Episode) -> CheckResult | None:
 
 
 def check_framing(task: Task, episode: Episode) -> CheckResult | None:
-    """The target is in the middle of the final view and as large as wanted."""
+    """Check that the target is in the middle of the final view and as large as required."""
     framing = task.behaviour.framing
     if framing is None:
         return None
@@ -162,7 +162,16 @@ def check_framing(task: Task, episode: Episode) -> CheckResult | None:
 
 
 def framed(outline_deg: Sequence[tuple[float, float]], episode: Episode) -> tuple[float, float]:
-    """Fill of the limiting side and the larger offset from the middle of an outline in the final view; infinite when behind."""
+    """Return how an outline is framed in the final view.
+
+    Args:
+        outline_deg: Directions (pan, tilt) along the outline.
+        episode: The run.
+
+    Returns:
+        The share of the frame that the longer side fills, and the larger offset from the middle as a share of the frame. Both are
+        infinite if the outline is behind the camera.
+    """
     pose = episode.final.pose
     view = Perspective(pose.pan_deg, pose.tilt_deg, episode.optics.hfov_deg(pose.zoom), 1600, round(1600 / episode.aspect))
     outline = np.array(outline_deg, dtype=np.float64)

@@ -1,4 +1,4 @@
-"""What the tools of a run said, and whether the final answer rests on it."""
+"""Tool evidence: what the tools of a run reported, and whether the final answer is supported by it."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _MOST_COUNTS = 8
 
 
 def text_from_tools(episode: Episode) -> str:
-    """Everything that tools said, as one text."""
+    """Return everything that the tools reported, as one text."""
     parts = list[str]()
     for call in episode.calls:
         if call.succeeded and call.result is not None:
@@ -41,7 +41,7 @@ def text_from_tools(episode: Episode) -> str:
 
 
 def numbers_from_tools(episode: Episode) -> set[float]:
-    """Numbers that tools gave, and the sums and differences that an answer may draw from counts."""
+    """Return the numbers that the tools reported, and the sums and differences of their counts."""
     counts, other = list[float](), set[float]()
     for call in episode.calls:
         result = call.result or {}
@@ -59,8 +59,11 @@ def numbers_from_tools(episode: Episode) -> set[float]:
 
 
 def is_supported_by_tools(task: Task, episode: Episode) -> bool:
-    """Whether what the answer claims is in, or could be drawn from, what tools said. Denials and comparisons are conclusions."""
-    reading = parse_answer(task.expected, episode.text)
+    """Return whether the answer follows from what the tools reported.
+
+    Denials and comparisons are conclusions and need no report that states them.
+    """
+    reading = parse_answer(task.expected, episode.answer)
     if not isinstance(reading, ParsedValue):
         return True
     value, said = reading.value, text_from_tools(episode)
@@ -87,13 +90,16 @@ def is_supported_by_tools(task: Task, episode: Episode) -> bool:
 
 
 def _heard_of(episode: Episode, wordings: Sequence[str]) -> bool:
-    """Whether tools told anything of a thing that may be compared: a count of it, whatever it was, or that it is there."""
+    """Return whether the tools reported anything about a thing: a count of it, even zero, or its presence."""
     counted = (str(c.arguments.get("description", "")) for c in episode.calls if c.succeeded and "count" in (c.result or {}))
     return _reported(episode, wordings) or any(names_any(description, wordings) for description in counted)
 
 
 def _reported(episode: Episode, wordings: Sequence[str]) -> bool:
-    """Whether a tool said that a thing is there: counted some, found it, named it without denial, or said yes when asked for it."""
+    """Return whether a tool reported that a thing is present.
+
+    A tool reports presence by a count above zero, by finding the thing, by naming it without denial, or by answering yes.
+    """
     for call in episode.calls:
         result = call.result or {}
         if not call.succeeded:
@@ -109,7 +115,7 @@ def _reported(episode: Episode, wordings: Sequence[str]) -> bool:
 
 
 def _presences(task: Task, episode: Episode) -> bool:
-    """Whether any tool reported something: an answer may call that a yes."""
+    """Return whether any tool reported something that an answer may call a yes."""
     for call in episode.calls:
         result = call.result or {}
         if call.succeeded and (result.get("count", 0) or result.get("found") or _answers_yes(task.expected, result.get("answer"))):

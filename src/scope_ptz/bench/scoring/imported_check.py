@@ -1,4 +1,4 @@
-"""The one executable check of imported tasks: whether the expected tools were called."""
+"""The only executable check of imported tasks: whether the expected tools were called."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ NAME = "calls"
 
 
 def check_imported_calls(imported: ImportedTask, episode: Episode) -> CheckRecord:
-    """Whether a run made the expected calls. It cannot be told where the file expects none."""
+    """Check that a run made the calls that an imported task expects. It is undecided if the file expects none."""
     wanted = imported.calls
     if not wanted or imported.policy == "none":
         return CheckRecord(name=NAME, passed=None, reason="the file demands no tools")

@@ -1,4 +1,4 @@
-"""Whether the calls that a task demands are among those that a run made."""
+"""Compare the calls that a task requires with the calls that a run made."""
 
 from __future__ import annotations
 
@@ -14,8 +14,10 @@ _DEFAULTS: dict[str, dict[str, Any]] = {name: tool.defaults() for name, tool in 
 
 
 def arguments_of(call: EpisodeCall) -> Mapping[str, Any]:
-    """The arguments of a call with defaults filled in; a zoom by percent is also given as its factor, and so is one that is left
-    as it is."""
+    """Return the arguments of a call with defaults filled in.
+
+    A zoom in percent is also given as ``zoom_factor``. An unchanged zoom has the factor 1.
+    """
     arguments = {**_DEFAULTS.get(call.name, {}), **{k: v for k, v in call.arguments.items() if v is not None}}
     percent = arguments.get("zoom_percent")
     if isinstance(percent, int | float):
@@ -26,7 +28,13 @@ def arguments_of(call: EpisodeCall) -> Mapping[str, Any]:
 
 
 def call_matches(wanted: RequiredCall, call: EpisodeCall, leave_out: Collection[str] = ()) -> bool:
-    """Whether a call is the required one and found its target, if it has one. ``leave_out``: arguments that are not compared."""
+    """Return whether a call is the required one, succeeded, and found its target if it has one.
+
+    Args:
+        wanted: The required call.
+        call: The call that was made.
+        leave_out: Names of arguments that are not compared; "found" accepts a call that did not find its target.
+    """
     if not call.succeeded or call.name != wanted.tool:
         return False
     if "found" not in leave_out and (call.result or {}).get("found") is False:
@@ -45,7 +53,7 @@ def _fits_argument(spec: Argument, given: Any) -> bool:
 
 
 def missing_in_order(wanted: Sequence[RequiredCall], calls: Sequence[EpisodeCall], leave_out: Collection[str] = ()) -> str | None:
-    """What is missing of the required calls as a subsequence of the calls made; None when all are there."""
+    """Return which required call is missing when the order counts; None if all were made in order."""
     at = 0
     for spec in wanted:
         for number in range(spec.times):
@@ -61,7 +69,7 @@ def missing_in_order(wanted: Sequence[RequiredCall], calls: Sequence[EpisodeCall
 def missing_in_any_order(
     wanted: Sequence[RequiredCall], calls: Sequence[EpisodeCall], leave_out: Collection[str] = ()
 ) -> str | None:
-    """What is missing of the required calls when each takes a call of its own; None when all are there."""
+    """Return which required call is missing in any order; None if each is matched by a call of its own."""
     slots = [spec for spec in wanted for _ in range(spec.times)]
     taken: dict[int, int] = {}
 

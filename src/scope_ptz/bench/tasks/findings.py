@@ -1,4 +1,4 @@
-"""What is said about rows: why one cannot be run, and what is doubtful about it."""
+"""Findings about rows of imported files: why a row cannot be run, or what is doubtful about it."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ FindingKind = Literal[
 BLOCKING: frozenset[FindingKind] = frozenset(
     {"empty-question", "nothing-expected", "unknown-category", "missing-scene", "missing-preset"}
 )
-"""A row with one of these cannot be run."""
+"""Findings with which a row cannot be run."""
 
 MEANINGS: dict[FindingKind, str] = {
     "empty-question": "there is no question",
@@ -58,7 +58,7 @@ MEANINGS: dict[FindingKind, str] = {
 
 
 class RowFinding(BaseModel):
-    """``detail``: what it is about in this row."""
+    """A finding about one row. ``detail`` says what it concerns."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -67,4 +67,5 @@ class RowFinding(BaseModel):
 
     @property
     def blocks(self) -> bool:
+        """Whether the row cannot be run."""
         return self.kind in BLOCKING

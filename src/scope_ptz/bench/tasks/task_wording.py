@@ -1,4 +1,7 @@
-"""Tasks in words for judges and people: the expected answer, and what the instruction fixes about the way to it."""
+"""Describe tasks in words for judges and people: the expected answer and the required behaviour.
+
+These sentences are part of judge prompts. Changing them changes what judges decide.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +28,7 @@ _OUTCOMES = {"answered": "with an answer", "clarification": "with a question bac
 
 
 def facts_of(task: Task, viewpoint: str) -> TaskFacts:
-    """What reports and judges know of a task. ``viewpoint``: where its preset stands."""
+    """Return the facts about a task. ``viewpoint`` is the viewpoint of its preset."""
     return TaskFacts(
         id=task.id,
         dataset=task.dataset,
@@ -46,7 +49,7 @@ def facts_of(task: Task, viewpoint: str) -> TaskFacts:
 
 
 def expected_in_words(expected: AnyExpected) -> str:
-    """The right answer as a sentence or two, with the further wordings that count."""
+    """Return the expected answer in a sentence or two, with the other accepted wordings."""
     match expected:
         case Number():
             unit = f" ({expected.unit[0]})" if expected.unit else ""
@@ -78,7 +81,7 @@ def expected_in_words(expected: AnyExpected) -> str:
 
 
 def demands(task: Task) -> Iterator[str]:
-    """What the run must have done, a sentence each. Nothing that the instruction leaves open."""
+    """Yield what the run must have done, one sentence each. What the instruction leaves open is not mentioned."""
     behaviour = task.behaviour
     if behaviour.outcomes != ("answered",):
         yield f"The run must end {_or([_OUTCOMES[name] for name in behaviour.outcomes], marks='')}."
@@ -113,7 +116,7 @@ def _view(view: EvidenceView) -> str:
 
 
 def call_in_words(call: RequiredCall) -> str:
-    """A required call as it would be written, with what its arguments may be."""
+    """Return a required call as text, with the accepted values of its arguments."""
     arguments = ", ".join(f"{name}={_argument(spec)}" for name, spec in call.arguments.items())
     times = f" {call.times} times" if call.times > 1 else ""
     return f"{call.tool}({arguments}){times}"

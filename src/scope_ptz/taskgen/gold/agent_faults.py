@@ -39,8 +39,8 @@ def replayed(episode: Episode, calls: Iterable[EpisodeCall], setting: Setting) -
     at, made = episode.start, list[EpisodeCall]()
     for call in calls:
         after = _after(call, at, episode, setting)
-        moved = replace(call, before=at, after=after, looks=())
-        made.append(replace(moved, looks=observations_of(moved, setting.eyes) if moved.succeeded else ()))
+        moved = replace(call, before=at, after=after, observations=())
+        made.append(replace(moved, observations=observations_of(moved, setting.eyes) if moved.succeeded else ()))
         at = after
     kept = {str((call.result or {}).get("file")) for call in made if call.name == "take_image"}
     return replace(episode, calls=tuple(made), final=at, pictures=tuple(p for p in episode.pictures if p.file in kept))
@@ -144,7 +144,7 @@ def flip_scope(task: Task, episode: Episode, setting: Setting, rng: random.Rando
         said: dict[str, Any] = {"count": count_of(task.expected, told, call)} if call.name == "count_objects" else {"answer": told}
         return retold(replace(call, arguments={**call.arguments, "view": view}), view=view, message=told, **said)
 
-    return replace(changed(episode, setting, flip), text=told)
+    return replace(changed(episode, setting, flip), answer=told)
 
 
 def count_of(expected: AnyExpected, told: str, call: EpisodeCall) -> int:
@@ -208,4 +208,4 @@ def other_target(task: Task, episode: Episode, setting: Setting, rng: random.Ran
             return retold(replace(call, arguments=arguments), answer=told, known=True, message=told)
         return call
 
-    return replace(changed(episode, setting, aside), text=told)
+    return replace(changed(episode, setting, aside), answer=told)

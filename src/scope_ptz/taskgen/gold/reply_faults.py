@@ -32,7 +32,7 @@ def miscount(task: Task, episode: Episode, setting: Setting, rng: random.Random)
         calls = list(episode.calls)
         for n, number in zip(counts, wrong, strict=True):
             calls[n] = recounted(calls[n], number)
-        made = replace(replayed(episode, calls, setting), text=told)
+        made = replace(replayed(episode, calls, setting), answer=told)
         if is_supported_by_tools(task, made):
             return made
     return None
@@ -64,7 +64,7 @@ def misread(task: Task, episode: Episode, setting: Setting, rng: random.Random) 
     def misread(call: EpisodeCall) -> EpisodeCall:
         return retold(call, answer=told, message=told) if call.name == "query_answer" else call
 
-    return replace(changed(episode, setting, misread), text=told)
+    return replace(changed(episode, setting, misread), answer=told)
 
 
 def overlook(task: Task, episode: Episode, setting: Setting, rng: random.Random) -> Episode | None:
@@ -78,7 +78,7 @@ def overlook(task: Task, episode: Episode, setting: Setting, rng: random.Random)
         said = {"message": "Nothing that fits is in view.", "found": False, "matches": 0}
         return replace(call, result=said, after=call.before)
 
-    return replace(changed(episode, setting, overlook), text="It is not in view.")
+    return replace(changed(episode, setting, overlook), answer="It is not in view.")
 
 
 # The answer is wrong
@@ -89,8 +89,8 @@ def make_up(task: Task, episode: Episode, setting: Setting, rng: random.Random) 
         told = wrong_answer(task.expected, rng)
         if told is None:
             return None
-        if not is_supported_by_tools(task, replace(episode, text=told)):
-            return replace(episode, text=told)
+        if not is_supported_by_tools(task, replace(episode, answer=told)):
+            return replace(episode, answer=told)
     return None
 
 
@@ -101,8 +101,8 @@ def conclude_wrongly(task: Task, episode: Episode, setting: Setting, rng: random
     if isinstance(expected, Number):
         others = sorted(n for n in numbers_from_tools(episode) if abs(n - expected.value) > expected.tolerance)
         if others and rng.random() < 0.5:
-            return replace(episode, text=right_answers(expected.model_copy(update={"value": rng.choice(others)}))[0])
+            return replace(episode, answer=right_answers(expected.model_copy(update={"value": rng.choice(others)}))[0])
     told = wrong_answer(expected, rng)
-    if told is not None and rng.random() < 0.5 and is_supported_by_tools(task, replace(episode, text=told)):
-        return replace(episode, text=told)
-    return replace(episode, text=rng.choice(_DECLINES))
+    if told is not None and rng.random() < 0.5 and is_supported_by_tools(task, replace(episode, answer=told)):
+        return replace(episode, answer=told)
+    return replace(episode, answer=rng.choice(_DECLINES))

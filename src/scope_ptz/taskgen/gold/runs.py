@@ -164,7 +164,7 @@ def _run(episode: Episode) -> dict[str, Any]:
             for call in episode.calls
         ],
         "final": _stand(episode.final),
-        "text": episode.text,
+        "text": episode.answer,
         "outcome": episode.outcome,
         "pictures": [picture.file for picture in episode.pictures],
     }

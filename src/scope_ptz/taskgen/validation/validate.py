@@ -193,7 +193,7 @@ class _Proof:
         key = str([(call.tool, call.arguments) for call in attempt.program])
         if key not in self._ran:
             self._ran[key] = await self.stage.run(self.task, attempt.program, attempt.text, attempt.outcome)
-        return replace(self._ran[key], text=attempt.text, outcome=attempt.outcome)
+        return replace(self._ran[key], answer=attempt.text, outcome=attempt.outcome)
 
     async def _hold(self, attempt: Attempt, name: str, *, passes: bool, again: bool = False) -> None:
         verdict = score_episode(self.task, await self._episode(attempt))
