@@ -120,7 +120,7 @@ def submission_validate(
                 complain(fault)
             if len(found.faults) > MOST_TOLD:
                 complain(f"and {len(found.faults) - MOST_TOLD} more")
-            put(found.told)
+            put(found.summary)
         if found.faults:
             sys.exit(FAILED)
 

@@ -91,7 +91,7 @@ def told(judge: JudgeServer | None, made: JudgementTally) -> str:
     """What came of a log's judgements."""
     if judge is None:
         return ""
-    return f"{made.made} judgement{'' if made.made == 1 else 's'} by {judge.client.endpoint.model}: {made.told}"
+    return f"{made.made} judgement{'' if made.made == 1 else 's'} by {judge.client.endpoint.model}: {made.summary}"
 
 
 def judge_failed(made: JudgementTally) -> str:

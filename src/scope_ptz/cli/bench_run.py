@@ -162,7 +162,7 @@ def run(
         else:
             console.print(summary(evaluation))
             if judged is not None:
-                put(f"judge      {ended.judge}: {judged.told}")
+                put(f"judge      {ended.judge}: {judged.summary}")
             put(f"log        {evaluation.log}")
         finish(ended)
 

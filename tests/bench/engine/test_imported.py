@@ -56,7 +56,7 @@ def test_imported_tasks_run_and_are_judged(scope: Scope, tmp_path: Path) -> None
     other = {"reason": "It did not.", "verdict": "incorrect", "error_mode": "scope"}
     with Misbehaving(then=good(Say(json.dumps(other)))) as server:
         second = scope("bench", "rescore", str(log), "--judge-url", server.url, "--judge-model", "b")
-    assert second.code == 0 and "decides on the run that only a judge can score; what b (judge-1:" in second.out
+    assert second.code == 0 and "decides on the run that only a judge can score; the verdicts of b (judge-1:" in second.out
     (trial,) = read_evaluation(log).trials
     assert (trial.headline, trial.reason, [j.judge for j in trial.judgements]) == ("correct", "It turned.", ["j", "b"])
     assert "judged     j (judge-1:" in scope(*run[:-1]).out
@@ -123,7 +123,7 @@ def test_the_judge_of_a_report_is_the_one_that_decides_and_never_one_that_was_aw
     assert (judge_name([run(away, by="checks")]), judge_name([run()])) == ("A-phantom", None)
     # What a judge said first where its server had failed before.
     late = a.model_copy(update={"repeat": 1})
-    assert verdicts(run(said_by("a", "failed"), late).scored, "a")[0][1] == late
+    assert verdicts(run(said_by("a", "failed"), late).scored_trials, "a")[0][1] == late
 
 
 def test_replies_without_a_verdict_are_in_no_share_and_in_no_gate(scope: Scope, evaluated: Path) -> None:

@@ -140,7 +140,7 @@ def test_what_is_said_of_judgements(evaluated: Path) -> None:
         [judgement("correct"), judgement("failed", reason="No route\nto it."), judgement("failed", reason="x")]
     )
     told += JudgementTally.of([judgement("unparseable"), judgement("incorrect", error_mode="scope")])
-    assert (told.told, told.made, told.failure) == ("2 with a verdict, 1 unparseable, 2 failed", 5, "No route to it.")
+    assert (told.summary, told.made, told.failure) == ("2 with a verdict, 1 unparseable, 2 failed", 5, "No route to it.")
     first, second, *_ = read_evaluation(evaluated).trials
     whole = [t.model_copy(update={"judgements": (judgement("unparseable"),)}) for t in (first, second)]
     half = [whole[0], second.model_copy(update={"judgements": (judgement("failed"),)})]

@@ -39,8 +39,8 @@ def test_what_waits_for_a_judge_is_neither_right_nor_wrong() -> None:
     waiting = own.trials[0].model_copy(update={"headline": "unscored", "scored_by": "judge", "judgements": ()})
     (before,) = report_runs([own], load_registry())
     (after,) = report_runs([own.model_copy(update={"trials": (waiting, *own.trials[1:])})], load_registry())
-    assert len(after.scored) == len(before.scored) - 1
-    assert waiting in after.headline and waiting not in after.scored
+    assert len(after.scored_trials) == len(before.scored_trials) - 1
+    assert waiting in after.main_trials and waiting not in after.scored_trials
 
 
 @pytest.fixture(scope="module")
@@ -83,7 +83,7 @@ def test_only_pairs_over_the_main_tasks_are_counted_and_averaged(mixed: Evaluati
 
 def test_runs_over_the_same_tasks_are_not_marked() -> None:
     runs = report_runs([run("qwen3-4b", "moondream3"), run("grammar", "ground-truth")], load_registry())
-    assert [(r.label, r.elsewhere) for r in runs] == [("qwen3-4b + moondream3", ""), ("grammar + ground-truth", "")]
+    assert [(r.label, r.other_tasks) for r in runs] == [("qwen3-4b + moondream3", ""), ("grammar + ground-truth", "")]
     assert main_tasks(runs) == {t.id for t in TASKS}
     alone = build_report([run("qwen3-4b", "moondream3")], load_registry())
     assert "1 pair of models on the main task set (32 tasks)." in alone.summary[0]

@@ -56,7 +56,7 @@ def test_the_audit_sets_beside_a_task_only_what_no_model_and_no_noise_took_part_
     made = build(*pairs, *noise, whole("grammar", "ground-truth", "correct"))
     assert {row(made, "audit", t.id)["reference"] for t in TASKS} == {1.0}
     assert {row(build(*pairs, *noise), "audit", t.id)["reference"] for t in TASKS} == {None}
-    assert [r.label for r in report_runs([*pairs, *noise], load_registry()) if r.exact] == []
+    assert [r.label for r in report_runs([*pairs, *noise], load_registry()) if r.is_exact_reference] == []
     assert "grammar planner with ground-truth eyes" in words(made, "audit") and "exact reference" not in words(made, "audit")
 
 
@@ -118,7 +118,7 @@ def test_a_bar_of_no_height_is_not_drawn() -> None:
 
 
 def test_a_ring_around_a_filling_is_apart_from_it() -> None:
-    from scope_ptz.bench.reports.recommendations import candidates
+    from scope_ptz.bench.reports.candidates import candidates
 
     runs = report_runs([evaluation(*pair, TASKS, 0.6, spoiled=0.0) for pair in PAIRS[:1]], load_registry())
     (found,) = candidates(runs, runs)

@@ -290,7 +290,7 @@ def test_runs_without_models_are_said_to_be_unranked(tmp_path: Path) -> None:
     unranked = whole.model_copy(update={"card": card("grammar", "ground-truth", split="x.jsonl")})
     write_submission(submission_lines(unranked), path)
     found = check_submission(path, TASKS)
-    assert not found.faults and "not ranked" in found.told and found.as_dict()["valid"] is True
+    assert not found.faults and "not ranked" in found.summary and found.as_dict()["valid"] is True
     with pytest.raises(InputError, match="no published split"):
         check_submission(path)
 

@@ -118,6 +118,6 @@ def other_judges_note(trials: Sequence[Trial]) -> str:
         return ""
     runs = f"the {len(rows)} runs that only a judge can score" if len(rows) > 1 else "the run that only a judge can score"
     return (
-        f"{judge} decides {runs}; the verdicts of {', '.join(others)} are kept and do not change the accuracy "
+        f"{judge} decides on {runs}; the verdicts of {', '.join(others)} are kept and do not change the accuracy "
         "(to let another judge decide: scope bench rescore LOG --decides NAME)"
     )

@@ -1,6 +1,6 @@
 """Human labels of runs: one JSON line each, in a file next to the log.
 
-A later line by the same person about the same run replaces an earlier one. Lines are only appended, so an interruption loses nothing.
+A later line by the same person about the same run replaces an earlier one. Lines are only appended: an interruption loses nothing.
 """
 
 from __future__ import annotations

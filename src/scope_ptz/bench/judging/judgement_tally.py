@@ -45,7 +45,7 @@ class JudgementTally:
         return self.verdicts + self.unparseable + self.failed
 
     @property
-    def told(self) -> str:
+    def summary(self) -> str:
         """The numbers in words."""
         return f"{self.verdicts} with a verdict, {self.unparseable} unparseable, {self.failed} failed"
 

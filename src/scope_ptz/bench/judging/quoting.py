@@ -1,7 +1,7 @@
 """Quote untrusted text in judge prompts, so that a judge cannot mistake it for its own instructions.
 
-Every line of the text begins with a bar, so nothing in the text can end the quotation. Control tokens of chat templates are broken up,
-because many servers interpret them in any message.
+Every line of the text begins with a bar, so nothing in the text can end the quotation. Control tokens of chat templates are broken
+up, because many servers interpret them in any message.
 """
 
 from __future__ import annotations

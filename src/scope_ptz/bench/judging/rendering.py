@@ -1,7 +1,7 @@
 """Describe a run to a judge within a budget of characters.
 
-The instruction, the expected answer and the final answer are always included. For a long run, long tool results are shortened first.
-Then calls in the middle are replaced by their number for each tool.
+The instruction, the expected answer and the final answer are always included. In a long run, long tool results are shortened first;
+then calls in the middle are replaced by their number for each tool.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
-"""The published prompt of judges, which is a file. Another wording needs another file, because scores are comparable only within one.
+"""The published prompt of judges, which is a file.
 
-Every judgement records the name of the file and a digest of its text.
+Another wording needs another file, because verdicts are comparable only under the same prompt. Every judgement records the name of
+the file and a digest of its text.
 """
 
 from __future__ import annotations

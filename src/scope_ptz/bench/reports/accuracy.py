@@ -31,13 +31,13 @@ INTERVALS = (
 
 def accuracy_section(runs: Sequence[ReportRun]) -> Section:
     """Accuracy of every run that has core tasks, model pairs apart from what is no model pair."""
-    having = [run for run in runs if run.scored]
+    having = [run for run in runs if run.scored_trials]
     ranked, others = [r for r in having if r.ranked], [r for r in having if not r.ranked]
     tables = [category_table("accuracy", "Accuracy by category (%): model pairs", ranked, rank=True)]
     if others:
         tables.append(category_table("accuracy_not_ranked", "Accuracy by category (%): not ranked", others, rank=False))
     tables.append(_bounds(having))
-    if any(t.judgements for run in having for t in run.scored):
+    if any(t.judgements for run in having for t in run.scored_trials):
         tables.append(_by_judge(having))
     text = [
         "Macro is the unweighted mean over categories, which is what the paper calls average; micro is the share of all "
@@ -51,7 +51,7 @@ def accuracy_section(runs: Sequence[ReportRun]) -> Section:
             "shows the main task set."
             + (
                 " Runs over other tasks of it are hollow and stand below; their labels say how many tasks they share with the rest."
-                if any(run.elsewhere for run in having)
+                if any(run.other_tasks for run in having)
                 else ""
             )
         )
@@ -76,7 +76,7 @@ def category_table(key: str, title: str, runs: Sequence[ReportRun], *, rank: boo
     rows, groups = [], {}
     previous = None
     for number, (run, values) in enumerate(raw):
-        group = f"{run.eyes_name} ({' '.join(run.task_set)})"
+        group = f"{run.perception_name} ({' '.join(run.task_set)})"
         if group != previous:
             groups[number], previous = group, group
         cells = [_marked(value, index, run, raw) if rank else value for index, value in enumerate(values)]
@@ -87,7 +87,7 @@ def category_table(key: str, title: str, runs: Sequence[ReportRun], *, rank: boo
 
 
 def _category(run: ReportRun, name: str) -> IntervalEstimate | None:
-    return share(scores_of([t for t in run.scored if t.task.category == name]))
+    return share(scores_of([t for t in run.scored_trials if t.task.category == name]))
 
 
 def _marked(
@@ -96,7 +96,7 @@ def _marked(
     if value is None:
         return None
     same_tasks = [(r, v[index]) for r, v in raw if r.task_set == run.task_set and r.tasks == run.tasks]
-    alike = [v.value for r, v in same_tasks if v and r.eyes_name == run.eyes_name]
+    alike = [v.value for r, v in same_tasks if v and r.perception_name == run.perception_name]
     every = [v.value for _, v in same_tasks if v]
     return MarkedCell(value, _is_best(value.value, alike), _is_best(value.value, every))
 
@@ -108,7 +108,7 @@ def _is_best(value: float, among: Sequence[float]) -> bool:
 
 def _partial_macro(value: CellValue, run: ReportRun) -> CellValue:
     """A macro average that lacks categories says so."""
-    number = len({t.task.category for t in run.scored})
+    number = len({t.task.category for t in run.scored_trials})
     if number == len(CATEGORY_TITLES):
         return value
     marks = value if isinstance(value, MarkedCell) else MarkedCell(unmarked(value))
@@ -131,9 +131,9 @@ def _bounds(runs: Sequence[ReportRun]) -> ReportTable:
 
 
 def _counted(run: ReportRun) -> tuple[CellValue, ...]:
-    found = Counter(t.headline for t in run.headline)
-    total = len(run.headline)
-    ran = len(run.scored)
+    found = Counter(t.headline for t in run.main_trials)
+    total = len(run.main_trials)
+    ran = len(run.scored_trials)
     return (
         run.label, total, found["correct"], found["incorrect"], found["unscored"], found["infrastructure"],
         found["correct"] / ran if ran else None, found["correct"] / total, 1 - found["incorrect"] / total,
@@ -159,7 +159,7 @@ def _judged_row(run: ReportRun) -> tuple[CellValue, ...]:
     name = judge_name([run])
     if name is None:
         return run.label, None, 0, 0, 0, None, None, None
-    said = verdicts(run.scored, name)
+    said = verdicts(run.scored_trials, name)
     states = Counter(judgement.verdict for _, judgement in said)
     clear = [(t, j.verdict == "correct") for t, j in said if j.verdict in ("correct", "incorrect")]
     trials = [t for t, _ in clear]

@@ -55,7 +55,7 @@ def build_report(evaluations: Sequence[Evaluation], registry: Registry, pages: M
     main = of_main_set(runs)
     ranked = pairs_of(main)
     alike = on_the_same_tasks(ranked)
-    exact = [run for run in main if run.exact]
+    exact = [run for run in main if run.is_exact_reference]
     shown = [*ranked, *(run for run in main if run.kind == "reference")]
     links = pages or {}
     sections: list[Section | None] = [
@@ -177,13 +177,13 @@ def _warnings(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], alike: Seq
             "of the oracle "
             "setting, spreads and the choice of a pair; paired comparisons use shared tasks."
         )
-    if further := [run.label for run in runs if run.elsewhere and run not in ranked]:
+    if further := [run.label for run in runs if run.other_tasks and run not in ranked]:
         told.append(
             f"Reference runs, variants and baselines over other tasks than the pairs': {'; '.join(further)}. Their labels say so "
             "wherever they stand; their means are not comparable with the pairs'."
         )
     told += _served_otherwise(runs)
-    if len({run.task_set for run in runs if run.headline}) > 1:
+    if len({run.task_set for run in runs if run.main_trials}) > 1:
         chosen = main_task_set(runs)
         told.append(
             "There are several task sets. Everything but accuracy, latency, cost and sensitivity is told of "
@@ -202,7 +202,7 @@ def _served_otherwise(runs: Sequence[ReportRun]) -> list[str]:
     found: dict[str, str] = {}
     for run in runs:
         card = run.evaluation.card
-        for model, known in ((card.planner, run.planner), (card.perception, run.eyes)):
+        for model, known in ((card.planner, run.planner), (card.perception, run.perception)):
             served = served_instead(model, known)
             if served is not None:
                 found[f"{model.name} (served: {served})"] = model.name
@@ -234,7 +234,7 @@ def _summary(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], alike: Sequ
     found_wrong = sum((by_rules(run) for run in alike), start=Counter[ErrorMode]())
     if found_wrong:
         mode, number = found_wrong.most_common(1)[0]
-        unscored = sum(trial.headline == "unscored" for run in alike for trial in run.scored)
+        unscored = sum(trial.headline == "unscored" for run in alike for trial in run.scored_trials)
         told.append(
             f"Most frequent error mode of model pairs: {MODE_TITLES[mode]}, {number} of "
             f"{_number(found_wrong.total(), 'incorrect trial')}"

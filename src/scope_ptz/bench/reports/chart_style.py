@@ -74,14 +74,14 @@ def as_chart(key: str, title: str, alt: str, figure: Figure) -> Chart:
 
 def colours(runs: Sequence[ReportRun]) -> dict[str, str]:
     """A hue for each pair of eyes, lighter for smaller planners, as in the paper's figure; grey for what is not ranked."""
-    eyes = list(dict.fromkeys(run.eyes_name for run in runs if run.ranked))
+    eyes = list(dict.fromkeys(run.perception_name for run in runs if run.ranked))
     found = {}
     for run in runs:
         if not run.ranked:
             found[run.label] = GREY
             continue
-        name = run.eyes_name
-        same = [r for r in runs if r.ranked and r.eyes_name == name]
+        name = run.perception_name
+        same = [r for r in runs if r.ranked and r.perception_name == name]
         place = (same.index(run) + 1) / len(same)
         found[run.label] = _mixed(HUES[eyes.index(name) % len(HUES)], 0.45 + 0.55 * place)
     return found

@@ -36,12 +36,12 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.collections import PathCollection
 
-    from scope_ptz.bench.reports.recommendations import Candidate
+    from scope_ptz.bench.reports.candidates import Candidate
 
 
 def accuracy_chart(runs: Sequence[ReportRun]) -> Chart:
     """Macro accuracy with its interval, the best on top; runs over other tasks below and hollow, reference runs last and grey."""
-    ordered = sorted(runs, key=lambda r: (r.ranked, not r.elsewhere, r.macro.value if r.macro else 0.0))
+    ordered = sorted(runs, key=lambda r: (r.ranked, not r.other_tasks, r.macro.value if r.macro else 0.0))
     tint = colours(runs)
     labels = [lines(r.label + ("" if r.ranked else " (not ranked)")) for r in ordered]
     with canvas(880, 110 + row_px(labels) * len(ordered)) as (figure, axes):
@@ -51,14 +51,14 @@ def accuracy_chart(runs: Sequence[ReportRun]) -> Chart:
                 continue
             if found.low is not None and found.high is not None:
                 axes.plot([100 * found.low, 100 * found.high], [y, y], color=tint[run.label], lw=2.5, solid_capstyle="round")
-            face = PAPER if run.elsewhere else tint[run.label]
+            face = PAPER if run.other_tasks else tint[run.label]
             axes.plot(100 * found.value, y, "o" if run.ranked else "D", mec=tint[run.label], mfc=face, mew=2, ms=7, clip_on=False)
         axes.set_yticks(range(len(ordered)), labels)
         axes.set_xlim(0, 101)
         axes.set_ylim(-0.6, len(ordered) - 0.4)
         axes.set_xlabel("Macro accuracy (%), 95% interval")
         values = "; ".join(f"{r.label} {100 * r.macro.value:.1f}%" for r in reversed(ordered) if r.macro)
-        title = "Macro accuracy" + (". Hollow: over other tasks" if any(r.elsewhere for r in runs) else "")
+        title = "Macro accuracy" + (". Hollow: over other tasks" if any(r.other_tasks for r in runs) else "")
         return as_chart("chart-accuracy", title, f"Macro accuracy by run, best first: {values}.", figure)
 
 
@@ -152,7 +152,7 @@ def _value(cell: Any) -> float | None:
 def time_chart(runs: Sequence[ReportRun], titles: Mapping[str, str]) -> Chart:
     """Mean seconds by stage, stacked, without the camera; what the camera took stands beside the bar in figures."""
     stages = ("planner_s", "perception_s", "tools_s")
-    timed = [(run, [t.timings for t in run.scored if t.timings.total_s > 0]) for run in runs]
+    timed = [(run, [t.timings for t in run.scored_trials if t.timings.total_s > 0]) for run in runs]
     rows = [(run, {s: fmean(getattr(t, s) for t in own) for s in titles}) for run, own in reversed(timed) if own]
     notes = [("" if r.ranked else " (not ranked)") + (" (contended)" if r.evaluation.card.contended else "") for r, _ in rows]
     labels = [lines(run.label + note) for (run, _), note in zip(rows, notes, strict=True)]

@@ -29,25 +29,25 @@ PERCEPTION = frozenset({ErrorMode.VLM_QUERY, ErrorMode.VLM_COUNTING})
 
 def by_rules(run: ReportRun) -> Counter[ErrorMode]:
     """Incorrect trials by mode, as the rules say; unscored ones have none, and those that a judge scored have the judge's."""
-    return Counter(t.error_mode for t in run.checked if t.error_mode is not None)
+    return Counter(t.error_mode for t in run.checked_trials if t.error_mode is not None)
 
 
 def by_judge(run: ReportRun, judge: str) -> Counter[ErrorMode]:
     """Trials that a judge failed, by the mode that it named."""
-    said = [j for _, j in verdicts(run.scored, judge) if j.verdict == "incorrect"]
+    said = [j for _, j in verdicts(run.scored_trials, judge) if j.verdict == "incorrect"]
     return Counter(j.error_mode for j in said if j.error_mode is not None)
 
 
 def error_section(runs: Sequence[ReportRun]) -> Section:
     """Error modes of runs of the main task set."""
-    checked = [run for run in runs if run.checked]
+    checked = [run for run in runs if run.checked_trials]
     rules = {run.label: by_rules(run) for run in checked}
     tables = [_mode_table("error_modes", BY_RULES, rules)]
-    totals = {run.label: len(run.checked) for run in checked}
+    totals = {run.label: len(run.checked_trials) for run in checked}
     charts = [drawing.mode_chart("error_modes", BY_RULES, checked, rules, totals, MODE_TITLES, runs)] if checked else []
     judge = judge_name(runs)
     if judge is not None:
-        said = {run.label: by_judge(run, judge) for run in runs if verdicts(run.scored, judge)}
+        said = {run.label: by_judge(run, judge) for run in runs if verdicts(run.scored_trials, judge)}
         judged = [run for run in runs if run.label in said]
         title = f"Incorrect trials by error mode, by the judge ({judge})"
         tables.append(_mode_table("error_modes_judge", title, said))
@@ -122,8 +122,8 @@ Oracle = tuple[IntervalEstimate | None, IntervalEstimate | None, float | None]
 
 
 def _by_rules_oracle(run: ReportRun) -> Oracle:
-    right = [t.headline == "correct" or t.error_mode in PERCEPTION for t in run.checked]
-    return macro(scores_of(run.checked)), macro(scores_of(run.checked, right)), _perception_share(by_rules(run))
+    right = [t.headline == "correct" or t.error_mode in PERCEPTION for t in run.checked_trials]
+    return macro(scores_of(run.checked_trials)), macro(scores_of(run.checked_trials, right)), _perception_share(by_rules(run))
 
 
 def _judge_oracle(run: ReportRun, judge: str | None) -> Oracle:
@@ -136,7 +136,7 @@ def _judge_oracle(run: ReportRun, judge: str | None) -> Oracle:
 
 def _clear(run: ReportRun, judge: str | None) -> list[tuple[Trial, Judgement]]:
     """Trials on which the judge gave a verdict."""
-    return [(t, j) for t, j in verdicts(run.scored, judge or "") if j.verdict in ("correct", "incorrect")]
+    return [(t, j) for t, j in verdicts(run.scored_trials, judge or "") if j.verdict in ("correct", "incorrect")]
 
 
 def _perception_share(failed: Counter[ErrorMode]) -> float | None:
@@ -150,7 +150,7 @@ def _rerun(run: ReportRun, every: Sequence[ReportRun]) -> tuple[ReportRun, Paire
     for other in every:
         own, _, *further = other.system
         same = (own, *further) == (planner, agent, variant) and other.task_set == run.task_set and other.tasks & run.tasks
-        if same and other.exact_eyes and not other.evaluation.card.planner.deterministic:
+        if same and other.uses_exact_ground_truth and not other.evaluation.card.planner.deterministic:
             found.append(other)
     best = max(found, key=lambda other: len(other.tasks & run.tasks), default=None)
     return None if best is None else (best, compare(best, run))
@@ -167,7 +167,7 @@ def _shared_macro(run: ReportRun, again: tuple[ReportRun, PairedComparison | Non
     """Macro of the run that was made again, on the tasks that both did; it says when these are not all."""
     if again is None:
         return None
-    found = macro(scores_of([t for t in again[0].scored if t.task.id in run.tasks]))
+    found = macro(scores_of([t for t in again[0].scored_trials if t.task.id in run.tasks]))
     shared = len(again[0].tasks & run.tasks)
     return found if shared == len(run.tasks) else MarkedCell(found, note=f"on {shared} of its {len(run.tasks)} tasks")
 

@@ -9,13 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from statistics import fmean
 
-import numpy as np
-
 from scope_ptz.bench.reports import charts as drawing
 from scope_ptz.bench.reports.report_runs import ReportRun, pairs_of, timing_run
 from scope_ptz.bench.reports.sections import Section
+from scope_ptz.bench.reports.stage_times import calls_made, median, p95, stage_seconds
 from scope_ptz.bench.reports.tables import CellValue, Column, ReportTable
-from scope_ptz.bench.scoring.trials import ObservationTime, Trial
+from scope_ptz.bench.scoring.trials import ObservationTime
 from scope_ptz.bench.tasks.task import Scope
 
 STAGE_TITLES = {
@@ -40,30 +39,9 @@ LOOKS = (
 )
 
 
-def stage_seconds(run: ReportRun, stage: str) -> list[float]:
-    """Wall seconds of a stage by trial: of trials that were timed, and that used the stage at all."""
-    seconds = [float(getattr(t.timings, stage)) for t in run.scored if t.timings.total_s > 0]
-    return [value for value in seconds if value > 0]
-
-
-def middle(seconds: Sequence[float]) -> float | None:
-    """The median."""
-    return float(np.median(seconds)) if seconds else None
-
-
-def tail(seconds: Sequence[float]) -> float | None:
-    """The 95th percentile, linearly interpolated."""
-    return float(np.quantile(seconds, 0.95)) if seconds else None
-
-
-def calls_made(trials: Sequence[Trial]) -> float | None:
-    """Mean number of tool calls, failed ones included."""
-    return fmean(sum(t.tool_calls.values()) for t in trials) if trials else None
-
-
 def latency_section(runs: Sequence[ReportRun]) -> Section:
     """All runs; the tables by model are of ranked ones only."""
-    having = [run for run in runs if run.scored]
+    having = [run for run in runs if run.scored_trials]
     pairs = [(run, timing_run(run, having)) for run in pairs_of(having)]
     sources = [source for _, source in pairs]
     tables = (_by_stage(having), _by_planner(pairs), _by_eyes(pairs), _views(sources))
@@ -108,8 +86,8 @@ def _by_stage(runs: Sequence[ReportRun]) -> ReportTable:
         cells: list[CellValue] = [run.label, _contended([run]), len(stage_seconds(run, "total_s"))]
         for stage in STAGE_TITLES:
             seconds = stage_seconds(run, stage)
-            cells += [middle(seconds), tail(seconds)]
-        rows.append((*cells, middle(stage_seconds(run, "first_token_s")), calls_made(run.scored)))
+            cells += [median(seconds), p95(seconds)]
+        rows.append((*cells, median(stage_seconds(run, "first_token_s")), calls_made(run.scored_trials)))
     return ReportTable("latency_stages", "By stage (seconds a trial)", tuple(columns), tuple(rows))
 
 
@@ -121,9 +99,9 @@ def _by_planner(pairs: Sequence[Timed]) -> ReportTable:
     steps = (Column("step_median", "Seconds a step, median", "seconds"), Column("step_p95", "Seconds a step, p95", "seconds"))
 
     def cells(own: Sequence[ReportRun]) -> tuple[CellValue, ...]:
-        timed_trials = [t for run in own for t in run.scored if t.steps and t.timings.planner_s > 0]
+        timed_trials = [t for run in own for t in run.scored_trials if t.steps and t.timings.planner_s > 0]
         seconds = [t.timings.planner_s / t.steps for t in timed_trials]
-        return middle(seconds), tail(seconds)
+        return median(seconds), p95(seconds)
 
     notes = (f"What the planner took. {_pooled('planner')}",)
     return _by_model("latency_planner", "By planner", pairs, lambda r: r.planner_name, "planner_s", steps, cells, notes)
@@ -140,10 +118,10 @@ def _by_eyes(pairs: Sequence[Timed]) -> ReportTable:
     def cells(own: Sequence[ReportRun]) -> tuple[CellValue, ...]:
         made = _looks(own)
         eyes, capture = [look.eyes_s for look in made], [look.capture_s for look in made]
-        return middle(eyes), tail(eyes), middle(capture), tail(capture)
+        return median(eyes), p95(eyes), median(capture), p95(capture)
 
     notes = (f"A trial: all that perception took in it. {LOOKS} {_pooled('vision model')}",)
-    return _by_model("latency_eyes", "By eyes", pairs, lambda r: r.eyes_name, "perception_s", looks, cells, notes)
+    return _by_model("latency_eyes", "By eyes", pairs, lambda r: r.perception_name, "perception_s", looks, cells, notes)
 
 
 def _pooled(what: str) -> str:
@@ -174,13 +152,13 @@ def _by_model(
         whole = [run for run, _ in pairs if name(run) == model]
         own = _alone([source for run, source in pairs if name(run) == model])
         seconds = [s for run in own for s in stage_seconds(run, stage)]
-        calls = fmean(made for run in whole if (made := calls_made(run.scored)) is not None)
-        rows.append((model, _contended(own), len(own), len(whole), middle(seconds), tail(seconds), *cells(own), calls))
+        calls = fmean(made for run in whole if (made := calls_made(run.scored_trials)) is not None)
+        rows.append((model, _contended(own), len(own), len(whole), median(seconds), p95(seconds), *cells(own), calls))
     return ReportTable(key, title, columns, tuple(rows), notes)
 
 
 def _looks(runs: Sequence[ReportRun], view: Scope | None = None) -> list[ObservationTime]:
-    return [look for run in runs for t in run.scored for look in t.looks if view in (None, look.view)]
+    return [look for run in runs for t in run.scored_trials for look in t.looks if view in (None, look.view)]
 
 
 def _views(runs: Sequence[ReportRun]) -> ReportTable:
@@ -196,8 +174,8 @@ def _views(runs: Sequence[ReportRun]) -> ReportTable:
         Column("capture_p95", "Capture, p95 (s)", "seconds"),
         Column("call_median", "Whole call, median (s)", "seconds"),
     )
-    names = list(dict.fromkeys(run.eyes_name for run in runs))
-    parts = [(name, _alone([r for r in runs if r.eyes_name == name])) for name in names]
+    names = list(dict.fromkeys(run.perception_name for run in runs))
+    parts = [(name, _alone([r for r in runs if r.perception_name == name])) for name in names]
     if len(parts) > 1:
         parts.append(("all eyes", [run for _, own in parts for run in own]))
     rows = [_view_row(view, words, own) for _, own in parts for view, words in VIEWS]
@@ -209,6 +187,6 @@ def _views(runs: Sequence[ReportRun]) -> ReportTable:
 def _view_row(view: Scope, words: str, runs: Sequence[ReportRun]) -> tuple[CellValue, ...]:
     made = _looks(runs, view)
     eyes, capture, whole = ([getattr(look, part) for look in made] for part in ("eyes_s", "capture_s", "call_s"))
-    base, own = middle([look.eyes_s for look in _looks(runs, "current")]), middle(eyes)
+    base, own = median([look.eyes_s for look in _looks(runs, "current")]), median(eyes)
     ratio = own / base if base and own else None
-    return words, _contended(runs), len(made), own, tail(eyes), ratio, middle(capture), tail(capture), middle(whole)
+    return words, _contended(runs), len(made), own, p95(eyes), ratio, median(capture), p95(capture), median(whole)

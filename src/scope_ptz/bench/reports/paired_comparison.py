@@ -48,8 +48,8 @@ TaskMeans = dict[str, tuple[str, str, float]]
 def _task_means(run: ReportRun) -> TaskMeans:
     """Category, viewpoint and mean outcome by task: repeats of a task are one observation."""
     found: dict[str, list[bool]] = {}
-    about = {t.task.id: (t.task.category, viewpoint(t)) for t in run.scored}
-    for trial in run.scored:
+    about = {t.task.id: (t.task.category, viewpoint(t)) for t in run.scored_trials}
+    for trial in run.scored_trials:
         found.setdefault(trial.task.id, []).append(trial.headline == "correct")
     return {task: (*about[task], sum(values) / len(values)) for task, values in found.items()}
 

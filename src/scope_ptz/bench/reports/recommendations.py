@@ -3,53 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from statistics import fmean
 
 from scope_ptz.bench.reports import charts as drawing
-from scope_ptz.bench.reports.latency import middle, stage_seconds
+from scope_ptz.bench.reports.candidates import Candidate, candidates
 from scope_ptz.bench.reports.paired_comparison import compare, comparison_table
-from scope_ptz.bench.reports.report_runs import FULL_PRECISION, ReportRun, is_mixture, scores_of, timing_run
+from scope_ptz.bench.reports.report_runs import FULL_PRECISION, ReportRun, is_mixture, scores_of
 from scope_ptz.bench.reports.sections import Section
 from scope_ptz.bench.reports.tables import CellValue, Column, ReportTable
 from scope_ptz.bench.statistics.clustered import share, share_difference
-from scope_ptz.bench.statistics.pareto import undominated
 from scope_ptz.registry import Model
 
 LATENCY = "trial without the camera, median (s)"
 SIZES_GB = (8, 16, 24, 48, 80, 160)
 """Usual sizes of accelerator memory, and of two of the largest."""
-
-
-@dataclass(frozen=True, slots=True)
-class Candidate:
-    """A pair with what it is chosen by; None: not measured or not in the registry. ``latency_s``: a trial without the camera."""
-
-    run: ReportRun
-    accuracy: float | None
-    latency_s: float | None
-    memory_gb: float | None
-    contended: bool
-    on_front: bool = False
-
-    @property
-    def complete(self) -> bool:
-        return None not in (self.accuracy, self.latency_s, self.memory_gb)
-
-
-def candidates(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> list[Candidate]:
-    """Ranked runs with accuracy, latency and memory, and which of them no other beats in all three."""
-    found = []
-    for run in ranked:
-        source = timing_run(run, every)
-        seconds = middle(stage_seconds(source, "own_s"))
-        accuracy = run.macro.value if run.macro else None
-        found.append(Candidate(run, accuracy, seconds, run.memory_gb, source.evaluation.card.contended))
-    complete = [c for c in found if c.complete]
-    # Rounded, so that of two alike in accuracy none is beaten by what arithmetic made of the last digit.
-    points = [(-round(c.accuracy or 0.0, 9), c.latency_s or 0.0, c.memory_gb or 0.0) for c in complete]
-    front = {id(c) for c, on in zip(complete, undominated(points), strict=True) if on}
-    return [Candidate(c.run, c.accuracy, c.latency_s, c.memory_gb, c.contended, id(c) in front) for c in found]
 
 
 def design_section(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> Section:
@@ -166,7 +133,7 @@ def scope_section(runs: Sequence[ReportRun]) -> Section:
         Column("difference", "Current minus full (points)", "points"),
     )
     rows = [_scope_row(run) for run in runs]
-    ranked = [row for row, run in zip(rows, runs, strict=True) if run.ranked and not run.elsewhere]
+    ranked = [row for row, run in zip(rows, runs, strict=True) if run.ranked and not run.other_tasks]
     if len(ranked) > 1:
         counts = [sum(int(str(row[index])) for row in ranked) for index in (1, 3)]
         rows.append(("Mean of the model pairs", counts[0], _mean(ranked, 2), counts[1], _mean(ranked, 4), _mean(ranked, 5)))
@@ -180,7 +147,7 @@ def scope_section(runs: Sequence[ReportRun]) -> Section:
 
 
 def _scope_row(run: ReportRun) -> tuple[CellValue, ...]:
-    parts = {scope: [t for t in run.scored if t.task.scope == scope] for scope in ("current", "full")}
+    parts = {scope: [t for t in run.scored_trials if t.task.scope == scope] for scope in ("current", "full")}
     current, full = (scores_of(parts[scope]) for scope in ("current", "full"))
     return run.label, len(parts["current"]), share(current), len(parts["full"]), share(full), share_difference(current, full)
 
@@ -212,7 +179,7 @@ def _is_quantised_of(one: ReportRun, other: ReportRun) -> bool:
         return False
     if one.system[1] == other.system[1]:
         return _quantised_of(one.planner, other.planner)
-    return one.system[0] == other.system[0] and _quantised_of(one.eyes, other.eyes)
+    return one.system[0] == other.system[0] and _quantised_of(one.perception, other.perception)
 
 
 def _quantised_of(one: Model | None, other: Model | None) -> bool:
@@ -234,7 +201,7 @@ def _mixtures(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> Report
     columns.append(Column("difference", "Mixtures minus dense (points)", "points"))
     found = candidates(ranked, every)
     rows: list[tuple[CellValue, ...]] = []
-    for side, other in (("planner", 1), ("eyes", 0)):
+    for side, other in (("planner", 1), ("perception", 0)):
         for name in dict.fromkeys(c.run.system[other] for c in found):
             own = [c for c in found if c.run.system[other] == name and getattr(c.run, side)]
             kinds = [[c for c in own if is_mixture(getattr(c.run, side)) is mixture] for mixture in (True, False)]
@@ -242,7 +209,7 @@ def _mixtures(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> Report
                 cells = [v for k in kinds for v in (len(k), *(_average(k, w) for w in ("accuracy", "latency_s", "memory_gb")))]
                 moe, dense = (_average(kind, "accuracy") for kind in kinds)
                 apart = None if moe is None or dense is None else moe - dense
-                rows.append((name, "planners" if side == "planner" else "eyes", *cells, apart))
+                rows.append((name, "planners" if side == "planner" else "perception models", *cells, apart))
     notes = (
         "Means over the pairs of each kind. Where a model that is held had only one kind beside it, there is nothing to compare.",
     )

@@ -15,7 +15,7 @@ def judge_name(runs: Sequence[ReportRun]) -> str | None:
     """The judge that decides on most trials that only a judge can score; else the one with a verdict on most trials, of equals the
     first by name. None where there is no judge. One whose server always failed is named only where there is no other."""
     decides, gave, asked = Counter[str](), Counter[str](), Counter[str]()
-    for trial in (trial for run in runs for trial in run.scored):
+    for trial in (trial for run in runs for trial in run.scored_trials):
         said = first_verdict(trial.judgements)  # In a log the judge that decides stands first.
         if trial.scored_by == "judge" and said is not None:
             decides[said.judge] += 1

@@ -23,7 +23,7 @@ RunKind = Literal["models", "reference", "blind", "person"]
 PERSON = "person"
 GRAMMAR, GROUND_TRUTH = "grammar", "ground-truth"
 """What is no model and makes no noise either: noisy eyes are the ground truth made worse."""
-HEADLINE_STRATA = ("core", "imported")
+MAIN_STRATA = ("core", "imported")
 FULL_PRECISION = ("fp32", "fp16", "bf16")
 CATEGORY_TITLES = {
     "comparative": "Comparative", "counting": "Counting", "descriptor": "Descriptor", "location": "Location",
@@ -45,8 +45,8 @@ class ReportRun:
     evaluation: Evaluation
     label: str
     planner: Model | None
-    eyes: Model | None
-    elsewhere: str = ""
+    perception: Model | None
+    other_tasks: str = ""
 
     @property
     def kind(self) -> RunKind:
@@ -62,16 +62,16 @@ class ReportRun:
         return self.kind == "models"
 
     @property
-    def exact_eyes(self) -> bool:
+    def uses_exact_ground_truth(self) -> bool:
         """Whether its eyes are the simulator's ground truth as it is."""
         eyes = self.evaluation.card.perception
         return eyes.deterministic and eyes.name == GROUND_TRUTH
 
     @property
-    def exact(self) -> bool:
+    def is_exact_reference(self) -> bool:
         """Whether no model took part and nothing was made worse: the grammar planner with ground-truth eyes."""
         planner = self.evaluation.card.planner
-        return planner.deterministic and planner.name == GRAMMAR and self.exact_eyes and self.kind == "reference"
+        return planner.deterministic and planner.name == GRAMMAR and self.uses_exact_ground_truth and self.kind == "reference"
 
     @property
     def planner_name(self) -> str:
@@ -79,15 +79,15 @@ class ReportRun:
         return _named(self.evaluation.card.planner, self.planner)
 
     @property
-    def eyes_name(self) -> str:
+    def perception_name(self) -> str:
         """The eyes, and what their server served in their place if it did."""
-        return _named(self.evaluation.card.perception, self.eyes)
+        return _named(self.evaluation.card.perception, self.perception)
 
     @property
     def system(self) -> tuple[str, str, str, str]:
         """What was run, whatever the tasks: planner, eyes, agent, variant."""
         card = self.evaluation.card
-        return self.planner_name, self.eyes_name, card.agent, card.variant
+        return self.planner_name, self.perception_name, card.agent, card.variant
 
     @property
     def task_set(self) -> tuple[str, str]:
@@ -97,39 +97,39 @@ class ReportRun:
     @property
     def memory_gb(self) -> float | None:
         """Computed memory to serve both models at the precision that the registry gives; one model that is both counts once."""
-        if self.planner is None or self.eyes is None:
+        if self.planner is None or self.perception is None:
             return None
-        return sum(model.memory_for() for model in {m.name: m for m in (self.planner, self.eyes)}.values())
+        return sum(model.memory_for() for model in {m.name: m for m in (self.planner, self.perception)}.values())
 
     @cached_property
-    def headline(self) -> tuple[Trial, ...]:
+    def main_trials(self) -> tuple[Trial, ...]:
         """Trials of core tasks (or of an imported file's): what accuracy is told of."""
-        return tuple(t for t in self.evaluation.trials if t.task.stratum in HEADLINE_STRATA)
+        return tuple(t for t in self.evaluation.trials if t.task.stratum in MAIN_STRATA)
 
     @cached_property
-    def scored(self) -> tuple[Trial, ...]:
+    def scored_trials(self) -> tuple[Trial, ...]:
         """Of these, all that infrastructure did not break and that need no judge, or have a judge's verdict; other unscored ones
         are among them and count as not correct."""
-        return tuple(t for t in self.headline if t.headline != "infrastructure" and not without_verdict(t))
+        return tuple(t for t in self.main_trials if t.headline != "infrastructure" and not without_verdict(t))
 
     @cached_property
     def tasks(self) -> frozenset[str]:
         """Ids of the tasks that its headline is told of."""
-        return frozenset(t.task.id for t in self.headline)
+        return frozenset(t.task.id for t in self.main_trials)
 
     @cached_property
-    def checked(self) -> tuple[Trial, ...]:
+    def checked_trials(self) -> tuple[Trial, ...]:
         """Of the scored ones those whose verdict is the checks'."""
-        return tuple(t for t in self.scored if t.scored_by == "checks")
+        return tuple(t for t in self.scored_trials if t.scored_by == "checks")
 
     @cached_property
     def macro(self) -> IntervalEstimate | None:
         """Unweighted mean over the categories that occur."""
-        return macro(scores_of(self.scored)) if self.scored else None
+        return macro(scores_of(self.scored_trials)) if self.scored_trials else None
 
     @cached_property
     def micro(self) -> IntervalEstimate | None:
-        return share(scores_of(self.scored))
+        return share(scores_of(self.scored_trials))
 
 
 def scores_of(trials: Sequence[Trial], right: Iterable[bool] | None = None) -> Scores:
@@ -170,9 +170,9 @@ def report_runs(evaluations: Sequence[Evaluation], registry: Registry) -> tuple[
         runs.append(replace(run, label=f"{label} #{seen[label]}" if times[label] > 1 else label))
     ordered = sorted(runs, key=_order)
     common = main_tasks(ordered)
-    apart = [_elsewhere(run, common) if run in of_main_set(ordered) else "" for run in ordered]
+    apart = [_other_tasks(run, common) if run in of_main_set(ordered) else "" for run in ordered]
     return tuple(
-        replace(run, number=number, elsewhere=words, label=f"{run.label} [{words}]" if words else run.label)
+        replace(run, number=number, other_tasks=words, label=f"{run.label} [{words}]" if words else run.label)
         for number, (run, words) in enumerate(zip(ordered, apart, strict=True), 1)
     )
 
@@ -182,7 +182,7 @@ def _named(card: ModelCard, model: Model | None) -> str:
     return card.name if served is None else f"{card.name} (served: {served})"
 
 
-def _elsewhere(run: ReportRun, common: frozenset[str]) -> str:
+def _other_tasks(run: ReportRun, common: frozenset[str]) -> str:
     """What a run did in place of the common tasks; empty when it did these."""
     if run.tasks == common:
         return ""
@@ -193,7 +193,7 @@ def _elsewhere(run: ReportRun, common: frozenset[str]) -> str:
 
 def _label(run: ReportRun, *, with_split: bool) -> str:
     card = run.evaluation.card
-    pair = f"{run.planner_name} + {run.eyes_name}"
+    pair = f"{run.planner_name} + {run.perception_name}"
     parts = [f"person {card.planner.name}" if card.planner.provider == PERSON else pair]
     parts += [f"agent {card.agent}"] if card.agent != "scope" else []
     parts += [card.variant] if card.variant else []
@@ -211,23 +211,23 @@ def _known(card: ModelCard, registry: Registry) -> Model | None:
 def _order(run: ReportRun) -> tuple[bool, bool, str, str, float, str, str]:
     card = run.evaluation.card
     size = run.planner.size_b if run.planner else 0.0
-    return not run.ranked, card.split != "core", card.split, run.eyes_name, size, run.planner_name, run.label
+    return not run.ranked, card.split != "core", card.split, run.perception_name, size, run.planner_name, run.label
 
 
 def main_task_set(runs: Sequence[ReportRun]) -> tuple[str, str] | None:
     """The task set with the most ranked runs that have headline tasks; of equals the one with more trials."""
-    having = [run for run in runs if run.headline]
+    having = [run for run in runs if run.main_trials]
     weight: dict[tuple[str, str], tuple[int, int]] = {}
     for run in having:
         ranked, trials = weight.get(run.task_set, (0, 0))
-        weight[run.task_set] = (ranked + run.ranked, trials + len(run.headline))
+        weight[run.task_set] = (ranked + run.ranked, trials + len(run.main_trials))
     return max(weight, key=lambda key: weight[key]) if weight else None
 
 
 def of_main_set(runs: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
     """The runs of the main task set that have anything to tell."""
     main = main_task_set(runs)
-    return tuple(run for run in runs if run.task_set == main and run.scored)
+    return tuple(run for run in runs if run.task_set == main and run.scored_trials)
 
 
 def main_tasks(runs: Sequence[ReportRun]) -> frozenset[str]:
@@ -241,7 +241,7 @@ def primary(runs: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
     """One run a system: the one with the most headline tasks scored, of equals the first."""
     best: dict[tuple[str, str, str, str], ReportRun] = {}
     for run in runs:
-        if run.system not in best or len(run.scored) > len(best[run.system].scored):
+        if run.system not in best or len(run.scored_trials) > len(best[run.system].scored_trials):
             best[run.system] = run
     return tuple(run for run in runs if best[run.system] is run)
 
@@ -264,9 +264,9 @@ def on_the_same_tasks(ranked: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
 
 def timing_run(run: ReportRun, runs: Sequence[ReportRun]) -> ReportRun:
     """The run from which a system's latency is taken: a finished one without contention if there is any, of these the longest."""
-    same = [other for other in runs if other.system == run.system and other.headline]
+    same = [other for other in runs if other.system == run.system and other.main_trials]
     alone = [other for other in same if not other.evaluation.card.contended and other.evaluation.finished]
-    return max(alone, key=lambda other: len(other.headline)) if alone else run
+    return max(alone, key=lambda other: len(other.main_trials)) if alone else run
 
 
 def is_mixture(model: Model) -> bool:

@@ -58,7 +58,7 @@ def audit_section(ranked: Sequence[ReportRun], reference: Sequence[ReportRun], p
 def _by_task(runs: Sequence[ReportRun]) -> dict[str, list[tuple[ReportRun, Trial]]]:
     found: dict[str, list[tuple[ReportRun, Trial]]] = defaultdict(list)
     for run in runs:
-        for trial in run.scored:
+        for trial in run.scored_trials:
             found[trial.task.id].append((run, trial))
     return found
 

@@ -111,7 +111,7 @@ def repeats_section(runs: Sequence[ReportRun]) -> Section:
 def _passed(run: ReportRun) -> list[tuple[int, int]]:
     """Trials and correct trials of each task."""
     found: dict[str, list[bool]] = defaultdict(list)
-    for trial in run.scored:
+    for trial in run.scored_trials:
         found[trial.task.id].append(trial.headline == "correct")
     return [(len(values), sum(values)) for values in found.values()]
 
@@ -157,7 +157,7 @@ def _reactions(run: ReportRun) -> list[Trial]:
 
 def baseline_section(runs: Sequence[ReportRun]) -> Section | None:
     """What can be had without seeing, and what a person gets. None where no such run was given."""
-    having = [run for run in runs if run.kind in ("blind", "person") and run.scored]
+    having = [run for run in runs if run.kind in ("blind", "person") and run.scored_trials]
     if not having:
         return None
     columns = [Column("run", "Run"), Column("kind", "What it is"), *(Column(n, w, "share") for n, w in CATEGORY_TITLES.items())]
@@ -166,7 +166,7 @@ def baseline_section(runs: Sequence[ReportRun]) -> Section | None:
         (
             run.label,
             "sees nothing" if run.kind == "blind" else "a person",
-            *(share_correct([t for t in run.scored if t.task.category == name]) for name in CATEGORY_TITLES),
+            *(share_correct([t for t in run.scored_trials if t.task.category == name]) for name in CATEGORY_TITLES),
             run.macro,
         )
         for run in having

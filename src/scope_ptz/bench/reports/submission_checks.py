@@ -34,7 +34,7 @@ class SubmissionFindings:
     notes: tuple[str, ...] = ()
 
     @property
-    def told(self) -> str:
+    def summary(self) -> str:
         counts = ", ".join(f"{number} {name}" for name, number in self.counts.items())
         verdict = f"NOT VALID: {len(self.faults)} faults" if self.faults else "valid"
         return "\n".join([f"{self.file}: {verdict}" + (f" ({counts})" if counts else ""), *self.notes])
