@@ -1,4 +1,4 @@
-"""What logs call things, made presentable."""
+"""Names of splits and models as reports show them."""
 
 from __future__ import annotations
 
@@ -8,28 +8,31 @@ from scope_ptz.bench.scoring.trials import ModelCard
 from scope_ptz.registry import Model
 
 ASKED, LISTED = "model", ("/v1/models id", "/v1/models root")
-"""Of what a card keeps of a server: the name that was asked for, and what its list of models says."""
+"""Keys of what a server reported: the requested name, and the entries of its list of models."""
 
 
 def split_name(split: str) -> str:
-    """A split as reports call it: of a file its name, not where it lay."""
+    """Return the name of a split. For a task file it is the file name without its folder."""
     return PurePath(split.replace("\\", "/")).name or split
 
 
 def served_instead(card: ModelCard, model: Model | None) -> str | None:
-    """What the server called the model, where that is no name of the one that was wanted. None: it is one, or nothing is known.
+    """Return the name of the model that a server served instead of the requested one.
 
-    The name that was asked for decides. An alias is no other model where the list tells beside it which model it stands for.
+    An alias is not another model if the server's list says which model it stands for.
+
+    Returns:
+        None if the requested model was served or the served model is unknown.
     """
-    told = [card.reported[place] for place in (ASKED, *LISTED) if card.reported.get(place)]
-    if model is None or not told:
+    reported = [card.reported[key] for key in (ASKED, *LISTED) if card.reported.get(key)]
+    if model is None or not reported:
         return None
-    wanted = {_plain(name) for name in (*model.served_names(), card.name)}
-    asked = told[0]
-    alias = card.reported.get(LISTED[0]) == asked and _plain(card.reported.get(LISTED[1], "")) in wanted
-    return None if _plain(asked) in wanted or alias else asked
+    requested = {_plain(name) for name in (*model.served_names(), card.name)}
+    served = reported[0]
+    is_alias = card.reported.get(LISTED[0]) == served and _plain(card.reported.get(LISTED[1], "")) in requested
+    return None if _plain(served) in requested or is_alias else served
 
 
 def _plain(name: str) -> str:
-    """A model's name without its maker or folder, and without regard to case."""
+    """Return a model's name in lower case, without its maker or folder."""
     return PurePath(name.replace("\\", "/")).name.lower()

@@ -1,4 +1,4 @@
-"""Why trials failed: error modes by the rules and by the judge, and what perfect perception would change."""
+"""The sections about failed trials: error modes by the rules and by the judge, and accuracy with perfect perception."""
 
 from __future__ import annotations
 
@@ -28,18 +28,18 @@ PERCEPTION = frozenset({ErrorMode.VLM_QUERY, ErrorMode.VLM_COUNTING})
 
 
 def by_rules(run: ReportRun) -> Counter[ErrorMode]:
-    """Incorrect trials by mode, as the rules say; unscored ones have none, and those that a judge scored have the judge's."""
+    """Count incorrect trials by the error mode that the rules assign. Unscored trials and trials scored by a judge have none."""
     return Counter(t.error_mode for t in run.checked_trials if t.error_mode is not None)
 
 
 def by_judge(run: ReportRun, judge: str) -> Counter[ErrorMode]:
-    """Trials that a judge failed, by the mode that it named."""
+    """Count the trials that a judge failed by the error mode that it named."""
     said = [j for _, j in verdicts(run.scored_trials, judge) if j.verdict == "incorrect"]
     return Counter(j.error_mode for j in said if j.error_mode is not None)
 
 
 def error_section(runs: Sequence[ReportRun]) -> Section:
-    """Error modes of runs of the main task set."""
+    """Return the error modes of runs of the main task set."""
     checked = [run for run in runs if run.checked_trials]
     rules = {run.label: by_rules(run) for run in checked}
     tables = [_mode_table("error_modes", BY_RULES, rules)]
@@ -57,9 +57,9 @@ def error_section(runs: Sequence[ReportRun]) -> Section:
             )
         )
     text = (
-        "Every incorrect trial has exactly one error mode: by rules in a published order, and beside it the one that the judge "
-        "named for the trials that it found wrong. Unscored trials, whose answers could not be read, are not correct either, but "
-        "have none." + ("" if judge else " No judge took part: its modes are not measured."),
+        "Rules in a published order assign exactly one error mode to every incorrect trial. The judge names an error mode for each "
+        "trial that it finds incorrect. Unscored trials, whose answers could not be parsed, are not correct but have no error mode."
+        + ("" if judge else " No judge took part, so its error modes are not measured."),
     )
     return Section("errors", "Error modes", text, tuple(charts), tuple(tables))
 
@@ -80,27 +80,29 @@ def _mode_table(key: str, title: str, counted: Mapping[str, Counter[ErrorMode]])
 
 
 def oracle_section(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> Section:
-    """The oracle setting in both ways. ``every``: all runs, among which those with ground-truth eyes are looked for."""
+    """Return the oracle setting: accuracy if perception never failed.
+
+    Args:
+        ranked: The runs of model pairs over the same tasks.
+        every: All runs, among which runs with ground-truth perception are looked up.
+    """
     judge = judge_name(ranked)
     columns = (
         Column("run", "Run"), Column("macro_judge", "Macro by judge (%)", "share"),
-        Column("oracle_judge", "Judge's VLM failures as right (%)", "share"),
-        Column("perception_judge", "VLM's share of errors, judge (%)", "share"),
-        Column("macro_checks", "Macro by checks (%)", "share"), Column("oracle_rules", "Rules' VLM failures as right (%)", "share"),
-        Column("perception_rules", "VLM's share of errors, rules (%)", "share"),
-        Column("macro_rerun", "Run again with ground-truth eyes (%)", "share"),
+        Column("oracle_judge", "Judge's VLM errors counted as correct (%)", "share"),
+        Column("perception_judge", "VLM share of errors, judge (%)", "share"),
+        Column("macro_checks", "Macro by checks (%)", "share"), Column("oracle_rules", "Rules' VLM errors counted as correct (%)", "share"),
+        Column("perception_rules", "VLM share of errors, rules (%)", "share"),
+        Column("macro_rerun", "Rerun with ground-truth perception (%)", "share"),
         Column("gain_rerun", "Gain, paired (points)", "points"),
     )  # fmt: skip
     text = (
-        "How good the pairs would be if perception never failed. As in the paper: failures that the judge attributes to VLM "
-        "counting or "
-        "VLM query are counted as right; the same with the rules' error modes; and, where such a log was given, the same "
-        "planner really "
-        "run again with ground-truth eyes, on the tasks that both runs did. Relabelling cannot know whether the planner "
-        "would have gone "
-        "on rightly; the run can.",
-        "Each has a baseline of its own kind: the judge's verdicts as they are for the judge's oracle, the checks' for the rules' "
-        "and for the run that was made again.",
+        "How accurate the pairs would be if perception never failed, measured in three ways. As in the paper, failures that the "
+        "judge attributes to VLM counting or VLM query are counted as correct. The same is done with the error modes of the rules. If "
+        "a log with ground-truth perception was given, the planner was actually run again, and the tasks of both runs are compared. "
+        "Relabelling cannot show whether the planner would have continued correctly; a rerun can.",
+        "Each is compared with a baseline of its kind: the judge's oracle with the judge's verdicts, the rules' oracle and the rerun "
+        "with the verdicts of the checks.",
     )
     names = [column.name for column in columns]
     rows = [_oracle_row(run, _by_rules_oracle(run), _judge_oracle(run, judge), _rerun(run, every)) for run in ranked]
@@ -112,13 +114,13 @@ def oracle_section(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> S
 
 
 MEANS = (
-    "A mean is of the pairs that have a value as it is and with perfect perception, so that both means are of the same pairs; "
-    "where these are not all pairs, it says how many. What was run again stands with the checks' mean of just those pairs."
+    "A mean covers the pairs that have both the measured value and the value with perfect perception. If these are not all pairs, "
+    "their number is given. The mean of the reruns is next to the mean of the same pairs by the checks."
 )
 
 
 Oracle = tuple[IntervalEstimate | None, IntervalEstimate | None, float | None]
-"""Macro as it is, macro with perception's failures as right, and perception's share of all errors."""
+"""Measured macro accuracy, macro accuracy with errors of perception counted as correct, and their share of all errors."""
 
 
 def _by_rules_oracle(run: ReportRun) -> Oracle:
@@ -135,7 +137,7 @@ def _judge_oracle(run: ReportRun, judge: str | None) -> Oracle:
 
 
 def _clear(run: ReportRun, judge: str | None) -> list[tuple[Trial, Judgement]]:
-    """Trials on which the judge gave a verdict."""
+    """Return the trials on which the judge gave a verdict."""
     return [(t, j) for t, j in verdicts(run.scored_trials, judge or "") if j.verdict in ("correct", "incorrect")]
 
 
@@ -144,7 +146,7 @@ def _perception_share(failed: Counter[ErrorMode]) -> float | None:
 
 
 def _rerun(run: ReportRun, every: Sequence[ReportRun]) -> tuple[ReportRun, PairedComparison | None] | None:
-    """The run of the same planner with ground-truth eyes over the same task set that shares most tasks with this one, compared."""
+    """Return the run of the same planner with ground-truth perception that shares most tasks with a run, and their comparison."""
     planner, _, agent, variant = run.system
     found = []
     for other in every:
@@ -164,7 +166,7 @@ def _oracle_row(
 
 
 def _shared_macro(run: ReportRun, again: tuple[ReportRun, PairedComparison | None] | None) -> CellValue:
-    """Macro of the run that was made again, on the tasks that both did; it says when these are not all."""
+    """Return the macro accuracy of a rerun on the shared tasks, with a note if these are not all tasks."""
     if again is None:
         return None
     found = macro(scores_of([t for t in again[0].scored_trials if t.task.id in run.tasks]))
@@ -173,7 +175,7 @@ def _shared_macro(run: ReportRun, again: tuple[ReportRun, PairedComparison | Non
 
 
 def _means(names: Sequence[str], rows: Sequence[tuple[CellValue, ...]]) -> list[tuple[CellValue, ...]]:
-    """Means over pairs, as the paper gives them. Both sides of a comparison are of the same pairs; what is not there is blank."""
+    """Return rows of means over pairs. Both sides of a comparison cover the same pairs; other cells are blank."""
     values = [{name: _complete(cell) for name, cell in zip(names, row, strict=True)} for row in rows]
 
     def means(title: str, *groups: tuple[str, ...]) -> tuple[CellValue, ...]:
@@ -194,7 +196,7 @@ def _means(names: Sequence[str], rows: Sequence[tuple[CellValue, ...]]) -> list[
 
 
 def _complete(cell: CellValue) -> float | None:
-    """A figure that is of all tasks of its run; None for one that says that it is of some."""
+    """Return a value that covers all tasks of its run; None for one with a note that it covers only some."""
     plain = unmarked(cell)
     if isinstance(cell, MarkedCell) and cell.note:
         return None

@@ -1,7 +1,7 @@
-"""Where the time goes: by stage, by planner, by eyes, and at the current view against the panorama.
+"""The latency section: seconds by stage, by planner, by perception model, and for the current view against the panorama.
 
-The camera is a stage of its own. Its moves and frames are the simulator's cost, and which views a pair asks for decides them; a
-pair's own latency is everything else.
+The camera is a separate stage. Its moves and frames cost time in the simulator and depend on the views that a pair asks for. A pair's
+own latency is everything else.
 """
 
 from __future__ import annotations
@@ -21,40 +21,40 @@ STAGE_TITLES = {
     "planner_s": "Planner",
     "perception_s": "Perception",
     "tools_s": "Tools and loop",
-    "own_s": "All but the camera",
+    "own_s": "All without camera",
     "capture_s": "Camera",
     "total_s": "Whole trial",
 }
-"""By the names of ``Timings``. The first three make up ``own_s``; with the camera they are the whole trial."""
+"""Titles by the fields of ``Timings``. The first three add up to ``own_s``; with the camera they are the whole trial."""
 VIEWS: tuple[tuple[Scope, str], ...] = (("current", "Current view"), ("full", "Panorama"))
 INCLUDED = (
-    "Planner: its server's answers, retries included. Perception: what the eyes took for what tools asked them. Tools and loop: "
-    "the rest of a trial without the camera, such as stitching a panorama and writing pictures. Camera: moves and frames, which in "
-    "the simulator means rendering, also of frames that are only kept for the log: the simulator's cost, decided by the views that "
-    "were asked for. A pair's own latency is all but the camera."
+    "Planner: replies of its server, retries included. Perception: answers to the tools' questions. Tools and loop: the rest of a "
+    "trial without the camera, such as stitching panoramas and writing pictures. Camera: moves and frames. In the simulator this is "
+    "rendering, including frames that are only kept for the log; it depends on the views that were asked for. A pair's own latency "
+    "is all stages without the camera."
 )
-LOOKS = (
-    "A look is a call of count_objects or query_answer that gave a result. Eyes: what perception took for it, without the camera. "
-    "Capture: the camera's moves and frames for it, rendering included; looks made at the same time share a frame."
+PERCEPTION_CALLS = (
+    "A perception call is a call of count_objects or query_answer that returned a result. Perception: seconds without the camera. "
+    "Capture: seconds of camera moves and frames, rendering included; concurrent calls share a frame."
 )
 
 
 def latency_section(runs: Sequence[ReportRun]) -> Section:
-    """All runs; the tables by model are of ranked ones only."""
+    """Return the latency of all runs. The tables by model cover ranked runs only."""
     having = [run for run in runs if run.scored_trials]
     pairs = [(run, timing_run(run, having)) for run in pairs_of(having)]
     sources = [source for _, source in pairs]
     tables = (_by_stage(having), _by_planner(pairs), _by_eyes(pairs), _views(sources))
     shared = [run.label for run in sources if run.evaluation.card.contended]
     text = [
-        "Wall seconds. What goes on at the same time counts once. A stage's figures are of the trials that used it. Where a pair "
+        "All values are wall seconds; concurrent work counts once. The values of a stage cover the trials that used it. If a pair "
         "was also run without contention, its latency is taken from that run.",
         INCLUDED,
     ]
     if shared:
         text.append(
-            f"Marked “contended”: {len(shared)} of {len(sources)} model pairs were timed only while other runs used the same "
-            "machine or servers, so that their latency is not their own."
+            f"“Contended” marks {len(shared)} of {len(sources)} model pairs. They were timed only while other runs used the same "
+            "machine or servers, which increases their latency."
         )
     charts = (drawing.time_chart(having, STAGE_TITLES),) if any(stage_seconds(r, "total_s") for r in having) else ()
     return Section("latency", "Latency and tool calls", tuple(text), charts, tables)
@@ -66,7 +66,7 @@ def _contended(runs: Sequence[ReportRun]) -> str:
 
 
 def _alone(runs: Sequence[ReportRun]) -> Sequence[ReportRun]:
-    """The runs without contention, if there are any; else all."""
+    """Return the runs without contention; if there are none, all runs."""
     return [run for run in runs if not run.evaluation.card.contended] or runs
 
 
@@ -78,7 +78,7 @@ def _by_stage(runs: Sequence[ReportRun]) -> ReportTable:
             Column(f"{stage}_p95", f"{words}, p95", "seconds"),
         ]
     columns += [
-        Column("first_token_s_median", "Before first tokens, median", "seconds"),
+        Column("first_token_s_median", "Time to first token, median", "seconds"),
         Column("calls", "Tool calls, mean", "number"),
     ]
     rows = []
@@ -88,31 +88,31 @@ def _by_stage(runs: Sequence[ReportRun]) -> ReportTable:
             seconds = stage_seconds(run, stage)
             cells += [median(seconds), p95(seconds)]
         rows.append((*cells, median(stage_seconds(run, "first_token_s")), calls_made(run.scored_trials)))
-    return ReportTable("latency_stages", "By stage (seconds a trial)", tuple(columns), tuple(rows))
+    return ReportTable("latency_stages", "By stage (seconds per trial)", tuple(columns), tuple(rows))
 
 
 Timed = tuple[ReportRun, ReportRun]
-"""A pair's run over the most tasks, and the run from which its latency is taken, which may be the same."""
+"""A pair's run over the most tasks, and the run that gives its latency. They may be the same."""
 
 
 def _by_planner(pairs: Sequence[Timed]) -> ReportTable:
-    steps = (Column("step_median", "Seconds a step, median", "seconds"), Column("step_p95", "Seconds a step, p95", "seconds"))
+    steps = (Column("step_median", "Seconds per step, median", "seconds"), Column("step_p95", "Seconds per step, p95", "seconds"))
 
     def cells(own: Sequence[ReportRun]) -> tuple[CellValue, ...]:
         timed_trials = [t for run in own for t in run.scored_trials if t.steps and t.timings.planner_s > 0]
         seconds = [t.timings.planner_s / t.steps for t in timed_trials]
         return median(seconds), p95(seconds)
 
-    notes = (f"What the planner took. {_pooled('planner')}",)
+    notes = (f"Seconds of the planner. {_pooled('planner')}",)
     return _by_model("latency_planner", "By planner", pairs, lambda r: r.planner_name, "planner_s", steps, cells, notes)
 
 
 def _by_eyes(pairs: Sequence[Timed]) -> ReportTable:
     looks = (
-        Column("look_median", "Eyes, seconds a look, median", "seconds"),
-        Column("look_p95", "Eyes, seconds a look, p95", "seconds"),
-        Column("capture_median", "Capture, seconds a look, median", "seconds"),
-        Column("capture_p95", "Capture, seconds a look, p95", "seconds"),
+        Column("look_median", "Perception, seconds per call, median", "seconds"),
+        Column("look_p95", "Perception, seconds per call, p95", "seconds"),
+        Column("capture_median", "Capture, seconds per call, median", "seconds"),
+        Column("capture_p95", "Capture, seconds per call, p95", "seconds"),
     )
 
     def cells(own: Sequence[ReportRun]) -> tuple[CellValue, ...]:
@@ -120,15 +120,15 @@ def _by_eyes(pairs: Sequence[Timed]) -> ReportTable:
         eyes, capture = [look.eyes_s for look in made], [look.capture_s for look in made]
         return median(eyes), p95(eyes), median(capture), p95(capture)
 
-    notes = (f"A trial: all that perception took in it. {LOOKS} {_pooled('vision model')}",)
-    return _by_model("latency_eyes", "By eyes", pairs, lambda r: r.perception_name, "perception_s", looks, cells, notes)
+    notes = (f"Seconds per trial: all perception in a trial. {PERCEPTION_CALLS} {_pooled('perception model')}",)
+    return _by_model("latency_eyes", "By perception model", pairs, lambda r: r.perception_name, "perception_s", looks, cells, notes)
 
 
 def _pooled(what: str) -> str:
     return (
-        f"Seconds: trials of all model pairs with this {what}, pooled; only of pairs timed without contention where there are any. "
-        "Tool calls do not depend on that: the mean over all pairs with it, each counting the same. Reference runs and variants of "
-        "a pair are left out."
+        f"Seconds are pooled over the trials of all model pairs with this {what}. If some pairs were timed without contention, only "
+        f"these count. Tool calls are the unweighted mean over all pairs with this {what}. Reference runs and variants of a pair are "
+        "left out."
     )
 
 
@@ -136,14 +136,14 @@ def _by_model(
     key: str, title: str, pairs: Sequence[Timed], name: Callable[[ReportRun], str], stage: str,
     single: tuple[Column, ...], cells: Callable[[Sequence[ReportRun]], tuple[CellValue, ...]], notes: tuple[str, ...],
 ) -> ReportTable:  # fmt: skip
-    """A row a model. ``single``: columns about single steps or looks, filled by ``cells``."""
+    """Return a table with one row per model. ``single`` are columns about single steps or calls, filled by ``cells``."""
     columns = (
         Column("model", "Model"),
         Column("contended", "Measured"),
         Column("pairs", "Pairs timed", "count"),
-        Column("pairs_all", "of pairs", "count"),
-        Column("trial_median", "Seconds a trial, median", "seconds"),
-        Column("trial_p95", "Seconds a trial, p95", "seconds"),
+        Column("pairs_all", "All pairs", "count"),
+        Column("trial_median", "Seconds per trial, median", "seconds"),
+        Column("trial_p95", "Seconds per trial, p95", "seconds"),
         *single,
         Column("calls", "Tool calls, mean over all pairs", "number"),
     )
@@ -162,14 +162,14 @@ def _looks(runs: Sequence[ReportRun], view: Scope | None = None) -> list[Observa
 
 
 def _views(runs: Sequence[ReportRun]) -> ReportTable:
-    """What the panorama costs the eyes and the camera, by eyes and over all of them."""
+    """Return the seconds of perception and camera for both views, by perception model and over all of them."""
     columns = (
         Column("view", "View"),
         Column("contended", "Measured"),
-        Column("looks", "Looks", "count"),
-        Column("eyes_median", "Eyes, median (s)", "seconds"),
-        Column("eyes_p95", "Eyes, p95 (s)", "seconds"),
-        Column("ratio", "Eyes, to the current view", "ratio"),
+        Column("looks", "Perception calls", "count"),
+        Column("eyes_median", "Perception, median (s)", "seconds"),
+        Column("eyes_p95", "Perception, p95 (s)", "seconds"),
+        Column("ratio", "Perception, relative to the current view", "ratio"),
         Column("capture_median", "Capture, median (s)", "seconds"),
         Column("capture_p95", "Capture, p95 (s)", "seconds"),
         Column("call_median", "Whole call, median (s)", "seconds"),
@@ -180,7 +180,7 @@ def _views(runs: Sequence[ReportRun]) -> ReportTable:
         parts.append(("all eyes", [run for _, own in parts for run in own]))
     rows = [_view_row(view, words, own) for _, own in parts for view, words in VIEWS]
     groups = {len(VIEWS) * number: name for number, (name, _) in enumerate(parts)}
-    notes = (f"{LOOKS} Whole call: both, and the tool's own work.",)
+    notes = (f"{PERCEPTION_CALLS} Whole call: both of them and the tool's own work.",)
     return ReportTable("latency_views", "Current view against panorama", columns, tuple(rows), notes, groups)
 
 

@@ -1,4 +1,4 @@
-"""Differences between model pairs on the tasks that both did, and what could have been seen at all."""
+"""Paired comparisons of model pairs on their shared tasks, and the smallest detectable differences."""
 
 from __future__ import annotations
 
@@ -22,8 +22,20 @@ SEED = 0
 
 @dataclass(frozen=True, slots=True)
 class PairedComparison:
-    """``macro``: first minus second over shared tasks; ``bootstrap``: the same by drawing viewpoints; ``least``: smallest
-    difference found with 80% power."""
+    """The comparison of two runs on their shared tasks.
+
+    Attributes:
+        first: Label of the first run.
+        second: Label of the second run.
+        shared: Number of shared tasks.
+        macro: Macro accuracy of the first run minus that of the second.
+        bootstrap: Bootstrap interval of the difference.
+        only_first: Tasks on which the first run is better.
+        only_second: Tasks on which the second run is better.
+        p_mcnemar: P value of McNemar's exact test.
+        p_clustered: P value of the clustered test.
+        least: The smallest difference that is detected with 80% power.
+    """
 
     first: str
     second: str
@@ -38,7 +50,7 @@ class PairedComparison:
 
 
 def compare(first: ReportRun, second: ReportRun) -> PairedComparison | None:
-    """Compare two runs of one dataset over the tasks that both did; None when there are none."""
+    """Compare two runs of one dataset on their shared tasks; None if they share none."""
     return compare_scores(first.label, second.label, _task_means(first), _task_means(second))
 
 
@@ -46,7 +58,7 @@ TaskMeans = dict[str, tuple[str, str, float]]
 
 
 def _task_means(run: ReportRun) -> TaskMeans:
-    """Category, viewpoint and mean outcome by task: repeats of a task are one observation."""
+    """Return category, viewpoint and mean outcome of each task. Repeats of a task count as one observation."""
     found: dict[str, list[bool]] = {}
     about = {t.task.id: (t.task.category, viewpoint(t)) for t in run.scored_trials}
     for trial in run.scored_trials:
@@ -55,7 +67,7 @@ def _task_means(run: ReportRun) -> TaskMeans:
 
 
 def compare_scores(first: str, second: str, one: TaskMeans, other: TaskMeans) -> PairedComparison | None:
-    """The same for outcomes by task, given as category, viewpoint and mean outcome."""
+    """Compare two runs given by the category, the viewpoint and the mean outcome of each task."""
     shared = sorted(one.keys() & other.keys())
     if not shared:
         return None
@@ -72,7 +84,7 @@ def compare_scores(first: str, second: str, one: TaskMeans, other: TaskMeans) ->
 
 
 def comparison_table(key: str, title: str, found: Sequence[PairedComparison], notes: tuple[str, ...] = ()) -> ReportTable:
-    """A row a comparison, p values adjusted among all of them."""
+    """Return a table with one row per comparison. P values are adjusted for all of them together."""
     columns = (
         Column("first", "First"),
         Column("second", "Second"), Column("tasks", "Shared tasks", "count"),
@@ -80,7 +92,7 @@ def comparison_table(key: str, title: str, found: Sequence[PairedComparison], no
         Column("only_first", "Better: first", "count"), Column("only_second", "Better: second", "count"),
         Column("p_mcnemar", "McNemar p", "p"), Column("p_mcnemar_holm", "Holm", "p"),
         Column("p_clustered", "Clustered p", "p"), Column("p_clustered_holm", "Holm", "p"),
-        Column("differ", "Differ"), Column("least", "Least that could be seen (points)", "width"),
+        Column("differ", "Differ"), Column("least", "Smallest detectable difference (points)", "width"),
     )  # fmt: skip
     mcnemar, clustered = holm([c.p_mcnemar for c in found]), holm([c.p_clustered for c in found])
     rows = tuple(
@@ -95,7 +107,7 @@ def comparison_table(key: str, title: str, found: Sequence[PairedComparison], no
 
 
 def differ(*adjusted: float | None) -> str:
-    """Two runs are said to differ only when every test says so after adjustment."""
+    """Return "yes" if every adjusted p value is below 0.05, else "not shown"."""
     return "yes" if all(p is not None and p < ALPHA for p in adjusted) else "not shown"
 
 
@@ -104,34 +116,35 @@ def _interval(bounds: tuple[float, float] | None) -> str | None:
 
 
 def comparison_section(runs: Sequence[ReportRun]) -> Section:
-    """Every two ranked runs of the main task set."""
+    """Compare every two ranked runs of the main task set."""
     found = [c for one, two in combinations(runs, 2) if (c := compare(one, two)) is not None]
     text = [
-        "Two runs are compared on the tasks that both did, task by task; repeats of a task are averaged first. McNemar's "
-        "exact test asks "
-        "whether the tasks on which they differ favour one side (with repeats it is the sign test of the tasks' means). The "
-        "clustered "
-        "test also allows for tasks of a viewpoint being alike. P values are adjusted by Holm's method for the number of "
-        "comparisons, "
-        "and two runs are said to differ only when both adjusted p values are below 0.05."
+        "Two runs are compared task by task on their shared tasks; repeats of a task are averaged first. McNemar's exact test asks "
+        "whether the tasks on which they differ favour one of them (with repeats it is the sign test of the tasks' means). The "
+        "clustered test also accounts for the similarity of tasks at one viewpoint. P values are adjusted for the number of "
+        "comparisons by Holm's method. Two runs differ only if both adjusted p values are below 0.05."
     ]
     single = _resolution(runs)
     if not found:
         return Section(
-            "comparison", "Differences between model pairs", (*text, "Fewer than two model pairs: not measured."), (), (single,)
+            "comparison",
+            "Differences between model pairs",
+            (*text, "There are fewer than two model pairs, so this is not measured."),
+            (),
+            (single,),
         )
     number = sum(row[11] == "yes" for row in comparison_table("x", "x", found).rows)
-    seen = [c.least for c in found if c.least is not None]
+    smallest = [c.least for c in found if c.least is not None]
     resolved = (
-        f" At 80% power, differences of {100 * median(seen):.1f} points (median of the comparisons) could be seen." if seen else ""
+        f" With 80% power, differences of {100 * median(smallest):.1f} points (median of the comparisons) are detectable."
+        if smallest
+        else ""
     )
     text.append(f"{number} of {len(found)} comparisons show a difference.{resolved}")
     notes = (
-        f"Bootstrap: 10,000 draws of viewpoints with replacement, percentile interval, seed {SEED}; a cross-check of the "
-        "interval beside "
-        "it. Better: tasks that one of the two did better. Least that could be seen: the true difference that the clustered "
-        "test finds with "
-        "80% power, (t at 97.5% + t at 80%) times the standard error, before adjustment for many tests.",
+        f"Bootstrap: 10,000 draws of viewpoints with replacement, percentile interval, seed {SEED}; it cross-checks the other "
+        "interval. Better: number of tasks on which one run is better. Smallest detectable difference: the true difference that the "
+        "clustered test detects with 80% power, (t at 97.5% + t at 80%) times the standard error, before adjustment for many tests.",
     )
     table = comparison_table("comparisons", "Paired comparisons", found, notes)
     folded = frozenset({"comparisons"}) if len(found) > 12 else frozenset[str]()
@@ -139,10 +152,10 @@ def comparison_section(runs: Sequence[ReportRun]) -> Section:
 
 
 def _resolution(runs: Sequence[ReportRun]) -> ReportTable:
-    """What an unpaired comparison with a run of the same precision could see."""
+    """Return the smallest differences that unpaired comparisons with equally precise runs detect."""
     columns = (
         Column("run", "Run"), Column("se", "Standard error of macro (points)", "width"),
-        Column("viewpoints", "Viewpoints", "count"), Column("least", "Least that could be seen, unpaired (points)", "width"),
+        Column("viewpoints", "Viewpoints", "count"), Column("least", "Smallest detectable difference, unpaired (points)", "width"),
     )  # fmt: skip
     rows = []
     for run in runs:
@@ -151,7 +164,7 @@ def _resolution(runs: Sequence[ReportRun]) -> ReportTable:
         clusters = found.clusters if found else 0
         rows.append((run.label, se, clusters, None if not se else detectable(sqrt(2) * se, clusters)))
     notes = (
-        "The difference to another run of the same precision over other tasks that would be found with 80% power. Pairing by task "
-        "usually sees smaller ones.",
+        "The difference to an equally precise run over other tasks that is detected with 80% power. Pairing by task usually detects "
+        "smaller differences.",
     )
-    return ReportTable("resolution", "Smallest difference that could be seen", columns, tuple(rows), notes)
+    return ReportTable("resolution", "Smallest detectable difference", columns, tuple(rows), notes)

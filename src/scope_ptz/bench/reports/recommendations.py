@@ -1,4 +1,4 @@
-"""Choosing what to deploy: spreads, scopes, mixtures against dense models, quantised against full precision, the Pareto front."""
+"""The sections that help to choose a pair: Pareto front, memory, spreads, scopes, mixtures of experts and quantisation."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from scope_ptz.registry import Model
 
 LATENCY = "trial without the camera, median (s)"
 SIZES_GB = (8, 16, 24, 48, 80, 160)
-"""Usual sizes of accelerator memory, and of two of the largest."""
+"""Common sizes of accelerator memory; the last one is two of the largest."""
 
 
 def design_section(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> Section:
-    """Accuracy, latency and memory together, and what fits into how much memory."""
+    """Return accuracy, latency and memory of each pair, and the best pair for each size of memory."""
     found = candidates(ranked, every)
     columns = (
         Column("run", "Run"),
@@ -42,18 +42,15 @@ def design_section(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> S
         for c in sorted(found, key=lambda c: -(c.accuracy or 0.0))
     )
     notes = (
-        "Memory is computed from the registry (parameters at their precision, cache for 16,384 tokens, 1.5 GB for each "
-        "server), not "
-        "measured. On the front: no other pair is at least as accurate, as fast and as small, and better in one of these.",
+        "Memory is computed from the registry (parameters at their precision, cache for 16,384 tokens, 1.5 GB for each server), not "
+        "measured. A pair is on the front if no other pair is at least as accurate, as fast and as small, and better in one of these.",
     )
     text = (
-        "A pair worth choosing is one that no other beats in accuracy, latency and memory at once. Differences in accuracy "
-        "that were "
-        "not shown (see the comparisons) are no reason to prefer the larger pair, and latencies compare only where they were "
-        "measured "
-        "alike: all of them alone, on the same machine.",
-        "Latency here is planner, perception and tools: all of a trial but the camera. Rendering frames is the simulator's cost, "
-        "and would rank pairs by the views that they asked for.",
+        "Choose a pair that no other pair beats in accuracy, latency and memory at once. A difference in accuracy that was not shown "
+        "(see the comparisons) is no reason to prefer the larger pair. Latencies are comparable only if all of them were measured "
+        "alone on the same machine.",
+        "Latency is the time of planner, perception and tools without the camera. The time for rendering frames belongs to the "
+        "simulator and would rank pairs by the views that they asked for.",
     )
     charts = (drawing.front_chart(found),) if any(c.complete for c in found) else ()
     tables = (ReportTable("design_points", "Accuracy, latency and memory", columns, rows, notes), _fitting(found))
@@ -74,22 +71,35 @@ def _fitting(found: Sequence[Candidate]) -> ReportTable:
         if fitting:
             best = max(fitting, key=lambda c: (round(c.accuracy or 0.0, 9), -(c.latency_s or 0.0)))
             rows.append((f"{size} GB", best.run.label, best.accuracy, best.latency_s, best.memory_gb))
-    notes = (f"Tried: {', '.join(map(str, SIZES_GB))} GB. A size that is not listed holds none of these pairs.",)
-    return ReportTable("memory_fits", "What fits into how much memory", columns, tuple(rows), notes)
+    notes = (f"Sizes: {', '.join(map(str, SIZES_GB))} GB. No pair fits into a size that is not listed.",)
+    return ReportTable("memory_fits", "Best pair by memory size", columns, tuple(rows), notes)
 
 
 def spread_section(ranked: Sequence[ReportRun]) -> Section:
-    """How much the planner matters, and how much the eyes."""
+    """Return how much accuracy depends on the planner, and how much on the perception model."""
     tables = (
-        _spread("spread_planner", "Changing only the planner", "Eyes held", ranked, lambda r: r.system[1], lambda r: r.system[0]),
-        _spread("spread_eyes", "Changing only the eyes", "Planner held", ranked, lambda r: r.system[0], lambda r: r.system[1]),
+        _spread(
+            "spread_planner",
+            "Changing only the planner",
+            "Fixed perception model",
+            ranked,
+            lambda r: r.system[1],
+            lambda r: r.system[0],
+        ),
+        _spread(
+            "spread_eyes",
+            "Changing only the perception model",
+            "Fixed planner",
+            ranked,
+            lambda r: r.system[0],
+            lambda r: r.system[1],
+        ),
     )
     text = (
-        "The spread is the highest macro accuracy minus the lowest with one side of the pair held. It grows with the "
-        "number of pairs and "
-        "with noise: see which of the differences were shown.",
+        "The spread is the highest macro accuracy minus the lowest while one model of the pair is fixed. It grows with the number of "
+        "pairs and with noise; the comparisons say which differences were shown.",
     )
-    return Section("spread", "Planner spread against vision spread", text, (), tables)
+    return Section("spread", "Spread by planner and by perception model", text, (), tables)
 
 
 def _spread(
@@ -119,11 +129,11 @@ def _spread(
             rows.append((name, len(own), worst, low, best, high, high - low))
         else:
             rows.append((name, len(own), None, None, None, None, None))
-    return ReportTable(key, title, columns, tuple(rows), ("Our own loop with its standard prompt only.",))
+    return ReportTable(key, title, columns, tuple(rows), ("Only runs of SCOPE's own agent loop with its standard prompt.",))
 
 
 def scope_section(runs: Sequence[ReportRun]) -> Section:
-    """Current view against full scene."""
+    """Return accuracy on tasks about the current view against tasks about the full scene."""
     columns = (
         Column("run", "Run"),
         Column("current_trials", "Trials, current", "count"),
@@ -138,10 +148,9 @@ def scope_section(runs: Sequence[ReportRun]) -> Section:
         counts = [sum(int(str(row[index])) for row in ranked) for index in (1, 3)]
         rows.append(("Mean of the model pairs", counts[0], _mean(ranked, 2), counts[1], _mean(ranked, 4), _mean(ranked, 5)))
     text = (
-        "Micro accuracy by what the task asks about. The two kinds of task also differ in category, so that the difference "
-        "is not the "
-        "panorama's alone. The interval of the difference joins those of its two sides (Newcombe 1998), so that it is no more "
-        "certain than either; where one of them has none, neither has the difference.",
+        "Micro accuracy by the scope of the task. Tasks of the two scopes also differ in category, so the panorama is not the only "
+        "cause of the difference. The interval of the difference combines the intervals of both sides (Newcombe 1998). It is unknown "
+        "if one of them is unknown.",
     )
     return Section("scope", "Current view against full scene", text, (), (ReportTable("scope", "By scope", columns, tuple(rows)),))
 
@@ -158,23 +167,23 @@ def _mean(rows: Sequence[tuple[CellValue, ...]], index: int) -> float | None:
 
 
 def architecture_section(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> Section:
-    """Mixtures of experts against dense models, quantised against full precision, as far as the registry knows the models."""
+    """Compare mixtures of experts with dense models, and quantised models with full precision, for models in the registry."""
     pairs = [(q, f) for q in ranked for f in ranked if _is_quantised_of(q, f)]
     found = [c for quantised, full in pairs if (c := compare(quantised, full)) is not None]
     notes = (
-        "Models of one family, size and number of active parameters in the registry, the rest of the pair unchanged. Seconds and "
-        "gigabytes of these pairs stand in the table of accuracy, latency and memory.",
+        "Models of one family, size and number of active parameters in the registry, with the rest of the pair unchanged. Latency "
+        "and memory of these pairs are in the table of accuracy, latency and memory.",
     )
     precision = comparison_table("quantised", "Quantised minus full precision", found, notes)
-    text = ["Which models are mixtures of experts or quantised is the registry's word; models that it does not know are left out."]
+    text = ["The registry says which models are mixtures of experts or quantised. Models that it does not contain are left out."]
     if not found:
-        text.append("No two pairs differ in precision alone: quantised against full precision is not measured.")
+        text.append("No two pairs differ only in precision, so quantisation is not measured.")
     tables = (_mixtures(ranked, every), *((precision,) if found else ()))
-    return Section("architecture", "Mixtures against dense, quantised against full", tuple(text), (), tables)
+    return Section("architecture", "Mixtures of experts and quantisation", tuple(text), (), tables)
 
 
 def _is_quantised_of(one: ReportRun, other: ReportRun) -> bool:
-    """Whether a pair is another with one of its models quantised and nothing else changed."""
+    """Return whether a pair equals another one except that one of its models is quantised."""
     if one.task_set != other.task_set or one.system[2:] != other.system[2:]:
         return False
     if one.system[1] == other.system[1]:
@@ -189,8 +198,8 @@ def _quantised_of(one: Model | None, other: Model | None) -> bool:
 
 
 def _mixtures(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> ReportTable:
-    """A row for each model that is held while mixtures and dense models change on the other side."""
-    columns = [Column("held", "Held"), Column("changed", "Changed")]
+    """Return a table with a row for each model that is paired with both mixtures of experts and dense models."""
+    columns = [Column("held", "Fixed model"), Column("changed", "Changed model")]
     for key, words in (("moe", "Mixtures"), ("dense", "Dense")):
         columns += [
             Column(f"{key}_pairs", f"{words}: pairs", "count"),
@@ -210,9 +219,7 @@ def _mixtures(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> Report
                 moe, dense = (_average(kind, "accuracy") for kind in kinds)
                 apart = None if moe is None or dense is None else moe - dense
                 rows.append((name, "planners" if side == "planner" else "perception models", *cells, apart))
-    notes = (
-        "Means over the pairs of each kind. Where a model that is held had only one kind beside it, there is nothing to compare.",
-    )
+    notes = ("Means over the pairs of each kind. A fixed model that was paired with only one kind is left out.",)
     return ReportTable("mixtures", "Mixtures of experts against dense models", tuple(columns), tuple(rows), notes)
 
 

@@ -1,4 +1,4 @@
-"""Whose judgements a report speaks of."""
+"""The judge whose verdicts a report shows."""
 
 from __future__ import annotations
 
@@ -12,20 +12,23 @@ from scope_ptz.bench.scoring.trials import Judgement, Trial
 
 
 def judge_name(runs: Sequence[ReportRun]) -> str | None:
-    """The judge that decides on most trials that only a judge can score; else the one with a verdict on most trials, of equals the
-    first by name. None where there is no judge. One whose server always failed is named only where there is no other."""
+    """Return the judge whose verdicts a report shows; None if there is no judge.
+
+    It is the judge that decides most trials that only a judge can score, else the one with verdicts on most trials. Ties are resolved
+    by name. A judge whose server always failed is chosen only if there is no other.
+    """
     decides, gave, asked = Counter[str](), Counter[str](), Counter[str]()
     for trial in (trial for run in runs for trial in run.scored_trials):
-        said = first_verdict(trial.judgements)  # In a log the judge that decides stands first.
-        if trial.scored_by == "judge" and said is not None:
-            decides[said.judge] += 1
+        first = first_verdict(trial.judgements)  # The deciding judge comes first in a log.
+        if trial.scored_by == "judge" and first is not None:
+            decides[first.judge] += 1
         gave.update({j.judge for j in trial.judgements if j.verdict in VERDICTS})
         asked.update({j.judge for j in trial.judgements})
     return min(asked, key=lambda name: (-decides[name], -gave[name], -asked[name], name)) if asked else None
 
 
 def verdicts(trials: Sequence[Trial], judge: str) -> list[tuple[Trial, Judgement]]:
-    """Each trial that this judge judged, with the first judgement that is a verdict; where none is, with its first."""
+    """Return each trial that a judge judged, with its first verdict, or with its first judgement if none is a verdict."""
     found = []
     for trial in trials:
         own = sorted((j for j in trial.judgements if j.judge == judge), key=lambda j: j.repeat)
