@@ -1,4 +1,4 @@
-"""Runs of people as judged runs: the same checks, in the same records as an evaluation of models."""
+"""The human baseline: runs of people, scored by the same checks and stored in the same records as runs of models."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ DIGEST_CHARS = 16
 
 
 def human_run_card(by: str, split: str, tasks: Sequence[Task], started: str, max_steps: int) -> RunCard:
-    """The run card of a person: planner and eyes are one."""
+    """Return the run card of a person, who is both planner and perception."""
     who = ModelCard(name=by, provider="person")
     return RunCard(
         run_id=f"human-{by}",
@@ -45,7 +45,7 @@ def human_run_card(by: str, split: str, tasks: Sequence[Task], started: str, max
 
 
 def human_trial(task: Task, scene: SceneFile, trace: Trace, sample: str) -> Trial:
-    """A finished run, judged by the task's checks. The person saw every view that the camera showed before a decision."""
+    """Score a finished run by the task's checks. The person saw the camera's view before every decision."""
     episode = episode_of(trace, PresetViewpoints.of(scene), planner_sees=True)
     verdict, ended = score_episode(task, episode), trace.ended
     viewpoint = next(preset.viewpoint for preset in scene.presets if preset.name == task.preset)
@@ -69,12 +69,16 @@ def human_trial(task: Task, scene: SceneFile, trace: Trace, sample: str) -> Tria
 
 @dataclass(frozen=True, slots=True)
 class StoredHumanRun:
-    """A person's run as reports show it: its trace, and the pictures in its folder."""
+    """A person's run: its trace, and the pictures in its folder."""
 
     trace: Trace
 
     def picture(self, name: str) -> bytes | None:
-        """A picture by its name in the trace; None when it is not there. Raises ``TraceError`` for one outside the folder."""
+        """Return a picture by its name in the trace; None if it does not exist.
+
+        Raises:
+            TraceError: The name leads outside the folder.
+        """
         path = picture_of(self.trace.folder, name)
         try:
             return path.read_bytes()
@@ -83,7 +87,11 @@ class StoredHumanRun:
 
 
 def open_run(result: Path, sample: str) -> StoredHumanRun:
-    """A run of a result by its name (``Trial.sample``), from its folder beside the result. Raises ``TraceError``."""
+    """Open a run of a result by its name (``Trial.sample``) from its folder next to the result.
+
+    Raises:
+        TraceError: The run cannot be read, or its name leads outside the folder.
+    """
     folder = result.parent / sample
     if sample in {"", ".", ".."} or Path(sample).name != sample:
         raise TraceError(f"{result} names a run outside its own folder: {sample}.")
@@ -91,7 +99,11 @@ def open_run(result: Path, sample: str) -> StoredHumanRun:
 
 
 def write_result(evaluation: Evaluation, folder: Path) -> Path:
-    """Write the result, whole or not at all: a program that is stopped leaves the one before."""
+    """Write the result atomically, so that an interruption leaves the previous one.
+
+    Raises:
+        OutputError: The file cannot be written.
+    """
     path, fresh = folder / RESULT, folder / f"{RESULT}.new"
     try:
         fresh.write_text(evaluation.model_dump_json(indent=1) + "\n", "utf-8")
@@ -102,7 +114,11 @@ def write_result(evaluation: Evaluation, folder: Path) -> Path:
 
 
 def read_result(path: Path) -> Evaluation:
-    """A result of ``scope bench human``. Raises ``InputError`` when it is none."""
+    """Read a result of ``scope bench human``.
+
+    Raises:
+        InputError: The file cannot be read or holds no result.
+    """
     try:
         return Evaluation.model_validate_json(path.read_bytes())
     except OSError as error:

@@ -1,6 +1,7 @@
-"""Runs programs of tool calls as an agent would, through the real tools and the simulated camera, fast and in memory.
+"""Run programs of tool calls as an agent would, with the real tools and the simulated camera, fast and in memory.
 
-Which eyes look, and where pictures go, is the caller's choice; blank frames serve eyes that read the ground truth.
+The caller chooses the perception backend and the place for pictures. Blank frames are enough for backends that use the ground
+truth.
 """
 
 from __future__ import annotations
@@ -21,11 +22,11 @@ from scope_ptz.tools.context import ToolContext
 from scope_ptz.tools.registry import run_tool
 
 MakeToolContext = Callable[[Camera], ToolContext]
-"""Gives a camera eyes and a place for its pictures."""
+"""Creates the tool context of a camera, with perception and a place for pictures."""
 
 
 class BlankCamera(SimulatedCamera):
-    """A simulated camera whose frames say where they were taken, but show nothing: drawing them is most of the work."""
+    """A simulated camera whose frames know their origin but are blank, because rendering is most of the work."""
 
     def __init__(self, scene: Scene, *, clock: SceneClock, width: int, height: int) -> None:
         super().__init__(scene, clock=clock, width=width, height=height)
@@ -41,18 +42,31 @@ class BlankCamera(SimulatedCamera):
 
 
 class ProgramRunner:
-    """A scene on which programs are run."""
+    """Runs programs on a scene.
 
-    def __init__(self, scene: Scene, equip: MakeToolContext, eyes: FrameGeometry) -> None:
-        self.scene, self.equip, self.eyes = scene, equip, eyes
+    Args:
+        scene: The scene.
+        make_context: Creates the tool context of a camera.
+        geometry: Size and lens of the frames.
+    """
+
+    def __init__(self, scene: Scene, make_context: MakeToolContext, geometry: FrameGeometry) -> None:
+        self.scene, self.make_context, self.geometry = scene, make_context, geometry
 
     async def run(self, task: Task, program: Sequence[ProgramCall], text: str, outcome: str = "answered") -> Episode:
-        """The run of a program from the task's start, ended with a text. A call that fails stays in it; the rest is still made."""
+        """Run a program from the task's start. After a failed call the program continues.
+
+        Args:
+            task: The task that gives the start.
+            program: The calls.
+            text: The final answer of the run.
+            outcome: How the run ends.
+        """
         clock = SceneClock(task.time_s)
-        camera = BlankCamera(self.scene, clock=clock, width=self.eyes.width, height=self.eyes.height)
+        camera = BlankCamera(self.scene, clock=clock, width=self.geometry.width, height=self.geometry.height)
         with clock.hold():
             await camera.go_to_preset(task.preset)
-        context = self.equip(camera)
+        context = self.make_context(camera)
         start = CameraState(camera.viewpoint, await camera.pose())
         calls, pictures, before = list[EpisodeCall](), list[SavedPicture](), start
         for step in program:
@@ -66,14 +80,16 @@ class ProgramRunner:
                 error, fault = str(failed), "perception"
             after = CameraState(camera.viewpoint, await camera.pose())
             call = EpisodeCall(step.tool, step.arguments, before, after, result, error, fault, time_s)
-            calls.append(with_observations(call, self.eyes))
+            calls.append(with_observations(call, self.geometry))
             if result is not None and step.tool == "take_image":
                 pictures.append(SavedPicture(str(result["file"])))
             before = after
         return Episode(task.instruction, start, tuple(calls), before, text, outcome, tuple(pictures))
 
 
-def with_observations(call: EpisodeCall, eyes: FrameGeometry) -> EpisodeCall:
-    """A call with the looks that it took."""
-    looks = observations_of(call, eyes) if call.succeeded else ()
-    return EpisodeCall(call.name, call.arguments, call.before, call.after, call.result, call.error, call.fault, call.time_s, looks)
+def with_observations(call: EpisodeCall, geometry: FrameGeometry) -> EpisodeCall:
+    """Return a call with the observations that it made."""
+    observations = observations_of(call, geometry) if call.succeeded else ()
+    return EpisodeCall(
+        call.name, call.arguments, call.before, call.after, call.result, call.error, call.fault, call.time_s, observations
+    )

@@ -26,12 +26,12 @@ def first_verdict(judgements: Iterable[Judgement]) -> Judgement | None:
     return next((j for j in judgements if j.verdict in VERDICTS), None)
 
 
-def deciding_judge(trials: Iterable[Trial], wanted: str = "") -> str | None:
+def deciding_judge(trials: Iterable[Trial], requested: str = "") -> str | None:
     """Return the judge that decides the runs of a log that only a judge can score.
 
     Args:
         trials: The trials of the log.
-        wanted: The requested judge, with or without its prompt. Without a verdict of this judge, another one decides.
+        requested: The requested judge, with or without its prompt. Without a verdict of this judge, another one decides.
 
     Returns:
         None if no judge has given a verdict on such a run.
@@ -42,7 +42,7 @@ def deciding_judge(trials: Iterable[Trial], wanted: str = "") -> str | None:
             by_judge = list(dict.fromkeys(judge_of(j) for j in trial.judgements if j.verdict in VERDICTS))
             first.update(by_judge[:1])
             further.update(by_judge)
-    named = [judge for judge in further if wanted and wanted in (judge, judge.partition(" (")[0])]
+    named = [judge for judge in further if requested and requested in (judge, judge.partition(" (")[0])]
     candidates = named or list(further)
     return max(candidates, key=lambda judge: (first[judge], further[judge]), default=None)
 
@@ -71,12 +71,12 @@ def verdict_by(judgements: Sequence[Judgement], judge: str | None = None) -> dic
     return {"headline": "unscored", "reason": reason, "error_mode": None}
 
 
-def decided_by_one_judge(trials: Sequence[Trial], wanted: str = "") -> list[Trial]:
+def decided_by_one_judge(trials: Sequence[Trial], requested: str = "") -> list[Trial]:
     """Return the trials of a log with the verdicts of the deciding judge where only a judge can score them.
 
     In these trials the judgements of the deciding judge come first.
     """
-    judge = deciding_judge(trials, wanted)
+    judge = deciding_judge(trials, requested)
     if judge is None:
         return list(trials)
     return [_by(trial, judge) if trial.scored_by == "judge" else trial for trial in trials]
@@ -88,17 +88,17 @@ def _by(trial: Trial, judge: str) -> Trial:
     return trial.model_copy(update={**verdict, "judgements": ordered})
 
 
-def check_decides(trials: Sequence[Trial], wanted: str) -> None:
+def check_decides(trials: Sequence[Trial], requested: str) -> None:
     """Check that a judge can decide.
 
     Raises:
         InputError: The judge has given no verdict on a run that only a judge can score.
     """
-    found = deciding_judge(trials, wanted)
-    if found is None or wanted not in (found, found.partition(" (")[0]):
+    found = deciding_judge(trials, requested)
+    if found is None or requested not in (found, found.partition(" (")[0]):
         known = dict.fromkeys(judge_of(j) for t in trials if t.scored_by == "judge" for j in t.judgements if j.verdict in VERDICTS)
         raise InputError(
-            f"'{wanted}' has given no verdict on a run that only a judge can score, so it cannot decide. "
+            f"'{requested}' has given no verdict on a run that only a judge can score, so it cannot decide. "
             f"Those that have: {', '.join(known) or 'none'}."
         )
 
@@ -106,7 +106,7 @@ def check_decides(trials: Sequence[Trial], wanted: str) -> None:
 def decider_of(trials: Iterable[Trial]) -> str | None:
     """Return the judge whose verdicts are the headlines of the runs that only a judge can score."""
     rows = (t for t in trials if t.scored_by == "judge" and t.headline in VERDICTS)
-    return next((judge_of(said) for trial in rows if (said := first_verdict(trial.judgements)) is not None), None)
+    return next((judge_of(first) for trial in rows if (first := first_verdict(trial.judgements)) is not None), None)
 
 
 def other_judges_note(trials: Sequence[Trial]) -> str:

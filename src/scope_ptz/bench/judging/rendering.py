@@ -147,8 +147,10 @@ def _ends_kept(calls: Sequence[CaseCall], room: int) -> list[str]:
 
 def _call_text(number: int, call: CaseCall, most: int) -> str:
     arguments = cut(_json(call.arguments), most)
-    said = f"error: {cut(call.error, most)}" if call.error is not None else f"result: {cut(_json(_kept(call.result or {})), most)}"
-    body = quoted(f"{cut(call.name, 80)} {arguments}\n{said}")
+    result = (
+        f"error: {cut(call.error, most)}" if call.error is not None else f"result: {cut(_json(_kept(call.result or {})), most)}"
+    )
+    body = quoted(f"{cut(call.name, 80)} {arguments}\n{result}")
     return f"Call {number}:\n{body}\nCamera afterwards:{_at(call.viewpoint)} {in_words(call.pose)}."
 
 

@@ -23,9 +23,9 @@ KIND_WORDS = {
 ROUNDING = 1e-9
 INTERVALS = (
     "Each value has a 95% interval, clustered by viewpoint (linearised variance by cluster, Student's t with one degree of freedom "
-    "fewer than there are viewpoints, Wilson's form at the effective sample size). Repeats of a task count as one observation. With "
-    "only one viewpoint the interval is unknown. “Without” lists categories with only one viewpoint. They are included in the macro "
-    "average but do not widen its interval, which is therefore too narrow."
+    "fewer than there are viewpoints, Wilson's form at the effective sample size). Repeats of a task count as one observation. "
+    "With only one viewpoint the interval is unknown. “Without” lists categories with only one viewpoint. They are included in "
+    "the macro average but do not widen its interval, which is therefore too narrow."
 )
 
 
@@ -40,9 +40,10 @@ def accuracy_section(runs: Sequence[ReportRun]) -> Section:
     if any(t.judgements for run in having for t in run.scored_trials):
         tables.append(_by_judge(having))
     text = [
-        "The macro average is the unweighted mean over categories, which the paper calls average. The micro average is the share of "
-        "all trials; a trial is one run of one task. Both count correct trials among those that infrastructure did not break. An "
-        "unscored trial counts as not correct. Trials that only a judge can score are left out until a judge has given a verdict."
+        "The macro average is the unweighted mean over categories, which the paper calls average. The micro average is the share "
+        "of all trials; a trial is one run of one task. Both count correct trials among those that infrastructure did not break. "
+        "An unscored trial counts as not correct. Trials that only a judge can score are left out until a judge has given a "
+        "verdict."
     ]
     if len({(run.task_set, run.tasks) for run in having}) > 1:
         text.append(
@@ -57,9 +58,9 @@ def accuracy_section(runs: Sequence[ReportRun]) -> Section:
         )
     if others:
         text.append(
-            "The grammar planner and ground-truth perception are not models. Ground-truth perception is exact about what is visible, "
-            "except in its noisy variant. Both understand a limited language and may misunderstand an instruction or a question. "
-            "Runs with either of them, blind baselines and human baselines are in a separate table and are not ranked."
+            "The grammar planner and ground-truth perception are not models. Ground-truth perception is exact about what is "
+            "visible, except in its noisy variant. Both understand a limited language and may misunderstand an instruction or a "
+            "question. Runs with either of them, blind baselines and human baselines are in a separate table and are not ranked."
         )
     main = of_main_set(runs)
     charts = (drawing.accuracy_chart(main),) if main else ()
@@ -149,9 +150,9 @@ def _by_judge(runs: Sequence[ReportRun]) -> ReportTable:
         Column("agreement", "Same verdict (%)", "share"),
     )  # fmt: skip
     notes = (
-        "The paper's accuracy is by a judge. Both macro averages cover the trials with a verdict of the judge; unparseable and failed "
-        "judgements are left out. Trials without a check of the answer, which a judge scored, count neither in the macro average by "
-        "checks nor in the agreement.",
+        "The paper's accuracy is by a judge. Both macro averages cover the trials with a verdict of the judge; unparseable and "
+        "failed judgements are left out. Trials without a check of the answer, which a judge scored, count neither in the macro "
+        "average by checks nor in the agreement.",
     )
     return ReportTable("judge", "Verdicts of the judge and of the checks", columns, tuple(_judged_row(run) for run in runs), notes)
 

@@ -120,7 +120,7 @@ def _overview(runs: Sequence[ReportRun]) -> Section:
         Column("dataset", "Dataset"),
         Column("split", "Split"),
         Column("trials", "Trials", "count"),
-        Column("wanted", "of", "count"),
+        Column("wanted", "Planned trials", "count"),
         Column("epochs", "Repeats", "count"),
         Column("agent", "Agent"),
         Column("variant", "Variant"),
@@ -181,8 +181,8 @@ def _flat(settings: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, 
             yield f"{before}{key}", value
 
 
-def _reported(said: Mapping[str, str]) -> str | None:
-    return ", ".join(f"{key} {value}" for key, value in sorted(said.items())) or None
+def _reported(reported: Mapping[str, str]) -> str | None:
+    return ", ".join(f"{key} {value}" for key, value in sorted(reported.items())) or None
 
 
 def _warnings(runs: Sequence[ReportRun], ranked: Sequence[ReportRun], alike: Sequence[ReportRun]) -> tuple[str, ...]:
@@ -228,8 +228,8 @@ def _served_otherwise(runs: Sequence[ReportRun]) -> list[str]:
     if not found:
         return []
     return [
-        f"Servers reported another model than the requested one: {'; '.join(found)}. The rows of these models say so. Size, precision "
-        "and memory are those of the requested model in the registry."
+        f"Servers reported another model than the requested one: {'; '.join(found)}. The rows of these models say so. Size, "
+        "precision and memory are those of the requested model in the registry."
     ]
 
 

@@ -73,7 +73,7 @@ def as_chart(key: str, title: str, alt: str, figure: Figure) -> Chart:
 
 def colours(runs: Sequence[ReportRun]) -> dict[str, str]:
     """Return a colour per run: a hue per perception model, lighter for smaller planners; grey for runs that are not ranked."""
-    eyes = list(dict.fromkeys(run.perception_name for run in runs if run.ranked))
+    perception = list(dict.fromkeys(run.perception_name for run in runs if run.ranked))
     found = {}
     for run in runs:
         if not run.ranked:
@@ -82,7 +82,7 @@ def colours(runs: Sequence[ReportRun]) -> dict[str, str]:
         name = run.perception_name
         same = [r for r in runs if r.ranked and r.perception_name == name]
         place = (same.index(run) + 1) / len(same)
-        found[run.label] = _mixed(HUES[eyes.index(name) % len(HUES)], 0.45 + 0.55 * place)
+        found[run.label] = _mixed(HUES[perception.index(name) % len(HUES)], 0.45 + 0.55 * place)
     return found
 
 

@@ -133,13 +133,13 @@ def oracle_chart(table: ReportTable) -> Chart:
     names = [column.name for column in table.columns]
     rows = [(str(row[0]), {name: _whole(cell) for name, cell in zip(names, row, strict=True)}) for row in reversed(table.rows)]
     drawn = [(words, series) for words, series in ORACLE_PANELS if any(v[name] is not None for _, v in rows for name, *_ in series)]
-    labels, told, known = [lines(label) for label, _ in rows], [], dict[str, Any]()
+    labels, parts, known = [lines(label) for label, _ in rows], [], dict[str, Any]()
     with panels(1080, 150 + row_px(labels, 34) * len(rows), max(1, len(drawn))) as (figure, grid):
         for axes, (words, series) in zip(grid, drawn, strict=False):
             for y, (label, values) in enumerate(rows):
                 found = [(title, 100 * value) for name, title, _ in series if (value := values[name]) is not None]
                 if found:
-                    told.append(f"{label} {words}: {', '.join(f'{title} {value:.1f}%' for title, value in found)}")
+                    parts.append(f"{label} {words}: {', '.join(f'{title} {value:.1f}%' for title, value in found)}")
                     axes.plot([min(v for _, v in found), max(v for _, v in found)], [y, y], color=GREY, lw=1.5, zorder=1)
             for name, title, (marker, colour) in series:
                 points = [(100 * value, y) for y, (_, values) in enumerate(rows) if (value := values[name]) is not None]
@@ -150,7 +150,7 @@ def oracle_chart(table: ReportTable) -> Chart:
             axes.set_ylim(-0.6, len(rows) - 0.4)
         grid[0].set_yticks(range(len(rows)), labels)
         figure.legend(known.values(), known.keys(), loc="outside lower center", ncols=3, fontsize=9.5)
-        return as_chart("chart-oracle", "The oracle setting", f"Macro accuracy by pair. {'; '.join(told)}.", figure)
+        return as_chart("chart-oracle", "The oracle setting", f"Macro accuracy by pair. {'; '.join(parts)}.", figure)
 
 
 def _whole(cell: Any) -> float | None:
@@ -247,16 +247,16 @@ def repeats_chart(table: ReportTable, most: int) -> Chart:
     """Draw pass^k against k."""
     labels = [short(str(row[0]), 100) for row in table.rows]
     with canvas(880, 330 + legend_px(labels)) as (figure, axes):
-        told = []
+        parts = []
         for number, (row, words) in enumerate(zip(table.rows, labels, strict=True)):
             points = [(k, 100 * value) for k, cell in enumerate(row[2:], 1) if (value := _value(cell)) is not None]
             if points:
                 hue, marker = HUES[number % len(HUES)], "os^Dvp*"[number % 7]
                 axes.plot(*zip(*points, strict=True), marker=marker, color=hue, label=words, lw=2, ms=7)
-                told.append(f"{row[0]} from {points[0][1]:.1f}% to {points[-1][1]:.1f}%")
+                parts.append(f"{row[0]} from {points[0][1]:.1f}% to {points[-1][1]:.1f}%")
         axes.set_xticks(range(1, most + 1))
         axes.set_ylim(0, 102)
         axes.set_xlabel("k")
         axes.set_ylabel("pass^k (%)")
         legend_below(figure, labels)
-        return as_chart("chart-repeats", "pass^k", f"pass^k falls with k: {'; '.join(told)}.", figure)
+        return as_chart("chart-repeats", "pass^k", f"pass^k falls with k: {'; '.join(parts)}.", figure)

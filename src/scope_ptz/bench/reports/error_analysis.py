@@ -34,8 +34,8 @@ def by_rules(run: ReportRun) -> Counter[ErrorMode]:
 
 def by_judge(run: ReportRun, judge: str) -> Counter[ErrorMode]:
     """Count the trials that a judge failed by the error mode that it named."""
-    said = [j for _, j in verdicts(run.scored_trials, judge) if j.verdict == "incorrect"]
-    return Counter(j.error_mode for j in said if j.error_mode is not None)
+    judged = [j for _, j in verdicts(run.scored_trials, judge) if j.verdict == "incorrect"]
+    return Counter(j.error_mode for j in judged if j.error_mode is not None)
 
 
 def error_section(runs: Sequence[ReportRun]) -> Section:
@@ -47,13 +47,19 @@ def error_section(runs: Sequence[ReportRun]) -> Section:
     charts = [drawing.mode_chart("error_modes", BY_RULES, checked, rules, totals, MODE_TITLES, runs)] if checked else []
     judge = judge_name(runs)
     if judge is not None:
-        said = {run.label: by_judge(run, judge) for run in runs if verdicts(run.scored_trials, judge)}
-        judged = [run for run in runs if run.label in said]
+        judge_modes = {run.label: by_judge(run, judge) for run in runs if verdicts(run.scored_trials, judge)}
+        judged = [run for run in runs if run.label in judge_modes]
         title = f"Incorrect trials by error mode, by the judge ({judge})"
-        tables.append(_mode_table("error_modes_judge", title, said))
+        tables.append(_mode_table("error_modes_judge", title, judge_modes))
         charts.append(
             drawing.mode_chart(
-                "error_modes_judge", title, judged, said, {run.label: len(_clear(run, judge)) for run in judged}, MODE_TITLES, runs
+                "error_modes_judge",
+                title,
+                judged,
+                judge_modes,
+                {run.label: len(_clear(run, judge)) for run in judged},
+                MODE_TITLES,
+                runs,
             )
         )
     text = (
@@ -91,18 +97,19 @@ def oracle_section(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> S
         Column("run", "Run"), Column("macro_judge", "Macro by judge (%)", "share"),
         Column("oracle_judge", "Judge's VLM errors counted as correct (%)", "share"),
         Column("perception_judge", "VLM share of errors, judge (%)", "share"),
-        Column("macro_checks", "Macro by checks (%)", "share"), Column("oracle_rules", "Rules' VLM errors counted as correct (%)", "share"),
+        Column("macro_checks", "Macro by checks (%)", "share"),
+        Column("oracle_rules", "Rules' VLM errors counted as correct (%)", "share"),
         Column("perception_rules", "VLM share of errors, rules (%)", "share"),
         Column("macro_rerun", "Rerun with ground-truth perception (%)", "share"),
         Column("gain_rerun", "Gain, paired (points)", "points"),
     )  # fmt: skip
     text = (
         "How accurate the pairs would be if perception never failed, measured in three ways. As in the paper, failures that the "
-        "judge attributes to VLM counting or VLM query are counted as correct. The same is done with the error modes of the rules. If "
-        "a log with ground-truth perception was given, the planner was actually run again, and the tasks of both runs are compared. "
-        "Relabelling cannot show whether the planner would have continued correctly; a rerun can.",
-        "Each is compared with a baseline of its kind: the judge's oracle with the judge's verdicts, the rules' oracle and the rerun "
-        "with the verdicts of the checks.",
+        "judge attributes to VLM counting or VLM query are counted as correct. The same is done with the error modes of the "
+        "rules. If a log with ground-truth perception was given, the planner was actually run again, and the tasks of both runs "
+        "are compared. Relabelling cannot show whether the planner would have continued correctly; a rerun can.",
+        "Each is compared with a baseline of its kind: the judge's oracle with the judge's verdicts, the rules' oracle and the "
+        "rerun with the verdicts of the checks.",
     )
     names = [column.name for column in columns]
     rows = [_oracle_row(run, _by_rules_oracle(run), _judge_oracle(run, judge), _rerun(run, every)) for run in ranked]
@@ -129,10 +136,10 @@ def _by_rules_oracle(run: ReportRun) -> Oracle:
 
 
 def _judge_oracle(run: ReportRun, judge: str | None) -> Oracle:
-    said = _clear(run, judge)
-    trials = [t for t, _ in said]
-    plain = macro(scores_of(trials, [j.verdict == "correct" for _, j in said]))
-    lifted = macro(scores_of(trials, [j.verdict == "correct" or j.error_mode in PERCEPTION for _, j in said]))
+    judged = _clear(run, judge)
+    trials = [t for t, _ in judged]
+    plain = macro(scores_of(trials, [j.verdict == "correct" for _, j in judged]))
+    lifted = macro(scores_of(trials, [j.verdict == "correct" or j.error_mode in PERCEPTION for _, j in judged]))
     return plain, lifted, _perception_share(by_judge(run, judge) if judge else Counter())
 
 

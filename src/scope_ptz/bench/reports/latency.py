@@ -1,7 +1,7 @@
 """The latency section: seconds by stage, by planner, by perception model, and for the current view against the panorama.
 
-The camera is a separate stage. Its moves and frames cost time in the simulator and depend on the views that a pair asks for. A pair's
-own latency is everything else.
+The camera is a separate stage. Its moves and frames cost time in the simulator and depend on the views that a pair asks for. A
+pair's own latency is everything else.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ STAGE_TITLES = {
 VIEWS: tuple[tuple[Scope, str], ...] = (("current", "Current view"), ("full", "Panorama"))
 INCLUDED = (
     "Planner: replies of its server, retries included. Perception: answers to the tools' questions. Tools and loop: the rest of a "
-    "trial without the camera, such as stitching panoramas and writing pictures. Camera: moves and frames. In the simulator this is "
-    "rendering, including frames that are only kept for the log; it depends on the views that were asked for. A pair's own latency "
-    "is all stages without the camera."
+    "trial without the camera, such as stitching panoramas and writing pictures. Camera: moves and frames. In the simulator this "
+    "is rendering, including frames that are only kept for the log; it depends on the views that were asked for. A pair's own "
+    "latency is all stages without the camera."
 )
 PERCEPTION_CALLS = (
     "A perception call is a call of count_objects or query_answer that returned a result. Perception: seconds without the camera. "
@@ -44,7 +44,7 @@ def latency_section(runs: Sequence[ReportRun]) -> Section:
     having = [run for run in runs if run.scored_trials]
     pairs = [(run, timing_run(run, having)) for run in pairs_of(having)]
     sources = [source for _, source in pairs]
-    tables = (_by_stage(having), _by_planner(pairs), _by_eyes(pairs), _views(sources))
+    tables = (_by_stage(having), _by_planner(pairs), _by_perception(pairs), _views(sources))
     shared = [run.label for run in sources if run.evaluation.card.contended]
     text = [
         "All values are wall seconds; concurrent work counts once. The values of a stage cover the trials that used it. If a pair "
@@ -107,7 +107,7 @@ def _by_planner(pairs: Sequence[Timed]) -> ReportTable:
     return _by_model("latency_planner", "By planner", pairs, lambda r: r.planner_name, "planner_s", steps, cells, notes)
 
 
-def _by_eyes(pairs: Sequence[Timed]) -> ReportTable:
+def _by_perception(pairs: Sequence[Timed]) -> ReportTable:
     looks = (
         Column("look_median", "Perception, seconds per call, median", "seconds"),
         Column("look_p95", "Perception, seconds per call, p95", "seconds"),
@@ -117,8 +117,8 @@ def _by_eyes(pairs: Sequence[Timed]) -> ReportTable:
 
     def cells(own: Sequence[ReportRun]) -> tuple[CellValue, ...]:
         made = _looks(own)
-        eyes, capture = [look.eyes_s for look in made], [look.capture_s for look in made]
-        return median(eyes), p95(eyes), median(capture), p95(capture)
+        perception, capture = [look.eyes_s for look in made], [look.capture_s for look in made]
+        return median(perception), p95(perception), median(capture), p95(capture)
 
     notes = (f"Seconds per trial: all perception in a trial. {PERCEPTION_CALLS} {_pooled('perception model')}",)
     return _by_model("latency_eyes", "By perception model", pairs, lambda r: r.perception_name, "perception_s", looks, cells, notes)
@@ -126,9 +126,9 @@ def _by_eyes(pairs: Sequence[Timed]) -> ReportTable:
 
 def _pooled(what: str) -> str:
     return (
-        f"Seconds are pooled over the trials of all model pairs with this {what}. If some pairs were timed without contention, only "
-        f"these count. Tool calls are the unweighted mean over all pairs with this {what}. Reference runs and variants of a pair are "
-        "left out."
+        f"Seconds are pooled over the trials of all model pairs with this {what}. If some pairs were timed without contention, "
+        f"only these count. Tool calls are the unweighted mean over all pairs with this {what}. Reference runs and variants of a "
+        "pair are left out."
     )
 
 
@@ -186,7 +186,7 @@ def _views(runs: Sequence[ReportRun]) -> ReportTable:
 
 def _view_row(view: Scope, words: str, runs: Sequence[ReportRun]) -> tuple[CellValue, ...]:
     made = _looks(runs, view)
-    eyes, capture, whole = ([getattr(look, part) for look in made] for part in ("eyes_s", "capture_s", "call_s"))
-    base, own = median([look.eyes_s for look in _looks(runs, "current")]), median(eyes)
+    perception, capture, whole = ([getattr(look, part) for look in made] for part in ("eyes_s", "capture_s", "call_s"))
+    base, own = median([look.eyes_s for look in _looks(runs, "current")]), median(perception)
     ratio = own / base if base and own else None
-    return words, _contended(runs), len(made), own, p95(eyes), ratio, median(capture), p95(capture), median(whole)
+    return words, _contended(runs), len(made), own, p95(perception), ratio, median(capture), p95(capture), median(whole)

@@ -143,8 +143,9 @@ def comparison_section(runs: Sequence[ReportRun]) -> Section:
     text.append(f"{number} of {len(found)} comparisons show a difference.{resolved}")
     notes = (
         f"Bootstrap: 10,000 draws of viewpoints with replacement, percentile interval, seed {SEED}; it cross-checks the other "
-        "interval. Better: number of tasks on which one run is better. Smallest detectable difference: the true difference that the "
-        "clustered test detects with 80% power, (t at 97.5% + t at 80%) times the standard error, before adjustment for many tests.",
+        "interval. Better: number of tasks on which one run is better. Smallest detectable difference: the true difference that "
+        "the clustered test detects with 80% power, (t at 97.5% + t at 80%) times the standard error, before adjustment for many "
+        "tests.",
     )
     table = comparison_table("comparisons", "Paired comparisons", found, notes)
     folded = frozenset({"comparisons"}) if len(found) > 12 else frozenset[str]()
@@ -164,7 +165,7 @@ def _resolution(runs: Sequence[ReportRun]) -> ReportTable:
         clusters = found.clusters if found else 0
         rows.append((run.label, se, clusters, None if not se else detectable(sqrt(2) * se, clusters)))
     notes = (
-        "The difference to an equally precise run over other tasks that is detected with 80% power. Pairing by task usually detects "
-        "smaller differences.",
+        "The difference to an equally precise run over other tasks that is detected with 80% power. Pairing by task usually "
+        "detects smaller differences.",
     )
     return ReportTable("resolution", "Smallest detectable difference", columns, tuple(rows), notes)

@@ -121,8 +121,8 @@ def paper_section() -> Section:
     paper = load_paper()
     text = (
         f"All values in this panel are copied from the paper ({paper.paper.title}, doi {paper.paper.doi}). None was measured here. "
-        "They are a point of reference and not comparable task by task: the paper's 536 tasks, scenes and servers are different, and "
-        f"its verdicts are those of a judge ({paper.paper.judge}), not of checks.",
+        "They are a point of reference and not comparable task by task: the paper's 536 tasks, scenes and servers are different, "
+        f"and its verdicts are those of a judge ({paper.paper.judge}), not of checks.",
     )
     tables = (_accuracy(paper), _latency(paper), _figures(paper), _models(paper), _categories(paper), _modes(paper))
     return Section(

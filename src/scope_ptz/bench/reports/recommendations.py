@@ -42,13 +42,14 @@ def design_section(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> S
         for c in sorted(found, key=lambda c: -(c.accuracy or 0.0))
     )
     notes = (
-        "Memory is computed from the registry (parameters at their precision, cache for 16,384 tokens, 1.5 GB for each server), not "
-        "measured. A pair is on the front if no other pair is at least as accurate, as fast and as small, and better in one of these.",
+        "Memory is computed from the registry (parameters at their precision, cache for 16,384 tokens, 1.5 GB for each server), "
+        "not measured. A pair is on the front if no other pair is at least as accurate, as fast and as small, and better in one "
+        "of these.",
     )
     text = (
-        "Choose a pair that no other pair beats in accuracy, latency and memory at once. A difference in accuracy that was not shown "
-        "(see the comparisons) is no reason to prefer the larger pair. Latencies are comparable only if all of them were measured "
-        "alone on the same machine.",
+        "Choose a pair that no other pair beats in accuracy, latency and memory at once. A difference in accuracy that was not "
+        "shown (see the comparisons) is no reason to prefer the larger pair. Latencies are comparable only if all of them were "
+        "measured alone on the same machine.",
         "Latency is the time of planner, perception and tools without the camera. The time for rendering frames belongs to the "
         "simulator and would rank pairs by the views that they asked for.",
     )
@@ -96,8 +97,8 @@ def spread_section(ranked: Sequence[ReportRun]) -> Section:
         ),
     )
     text = (
-        "The spread is the highest macro accuracy minus the lowest while one model of the pair is fixed. It grows with the number of "
-        "pairs and with noise; the comparisons say which differences were shown.",
+        "The spread is the highest macro accuracy minus the lowest while one model of the pair is fixed. It grows with the number "
+        "of pairs and with noise; the comparisons say which differences were shown.",
     )
     return Section("spread", "Spread by planner and by perception model", text, (), tables)
 
@@ -149,8 +150,8 @@ def scope_section(runs: Sequence[ReportRun]) -> Section:
         rows.append(("Mean of the model pairs", counts[0], _mean(ranked, 2), counts[1], _mean(ranked, 4), _mean(ranked, 5)))
     text = (
         "Micro accuracy by the scope of the task. Tasks of the two scopes also differ in category, so the panorama is not the only "
-        "cause of the difference. The interval of the difference combines the intervals of both sides (Newcombe 1998). It is unknown "
-        "if one of them is unknown.",
+        "cause of the difference. The interval of the difference combines the intervals of both sides (Newcombe 1998). It is "
+        "unknown if one of them is unknown.",
     )
     return Section("scope", "Current view against full scene", text, (), (ReportTable("scope", "By scope", columns, tuple(rows)),))
 

@@ -1,5 +1,4 @@
-"""Runs as a report sees them: labelled, joined with what the registry knows of their models, and grouped by what they may be
-compared with."""
+"""Runs as a report sees them: labelled, joined with the registry's models, and grouped into comparable task sets."""
 
 from __future__ import annotations
 
@@ -19,10 +18,10 @@ from scope_ptz.errors import UnknownNameError
 from scope_ptz.registry import Model, Registry
 
 RunKind = Literal["models", "reference", "blind", "person"]
-"""``reference``: the grammar planner or ground-truth eyes took part; ``blind``: nothing was seen; ``person``: a human baseline."""
+"""Kinds of runs. "reference": with the grammar planner or ground-truth perception; "blind": without perception; "person": human."""
 PERSON = "person"
 GRAMMAR, GROUND_TRUTH = "grammar", "ground-truth"
-"""What is no model and makes no noise either: noisy eyes are the ground truth made worse."""
+"""Names of the exact built-in planner and perception. Noisy ground truth is not among them."""
 MAIN_STRATA = ("core", "imported")
 FULL_PRECISION = ("fp32", "fp16", "bf16")
 CATEGORY_TITLES = {
@@ -35,11 +34,16 @@ CATEGORY_TITLES = {
 
 @dataclass(frozen=True, eq=False)
 class ReportRun:
-    """One evaluation; a trial is one run of one task in it.
+    """One evaluation in a report. A trial is one run of one task in it.
 
-    ``label``: how the report calls it, unlike any other; it says what sets the run apart from others wherever it stands.
-    ``planner`` and ``eyes``: None where the registry has no such model. ``elsewhere``: which other tasks it did, in words, when
-    they are not those of most pairs of the main task set; empty when they are, and for runs of another task set."""
+    Attributes:
+        number: Position in the report, from 1.
+        evaluation: The evaluation.
+        label: Unique name in the report. It says how the run differs from others.
+        planner: The planner's model; None if it is not in the registry.
+        perception: The perception model; None if it is not in the registry.
+        other_tasks: How its tasks differ from those of most pairs of the main task set, in words; empty if they do not.
+    """
 
     number: int
     evaluation: Evaluation
@@ -50,6 +54,7 @@ class ReportRun:
 
     @property
     def kind(self) -> RunKind:
+        """What kind of run it is."""
         card = self.evaluation.card
         if card.planner.provider == PERSON:
             return "person"
@@ -59,81 +64,87 @@ class ReportRun:
 
     @property
     def ranked(self) -> bool:
+        """Whether it is a pair of models."""
         return self.kind == "models"
 
     @property
     def uses_exact_ground_truth(self) -> bool:
-        """Whether its eyes are the simulator's ground truth as it is."""
-        eyes = self.evaluation.card.perception
-        return eyes.deterministic and eyes.name == GROUND_TRUTH
+        """Whether its perception is the exact ground truth."""
+        perception = self.evaluation.card.perception
+        return perception.deterministic and perception.name == GROUND_TRUTH
 
     @property
     def is_exact_reference(self) -> bool:
-        """Whether no model took part and nothing was made worse: the grammar planner with ground-truth eyes."""
+        """Whether it is the grammar planner with exact ground-truth perception."""
         planner = self.evaluation.card.planner
         return planner.deterministic and planner.name == GRAMMAR and self.uses_exact_ground_truth and self.kind == "reference"
 
     @property
     def planner_name(self) -> str:
-        """The planner, and what its server served in its place if it did."""
+        """Name of the planner, and of the model that its server served instead, if any."""
         return _named(self.evaluation.card.planner, self.planner)
 
     @property
     def perception_name(self) -> str:
-        """The eyes, and what their server served in their place if it did."""
+        """Name of the perception model, and of the model that its server served instead, if any."""
         return _named(self.evaluation.card.perception, self.perception)
 
     @property
     def system(self) -> tuple[str, str, str, str]:
-        """What was run, whatever the tasks: planner, eyes, agent, variant."""
+        """What was evaluated, without the tasks: planner, perception, agent, variant."""
         card = self.evaluation.card
         return self.planner_name, self.perception_name, card.agent, card.variant
 
     @property
     def task_set(self) -> tuple[str, str]:
-        """Dataset and split: runs of one task set may be compared."""
+        """Dataset and split. Runs of one task set are comparable."""
         return self.evaluation.card.dataset, split_name(self.evaluation.card.split)
 
     @property
     def memory_gb(self) -> float | None:
-        """Computed memory to serve both models at the precision that the registry gives; one model that is both counts once."""
+        """Computed memory to serve both models at the registry's precision. A model in both roles counts once."""
         if self.planner is None or self.perception is None:
             return None
         return sum(model.memory_for() for model in {m.name: m for m in (self.planner, self.perception)}.values())
 
     @cached_property
     def main_trials(self) -> tuple[Trial, ...]:
-        """Trials of core tasks (or of an imported file's): what accuracy is told of."""
+        """Trials of core tasks or imported tasks. Accuracy covers these."""
         return tuple(t for t in self.evaluation.trials if t.task.stratum in MAIN_STRATA)
 
     @cached_property
     def scored_trials(self) -> tuple[Trial, ...]:
-        """Of these, all that infrastructure did not break and that need no judge, or have a judge's verdict; other unscored ones
-        are among them and count as not correct."""
+        """Main trials that count: not broken by infrastructure, and not waiting for a judge. Unscored ones count as not correct."""
         return tuple(t for t in self.main_trials if t.headline != "infrastructure" and not without_verdict(t))
 
     @cached_property
     def tasks(self) -> frozenset[str]:
-        """Ids of the tasks that its headline is told of."""
+        """Ids of the tasks that its accuracy covers."""
         return frozenset(t.task.id for t in self.main_trials)
 
     @cached_property
     def checked_trials(self) -> tuple[Trial, ...]:
-        """Of the scored ones those whose verdict is the checks'."""
+        """Scored trials whose verdict is that of the checks."""
         return tuple(t for t in self.scored_trials if t.scored_by == "checks")
 
     @cached_property
     def macro(self) -> IntervalEstimate | None:
-        """Unweighted mean over the categories that occur."""
+        """Macro accuracy: the unweighted mean over the categories that occur."""
         return macro(scores_of(self.scored_trials)) if self.scored_trials else None
 
     @cached_property
     def micro(self) -> IntervalEstimate | None:
+        """Micro accuracy: the share of correct trials."""
         return share(scores_of(self.scored_trials))
 
 
 def scores_of(trials: Sequence[Trial], right: Iterable[bool] | None = None) -> Scores:
-    """Outcomes by category and viewpoint, repeats of a task being one observation; ``right`` replaces the headline."""
+    """Return outcomes grouped by category, viewpoint and task.
+
+    Args:
+        trials: The trials.
+        right: Whether each trial counts as correct; by default its headline decides.
+    """
     values = [t.headline == "correct" for t in trials] if right is None else list(right)
     return Scores(
         np.array(values, dtype=np.float64),
@@ -144,28 +155,31 @@ def scores_of(trials: Sequence[Trial], right: Iterable[bool] | None = None) -> S
 
 
 def macro(scores: Scores) -> IntervalEstimate | None:
-    """Macro accuracy with its interval; None without data."""
+    """Return macro accuracy with its interval; None without data."""
     return share(scores, macro_weights(scores)) if len(scores.values) else None
 
 
 def viewpoint(trial: Trial) -> str:
-    """What trials are clustered by."""
+    """Return the viewpoint by which a trial is clustered."""
     return f"{trial.task.scene}/{trial.task.viewpoint}"
 
 
 def report_runs(evaluations: Sequence[Evaluation], registry: Registry) -> tuple[ReportRun, ...]:
-    """Runs in the order of the paper's table: by eyes, then by the planner's size; other splits and reference runs last."""
+    """Return the runs of a report in the order of the paper's table.
+
+    They are ordered by perception model, then by the planner's size. Other splits and runs that are not ranked come last.
+    """
     splits = {split_name(e.card.split) for e in evaluations}
     bare = [ReportRun(0, e, "", _known(e.card.planner, registry), _known(e.card.perception, registry)) for e in evaluations]
-    wanted = [_label(run, with_split=len(splits) > 1) for run in bare]
-    shared = {label for label, number in Counter(wanted).items() if number > 1}
-    wanted = [
+    labels = [_label(run, with_split=len(splits) > 1) for run in bare]
+    shared = {label for label, number in Counter(labels).items() if number > 1}
+    labels = [
         f"{label}, timed alone" if label in shared and not e.card.contended else label
-        for label, e in zip(wanted, evaluations, strict=True)
+        for label, e in zip(labels, evaluations, strict=True)
     ]
-    times, seen = Counter(wanted), Counter[str]()
+    times, seen = Counter(labels), Counter[str]()
     runs = []
-    for run, label in zip(bare, wanted, strict=True):
+    for run, label in zip(bare, labels, strict=True):
         seen[label] += 1
         runs.append(replace(run, label=f"{label} #{seen[label]}" if times[label] > 1 else label))
     ordered = sorted(runs, key=_order)
@@ -183,7 +197,7 @@ def _named(card: ModelCard, model: Model | None) -> str:
 
 
 def _other_tasks(run: ReportRun, common: frozenset[str]) -> str:
-    """What a run did in place of the common tasks; empty when it did these."""
+    """Return how the tasks of a run differ from the common tasks, in words; empty if they do not."""
     if run.tasks == common:
         return ""
     if run.tasks < common:
@@ -215,7 +229,7 @@ def _order(run: ReportRun) -> tuple[bool, bool, str, str, float, str, str]:
 
 
 def main_task_set(runs: Sequence[ReportRun]) -> tuple[str, str] | None:
-    """The task set with the most ranked runs that have headline tasks; of equals the one with more trials."""
+    """Return the task set with the most ranked runs. Ties are resolved by the number of trials."""
     having = [run for run in runs if run.main_trials]
     weight: dict[tuple[str, str], tuple[int, int]] = {}
     for run in having:
@@ -225,20 +239,20 @@ def main_task_set(runs: Sequence[ReportRun]) -> tuple[str, str] | None:
 
 
 def of_main_set(runs: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
-    """The runs of the main task set that have anything to tell."""
+    """Return the runs of the main task set that have scored trials."""
     main = main_task_set(runs)
     return tuple(run for run in runs if run.task_set == main and run.scored_trials)
 
 
 def main_tasks(runs: Sequence[ReportRun]) -> frozenset[str]:
-    """The tasks that most model pairs of the main task set did; without any pair, that most of its runs did."""
+    """Return the tasks that most model pairs of the main task set cover; without pairs, those that most runs cover."""
     main = of_main_set(runs)
     alike = on_the_same_tasks(pairs_of(main)) or on_the_same_tasks(main)
     return alike[0].tasks if alike else frozenset()
 
 
 def primary(runs: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
-    """One run a system: the one with the most headline tasks scored, of equals the first."""
+    """Return one run per system: the one with the most scored trials, the first of several."""
     best: dict[tuple[str, str, str, str], ReportRun] = {}
     for run in runs:
         if run.system not in best or len(run.scored_trials) > len(best[run.system].scored_trials):
@@ -247,14 +261,14 @@ def primary(runs: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
 
 
 def pairs_of(main: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
-    """The ranked systems of a task set; a variant of a pair that is there as it is belongs to the sensitivity section."""
+    """Return one run per ranked system. Variants are left out if the unchanged pair is present."""
     ranked = [run for run in main if run.ranked]
     plain = {run.system[:3] for run in ranked if not run.system[3]}
     return primary([run for run in ranked if not run.system[3] or run.system[:3] not in plain])
 
 
 def on_the_same_tasks(ranked: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
-    """The runs over the set of tasks that most of them did, of equals the larger set: means over others are not comparable."""
+    """Return the runs over the most common selection of tasks. Ties are resolved by the number of tasks."""
     if not ranked:
         return ()
     counted = Counter(run.tasks for run in ranked)
@@ -263,12 +277,12 @@ def on_the_same_tasks(ranked: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
 
 
 def timing_run(run: ReportRun, runs: Sequence[ReportRun]) -> ReportRun:
-    """The run from which a system's latency is taken: a finished one without contention if there is any, of these the longest."""
+    """Return the run that gives a system's latency: the longest finished run without contention, if there is one."""
     same = [other for other in runs if other.system == run.system and other.main_trials]
     alone = [other for other in same if not other.evaluation.card.contended and other.evaluation.finished]
     return max(alone, key=lambda other: len(other.main_trials)) if alone else run
 
 
 def is_mixture(model: Model) -> bool:
-    """Mixture of experts: fewer parameters are active than there are."""
+    """Return whether a model is a mixture of experts, with fewer active parameters than parameters."""
     return model.active_b < model.size_b

@@ -108,8 +108,8 @@ def costs_section(runs: Sequence[ReportRun]) -> Section:
         Column("judge_tokens", "Tokens of judges", "count"),
     )
     notes = (
-        "Tokens are those of the planner, as its server reports them. Tokens of the perception model are not counted. The cost is that "
-        "of the planner's tokens and is given only if the log contains it.",
+        "Tokens are those of the planner, as its server reports them. Tokens of the perception model are not counted. The cost is "
+        "that of the planner's tokens and is given only if the log contains it.",
     )
     return Section(
         "costs", "Cost", (), (), (ReportTable("costs", "Tokens and cost", columns, tuple(_cost_row(r) for r in runs), notes),)

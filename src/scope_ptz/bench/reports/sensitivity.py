@@ -71,8 +71,10 @@ def _wordings(runs: Sequence[ReportRun]) -> ReportTable:
 
 
 def _name(system: System) -> str:
-    planner, eyes, agent, variant = system
-    return ", ".join([f"{planner} + {eyes}", *([f"agent {agent}"] if agent != "scope" else []), *([variant] if variant else [])])
+    planner, perception, agent, variant = system
+    return ", ".join(
+        [f"{planner} + {perception}", *([f"agent {agent}"] if agent != "scope" else []), *([variant] if variant else [])]
+    )
 
 
 def _variants(runs: Sequence[ReportRun]) -> ReportTable:
@@ -98,9 +100,9 @@ def repeats_section(runs: Sequence[ReportRun]) -> Section:
         tasks = _passed(run)
         rows.append((run.label, len(tasks), *(mean_pass_all(tasks, k)[0] for k in range(1, most + 1))))
     text = (
-        "pass^k is the probability that k trials of a task all succeed. It is C(c, k) / C(n, k) for c correct of n trials, averaged "
-        "over the tasks with at least k trials that infrastructure did not break. pass^1 is the mean over tasks. Runs without repeats "
-        "are left out.",
+        "pass^k is the probability that k trials of a task all succeed. It is C(c, k) / C(n, k) for c correct of n trials, "
+        "averaged over the tasks with at least k trials that infrastructure did not break. pass^1 is the mean over tasks. Runs "
+        "without repeats are left out.",
     )
     table = ReportTable("repeats", "pass^k", tuple(columns), tuple(rows))
     return Section("repeats", "Repeats", text, (drawing.repeats_chart(table, most),), (table,))

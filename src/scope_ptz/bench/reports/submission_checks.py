@@ -1,4 +1,4 @@
-"""Whether a submission can be believed: every line is held against the schema, the others, and the tasks themselves."""
+"""Validate a submission: every line is checked against the schema, the other lines and the tasks."""
 
 from __future__ import annotations
 
@@ -19,14 +19,21 @@ from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import InputError
 
 MOST_BYTES = 200_000_000
-NOT_RANKED = "not ranked: {pair} uses the grammar planner or ground-truth eyes, which are no models"
+NOT_RANKED = "not ranked: {pair} uses the grammar planner or ground-truth perception, which are not models"
 BUILT_IN = ("grammar", "ground-truth", "noisy")
-"""Planners and eyes that are no models, whatever a header says of them."""
+"""Built-in planners and perception backends. They are not models, whatever a header says."""
 
 
 @dataclass(frozen=True, slots=True)
 class SubmissionFindings:
-    """``faults``: one sentence each, with the line; ``counts``: what the file comes to when it is counted again."""
+    """The result of a validation.
+
+    Attributes:
+        file: Name of the file.
+        faults: One sentence for each fault, with its line.
+        counts: Trials by headline, counted from the lines.
+        notes: Remarks that are not faults.
+    """
 
     file: str
     faults: tuple[str, ...]
@@ -35,11 +42,13 @@ class SubmissionFindings:
 
     @property
     def summary(self) -> str:
+        """The result in words."""
         counts = ", ".join(f"{number} {name}" for name, number in self.counts.items())
         verdict = f"NOT VALID: {len(self.faults)} faults" if self.faults else "valid"
         return "\n".join([f"{self.file}: {verdict}" + (f" ({counts})" if counts else ""), *self.notes])
 
     def as_dict(self) -> dict[str, Any]:
+        """Return the result as JSON data."""
         return {
             "file": self.file,
             "valid": not self.faults,
@@ -50,9 +59,14 @@ class SubmissionFindings:
 
 
 def check_submission(path: Path, tasks: Sequence[Task] | None = None) -> SubmissionFindings:
-    """Check a file. ``tasks``: what it should have run; without them the published split that it names.
+    """Validate a submission.
 
-    Raises ``InputError`` when there is no file, or its split is not known and no tasks are given.
+    Args:
+        path: The file.
+        tasks: The tasks that it should cover; by default those of the published split that it names.
+
+    Raises:
+        InputError: The file cannot be read, or its split is unknown and no tasks are given.
     """
     rows, faults = _rows(path)
     headers = [(number, row) for number, row in rows if isinstance(row, Header)]
@@ -77,9 +91,10 @@ def check_submission(path: Path, tasks: Sequence[Task] | None = None) -> Submiss
 
 
 def coverage(header: Header, lines: Sequence[TrialLine], tasks: Sequence[Task] | None = None) -> list[str]:
-    """Why these trials are not a whole split: missing, repeated and foreign tasks, or tasks that are worded otherwise.
+    """Return why trials do not cover a whole split: missing, repeated, unknown or differently worded tasks.
 
-    Raises ``InputError`` when the split is not known and no tasks are given.
+    Raises:
+        InputError: The split is unknown and no tasks are given.
     """
     known = {task.id: task for task in (tasks if tasks is not None else _published(header))}
     faults = list(_completeness(header, lines, known))
@@ -125,13 +140,13 @@ def _header_faults(header: Header, lines: Sequence[TrialLine], known: Mapping[st
     counted = totals_of(lines)
     if header.totals.trials != counted.trials:
         yield f"totals say {header.totals.trials} trials, there are {counted.trials}"
-    for kind, said, found in (
+    for kind, reported, found in (
         ("headline", header.totals.headlines, counted.headlines),
         ("error mode", header.totals.error_modes, counted.error_modes),
     ):
-        for name in sorted({*said, *found}):
-            if said.get(name, 0) != found.get(name, 0):
-                yield f"totals say {said.get(name, 0)} times {kind} {name}, counted {found.get(name, 0)}"
+        for name in sorted({*reported, *found}):
+            if reported.get(name, 0) != found.get(name, 0):
+                yield f"totals say {reported.get(name, 0)} times {kind} {name}, counted {found.get(name, 0)}"
     datasets = {task.dataset for task in known.values()}
     if header.card.dataset not in {"+".join(sorted(datasets)), *datasets}:
         yield f"dataset {header.card.dataset} is not that of the tasks ({', '.join(sorted(datasets))})"
@@ -143,7 +158,7 @@ def _header_faults(header: Header, lines: Sequence[TrialLine], known: Mapping[st
         yield f"{header.wanted} trials were wanted where {len(known)} tasks times {header.card.epochs} are {whole}"
     for model in (header.card.planner, header.card.perception):
         if _built_in(model.name) and not model.deterministic:
-            yield f"{model.name} is said to be a model ('deterministic' is false), and it is built in"
+            yield f"{model.name} is built in, but the header says that it is a model ('deterministic' is false)"
     if (version := _version(header.card.package_version)) is None:
         yield f"package version {header.card.package_version} is no version"
     elif version > (_version(__version__) or ()):
@@ -167,7 +182,7 @@ def _version(text: str) -> tuple[int, ...] | None:
 def _completeness(header: Header, lines: Sequence[TrialLine], known: Mapping[str, Task]) -> Iterator[str]:
     counted = Counter((line.task, line.epoch) for line in lines)
     for task, epoch in sorted(key for key, number in counted.items() if number > 1):
-        yield f"{task}, repeat {epoch}, stands {counted[task, epoch]} times"
+        yield f"{task}, repeat {epoch}, occurs {counted[task, epoch]} times"
     for task in sorted({task for task, _ in counted} - set(known)):
         yield f"{task} is no task of the split"
     for task in sorted(known):

@@ -1,4 +1,4 @@
-"""A table as data, and its cells in words. Page, Markdown and CSV are all made from the same tables, so that they cannot differ."""
+"""Tables as data, and their cells as text. The page, the Markdown file and the CSV files are all made from the same tables."""
 
 from __future__ import annotations
 
@@ -11,13 +11,21 @@ from scope_ptz.bench.statistics.clustered import IntervalEstimate
 
 MISSING = "not measured"
 ColumnKind = Literal["text", "prose", "count", "share", "points", "width", "seconds", "number", "gb", "usd", "p", "ratio"]
-"""``prose``: text of a sentence or more;
-``share``: 0..1, shown in percent; ``points``: a difference, in percentage points; ``width``: that without a sign."""
+"""Kinds of columns. "prose": text of a sentence or more; "share": 0 to 1, shown in percent; "points": a difference in percentage
+points; "width": the same without a sign."""
 
 
 @dataclass(frozen=True, slots=True)
 class MarkedCell:
-    """A value with what the page adds to it. ``best``: in its group; ``best_of_all``: in the table; ``link``: a page."""
+    """A value with marks.
+
+    Attributes:
+        value: The value.
+        best: Whether it is the best of its group.
+        best_of_all: Whether it is the best of the table.
+        link: Address of a page.
+        note: A remark next to the value.
+    """
 
     value: str | int | float | IntervalEstimate | None
     best: bool = False
@@ -31,7 +39,7 @@ CellValue = str | int | float | IntervalEstimate | MarkedCell | None
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """``name`` heads the column of the CSV, ``title`` that of the page."""
+    """A column. ``name`` is its header in CSV files, ``title`` its header on the page."""
 
     name: str
     title: str
@@ -39,13 +47,22 @@ class Column:
 
     @property
     def worded(self) -> bool:
-        """Whether it holds words, not figures."""
+        """Whether it holds text and not numbers."""
         return self.kind in ("text", "prose")
 
 
 @dataclass(frozen=True, slots=True)
 class ReportTable:
-    """``key``: its file name; ``notes``: how to read it. The first column names the row."""
+    """A table.
+
+    Attributes:
+        key: Name of its CSV file.
+        title: Its title.
+        columns: The columns. The first one names the row.
+        rows: The cells of each row.
+        notes: How to read it.
+        groups: Headings before rows, by the number of the row.
+    """
 
     key: str
     title: str
@@ -53,7 +70,6 @@ class ReportTable:
     rows: tuple[tuple[CellValue, ...], ...]
     notes: tuple[str, ...] = ()
     groups: dict[int, str] = field(default_factory=dict)
-    """Headings before rows, by the number of the row."""
 
     def __post_init__(self) -> None:
         for row in self.rows:
@@ -62,27 +78,27 @@ class ReportTable:
 
 
 def unmarked(value: CellValue) -> str | int | float | IntervalEstimate | None:
-    """A value without its marks."""
+    """Return a value without its marks."""
     return value.value if isinstance(value, MarkedCell) else value
 
 
 def in_words(value: CellValue, kind: ColumnKind) -> str:
-    """A cell as a person reads it; what is missing is said to be."""
+    """Return a cell as text. A missing value is "not measured"."""
     plain = unmarked(value)
     if plain is None:
         return MISSING
     if isinstance(plain, str):
         return plain
     if isinstance(plain, IntervalEstimate):
-        told = ", ".join(filter(None, interval(plain, kind)))
-        return f"{_number(plain.value, kind)} ({told})"
+        certainty = ", ".join(filter(None, interval(plain, kind)))
+        return f"{_number(plain.value, kind)} ({certainty})"
     return _number(plain, kind)
 
 
 def interval(found: IntervalEstimate, kind: ColumnKind) -> tuple[str, str]:
-    """The interval of an estimate in words, empty where there is none; and what must be known of it."""
+    """Return the interval of an estimate as text (empty if there is none), and its limitation."""
     if found.low is None or found.high is None:
-        return "", "interval not known"
+        return "", "interval unknown"
     lacking = ", ".join(name.replace("_", " ") for name in found.without)
     return f"{_number(found.low, kind)} to {_number(found.high, kind)}", f"without {lacking}" if lacking else ""
 
@@ -110,8 +126,11 @@ def _number(value: float, kind: ColumnKind) -> str:
 
 
 def as_csv(table: ReportTable) -> str:
-    """RFC 4180, numbers in full precision, shares as 0..1, missing values empty. Estimates take three columns, and a fourth where
-    an interval is without some strata."""
+    """Return a table as CSV (RFC 4180).
+
+    Numbers have full precision, shares are 0 to 1, missing values are empty. An estimate takes three columns, and a fourth one if
+    its interval leaves out some strata.
+    """
     cells_of = [[unmarked(row[index]) for row in table.rows] for index in range(len(table.columns))]
     endings = [_endings([cell for cell in cells if isinstance(cell, IntervalEstimate)]) for cells in cells_of]
     out = io.StringIO()
@@ -137,19 +156,19 @@ def as_csv(table: ReportTable) -> str:
 
 
 def _endings(estimates: list[IntervalEstimate]) -> tuple[str, ...]:
-    """The further columns that these estimates of one column take."""
+    """Return the endings of the additional CSV columns of an estimate."""
     if not estimates:
         return ()
     return ("low", "high", "without") if any(found.without for found in estimates) else ("low", "high")
 
 
 def _inert(text: str) -> str:
-    """Text that a spreadsheet does not run as a formula, whatever a model wrote."""
+    """Return text that a spreadsheet does not run as a formula."""
     return f"'{text}" if text.startswith(("=", "+", "-", "@", "\t", "\r")) else text
 
 
 def as_markdown(table: ReportTable) -> str:
-    """A pipe table with its heading and notes. Text is escaped, so that it is shown and never acts."""
+    """Return a Markdown table with its heading and notes. All text is escaped."""
     lines = [f"### {escape(table.title)}", ""]
     lines += ["| " + " | ".join(escape(column.title) for column in table.columns) + " |"]
     lines += ["|" + "|".join("---" if column.worded else "---:" for column in table.columns) + "|"]
@@ -176,6 +195,6 @@ _SPECIAL = str.maketrans({mark: f"\\{mark}" for mark in "\\`*_{}[]()#+-!|~"} | {
 
 
 def escape(text: str) -> str:
-    """Text for Markdown, on one line, without any meaning as markup."""
+    """Escape text for Markdown and put it on one line."""
     plain = " ".join(text.split())
     return plain if plain.replace(".", "").replace(" ", "").isalnum() else plain.translate(_SPECIAL)

@@ -39,9 +39,9 @@ def run_checks(task: Task, episode: Episode) -> tuple[CheckResult, ...]:
 
 def check_outcome(task: Task, episode: Episode) -> CheckResult:
     """Check that the run ended as required: with an answer, or with a question or a refusal where the task asks for one."""
-    wanted: tuple[RunOutcome, ...] = task.behaviour.outcomes
-    passed = episode.outcome in wanted
-    return CheckResult("outcome", passed, "as wanted" if passed else f"ended {episode.outcome}, not {' or '.join(wanted)}")
+    required: tuple[RunOutcome, ...] = task.behaviour.outcomes
+    passed = episode.outcome in required
+    return CheckResult("outcome", passed, "as wanted" if passed else f"ended {episode.outcome}, not {' or '.join(required)}")
 
 
 def check_answer(task: Task, episode: Episode) -> CheckResult | None:
@@ -68,10 +68,10 @@ def _plain(value: object) -> str:
 
 def check_coverage(task: Task, episode: Episode) -> CheckResult | None:
     """Check that perception successfully observed everything that the answer rests on."""
-    wanted = [view for view in task.evidence if view.must_look]
-    if not wanted:
+    required = [view for view in task.evidence if view.must_look]
+    if not required:
         return None
-    gaps = [found for view in wanted if (found := uncovered_part(view, episode.observations)) is not None]
+    gaps = [found for view in required if (found := uncovered_part(view, episode.observations)) is not None]
     return CheckResult("coverage", not gaps, "; ".join(gaps) or "everything asked about was looked at")
 
 
@@ -84,19 +84,19 @@ def check_pose(task: Task, episode: Episode) -> CheckResult | None:
     return CheckResult("pose", not wrong, "; ".join(wrong) or "the final pose is as wanted")
 
 
-def pose_difference(wanted: FinalPose, is_at: CameraState) -> list[str]:
+def pose_difference(required: FinalPose, is_at: CameraState) -> list[str]:
     """Return how a camera state differs from the required one, in words; empty if it is within tolerance."""
     wrong = []
-    if is_at.viewpoint != wanted.viewpoint:
-        wrong.append(f"at viewpoint {is_at.viewpoint}, not {wanted.viewpoint}")
-    pan = abs(wrap_pan_deg(is_at.pose.pan_deg - wanted.pan_deg))
-    tilt = abs(is_at.pose.tilt_deg - wanted.tilt_deg)
-    zoom = abs(is_at.pose.zoom / wanted.zoom - 1)
-    if pan > wanted.tolerance_deg + 1e-6:
+    if is_at.viewpoint != required.viewpoint:
+        wrong.append(f"at viewpoint {is_at.viewpoint}, not {required.viewpoint}")
+    pan = abs(wrap_pan_deg(is_at.pose.pan_deg - required.pan_deg))
+    tilt = abs(is_at.pose.tilt_deg - required.tilt_deg)
+    zoom = abs(is_at.pose.zoom / required.zoom - 1)
+    if pan > required.tolerance_deg + 1e-6:
         wrong.append(f"pan is off by {pan:.2f} degrees")
-    if tilt > wanted.tolerance_deg + 1e-6:
+    if tilt > required.tolerance_deg + 1e-6:
         wrong.append(f"tilt is off by {tilt:.2f} degrees")
-    if zoom > wanted.zoom_share + 1e-6:
+    if zoom > required.zoom_share + 1e-6:
         wrong.append(f"zoom is off by {zoom:.1%}")
     return wrong
 
@@ -135,14 +135,14 @@ def changes(before: CameraState, after: CameraState) -> list[str]:
 
 def check_pictures(task: Task, episode: Episode) -> CheckResult | None:
     """Check that the requested number of pictures was taken and that their files exist."""
-    wanted = task.behaviour.pictures
-    if wanted is None:
+    required = task.behaviour.pictures
+    if required is None:
         return None
     lost = [picture.file for picture in episode.pictures if picture.exists is False]
     if lost:
         return CheckResult("pictures", False, f"missing: {', '.join(lost)}")
     taken = len({picture.file for picture in episode.pictures})
-    return CheckResult("pictures", taken == wanted, f"{taken} of {wanted} pictures were taken")
+    return CheckResult("pictures", taken == required, f"{taken} of {required} pictures were taken")
 
 
 def check_framing(task: Task, episode: Episode) -> CheckResult | None:

@@ -165,16 +165,16 @@ def episode_of(trace: Trace, places: PresetViewpoints, *, planner_sees: bool = F
         keeps_files: Whether pictures are kept in the run folder, so that missing files count as missing.
     """
     started = trace.started
-    eyes = FrameGeometry(started.frame_width, started.frame_height)
+    geometry = FrameGeometry(started.frame_width, started.frame_height)
     at = start = CameraState(started.viewpoint, started.pose.pose())
     home = started.labels.home_viewpoint or places.home
     calls, planner_views, states = list[EpisodeCall](), list[Observation](), {0: start}
     for called in trace.calls:
-        call = _call(called, at, places, home, eyes)
+        call = _call(called, at, places, home, geometry)
         at = states[called.step] = call.after
         calls.append(call)
     if planner_sees:
-        planner_views = list(_planner_views(trace.decisions, trace.calls, states, eyes, started.scene_time_s))
+        planner_views = list(_planner_views(trace.decisions, trace.calls, states, geometry, started.scene_time_s))
     files = [str(c.result["file"]) for c in calls if c.name == "take_image" and c.succeeded and c.result and "file" in c.result]
     ended = trace.ended
     return Episode(
@@ -191,7 +191,7 @@ def episode_of(trace: Trace, places: PresetViewpoints, *, planner_sees: bool = F
     )
 
 
-def _call(called: Called, before: CameraState, places: PresetViewpoints, home: str, eyes: FrameGeometry) -> EpisodeCall:
+def _call(called: Called, before: CameraState, places: PresetViewpoints, home: str, geometry: FrameGeometry) -> EpisodeCall:
     outcome = called.outcome
     done = outcome.error is None
     viewpoint = before.viewpoint
@@ -210,13 +210,13 @@ def _call(called: Called, before: CameraState, places: PresetViewpoints, home: s
         fault=called.fault,
         time_s=called.scene_time_s,
     )
-    observations = observations_of(call, eyes) if call.succeeded else ()
+    observations = observations_of(call, geometry) if call.succeeded else ()
     return EpisodeCall(
         **{name: getattr(call, name) for name in EpisodeCall.__slots__ if name != "observations"}, observations=observations
     )
 
 
-def observations_of(call: EpisodeCall, eyes: FrameGeometry) -> tuple[Observation, ...]:
+def observations_of(call: EpisodeCall, geometry: FrameGeometry) -> tuple[Observation, ...]:
     """Return the observations of a successful call.
 
     Zooming yields the first observation only, because later ones are not recorded. Tracking yields one for each pose of its path.
@@ -229,18 +229,19 @@ def observations_of(call: EpisodeCall, eyes: FrameGeometry) -> tuple[Observation
     if how == "track":
         path = result.get("path") or [{"time_s": 0.0, "pose": Place.of(call.before.pose).model_dump()}]
         return tuple(
-            Observation(place, eyes.view(Pose(**point["pose"])), call.time_s + float(point["time_s"]), how, asked) for point in path
+            Observation(place, geometry.view(Pose(**point["pose"])), call.time_s + float(point["time_s"]), how, asked)
+            for point in path
         )
     swept = how in ("count", "query") and call.arguments.get("view", "current") == "full"
     known = how != "query" or result.get("known") is not False
-    return (Observation(place, eyes.sweep() if swept else eyes.view(call.before.pose), call.time_s, how, asked, known),)
+    return (Observation(place, geometry.sweep() if swept else geometry.view(call.before.pose), call.time_s, how, asked, known),)
 
 
 def _planner_views(
     decisions: tuple[Decided, ...],
     calls: tuple[Called, ...],
     states: Mapping[int, CameraState],
-    eyes: FrameGeometry,
+    geometry: FrameGeometry,
     start_s: float,
 ) -> Iterator[Observation]:
     """Yield the frame that the planner was shown before each of its decisions."""
@@ -250,4 +251,4 @@ def _planner_views(
         step = max(s for s in states if s < decided.step)
         times = [c.scene_time_s for c in calls if c.step <= step]
         state = states[step]
-        yield Observation(state.viewpoint, eyes.view(state.pose), max(times, default=start_s), "planner")
+        yield Observation(state.viewpoint, geometry.view(state.pose), max(times, default=start_s), "planner")

@@ -139,9 +139,9 @@ def _wrong_scope(case: _Case) -> bool:
             for observation in case.episode.observations
             if observation.viewpoint == view.aim.viewpoint and observation.how in ("count", "query")
         ]
-        wanted = view.scope == "full"
-        if view.must_look and observations and all(observation.swept != wanted for observation in observations):
-            return wanted or case.verdict.failed("answer")
+        required = view.scope == "full"
+        if view.must_look and observations and all(observation.swept != required for observation in observations):
+            return required or case.verdict.failed("answer")
     return False
 
 
@@ -174,9 +174,9 @@ def _was_misled(case: _Case) -> bool:
     required = case.task.behaviour.calls
     if not case.acted_wrongly or (case.verdict.failed("calls") and _missing(case, required, {"found"}) is not None):
         return False
-    wanted = case.needed & {"zoom_to_object", "track_object"}
+    locators = case.needed & {"zoom_to_object", "track_object"}
     for call in case.episode.calls:
-        if call.name not in wanted or not call.observations or not target_in(case.task, call.observations[0]):
+        if call.name not in locators or not call.observations or not target_in(case.task, call.observations[0]):
             continue
         fixed = [spec for spec in required if spec.tool == call.name]
         asked_right = all(call_matches(spec, call, {"found"}) for spec in fixed) if fixed else _asks_as_reference(case.task, call)
@@ -188,7 +188,7 @@ def _was_misled(case: _Case) -> bool:
 def _asks_as_reference(task: Task, call: EpisodeCall) -> bool:
     """Return whether a call describes the same thing as the reference program, in more or fewer words."""
     asked = _content(call)
-    return any(asked <= wanted or wanted <= asked for wanted in (_content(c) for c in task.reference if c.tool == call.name))
+    return any(asked <= required or required <= asked for required in (_content(c) for c in task.reference if c.tool == call.name))
 
 
 def _content(call: EpisodeCall | ProgramCall) -> set[str]:

@@ -66,17 +66,17 @@ def is_supported_by_tools(task: Task, episode: Episode) -> bool:
     reading = parse_answer(task.expected, episode.answer)
     if not isinstance(reading, ParsedValue):
         return True
-    value, said = reading.value, text_from_tools(episode)
+    value, reported = reading.value, text_from_tools(episode)
     match task.expected:
         case Number():
             return value in numbers_from_tools(episode)
         case Text():
-            heard = normalized_text(said, ocr=task.expected.ocr)
-            return all(normalized_text(part, ocr=task.expected.ocr) in heard for part in str(value).split(TEXT_SEPARATOR))
+            reported_text = normalized_text(reported, ocr=task.expected.ocr)
+            return all(normalized_text(part, ocr=task.expected.ocr) in reported_text for part in str(value).split(TEXT_SEPARATOR))
         case Choice():
             chosen = all_wordings(str(value), task.expected.options[str(value)]) if value != "same" else ()
             several = any(len(view.items) > 1 for view in task.evidence)
-            return not chosen or (_heard_of(episode, chosen) if several else names_any(said, chosen))
+            return not chosen or (_is_mentioned(episode, chosen) if several else names_any(reported, chosen))
         case NameSet():
             named = value if isinstance(value, frozenset) else frozenset()
             return all(_reported(episode, all_wordings(name, task.expected.options[name])) for name in named)
@@ -84,12 +84,12 @@ def is_supported_by_tools(task: Task, episode: Episode) -> bool:
             claims_presence = value == isinstance(task.expected, YesNo)
             return not claims_presence or _presences(task, episode)
         case Description():
-            return _contradictions_said(task.expected, value, said)
+            return _contradictions_reported(task.expected, value, reported)
         case _:
             return True
 
 
-def _heard_of(episode: Episode, wordings: Sequence[str]) -> bool:
+def _is_mentioned(episode: Episode, wordings: Sequence[str]) -> bool:
     """Return whether the tools reported anything about a thing: a count of it, even zero, or its presence."""
     counted = (str(c.arguments.get("description", "")) for c in episode.calls if c.succeeded and "count" in (c.result or {}))
     return _reported(episode, wordings) or any(names_any(description, wordings) for description in counted)
@@ -129,6 +129,6 @@ def _answers_yes(expected: AnyExpected, answer: object) -> bool:
     return parse_answer(expected, answer) == ParsedValue(isinstance(expected, YesNo))
 
 
-def _contradictions_said(expected: Description, value: object, said: str) -> bool:
+def _contradictions_reported(expected: Description, value: object, reported: str) -> bool:
     stated = value[1] if isinstance(value, tuple) else frozenset()
-    return all(names_any(said, expected.contradictions[n].any_of) for n in stated if isinstance(n, int))
+    return all(names_any(reported, expected.contradictions[n].any_of) for n in stated if isinstance(n, int))

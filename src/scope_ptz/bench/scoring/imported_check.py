@@ -12,17 +12,17 @@ NAME = "calls"
 
 def check_imported_calls(imported: ImportedTask, episode: Episode) -> CheckRecord:
     """Check that a run made the calls that an imported task expects. It is undecided if the file expects none."""
-    wanted = imported.calls
-    if not wanted or imported.policy == "none":
+    required = imported.calls
+    if not required or imported.policy == "none":
         return CheckRecord(name=NAME, passed=None, reason="the file demands no tools")
     if imported.policy == "any":
-        found = any(call_matches(spec, call) for spec in wanted for call in episode.calls)
-        reason = "one of the expected tools was used" if found else f"none of {', '.join(spec.tool for spec in wanted)} succeeded"
+        found = any(call_matches(spec, call) for spec in required for call in episode.calls)
+        reason = "one of the expected tools was used" if found else f"none of {', '.join(spec.tool for spec in required)} succeeded"
         return CheckRecord(name=NAME, passed=found, reason=reason)
-    missing = (missing_in_order if imported.order == "ordered" else missing_in_any_order)(wanted, episode.calls)
+    missing = (missing_in_order if imported.order == "ordered" else missing_in_any_order)(required, episode.calls)
     if missing is not None:
         return CheckRecord(name=NAME, passed=False, reason=missing)
-    strangers = {call.name for call in episode.calls if call.succeeded} - {spec.tool for spec in wanted}
+    strangers = {call.name for call in episode.calls if call.succeeded} - {spec.tool for spec in required}
     if imported.policy == "exact" and strangers:
         return CheckRecord(
             name=NAME, passed=False, reason=f"only the expected tools may be used, and {', '.join(sorted(strangers))} was"

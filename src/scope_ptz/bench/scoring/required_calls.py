@@ -27,20 +27,20 @@ def arguments_of(call: EpisodeCall) -> Mapping[str, Any]:
     return arguments
 
 
-def call_matches(wanted: RequiredCall, call: EpisodeCall, leave_out: Collection[str] = ()) -> bool:
+def call_matches(required: RequiredCall, call: EpisodeCall, leave_out: Collection[str] = ()) -> bool:
     """Return whether a call is the required one, succeeded, and found its target if it has one.
 
     Args:
-        wanted: The required call.
+        required: The required call.
         call: The call that was made.
         leave_out: Names of arguments that are not compared; "found" accepts a call that did not find its target.
     """
-    if not call.succeeded or call.name != wanted.tool:
+    if not call.succeeded or call.name != required.tool:
         return False
     if "found" not in leave_out and (call.result or {}).get("found") is False:
         return False
     given = arguments_of(call)
-    return all(_fits_argument(spec, given.get(name)) for name, spec in wanted.arguments.items() if name not in leave_out)
+    return all(_fits_argument(spec, given.get(name)) for name, spec in required.arguments.items() if name not in leave_out)
 
 
 def _fits_argument(spec: Argument, given: Any) -> bool:
@@ -52,10 +52,10 @@ def _fits_argument(spec: Argument, given: Any) -> bool:
     return is_number and spec.equals is not None and abs(given - spec.equals) <= spec.within + 1e-6
 
 
-def missing_in_order(wanted: Sequence[RequiredCall], calls: Sequence[EpisodeCall], leave_out: Collection[str] = ()) -> str | None:
+def missing_in_order(required: Sequence[RequiredCall], calls: Sequence[EpisodeCall], leave_out: Collection[str] = ()) -> str | None:
     """Return which required call is missing when the order counts; None if all were made in order."""
     at = 0
-    for spec in wanted:
+    for spec in required:
         for number in range(spec.times):
             while at < len(calls) and not call_matches(spec, calls[at], leave_out):
                 at += 1
@@ -67,10 +67,10 @@ def missing_in_order(wanted: Sequence[RequiredCall], calls: Sequence[EpisodeCall
 
 
 def missing_in_any_order(
-    wanted: Sequence[RequiredCall], calls: Sequence[EpisodeCall], leave_out: Collection[str] = ()
+    required: Sequence[RequiredCall], calls: Sequence[EpisodeCall], leave_out: Collection[str] = ()
 ) -> str | None:
     """Return which required call is missing in any order; None if each is matched by a call of its own."""
-    slots = [spec for spec in wanted for _ in range(spec.times)]
+    slots = [spec for spec in required for _ in range(spec.times)]
     taken: dict[int, int] = {}
 
     def place(slot: int, tried: set[int]) -> bool:

@@ -56,8 +56,8 @@ def expected_in_words(expected: AnyExpected) -> str:
             give = f", give or take {expected.tolerance:g}" if expected.tolerance else ""
             return f"{expected.value:g}{unit}{give}"
         case YesNo():
-            said = expected.affirms if expected.value else expected.denies
-            return f"{'Yes' if expected.value else 'No'}{_also(said)}"
+            wordings = expected.affirms if expected.value else expected.denies
+            return f"{'Yes' if expected.value else 'No'}{_also(wordings)}"
         case Choice():
             others = [name for name in expected.options if name != expected.value]
             wrong = f" (not {', '.join(others)})" if others else ""
