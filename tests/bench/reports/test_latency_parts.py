@@ -20,7 +20,7 @@ PATIENT = Timings(planner_s=1.0, perception_s=0.5, camera_s=0.25, render_s=40.0,
 
 
 def views(report: EvaluationReport, eyes: str) -> dict[str, dict[str, CellValue]]:
-    """The rows of a pair of eyes in the table of views, by view."""
+    """The rows of a perception model in the table of views, by view."""
     found = table(report, "latency_views")
     start = next(number for number, name in found.groups.items() if name == eyes)
     names = [column.name for column in found.columns]
@@ -64,7 +64,7 @@ def test_rendering_neither_counts_nor_ranks() -> None:
     stages = [told[f"{stage}_median"] for stage in ("planner_s", "perception_s", "tools_s", "own_s", "capture_s", "total_s")]
     assert stages == pytest.approx([1.0, 0.5, 0.25, 1.75, 40.25, 42.0])
     words = {section.key: " ".join(section.text) for section in made.sections}
-    assert "all but the camera" in words["latency"] and "all of a trial but the camera" in words["design"]
+    assert "all stages without the camera" in words["latency"] and "without the camera" in words["design"]
     chart = next(chart for section in made.sections for chart in section.charts if chart.key == "chart-front")
     assert "without the camera" in chart.svg and "1.75 s" in chart.alt and "42" not in chart.alt
 

@@ -1,4 +1,4 @@
-"""Perfect perception against what was really there: every oracle beside its own baseline, means over the same pairs."""
+"""The oracle setting: each oracle is compared with its own baseline, and means cover the same pairs."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ TASKS = facts(4)
 
 
 def run(planner: str, eyes: str, wrong: int, *, judged_wrong: int | None = None, number: int = 32) -> Evaluation:
-    """A run that failed the first ``wrong`` tasks of each four, by the judge ``judged_wrong``; half of them for the eyes' sake."""
+    """A run that failed the first ``wrong`` tasks of each four, by the judge ``judged_wrong``; perception caused half of them."""
     trials = []
     for at, task in enumerate(TASKS[:number]):
         place = at % 4
@@ -59,8 +59,8 @@ def test_each_oracle_stands_beside_the_baseline_of_its_own_verdicts() -> None:
     assert [told[n] for n in ("macro_checks", "oracle_rules", "macro_rerun")] == pytest.approx([0.75, 1.0, 1.0])
     assert [told[n] for n in ("macro_judge", "oracle_judge")] == pytest.approx([0.5, 0.75])
     drawn = chart(made)
-    checks = "by the checks: as it is 75.0%, VLM failures as right 100.0%, run again with ground-truth eyes 100.0%"
-    assert checks in drawn.alt and "by the judge: as it is 50.0%, VLM failures as right 75.0%" in drawn.alt
+    checks = "by the checks: measured 75.0%, VLM errors counted as correct 100.0%, rerun with ground-truth perception 100.0%"
+    assert checks in drawn.alt and "by the judge: measured 50.0%, VLM errors counted as correct 75.0%" in drawn.alt
     assert drawn.svg.index("Macro accuracy by the checks") < drawn.svg.index("Macro accuracy by the judge")
 
 

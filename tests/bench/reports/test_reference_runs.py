@@ -1,4 +1,4 @@
-"""Noisy eyes are no ground truth, models are no reference, variants are no pairs; and what is called incorrect is not unscored."""
+"""Which runs count as references and as pairs, and how incorrect and unscored trials are named."""
 
 from __future__ import annotations
 
@@ -57,12 +57,14 @@ def test_the_audit_sets_beside_a_task_only_what_no_model_and_no_noise_took_part_
     assert {row(made, "audit", t.id)["reference"] for t in TASKS} == {1.0}
     assert {row(build(*pairs, *noise), "audit", t.id)["reference"] for t in TASKS} == {None}
     assert [r.label for r in report_runs([*pairs, *noise], load_registry()) if r.is_exact_reference] == []
-    assert "grammar planner with ground-truth eyes" in words(made, "audit") and "exact reference" not in words(made, "audit")
+    assert "grammar planner with ground-truth perception" in words(made, "audit") and "exact reference" not in words(made, "audit")
 
 
 def test_nothing_is_called_exact_by_construction() -> None:
     text = words(build(whole(*PAIRS[0], "correct"), whole("grammar", "noisy", "correct")), "accuracy")
-    assert "exact by construction" not in text and "exact about what shows" in text and "may misunderstand a question" in text
+    assert (
+        "exact by construction" not in text and "exact about what is visible" in text and "may misunderstand an instruction" in text
+    )
 
 
 def timed(planner: str, seconds: float, calls: int, **further: Any) -> Evaluation:
@@ -73,7 +75,7 @@ def timed(planner: str, seconds: float, calls: int, **further: Any) -> Evaluatio
 
 def test_a_variant_is_no_pair_where_latency_is_told() -> None:
     made = build(timed("qwen3-4b", 2.0, 2), timed("qwen3-4b", 50.0, 9, variant="short"), timed("qwen3-30b-a3b", 3.0, 4))
-    assert "2 of 2 model pairs were timed only while" in words(made, "latency")
+    assert "2 of 2 model pairs. They were timed only while" in words(made, "latency")
     assert "2 pairs of models" in made.summary[0]
     told = row(made, "latency_planner", "qwen3-4b")
     assert (told["trial_median"], told["calls"], told["pairs"], told["pairs_all"]) == (2.0, 2.0, 1, 1)
@@ -93,7 +95,7 @@ def test_incorrect_and_unscored_are_told_apart() -> None:
     made = build(Evaluation(card=card(*PAIRS[0]), trials=trials, wanted=len(trials)))
     assert any("16 of 16 incorrect trials; 8 more are unscored and have no error mode." in line for line in made.summary)
     text = words(made, "errors")
-    assert "Every incorrect trial has exactly one error mode" in text and "Unscored trials" in text
+    assert "exactly one error mode to every incorrect trial" in text and "Unscored trials" in text
     assert table(made, "error_modes").title.startswith("Incorrect trials")
     unscored = next(t.task.id for t in trials if t.headline == "unscored")
     assert (row(made, "failed_tasks", unscored)["failed"], row(made, "failed_tasks", unscored)["unscored"]) == (1, 1)
@@ -101,7 +103,8 @@ def test_incorrect_and_unscored_are_told_apart() -> None:
 
 def test_costs_say_whose_tokens_they_are() -> None:
     found = table(build(whole(*PAIRS[0], "correct")), "costs")
-    assert "the planner's as its server" in found.notes[0] and "the eyes take is not counted" in found.notes[0]
+    assert "those of the planner, as its server" in found.notes[0]
+    assert "Tokens of the perception model are not counted" in found.notes[0]
 
 
 def test_long_conditions_have_room() -> None:

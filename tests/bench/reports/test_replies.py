@@ -1,4 +1,4 @@
-"""What the eyes said, as a person reads it on the page of a failed task."""
+"""Answers of perception as text on the page of a failed task."""
 
 from __future__ import annotations
 

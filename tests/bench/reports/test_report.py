@@ -92,7 +92,7 @@ def test_what_is_no_model_pair_is_ranked_nowhere(report: EvaluationReport) -> No
     others = table(report, "accuracy_not_ranked")
     assert {unmarked(values[0]) for values in others.rows} == apart
     assert not any(isinstance(v, MarkedCell) and (v.best or v.best_of_all) for values in others.rows for v in values)
-    assert any("grammar planner or ground-truth eyes" in warning for warning in report.warnings)
+    assert any("grammar planner or ground-truth perception" in warning for warning in report.warnings)
 
 
 def test_the_best_is_marked_among_runs_of_the_same_tasks(report: EvaluationReport) -> None:
@@ -104,7 +104,7 @@ def test_the_best_is_marked_among_runs_of_the_same_tasks(report: EvaluationRepor
     assert [label for label, values in rows.items() if isinstance(values[at], MarkedCell) and values[at].best_of_all] == [best]  # type: ignore[union-attr]
     partial = rows[PARTIAL][at]
     assert isinstance(partial, MarkedCell) and partial.note == "over 4 of 8 categories" and not partial.best
-    assert any("Not over the same tasks" in warning and "qwen2.5-vl-7b" in warning for warning in report.warnings)
+    assert any("cover other tasks than the rest" in warning and "qwen2.5-vl-7b" in warning for warning in report.warnings)
 
 
 def _value(cell: CellValue) -> float:
@@ -251,7 +251,7 @@ def test_what_was_not_measured_is_never_a_number() -> None:
     assert (told["macro_judge"], told["oracle_judge"], told["macro_rerun"], told["perception_rules"]) == (None, None, None, None)
     assert in_words(None, "share") == in_words(None, "count") == "not measured"
     words = " ".join(line for section in made.sections for line in section.text)
-    assert "not measured" in words and "Fewer than two model pairs" in words
+    assert "not measured" in words and "fewer than two model pairs" in words
 
 
 def test_an_unfinished_run_is_told_and_an_empty_one_refused() -> None:
@@ -292,7 +292,7 @@ def test_categories_with_one_viewpoint_are_named_where_the_macro_average_stands(
     assert isinstance(whole, IntervalEstimate) and (whole.without, whole.low is None) == (("location",), False)
     assert isinstance(single, IntervalEstimate) and single.low is None
     page = html(made)
-    assert "without location" in page and "interval not known" in page
+    assert "without location" in page and "interval unknown" in page
     assert "without location" in made.summary[1]
 
 

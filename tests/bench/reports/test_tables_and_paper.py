@@ -1,4 +1,4 @@
-"""Cells in words, in CSV and in Markdown; the paper's figures as they were copied."""
+"""Cells as text, in CSV and in Markdown, and the results copied from the paper."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ INTERVAL = IntervalEstimate(0.7383, 0.7, 0.8, 0.02, 100, 12)
         (1.234, "ratio", "1.23x"), (12345, "count", "12,345"), (0.0123, "seconds", "0.01"), (0.0012, "seconds", "< 0.01"),
             (9.184, "seconds", "9.18"),
         (0.00213, "usd", "0.0021"), ("", "text", ""), (MarkedCell(None), "share", "not measured"),
-        (IntervalEstimate(0.5, None, None, None, 2, 1), "share", "50.0 (interval not known)"),
+        (IntervalEstimate(0.5, None, None, None, 2, 1), "share", "50.0 (interval unknown)"),
         (replace(INTERVAL, without=("single_call", "ocr")), "share", "73.8 (70.0 to 80.0, without single call, ocr)"),
     ],
 )  # fmt: skip
