@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scope_ptz.bench.scoring.checks import check_pose, framed, run_checks
-from scope_ptz.bench.scoring.episode import CameraState, Episode, SavedPicture
+from scope_ptz.bench.scoring.episode import CameraPosition, Episode, SavedPicture
 from scope_ptz.bench.scoring.required_calls import missing_in_any_order, missing_in_order
 from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.expected import ActionOnly, Number
@@ -95,7 +95,7 @@ def test_coverage(steps: list[Step], passed: bool) -> None:
 def test_the_final_pose(pan: float, tilt: float, zoom: float, viewpoint: str, passed: bool) -> None:
     wanted = action(Behaviour(final=final(AT_HIGHWAY)))
     pose = AT_HIGHWAY.pose
-    ends = CameraState(viewpoint, Pose(pose.pan_deg + pan, pose.tilt_deg + tilt, pose.zoom * zoom))
+    ends = CameraPosition(viewpoint, Pose(pose.pan_deg + pan, pose.tilt_deg + tilt, pose.zoom * zoom))
     result = check_pose(wanted, replace(COUNT_RUN, final=ends))
     assert result is not None
     assert result.passed is passed
@@ -178,15 +178,15 @@ def test_framing_is_fill_of_the_limiting_side_and_offset_from_the_middle(pan: fl
     corners = frame.directions([[low + off, 0.4], [high + off, 0.4], [high + off, 0.6], [low + off, 0.6]])
     pans, tilts = pan_tilt_deg(corners)
     outline = tuple((float(p), float(t)) for p, t in zip(pans, tilts, strict=True))
-    episode = replace(COUNT_RUN, final=CameraState("mast", Pose(pan, tilt, 3.0)))
+    episode = replace(COUNT_RUN, final=CameraPosition("mast", Pose(pan, tilt, 3.0)))
     measured, offset = framed(outline, episode)
     assert measured == pytest.approx(fill, abs=1e-3)
     assert offset == pytest.approx(abs(off), abs=1e-3)
     wanted = action(Behaviour(framing=Framing(instance="x", viewpoint="mast", outline_deg=outline)))
     if not (abs(fill - 0.6) < 1e-3 or abs(fill - 0.9) < 1e-3 or abs(abs(off) - 0.02) < 1e-3):
         assert outcome_of("framing", wanted, episode) is (0.6 <= fill <= 0.9 and abs(off) <= 0.02)
-    assert outcome_of("framing", wanted, replace(episode, final=CameraState("bridge", Pose(pan, tilt, 3.0)))) is False
-    assert outcome_of("framing", wanted, replace(episode, final=CameraState("mast", Pose(pan + 180, -tilt, 3.0)))) is False
+    assert outcome_of("framing", wanted, replace(episode, final=CameraPosition("bridge", Pose(pan, tilt, 3.0)))) is False
+    assert outcome_of("framing", wanted, replace(episode, final=CameraPosition("mast", Pose(pan + 180, -tilt, 3.0)))) is False
 
 
 def test_the_right_calls_with_a_wrong_answer_and_the_right_answer_at_a_wrong_pose_both_fail() -> None:

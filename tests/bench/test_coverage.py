@@ -11,7 +11,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from scope_ptz.bench.scoring.coverage import box_directions, density_px_deg, inside, reference_directions, shows, uncovered_part
-from scope_ptz.bench.scoring.episode import CameraState, Observation
+from scope_ptz.bench.scoring.episode import CameraPosition, Observation
 from scope_ptz.bench.tasks.task import EvidenceView, Item
 from scope_ptz.geometry import Pose, direction, pan_tilt_deg
 from tests.bench.making import EYES, view
@@ -28,7 +28,7 @@ SWEEP = Observation("mast", EYES.sweep(), 0.0, "count")
 
 
 def evidence(pose: Pose, **further: Any) -> EvidenceView:
-    return view(CameraState("mast", pose), **further)
+    return view(CameraPosition("mast", pose), **further)
 
 
 @given(POSES)

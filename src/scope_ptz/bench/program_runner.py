@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from scope_ptz.bench.scoring.episode import CameraState, Episode, EpisodeCall, FrameGeometry, SavedPicture, observations_of
+from scope_ptz.bench.scoring.episode import CameraPosition, Episode, EpisodeCall, FrameGeometry, SavedPicture, observations_of
 from scope_ptz.bench.tasks.task import ProgramCall, Task
 from scope_ptz.camera.base import Camera, Frame, FrameOrigin
 from scope_ptz.camera.simulated import SimulatedCamera
@@ -67,7 +67,7 @@ class ProgramRunner:
         with clock.hold():
             await camera.go_to_preset(task.preset)
         context = self.make_context(camera)
-        start = CameraState(camera.viewpoint, await camera.pose())
+        start = CameraPosition(camera.viewpoint, await camera.pose())
         calls, pictures, before = list[EpisodeCall](), list[SavedPicture](), start
         for step in program:
             time_s = clock.now_s()
@@ -78,7 +78,7 @@ class ProgramRunner:
                 error, fault = str(wrong), "bad_call"
             except PerceptionError as failed:
                 error, fault = str(failed), "perception"
-            after = CameraState(camera.viewpoint, await camera.pose())
+            after = CameraPosition(camera.viewpoint, await camera.pose())
             call = EpisodeCall(step.tool, step.arguments, before, after, result, error, fault, time_s)
             calls.append(with_observations(call, self.geometry))
             if result is not None and step.tool == "take_image":

@@ -72,10 +72,10 @@ def generate(
 
 
 async def _run(order: Order, ledger: Ledger, endpoint: Endpoint, model: str, temperature: float) -> None:
-    from scope_ptz.bench.judging.server import JudgeOptions, JudgeServer
+    from scope_ptz.bench.judging.server import JudgeModelOptions, JudgeServer
     from scope_ptz.taskgen.generating.loop import generate as drafts
 
-    options = JudgeOptions(temperature=temperature, seed=order.seed)
+    options = JudgeModelOptions(temperature=temperature, seed=order.seed)
     port = JudgeServer(await _named(endpoint, model), options)
     try:
         await drafts(order, port, prover(order.scene), ledger, complain)

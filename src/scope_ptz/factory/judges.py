@@ -51,7 +51,7 @@ async def open_judge(
     """
     from pydantic import ValidationError
 
-    from scope_ptz.bench.judging.server import JudgeOptions, JudgeServer
+    from scope_ptz.bench.judging.server import JudgeModelOptions, JudgeServer
     from scope_ptz.endpoints.endpoint import Endpoint, Timeouts, key_from_file
     from scope_ptz.settings import load_settings
 
@@ -61,7 +61,7 @@ async def open_judge(
         raise ConfigError("No judge's server is named. Give its address with --judge-url or SCOPE_JUDGE_URL.")
     key = key_from_file(key_file) if key_file else settings.judge_key
     try:
-        judge_options = JudgeOptions.model_validate(parse_options(options or (), "--judge-option"))
+        judge_options = JudgeModelOptions.model_validate(parse_options(options or (), "--judge-option"))
     except ValidationError as error:
         first = error.errors(include_url=False, include_input=False)[0]
         where = ".".join(str(part) for part in first["loc"])

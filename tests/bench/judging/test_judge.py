@@ -13,7 +13,7 @@ from pydantic import SecretStr
 from scope_ptz.bench.judging.judge import Completion, Judge, NoReplyError
 from scope_ptz.bench.judging.rendering import LEAST_CHARS
 from scope_ptz.bench.judging.rubrics import prompt_version
-from scope_ptz.bench.judging.server import JudgeOptions, JudgeServer
+from scope_ptz.bench.judging.server import JudgeModelOptions, JudgeServer
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Judgement
 from scope_ptz.endpoints.endpoint import Endpoint, Timeouts
@@ -29,7 +29,7 @@ def judged(url: str, *, timeouts: Timeouts | None = None, retries: int = 0, **op
     endpoint = Endpoint(url=url, model="gpt-oss-120b", key=SecretStr(KEY), timeouts=timeouts or Timeouts(), retries=retries)
 
     async def ask() -> Judgement:
-        port = JudgeServer(endpoint, JudgeOptions.model_validate(options))
+        port = JudgeServer(endpoint, JudgeModelOptions.model_validate(options))
         try:
             return await Judge("gpt-oss-120b", port).judge_case(*facts_and_case())
         finally:

@@ -196,8 +196,8 @@ JUDGED = [{"judge": "me", "prompt": "p", "verdict": "correct", "error_mode": Non
         (counted(bad_calls=2, perception_failures=1), "3 calls failed of 2"),
         (unmoved, "passed and nothing moved the camera"),
         (unpictured, "pictures passed with 0 of"),
-        (lambda rows: rows[0]["card"]["perception"].update(name="ground-truth"), "ground-truth is built in, but the header says that it is a model"),
-        (lambda rows: rows[0]["card"]["planner"].update(name="grammar"), "grammar is built in, but the header says that it is a model"),
+        (lambda rows: rows[0]["card"]["perception"].update(name="ground-truth"), "ground-truth is built in, but"),
+        (lambda rows: rows[0]["card"]["planner"].update(name="grammar"), "grammar is built in, but"),
     ],
 )  # fmt: skip
 def test_what_the_file_and_the_tasks_show_to_be_untrue_is_refused(

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from scope_ptz.bench.scoring.episode import CameraState
+from scope_ptz.bench.scoring.episode import CameraPosition
 from scope_ptz.bench.tasks.expected import AnyExpected, Choice, NoneThere, Number, YesNo
 from scope_ptz.geometry import Pose
 from scope_ptz.simulator.pack import Scene
@@ -40,7 +40,7 @@ def test_answers_are_spread(place: Place) -> None:
 
 
 def test_what_shows_in_many_views_is_asked_of_few(place: Place) -> None:
-    views = [replace(place, at=CameraState(place.at.viewpoint, Pose(float(pan), -10.0, 1.0))) for pan in range(0, 90, 15)]
+    views = [replace(place, at=CameraPosition(place.at.viewpoint, Pose(float(pan), -10.0, 1.0))) for pan in range(0, 90, 15)]
     same = [draft(view, "cars", Number(value=3), "3") for view in views]
     others = [draft(place, f"thing {n}", Number(value=n % 5), str(n % 5)) for n in range(10)]
     assert sum(d.key == "cars" for d in chosen([*same, *others], 10)) <= SAME

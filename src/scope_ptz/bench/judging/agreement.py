@@ -172,6 +172,7 @@ class _Found:
         self.raters: dict[str, Rater] = {}
 
     def take(self, trial: Trial, log: str) -> None:
+        """Add the ratings of one trial."""
         item = RatedRun(log, trial.sample, trial.task.paraphrase_of or trial.task.id)
         if trial.scored_by == "checks":
             self._rate("the checks", "checks", "the checks", item, trial.headline, trial.error_mode)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from scope_ptz.agent.trace import Trace
-from scope_ptz.bench.scoring.episode import CameraState, Episode, PresetViewpoints
+from scope_ptz.bench.scoring.episode import CameraPosition, Episode, PresetViewpoints
 from scope_ptz.geometry import Pose
 from scope_ptz.planner.base import ToolOutcome
 
@@ -107,7 +107,7 @@ def case_of_episode(episode: Episode, places: PresetViewpoints) -> JudgeCase:
 
 
 def _call(
-    name: str, arguments: Mapping[str, Any], result: Mapping[str, Any] | None, error: str | None, after: CameraState
+    name: str, arguments: Mapping[str, Any], result: Mapping[str, Any] | None, error: str | None, after: CameraPosition
 ) -> CaseCall:
     return CaseCall(name=name, arguments=arguments, result=result, error=error, pose=after.pose, viewpoint=after.viewpoint)
 

@@ -93,6 +93,7 @@ class _Session:
         self.asked = self.input_tokens = self.output_tokens = 0
 
     async def run(self, facts: TaskFacts, case: JudgeCase) -> Judgement:
+        """Ask until a reply is valid, the attempts are used up, or the server fails."""
         budget, problem = self.judge.budget_chars, ""
         begun = judge_messages(facts, case, budget)
         now, answers = begun, 0

@@ -26,7 +26,7 @@ _MOST_LESSONS = 6
 """Maximum number of requests with fewer and fewer options. After that the server refuses something else."""
 
 
-class JudgeOptions(BaseModel):
+class JudgeModelOptions(BaseModel):
     """Options of requests to a judge's model. Temperature 0 and a seed make replies repeatable if the server supports it.
 
     Attributes:
@@ -55,8 +55,8 @@ class _Known:
 class JudgeServer:
     """Completes a judge's messages on a server. Concurrent judgements may share it. It remembers what the server refuses."""
 
-    def __init__(self, endpoint: Endpoint, options: JudgeOptions | None = None) -> None:
-        self.options, self.client, self._known = options or JudgeOptions(), ChatClient(endpoint), _Known()
+    def __init__(self, endpoint: Endpoint, options: JudgeModelOptions | None = None) -> None:
+        self.options, self.client, self._known = options or JudgeModelOptions(), ChatClient(endpoint), _Known()
 
     def repeated(self, repeat: int) -> JudgeServer:
         """Return the server for another judgement by the same judge, with another seed and the same connections."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from scope_ptz.bench.answers import Declined, Unreadable, agrees, parse_answer
 from scope_ptz.bench.scoring.coverage import uncovered_part
-from scope_ptz.bench.scoring.episode import CameraState, Episode
+from scope_ptz.bench.scoring.episode import CameraPosition, Episode
 from scope_ptz.bench.scoring.required_calls import missing_in_any_order, missing_in_order
 from scope_ptz.bench.tasks.expected import ActionOnly
 from scope_ptz.bench.tasks.task import FinalPose, RunOutcome, Task
@@ -84,7 +84,7 @@ def check_pose(task: Task, episode: Episode) -> CheckResult | None:
     return CheckResult("pose", not wrong, "; ".join(wrong) or "the final pose is as wanted")
 
 
-def pose_difference(required: FinalPose, is_at: CameraState) -> list[str]:
+def pose_difference(required: FinalPose, is_at: CameraPosition) -> list[str]:
     """Return how a camera state differs from the required one, in words; empty if it is within tolerance."""
     wrong = []
     if is_at.viewpoint != required.viewpoint:
@@ -121,7 +121,7 @@ def check_forbidden(task: Task, episode: Episode) -> CheckResult | None:
     return CheckResult("forbidden", not wrong, "; ".join(wrong) or "nothing forbidden happened")
 
 
-def changes(before: CameraState, after: CameraState) -> list[str]:
+def changes(before: CameraPosition, after: CameraPosition) -> list[str]:
     """Return which of viewpoint, pan, tilt and zoom differ between two states."""
     one, two = before.pose, after.pose
     differs = {

@@ -22,7 +22,7 @@ _HOW: dict[str, How] = {"count_objects": "count", "query_answer": "query", "zoom
 
 
 @dataclass(frozen=True, slots=True)
-class CameraState:
+class CameraPosition:
     """The camera's viewpoint and pose."""
 
     viewpoint: str | None
@@ -61,8 +61,8 @@ class EpisodeCall:
 
     name: str
     arguments: Mapping[str, Any]
-    before: CameraState
-    after: CameraState
+    before: CameraPosition
+    after: CameraPosition
     result: Mapping[str, Any] | None = None
     error: str | None = None
     fault: str | None = None
@@ -102,9 +102,9 @@ class Episode:
     """
 
     instruction: str
-    start: CameraState
+    start: CameraPosition
     calls: tuple[EpisodeCall, ...]
-    final: CameraState
+    final: CameraPosition
     answer: str
     outcome: str | None
     pictures: tuple[SavedPicture, ...] = ()
@@ -166,7 +166,7 @@ def episode_of(trace: Trace, places: PresetViewpoints, *, planner_sees: bool = F
     """
     started = trace.started
     geometry = FrameGeometry(started.frame_width, started.frame_height)
-    at = start = CameraState(started.viewpoint, started.pose.pose())
+    at = start = CameraPosition(started.viewpoint, started.pose.pose())
     home = started.labels.home_viewpoint or places.home
     calls, planner_views, states = list[EpisodeCall](), list[Observation](), {0: start}
     for called in trace.calls:
@@ -181,7 +181,7 @@ def episode_of(trace: Trace, places: PresetViewpoints, *, planner_sees: bool = F
         instruction=started.instruction,
         start=start,
         calls=tuple(calls),
-        final=CameraState(at.viewpoint, ended.pose.pose() if ended else at.pose),
+        final=CameraPosition(at.viewpoint, ended.pose.pose() if ended else at.pose),
         answer=ended.text if ended else "",
         outcome=ended.outcome if ended else None,
         pictures=tuple(SavedPicture(name, (trace.folder / name).is_file() if keeps_files else None) for name in files),
@@ -191,7 +191,7 @@ def episode_of(trace: Trace, places: PresetViewpoints, *, planner_sees: bool = F
     )
 
 
-def _call(called: Called, before: CameraState, places: PresetViewpoints, home: str, geometry: FrameGeometry) -> EpisodeCall:
+def _call(called: Called, before: CameraPosition, places: PresetViewpoints, home: str, geometry: FrameGeometry) -> EpisodeCall:
     outcome = called.outcome
     done = outcome.error is None
     viewpoint = before.viewpoint
@@ -199,7 +199,7 @@ def _call(called: Called, before: CameraState, places: PresetViewpoints, home: s
         viewpoint = places.presets.get(str(outcome.call.arguments.get("name")), viewpoint)
     elif done and outcome.call.name == "go_home":
         viewpoint = home
-    after = CameraState(viewpoint, called.pose.pose())
+    after = CameraPosition(viewpoint, called.pose.pose())
     call = EpisodeCall(
         name=outcome.call.name,
         arguments=outcome.call.arguments,
@@ -240,7 +240,7 @@ def observations_of(call: EpisodeCall, geometry: FrameGeometry) -> tuple[Observa
 def _planner_views(
     decisions: tuple[Decided, ...],
     calls: tuple[Called, ...],
-    states: Mapping[int, CameraState],
+    states: Mapping[int, CameraPosition],
     geometry: FrameGeometry,
     start_s: float,
 ) -> Iterator[Observation]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator
 
-from scope_ptz.bench.scoring.episode import CameraState
+from scope_ptz.bench.scoring.episode import CameraPosition
 from scope_ptz.bench.tasks.task import Argument, Behaviour, Need, ProgramCall, RequiredCall
 from scope_ptz.taskgen.authoring.drafts import Draft
 from scope_ptz.taskgen.authoring.places import Place, Places, adjust, go, move, preset_at, say
@@ -120,7 +120,7 @@ def needs_of(program: list[ProgramCall]) -> tuple[Need, ...]:
     return tuple(dict.fromkeys(found))
 
 
-def after(places: Places, at: CameraState, call: ProgramCall) -> CameraState | None:
+def after(places: Places, at: CameraPosition, call: ProgramCall) -> CameraPosition | None:
     if call.tool == "go_to_preset":
         return preset_at(places.presets[str(call.arguments["name"])])
     if call.tool == "go_home":

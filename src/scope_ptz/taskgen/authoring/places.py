@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
-from scope_ptz.bench.scoring.episode import CameraState
+from scope_ptz.bench.scoring.episode import CameraPosition
 from scope_ptz.bench.tasks.task import Aim, FinalPose, Need, ProgramCall
 from scope_ptz.geometry import Pose
 from scope_ptz.simulator.models import ScenePreset
@@ -40,7 +40,7 @@ class Place:
     scene: Scene
     start: str
     calls: tuple[ProgramCall, ...]
-    at: CameraState
+    at: CameraPosition
     swept: bool = False
 
     @cached_property
@@ -129,14 +129,14 @@ def say(call: ProgramCall, rng: random.Random) -> list[str]:
     return said
 
 
-def preset_at(preset: ScenePreset) -> CameraState:
-    return CameraState(preset.viewpoint, EYES.limits.clamp(Pose(preset.pan_deg, preset.tilt_deg, preset.zoom))[0])
+def preset_at(preset: ScenePreset) -> CameraPosition:
+    return CameraPosition(preset.viewpoint, EYES.limits.clamp(Pose(preset.pan_deg, preset.tilt_deg, preset.zoom))[0])
 
 
-def move(at: CameraState, call: ProgramCall) -> CameraState | None:
+def move(at: CameraPosition, call: ProgramCall) -> CameraPosition | None:
     """Where an adjustment leads; None when a limit would cut it."""
     pose, cut = EYES.limits.clamp(requested_pose(at.pose, AdjustPtz.model_validate(call.arguments), EYES.limits))
-    return None if cut else CameraState(at.viewpoint, pose)
+    return None if cut else CameraPosition(at.viewpoint, pose)
 
 
 def adjust(pan: float = 0.0, tilt: float = 0.0, factor: float | None = None) -> ProgramCall:

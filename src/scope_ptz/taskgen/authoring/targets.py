@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from scope_ptz.bench.scoring.episode import CameraState
+from scope_ptz.bench.scoring.episode import CameraPosition
 from scope_ptz.bench.tasks.task import Framing
 from scope_ptz.geometry import Perspective, Pose, direction, pan_tilt_deg
 from scope_ptz.simulator.truth import Sighting
@@ -51,7 +51,7 @@ def framed(place: Place, sighting: Sighting, thing: Thing) -> Place | None:
     found = close_pose(extent.hull, (limits.min_zoom, limits.max_zoom))
     if found is None or limits.clamp(found[0])[1] or found[0].zoom < place.at.pose.zoom * 1.1:
         return None
-    return Place(place.scene, place.start, place.calls, CameraState(place.at.viewpoint, found[0]))
+    return Place(place.scene, place.start, place.calls, CameraPosition(place.at.viewpoint, found[0]))
 
 
 def framing(place: Place, sighting: Sighting, thing: Thing) -> Framing | None:

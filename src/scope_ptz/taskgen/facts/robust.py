@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.bench.scoring.coverage import box_directions
-from scope_ptz.bench.scoring.episode import CameraState, FrameGeometry
+from scope_ptz.bench.scoring.episode import CameraPosition, FrameGeometry
 from scope_ptz.bench.tasks.task import Item
 from scope_ptz.geometry import Equirectangular, Perspective, Pose, pan_tilt_deg
 from scope_ptz.simulator.actors import Appearance, appearances, shows
@@ -319,6 +319,6 @@ def legible(text: TextSighting, scale: float = 1.0) -> bool:
 
 
 @lru_cache(maxsize=600)
-def sight(scene: Scene, at: CameraState, time_s: float, *, swept: bool = False) -> Sight:
+def sight(scene: Scene, at: CameraPosition, time_s: float, *, swept: bool = False) -> Sight:
     """The sight of a standing, or of everything around it."""
     return Sight(scene, at.viewpoint or "", None if swept else at.pose, time_s)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from scope_ptz.bench.answers import ParsedValue, parse_answer
-from scope_ptz.bench.scoring.episode import CameraState, Episode, EpisodeCall, FrameGeometry, observations_of
+from scope_ptz.bench.scoring.episode import CameraPosition, Episode, EpisodeCall, FrameGeometry, observations_of
 from scope_ptz.bench.scoring.required_calls import missing_in_order
 from scope_ptz.bench.scoring.verdict import MOVERS
 from scope_ptz.bench.tasks.expected import (
@@ -30,7 +30,7 @@ TURNS = ("pan_deg", "tilt_deg")
 class Setting:
     """What a mutation may know of the world of a run: where presets are and what frames look like."""
 
-    presets: Mapping[str, CameraState]
+    presets: Mapping[str, CameraPosition]
     eyes: FrameGeometry
 
 
@@ -46,7 +46,7 @@ def replayed(episode: Episode, calls: Iterable[EpisodeCall], setting: Setting) -
     return replace(episode, calls=tuple(made), final=at, pictures=tuple(p for p in episode.pictures if p.file in kept))
 
 
-def _after(call: EpisodeCall, at: CameraState, episode: Episode, setting: Setting) -> CameraState:
+def _after(call: EpisodeCall, at: CameraPosition, episode: Episode, setting: Setting) -> CameraPosition:
     if not call.succeeded or call.name not in MOVERS:
         return at
     if call.name == "go_to_preset":
@@ -57,8 +57,8 @@ def _after(call: EpisodeCall, at: CameraState, episode: Episode, setting: Settin
         one, two = call.before.pose, call.after.pose
         pan, tilt, zoom = two.pan_deg - one.pan_deg, two.tilt_deg - one.tilt_deg, two.zoom / one.zoom
         limits = setting.eyes.limits
-        return CameraState(at.viewpoint, limits.clamp(at.pose.turned(pan, tilt).zoomed(zoom))[0])
-    return CameraState(at.viewpoint, call.after.pose)
+        return CameraPosition(at.viewpoint, limits.clamp(at.pose.turned(pan, tilt).zoomed(zoom))[0])
+    return CameraPosition(at.viewpoint, call.after.pose)
 
 
 def retold(call: EpisodeCall, **said: Any) -> EpisodeCall:
@@ -109,7 +109,7 @@ def swap_tools(task: Task, episode: Episode, setting: Setting, rng: random.Rando
         if call.name != name:
             return call
         pose = call.before.pose.zoomed(1.2) if other == "adjust_ptz" else call.before.pose
-        return replace(call, name=other, arguments=arguments, after=CameraState(call.before.viewpoint, pose), result=said)
+        return replace(call, name=other, arguments=arguments, after=CameraPosition(call.before.viewpoint, pose), result=said)
 
     return changed(episode, setting, swap)
 
@@ -183,7 +183,7 @@ def turned_round(task: Task, episode: Episode, setting: Setting, rng: random.Ran
         one, two = call.before.pose, call.after.pose
         arguments = {k: -v if k in TURNS else v for k, v in call.arguments.items()}
         pose = Pose(2 * one.pan_deg - two.pan_deg, 2 * one.tilt_deg - two.tilt_deg, two.zoom)
-        return replace(call, arguments=arguments, after=CameraState(call.after.viewpoint, pose))
+        return replace(call, arguments=arguments, after=CameraPosition(call.after.viewpoint, pose))
 
     return changed(episode, setting, turn)
 

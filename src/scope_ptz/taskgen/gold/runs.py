@@ -17,7 +17,7 @@ from typing import Any
 
 from scope_ptz.agent.records import Place
 from scope_ptz.bench.program_runner import with_observations
-from scope_ptz.bench.scoring.episode import CameraState, Episode, EpisodeCall, FrameGeometry, SavedPicture
+from scope_ptz.bench.scoring.episode import CameraPosition, Episode, EpisodeCall, FrameGeometry, SavedPicture
 from scope_ptz.bench.scoring.error_modes import ErrorMode, error_mode
 from scope_ptz.bench.scoring.misperceptions import wrong_counts, wrong_reads
 from scope_ptz.bench.scoring.verdict import score_episode
@@ -170,14 +170,14 @@ def _run(episode: Episode) -> dict[str, Any]:
     }
 
 
-def _stand(at: CameraState) -> list[Any]:
+def _stand(at: CameraPosition) -> list[Any]:
     return [at.viewpoint, round(at.pose.pan_deg, 6), round(at.pose.tilt_deg, 6), round(at.pose.zoom, 6)]
 
 
 def _episode(row: Mapping[str, Any]) -> Episode:
-    def stand(values: Sequence[Any]) -> CameraState:
+    def stand(values: Sequence[Any]) -> CameraPosition:
         viewpoint, *pose = values
-        return CameraState(viewpoint, Place(pan_deg=pose[0], tilt_deg=pose[1], zoom=pose[2]).pose())
+        return CameraPosition(viewpoint, Place(pan_deg=pose[0], tilt_deg=pose[1], zoom=pose[2]).pose())
 
     at = start = stand(row["start"])
     calls = list[EpisodeCall]()
