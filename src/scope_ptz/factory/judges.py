@@ -65,7 +65,7 @@ async def open_judge(
     except ValidationError as error:
         first = error.errors(include_url=False, include_input=False)[0]
         where = ".".join(str(part) for part in first["loc"])
-        raise ConfigError(f"--judge-option {where}: {first['msg']}. Known: {', '.join(JudgeOptions.model_fields)}.") from None
+        raise ConfigError(f"--judge-option {where}: {first['msg']}. Known: {', '.join(JudgeModelOptions.model_fields)}.") from None
     endpoint = Endpoint(url=address, key=key, timeouts=Timeouts.within(timeout_s))
     return JudgeServer(await _with_judge_name(endpoint, model or settings.judge_model), judge_options)
 
