@@ -59,8 +59,8 @@ OTHERS = "grammar + ground-truth [20 tasks, 3 of the 32 shared]"
 
 def test_runs_over_other_tasks_are_named_first_and_marked_everywhere(mixed: EvaluationReport) -> None:
     before = " ".join(mixed.warnings)
-    assert f"Not over the same tasks as the other pairs: {FEWER}." in before
-    assert f"Reference runs, variants and baselines over other tasks than the pairs': {OTHERS}." in before
+    assert f"These pairs cover other tasks than the rest: {FEWER}." in before
+    assert f"These reference runs, variants and baselines cover other tasks than the model pairs: {OTHERS}." in before
     for found in mixed.tables:
         for values in found.rows:
             first = str(unmarked(values[0]))
@@ -69,7 +69,7 @@ def test_runs_over_other_tasks_are_named_first_and_marked_everywhere(mixed: Eval
     drawn = charts(mixed)
     for key in ("chart-accuracy", "chart-error-modes"):
         assert "20 tasks, 3" in drawn[key] and "10 of the" in drawn[key]
-    assert "Hollow: over other tasks" in next(c.title for s in mixed.sections for c in s.charts if c.key == "chart-accuracy")
+    assert "Hollow: runs over other tasks" in next(c.title for s in mixed.sections for c in s.charts if c.key == "chart-accuracy")
 
 
 def test_only_pairs_over_the_main_tasks_are_counted_and_averaged(mixed: EvaluationReport) -> None:

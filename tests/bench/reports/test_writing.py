@@ -197,7 +197,7 @@ def test_an_older_report_is_replaced_and_nothing_else(evil: Evaluation, tmp_path
     other = tmp_path / "other"
     other.mkdir()
     (other / "index.html").write_text("somebody's page")
-    with pytest.raises(OutputError, match="no report"):
+    with pytest.raises(OutputError, match="not a report"):
         write_report([fine], load_registry(), other)
     with pytest.raises(OutputError, match="is a file"):
         write_report([fine], load_registry(), kept)
