@@ -23,7 +23,7 @@ _LOOKERS = ("count_objects", "query_answer")
 
 def trial_of(entry: Entry, kept: Kept, epoch: int, where: Path, judgements: tuple[Judgement, ...] = ()) -> Trial:
     """The judged run: by its task's checks; where there are none by the first verdict of a judge (a log with several judges says
-    which of them decides: ``judging.deciding``)."""
+    which of them decides: ``judging.deciding_judge``)."""
     name = sample_name(entry.facts.id, epoch)
     trace = trace_of(kept.trace, where)
     if trace is None:
