@@ -1,21 +1,23 @@
-"""Whether the calls that a task demands are among those that a run made."""
+"""Compare the calls that a task requires with the calls that a run made."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
-from scope_ptz.bench.answers.words import names_any
-from scope_ptz.bench.scoring.episode import Call
+from scope_ptz.bench.answers import names_any
+from scope_ptz.bench.scoring.episode import EpisodeCall
 from scope_ptz.bench.tasks.task import Argument, RequiredCall
 from scope_ptz.tools.registry import TOOLS
 
 _DEFAULTS: dict[str, dict[str, Any]] = {name: tool.defaults() for name, tool in TOOLS.items()}
 
 
-def arguments_of(call: Call) -> Mapping[str, Any]:
-    """The arguments of a call with defaults filled in; a zoom by percent is also given as its factor, and so is one that is left
-    as it is."""
+def arguments_of(call: EpisodeCall) -> Mapping[str, Any]:
+    """Return the arguments of a call with defaults filled in.
+
+    A zoom in percent is also given as ``zoom_factor``. An unchanged zoom has the factor 1.
+    """
     arguments = {**_DEFAULTS.get(call.name, {}), **{k: v for k, v in call.arguments.items() if v is not None}}
     percent = arguments.get("zoom_percent")
     if isinstance(percent, int | float):
@@ -25,14 +27,20 @@ def arguments_of(call: Call) -> Mapping[str, Any]:
     return arguments
 
 
-def fits(wanted: RequiredCall, call: Call, leave_out: Collection[str] = ()) -> bool:
-    """Whether a call is the required one and found its target, if it has one. ``leave_out``: arguments that are not compared."""
-    if not call.succeeded or call.name != wanted.tool:
+def call_matches(required: RequiredCall, call: EpisodeCall, leave_out: Collection[str] = ()) -> bool:
+    """Return whether a call is the required one, succeeded, and found its target if it has one.
+
+    Args:
+        required: The required call.
+        call: The call that was made.
+        leave_out: Names of arguments that are not compared; "found" accepts a call that did not find its target.
+    """
+    if not call.succeeded or call.name != required.tool:
         return False
     if "found" not in leave_out and (call.result or {}).get("found") is False:
         return False
     given = arguments_of(call)
-    return all(_fits_argument(spec, given.get(name)) for name, spec in wanted.arguments.items() if name not in leave_out)
+    return all(_fits_argument(spec, given.get(name)) for name, spec in required.arguments.items() if name not in leave_out)
 
 
 def _fits_argument(spec: Argument, given: Any) -> bool:
@@ -44,12 +52,12 @@ def _fits_argument(spec: Argument, given: Any) -> bool:
     return is_number and spec.equals is not None and abs(given - spec.equals) <= spec.within + 1e-6
 
 
-def in_order(wanted: Sequence[RequiredCall], calls: Sequence[Call], leave_out: Collection[str] = ()) -> str | None:
-    """What is missing of the required calls as a subsequence of the calls made; None when all are there."""
+def missing_in_order(required: Sequence[RequiredCall], calls: Sequence[EpisodeCall], leave_out: Collection[str] = ()) -> str | None:
+    """Return which required call is missing when the order counts; None if all were made in order."""
     at = 0
-    for spec in wanted:
+    for spec in required:
         for number in range(spec.times):
-            while at < len(calls) and not fits(spec, calls[at], leave_out):
+            while at < len(calls) and not call_matches(spec, calls[at], leave_out):
                 at += 1
             if at == len(calls):
                 time = f" (time {number + 1} of {spec.times})" if spec.times > 1 else ""
@@ -58,14 +66,16 @@ def in_order(wanted: Sequence[RequiredCall], calls: Sequence[Call], leave_out: C
     return None
 
 
-def in_any_order(wanted: Sequence[RequiredCall], calls: Sequence[Call], leave_out: Collection[str] = ()) -> str | None:
-    """What is missing of the required calls when each takes a call of its own; None when all are there."""
-    slots = [spec for spec in wanted for _ in range(spec.times)]
+def missing_in_any_order(
+    required: Sequence[RequiredCall], calls: Sequence[EpisodeCall], leave_out: Collection[str] = ()
+) -> str | None:
+    """Return which required call is missing in any order; None if each is matched by a call of its own."""
+    slots = [spec for spec in required for _ in range(spec.times)]
     taken: dict[int, int] = {}
 
     def place(slot: int, tried: set[int]) -> bool:
         for number, call in enumerate(calls):
-            if number not in tried and fits(slots[slot], call, leave_out):
+            if number not in tried and call_matches(slots[slot], call, leave_out):
                 tried.add(number)
                 if number not in taken or place(taken[number], tried):
                     taken[number] = slot

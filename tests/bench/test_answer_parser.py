@@ -1,4 +1,4 @@
-"""The reader against answers written by hand, right and wrong, of every kind; and what must hold for any answer."""
+"""The answer parser against hand-written right and wrong answers of every type, and properties that hold for any answer."""
 
 from __future__ import annotations
 
@@ -14,8 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import TypeAdapter
 
-from scope_ptz.bench.answers.reader import agrees, read
-from scope_ptz.bench.answers.result import Declined, Unreadable, Value
+from scope_ptz.bench.answers import Declined, ParsedValue, Unreadable, agrees, parse_answer
 from scope_ptz.bench.tasks.expected import (
     ActionOnly,
     AnyExpected,
@@ -48,20 +47,20 @@ ANSWERED = {name: expected for name, expected in EXPECTATIONS.items() if not isi
 def verdict(expected: AnyExpected, answer: str) -> str:
     if isinstance(expected, ActionOnly):
         return "right"
-    reading = read(expected, answer)
+    reading = parse_answer(expected, answer)
     if isinstance(reading, Declined):
         return "declined"
     return {True: "right", False: "wrong", None: "unscored"}[agrees(expected, reading)]
 
 
 @pytest.mark.parametrize("case", ANSWERS, ids=[f"{c['expected']}-{i}" for i, c in enumerate(ANSWERS)])
-def test_an_answer_is_read_as_a_person_reads_it(case: dict[str, str]) -> None:
+def test_an_answer_is_parsed_as_a_person_understands_it(case: dict[str, str]) -> None:
     expected = EXPECTATIONS[case["expected"]]
-    assert verdict(expected, case["answer"]) == case["verdict"], (case["answer"], read(expected, case["answer"]))
+    assert verdict(expected, case["answer"]) == case["verdict"], (case["answer"], parse_answer(expected, case["answer"]))
 
 
 @pytest.mark.parametrize("note", [" (Source: the simulator's ground truth.)", " (seen by moondream3)", "\n"])
-def test_a_note_of_the_source_changes_nothing(note: str) -> None:
+def test_a_source_note_changes_nothing(note: str) -> None:
     changed = [c["answer"] for c in ANSWERS if verdict(EXPECTATIONS[c["expected"]], c["answer"] + note) != c["verdict"]]
     assert changed == []
 
@@ -73,14 +72,14 @@ def test_lettering_in_capitals_is_an_answer_however_long() -> None:
     assert verdict(board, "it is a board of a newspaper with several lines about trams") == "unscored"
 
 
-def test_lettering_that_holds_a_verb_is_read_as_a_whole() -> None:
+def test_lettering_with_a_verb_is_parsed_as_a_whole() -> None:
     board = Text(accepted=("DAILY COURIER MARKET IS 300 YEARS OLD",), ocr=True)
     for answer in ("DAILY COURIER MARKET IS 300 YEARS OLD", "The board says DAILY COURIER MARKET IS 300 YEARS OLD."):
-        assert agrees(board, read(board, answer)) is True
-    assert agrees(board, read(board, "The board says DAILY COURIER MARKET IS 500 YEARS OLD.")) is False
+        assert agrees(board, parse_answer(board, answer)) is True
+    assert agrees(board, parse_answer(board, "The board says DAILY COURIER MARKET IS 500 YEARS OLD.")) is False
 
 
-def test_the_answers_are_many_and_of_every_kind() -> None:
+def test_there_are_many_answers_of_every_type() -> None:
     assert len(ANSWERS) >= 300
     kinds = Counter(EXPECTATIONS[c["expected"]].kind for c in ANSWERS)
     assert set(kinds) == {e.kind for e in EXPECTATIONS.values()}
@@ -90,8 +89,8 @@ def test_the_answers_are_many_and_of_every_kind() -> None:
         assert {"right", "wrong"} <= verdicts, kind
 
 
-def test_answers_that_the_rules_were_not_written_for() -> None:
-    """What is not read exactly is at worst unscored: nothing wrong passes, nothing right fails."""
+def test_held_out_answers() -> None:
+    """An answer that is not parsed exactly is at worst unscored: no wrong answer passes and no right one fails."""
     taken = [(c["verdict"], verdict(EXPECTATIONS[c["expected"]], c["answer"]), c["answer"]) for c in HELD_OUT]
     assert [row for row in taken if row[1] == "right" != row[0]] == []
     assert [row for row in taken if row[0] == "right" != row[1]] == []
@@ -99,7 +98,7 @@ def test_answers_that_the_rules_were_not_written_for() -> None:
 
 
 @pytest.mark.parametrize("name", ANSWERED)
-def test_right_and_wrong_answers_of_validation_are_read_as_such(name: str) -> None:
+def test_right_and_wrong_answers_of_validation(name: str) -> None:
     expected = EXPECTATIONS[name]
     wordings = right_answers(expected)
     assert len(set(wordings)) >= 5
@@ -152,9 +151,9 @@ def test_any_number_plate(plate: str, seed: int) -> None:
 
 @given(st.text(max_size=200))
 @settings(max_examples=300, deadline=None)
-def test_no_text_breaks_the_reader(text: str) -> None:
+def test_no_text_breaks_the_parser(text: str) -> None:
     for expected in ANSWERED.values():
-        assert isinstance(read(expected, text), Value | Declined | Unreadable)
+        assert isinstance(parse_answer(expected, text), ParsedValue | Declined | Unreadable)
 
 
 WORDS = [
@@ -182,17 +181,17 @@ WORDS = [
 
 @given(st.lists(st.sampled_from(WORDS), max_size=12).map(" ".join))
 @settings(max_examples=300, deadline=None)
-def test_what_is_read_does_not_depend_on_what_is_right(text: str) -> None:
+def test_the_parsed_value_does_not_depend_on_the_expected_value(text: str) -> None:
     for value in (1, 5):
-        assert read(Number(value=value, unit=("cone",)), text) == read(Number(value=9, unit=("cone",)), text)
-    assert read(YesNo(value=True, affirms=("van",)), text) == read(YesNo(value=False, affirms=("van",)), text)
+        assert parse_answer(Number(value=value, unit=("cone",)), text) == parse_answer(Number(value=9, unit=("cone",)), text)
+    assert parse_answer(YesNo(value=True, affirms=("van",)), text) == parse_answer(YesNo(value=False, affirms=("van",)), text)
     options: dict[str, tuple[str, ...]] = {"red": (), "blue": (), "left": ()}
-    assert read(Choice(value="red", options=options), text) == read(Choice(value="left", options=options), text)
+    assert parse_answer(Choice(value="red", options=options), text) == parse_answer(Choice(value="left", options=options), text)
 
 
 @pytest.mark.parametrize("joint", [" ", ", ", " or ", "; ", ". ", " and ", "\n", " / "])
-def test_naming_everything_is_no_answer(joint: str) -> None:
-    """A scattershot answer never passes, in whatever order it comes."""
+def test_naming_all_options_is_not_an_answer(joint: str) -> None:
+    """An answer that names every option never passes, in any order."""
     options: dict[str, tuple[str, ...]] = {"red": (), "blue": (), "white": ()}
     for words in permutations(options):
         assert verdict(Choice(value="red", options=options), joint.join(words)) != "right"
@@ -255,7 +254,7 @@ JOINTS = (
 
 
 @pytest.mark.parametrize("denial", DENIALS)
-def test_no_text_is_right_both_where_there_is_none_and_where_there_is_one(denial: str) -> None:
+def test_no_text_is_right_for_both_an_absence_and_a_presence(denial: str) -> None:
     texts = [f"{one}{joint}{two}." for claim, joint in product(CLAIMS, JOINTS) for one, two in ((denial, claim), (claim, denial))]
     for text in texts:
         if verdict(NO_KITE, text) == "right":
@@ -264,12 +263,12 @@ def test_no_text_is_right_both_where_there_is_none_and_where_there_is_one(denial
 
 @settings(deadline=None, max_examples=400)
 @given(st.lists(st.tuples(st.sampled_from(DENIALS + CLAIMS), st.sampled_from(JOINTS)), min_size=2, max_size=4))
-def test_nor_is_any_longer_one(pieces: list[tuple[str, str]]) -> None:
+def test_no_longer_text_is_right_for_both(pieces: list[tuple[str, str]]) -> None:
     text = "".join(piece + joint for piece, joint in pieces)
     assert not (verdict(NO_KITE, text) == "right" and any(verdict(twin, text) == "right" for twin in TWINS)), text
 
 
-def test_denials_alone_and_claims_alone_are_read() -> None:
-    """What the texts above are made of is readable by itself: they do not pass the test by being gibberish."""
+def test_denials_and_claims_are_parsed_on_their_own() -> None:
+    """The parts of the texts above are parsed on their own, so the tests above do not pass because of unreadable texts."""
     assert sum(verdict(NO_KITE, denial) == "right" for denial in DENIALS) >= 14
     assert sum(any(verdict(twin, claim) == "right" for twin in TWINS) for claim in CLAIMS) >= 26

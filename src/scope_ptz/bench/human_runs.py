@@ -1,4 +1,4 @@
-"""Runs of people as judged runs: the same checks, in the same records as an evaluation of models."""
+"""The human baseline: runs of people, scored by the same checks and stored in the same records as runs of models."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from pydantic import ValidationError
 
 from scope_ptz.agent.timing import Timings
 from scope_ptz.agent.trace import Trace, picture_of, read_trace
-from scope_ptz.bench.scoring.episode import Places, episode_of
+from scope_ptz.bench.scoring.episode import PresetViewpoints, episode_of
 from scope_ptz.bench.scoring.error_modes import error_mode
-from scope_ptz.bench.scoring.trials import Check, Evaluation, ModelCard, RunCard, Trial
-from scope_ptz.bench.scoring.verdict import judge
+from scope_ptz.bench.scoring.trials import CheckRecord, Evaluation, ModelCard, RunCard, Trial
+from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.files import digest_of
 from scope_ptz.bench.tasks.task import Task
-from scope_ptz.bench.tasks.wording import facts_of
+from scope_ptz.bench.tasks.task_wording import facts_of
 from scope_ptz.errors import InputError, OutputError, TraceError
 from scope_ptz.simulator.models import SceneFile
 from scope_ptz.version import __version__
@@ -26,8 +26,8 @@ RESULT = "evaluation.json"
 DIGEST_CHARS = 16
 
 
-def card(by: str, split: str, tasks: Sequence[Task], started: str, max_steps: int) -> RunCard:
-    """The run card of a person: planner and eyes are one."""
+def human_run_card(by: str, split: str, tasks: Sequence[Task], started: str, max_steps: int) -> RunCard:
+    """Return the run card of a person, who is both planner and perception."""
     who = ModelCard(name=by, provider="person")
     return RunCard(
         run_id=f"human-{by}",
@@ -44,10 +44,10 @@ def card(by: str, split: str, tasks: Sequence[Task], started: str, max_steps: in
     )
 
 
-def trial(task: Task, scene: SceneFile, trace: Trace, sample: str) -> Trial:
-    """A finished run, judged by the task's checks. The person saw every view that the camera showed before a decision."""
-    episode = episode_of(trace, Places.of(scene), planner_sees=True)
-    verdict, ended = judge(task, episode), trace.ended
+def human_trial(task: Task, scene: SceneFile, trace: Trace, sample: str) -> Trial:
+    """Score a finished run by the task's checks. The person saw the camera's view before every decision."""
+    episode = episode_of(trace, PresetViewpoints.of(scene), planner_sees=True)
+    verdict, ended = score_episode(task, episode), trace.ended
     viewpoint = next(preset.viewpoint for preset in scene.presets if preset.name == task.preset)
     return Trial(
         task=facts_of(task, viewpoint),
@@ -55,10 +55,10 @@ def trial(task: Task, scene: SceneFile, trace: Trace, sample: str) -> Trial:
         headline=verdict.headline,
         reason=verdict.reason,
         error_mode=error_mode(task, episode),
-        checks=tuple(Check(name=c.name, passed=c.passed, reason=c.reason) for c in verdict.checks),
+        checks=tuple(CheckRecord(name=c.name, passed=c.passed, reason=c.reason) for c in verdict.checks),
         collateral=verdict.collateral,
         outcome=episode.outcome,
-        answer=episode.text,
+        answer=episode.answer,
         steps=ended.steps if ended else len(trace.decisions),
         tool_calls=dict(Counter(call.outcome.call.name for call in trace.calls if call.fault != "skipped")),
         bad_calls=sum(call.fault == "bad_call" for call in trace.calls),
@@ -68,13 +68,17 @@ def trial(task: Task, scene: SceneFile, trace: Trace, sample: str) -> Trial:
 
 
 @dataclass(frozen=True, slots=True)
-class KeptRun:
-    """A person's run as reports show it: its trace, and the pictures in its folder."""
+class StoredHumanRun:
+    """A person's run: its trace, and the pictures in its folder."""
 
     trace: Trace
 
     def picture(self, name: str) -> bytes | None:
-        """A picture by its name in the trace; None when it is not there. Raises ``TraceError`` for one outside the folder."""
+        """Return a picture by its name in the trace; None if it does not exist.
+
+        Raises:
+            TraceError: The name leads outside the folder.
+        """
         path = picture_of(self.trace.folder, name)
         try:
             return path.read_bytes()
@@ -82,16 +86,24 @@ class KeptRun:
             return None
 
 
-def open_run(result: Path, sample: str) -> KeptRun:
-    """A run of a result by its name (``Trial.sample``), from its folder beside the result. Raises ``TraceError``."""
+def open_run(result: Path, sample: str) -> StoredHumanRun:
+    """Open a run of a result by its name (``Trial.sample``) from its folder next to the result.
+
+    Raises:
+        TraceError: The run cannot be read, or its name leads outside the folder.
+    """
     folder = result.parent / sample
     if sample in {"", ".", ".."} or Path(sample).name != sample:
         raise TraceError(f"{result} names a run outside its own folder: {sample}.")
-    return KeptRun(read_trace(folder))
+    return StoredHumanRun(read_trace(folder))
 
 
 def write_result(evaluation: Evaluation, folder: Path) -> Path:
-    """Write the result, whole or not at all: a program that is stopped leaves the one before."""
+    """Write the result atomically, so that an interruption leaves the previous one.
+
+    Raises:
+        OutputError: The file cannot be written.
+    """
     path, fresh = folder / RESULT, folder / f"{RESULT}.new"
     try:
         fresh.write_text(evaluation.model_dump_json(indent=1) + "\n", "utf-8")
@@ -102,7 +114,11 @@ def write_result(evaluation: Evaluation, folder: Path) -> Path:
 
 
 def read_result(path: Path) -> Evaluation:
-    """A result of ``scope bench human``. Raises ``InputError`` when it is none."""
+    """Read a result of ``scope bench human``.
+
+    Raises:
+        InputError: The file cannot be read or holds no result.
+    """
     try:
         return Evaluation.model_validate_json(path.read_bytes())
     except OSError as error:

@@ -1,4 +1,4 @@
-"""A judge's reply: its schema, and the strict reading of it. What is no verdict is a problem to be told back, never guessed at."""
+"""The schema of a judge's reply, and its strict parser. An invalid reply is reported back to the judge and never guessed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scope_ptz.bench.scoring.error_modes import ErrorMode
 NO_MODE = "none"
 MOST_REASON_CHARS = 1_000
 _MOST_BRACES = 100
-"""That open nothing readable. A text with more of them has run away."""
+"""Maximum number of braces that open no valid JSON. A text with more of them is degenerate."""
 
 REPLY_SCHEMA: dict[str, Any] = {
     "type": "object",
@@ -25,11 +25,11 @@ REPLY_SCHEMA: dict[str, Any] = {
     "required": ["reason", "verdict", "error_mode"],
     "additionalProperties": False,
 }
-"""The reason comes first, so that a model that writes without thinking first finds it before it decides."""
+"""The reason comes first, so that a model without a reasoning phase states it before it decides."""
 
 
 class JudgeReply(BaseModel):
-    """A valid verdict: an error mode if, and only if, it is "incorrect". Further fields are overlooked."""
+    """A valid verdict. It has an error mode if and only if it is "incorrect". Further fields are ignored."""
 
     model_config = ConfigDict(frozen=True, extra="ignore")
 
@@ -64,10 +64,13 @@ class JudgeReply(BaseModel):
         return self
 
 
-def read_reply(text: str) -> JudgeReply | str:
-    """The verdict in a text, or what is wrong with it, in words for the judge.
+def parse_judge_reply(text: str) -> JudgeReply | str:
+    """Parse the verdict in a judge's reply.
 
-    One JSON object is looked for, alone or with words or a code fence around it. Two objects with different verdicts are none.
+    The reply must contain one JSON object, possibly surrounded by words or a code fence. Several objects must agree.
+
+    Returns:
+        The verdict, or what is wrong with the reply, in words for the judge.
     """
     found = [content for content in _objects(text) if isinstance(content, dict) and "verdict" in content]
     if not found:
@@ -86,7 +89,7 @@ def read_reply(text: str) -> JudgeReply | str:
 
 
 def _objects(text: str) -> Iterator[Any]:
-    """Every JSON object in a text that is not inside another one. A name given twice makes an object unreadable."""
+    """Yield every JSON object in a text that is not inside another one. Objects with repeated names are invalid."""
     decoder, at, failed = json.JSONDecoder(object_pairs_hook=_once), text.find("{"), 0
     while at != -1 and failed < _MOST_BRACES:
         try:

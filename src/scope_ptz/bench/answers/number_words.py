@@ -1,11 +1,11 @@
-"""Numerals in words and digits ("a dozen", "one hundred and two", "1,031") as values."""
+"""Parse numbers in words and in digits: "a dozen", "one hundred and two", "1,031"."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
 
-from scope_ptz.bench.answers.words import Word
+from scope_ptz.bench.answers.tokenizer import Word
 
 _UNITS = {
     "zero": 0, "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "seven": 7, "eight": 8, "nine": 9, "ten": 10,
@@ -22,7 +22,7 @@ _BEFORE_ONE = frozenset({
 
 
 def number_at(words: Sequence[Word], at: int) -> tuple[float | None, int]:
-    """The number that begins at a word and the position after it; None when none does."""
+    """Return the number that begins at a word, or None, and the position after it."""
     if at >= len(words):
         return None, at
     text, after = words[at].text, [w.text for w in words[at + 1 : at + 3]]

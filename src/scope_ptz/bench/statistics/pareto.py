@@ -1,4 +1,4 @@
-"""Choosing among several goods at once."""
+"""The Pareto front."""
 
 from __future__ import annotations
 
@@ -6,7 +6,10 @@ from collections.abc import Sequence
 
 
 def undominated(points: Sequence[tuple[float, ...]]) -> list[bool]:
-    """Which points are on the Pareto front, less being better: no other is as good in every coordinate and better in one."""
+    """Return which points are on the Pareto front, where smaller coordinates are better.
+
+    A point is on the front if no other point is at least as good in every coordinate and better in one.
+    """
     return [not any(_dominates(other, point) for other in points) for point in points]
 
 

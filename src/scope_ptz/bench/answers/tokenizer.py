@@ -1,4 +1,4 @@
-"""Words of a free text as they are compared: markup, spelling, contractions and number set aside."""
+"""Split a text into normalised words, without markup and with one spelling of each word."""
 
 from __future__ import annotations
 
@@ -37,8 +37,14 @@ _HARD = re.compile(r"[!?;\n]|\.(?!\d)|\s[—–-]\s|—")
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """``text`` in lower case and British spelling; ``gap``: what stands between it and the word before; ``segment`` ends at commas
-    and colons too, ``clause`` only where a sentence could."""
+    """A word of a text.
+
+    Attributes:
+        text: The word in lower case and British spelling.
+        gap: The characters between the previous word and this one.
+        clause: Number of its clause. A clause ends at a full stop, a dash, a semicolon or a new line.
+        segment: Number of its segment. A segment also ends at a comma, at a colon and before "but".
+    """
 
     text: str
     gap: str
@@ -47,7 +53,7 @@ class Word:
 
 
 def clean(text: str) -> str:
-    """Without markup and notes of the source; quotation marks, dashes and spaces of one sort; capitals kept."""
+    """Return a text without markup and source notes, with plain quotation marks, dashes and spaces. Capitals are kept."""
     text = unicodedata.normalize("NFKC", "".join(_plain_letter(letter) for letter in text))
     text = re.sub(r"\s*\((?:source:|seen by)[^)]*\)", "", text, flags=re.IGNORECASE)
     text = re.sub(r"[‘’´`]", "'", re.sub(r"[“”„«»]", '"', text)).replace("−", "-")
@@ -60,7 +66,7 @@ def clean(text: str) -> str:
 
 
 def _plain_letter(letter: str) -> str:
-    """Without what cannot be seen; digits of any script as 0 to 9; what stands raised or is a fraction set apart."""
+    """Return a character without formatting: digits of any script as 0 to 9, superscripts and fractions separated."""
     kind = unicodedata.category(letter)
     if kind == "Cf":
         return ""
@@ -72,7 +78,7 @@ def _plain_letter(letter: str) -> str:
 
 
 def plain_words(text: str) -> list[str]:
-    """The words of a text, as they are compared."""
+    """Return the normalised words of a text, as they are compared."""
     return [w.text for w in words_of(clean(text))]
 
 
@@ -83,7 +89,7 @@ def _british(word: str) -> str:
 
 
 def words_of(text: str) -> list[Word]:
-    """The words of a clean text in order, with where clauses end."""
+    """Return the words of a cleaned text in order, with their clauses and segments."""
     low = text.lower()
     for pattern, plain in _CONTRACTIONS:
         low = pattern.sub(plain, low)
@@ -104,7 +110,7 @@ def words_of(text: str) -> list[Word]:
 
 
 def names_any(text: str, wordings: Iterable[str]) -> bool:
-    """Whether one of the wordings stands anywhere in a text, be it asked or stated."""
+    """Return whether a text contains one of the wordings, no matter what it says about it."""
     words = plain_words(text)
     for phrase in (plain_words(w) for w in wordings):
         for at in range(len(words) - len(phrase) + 1):
@@ -126,5 +132,10 @@ def _forms(word: str) -> frozenset[str]:
 
 
 def same_word(one: str, other: str) -> bool:
-    """Whether two words are the same but for their number."""
+    """Return whether two words are equal apart from singular and plural."""
     return one == other or one in _forms(other) or other in _forms(one)
+
+
+def all_wordings(name: str, further: Iterable[str]) -> tuple[str, ...]:
+    """Return all wordings of an option: its name, then its further wordings."""
+    return name, *further

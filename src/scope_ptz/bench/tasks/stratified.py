@@ -1,4 +1,4 @@
-"""Parts of a dataset that stand for all of it."""
+"""Stratified samples of a dataset."""
 
 from __future__ import annotations
 
@@ -9,12 +9,19 @@ from collections.abc import Sequence
 from scope_ptz.bench.tasks.task import Task
 
 
-def stratified(tasks: Sequence[Task], number: int, seed: int) -> tuple[Task, ...]:
-    """``number`` of some tasks, in their order: of every category, scene and difficulty, and of every combination, as near to its
-    share as may be.
+def stratified_sample(tasks: Sequence[Task], number: int, seed: int) -> tuple[Task, ...]:
+    """Return a sample in which categories, scenes, difficulties and their combinations have nearly their original shares.
 
-    One task after the other is taken from the group that its category, scene, difficulty and combination lack most; which of a
-    group depends on the seed and the id alone.
+    Tasks are taken one by one from the group that is most underrepresented. Within a group the choice depends only on the seed and
+    the task ids.
+
+    Args:
+        tasks: The tasks to sample.
+        number: Size of the sample.
+        seed: Seed of the choice.
+
+    Returns:
+        The sample in the original order.
     """
     number = min(number, len(tasks))
     waiting: dict[tuple[str, ...], list[str]] = {}

@@ -1,4 +1,7 @@
-"""Tasks in words for judges and people: the expected answer, and what the instruction fixes about the way to it."""
+"""Describe tasks in words for judges and people: the expected answer and the required behaviour.
+
+These sentences are part of judge prompts. Changing them changes what judges decide.
+"""
 
 from __future__ import annotations
 
@@ -18,14 +21,14 @@ from scope_ptz.bench.tasks.expected import (
     Text,
     YesNo,
 )
-from scope_ptz.bench.tasks.facts import TaskFacts
 from scope_ptz.bench.tasks.task import Argument, EvidenceView, RequiredCall, Task
+from scope_ptz.bench.tasks.task_facts import TaskFacts
 
 _OUTCOMES = {"answered": "with an answer", "clarification": "with a question back", "refused": "by declining the request"}
 
 
 def facts_of(task: Task, viewpoint: str) -> TaskFacts:
-    """What reports and judges know of a task. ``viewpoint``: where its preset stands."""
+    """Return the facts about a task. ``viewpoint`` is the viewpoint of its preset."""
     return TaskFacts(
         id=task.id,
         dataset=task.dataset,
@@ -46,15 +49,15 @@ def facts_of(task: Task, viewpoint: str) -> TaskFacts:
 
 
 def expected_in_words(expected: AnyExpected) -> str:
-    """The right answer as a sentence or two, with the further wordings that count."""
+    """Return the expected answer in a sentence or two, with the other accepted wordings."""
     match expected:
         case Number():
             unit = f" ({expected.unit[0]})" if expected.unit else ""
             give = f", give or take {expected.tolerance:g}" if expected.tolerance else ""
             return f"{expected.value:g}{unit}{give}"
         case YesNo():
-            said = expected.affirms if expected.value else expected.denies
-            return f"{'Yes' if expected.value else 'No'}{_also(said)}"
+            wordings = expected.affirms if expected.value else expected.denies
+            return f"{'Yes' if expected.value else 'No'}{_also(wordings)}"
         case Choice():
             others = [name for name in expected.options if name != expected.value]
             wrong = f" (not {', '.join(others)})" if others else ""
@@ -78,7 +81,7 @@ def expected_in_words(expected: AnyExpected) -> str:
 
 
 def demands(task: Task) -> Iterator[str]:
-    """What the run must have done, a sentence each. Nothing that the instruction leaves open."""
+    """Yield what the run must have done, one sentence each. What the instruction leaves open is not mentioned."""
     behaviour = task.behaviour
     if behaviour.outcomes != ("answered",):
         yield f"The run must end {_or([_OUTCOMES[name] for name in behaviour.outcomes], marks='')}."
@@ -113,7 +116,7 @@ def _view(view: EvidenceView) -> str:
 
 
 def call_in_words(call: RequiredCall) -> str:
-    """A required call as it would be written, with what its arguments may be."""
+    """Return a required call as text, with the accepted values of its arguments."""
     arguments = ", ".join(f"{name}={_argument(spec)}" for name, spec in call.arguments.items())
     times = f" {call.times} times" if call.times > 1 else ""
     return f"{call.tool}({arguments}){times}"

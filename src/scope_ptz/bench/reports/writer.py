@@ -1,4 +1,4 @@
-"""A report on disk: the page, Markdown, CSV, and a page for each failed task. Everything that came from a model is escaped."""
+"""Write a report: the HTML page, Markdown, CSV files, and a page for each failed task. All text from models is escaped."""
 
 from __future__ import annotations
 
@@ -6,11 +6,22 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from scope_ptz.bench.reports.build import Report, build_report
-from scope_ptz.bench.reports.tables import MISSING, Column, Marked, Value, as_csv, as_markdown, bare, escape, in_words, interval
+from scope_ptz.bench.reports.assemble import EvaluationReport, build_report
+from scope_ptz.bench.reports.tables import (
+    MISSING,
+    CellValue,
+    Column,
+    MarkedCell,
+    as_csv,
+    as_markdown,
+    escape,
+    in_words,
+    interval,
+    unmarked,
+)
 from scope_ptz.bench.reports.task_pages import FrameStore, OpenSample, page_files, task_pages
 from scope_ptz.bench.scoring.trials import Evaluation
-from scope_ptz.bench.statistics.clustered import Estimate
+from scope_ptz.bench.statistics.clustered import IntervalEstimate
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import OutputError
 from scope_ptz.registry import Registry
@@ -32,12 +43,24 @@ def write_report(
     tasks: Mapping[str, Task] | None = None,
     progress: Callable[[int, int], None] | None = None,
     pages: bool = True,
-) -> Report:
-    """Write ``index.html``, ``report.md``, ``tables/*.csv``, ``tasks/*.html`` and ``frames/*.jpg`` into ``out``.
+) -> EvaluationReport:
+    """Write ``index.html``, ``report.md``, ``tables/*.csv``, ``tasks/*.html`` and ``frames/*.jpg``.
 
-    ``tasks``: the tasks themselves by id, for the evidence on their pages. ``progress`` is told how many pages are done, and of how
-    many. Without ``pages`` failed tasks have none. Raises ``OutputError`` when the folder holds something else or cannot be
-    written, ``InputError`` without any run.
+    Args:
+        evaluations: The evaluations.
+        registry: The models that the report may look up.
+        out: The folder of the report.
+        open_sample: Opens a stored run for its trajectory; without it pages have none.
+        tasks: The tasks by id, for the evidence on their pages.
+        progress: Called with the number of finished pages and of all pages.
+        pages: Whether failed tasks have pages.
+
+    Returns:
+        The report.
+
+    Raises:
+        OutputError: The folder holds something other than a report, or cannot be written.
+        InputError: The evaluations have no trial.
     """
     files = page_files(evaluations) if pages else {}
     report = build_report(evaluations, registry, files)
@@ -63,27 +86,27 @@ def write_report(
 
 
 def _clear(out: Path) -> None:
-    """Make room for a report where an older one stands; never touch a folder that holds anything else."""
+    """Remove an older report. A folder that holds anything else is never touched."""
     if out.exists() and not out.is_dir():
         raise OutputError(f"{out} is a file. Give a folder for the report.")
     if not out.exists() or not any(out.iterdir()):
         return
     page = out / "index.html"
     if not page.is_file() or f'content="{GENERATOR}' not in page.read_text("utf-8", errors="replace")[:2000]:
-        raise OutputError(f"{out} holds something that is no report. Give an empty folder or a new name.")
+        raise OutputError(f"{out} holds something that is not a report. Give an empty folder or a new name.")
     for folder, pattern in _OWN:
         for old in (out / folder).glob(pattern):
             old.unlink()
 
 
-def html(report: Report, environment: Environment | None = None) -> str:
-    """The page, on its own: no script, nothing loaded from anywhere."""
+def html(report: EvaluationReport, environment: Environment | None = None) -> str:
+    """Return the HTML page. It has no scripts and loads nothing from the network."""
     template = (environment or _environment()).get_template("index.html.j2")
     return template.render(report=report, version=__version__, generator=GENERATOR)
 
 
-def markdown(report: Report) -> str:
-    """The same in Markdown, without charts."""
+def markdown(report: EvaluationReport) -> str:
+    """Return the report as Markdown, without charts."""
     parts = ["# SCOPE benchmark report", *(escape(line) for line in report.summary)]
     parts += ["> " + escape(line) for line in report.warnings]
     for section in report.sections:
@@ -105,16 +128,16 @@ def _environment() -> Environment:
         lstrip_blocks=True,
     )
     found.filters["cell"] = cell
-    found.filters["drawn"] = Markup  # Charts only: they are drawn here, and their texts are escaped by the drawing library.
+    found.filters["drawn"] = Markup  # Only for charts, whose text the drawing library has escaped.
     return found
 
 
-def cell(value: Value, column: Column) -> dict[str, Any]:
-    """A cell for the template: words, interval and what must be known of it apart, and how it is marked."""
-    plain = bare(value)
-    marks = value if isinstance(value, Marked) else Marked(None)
+def cell(value: CellValue, column: Column) -> dict[str, Any]:
+    """Return the parts of a cell for the template: its text, its interval with the limitation, and its marks."""
+    plain = unmarked(value)
+    marks = value if isinstance(value, MarkedCell) else MarkedCell(None)
     bounds = limits = ""
-    if isinstance(plain, Estimate):
+    if isinstance(plain, IntervalEstimate):
         bounds, limits = interval(plain, column.kind)
         plain = plain.value
     words = in_words(plain, column.kind)

@@ -1,4 +1,4 @@
-"""Files of JSON lines that grow: a line is written whole or, after a break, counts as never written."""
+"""Append-only files of JSON lines. A line that an interruption left incomplete counts as never written."""
 
 from __future__ import annotations
 
@@ -8,7 +8,11 @@ from scope_ptz.errors import InputError, OutputError
 
 
 def whole_lines(path: Path) -> list[tuple[int, str]]:
-    """The finished lines of a file that are not blank, with their numbers; none when there is no file. Raises ``InputError``."""
+    """Return the complete lines of a file that are not blank, with their numbers; none if there is no file.
+
+    Raises:
+        InputError: The file cannot be read.
+    """
     try:
         *lines, _ = path.read_bytes().decode("utf-8").split("\n")
     except FileNotFoundError:
@@ -21,7 +25,11 @@ def whole_lines(path: Path) -> list[tuple[int, str]]:
 
 
 def append_line(path: Path, line: str) -> None:
-    """Add a line; one before it that was never finished is taken away. Raises ``OutputError``."""
+    """Append a line. An incomplete last line is removed first.
+
+    Raises:
+        OutputError: The file cannot be written.
+    """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with path.open("a+b") as file:
@@ -32,7 +40,7 @@ def append_line(path: Path, line: str) -> None:
 
 
 def _finished(size: int, path: Path, step: int = 4096) -> int:
-    """How many bytes at the start of a file are finished lines."""
+    """Return how many bytes at the start of a file are complete lines."""
     with path.open("rb") as file:
         at = size
         while at > 0:

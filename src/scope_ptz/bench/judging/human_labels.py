@@ -1,5 +1,6 @@
-"""People's labels of runs: one JSON line each, in a file beside the log. A later line of the same person about a run replaces an
-earlier one; nothing is ever rewritten, so that a break at any moment loses nothing.
+"""Human labels of runs: one JSON line each, in a file next to the log.
+
+A later line by the same person about the same run replaces an earlier one. Lines are only appended: an interruption loses nothing.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from scope_ptz.bench.judging.lines import append_line, whole_lines
+from scope_ptz.bench.judging.json_lines import append_line, whole_lines
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Evaluation, Label
 from scope_ptz.errors import InputError
@@ -21,7 +22,7 @@ SUFFIX = ".labels.jsonl"
 
 
 class LabelRow(BaseModel):
-    """A label as it stands in the file. ``sample``: the run's name in its log; ``dataset``: of its task, to tell files apart."""
+    """A label as a line of the file. ``sample`` is the run's name in its log, ``at`` is when the label was given."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -33,18 +34,22 @@ class LabelRow(BaseModel):
     at: datetime
 
     def label(self) -> Label:
+        """Return the label without the run and the time."""
         return Label(by=self.by, verdict=self.verdict, error_mode=self.error_mode, note=self.note)
 
 
 def labels_file(log: Path) -> Path:
-    """Where the labels of a log's runs stand."""
+    """Return the path of the labels of a log."""
     return log.with_name(log.name + SUFFIX)
 
 
 def read_labels(path: Path) -> tuple[LabelRow, ...]:
-    """The labels of a file, the newest of each person about each run; none when there is no file.
+    """Read the newest label of each person about each run; none if there is no file.
 
-    A last line that was cut off is left out. Raises ``InputError`` for other damage.
+    An incomplete last line is ignored.
+
+    Raises:
+        InputError: The file is damaged in another way.
     """
     newest: dict[tuple[str, str], LabelRow] = {}
     for number, line in whole_lines(path):
@@ -65,14 +70,18 @@ def _row(line: str, path: Path, number: int) -> LabelRow:
 
 
 def add_label(path: Path, label: Label, sample: str) -> LabelRow:
-    """Append a label. Raises ``OutputError``."""
+    """Append a label.
+
+    Raises:
+        OutputError: The file cannot be written.
+    """
     row = LabelRow(sample=sample, at=datetime.now(UTC), **label.model_dump())
     append_line(path, row.model_dump_json())
     return row
 
 
 def with_labels(evaluation: Evaluation, rows: Iterable[LabelRow]) -> Evaluation:
-    """The evaluation with people's labels in its trials."""
+    """Return the evaluation with human labels in its trials."""
     by_sample: dict[str, list[Label]] = {}
     for row in rows:
         by_sample.setdefault(row.sample, []).append(row.label())
