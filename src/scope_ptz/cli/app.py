@@ -238,8 +238,12 @@ def scene_view(
     start: StartFlags,
     out: OutputFile,
     name: Annotated[str | None, typer.Argument(help="Name of the scene, unless --camera or --scene is given.")] = None,
-    pan: Annotated[float | None, typer.Option("--pan", help="Pan in degrees, positive is right (default: as at the start).")] = None,
-    tilt: Annotated[float | None, typer.Option("--tilt", help="Tilt in degrees, positive is up (default: as at the start).")] = None,
+    pan: Annotated[
+        float | None, typer.Option("--pan", help="Pan in degrees, positive is right (default: as at the start).")
+    ] = None,
+    tilt: Annotated[
+        float | None, typer.Option("--tilt", help="Tilt in degrees, positive is up (default: as at the start).")
+    ] = None,
     zoom: Annotated[float | None, typer.Option("--zoom", help="Magnification, 1 is widest (default: as at the start).")] = None,
 ) -> None:
     """Write what the camera sees at a pose to a picture file."""

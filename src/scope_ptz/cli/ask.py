@@ -1,81 +1,68 @@
-"""``scope ask`` and the part of it that ``scope chat`` shares."""
+"""``scope ask``, and the session that it shares with ``scope chat``."""
 
 from __future__ import annotations
 
-import sys
-from dataclasses import dataclass
+import signal
 from pathlib import Path
 from typing import Any
 
 import anyio
+from anyio.lowlevel import checkpoint
 from rich.console import Console
 
 from scope_ptz.agent.filmstrip import write_filmstrip
 from scope_ptz.agent.loop import Agent
-from scope_ptz.agent.records import Budgets, Called, Decided, Ended, Listener, RunLabels, RunResult, Started
+from scope_ptz.agent.records import Budgets, Called, Decided, Ended, Labels, Listener, Run, Started
 from scope_ptz.agent.store import RunFolder
-from scope_ptz.agent.trace import TraceWriter, read_trace
+from scope_ptz.agent.trace import Trace, TraceWriter, read_trace
 from scope_ptz.camera.base import Camera
 from scope_ptz.cli.display import LiveView, show_end
-from scope_ptz.cli.endings import CANCELLED, exit_code, put_json
+from scope_ptz.cli.exit import CANCELLED, exit_code, interrupts_handled_by, put_json, run_until_interrupted
+from scope_ptz.cli.options import SessionFlags
 from scope_ptz.errors import InputError
-from scope_ptz.factory.cameras import OpenCamera, open_camera
-from scope_ptz.factory.models import ModelOptions, make_perception, make_planner, perception_note, resolve_models
+from scope_ptz.factory.models import ModelOptions, resolve_models
+from scope_ptz.factory.session import Start, make_perception, make_planner, open_camera, open_scene
 from scope_ptz.perception.base import Perception
 from scope_ptz.planner.base import PastTurn, Planner
+from scope_ptz.settings import load_settings
 
-
-@dataclass(frozen=True, slots=True)
-class Asking:
-    """The options of a session."""
-
-    camera: str
-    viewpoint: str | None
-    preset: str | None
-    time_s: float | None
-    wishes: ModelOptions
-    runs_dir: Path
-    budgets: Budgets
-    seed: int
-    realtime: bool | None
-    as_json: bool = False
-
-    @property
-    def in_real_time(self) -> bool:
-        """A person at a terminal sees the camera take its time; a program does not wait."""
-        return self.realtime if self.realtime is not None else sys.stdout.isatty() and not self.as_json
+_NEXT_STEPS = """
+Next steps:
+  scope ask "count the workers"          another instruction, in your own words
+  scope chat                             a conversation; /help lists its commands
+  scope replay {folder}
+  scope --help                           every command; `scope bench --help` is about measuring models"""
 
 
 class Session:
     """A camera, perception and a planner that stay together for one or several runs."""
 
-    def __init__(self, options: Asking, opened: OpenCamera, perception: Perception, planner: Planner, note: str) -> None:
-        self.options, self.opened, self.perception, self.planner, self.note = options, opened, perception, planner, note
-
-    @property
-    def camera(self) -> Camera:
-        return self.opened.camera
+    def __init__(self, flags: SessionFlags, camera: Camera, perception: Perception, planner: Planner, note: str) -> None:
+        self.flags, self.camera, self.perception, self.planner, self.note = flags, camera, perception, planner, note
+        self.runs_dir = flags.runs_dir or load_settings().runs_dir
 
     @classmethod
-    async def open(cls, options: Asking) -> Session:
-        choice = await resolve_models(options.wishes)
-        planner = make_planner(choice.planner)
-        opened = await open_camera(
-            options.camera, viewpoint=options.viewpoint, preset=options.preset, time_s=options.time_s, realtime=options.in_real_time
-        )
-        try:
-            perception = make_perception(choice.perception, opened.scenes, options.seed)
-        except BaseException:
-            await opened.aclose()
-            raise
-        return cls(options, opened, perception, planner, perception_note(choice.perception))
+    async def open(cls, flags: SessionFlags, models: ModelOptions, *, realtime: bool) -> Session:
+        """Open the camera and connect to the models.
 
-    async def run(
-        self, instruction: str, folder: RunFolder, listener: Listener, conversation: tuple[PastTurn, ...] = ()
-    ) -> RunResult:
-        """One run, recorded in ``folder``."""
-        labels = RunLabels(perception_note=self.note, seed=self.options.seed, home_viewpoint=self.options.viewpoint)
-        agent = Agent(self.planner, self.camera, self.perception, folder, budgets=self.options.budgets, labels=labels)
+        Args:
+            flags: Where the camera starts, and the limits of runs.
+            models: The planner and perception.
+            realtime: Whether the camera takes as long for a move as a real one does.
+        """
+        choice = await resolve_models(models)
+        scene = open_scene(flags.scene_name)
+        planner = make_planner(choice.planner)
+        perception, note = make_perception(choice.eyes, scene, flags.seed)
+        start = Start(scene=flags.scene_name, viewpoint=flags.viewpoint, preset=flags.preset, time_s=flags.at)
+        camera = await open_camera(start, scene, realtime=realtime)
+        return cls(flags, camera, perception, planner, note)
+
+    async def run(self, instruction: str, folder: RunFolder, listener: Listener, conversation: tuple[PastTurn, ...] = ()) -> Run:
+        """Carry out one instruction and write its trace."""
+        labels = Labels(perception_note=self.note, seed=self.flags.seed, home_viewpoint=self.flags.viewpoint)
+        budgets = Budgets(max_steps=self.flags.max_steps, time_s=self.flags.time_budget)
+        agent = Agent(self.planner, self.camera, self.perception, folder, budgets=budgets, labels=labels)
         with TraceWriter(folder.trace) as trace:
 
             def both(record: Started | Decided | Called | Ended) -> None:
@@ -85,53 +72,66 @@ class Session:
             return await agent.run(instruction, conversation=conversation, listener=both)
 
     async def close(self) -> None:
-        await self.opened.aclose()
+        """Close the camera and the connections to model servers."""
+        await self.camera.close()
         await self.perception.close()
         await self.planner.close()
 
 
-def ask(instruction: str, options: Asking) -> int:
-    """Carry out one instruction and show it; the exit code."""
+def ask(instruction: str, flags: SessionFlags, models: ModelOptions, *, as_json: bool, next_steps: bool) -> int:
+    """Carry out one instruction, show it, and return the exit code."""
     if not instruction.strip():
         raise InputError("The instruction is empty. Say what the camera should do.")
     folder: RunFolder | None = None
 
     async def work() -> None:
         nonlocal folder
-        session = await Session.open(options)
-        folder = RunFolder.create(options.runs_dir, instruction)
-        view: Listener = (lambda _: None) if options.as_json else LiveView(Console(highlight=False))
+        session = await Session.open(flags, models, realtime=flags.in_real_time(as_json=as_json))
         try:
+            await checkpoint()
+            folder = RunFolder.create(session.runs_dir, instruction)
+            view: Listener = (lambda _: None) if as_json else LiveView(Console(highlight=False))
             await session.run(instruction, folder, view)
         finally:
-            folder.discard_if_empty()
             with anyio.CancelScope(shield=True):
                 await session.close()
 
-    cancelled = False
     try:
-        anyio.run(work)
-    except KeyboardInterrupt:
-        cancelled = True
+        run_until_interrupted(work)
+    finally:
+        if folder is not None:
+            folder.discard_if_not_started()
     if folder is None or not folder.trace.is_file():
-        return CANCELLED
-    return _report(folder, options, CANCELLED if cancelled else None)
+        raise KeyboardInterrupt
+    with interrupts_handled_by(signal.SIG_IGN):
+        code = _report(folder, as_json=as_json)
+    if next_steps and not as_json and code == 0:
+        Console(highlight=False).print(_NEXT_STEPS.format(folder=folder.path), soft_wrap=True, markup=False)
+    return code
 
 
-def _report(folder: RunFolder, options: Asking, code: int | None) -> int:
+def make_filmstrip(trace: Trace) -> Path | None:
+    """Draw a run's filmstrip, unless the instruction was not understood or refused before anything was done."""
+    if not trace.calls and (trace.ended is None or trace.ended.outcome in ("clarification", "refused")):
+        return None
+    return write_filmstrip(trace)
+
+
+def _report(folder: RunFolder, *, as_json: bool) -> int:
     trace = read_trace(folder.path)
     if trace.ended is None:
         return CANCELLED
-    filmstrip = write_filmstrip(trace)
-    if options.as_json:
+    filmstrip = make_filmstrip(trace)
+    if as_json:
         put_json(summary(trace.calls, trace.ended, folder.path))
     else:
-        show_end(Console(highlight=False), trace.ended, trace.started.labels.perception_note, folder.path, filmstrip)
-    return exit_code(trace.ended.outcome) if code is None else code
+        console = Console(highlight=False)
+        show_end(console, trace.ended, trace.started.labels.perception_note, folder.path, filmstrip)
+    return exit_code(trace.ended.outcome)
 
 
 def summary(calls: tuple[Called, ...], ended: Ended, folder: Path) -> dict[str, Any]:
-    """The one object that ``scope ask --json`` prints."""
+    """Return the object that ``scope ask --json`` prints."""
     return {
         "answer": ended.text,
         "outcome": ended.outcome,

@@ -16,6 +16,7 @@ from scope_ptz.agent.records import Called, Decided, Ended, Started
 from scope_ptz.agent.timing import Timings
 from scope_ptz.planner.base import CallTools, ToolCall
 
+SHOWN_CHARS = 300  # longer instructions and arguments are cut when printed
 _OUTCOME_WORDS = {
     "answered": ("Answer", "bold green"),
     "clarification": ("Question", "bold yellow"),
@@ -31,6 +32,11 @@ _OUTCOME_WORDS = {
 def plain(text: str) -> str:
     """Text from outside without control characters: a sign or a model must not steer the terminal."""
     return "".join(c if c.isprintable() or c == "\n" else " " for c in text)
+
+
+def shortened(text: str, most: int = SHOWN_CHARS) -> str:
+    """Return at most the first characters of a text, with the length of the whole if something was cut off."""
+    return text if len(text) <= most else f"{text[:most].rstrip()}… ({len(text)} characters)"
 
 
 def arguments_text(arguments: dict[str, Any]) -> str:
@@ -96,13 +102,23 @@ class LiveView:
         self.console.print(table)
 
 
-def show_end(console: Console, ended: Ended, note: str, folder: Path, filmstrip: Path | None) -> None:
-    """The answer, what it rests on, where the time went, and where everything is kept."""
+def show_end(console: Console, ended: Ended, note: str = "", folder: Path | None = None, filmstrip: Path | None = None) -> None:
+    """Print the answer, what it is based on, where the time went, and where the run is kept.
+
+    Args:
+        console: Where to print.
+        ended: The run's last record.
+        note: What perception is, if it is not a model.
+        folder: The run folder; without one only the answer is printed.
+        filmstrip: The run's picture, if one was made.
+    """
     title, style = _OUTCOME_WORDS[ended.outcome]
     console.print()
     console.print(Text.assemble((f"{title}: ", style), (plain(ended.text), "bold")))
     if note:
         console.print(Text(note, style="yellow"))
+    if folder is None:
+        return
     console.print(Text(timings_text(ended.timings), style="dim"))
     console.print(Text(f"Run folder: {folder}", style="dim"), soft_wrap=True)
     if filmstrip is not None:

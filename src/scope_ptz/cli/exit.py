@@ -17,13 +17,15 @@ import json
 import os
 import signal
 import sys
-from collections.abc import Iterator
+import threading
+from collections.abc import Awaitable, Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Any, TextIO, cast
 
 from scope_ptz.errors import InputError, PackError, ScopeError, ToolCallError, TraceError
 
 FAILED, BAD_INPUT, UNCLEAR, REFUSED, CANCELLED = 1, 2, 3, 4, 130
+_FORCED = 3  # presses of Ctrl-C that end the program without clean-up
 EXIT_CODES = "Exit codes: 0 done, 1 failed, 2 wrong input or a damaged file, 3 clarification needed, 4 refused, 130 cancelled."
 
 _BY_OUTCOME = {"answered": 0, "clarification": UNCLEAR, "refused": REFUSED, "cancelled": CANCELLED}
@@ -69,6 +71,51 @@ def exit_on_error(*, as_json: bool = False) -> Iterator[None]:
         _ignore_interrupts()
         complain("cancelled.")
         sys.exit(CANCELLED)
+
+
+def run_until_interrupted(work: Callable[[], Awaitable[None]]) -> bool:
+    """Run a coroutine function, and cancel it at the first Ctrl-C.
+
+    The work then has time to record how it ended; a second Ctrl-C is ignored, and the third one ends the program at once.
+
+    Returns:
+        Whether it was cancelled.
+    """
+    import asyncio
+
+    import anyio
+
+    async def supervised() -> bool:
+        loop, presses = asyncio.get_running_loop(), 0
+        with anyio.CancelScope() as scope:
+
+            def interrupt(*_: object) -> None:
+                nonlocal presses
+                presses += 1
+                if presses == 1:
+                    loop.call_soon_threadsafe(scope.cancel)
+                elif presses == _FORCED:
+                    os._exit(CANCELLED)
+
+            with interrupts_handled_by(interrupt):
+                await work()
+        return scope.cancelled_caught
+
+    return anyio.run(supervised)
+
+
+@contextmanager
+def interrupts_handled_by(handler: Callable[..., None] | signal.Handlers) -> Iterator[None]:
+    """Handle Ctrl-C otherwise for a while. Outside the main thread, or where the program ignores Ctrl-C, nothing changes."""
+    main = threading.current_thread() is threading.main_thread()
+    if not main or signal.getsignal(signal.SIGINT) in (signal.SIG_IGN, None):
+        yield
+        return
+    before = signal.signal(signal.SIGINT, handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 @contextmanager

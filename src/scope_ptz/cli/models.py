@@ -9,7 +9,7 @@ from rich.table import Table
 from rich.text import Text
 
 from scope_ptz.cli.display import plain
-from scope_ptz.cli.endings import put, put_json
+from scope_ptz.cli.exit import put, put_json
 from scope_ptz.errors import ConfigError, UnknownNameError
 from scope_ptz.registry import Model, Registry, Role, load_registry
 from scope_ptz.registry.entries import RUNTIME_GB, WINDOW

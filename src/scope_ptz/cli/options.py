@@ -24,10 +24,12 @@ from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 import typer
 
 from scope_ptz.cli.exit import exit_on_error
+from scope_ptz.errors import InputError
 
 if TYPE_CHECKING:
     from scope_ptz.factory.models import ModelOptions
 
+DEFAULT_SCENE = "highway-works"
 CAMERA_PANEL, RUN_PANEL, MODEL_PANEL, JUDGE_PANEL = "Camera", "Run", "Models", "Judge"
 
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON and nothing else.")]
@@ -67,6 +69,13 @@ class StartFlags:
         ),
     ] = None
 
+    @property
+    def scene_name(self) -> str:
+        """The scene of a simulated camera."""
+        if self.camera is not None and self.scene is not None:
+            raise InputError("Give --camera or --scene, not both: --scene NAME is short for --camera sim:NAME.")
+        return self.scene or (self.camera or DEFAULT_SCENE).removeprefix("sim:")
+
 
 @dataclass(frozen=True, kw_only=True)
 class SessionFlags(StartFlags):
@@ -94,6 +103,10 @@ class SessionFlags(StartFlags):
         ),
     ] = None
     seed: Annotated[int, typer.Option("--seed", help="Seed for every random choice.", rich_help_panel=RUN_PANEL)] = 0
+
+    def in_real_time(self, *, as_json: bool = False) -> bool:
+        """Return whether moves take real time: as requested, else for a person at a terminal but not for a program."""
+        return self.realtime if self.realtime is not None else sys.stdout.isatty() and not as_json
 
 
 @dataclass(frozen=True, kw_only=True)

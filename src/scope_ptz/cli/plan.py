@@ -5,20 +5,24 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 from rich.console import Console
 from rich.text import Text
 
-from scope_ptz.cli.display import arguments_text, plain
-from scope_ptz.cli.endings import BAD_INPUT, complain, put_json
+from scope_ptz.cli.display import arguments_text, plain, shortened
+from scope_ptz.cli.exit import BAD_INPUT, complain, put_json
 from scope_ptz.errors import InputError
+from scope_ptz.planner.base import MAX_INSTRUCTION_CHARS
+from scope_ptz.planner.grammar.outline import OutlineBlock, OutlineCall
+from scope_ptz.planner.plan import Plan
 from scope_ptz.planner.plan import plan as make_plan
+
+_INDENT = 5
 
 
 class _Line(BaseModel):
-    """One line of a file of instructions. Other fields are allowed, so that a test set can be given as it is."""
+    """One line of a file of instructions. Other fields are ignored, so that a task file can be given as it is."""
 
     model_config = ConfigDict(strict=True)
 
@@ -27,12 +31,12 @@ class _Line(BaseModel):
 
 
 def plan(instruction: str | None, presets: str | None, source: Path | None, *, as_json: bool) -> int:
-    """Plan one instruction or a file of them; the exit code."""
+    """Plan one instruction or a file of them, and return the exit code."""
     if (instruction is None) == (source is None):
         raise InputError("Give an instruction, or a file of them with --from.")
     if source is not None:
         if presets is not None:
-            raise InputError("With --from the presets stand in the file, one list a line.")
+            raise InputError("With --from, presets are given in the file: one list per line.")
         return _plan_file(source, as_json=as_json)
     names = [name.strip() for name in (presets or "").split(",") if name.strip()]
     _show(_planned(instruction or "", names), as_json=as_json)
@@ -59,30 +63,43 @@ def _plan_file(source: Path, *, as_json: bool) -> int:
 
 
 def _lines(source: Path) -> Iterator[str]:
-    if str(source) == "-":
-        yield from sys.stdin
-        return
     try:
+        if str(source) == "-":
+            yield from sys.stdin
+            return
         with source.open(encoding="utf-8") as file:
             yield from file
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"{source} cannot be read: {error}.") from error
 
 
-def _planned(instruction: str, presets: list[str]) -> dict[str, Any]:
+def _planned(instruction: str, presets: list[str]) -> Plan:
     if not instruction.strip():
         raise InputError("The instruction is empty. Say what the camera should do.")
-    return make_plan(instruction, presets).as_dict()
+    if len(instruction) > MAX_INSTRUCTION_CHARS:
+        raise InputError(f"The instruction is longer than {MAX_INSTRUCTION_CHARS} characters.")
+    return make_plan(instruction, presets)
 
 
-def _show(planned: dict[str, Any], *, as_json: bool) -> None:
+def _show(planned: Plan, *, as_json: bool) -> None:
     if as_json:
-        put_json(planned)
+        put_json(planned.as_dict())
         return
     console = Console(highlight=False)
-    console.print(Text.assemble(("› ", "bold cyan"), (plain(planned["instruction"]), "bold")))
-    for number, call in enumerate(planned["calls"], 1):
-        line = Text.assemble((f"{number:3d}  ", "cyan"), (call["name"], "bold"), f"({arguments_text(call['arguments'])})")
-        console.print(line)
-    if planned["clarification"] is not None:
-        console.print(Text(plain(planned["clarification"]), style="yellow"))
+    console.print(Text.assemble(("› ", "bold cyan"), (plain(shortened(planned.instruction)), "bold")))
+    number = 0
+    for line in planned.outline.lines:
+        numbered = isinstance(line, OutlineCall) or not line.heading.startswith(("otherwise", "if that never"))
+        number += numbered
+        _show_line(console, line, f"{number:3d}  " if numbered else " " * _INDENT)
+    if planned.clarification is not None:
+        console.print(Text(plain(shortened(planned.clarification)), style="yellow"))
+
+
+def _show_line(console: Console, line: OutlineCall | OutlineBlock, lead: str) -> None:
+    if isinstance(line, OutlineCall):
+        console.print(Text.assemble((lead, "cyan"), (line.name, "bold"), f"({arguments_text(line.arguments)})"))
+        return
+    console.print(Text.assemble((lead, "cyan"), (plain(line.heading), "yellow")))
+    for inner in line.lines:
+        _show_line(console, inner, " " * (len(lead) + 4))

@@ -1,49 +1,48 @@
-"""``scope profile``: what a pair does on the user's own servers: speed, well-formed calls, perception latency, and the verdict on
-the paper's real-time bar."""
+"""``scope profile``: what a pair does on the user's own servers, and whether it meets the paper's real-time bar."""
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 import anyio
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel, ConfigDict
 from rich.console import Console
 from rich.progress import Progress, TextColumn
+from rich.text import Text
 
-from scope_ptz.cli.endings import FAILED, put_json
-from scope_ptz.cli.profile_report import PerceptionSpeed, Side, show
+from scope_ptz.cli.display import plain
+from scope_ptz.cli.exit import FAILED, put_json
 from scope_ptz.endpoints.serving_facts import memory_gb, serving_facts
-from scope_ptz.errors import InputError, PerceptionError
-from scope_ptz.factory.cameras import open_camera
-from scope_ptz.factory.models import (
-    ModelOptions,
-    ResolvedPerception,
-    ResolvedPlanner,
-    make_perception,
-    make_planner,
-    resolve_models,
-)
-from scope_ptz.factory.scenes import open_scene
-from scope_ptz.planner.profile import Row, Sensitivity, ask_once, load_rows, measure_sensitivity
-from scope_ptz.planner.profile.speed import Spread, speed_of
+from scope_ptz.errors import InputError
+from scope_ptz.factory.models import ModelOptions, ResolvedPerception, ResolvedPlanner, resolve_models
+from scope_ptz.factory.session import Start, make_perception, make_planner, open_camera, open_scene
+from scope_ptz.planner.profile import Row, Sensitivity, ask_once, load_rows, measure_sensitivity, read_rows
+from scope_ptz.planner.profile.perception_speed import PerceptionSpeed, measure_perception
+from scope_ptz.planner.profile.report import Rate
+from scope_ptz.planner.profile.speed import Speed, Spread, speed_of
 
 if TYPE_CHECKING:
     from scope_ptz.camera.base import Frame
-    from scope_ptz.perception.base import Perception
 
-REAL_TIME_S = 0.5
-"""The paper's bar: a control loop of about 2 Hz, 500 ms an inference or less."""
-THING, QUESTION = "car", "What is the main thing in this picture? Answer in a few words."
+REAL_TIME_S = 0.5  # the paper's bar: a control loop of about 2 Hz, so at most 500 ms per inference
+_FURTHER_DEG = 7.0  # how far the camera turns on from a preset when more frames are requested than there are presets
 
 
 @dataclass(frozen=True, slots=True)
 class Extent:
-    """How much to measure. ``instructions``: a file in place of the packaged set; ``limit``: so many of them, evenly chosen."""
+    """How much to measure.
+
+    Attributes:
+        instructions: A file to use instead of the packaged instructions.
+        limit: Maximum number of instructions, sampled evenly.
+        frames: Number of frames for perception.
+        scene: Scene that the frames are taken from.
+        prompts: Whether to measure the effect of small edits of prompt and instruction.
+    """
 
     instructions: Path | None = None
     limit: int | None = None
@@ -52,20 +51,41 @@ class Extent:
     prompts: bool = False
 
 
-def profile(wishes: ModelOptions, extent: Extent, *, as_json: bool) -> int:
-    """Measure and print; exit code 0 whatever the verdict is, 1 when there is nothing to judge: no request of a side succeeded."""
+class Side(BaseModel):
+    """A planner or perception as measured. ``meets_real_time`` is None if nothing, or nothing of one skill, succeeded."""
+
+    model_config = ConfigDict(frozen=True)
+
+    name: str
+    served_as: str = ""
+    url: str = ""
+    planner: Speed | None = None
+    perception: PerceptionSpeed | None = None
+    slowest_median_s: float | None = None
+    meets_real_time: bool | None = None
+    memory_gb: float | None = None
+    computed_memory_gb: float | None = None
+    serving: dict[str, str] = {}
+
+
+def profile(options: ModelOptions, extent: Extent, *, as_json: bool) -> int:
+    """Measure a pair and print the report.
+
+    Returns:
+        0 whether or not the bar is met; 1 if there is nothing to judge, because no request of a side succeeded.
+    """
     report: dict[str, Any] = {}
     rows = _rows(extent)
 
     async def work() -> None:
-        choice = await resolve_models(wishes)
-        if choice.planner.endpoint is None and choice.perception.spec is None:
-            raise InputError("Say what to profile: a pair, or a planner or eyes with the address of its server.")
+        choice = await resolve_models(options)
+        if choice.planner.endpoint is None and choice.eyes.spec is None:
+            raise InputError("Name what to profile: a pair, or a planner or perception with the address of its server.")
         sides = {}
         if choice.planner.endpoint is not None:
             sides["planner"] = await _planner_side(choice.planner, rows)
-        if choice.perception.spec is not None:
-            sides["eyes"] = await _eyes_side(choice.perception, extent)
+        if choice.eyes.spec is not None:
+            sides["perception"] = await _perception_side(choice.eyes, extent)
         report.update({role: side.model_dump() for role, side in sides.items()})
         report["real_time"] = _verdict([side.meets_real_time for side in sides.values()])
         if extent.prompts and "planner" in sides and sides["planner"].meets_real_time is not None:
@@ -75,49 +95,20 @@ def profile(wishes: ModelOptions, extent: Extent, *, as_json: bool) -> int:
     if as_json:
         put_json(report)
     else:
-        show(Console(highlight=False), report)
+        _show(Console(highlight=False), report)
     return FAILED if report["real_time"] == "unknown" else 0
 
 
 def _rows(extent: Extent) -> tuple[Row, ...]:
-    rows = load_rows() if extent.instructions is None else _read(extent.instructions)
+    rows = load_rows() if extent.instructions is None else read_rows(extent.instructions)
     if extent.limit is not None and extent.limit < len(rows):
         rows = tuple(rows[i * len(rows) // extent.limit] for i in range(extent.limit))
     return rows
 
 
-def _read(source: Path) -> tuple[Row, ...]:
-    """The lines of a file of instructions that have calls; other lines expect a question back, and are no test of calls."""
-    try:
-        lines = source.read_text(encoding="utf-8").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{source} cannot be read: {error}.") from error
-    rows: list[Row] = []
-    for number, line in enumerate(lines, 1):
-        if not line.strip():
-            continue
-        try:
-            given = _Line.model_validate_json(line)
-            if given.calls:
-                rows.append(Row.model_validate(given.model_dump()))
-        except ValidationError as error:
-            first = error.errors(include_url=False)[0]
-            where = ".".join(str(part) for part in first["loc"])
-            raise InputError(f"{source}, line {number}: {f'{where}: ' if where else ''}{first['msg']}.") from error
-    if not rows:
-        raise InputError(f"{source} holds no instruction with expected calls.")
-    return tuple(rows)
-
-
-class _Line(BaseModel):
-    instruction: str
-    kind: str = ""
-    calls: list[dict[str, Any]] = []
-    alternatives: tuple[str, ...] = ()
-
-
+# Measuring -------------------------------------------------------------------------------------------------------------
 async def _planner_side(choice: ResolvedPlanner, rows: tuple[Row, ...]) -> Side:
-    assert choice.endpoint is not None  # noqa: S101 - asked for only then
+    assert choice.endpoint is not None  # noqa: S101 - called only with a server
     planner, trials = make_planner(choice), []
     try:
         first = await ask_once(planner, rows[0])  # Loads the model, opens the connection, fills the prefix cache
@@ -128,97 +119,67 @@ async def _planner_side(choice: ResolvedPlanner, rows: tuple[Row, ...]) -> Side:
     finally:
         await planner.close()
     speed, facts = speed_of(trials, first), await serving_facts(choice.endpoint)
-    middle = speed.turn_s.median if speed.turn_s else None
     return Side(
         name=choice.name,
         served_as=choice.endpoint.model,
         url=choice.endpoint.url,
         planner=speed,
-        slowest_median_s=middle,
-        meets_real_time=None if middle is None else middle <= REAL_TIME_S,
         memory_gb=memory_gb(facts),
         computed_memory_gb=choice.model.memory_for() if choice.model else None,
         serving=facts,
+        **_against_bar(speed.turn_s.median if speed.turn_s else None),
     )
 
 
-async def _eyes_side(choice: ResolvedPerception, extent: Extent) -> Side:
-    assert choice.spec is not None  # noqa: S101 - asked for only then
+async def _perception_side(choice: ResolvedPerception, extent: Extent) -> Side:
+    assert choice.spec is not None  # noqa: S101 - called only with a backend
     frames = await _frames(extent.scene, extent.frames)
-    eyes = make_perception(choice, open_scene, 0)
+    perception, _ = make_perception(choice, open_scene(extent.scene), 0)
     try:
-        speed = await _look(eyes, frames)
+        with _bar("perception", len(frames) * len(perception.skills)) as advance:
+            speed = await measure_perception(perception, frames, advance)
     finally:
-        await eyes.close()
+        await perception.close()
     facts = await serving_facts(choice.spec.endpoint) if choice.spec.endpoint else {}
-    # A skill that never worked is not fast.
-    slowest = max((spread.median for spread in speed.by_skill.values()), default=None) if not speed.never_worked else None
     return Side(
         name=choice.name,
         served_as=choice.spec.model,
         url=choice.spec.endpoint.url if choice.spec.endpoint else "",
-        eyes=speed,
-        slowest_median_s=slowest,
-        meets_real_time=None if slowest is None else slowest <= REAL_TIME_S,
+        perception=speed,
         memory_gb=memory_gb(facts),
         computed_memory_gb=choice.model.memory_for() if choice.model else None,
         serving=facts,
+        **_against_bar(speed.slowest_median_s),
     )
 
 
+def _against_bar(median_s: float | None) -> dict[str, Any]:
+    return {"slowest_median_s": median_s, "meets_real_time": None if median_s is None else median_s <= REAL_TIME_S}
+
+
 async def _frames(scene_name: str, count: int) -> list[Frame]:
-    """Frames of a scene's presets, and turned on from them when more are wanted: no two alike, so that nothing is cached."""
+    """Return frames of a scene's presets, turned on from them if more are requested, so that no two are alike."""
     from scope_ptz.geometry import Pose
 
-    async with await open_camera(scene_name) as opened:
-        camera = opened.camera
+    camera = await open_camera(Start(scene=scene_name), open_scene(scene_name), realtime=False)
+    try:
         names = [preset.name for preset in await camera.presets()]
         frames = []
         for index in range(count):
             await camera.go_to_preset(names[index % len(names)])
             if index >= len(names):
                 pose = await camera.pose()
-                await camera.move(Pose(pose.pan_deg + 7.0 * (index // len(names)), pose.tilt_deg, pose.zoom))
+                await camera.move(Pose(pose.pan_deg + _FURTHER_DEG * (index // len(names)), pose.tilt_deg, pose.zoom))
             frames.append(await camera.frame())
         return frames
-
-
-async def _look(eyes: Perception, frames: list[Frame]) -> PerceptionSpeed:
-    skills: dict[str, Callable[[Frame], Awaitable[object]]] = {
-        "query": lambda frame: eyes.query(frame, QUESTION),
-        "caption": eyes.caption,
-        "detect": lambda frame: eyes.detect(frame, THING),
-        "point": lambda frame: eyes.point(frame, THING),
-    }
-    times: dict[str, list[float]] = {name: [] for name in skills if name in eyes.skills}
-    failures: dict[str, int] = {}
-    first = ""
-    with _bar("eyes", len(frames) * len(times)) as advance:
-        for number, frame in enumerate([frames[0], *frames]):
-            for name in times:
-                began = perf_counter()
-                try:
-                    await skills[name](frame)
-                    if number:  # The first round loads the model and opens the connection
-                        times[name].append(perf_counter() - began)
-                except PerceptionError as error:
-                    kind, first = error.kind or "perception", first or str(error)
-                    failures[kind] = failures.get(kind, 0) + bool(number)
-                advance(bool(number))
-    by_skill = {name: spread for name, values in times.items() if (spread := Spread.of(values)) is not None}
-    return PerceptionSpeed(
-        frames=len(frames),
-        by_skill=by_skill,
-        never_worked=tuple(name for name in times if name not in by_skill),
-        failures={k: n for k, n in failures.items() if n},
-        first_failure=first,
-    )
+    finally:
+        await camera.close()
 
 
 async def _sensitivity(choice: ResolvedPlanner, rows: tuple[Row, ...]) -> Sensitivity:
     from scope_ptz.planner.chat import ChatOptions, ChatPlanner, Prompt, load_prompt
 
-    assert choice.endpoint is not None  # noqa: S101 - asked for only then
+    assert choice.endpoint is not None  # noqa: S101 - called only with a server
     endpoint, options = choice.endpoint, choice.options or ChatOptions()
 
     def make(prompt: Prompt) -> ChatPlanner:
@@ -234,10 +195,89 @@ def _verdict(sides: list[bool | None]) -> str:
 
 
 @contextmanager
-def _bar(about: str, total: int) -> Iterator[Callable[..., None]]:
-    """A progress bar on stderr, for terminals only."""
+def _bar(title: str, total: int) -> Iterator[Callable[[], None]]:
+    """Show a progress bar on stderr, if that is a terminal; the function that is yielded advances it."""
     console = Console(stderr=True)
-    columns = (*Progress.get_default_columns(), TextColumn(about))
+    columns = (*Progress.get_default_columns(), TextColumn(title))
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
-        task = progress.add_task(about, total=total)
-        yield lambda steps=1: progress.advance(task, int(steps))
+        task = progress.add_task(title, total=total)
+        yield lambda: progress.advance(task)
+
+
+# Printing --------------------------------------------------------------------------------------------------------------
+_VERDICTS = {
+    "met": ("met", "bold green"),
+    "missed": ("missed", "bold yellow"),
+    "unknown": ("unknown, because something never worked", "bold red"),
+}
+
+
+def _show(console: Console, report: dict[str, Any]) -> None:
+    for role in ("planner", "perception"):
+        if role in report:
+            _show_side(console, role, Side.model_validate(report[role]))
+    console.print(Text.assemble("Real-time bar of the paper (2 Hz, 500 ms per inference): ", _VERDICTS[report["real_time"]]))
+    if "prompts" in report:
+        _show_prompts(console, Sensitivity.model_validate(report["prompts"]))
+
+
+def _show_side(console: Console, role: str, side: Side) -> None:
+    served = f", served as {side.served_as}" if side.served_as not in ("", side.name) else ""
+    address = f" at {side.url}" if side.url else ""
+    console.print(Text.assemble((f"{role} {side.name}", "bold"), f"{served}{address}"), soft_wrap=True)
+    if side.planner is not None:
+        _show_planner(console, side.planner)
+    if side.perception is not None:
+        _show_perception(console, side.perception)
+    reported = f"{side.memory_gb:g} GB, reported by the server" if side.memory_gb is not None else "not reported by the server"
+    computed = f"; computed: {side.computed_memory_gb:g} GB" if side.computed_memory_gb is not None else ""
+    console.print(f"  {'memory':16}{reported}{computed}")
+    for name, value in side.serving.items():
+        console.print(Text(plain(f"  {name}: {value}"), style="dim"), soft_wrap=True)
+
+
+def _show_planner(console: Console, speed: Speed) -> None:
+    console.print(f"  {speed.turns} instructions, first step of each")
+    _show_spread(console, "first token", speed.first_token_s, " s")
+    _show_spread(console, "whole turn", speed.turn_s, " s")
+    _show_spread(console, "tokens/s", speed.tokens_per_s, "")
+    for label, rate in (("valid calls", speed.valid), ("expected call", speed.right), ("inverted moves", speed.inverted)):
+        interval = "" if rate.share is None else f", 95% {rate.low:.0%} to {rate.high:.0%}"
+        console.print(f"  {label:16}{_rate(rate, interval)}")
+    _show_failures(console, speed.failures, speed.first_failure)
+
+
+def _show_perception(console: Console, speed: PerceptionSpeed) -> None:
+    console.print(f"  {speed.frames} frames")
+    for skill, spread in speed.by_skill.items():
+        _show_spread(console, skill, spread, " s")
+    for skill in speed.never_worked:
+        console.print(Text(f"  {skill:16}never worked", style="red"))
+    _show_failures(console, speed.failures, speed.first_failure)
+
+
+def _rate(rate: Rate, interval: str = "") -> str:
+    return "-" if rate.share is None else f"{rate.share:.1%} ({rate.count} of {rate.of}{interval})"
+
+
+def _show_spread(console: Console, label: str, spread: Spread | None, unit: str) -> None:
+    console.print(f"  {label:16}{'-' if spread is None else f'{spread.median:.3g}{unit} (95%: {spread.p95:.3g}{unit})'}")
+
+
+def _show_failures(console: Console, failures: dict[str, int], first: str) -> None:
+    if failures:
+        console.print(Text(f"  {'failures':16}{', '.join(f'{n} {kind}' for kind, n in failures.items())}", style="red"))
+    if failures and first:
+        console.print(Text(f"  {'first failure':16}{plain(first)}", style="red"), soft_wrap=True)
+
+
+def _show_prompts(console: Console, result: Sensitivity) -> None:
+    console.print(Text(f"prompt {result.prompt}, {result.instructions} instructions", style="bold"))
+    rates = {
+        "tools changed by prompt edits": result.by_prompt,
+        "by instruction edits": result.by_instruction,
+        "by nothing (noise)": result.noise,
+        "inverted moves, all trials": result.inverted_anywhere,
+    }
+    for label, rate in rates.items():
+        console.print(f"  {label:32}{_rate(rate)}")
