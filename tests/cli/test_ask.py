@@ -23,7 +23,7 @@ def runs(root: Path) -> list[Path]:
 
 def follow(monkeypatch: pytest.MonkeyPatch, *script: Step) -> None:
     """Let a script plan instead of the built-in planner."""
-    monkeypatch.setattr("scope_ptz.cli.asking.make_planner", lambda _: ScriptedPlanner(*script))
+    monkeypatch.setattr("scope_ptz.cli.ask.make_planner", lambda _: ScriptedPlanner(*script))
 
 
 def test_json_is_one_object_with_the_promised_fields(scope: Scope, tmp_path: Path) -> None:

@@ -126,7 +126,8 @@ def _report(folder: RunFolder, *, as_json: bool) -> int:
         put_json(summary(trace.calls, trace.ended, folder.path))
     else:
         console = Console(highlight=False)
-        show_end(console, trace.ended, trace.started.labels.perception_note, folder.path, filmstrip)
+        note = trace.started.labels.perception_note if filmstrip else ""
+        show_end(console, trace.ended, note, folder.path, filmstrip)
     return exit_code(trace.ended.outcome)
 
 

@@ -1,4 +1,4 @@
-"""What a person sees of a run while it happens, and at its end."""
+"""What a person sees of a run, while it happens and at its end."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ from scope_ptz.agent.records import Called, Decided, Ended, Started
 from scope_ptz.agent.timing import Timings
 from scope_ptz.planner.base import CallTools, ToolCall
 
-SHOWN_CHARS = 300  # longer instructions and arguments are cut when printed
+MESSAGE_CHARS = 2000  # longer messages of tools are cut when printed
+SHOWN_CHARS = 200  # longer instructions and arguments are cut when printed
 _OUTCOME_WORDS = {
     "answered": ("Answer", "bold green"),
     "clarification": ("Question", "bold yellow"),
@@ -30,7 +31,7 @@ _OUTCOME_WORDS = {
 
 
 def plain(text: str) -> str:
-    """Text from outside without control characters: a sign or a model must not steer the terminal."""
+    """Return text without control characters, so that a sign in a scene or a model cannot control the terminal."""
     return "".join(c if c.isprintable() or c == "\n" else " " for c in text)
 
 
@@ -40,13 +41,13 @@ def shortened(text: str, most: int = SHOWN_CHARS) -> str:
 
 
 def arguments_text(arguments: dict[str, Any]) -> str:
-    """Arguments as people read them: ``pan_deg=15, view=current``."""
+    """Return arguments as people read them: ``pan_deg=15, view=current``."""
     parts = (f"{k}={v if isinstance(v, str) and v.isprintable() else json.dumps(v)}" for k, v in arguments.items())
-    return plain(", ".join(parts))
+    return plain(shortened(", ".join(parts)))
 
 
 def seconds(value: float) -> str:
-    """A duration with two useful digits."""
+    """Return a duration with its unit."""
     return f"{value:.1f} s" if value >= 1 else f"{value * 1000:.0f} ms"
 
 
@@ -77,7 +78,7 @@ class LiveView:
             self._status.start()
 
     def _start(self, record: Started) -> None:
-        self.console.print(Text.assemble(("› ", "bold cyan"), (plain(record.instruction), "bold")))
+        self.console.print(Text.assemble(("› ", "bold cyan"), (plain(shortened(record.instruction)), "bold")))
         about = f"{record.camera} · planner {record.planner} · perception {record.perception}"
         self.console.print(Padding(Text(plain(about), style="dim"), (0, 0, 0, 2)))
         self.console.print()
@@ -96,9 +97,9 @@ class LiveView:
             Text(seconds(record.timings.total_s), style="dim"),
         )
         if outcome.error is not None:
-            table.add_row("", "", Text(plain(outcome.error), style="red"), "")
+            table.add_row("", "", Text(plain(shortened(outcome.error)), style="red"), "")
         elif outcome.result is not None:
-            table.add_row("", "", Text(plain(str(outcome.result["message"])), style="green"), "")
+            table.add_row("", "", Text(plain(shortened(str(outcome.result["message"]), MESSAGE_CHARS)), style="green"), "")
         self.console.print(table)
 
 
@@ -126,7 +127,7 @@ def show_end(console: Console, ended: Ended, note: str = "", folder: Path | None
 
 
 def timings_text(timings: Timings) -> str:
-    """Where the time went."""
+    """Return a sentence that says where the time went."""
     parts = (("planner", timings.planner_s), ("perception", timings.perception_s), ("camera", timings.camera_s))
     split = ", ".join(f"{name} {seconds(value)}" for name, value in (*parts, ("rendering", timings.render_s)))
-    return f"{seconds(timings.total_s)} in all: {split}."
+    return f"{seconds(timings.total_s)} in total: {split}."

@@ -235,9 +235,7 @@ class ModelFlags:
 
 
 @dataclass(frozen=True, kw_only=True)
-class PairFlags(ModelFlags):
-    """The options about models, with ``--pair`` as the short form."""
-
+class _PairFlag:
     pair: Annotated[
         str | None,
         typer.Option(
@@ -246,6 +244,11 @@ class PairFlags(ModelFlags):
             rich_help_panel=MODEL_PANEL,
         ),
     ] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class PairFlags(ModelFlags, _PairFlag):
+    """The options about models, with ``--pair`` as the short form. ``--pair`` comes first in the help."""
 
     def options(self, pair: str | None = None) -> ModelOptions:
         """Return these flags as the options that ``factory.resolve_models`` takes."""

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 from rich.console import Console
+from rich.table import Column, Table
 from rich.text import Text
 
 from scope_ptz.cli.display import arguments_text, plain, shortened
@@ -97,9 +98,12 @@ def _show(planned: Plan, *, as_json: bool) -> None:
 
 
 def _show_line(console: Console, line: OutlineCall | OutlineBlock, lead: str) -> None:
+    """Print a line of the outline, and what belongs to it indented below. Long lines continue below their own beginning."""
+    grid = Table.grid(Column(width=len(lead), no_wrap=True), Column())
     if isinstance(line, OutlineCall):
-        console.print(Text.assemble((lead, "cyan"), (line.name, "bold"), f"({arguments_text(line.arguments)})"))
-        return
-    console.print(Text.assemble((lead, "cyan"), (plain(line.heading), "yellow")))
-    for inner in line.lines:
+        grid.add_row(Text(lead, "cyan"), Text.assemble((line.name, "bold"), f"({arguments_text(line.arguments)})"))
+    else:
+        grid.add_row(Text(lead, "cyan"), Text(plain(line.heading), "yellow"))
+    console.print(grid)
+    for inner in line.lines if isinstance(line, OutlineBlock) else ():
         _show_line(console, inner, " " * (len(lead) + 4))

@@ -92,9 +92,7 @@ def show_scene(name: str, sheet: Path | None, *, opened: bool | None, everything
     anyio.run(_write_contact_sheet, scene, path)
     console.print(Text(f"\nContact sheet: {path}"), soft_wrap=True)
     if not everything:
-        console.print(
-            Text(f"`scope scene show {name} --all` prints all texts, how the scene was made, and checksums.", style="dim")
-        )
+        console.print(Text(f"`scope scene show {name} --all` prints everything.", style="dim"))
     if sys.stdout.isatty() and has_desktop() if opened is None else opened:
         typer.launch(str(path))
 

@@ -48,8 +48,7 @@ def outline(steps: Sequence[ast.Step], limits: Limits, pose: Pose, imagined: Ima
         pose: Where the camera starts.
         imagined: Returns what a call might return.
     """
-    program = _Outlining(limits, pose, assume_met=True)
-    program.imagined = imagined
+    program = _Outlining(limits, pose, imagined)
     for _ in program.run(steps):
         raise AssertionError("an outlined program makes no calls")
     return program.outermost
@@ -58,9 +57,9 @@ def outline(steps: Sequence[ast.Step], limits: Limits, pose: Pose, imagined: Ima
 class _Outlining(Program):
     """A program that writes down its calls instead of making them."""
 
-    imagined: Imagined
-
-    def __post_init__(self) -> None:
+    def __init__(self, limits: Limits, pose: Pose, imagined: Imagined) -> None:
+        super().__init__(limits, pose, assume_met=True)
+        self._imagined = imagined
         self.outermost = self._block = OutlineBlock()
         self._lines = 0
 
@@ -68,7 +67,7 @@ class _Outlining(Program):
         yield from ()
         self._add(OutlineCall(tool, arguments))
         call = ToolCall(id=f"call-{self._lines}", name=tool, arguments=arguments)
-        result = self.imagined(tool, arguments)
+        result = self._imagined(tool, arguments)
         self.pose = Pose(**result["pose"])
         return ToolOutcome(call=call, result=result)
 
@@ -138,8 +137,12 @@ def condition_text(condition: ast.Condition) -> str:
             return f"{wish} {first.text} than {second.text} are visible"
         case ast.PresetWins(thing=thing, first=first, second=second, wish=wish):
             return f"{wish} {thing.text} are visible at {first.name} than at {second.name}"
+        case ast.Negated(part=ast.Answered()):
+            return "the answer was no, or nothing was found"
+        case ast.Negated(part=ast.Seen(thing=thing, quantity=quantity)) if quantity == ast.Quantity():
+            return f"no {say.noun(thing.text, 2)} are visible"
         case ast.Negated(part=part):
-            return f"it is not so that {condition_text(part)}"
+            return f"it is not the case that {condition_text(part)}"
         case ast.Joined(parts=parts, mode=mode):
             return say.listed([condition_text(part) for part in parts], "and" if mode == "all" else "or")
     return "the answer was yes, or something was found"
