@@ -1,4 +1,4 @@
-"""Every command of ``scope`` outside ``scope bench``, with its options. Bodies import lazily, so that ``scope --help`` is instant."""
+"""The commands of ``scope`` outside ``scope bench``. Their bodies import lazily, so that ``scope --help`` is instant."""
 
 from __future__ import annotations
 
@@ -189,6 +189,15 @@ def models_serve(
     from scope_ptz.cli.models import serve_command
 
     serve_command(name, server)
+
+
+@models_app.command("plugins")
+@command
+def models_plugins(as_json: JsonOption = False) -> None:
+    """List the cameras, planners and perception that installed plug-ins add."""
+    from scope_ptz.cli.models import list_plugins
+
+    list_plugins(as_json=as_json)
 
 
 @models_app.command("pairs")

@@ -15,13 +15,12 @@ from scope_ptz.agent.loop import Agent
 from scope_ptz.agent.records import Budgets, Called, Decided, Ended, Labels, Listener, Run, Started
 from scope_ptz.agent.store import RunFolder
 from scope_ptz.agent.trace import Trace, TraceWriter, read_trace
-from scope_ptz.camera.base import Camera
 from scope_ptz.cli.display import LiveView, show_end
 from scope_ptz.cli.exit import CANCELLED, exit_code, interrupts_handled_by, put_json, run_until_interrupted
 from scope_ptz.cli.options import SessionFlags
 from scope_ptz.errors import InputError
-from scope_ptz.factory.models import ModelOptions, resolve_models
-from scope_ptz.factory.session import Start, make_perception, make_planner, open_camera, open_scene
+from scope_ptz.factory.cameras import OpenCamera
+from scope_ptz.factory.models import ModelOptions, make_perception, make_planner, perception_note, resolve_models
 from scope_ptz.perception.base import Perception
 from scope_ptz.planner.base import PastTurn, Planner
 from scope_ptz.settings import load_settings
@@ -37,8 +36,9 @@ Next steps:
 class Session:
     """A camera, perception and a planner that stay together for one or several runs."""
 
-    def __init__(self, flags: SessionFlags, camera: Camera, perception: Perception, planner: Planner, note: str) -> None:
-        self.flags, self.camera, self.perception, self.planner, self.note = flags, camera, perception, planner, note
+    def __init__(self, flags: SessionFlags, opened: OpenCamera, perception: Perception, planner: Planner, note: str) -> None:
+        self.flags, self.perception, self.planner, self.note = flags, perception, planner, note
+        self.opened, self.camera = opened, opened.camera
         self.runs_dir = flags.runs_dir or load_settings().runs_dir
 
     @classmethod
@@ -51,12 +51,14 @@ class Session:
             realtime: Whether the camera takes as long for a move as a real one does.
         """
         choice = await resolve_models(models)
-        scene = open_scene(flags.scene_name)
         planner = make_planner(choice.planner)
-        perception, note = make_perception(choice.eyes, scene, flags.seed)
-        start = Start(scene=flags.scene_name, viewpoint=flags.viewpoint, preset=flags.preset, time_s=flags.at)
-        camera = await open_camera(start, scene, realtime=realtime)
-        return cls(flags, camera, perception, planner, note)
+        opened = await flags.open(realtime=realtime)
+        try:
+            perception = make_perception(choice.perception, opened.scenes, flags.seed)
+        except BaseException:
+            await opened.aclose()
+            raise
+        return cls(flags, opened, perception, planner, perception_note(choice.perception))
 
     async def run(self, instruction: str, folder: RunFolder, listener: Listener, conversation: tuple[PastTurn, ...] = ()) -> Run:
         """Carry out one instruction and write its trace."""
@@ -73,7 +75,7 @@ class Session:
 
     async def close(self) -> None:
         """Close the camera and the connections to model servers."""
-        await self.camera.close()
+        await self.opened.aclose()
         await self.perception.close()
         await self.planner.close()
 

@@ -20,8 +20,9 @@ from scope_ptz import __version__
 from scope_ptz.cli.display import plain
 from scope_ptz.cli.exit import FAILED, put_json
 from scope_ptz.errors import ConfigError, InputError, PackError
-from scope_ptz.factory.models import ModelOptions, resolve_models
-from scope_ptz.factory.session import DEFAULT_SCENE, Start, make_perception, open_camera, open_scene, scene_search
+from scope_ptz.factory.cameras import open_camera
+from scope_ptz.factory.models import ModelOptions, make_perception, resolve_models
+from scope_ptz.factory.scenes import DEFAULT_SCENE, scene_search
 from scope_ptz.settings import ScopeSettings, load_settings
 from scope_ptz.simulator.card import folder_bytes, megabytes
 
@@ -78,6 +79,21 @@ def examine(settings: ScopeSettings) -> Iterator[Finding]:
     yield from _scenes(settings)
     yield _runs_dir(settings.runs_dir)
     yield _blender(settings)
+    yield from _plugins()
+
+
+def _plugins() -> Iterator[Finding]:
+    """Load each installed plug-in and try it."""
+    from scope_ptz.factory.plugin_checks import check_plugin
+    from scope_ptz.factory.plugins import list_plugins
+
+    verdicts: dict[str, Verdict] = {"ok": "ok", "partly": "optional", "failed": "missing"}
+    for plugin in list_plugins():
+        check = anyio.run(check_plugin, plugin)
+        remedy = f"Update {plugin.package}, or uninstall it." if check.verdict == "failed" else ""
+        yield Finding(
+            f"{plugin.kind} {plugin.name}", verdicts[check.verdict], f"plug-in of {plugin.package}: {check.detail}", remedy
+        )
 
 
 def _packages() -> Finding:
@@ -148,9 +164,9 @@ def check_servers(options: ModelOptions, *, as_json: bool) -> int:
 
     async def work() -> None:
         choice = await resolve_models(options)
-        if choice.planner.endpoint is None and choice.eyes.spec is None:
+        if choice.planner.endpoint is None and choice.perception.spec is None:
             raise InputError("There is no server to check. Name one with --planner-url, or with --perception and --perception-url.")
-        async for server, check in _server_checks(choice.planner, choice.eyes):
+        async for server, check in _server_checks(choice.planner, choice.perception):
             found.append((server, check))
             if not as_json:
                 _show_check(console, server, check)
@@ -178,15 +194,13 @@ async def _server_checks(planner: ResolvedPlanner, perception: ResolvedPerceptio
     if perception.spec is not None:
         from scope_ptz.perception.examination import check_perception
 
-        scene = open_scene(DEFAULT_SCENE)
-        camera = await open_camera(Start(preset=_PRESET), scene, realtime=False)
-        backend, _ = make_perception(perception, scene, 0)
+        backend = make_perception(perception, None, 0)
         try:
-            async for check in check_perception(backend, await camera.frame(), thing=_THING):
-                yield f"perception {perception.name}", check
+            async with await open_camera(f"sim:{DEFAULT_SCENE}", preset=_PRESET) as opened:
+                async for check in check_perception(backend, await opened.camera.frame(), thing=_THING):
+                    yield f"perception {perception.name}", check
         finally:
             await backend.close()
-            await camera.close()
 
 
 def _show_check(console: Console, server: str, check: Check) -> None:

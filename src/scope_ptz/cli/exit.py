@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import codecs
 import json
+import logging
 import os
 import signal
 import sys
@@ -52,6 +53,20 @@ def complain(message: str) -> None:
     sys.stderr.write(f"scope: {message}\n")
 
 
+class _LogLines(logging.Handler):
+    """Prints the package's warnings as lines on stderr."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        complain(record.getMessage())
+
+
+def _show_warnings() -> None:
+    logger = logging.getLogger("scope_ptz")
+    if not any(isinstance(handler, _LogLines) for handler in logger.handlers):
+        logger.addHandler(_LogLines(logging.WARNING))
+        logger.propagate = False
+
+
 @contextmanager
 def exit_on_error(*, as_json: bool = False) -> Iterator[None]:
     """Turn SCOPE's own errors and Ctrl-C into a message and an exit code.
@@ -59,6 +74,7 @@ def exit_on_error(*, as_json: bool = False) -> Iterator[None]:
     Args:
         as_json: Print the error as a JSON object on stdout, too.
     """
+    _show_warnings()
     try:
         yield
     except ScopeError as error:

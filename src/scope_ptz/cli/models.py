@@ -72,8 +72,36 @@ def list_models(role: str | None, memory_gb: float | None, *, as_json: bool) -> 
             names = ", ".join(f"{m.name} ({m.smallest()[1]:.1f} GB)" for m in smaller)
             console.print(Text(f"With smaller weights, {memory_gb:g} GB are enough for: {names}."), soft_wrap=True)
     console.print(Text(MEMORY_NOTE, style="dim"), soft_wrap=True)
+    _name_plugins(console, only)
     if console.is_terminal:
         console.print(Text("Bold: models of the paper. More: `scope models show NAME`, `scope models pairs`.", style="dim"))
+
+
+def list_plugins(*, as_json: bool) -> None:
+    """Print the installed plug-ins: cameras, planners and perception of other packages."""
+    from scope_ptz.factory.plugins import list_plugins as installed
+
+    rows = [{"kind": p.kind, "name": p.name, "package": p.package, "factory": p.target, "problem": p.problem} for p in installed()]
+    if as_json:
+        put_json(rows, indent=2)
+        return
+    if not rows:
+        put("No plug-ins are installed. docs/plugins.md describes how a package adds a camera, a planner or perception.")
+        return
+    table = Table("kind", "name", "package", "factory", "problem", box=None)
+    for row in rows:
+        table.add_row(*(plain(value) for value in row.values()))
+    _console().print(table)
+
+
+def _name_plugins(console: Console, role: Role | None) -> None:
+    """Name the plug-ins that can be used like the models of the table."""
+    from scope_ptz.factory.plugins import plugins_of
+
+    for kind in ("planner", "perception") if role is None else (role,):
+        names = [f"{plugin.name} ({plugin.package})" for plugin in plugins_of(kind) if not plugin.problem]
+        if names:
+            console.print(Text(plain(f"Plug-ins for --{kind}: {', '.join(names)}")), soft_wrap=True)
 
 
 def show_model(name: str, *, as_json: bool) -> None:

@@ -27,9 +27,9 @@ from scope_ptz.cli.exit import exit_on_error
 from scope_ptz.errors import InputError
 
 if TYPE_CHECKING:
+    from scope_ptz.factory.cameras import OpenCamera
     from scope_ptz.factory.models import ModelOptions
 
-DEFAULT_SCENE = "highway-works"
 CAMERA_PANEL, RUN_PANEL, MODEL_PANEL, JUDGE_PANEL = "Camera", "Run", "Models", "Judge"
 
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON and nothing else.")]
@@ -69,12 +69,19 @@ class StartFlags:
         ),
     ] = None
 
-    @property
-    def scene_name(self) -> str:
-        """The scene of a simulated camera."""
+    async def open(self, *, realtime: bool = False) -> OpenCamera:
+        """Open the camera at its start.
+
+        Args:
+            realtime: Whether moves take as long as with a real camera.
+        """
+        from scope_ptz.factory.cameras import open_camera
+        from scope_ptz.factory.scenes import DEFAULT_SCENE
+
         if self.camera is not None and self.scene is not None:
             raise InputError("Give --camera or --scene, not both: --scene NAME is short for --camera sim:NAME.")
-        return self.scene or (self.camera or DEFAULT_SCENE).removeprefix("sim:")
+        spec = self.camera or f"sim:{DEFAULT_SCENE if self.scene is None else self.scene}"
+        return await open_camera(spec, viewpoint=self.viewpoint, preset=self.preset, time_s=self.at, realtime=realtime)
 
 
 @dataclass(frozen=True, kw_only=True)

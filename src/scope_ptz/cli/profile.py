@@ -18,8 +18,15 @@ from scope_ptz.cli.display import plain
 from scope_ptz.cli.exit import FAILED, put_json
 from scope_ptz.endpoints.serving_facts import memory_gb, serving_facts
 from scope_ptz.errors import InputError
-from scope_ptz.factory.models import ModelOptions, ResolvedPerception, ResolvedPlanner, resolve_models
-from scope_ptz.factory.session import Start, make_perception, make_planner, open_camera, open_scene
+from scope_ptz.factory.cameras import open_camera
+from scope_ptz.factory.models import (
+    ModelOptions,
+    ResolvedPerception,
+    ResolvedPlanner,
+    make_perception,
+    make_planner,
+    resolve_models,
+)
 from scope_ptz.planner.profile import Row, Sensitivity, ask_once, load_rows, measure_sensitivity, read_rows
 from scope_ptz.planner.profile.perception_speed import PerceptionSpeed, measure_perception
 from scope_ptz.planner.profile.report import Rate
@@ -79,13 +86,13 @@ def profile(options: ModelOptions, extent: Extent, *, as_json: bool) -> int:
 
     async def work() -> None:
         choice = await resolve_models(options)
-        if choice.planner.endpoint is None and choice.eyes.spec is None:
+        if choice.planner.endpoint is None and choice.perception.spec is None:
             raise InputError("Name what to profile: a pair, or a planner or perception with the address of its server.")
         sides = {}
         if choice.planner.endpoint is not None:
             sides["planner"] = await _planner_side(choice.planner, rows)
-        if choice.eyes.spec is not None:
-            sides["perception"] = await _perception_side(choice.eyes, extent)
+        if choice.perception.spec is not None:
+            sides["perception"] = await _perception_side(choice.perception, extent)
         report.update({role: side.model_dump() for role, side in sides.items()})
         report["real_time"] = _verdict([side.meets_real_time for side in sides.values()])
         if extent.prompts and "planner" in sides and sides["planner"].meets_real_time is not None:
@@ -134,7 +141,7 @@ async def _planner_side(choice: ResolvedPlanner, rows: tuple[Row, ...]) -> Side:
 async def _perception_side(choice: ResolvedPerception, extent: Extent) -> Side:
     assert choice.spec is not None  # noqa: S101 - called only with a backend
     frames = await _frames(extent.scene, extent.frames)
-    perception, _ = make_perception(choice, open_scene(extent.scene), 0)
+    perception = make_perception(choice, None, 0)
     try:
         with _bar("perception", len(frames) * len(perception.skills)) as advance:
             speed = await measure_perception(perception, frames, advance)
@@ -161,8 +168,8 @@ async def _frames(scene_name: str, count: int) -> list[Frame]:
     """Return frames of a scene's presets, turned on from them if more are requested, so that no two are alike."""
     from scope_ptz.geometry import Pose
 
-    camera = await open_camera(Start(scene=scene_name), open_scene(scene_name), realtime=False)
-    try:
+    async with await open_camera(f"sim:{scene_name}") as opened:
+        camera = opened.camera
         names = [preset.name for preset in await camera.presets()]
         frames = []
         for index in range(count):
@@ -172,8 +179,6 @@ async def _frames(scene_name: str, count: int) -> list[Frame]:
                 await camera.move(Pose(pose.pan_deg + _FURTHER_DEG * (index // len(names)), pose.tilt_deg, pose.zoom))
             frames.append(await camera.frame())
         return frames
-    finally:
-        await camera.close()
 
 
 async def _sensitivity(choice: ResolvedPlanner, rows: tuple[Row, ...]) -> Sensitivity:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,8 @@ from scope_ptz.cli.display import plain
 from scope_ptz.cli.exit import put, put_json
 from scope_ptz.cli.options import StartFlags
 from scope_ptz.errors import InputError, OutputError, PackError
-from scope_ptz.factory.session import Start, open_camera, open_scene, scene_search
+from scope_ptz.factory.cameras import open_camera
+from scope_ptz.factory.scenes import open_scene, scene_search
 from scope_ptz.geometry import Pose
 from scope_ptz.settings import has_desktop, load_settings
 from scope_ptz.simulator.card import card, folder_bytes, markdown, megabytes
@@ -151,12 +153,12 @@ async def _write_contact_sheet(scene: Scene, path: Path) -> None:
 
     from scope_ptz.agent.contact_sheet import contact_sheet
 
-    camera = await open_camera(Start(scene.name), scene, realtime=False)
     pictures = []
-    for preset in scene.file.presets:
-        await camera.go_to_preset(preset.name)
-        caption = f"{preset.name} · {preset.viewpoint}"
-        pictures.append((caption, Image.fromarray((await camera.frame()).image)))
+    async with await open_camera(f"sim:{scene.name}") as opened:
+        for preset in scene.file.presets:
+            await opened.camera.go_to_preset(preset.name)
+            caption = f"{preset.name} · {preset.viewpoint}"
+            pictures.append((caption, Image.fromarray((await opened.camera.frame()).image)))
     _save(contact_sheet(scene.file.title, pictures), path)
 
 
@@ -173,17 +175,17 @@ def view_scene(flags: StartFlags, name: str | None, pose: tuple[float | None, fl
 
     if name is not None and (flags.camera or flags.scene):
         raise InputError("Name the camera once: as the argument, or with --camera or --scene.")
-    start = Start(name or flags.scene_name, flags.viewpoint, flags.preset, flags.at)
+    start = flags if name is None else replace(flags, scene=name)
 
     async def work() -> None:
-        camera = await open_camera(start, open_scene(start.scene), realtime=False)
-        here = await camera.pose()
-        pan, tilt, zoom = (given if given is not None else now for given, now in zip(pose, _parts(here), strict=True))
-        try:
-            arrival = await camera.move(Pose(pan, tilt, zoom))
-        except ValueError as error:
-            raise InputError(f"The pose is not possible: {error}.") from error
-        _save(Image.fromarray((await camera.frame()).image), out)
+        async with await start.open() as opened:
+            here = await opened.camera.pose()
+            pan, tilt, zoom = (given if given is not None else now for given, now in zip(pose, _parts(here), strict=True))
+            try:
+                arrival = await opened.camera.move(Pose(pan, tilt, zoom))
+            except ValueError as error:
+                raise InputError(f"The pose is not possible: {error}.") from error
+            _save(Image.fromarray((await opened.camera.frame()).image), out)
         reached = arrival.pose.as_dict()
         cut = f" (stopped by the {' and '.join(arrival.clamped)} limit)" if arrival.clamped else ""
         put(f"Wrote {out}: pan {reached['pan_deg']:g}, tilt {reached['tilt_deg']:g}, zoom {reached['zoom']:g}x{cut}")
