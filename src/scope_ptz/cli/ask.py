@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import shutil
 import signal
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +18,7 @@ from scope_ptz.agent.records import Budgets, Called, Decided, Ended, Labels, Lis
 from scope_ptz.agent.store import RunFolder
 from scope_ptz.agent.trace import Trace, TraceWriter, read_trace
 from scope_ptz.cli.display import LiveView, show_end
-from scope_ptz.cli.exit import CANCELLED, exit_code, interrupts_handled_by, put_json, run_until_interrupted
+from scope_ptz.cli.exit import CANCELLED, exit_code, interrupts_handled_by, put, put_json, run_until_interrupted
 from scope_ptz.cli.options import SessionFlags
 from scope_ptz.errors import InputError
 from scope_ptz.factory.cameras import OpenCamera
@@ -26,11 +28,11 @@ from scope_ptz.planner.base import PastTurn, Planner
 from scope_ptz.settings import load_settings
 
 _NEXT_STEPS = """
-Next steps:
-  scope ask "count the workers"          another instruction, in your own words
-  scope chat                             a conversation; /help lists its commands
-  scope replay {folder}
-  scope --help                           every command; `scope bench --help` is about measuring models"""
+Next:
+  {program} ask "count the workers"    another instruction, in your own words
+  {program} chat                       a conversation with the camera
+  {program} scene list                 the scenes; name one with --scene
+  {program} --help                     every command"""
 
 
 class Session:
@@ -108,7 +110,7 @@ def ask(instruction: str, flags: SessionFlags, models: ModelOptions, *, as_json:
     with interrupts_handled_by(signal.SIG_IGN):
         code = _report(folder, as_json=as_json)
     if next_steps and not as_json and code == 0:
-        Console(highlight=False).print(_NEXT_STEPS.format(folder=folder.path), soft_wrap=True, markup=False)
+        put(_NEXT_STEPS.format(program="scope" if shutil.which("scope") else sys.argv[0]))
     return code
 
 

@@ -19,7 +19,7 @@ from scope_ptz.agent.store import RunFolder
 from scope_ptz.agent.trace import read_trace
 from scope_ptz.cli.ask import Session, make_filmstrip
 from scope_ptz.cli.display import LiveView, plain, show_end
-from scope_ptz.cli.exit import complain
+from scope_ptz.cli.exit import complain, has_input
 from scope_ptz.cli.options import SessionFlags
 from scope_ptz.errors import InputError
 from scope_ptz.factory.models import ModelOptions
@@ -42,7 +42,7 @@ def chat(flags: SessionFlags, models: ModelOptions) -> int:
     Lines are read in the main thread and carried out in another one, so that Ctrl-C always reaches the main thread: during a run it
     cancels the run, at the prompt it ends the program.
     """
-    if sys.stdin.closed or not sys.stdin.readable():
+    if not has_input():
         raise InputError("The standard input is closed, so there is nobody to chat with. Use `scope ask` for one instruction.")
     with start_blocking_portal() as portal, _line_editing():
         session = portal.call(_open, flags, models)

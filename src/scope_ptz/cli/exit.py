@@ -163,6 +163,11 @@ def guarded_streams() -> Iterator[None]:
             sys.exit(FAILED)
 
 
+def has_input() -> bool:
+    """Return whether the program was started with a standard input."""
+    return getattr(sys.stdin, "name", None) != os.devnull
+
+
 class _Output:
     """A text stream that stays writable when the file behind it fails. ``failure`` is the first error other than a closed pipe."""
 

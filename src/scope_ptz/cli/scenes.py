@@ -112,7 +112,12 @@ def _print_short_card(console: Console, scene: Scene) -> None:
     file = scene.file
     width = max(len(preset.name) for preset in file.presets)
     for viewpoint in file.viewpoints:
-        _print_line(console, Text.assemble((f"Viewpoint {viewpoint.name}", "bold cyan"), f": {viewpoint.description}"))
+        _print_line(
+            console,
+            Text.assemble(
+                (f"Viewpoint {viewpoint.name}", "bold cyan"), f": {viewpoint.description}" if viewpoint.description else ""
+            ),
+        )
         for preset in file.presets:
             if preset.viewpoint == viewpoint.name:
                 home = " (home)" if preset.name == file.home_preset else ""
