@@ -1,4 +1,4 @@
-"""The program as a process, under bad conditions: interrupts, broken streams, other encodings, damaged folders, misbehaving models."""
+"""The program as a process, under bad conditions: interrupts, broken streams, other encodings, damaged folders."""
 
 from __future__ import annotations
 
