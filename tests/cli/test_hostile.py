@@ -125,12 +125,12 @@ def test_chat_without_standard_input_says_what_to_use_instead(environment: dict[
 )
 def test_output_is_readable_in_every_encoding(environment: dict[str, str], encoding: dict[str, str]) -> None:
     there = {**environment, **encoding}
-    done = run(there, *SCOPE, "ask", "go to board, then go home", "--scene", SCENE)
+    done = run(there, *SCOPE, "ask", "go to board, then go home", "--scene", SCENE, encoding=encoding.get("PYTHONIOENCODING"))
     assert done.returncode == 0
     assert "> go to board" in done.stdout or "› go to board" in done.stdout
     planned = run(there, *SCOPE, "plan", "florp “é”", "--json")
     assert "é" in json.loads(planned.stdout)["instruction"]
-    spoken = run(there, *SCOPE, "chat", "--scene", SCENE, input="/pose\nflörp\n")
+    spoken = run(there, *SCOPE, "chat", "--scene", SCENE, input="/pose\nflorp\n", encoding=encoding.get("PYTHONIOENCODING"))
     assert spoken.returncode == 0
     assert "pan 0" in spoken.stdout
     assert run(there, *SCOPE, "--help").returncode == 0
