@@ -86,7 +86,7 @@ def list_plugins(*, as_json: bool) -> None:
         put_json(rows, indent=2)
         return
     if not rows:
-        put("No plug-ins are installed. docs/plugins.md describes how a package adds a camera, a planner or perception.")
+        put("No plug-ins are installed. docs/how-to/plugins.md shows how a package adds a camera, a planner or perception.")
         return
     table = Table("kind", "name", "package", "factory", "problem", box=None)
     for row in rows:
