@@ -18,7 +18,7 @@ from rich.text import Text
 
 from scope_ptz import __version__
 from scope_ptz.cli.display import plain
-from scope_ptz.cli.exit import FAILED, put_json
+from scope_ptz.cli.exit import FAILED, put_json, run_async
 from scope_ptz.errors import ConfigError, InputError, PackError
 from scope_ptz.factory.cameras import open_camera
 from scope_ptz.factory.models import ModelOptions, make_perception, resolve_models
@@ -171,7 +171,7 @@ def check_servers(options: ModelOptions, *, as_json: bool) -> int:
             if not as_json:
                 _show_check(console, server, check)
 
-    anyio.run(work)
+    run_async(work)
     if as_json:
         put_json([{"server": server, **check.model_dump()} for server, check in found])
     return FAILED if any(check.verdict == "failed" for _, check in found) else 0

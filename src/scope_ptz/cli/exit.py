@@ -120,6 +120,16 @@ def run_until_interrupted(work: Callable[[], Awaitable[None]]) -> bool:
     return anyio.run(supervised)
 
 
+def run_async(work: Callable[[], Awaitable[None]]) -> None:
+    """Run a coroutine function to its end. Ctrl-C cancels it and then ends the command, as ``run_until_interrupted`` describes.
+
+    Raises:
+        KeyboardInterrupt: It was cancelled.
+    """
+    if run_until_interrupted(work):
+        raise KeyboardInterrupt
+
+
 @contextmanager
 def interrupts_handled_by(handler: Callable[..., None] | signal.Handlers) -> Iterator[None]:
     """Handle Ctrl-C otherwise for a while. Outside the main thread, or where the program ignores Ctrl-C, nothing changes."""

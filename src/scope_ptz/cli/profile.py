@@ -8,14 +8,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import anyio
 from pydantic import BaseModel, ConfigDict
 from rich.console import Console
 from rich.progress import Progress, TextColumn
 from rich.text import Text
 
 from scope_ptz.cli.display import plain
-from scope_ptz.cli.exit import FAILED, put_json
+from scope_ptz.cli.exit import FAILED, put_json, run_async
 from scope_ptz.endpoints.serving_facts import memory_gb, serving_facts
 from scope_ptz.errors import InputError
 from scope_ptz.factory.cameras import open_camera
@@ -98,7 +97,7 @@ def profile(options: ModelOptions, extent: Extent, *, as_json: bool) -> int:
         if extent.prompts and "planner" in sides and sides["planner"].meets_real_time is not None:
             report["prompts"] = (await _sensitivity(choice.planner, rows)).model_dump()
 
-    anyio.run(work)
+    run_async(work)
     if as_json:
         put_json(report)
     else:

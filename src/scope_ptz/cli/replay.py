@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import anyio
 from rich.console import Console
 from rich.text import Text
 
@@ -15,7 +14,7 @@ from scope_ptz.agent.trace import Trace, read_trace
 from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.cli.ask import summary
 from scope_ptz.cli.display import LiveView, plain, show_end
-from scope_ptz.cli.exit import BAD_INPUT, FAILED, put_json
+from scope_ptz.cli.exit import BAD_INPUT, FAILED, put_json, run_async
 from scope_ptz.errors import InputError, PackError, UnknownNameError
 from scope_ptz.factory.scenes import open_scene
 from scope_ptz.simulator.clock import SceneClock
@@ -27,9 +26,15 @@ _NO_CALLS = "the trace contains no calls, so there is nothing to repeat"
 def replay(run: Path, *, as_json: bool) -> int:
     """Show and repeat a run, and return the exit code: 0 only if calls were repeated and gave the same results."""
     trace = read_trace(run)
-    reason, found = "" if trace.calls else _NO_CALLS, None
+    reason = "" if trace.calls else _NO_CALLS
+    found: Replay | None = None
+
+    async def work() -> None:
+        nonlocal found
+        found = await _repeat(trace)
+
     try:
-        found = anyio.run(_repeat, trace)
+        run_async(work)
     except (InputError, PackError) as error:
         reason = str(error)
     if as_json:

@@ -5,17 +5,17 @@ from __future__ import annotations
 import sys
 from collections import Counter
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-import anyio
 import typer
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
 from scope_ptz.cli.display import plain
-from scope_ptz.cli.exit import put, put_json
+from scope_ptz.cli.exit import put, put_json, run_async
 from scope_ptz.cli.options import StartFlags
 from scope_ptz.errors import InputError, OutputError, PackError
 from scope_ptz.factory.cameras import open_camera
@@ -91,7 +91,7 @@ def show_scene(name: str, sheet: Path | None, *, opened: bool | None, everything
     else:
         _print_short_card(console, scene)
     path = sheet or _cached_sheet(scene)
-    anyio.run(_write_contact_sheet, scene, path)
+    run_async(partial(_write_contact_sheet, scene, path))
     console.print(Text(f"\nContact sheet: {path}"), soft_wrap=True)
     if not everything:
         console.print(Text(f"`scope scene show {name} --all` prints everything.", style="dim"))
@@ -195,7 +195,7 @@ def view_scene(flags: StartFlags, name: str | None, pose: tuple[float | None, fl
         cut = f" (stopped by the {' and '.join(arrival.clamped)} limit)" if arrival.clamped else ""
         put(f"Wrote {out}: pan {reached['pan_deg']:g}, tilt {reached['tilt_deg']:g}, zoom {reached['zoom']:g}x{cut}")
 
-    anyio.run(work)
+    run_async(work)
 
 
 def _parts(pose: Pose) -> tuple[float, float, float]:
