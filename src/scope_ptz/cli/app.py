@@ -36,7 +36,7 @@ ModelName = Annotated[str, typer.Argument(metavar="NAME", help="Name of the mode
 
 def _version(requested: bool) -> None:
     if requested:
-        from scope_ptz import __version__
+        from scope_ptz.version import __version__
 
         sys.stdout.write(f"scope-ptz {__version__}\n")
         raise typer.Exit

@@ -14,7 +14,7 @@ from rich.console import Console
 
 from scope_ptz.agent.filmstrip import write_filmstrip
 from scope_ptz.agent.loop import Agent
-from scope_ptz.agent.records import Budgets, Called, Decided, Ended, Labels, Listener, Run, Started
+from scope_ptz.agent.records import Budgets, Called, Decided, Ended, Listener, RunLabels, RunResult, Started
 from scope_ptz.agent.store import RunFolder
 from scope_ptz.agent.trace import Trace, TraceWriter, read_trace
 from scope_ptz.cli.display import LiveView, show_end
@@ -62,9 +62,11 @@ class Session:
             raise
         return cls(flags, opened, perception, planner, perception_note(choice.perception))
 
-    async def run(self, instruction: str, folder: RunFolder, listener: Listener, conversation: tuple[PastTurn, ...] = ()) -> Run:
+    async def run(
+        self, instruction: str, folder: RunFolder, listener: Listener, conversation: tuple[PastTurn, ...] = ()
+    ) -> RunResult:
         """Carry out one instruction and write its trace."""
-        labels = Labels(perception_note=self.note, seed=self.flags.seed, home_viewpoint=self.flags.viewpoint)
+        labels = RunLabels(perception_note=self.note, seed=self.flags.seed, home_viewpoint=self.flags.viewpoint)
         budgets = Budgets(max_steps=self.flags.max_steps, time_s=self.flags.time_budget)
         agent = Agent(self.planner, self.camera, self.perception, folder, budgets=budgets, labels=labels)
         with TraceWriter(folder.trace) as trace:

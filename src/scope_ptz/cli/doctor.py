@@ -16,7 +16,6 @@ import anyio
 from rich.console import Console
 from rich.text import Text
 
-from scope_ptz import __version__
 from scope_ptz.cli.display import plain
 from scope_ptz.cli.exit import FAILED, put_json, run_async
 from scope_ptz.errors import ConfigError, InputError, PackError
@@ -25,6 +24,7 @@ from scope_ptz.factory.models import ModelOptions, make_perception, resolve_mode
 from scope_ptz.factory.scenes import DEFAULT_SCENE, scene_search
 from scope_ptz.settings import ScopeSettings, load_settings
 from scope_ptz.simulator.card import folder_bytes, megabytes
+from scope_ptz.version import __version__
 
 if TYPE_CHECKING:
     from scope_ptz.endpoints.conformance import Check

@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from scope_ptz.endpoints.failures import Attempt
 from scope_ptz.geometry import Limits, Pose
 
-MAX_INSTRUCTION_CHARS = 4000
+MAX_INSTRUCTION_CHARS = 4000  # longer instructions raise InputError
 
 
 class _Model(BaseModel):
