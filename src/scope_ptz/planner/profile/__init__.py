@@ -2,7 +2,7 @@
 
 from scope_ptz.planner.profile.edits import INSTRUCTION_EDITS, PROMPT_EDITS, Edit
 from scope_ptz.planner.profile.report import Sensitivity, measure_sensitivity
-from scope_ptz.planner.profile.trials import Row, Trial, ask_once, load_rows
+from scope_ptz.planner.profile.trials import Row, Trial, ask_once, load_rows, read_rows
 
 __all__ = [
     "INSTRUCTION_EDITS",
@@ -14,4 +14,5 @@ __all__ = [
     "ask_once",
     "load_rows",
     "measure_sensitivity",
+    "read_rows",
 ]

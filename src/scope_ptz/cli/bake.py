@@ -1,4 +1,4 @@
-"""``scope scene build``, ``bake`` and ``verify``: from code to a Blender file, to frozen packs, and packs against live renders."""
+"""``scope scene build``, ``bake`` and ``verify``: Blender files and packs from a scene's code, and packs against live renders."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from scope_ptz.blender.quality import named_quality
 from scope_ptz.blender.sources import scene_names
 from scope_ptz.blender.tolerances import shortcomings
 from scope_ptz.blender.verify import PoseReport, draw_poses, verify
-from scope_ptz.cli.endings import FAILED
+from scope_ptz.cli.exit import FAILED
 from scope_ptz.errors import OutputError, UnknownNameError
 from scope_ptz.factory.scenes import open_scene
 from scope_ptz.settings import ScopeSettings, load_settings
 
 
 def build_scene(source: str, out: Path | None) -> None:
-    """Build a scene by its code in Blender and save it as a .blend file to look at."""
+    """Build a scene from its code in Blender and save it as a .blend file."""
     settings, console = load_settings(), Console(highlight=False)
     _check(source)
     target = (out or Path(f"{Path(source).stem}.blend")).absolute()
@@ -36,18 +36,19 @@ def build_scene(source: str, out: Path | None) -> None:
         worker.request("load_scene", {"source": source})
         facts: dict[str, Any] = worker.request("describe")
         worker.request("save", {"path": str(target)})
-    counts = f"{len(facts['instances'])} things, {len(facts['texts'])} texts, {len(facts['viewpoints'])} viewpoints"
+    counts = f"{len(facts['instances'])} objects, {len(facts['texts'])} texts, {len(facts['viewpoints'])} viewpoints"
     console.print(Text(f"Wrote {target}: {counts}, {time.monotonic() - began:.0f} s"), soft_wrap=True)
 
 
 def bake_scene(source: str, out: Path | None, quality: str, viewpoints: list[str]) -> int:
-    """Bake a scene's packs and hold them against live renders. A bake that was interrupted goes on where it stopped.
+    """Bake a scene's packs and compare them with live renders. An interrupted bake is resumed.
 
-    Exit code 1 when a pack is not like its scene; a draft is not judged.
+    Returns:
+        1 if a pack differs too much from its scene. Drafts are not judged.
     """
     settings, console = load_settings(), Console(highlight=False)
     _check(source)
-    wanted = named_quality(quality)
+    level = named_quality(quality)
     folder = (out or Path("scenes") / Path(source).stem.replace("_", "-")).absolute()
     _make_folder(folder.parent)
     command = _command(settings, console)
@@ -55,7 +56,7 @@ def bake_scene(source: str, out: Path | None, quality: str, viewpoints: list[str
         baked = bake(
             source,
             folder,
-            quality=wanted,
+            quality=level,
             command=command,
             cache_dir=settings.cache_dir,
             viewpoints=viewpoints or None,
@@ -65,16 +66,14 @@ def bake_scene(source: str, out: Path | None, quality: str, viewpoints: list[str
         line = f"{pack.folder}: {pack.weight_bytes / 1e6:.2f} MB, {pack.tiles} tiles"
         console.print(Text(line), soft_wrap=True)
         if pack.uncovered:
-            console.print(Text(f"  not in a tile: {', '.join(pack.uncovered)}", style="yellow"))
+            console.print(Text(f"  not covered by a tile: {', '.join(pack.uncovered)}", style="yellow"))
     short = _show_comparison(console, baked.reports)
-    console.print(
-        Text(f"To look at it: SCOPE_SCENES_DIR={folder.parent} scope scene show {folder.name}", style="dim"), soft_wrap=True
-    )
-    return FAILED if short and wanted.judged else 0
+    console.print(Text(f"To see it: SCOPE_SCENES_DIR={folder.parent} scope scene show {folder.name}", style="dim"), soft_wrap=True)
+    return FAILED if short and level.judged else 0
 
 
 def verify_scene(name: str, seed: int, wide: int, zoomed: int, keep: Path | None) -> int:
-    """Compare the packs of a scene with live renders of poses drawn by seed; exit code 1 when they are not alike enough."""
+    """Compare the packs of a scene with live renders of random poses, and return 1 if they differ too much."""
     settings, console = load_settings(), Console(highlight=False)
     _check(name)
     scene = open_scene(name)
@@ -86,7 +85,7 @@ def verify_scene(name: str, seed: int, wide: int, zoomed: int, keep: Path | None
 
 
 def _show_comparison(console: Console, reports: Sequence[PoseReport]) -> list[str]:
-    """Print the figures of each pose and what falls short of the tolerances; the latter is returned."""
+    """Print the figures of each pose, and return what falls short of the tolerances."""
     table = Table("viewpoint", "pan", "tilt", "zoom", "SSIM", "sharpness", "box IoU", "in tiles")
     for r in reports:
         figures = (
@@ -101,12 +100,12 @@ def _show_comparison(console: Console, reports: Sequence[PoseReport]) -> list[st
     short = shortcomings(reports)
     for line in short:
         console.print(Text(f"  {line}", style="red"), soft_wrap=True)
-    console.print(Text("Not alike enough." if short else "All tolerances hold.", style="red" if short else "green"))
+    console.print(Text("The differences are too large." if short else "All tolerances are met.", style="red" if short else "green"))
     return short
 
 
 class _Bars:
-    """A bar for every part of a bake, with the time that is left."""
+    """A progress bar for every part of a bake, with the remaining time."""
 
     def __init__(self, console: Console) -> None:
         self._progress = Progress(
@@ -122,14 +121,14 @@ class _Bars:
     def __exit__(self, *_: object) -> None:
         self._progress.stop()
 
-    def __call__(self, part: str, done: int, total: int, seconds: float) -> None:  # noqa: ARG002 - the bar keeps its own time
+    def __call__(self, part: str, done: int, total: int, seconds: float) -> None:  # noqa: ARG002 - the bar measures time itself
         if part not in self._tasks:
             self._tasks[part] = self._progress.add_task(part, total=total)
         self._progress.update(self._tasks[part], completed=done, total=total)
 
 
 def _check(source: str) -> None:
-    """A wrong name is told before Blender starts."""
+    """Report an unknown scene before Blender starts."""
     if source.endswith(".py") and Path(source).is_file():
         return
     known = scene_names()
@@ -140,7 +139,7 @@ def _check(source: str) -> None:
 def _command(settings: ScopeSettings, console: Console) -> list[str]:
     chosen = settings.blender_python or settings.blender
     if chosen is None and not is_ready(settings.cache_dir):
-        console.print("Installing Blender's Python module, about 400 MB; this happens once.", style="yellow")
+        console.print("Downloading Blender's Python module (about 400 MB); this happens once.", style="yellow")
     return worker_command(settings.cache_dir, chosen)
 
 
@@ -148,4 +147,4 @@ def _make_folder(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise OutputError(f"{folder} cannot be made: {error.strerror}.") from error
+        raise OutputError(f"{folder} cannot be created: {error.strerror}.") from error

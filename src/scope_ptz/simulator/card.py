@@ -1,4 +1,4 @@
-"""A scene's card: what is in it and how it was made, for the terminal and as Markdown."""
+"""A scene's card: what it contains and how it was made, for the terminal and as a Markdown page."""
 
 from __future__ import annotations
 
@@ -14,23 +14,29 @@ from scope_ptz.simulator.pack import Scene
 
 @dataclass(frozen=True, slots=True)
 class Paragraph:
-    """A title and the lines under it; a line is a name (may be empty) and what is said of it."""
+    """A part of a card: a title, and lines that consist of a name (may be empty) and a text.
+
+    Attributes:
+        title: The heading.
+        lines: The name and the text of each line.
+    """
 
     title: str
     lines: tuple[tuple[str, str], ...]
 
 
 def folder_bytes(folder: Path) -> int:
-    """Size of all files in a folder."""
+    """Return the total size of the files in a folder."""
     return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
 
 
 def megabytes(size: int) -> str:
+    """Return a number of bytes as text in megabytes."""
     return f"{size / 1e6:.1f} MB"
 
 
 def card(scene: Scene) -> Iterator[Paragraph]:
-    """The paragraphs of a scene's card."""
+    """Yield the paragraphs of a scene's card."""
     file = scene.file
     for viewpoint in file.viewpoints:
         presets = [p for p in file.presets if p.viewpoint == viewpoint.name]
@@ -38,7 +44,7 @@ def card(scene: Scene) -> Iterator[Paragraph]:
     categories = Counter([i.category for i in file.instances] + [a.category for a in file.actors])
     inventory = ", ".join(f"{count} {category}" for category, count in categories.most_common())
     yield Paragraph(
-        f"{len(file.instances)} things and {len(file.actors)} moving ones, of {len(categories)} kinds", (("", inventory),)
+        f"{len(file.instances)} objects and {len(file.actors)} moving ones, of {len(categories)} categories", (("", inventory),)
     )
     readable = Counter(f"“{' '.join(t.text.split())}”" for t in file.texts)
     texts = "; ".join(f"{text} ({n} times)" if n > 2 else text for text, n in readable.items())
@@ -47,13 +53,18 @@ def card(scene: Scene) -> Iterator[Paragraph]:
         (a.name, f"{a.waypoints[0][0]:.0f} to {a.waypoints[-1][0]:.0f} s of every {a.period_s:.0f} s") for a in file.actors
     )
     yield Paragraph("Moving", movers or (("", "nothing"),))
-    yield Paragraph("Deliberately absent", (("", ", ".join(file.absent) or "nothing in particular"),))
+    yield Paragraph("Deliberately absent", (("", ", ".join(file.absent) or "nothing"),))
     yield Paragraph("How it was made", tuple(_making(scene)))
     yield Paragraph("Checksums (SHA-256)", tuple(_checksums(scene)))
 
 
 def markdown(scene: Scene, picture: str | None) -> str:
-    """The card as a Markdown page; ``picture`` is the path of its contact sheet as the page should name it."""
+    """Return the card as a Markdown page.
+
+    Args:
+        scene: The scene.
+        picture: Path of its contact sheet, as the page should link to it; None for a page without a picture.
+    """
     parts = [f"# {scene.file.title}", f"`{scene.name}`, version {scene.file.version}"]
     if picture:
         parts.append(f"![All presets of {scene.name}]({picture})")
@@ -83,18 +94,21 @@ def _making(scene: Scene) -> Iterator[tuple[str, str]]:
         manifest = scene.viewpoint(place.name).manifest
         sprites = sum(len(sheet.sprites) for sheet in manifest.actors)
         layers = ", ".join(f"{part} {layer.width}x{layer.height}" for part, layer in _panoramas(manifest))
-        rest = f"{len(manifest.tiles)} sharper tiles, {sprites} pictures of moving things"
-        yield place.name, f"{layers}, at {manifest.samples} samples a pixel and denoised; {rest}"
+        rest = f"{len(manifest.tiles)} sharper tiles, {sprites} sprites of moving objects"
+        yield place.name, f"{layers}, {manifest.samples} samples per pixel, denoised; {rest}"
 
 
 def _panoramas(manifest: Manifest) -> tuple[tuple[str, Layer], ...]:
-    return ("panorama", manifest.base), ("numbers of things", manifest.ids), ("distances", manifest.depth)
+    return ("panorama", manifest.base), ("instance numbers", manifest.ids), ("depth", manifest.depth)
 
 
 def _checksums(scene: Scene) -> Iterator[tuple[str, str]]:
     yield "scene.json", f"`{_digest(scene.folder / 'scene.json')}`"
     for place in scene.file.viewpoints:
-        yield f"{place.name}/manifest.json", f"`{_digest(scene.folder / place.name / 'manifest.json')}` (holds those of its files)"
+        yield (
+            f"{place.name}/manifest.json",
+            f"`{_digest(scene.folder / place.name / 'manifest.json')}` (contains those of its files)",
+        )
 
 
 def _digest(path: Path) -> str:
