@@ -14,10 +14,10 @@ from scope_ptz.agent.loop import Agent
 from scope_ptz.agent.records import Called, Ended, RunResult
 from scope_ptz.agent.store import NoImages
 from scope_ptz.agent.trace import TraceWriter
-from scope_ptz.endpoints.calls import Caller
 from scope_ptz.endpoints.chat import ChatClient
 from scope_ptz.endpoints.endpoint import Endpoint, Timeouts
 from scope_ptz.endpoints.failures import FailureKind
+from scope_ptz.endpoints.retries import Caller
 from scope_ptz.perception.backends import make_backend
 from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import Perception

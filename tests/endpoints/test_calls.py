@@ -9,9 +9,9 @@ import anyio
 import pytest
 
 from scope_ptz.endpoints.breaker import Breaker
-from scope_ptz.endpoints.calls import Caller
 from scope_ptz.endpoints.endpoint import Endpoint, Timeouts
 from scope_ptz.endpoints.failures import FailureKind, ServerFailure
+from scope_ptz.endpoints.retries import Caller
 
 pytestmark = pytest.mark.anyio
 K = FailureKind

@@ -9,11 +9,11 @@ from typing import Any
 
 import pytest
 
-from scope_ptz.endpoints.calls import Caller
 from scope_ptz.endpoints.chat import ChatClient
 from scope_ptz.endpoints.endpoint import Endpoint, Timeouts
 from scope_ptz.endpoints.failures import Attempt, FailureKind, ServerFailure, count_failures
 from scope_ptz.endpoints.http import JsonClient
+from scope_ptz.endpoints.retries import Caller
 from tests.support.faults import FAULTS, PATIENT, Fault
 from tests.support.misbehaving import Misbehaving, body, never_accepts, nobody_listens, speaks_no_tls, status
 

@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from scope_ptz.endpoints.bodies import load_object, safe_text
+from scope_ptz.endpoints.chat_replies import ChatReply, Gathering
 from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.endpoints.failures import FailureKind, ServerFailure
-from scope_ptz.endpoints.replies import ChatReply, Gathering
 from tests.support.misbehaving import Say, completion, pieces
 
 AT = Endpoint(url="http://127.0.0.1:1/v1")

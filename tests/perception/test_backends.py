@@ -14,7 +14,7 @@ from scope_ptz.geometry import Equirectangular
 from scope_ptz.perception.base import Perception
 from scope_ptz.perception.conformance import PerceptionConformance
 from scope_ptz.perception.ground_truth import GroundTruthPerception
-from scope_ptz.perception.noisy import Noise, NoisyPerception
+from scope_ptz.perception.ground_truth.noisy import Noise, NoisyPerception
 from tests.perception import yard
 
 

@@ -9,7 +9,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from scope_ptz.errors import PerceptionError, UnknownNameError
-from scope_ptz.perception.coordinates import (
+from scope_ptz.perception.models.coordinates import (
     CONVENTIONS,
     MAX_THINGS,
     RawThing,

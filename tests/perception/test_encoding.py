@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from scope_ptz.errors import PerceptionError
-from scope_ptz.perception.encoding import Picture, Size, encode, picture_of
-from scope_ptz.perception.memo import FrameMemo, Image
+from scope_ptz.perception.models.encoding import Picture, Size, encode, picture_of
+from scope_ptz.perception.models.frame_memo import FrameMemo, Image
 from tests.perception import pictures
 
 

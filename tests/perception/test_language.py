@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from scope_ptz.perception.answers import answer
-from scope_ptz.perception.language import parse_description, parse_question, words
-from scope_ptz.perception.matching import find
-from scope_ptz.perception.view import concepts_of, read_view
+from scope_ptz.perception.ground_truth.answers import answer
+from scope_ptz.perception.ground_truth.language import parse_description, parse_question, words
+from scope_ptz.perception.ground_truth.thing_search import find
+from scope_ptz.perception.ground_truth.view import concepts_of, read_view
 from scope_ptz.simulator.models import SceneInstance
 from tests.perception import yard
 

@@ -16,8 +16,8 @@ from scope_ptz.perception.backends import zero_shot
 from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import Perception
 from scope_ptz.perception.conformance import PerceptionConformance
-from scope_ptz.perception.coordinates import convention
-from scope_ptz.perception.memo import Image
+from scope_ptz.perception.models.coordinates import convention
+from scope_ptz.perception.models.frame_memo import Image
 from tests.perception import pictures
 
 

@@ -14,7 +14,7 @@ from scope_ptz.perception.backends import make_backend, ocr
 from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import Box, Perception
 from scope_ptz.perception.conformance import PerceptionConformance
-from scope_ptz.perception.memo import Image
+from scope_ptz.perception.models.frame_memo import Image
 from tests.perception import pictures
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from scope_ptz.perception.reading import is_reading, likeness, reading_target, text_fits, wanted_texts
+from scope_ptz.perception.models.text_requests import is_reading, likeness, reading_target, text_fits, wanted_texts
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scope_ptz.errors import PerceptionError
-from scope_ptz.perception.replies import MAX_ANSWER_CHARS, MAX_REPLY_CHARS, cannot_tell, read_answer, read_places, without_reasoning
+from scope_ptz.perception.models.reply_parsing import (
+    MAX_ANSWER_CHARS,
+    MAX_REPLY_CHARS,
+    cannot_tell,
+    read_answer,
+    read_places,
+    without_reasoning,
+)
 
 ONE = [(1.0, 2.0, 3.0, 4.0)]
 TWO = [*ONE, (5.0, 6.0, 7.0, 8.0)]

@@ -15,7 +15,7 @@ from scope_ptz.perception.backends import make_backend
 from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import ALL_SKILLS, Answer, Box, Caption, Detections, Perception, Point, Points, Skill
 from scope_ptz.perception.conformance import PerceptionConformance
-from scope_ptz.perception.router import RouterPerception
+from scope_ptz.perception.models.routing import RouterPerception
 from tests.perception import pictures
 
 

@@ -20,7 +20,7 @@ from scope_ptz.perception.backends import make_backend
 from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import Perception
 from scope_ptz.perception.conformance import PerceptionConformance
-from scope_ptz.perception.coordinates import CONVENTIONS, convention
+from scope_ptz.perception.models.coordinates import CONVENTIONS, convention
 from tests.perception import pictures
 from tests.perception.test_coordinates import written
 from tests.support import misbehaving as bad

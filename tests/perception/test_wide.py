@@ -18,8 +18,8 @@ from scope_ptz.geometry import Equirectangular, Pose
 from scope_ptz.perception.backends import make_backend
 from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import Answer, Box, Caption, Detections, Perception, Point, Points
-from scope_ptz.perception.tiles import OVERLAP, TILE_ASPECT, iou, suppressed, tiles
-from scope_ptz.perception.wide import WidePerception
+from scope_ptz.perception.models.tile_geometry import OVERLAP, TILE_ASPECT, iou, suppressed, tiles
+from scope_ptz.perception.models.tiled_panoramas import WidePerception
 from tests.perception import pictures
 
 HEIGHT, WIDTH = 200, 1600

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
+from scope_ptz.endpoints.chat_replies import ChatReply, RawToolCall
 from scope_ptz.endpoints.failures import FailureKind, ServerFailure
-from scope_ptz.endpoints.replies import ChatReply, RawToolCall
 from scope_ptz.errors import PlannerError
 from scope_ptz.planner.base import CallTools, Finish
 from scope_ptz.planner.chat import ChatOptions, prompt_names

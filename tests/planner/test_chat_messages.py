@@ -10,7 +10,7 @@ import pytest
 from scope_ptz.errors import ConfigError, UnknownNameError
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import Briefing, Exchange, PastTurn, Picture, State, ToolCall, ToolOutcome
-from scope_ptz.planner.chat.messages import build_messages
+from scope_ptz.planner.chat.chat_messages import build_messages
 from scope_ptz.planner.chat.observations import MOST_BOXES, observation
 from scope_ptz.planner.chat.prompts import Prompt, load_prompt, prompt_names
 from scope_ptz.planner.chat.window import estimated_tokens, fits, shortenings

@@ -13,8 +13,8 @@ from scope_ptz.planner.chat.prompts import Prompt, load_prompt, prompt_names
 from scope_ptz.planner.grammar import GrammarPlanner
 from scope_ptz.planner.plan import plan
 from scope_ptz.planner.profile import INSTRUCTION_EDITS, PROMPT_EDITS, Row, Sensitivity, load_rows, measure_sensitivity
-from scope_ptz.planner.profile.report import Rate
-from scope_ptz.planner.profile.trials import PRESETS, Call, is_inverted, is_right
+from scope_ptz.planner.profile.first_calls import PRESETS, Call, is_inverted, is_right
+from scope_ptz.planner.profile.prompt_sensitivity import Rate
 
 pytestmark = pytest.mark.anyio
 PROMPT = load_prompt()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from scope_ptz.planner.chat.reasoning import part
+from scope_ptz.planner.chat.reasoning_text import part
 
 CALL = '<tool_call>{"name": "go_home", "arguments": {}}</tool_call>'
 

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scope_ptz.planner.chat.reasoning import part
+from scope_ptz.planner.chat.reasoning_text import part
 from scope_ptz.planner.chat.tool_text import find_calls
 from scope_ptz.planner.chat.written import Signatures, WrittenCall, read_arguments
 from scope_ptz.tools.registry import schemas

@@ -9,7 +9,7 @@ import pytest
 
 from scope_ptz.errors import ConfigError, UnknownNameError
 from scope_ptz.perception.backends import backend_names
-from scope_ptz.perception.coordinates import CONVENTIONS
+from scope_ptz.perception.models.coordinates import CONVENTIONS
 from scope_ptz.planner.chat.families import switch_for
 from scope_ptz.registry import Registry, load_registry
 

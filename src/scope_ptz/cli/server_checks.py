@@ -10,7 +10,7 @@ from rich.text import Text
 
 from scope_ptz.cli.display import plain
 from scope_ptz.cli.endings import FAILED, put_json
-from scope_ptz.endpoints.conformance import LAST, Check, Verdict, check_chat
+from scope_ptz.endpoints.chat_server_checks import LAST, Check, Verdict, check_chat
 from scope_ptz.errors import InputError
 from scope_ptz.factory.cameras import open_camera
 from scope_ptz.factory.models import ModelOptions, ResolvedPerception, ResolvedPlanner, make_perception, resolve_models
@@ -44,7 +44,7 @@ def check_servers(wishes: ModelOptions, *, as_json: bool) -> int:
 
 async def _checks(planner: ResolvedPlanner, eyes: ResolvedPerception) -> AsyncIterator[tuple[str, Check]]:
     if planner.endpoint is not None:
-        from scope_ptz.planner.chat.conformance import check_planning
+        from scope_ptz.planner.chat.planning_checks import check_planning
         from scope_ptz.tools.registry import schemas
 
         about, alive = f"planner {planner.name}".strip(), False
@@ -55,7 +55,7 @@ async def _checks(planner: ResolvedPlanner, eyes: ResolvedPerception) -> AsyncIt
             async for check in check_planning(planner.endpoint, schemas(), planner.options):
                 yield about, check
     if eyes.spec is not None:
-        from scope_ptz.perception.examination import check_perception
+        from scope_ptz.perception.models.vision_checks import check_perception
 
         async with await open_camera(DEFAULT_SCENE, preset=_PRESET) as opened:
             perception = make_perception(eyes, opened.scenes, 0)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from scope_ptz.endpoints.bodies import read_object
-from scope_ptz.endpoints.calls import Caller
 from scope_ptz.endpoints.endpoint import Endpoint, Timeouts
 from scope_ptz.endpoints.failures import FailureKind, ServerFailure
+from scope_ptz.endpoints.retries import Caller
 from scope_ptz.endpoints.translate import status_failure
 
 PATIENCE = Timeouts(connect_s=3.0, first_byte_s=3.0, total_s=5.0)

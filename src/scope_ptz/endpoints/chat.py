@@ -9,11 +9,11 @@ import anyio
 from pydantic_core import to_json
 
 from scope_ptz.endpoints.bodies import chunks, content_type, is_json, load_object, read_object, wrong_type
-from scope_ptz.endpoints.calls import Caller
+from scope_ptz.endpoints.chat_replies import ChatReply, Gathering, RawToolCall
 from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.endpoints.events import DONE, Events
 from scope_ptz.endpoints.failures import Attempt, FailureKind, ServerFailure, in_brief
-from scope_ptz.endpoints.replies import ChatReply, Gathering, RawToolCall
+from scope_ptz.endpoints.retries import Caller
 
 if TYPE_CHECKING:
     from httpx2 import Response

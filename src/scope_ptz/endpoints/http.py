@@ -6,9 +6,9 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from scope_ptz.endpoints.bodies import read_object
-from scope_ptz.endpoints.calls import Caller
 from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.endpoints.failures import Attempt
+from scope_ptz.endpoints.retries import Caller
 from scope_ptz.endpoints.translate import status_failure
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ from typing import Any
 
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import ToolCall, ToolOutcome
-from scope_ptz.planner.grammar.program import Program
-from scope_ptz.planner.grammar.understand import understand
+from scope_ptz.planner.grammar.binding.understand import understand
+from scope_ptz.planner.grammar.execution.program import Program
 
 _MOST_CALLS = 200
 _ZOOM_ON_OBJECT = 2.0

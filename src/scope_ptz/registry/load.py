@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from scope_ptz.errors import ConfigError, UnknownNameError
-from scope_ptz.registry.entries import Model, Pair, Role, Server
+from scope_ptz.registry.model_entries import Model, Pair, Role, Server
 
 SHIPPED = "models.yaml"
 

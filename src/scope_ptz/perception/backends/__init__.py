@@ -13,7 +13,7 @@ from scope_ptz.entry_points import PERCEPTION, call_factory, find, installed, no
 from scope_ptz.errors import ConfigError, UnknownNameError
 from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import Perception
-from scope_ptz.perception.wide import WidePerception
+from scope_ptz.perception.models.tiled_panoramas import WidePerception
 
 _NO_BACKENDS = {"spec"}
 

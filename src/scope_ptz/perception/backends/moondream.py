@@ -12,9 +12,10 @@ from scope_ptz.endpoints.http import JsonClient
 from scope_ptz.errors import PerceptionError
 from scope_ptz.perception.backends.spec import BackendSpec, Options
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
-from scope_ptz.perception.coordinates import MAX_THINGS, convention, fit
-from scope_ptz.perception.encoding import picture_of
-from scope_ptz.perception.grounding import Reply, one_line, served
+from scope_ptz.perception.models.coordinates import MAX_THINGS, convention, fit
+from scope_ptz.perception.models.encoding import picture_of
+from scope_ptz.perception.models.vision_prompts import one_line
+from scope_ptz.perception.models.vision_reply import VisionReply, served
 
 KEY_HEADER = "X-Moondream-Auth"
 UNIT = convention("unit")
@@ -57,7 +58,7 @@ class MoondreamPerception(Perception):
     async def close(self) -> None:
         await self._client.close()
 
-    async def _locate(self, frame: Frame, path: str, description: str, wanted: str) -> Reply:
+    async def _locate(self, frame: Frame, path: str, description: str, wanted: str) -> VisionReply:
         """A list of places. A server that refuses the wish for more of them is asked without, now and from then on."""
         fields: dict[str, Any] = {"object": one_line(description)}
         if self._limit is None:
@@ -71,7 +72,7 @@ class MoondreamPerception(Perception):
             self._limit = None
             return reply.preceded(error)
 
-    async def _ask(self, frame: Frame, path: str, fields: dict[str, Any], wanted: str) -> Reply:
+    async def _ask(self, frame: Frame, path: str, fields: dict[str, Any], wanted: str) -> VisionReply:
         """One request; the reply holds the text or the JSON of the field that was wanted."""
         began = perf_counter()
         picture = await picture_of(frame, fit(frame.width, frame.height, self._options.max_pixels))
@@ -80,15 +81,15 @@ class MoondreamPerception(Perception):
             data, attempts = await self._client.post(path, body)
         return self._reply(data, wanted, began, attempts)
 
-    def _reply(self, data: dict[str, Any], wanted: str, began: float, attempts: tuple[Attempt, ...]) -> Reply:
+    def _reply(self, data: dict[str, Any], wanted: str, began: float, attempts: tuple[Attempt, ...]) -> VisionReply:
         value = data.get(wanted)
         if wanted in ("answer", "caption"):
             if not isinstance(value, str):
-                raise Reply(self.name, json.dumps(data, default=str), began, attempts).unreadable(f"no {wanted}")
-            return Reply(self.name, value, began, attempts)
-        reply = Reply(self.name, json.dumps({"objects": value}), began, attempts)
+                raise VisionReply(self.name, json.dumps(data, default=str), began, attempts).unreadable(f"no {wanted}")
+            return VisionReply(self.name, value, began, attempts)
+        reply = VisionReply(self.name, json.dumps({"objects": value}), began, attempts)
         if not isinstance(value, list) or not all(isinstance(v, dict) for v in value):
-            raise Reply(self.name, json.dumps(data, default=str), began, attempts).unreadable(f"no list of {wanted}")
+            raise VisionReply(self.name, json.dumps(data, default=str), began, attempts).unreadable(f"no list of {wanted}")
         return reply
 
 

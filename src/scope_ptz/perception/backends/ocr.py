@@ -17,9 +17,9 @@ from scope_ptz.camera.base import Frame
 from scope_ptz.errors import PerceptionError
 from scope_ptz.perception.backends.spec import BackendSpec, Options, need
 from scope_ptz.perception.base import Answer, Box, Caption, Detections, Perception, Point, Points
-from scope_ptz.perception.memo import FrameMemo, Image
-from scope_ptz.perception.reading import is_reading, text_fits, wanted_texts
-from scope_ptz.perception.tiles import Tile, merged, tiles
+from scope_ptz.perception.models.frame_memo import FrameMemo, Image
+from scope_ptz.perception.models.text_requests import is_reading, text_fits, wanted_texts
+from scope_ptz.perception.models.tile_geometry import Tile, merged, tiles
 
 Reader = Callable[[Image], "list[Line]"]
 

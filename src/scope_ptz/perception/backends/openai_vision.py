@@ -13,19 +13,18 @@ from scope_ptz.endpoints.failures import Attempt, FailureKind
 from scope_ptz.errors import PerceptionError
 from scope_ptz.perception.backends.spec import BackendSpec, Options
 from scope_ptz.perception.base import ALL_SKILLS, Answer, Caption, Detections, Perception, Points, Skill
-from scope_ptz.perception.coordinates import Convention, convention
-from scope_ptz.perception.encoding import Picture, picture_of
-from scope_ptz.perception.grounding import (
+from scope_ptz.perception.models.coordinates import Convention, convention
+from scope_ptz.perception.models.encoding import Picture, picture_of
+from scope_ptz.perception.models.vision_prompts import (
     CAPTION_PROMPT,
-    Reply,
     detect_prompt,
     place_error,
     places_schema,
     point_prompt,
     query_prompt,
     sent_size,
-    served,
 )
+from scope_ptz.perception.models.vision_reply import VisionReply, served
 
 NO_PLACES = "none"
 """Coordinates of a model that gives none: Moondream 3 behind vLLM answers questions and captions only."""
@@ -90,9 +89,9 @@ class OpenAIVisionPerception(Perception):
         size = sent_size(frame, self._style or convention("generic"), self._options.max_pixels)
         return await picture_of(frame, size)
 
-    def _read(self, reply: tuple[ChatReply, tuple[Attempt, ...]], began: float) -> Reply:
+    def _read(self, reply: tuple[ChatReply, tuple[Attempt, ...]], began: float) -> VisionReply:
         said, earlier = reply
-        return Reply(self.name, said.text, began, (*earlier, *said.attempts), cut=said.finish_reason == "length")
+        return VisionReply(self.name, said.text, began, (*earlier, *said.attempts), cut=said.finish_reason == "length")
 
     async def _ask(
         self, picture: Picture, prompt: str, schema: dict[str, Any] | None = None

@@ -6,7 +6,7 @@ from scope_ptz.errors import ConfigError
 from scope_ptz.perception.backends import make_backend
 from scope_ptz.perception.backends.spec import BackendSpec, Options
 from scope_ptz.perception.base import Perception
-from scope_ptz.perception.router import RouterPerception
+from scope_ptz.perception.models.routing import RouterPerception
 
 
 class RouterOptions(Options):

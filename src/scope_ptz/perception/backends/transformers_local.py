@@ -18,10 +18,18 @@ from scope_ptz.camera.base import Frame
 from scope_ptz.errors import ConfigError, PerceptionError
 from scope_ptz.perception.backends.spec import BackendSpec, Options, need
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
-from scope_ptz.perception.coordinates import Convention, convention
-from scope_ptz.perception.encoding import resized
-from scope_ptz.perception.grounding import CAPTION_PROMPT, Reply, detect_prompt, one_line, point_prompt, query_prompt, sent_size
-from scope_ptz.perception.memo import Image
+from scope_ptz.perception.models.coordinates import Convention, convention
+from scope_ptz.perception.models.encoding import resized
+from scope_ptz.perception.models.frame_memo import Image
+from scope_ptz.perception.models.vision_prompts import (
+    CAPTION_PROMPT,
+    detect_prompt,
+    one_line,
+    point_prompt,
+    query_prompt,
+    sent_size,
+)
+from scope_ptz.perception.models.vision_reply import VisionReply
 
 COMMIT = re.compile(r"[0-9a-f]{40}")
 UNIT = convention("unit")
@@ -75,10 +83,10 @@ class LocalChatPerception(Perception):
     def _size(self, frame: Frame) -> tuple[int, int]:
         return sent_size(frame, self._style, self._options.max_pixels)
 
-    async def _ask(self, frame: Frame, prompt: str) -> Reply:
+    async def _ask(self, frame: Frame, prompt: str) -> VisionReply:
         began, size = perf_counter(), self._size(frame)
         text, cut = await _in_thread(self.name, lambda: self._model(resized(frame.image, size), prompt))
-        return Reply(self.name, text, began, cut=cut)
+        return VisionReply(self.name, text, began, cut=cut)
 
 
 class LocalMoondreamPerception(Perception):
@@ -92,23 +100,23 @@ class LocalMoondreamPerception(Perception):
     async def caption(self, frame: Frame) -> Caption:
         began = perf_counter()
         text = await self._call(frame, "caption", "caption", length="short")
-        return Reply(self.name, str(text), began).caption()
+        return VisionReply(self.name, str(text), began).caption()
 
     async def query(self, frame: Frame, question: str) -> Answer:
         if not question.strip():
             raise PerceptionError("The question is empty.")
         began = perf_counter()
-        return Reply(self.name, str(await self._call(frame, "query", "answer", question.strip())), began).answer()
+        return VisionReply(self.name, str(await self._call(frame, "query", "answer", question.strip())), began).answer()
 
     async def detect(self, frame: Frame, description: str) -> Detections:
         began = perf_counter()
         found = await self._call(frame, "detect", "objects", one_line(description))
-        return Reply(self.name, json.dumps({"objects": found}, default=float), began).detections(UNIT, (1, 1))
+        return VisionReply(self.name, json.dumps({"objects": found}, default=float), began).detections(UNIT, (1, 1))
 
     async def point(self, frame: Frame, description: str) -> Points:
         began = perf_counter()
         found = await self._call(frame, "point", "points", one_line(description))
-        return Reply(self.name, json.dumps({"objects": found}, default=float), began).points(UNIT, (1, 1))
+        return VisionReply(self.name, json.dumps({"objects": found}, default=float), began).points(UNIT, (1, 1))
 
     async def _call(self, frame: Frame, method: str, field: str, *given: str, **options: str) -> Any:
         def look() -> Any:

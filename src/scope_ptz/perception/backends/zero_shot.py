@@ -15,9 +15,9 @@ from scope_ptz.camera.base import Frame
 from scope_ptz.errors import PerceptionError
 from scope_ptz.perception.backends.spec import BackendSpec, Options, need
 from scope_ptz.perception.base import Answer, Box, Caption, Detections, Perception, Point, Points
-from scope_ptz.perception.coordinates import RawThing, convention, located
-from scope_ptz.perception.memo import Image
-from scope_ptz.perception.tiles import suppressed
+from scope_ptz.perception.models.coordinates import RawThing, convention, located
+from scope_ptz.perception.models.frame_memo import Image
+from scope_ptz.perception.models.tile_geometry import suppressed
 
 Found = list[dict[str, Any]]
 Detector = Callable[[Image, str], Found]

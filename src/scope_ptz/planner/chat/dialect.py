@@ -8,7 +8,7 @@ import re
 from typing import Any
 
 from scope_ptz.endpoints.failures import FailureKind, ServerFailure
-from scope_ptz.planner.chat.messages import Message, Notation
+from scope_ptz.planner.chat.chat_messages import Message, Notation
 
 _REFUSALS = (FailureKind.BAD_REQUEST, FailureKind.SERVER_ERROR, FailureKind.NOT_FOUND, FailureKind.ERROR_BODY)
 _TOOLS = re.compile(

@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import re
 
+from scope_ptz.endpoints.chat_replies import ChatReply
 from scope_ptz.endpoints.failures import Attempt, FailureKind
-from scope_ptz.endpoints.replies import ChatReply
 from scope_ptz.errors import PlannerError
 from scope_ptz.planner.base import CallTools, Decision, Finish, Served, State, ToolCall, Usage
-from scope_ptz.planner.chat.reasoning import part
+from scope_ptz.planner.chat.reasoning_text import part
 from scope_ptz.planner.chat.tool_text import Found, find_calls
 from scope_ptz.planner.chat.written import Signatures, WrittenCall, plain_name, read_arguments
 

@@ -8,15 +8,15 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from scope_ptz.endpoints.chat import ChatClient
+from scope_ptz.endpoints.chat_replies import ChatReply
 from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.endpoints.failures import Attempt, FailureKind, ServerFailure
-from scope_ptz.endpoints.replies import ChatReply
 from scope_ptz.errors import PlannerError
 from scope_ptz.planner.base import Decision, Planner, State
+from scope_ptz.planner.chat.chat_messages import Message, build_messages
 from scope_ptz.planner.chat.dialect import Dialect
 from scope_ptz.planner.chat.families import Server, Thinking, family_of, likely_server, switch_for, temperature_for
 from scope_ptz.planner.chat.interpret import decide
-from scope_ptz.planner.chat.messages import Message, build_messages
 from scope_ptz.planner.chat.prompts import DEFAULT_PROMPT, Prompt, load_prompt
 from scope_ptz.planner.chat.schemas import plain_schemas
 from scope_ptz.planner.chat.window import fits, shortenings

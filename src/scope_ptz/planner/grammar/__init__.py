@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from scope_ptz.errors import PlannerError
 from scope_ptz.planner.base import CallTools, Decision, Finish, Planner, State, ToolCall, ToolOutcome
-from scope_ptz.planner.grammar.memory import whereabouts
-from scope_ptz.planner.grammar.program import Program
-from scope_ptz.planner.grammar.understand import Understanding, understand
+from scope_ptz.planner.grammar.binding.understand import Understanding, understand
+from scope_ptz.planner.grammar.execution.camera_history import whereabouts
+from scope_ptz.planner.grammar.execution.program import Program
 
 __all__ = ["GrammarPlanner", "Understanding", "understand"]
 

@@ -8,8 +8,8 @@ from statistics import median
 
 from pydantic import BaseModel, ConfigDict
 
-from scope_ptz.planner.profile.report import Rate
-from scope_ptz.planner.profile.trials import Trial
+from scope_ptz.planner.profile.first_calls import Trial
+from scope_ptz.planner.profile.prompt_sensitivity import Rate
 
 
 class Spread(BaseModel):

@@ -1,0 +1,101 @@
+"""What is to be seen as a whole, and what is going on."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+
+from scope_ptz.perception.ground_truth.answers.counted_things import narrowed
+from scope_ptz.perception.ground_truth.answers.locations import what
+from scope_ptz.perception.ground_truth.answers.restating import none_of, noun
+from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, are, metres, name, names, place, reply
+from scope_ptz.perception.ground_truth.answers.values import pose_of
+from scope_ptz.perception.ground_truth.language import question_tree as s
+from scope_ptz.perception.ground_truth.language import words as w
+from scope_ptz.perception.ground_truth.relations import BACKDROP
+from scope_ptz.perception.ground_truth.thing_facts import COLOUR_KEYS, NOTHING, colour_of, fact_words, facts, key_words
+from scope_ptz.perception.ground_truth.thing_search import find
+from scope_ptz.perception.ground_truth.view import Thing, View
+
+MAX_GROUPS = 10
+MAX_TEXTS = 3
+STILL = frozenset({None, "parked", "open", "closed", "lit", "unlit", "standing", "full", "empty", "stationary", "fallen"})
+
+
+def describe(view: View, question: s.Describe) -> AnswerText:
+    """What can be seen, biggest first, with the texts that can be read."""
+    if question.what is not None:
+        return _describe_things(view, question.what, question.tests)
+    if question.tests:
+        return _load_of(view, question.tests) or what(view, s.What(s.Description((s.Phrase(("thing",)),)), question.tests))
+    groups = _groups(t for t in view.top_level() if not t.concepts & BACKDROP)
+    if not groups:
+        return reply("I can see nothing that stands out")
+    said = w.listing(groups[:MAX_GROUPS])
+    texts = list(dict.fromkeys(t.text.text for t in view.texts if t.legible))[:MAX_TEXTS]
+    readable = f". I can read {w.listing([f'{chr(34)}{t}{chr(34)}' for t in texts])}" if texts else ""
+    return reply(f"I can see {said}{readable}")
+
+
+def _load_of(view: View, tests: tuple[s.Test, ...]) -> AnswerText | None:
+    """What is on something that the scene says to carry a load: that, rather than another thing that lies upon it."""
+    match tests:
+        case (s.Relation(kind="on", other=other),):
+            bearer = next(iter(find(view, other)), None)
+            load = bearer.attributes.get("load") if bearer is not None else None
+            if bearer is not None and isinstance(load, str) and load not in NOTHING:
+                return reply(f"the {name(bearer)} {place(bearer)} carries {load}")
+    return None
+
+
+def _describe_things(view: View, what: s.Description, tests: tuple[s.Test, ...]) -> AnswerText:
+    """One or several things with everything that the scene says of them."""
+    found = find(view, narrowed(what, tests))
+    if not found:
+        return reply(none_of(view, what))
+    if len(found) > MAX_TEXTS:
+        return reply(f"there are {len(found)} {noun(view, what, many=True)}: {names(found)}")
+    return AnswerText(" ".join(w.sentence(_told(t)) for t in found))
+
+
+def _told(thing: Thing) -> str:
+    told = [
+        f"{' '.join(key_words(k))} {v}" for k, v in facts(thing) if k not in COLOUR_KEYS and not isinstance(v, bool) and k != "kind"
+    ]
+    told += [" ".join(key_words(k)) for k, v in facts(thing) if v is True]
+    texts = [f'it reads "{t}"' for t in thing.texts]
+    spot = f"there is {w.article(name(thing))} {place(thing)}, about {metres(thing.distance_m)} away"
+    return "; ".join([spot, *([", ".join(told)] if told else []), *texts])
+
+
+def _groups(things: Iterable[Thing]) -> list[str]:
+    """ "3 cars (2 white, 1 red)", largest on screen first."""
+    by_kind: dict[str, list[Thing]] = {}
+    for thing in sorted(things, key=lambda t: -t.sighting.pixels):
+        by_kind.setdefault(thing.category, []).append(thing)
+    said = []
+    for kind, members in by_kind.items():
+        if len(members) == 1:
+            said.append(f"{w.article(name(members[0]))} {place(members[0])}")
+            continue
+        colours = Counter(c for c in map(colour_of, members) if c)
+        if list(colours.values()) == [len(members)]:
+            said.append(f"{len(members)} {next(iter(colours))} {w.plural(kind)}")
+            continue
+        shown = f" ({w.listing([f'{n} {c}' for c, n in colours.most_common()])})" if colours and len(colours) <= 4 else ""
+        said.append(f"{w.counted(len(members), kind)}{shown}")
+    return said
+
+
+def happening(view: View) -> AnswerText:
+    """Who and what moves or works; without that, what is to be seen."""
+    busy = Counter((t.category, doing) for t in view.top_level() if (doing := _doing(t)) is not None)
+    if not busy:
+        return AnswerText(f"Nothing is moving. {describe(view, s.Describe()).text}")
+    said = [f"{w.article(k) if n == 1 else w.counted(n, k)} {are(n)} {doing}" for (k, doing), n in busy.items()]
+    return reply(w.listing(said[:MAX_GROUPS]))
+
+
+def _doing(thing: Thing) -> str | None:
+    doing = pose_of(thing)
+    return doing if doing not in STILL else "moving" if "moving" in fact_words(thing) else None

@@ -1,0 +1,75 @@
+"""How things and places are put into words."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+from scope_ptz.perception.ground_truth.language import words as w
+from scope_ptz.perception.ground_truth.relations import SIDE_BAND
+from scope_ptz.perception.ground_truth.thing_facts import colour_of
+from scope_ptz.perception.ground_truth.view import Thing
+
+MAX_NAMED = 8
+"""Lists of things go no further than this."""
+
+
+class AnswerText(NamedTuple):
+    """``known`` is False for "I cannot tell"."""
+
+    text: str
+    known: bool = True
+
+
+def reply(text: str) -> AnswerText:
+    return AnswerText(w.sentence(text))
+
+
+def unknown(text: str) -> AnswerText:
+    return AnswerText(w.sentence(text), known=False)
+
+
+def name(thing: Thing) -> str:
+    """What to call a thing: its name, with its colour where the name has none."""
+    colour = colour_of(thing)
+    words = w.letters(thing.name).split()
+    shown = thing.name if thing.name[:2].isupper() else thing.name[:1].lower() + thing.name[1:]
+    return shown if colour is None or set(w.letters(colour).split()) & set(words) else f"{colour} {shown}"
+
+
+def names(things: Iterable[Thing]) -> str:
+    """ "a white van, 2 traffic cones and a worker", in the order given."""
+    counts = Counter(name(t) for t in things)
+    said = [w.article(n) if c == 1 else f"{c} {w.plural(n)}" for n, c in counts.items()]
+    if len(said) > MAX_NAMED:
+        more = sum(list(counts.values())[MAX_NAMED:])
+        said = [*said[:MAX_NAMED], f"{more} more thing{'s' if more > 1 else ''}"]
+    return w.listing(said)
+
+
+def several(things: Sequence[Thing]) -> str:
+    """Things told apart by where they are: "a white van on the left and a red car in the middle"."""
+    return w.listing([f"{w.article(name(t))} {place(t)}" for t in things])
+
+
+def place(thing: Thing) -> str:
+    """Where in the frame: "on the left", "at the top right", "in the middle"."""
+    x, y = thing.box.centre
+    side = "left" if x < SIDE_BAND else "right" if x > 1 - SIDE_BAND else ""
+    level = "top" if y < SIDE_BAND * 0.75 else "bottom" if y > 1 - SIDE_BAND * 0.75 else ""
+    if side and not level:
+        return f"on the {side}"
+    return f"at the {' '.join(x for x in (level, side) if x)}" if level else "in the middle"
+
+
+def metres(distance_m: float) -> str:
+    """Rounded as a person would say it."""
+    if distance_m < 3:
+        return f"{distance_m:.1f} m"
+    step = 1 if distance_m < 20 else 5 if distance_m < 100 else 10
+    return f"{round(distance_m / step) * step:g} m"
+
+
+def are(count: int) -> str:
+    return "is" if count == 1 else "are"

@@ -1,0 +1,113 @@
+"""What nouns mean: concepts, their other names, and what is a kind of what."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+
+from scope_ptz.perception.ground_truth.language.words import singular
+
+COLOURS = frozenset(
+    [
+        "red",
+        "orange",
+        "yellow",
+        "green",
+        "blue",
+        "purple",
+        "violet",
+        "pink",
+        "brown",
+        "black",
+        "white",
+        "grey",
+        "gray",
+        "silver",
+        "gold",
+        "golden",
+        "beige",
+        "cream",
+        "tan",
+        "amber",
+        "turquoise",
+        "teal",
+        "cyan",
+        "magenta",
+        "maroon",
+        "navy",
+        "lime",
+        "olive",
+    ]
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Lexicon:
+    parents: dict[str, tuple[str, ...]]
+    names: dict[str, str]
+    """Every noun, singular, to its concept."""
+
+    def concept(self, phrase: str) -> str | None:
+        """The concept of a noun in the singular or plural."""
+        words = phrase.replace("-", " ").split()
+        for form in (phrase, singular_phrase(phrase), " ".join(words), singular_phrase(" ".join(words))):
+            if form in self.names:
+                return self.names[form]
+        return None
+
+    def kinds(self, concept: str) -> frozenset[str]:
+        """The concept and everything that it is a kind of."""
+        found = {concept}
+        for parent in self.parents.get(concept, ()):
+            found |= self.kinds(parent)
+        return frozenset(found)
+
+    def all_names(self, concept: str) -> frozenset[str]:
+        """Every noun, singular, for the concept or a kind of it."""
+        return frozenset(name for name, meant in self.names.items() if concept in self.kinds(meant))
+
+
+def singular_phrase(phrase: str) -> str:
+    """The phrase with its last word in the singular."""
+    *first, last = phrase.split()
+    return " ".join([*first, singular(last)])
+
+
+@cache
+def lexicon() -> Lexicon:
+    """The lexicon of ``lexicon.txt``."""
+    parents: dict[str, tuple[str, ...]] = {}
+    names: dict[str, str] = {}
+    others: list[tuple[str, str]] = []
+    for line in files(__package__).joinpath("lexicon.txt").read_text("utf-8").splitlines():
+        if not line.strip() or line.startswith("#"):
+            continue
+        left, _, right = line.partition(":")
+        concept, _, above = (part.strip() for part in left.partition("<"))
+        parents[concept] = tuple(p.strip() for p in above.split(",") if p.strip())
+        names[concept] = concept
+        others += [(other.strip(), concept) for other in right.split(",") if other.strip()]
+    for other, concept in others:
+        names.setdefault(other, concept)
+        names.setdefault(other.replace("-", " "), concept)
+    return Lexicon(parents, names)
+
+
+def nouns_in(words: Sequence[str], known: frozenset[str] = frozenset()) -> list[tuple[int, int]]:
+    """Spans ``[start, end)`` of words that could be the noun, best first: the last one in the phrase, longest reading first.
+
+    ``known``: nouns beside the lexicon's (categories and names of the scene), singular.
+    """
+    table = lexicon()
+    spans = [
+        (i, j)
+        for i in range(len(words))
+        for j in range(i + 1, min(len(words), i + 5) + 1)
+        if table.concept(phrase := " ".join(words[i:j])) or phrase in known or singular_phrase(phrase) in known
+    ]
+    if not spans:
+        return []
+    end = max(j for _, j in spans)
+    return sorted((s for s in spans if s[1] == end), key=lambda s: s[0])

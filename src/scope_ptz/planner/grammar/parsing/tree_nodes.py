@@ -1,0 +1,91 @@
+"""Walking the parser's tree together with the text that it was read from."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.parsing.chart import Branch, Leaf
+
+
+class Node:
+    """A branch with the questions that builders ask of it."""
+
+    __slots__ = ("branch",)
+
+    def __init__(self, branch: Branch) -> None:
+        self.branch = branch
+
+    @property
+    def name(self) -> str:
+        return self.branch.name
+
+    def branches(self, *names: str) -> list[Node]:
+        """The children that are rules, of the given names if any."""
+        return [Node(c) for c in self.branch.children if isinstance(c, Branch) and (not names or c.name in names)]
+
+    def leaves(self, kind: str | None = None) -> list[Leaf]:
+        """The children that are terminals."""
+        return [c for c in self.branch.children if isinstance(c, Leaf) and kind in (None, c.kind)]
+
+    def leaf_kinds(self) -> list[str]:
+        return [leaf.kind for leaf in self.leaves()]
+
+    def has(self, *kinds: str) -> bool:
+        return any(leaf.kind in kinds for leaf in self.leaves())
+
+    def all_leaves(self) -> list[Leaf]:
+        """Every terminal below, in order."""
+        out: list[Leaf] = []
+        for child in self.branch.children:
+            out.extend([child] if isinstance(child, Leaf) else Node(child).all_leaves())
+        return out
+
+    def position(self, name: str) -> int:
+        """Where among all children the first of that name is, or -1."""
+        for i, child in enumerate(self.branch.children):
+            if (child.name if isinstance(child, Branch) else child.kind) == name:
+                return i
+        return -1
+
+
+class Rules:
+    """Dispatches a rule to the method of its name. ``first``: number of the sentence's first lexeme."""
+
+    def __init__(self, text: str, lexemes: Sequence[Lexeme]) -> None:
+        self.source = text
+        self.lexemes = lexemes
+        self.shouting = text.isupper()
+
+    def visit(self, node: Node) -> Any:
+        name = {"visit": "visit_places", "raise": "raise_it", "if": "if_"}.get(node.name, node.name)
+        return getattr(self, name)(node)
+
+    def number(self, node: Node) -> float:
+        """The value of the node's number."""
+        leaf = next(leaf for leaf in node.leaves() if leaf.kind in {"NUM", "ORDINAL"})
+        return self.lexemes[leaf.index].value
+
+    def fraction(self, node: Node) -> float:
+        """The node's fraction: "half" as it is, "third" as one over three."""
+        lexeme = self.lexemes[node.leaves("FRACTION")[0].index]
+        return 1 / lexeme.value if "ORDINAL" in lexeme.kinds else lexeme.value
+
+    def words_of(self, leaf: Leaf) -> str:
+        lexeme = self.lexemes[leaf.index]
+        return self.source[lexeme.start : lexeme.end].lower()
+
+    def how_often(self, node: Node) -> int:
+        """ "Twice" or "thrice"."""
+        said = " ".join(self.words_of(leaf) for leaf in node.leaves("TWICE"))
+        return 3 if "thrice" in said or "few" in said else 2
+
+    def text(self, leaves: Sequence[Leaf]) -> str:
+        """The person's own words from the first to the last of the leaves."""
+        if not leaves:
+            return ""
+        start = self.lexemes[leaves[0].index].start
+        end = self.lexemes[leaves[-1].index].end
+        said = " ".join(self.source[start:end].split())
+        return said.lower() if self.shouting else said
