@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from scope_ptz import english
 from scope_ptz.perception.ground_truth.answers import answer
-from scope_ptz.perception.ground_truth.language import parse_description, parse_question, words
+from scope_ptz.perception.ground_truth.language import parse_description, parse_question
 from scope_ptz.perception.ground_truth.thing_search import find
 from scope_ptz.perception.ground_truth.view import concepts_of, read_view
 from scope_ptz.simulator.models import SceneInstance
@@ -100,13 +101,13 @@ def test_nonsense_is_answered_without_guessing() -> None:
     ],
 )  # fmt: skip
 def test_plurals(many: str, one: str) -> None:
-    assert words.singular(many) == one
-    assert words.plural(one) == many
+    assert english.singular(many) == one
+    assert english.plural(one) == many
 
 
 @pytest.mark.parametrize(("word", "value"), [("7", 7), ("twelve", 12), ("twenty-five", 25), ("zero", 0), ("fivety", None)])
 def test_numbers(word: str, value: int | None) -> None:
-    assert words.number(word) == value
+    assert english.cardinal(word) == value
 
 
 def test_the_short_form_of_a_category_means_nothing_else() -> None:

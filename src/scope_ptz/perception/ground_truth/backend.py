@@ -1,4 +1,4 @@
-"""The simulator's own eyes: what a frame shows, read from the scene it was taken in, never from its pixels."""
+"""The simulator's ground truth as a perception backend. It reads the scene that a frame was taken in, never the frame's pixels."""
 
 from __future__ import annotations
 
@@ -25,14 +25,20 @@ Look = Callable[[Scene, str, Projection, float], ViewTruth]
 class GroundTruthPerception(Perception):
     """Answers from the ground truth of simulated frames. Frames of real cameras have none and raise ``PerceptionError``.
 
-    ``open_scene`` gives a scene by name. What counts as visible and legible is the world's one definition. Boxes come largest
-    first, unless the description orders them ("the nearest car"); they carry the thing's name and no score.
+    Visibility and legibility are as the simulator defines them. Boxes come largest first, unless the description orders them ("the
+    nearest car"); they carry the thing's name and no score.
     """
 
     name = "ground-truth"
     sees_wide = True
 
     def __init__(self, open_scene: Callable[[str], Scene], look: Look = view_truth) -> None:
+        """Set up the backend.
+
+        Args:
+            open_scene: Returns a scene by name.
+            look: Computes the ground truth of a view.
+        """
         self.open_scene = open_scene
         self.look = look
 
@@ -59,7 +65,9 @@ class GroundTruthPerception(Perception):
         return Points(points=points, source=self.name, raw=_ids(things), latency_s=time.perf_counter() - began)
 
     def view(self, frame: Frame, asked: str) -> View:
-        """Everything that a simulated frame shows. ``asked`` makes no difference to the truth; noise may depend on it."""
+        """Return everything that a simulated frame shows. ``asked`` does not affect the truth, but simulated noise depends on
+        it.
+        """
         origin = frame.origin
         if origin is None:
             raise PerceptionError(
@@ -73,7 +81,7 @@ class GroundTruthPerception(Perception):
         return read_view(self.perceived(truth, frame, asked), scene.file, origin.time_s)
 
     def perceived(self, truth: ViewTruth, frame: Frame, asked: str) -> ViewTruth:  # noqa: ARG002
-        """What of the truth is seen: all of it."""
+        """Return the part of the truth that is perceived, here all of it."""
         return truth
 
     def _answer(self, frame: Frame, question: str) -> AnswerText:

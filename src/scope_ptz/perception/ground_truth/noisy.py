@@ -1,4 +1,7 @@
-"""Ground truth seen through bad eyes, for robustness tests: the same seed, frame and question always err in the same way."""
+"""Ground truth with simulated perception errors, for robustness tests.
+
+The same seed, frame and question always give the same errors.
+"""
 
 from __future__ import annotations
 
@@ -21,9 +24,15 @@ _LOOKALIKES = {
 
 @dataclass(frozen=True, slots=True)
 class Noise:
-    """How bad the eyes are. A thing of ``pixels`` is missed with probability ``miss * exp(-pixels / miss_scale_px)``, seen twice
-    with ``duplicate``; a character of a text that is just legible is misread with ``misread``, less the larger it is. Counts err
-    by what is missed and seen twice; ``jitter`` moves the sides of boxes by up to that share of their size."""
+    """How large the errors are.
+
+    Attributes:
+        miss: A thing of ``pixels`` pixels is missed with probability ``miss * exp(-pixels / miss_scale_px)``.
+        miss_scale_px: See ``miss``.
+        duplicate: The probability that a thing is reported twice.
+        misread: The probability that a character of a barely legible text is misread; larger text is misread less.
+        jitter: The sides of boxes move by up to this share of their size.
+    """
 
     miss: float = 0.35
     miss_scale_px: float = 4000.0
@@ -33,7 +42,7 @@ class Noise:
 
 
 class NoisyPerception(GroundTruthPerception):
-    """Wraps the ground truth. What it says is consistent within one question, and wrong in different ways for different ones."""
+    """Adds errors to the ground truth. They are consistent within one question, and differ between questions."""
 
     name = "noisy-ground-truth"
 
@@ -43,7 +52,7 @@ class NoisyPerception(GroundTruthPerception):
         self._noise = noise or Noise()
 
     def perceived(self, truth: ViewTruth, frame: Frame, asked: str) -> ViewTruth:
-        """The truth with misses, duplicates, shifted boxes and misread characters."""
+        """Return the truth with misses, duplicates, shifted boxes and misread characters."""
         key = f"{self._seed}|{frame.origin}|{frame.projection}|{' '.join(asked.lower().split())}"
         rng = random.Random(hashlib.sha256(key.encode()).digest())
         sightings: list[Sighting] = []

@@ -1,14 +1,14 @@
-"""Where things are to one another in the picture and in the world.
+"""Spatial relations between things, in the picture and in the world.
 
-- *left / right of*: the middle of the box lies further left / right. *Above / below*: the middle lies higher / lower, and the
-  boxes overlap sideways or come within a tenth of the frame of it.
-- *behind / in front of*: further from / nearer to the camera by half a metre or more, and the boxes overlap sideways (a twentieth
-  of the frame is forgiven).
-- *near, next to*: no more than 4 m of air between the two in the world.
+- *left / right of*: the centre of the box lies further left / right. *Above / below*: the centre lies higher / lower, and the boxes
+overlap sideways or come within a tenth of the frame of it.
+- *behind / in front of*: further from / nearer to the camera by half a metre or more, and the boxes overlap sideways, with a
+tolerance of a twentieth of the frame.
+- *near, next to*: at most 4 m apart in the world.
 - *on, in, at, of*: a part of it, or standing on its ground plan without reaching below it.
-- *on the left*: the middle lies in the left 40% of the frame; *half*: in that half; *corner*: in both 40% bands; *middle*: the
-  middle 40% across, without the top and bottom tenth. *In the foreground*, *in the distance*: the nearest and furthest third of
-  the depth in view, on a logarithmic scale.
+- *on the left*: the centre lies in the left 40% of the frame; *half*: in that half; *corner*: in both 40% bands; *middle*: in the
+middle 40% across, without the top and bottom tenth. *In the foreground*, *in the distance*: the nearest and furthest third of the
+depth in view, on a logarithmic scale.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from scope_ptz import english
 from scope_ptz.perception.ground_truth.language import question_tree as s
-from scope_ptz.perception.ground_truth.language import words as w
 from scope_ptz.perception.ground_truth.thing_facts import facts, key_words
 from scope_ptz.perception.ground_truth.view import Thing, View
 
 BACKDROP = frozenset({"surface", "sky"})
-"""Concepts that are where things are, rather than things."""
+"""Concepts that are the background of things rather than things."""
 
 NEAR_M = 4.0
 ON_SLACK_M = 0.3
@@ -34,6 +34,7 @@ SIDE_SLACK = 0.05
 
 
 def in_region(view: View, thing: Thing, region: s.Region) -> bool:
+    """Return whether a thing lies in a part of the frame."""
     x, y = thing.box.centre
     band = 0.5 if region.half else SIDE_BAND
     checks: dict[str, Callable[[], bool]] = {
@@ -49,14 +50,14 @@ def in_region(view: View, thing: Thing, region: s.Region) -> bool:
 
 
 def _depth(view: View, share: float) -> float:
-    """A distance between the nearest and the furthest thing in view: so far along, on a logarithmic scale."""
+    """Return the distance at a share of the way from the nearest to the furthest thing in view, on a logarithmic scale."""
     distances = [t.distance_m for t in view.top_level() if not t.concepts & BACKDROP]
     near, far = min(distances), max(distances)
     return float(near * (far / near) ** share)
 
 
 def relation_holds(view: View, a: Thing, kind: s.RelationKind, b: Thing) -> bool:
-    """The relations of the picture between two things."""
+    """Return whether two things stand in a relation in the picture."""
     (ax, ay), (bx, by) = a.box.centre, b.box.centre
     part = view.belongs(a.id, b.id) or view.belongs(b.id, a.id)
     match kind:
@@ -83,7 +84,9 @@ def _sideways(a: Thing, b: Thing, slack: float) -> bool:
 
 
 def _rests_on(a: Thing, b: Thing) -> bool:
-    """Its middle over the ground plan of the other and its foot above the other's, unless that is flat like a road."""
+    """Return whether a thing stands on another: its centre over the other's ground plan, and its foot above the other's foot
+    unless that is flat like a road.
+    """
     middle = (a.low_m + a.high_m)[:2] / 2
     over = bool(np.all(middle >= b.low_m[:2] - ON_SLACK_M) and np.all(middle <= b.high_m[:2] + ON_SLACK_M))
     foot, top = b.low_m[2] if b.high_m[2] - b.low_m[2] < FLAT_M else b.low_m[2] + ON_SLACK_M, b.high_m[2] + ON_SLACK_M
@@ -95,7 +98,7 @@ def _extent(thing: Thing) -> float:
 
 
 def from_corner(thing: Thing, sides: Sequence[str]) -> float:
-    """How far from a corner or the middle of the frame, in frames."""
+    """Return the distance to a corner or to the centre of the frame, in frames."""
     x, y = thing.box.centre
     to_x = 0.0 if "left" in sides else 1.0 if "right" in sides else 0.5
     to_y = 0.0 if "top" in sides else 1.0 if "bottom" in sides else 0.5
@@ -103,19 +106,20 @@ def from_corner(thing: Thing, sides: Sequence[str]) -> float:
 
 
 def faces(thing: Thing, side: str) -> bool | None:
-    """Which way a thing points, where the scene says so."""
+    """Return whether a thing points to a side, None where the scene does not say."""
     for key, value in facts(thing):
         if set(key_words(key)) & {"direction", "facing", "heading", "pointing", "orientation", "arrow"}:
-            return side in w.letters(str(value)).split()
+            return side in english.letters(str(value)).split()
     return None
 
 
 def pixels(thing: Thing) -> int:
+    """Return how many pixels of a thing are visible."""
     return thing.sighting.pixels
 
 
 def rank_key(key: s.OrderKey) -> Callable[[Thing], float]:
-    """What a superlative sorts by, best first."""
+    """Return the sort key of a superlative, best first."""
     keys: dict[str, Callable[[Thing], float]] = {
         "left": lambda t: t.box.centre[0],
         "right": lambda t: -t.box.centre[0],
@@ -132,5 +136,5 @@ def rank_key(key: s.OrderKey) -> Callable[[Thing], float]:
 
 
 def _volume(thing: Thing) -> float:
-    """Size in the world: the diagonal of the box, which also orders flat things."""
+    """Return the size in the world: the diagonal of the box, which also orders flat things."""
     return float(((thing.high_m - thing.low_m) ** 2).sum() ** 0.5)

@@ -1,11 +1,11 @@
-"""Does a word, an outfit or a text fit a thing? Three answers: yes, no, and "the scene does not say" (None)."""
+"""Whether a word, an outfit or a text fits a thing. The answer is yes, no, or None when the scene does not say."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from scope_ptz.perception.ground_truth.language import words as w
-from scope_ptz.perception.ground_truth.language.concepts import COLOURS, lexicon, nouns_in, singular_phrase
+from scope_ptz import english
+from scope_ptz.perception.ground_truth.language.concepts import lexicon, nouns_in, singular_phrase
 from scope_ptz.perception.ground_truth.view import Thing, View, head_of
 from scope_ptz.simulator.models import Attribute
 
@@ -87,7 +87,7 @@ SOFT = frozenset(
         "moving",
     ]
 )
-"""Words that restrict nothing when the scene has no fact about them."""
+"""Words that do not restrict a description when the scene has no fact about them."""
 FILLERS = frozenset(
     [
         "the",
@@ -119,31 +119,34 @@ FILLERS = frozenset(
     ]
 )
 TEXT_KEYS = frozenset(["reads", "text", "plate", "lettering", "number", "signal", "sign", "label", "readable_by", "inscription"])
-"""Attributes that repeat what is written on a thing. They are never used: only legible texts are read."""
+"""Attributes that repeat the text on a thing. They are never used, because only legible texts are read."""
 COLOUR_KEYS = ("colour", "color")
 NOTHING = frozenset({"", "none", "no", "false", "nothing", "without"})
 
 
 def canonical(word: str) -> str:
+    """Return the word that stands for a word and its synonyms."""
     return _CANONICAL.get(word, word)
 
 
 def opposite(a: str, b: str) -> bool:
+    """Return whether two words exclude each other."""
     return (a, b) in _OPPOSITES or (b, a) in _OPPOSITES
 
 
 def key_words(key: str) -> list[str]:
-    """ "helmet_colour" as words."""
-    return w.letters(key.replace("_", " ").replace("-", " ")).split()
+    """Return the words of an attribute key such as "helmet_colour"."""
+    return english.letters(key.replace("_", " ").replace("-", " ")).split()
 
 
 def value_words(value: object) -> list[str]:
-    return [canonical(x) for x in w.letters(str(value)).split()]
+    """Return the canonical words of an attribute value."""
+    return [canonical(x) for x in english.letters(str(value)).split()]
 
 
 def fact_words(thing: Thing) -> set[str]:
-    """Every word that says something of a thing: names, values, true flags, what it is doing. Clothes of people excluded."""
-    found = {canonical(x) for x in w.letters(f"{thing.name} {thing.category}").split()}
+    """Return every word that describes a thing: names, values, true flags, what it does. The clothes of people are excluded."""
+    found = {canonical(x) for x in english.letters(f"{thing.name} {thing.category}").split()}
     for key, value in facts(thing):
         words = key_words(key)
         if value is True:
@@ -167,24 +170,25 @@ def fact_words(thing: Thing) -> set[str]:
 
 
 def facts(thing: Thing) -> list[tuple[str, Attribute]]:
-    """The attributes that may be told: all but what is written on the thing."""
+    """Return the attributes that may be reported: all except the texts on the thing."""
     return [(k, v) for k, v in thing.attributes.items() if k not in TEXT_KEYS]
 
 
 def is_colour(value: object) -> bool:
-    words = w.letters(str(value)).split()
-    return bool(words) and words[-1] in COLOURS
+    """Return whether an attribute value is a colour."""
+    words = english.letters(str(value)).split()
+    return bool(words) and words[-1] in english.COLOURS
 
 
 def is_worn(key: str) -> bool:
-    """Whether an attribute is about clothes, so that its colour is not the person's."""
+    """Return whether an attribute is about clothes, so that its colour is not the person's."""
     return any(
         lexicon().concept(x) in {"hard hat", "hi-vis vest", "jacket", "trouser", "boot", "glove", "hat"} for x in key_words(key)
     )
 
 
 def colour_of(thing: Thing) -> str | None:
-    """The colour as the scene states it."""
+    """Return the colour as the scene states it."""
     for key in COLOUR_KEYS:
         if key in thing.attributes:
             return str(thing.attributes[key])
@@ -193,17 +197,17 @@ def colour_of(thing: Thing) -> str | None:
     for key, value in thing.attributes.items():
         if is_colour(value) and not is_worn(key):
             return str(value)
-    named = [x for x in w.letters(thing.name).split() if x in COLOURS]
+    named = [x for x in english.letters(thing.name).split() if x in english.COLOURS]
     return named[0] if named else None
 
 
 def fits_noun(view: View, thing: Thing, noun: str) -> bool:
-    """Whether a noun (singular or plural) names the thing.
+    """Return whether a noun (singular or plural) names the thing.
 
-    A word that the scene itself uses for something means that ("pylon" for an electricity pylon), whatever else it may mean.
+    A word that the scene itself uses means that thing ("pylon" for an electricity pylon), whatever else it may mean.
     """
-    one = w.letters(singular_phrase(noun))
-    name, category = w.letters(head_of(thing.name)), w.letters(thing.category)
+    one = english.letters(singular_phrase(noun))
+    name, category = english.letters(head_of(thing.name)), english.letters(thing.category)
     if one in (category, name) or name.endswith(f" {one}"):
         return True
     concept = lexicon().concept(noun)
@@ -211,7 +215,7 @@ def fits_noun(view: View, thing: Thing, noun: str) -> bool:
 
 
 def fits_words(view: View, thing: Thing, words: Sequence[str]) -> bool | None:
-    """Whether loose words ("parked", "dark blue", "a van") hold for a thing."""
+    """Return whether loose words ("parked", "dark blue", "a van") hold for a thing."""
     rest = [x for x in words if x not in FILLERS] or [x for x in words if x in {"on", "in"}]
     if not rest:
         return True
@@ -229,7 +233,7 @@ def _all(answers: Iterable[bool | None]) -> bool | None:
 
 
 def _fits(view: View, thing: Thing, word: str) -> bool | None:
-    """Whether one word holds for a thing."""
+    """Return whether one word holds for a thing."""
     if word.startswith("non-"):
         answer = _fits(view, thing, word.removeprefix("non-"))
         return None if answer is None else not answer
@@ -239,11 +243,11 @@ def _fits(view: View, thing: Thing, word: str) -> bool | None:
         return True
     if lexicon().concept(word) is not None and "person" in thing.concepts and wears(view, thing, [word]):
         return True
-    if _in_context(view, thing, word) or any(w.letters(word) in w.letters(text).split() for text in thing.texts):
+    if _in_context(view, thing, word) or any(english.letters(word) in english.letters(text).split() for text in thing.texts):
         return True
     if any(opposite(meant, other) for other in known):
         return False
-    if meant in COLOURS and colour_of(thing) is not None:
+    if meant in english.COLOURS and colour_of(thing) is not None:
         return False
     if any(_forms(word) & domain and key in thing.attributes for key, domain in view.values.items() if key not in TEXT_KEYS):
         return False
@@ -251,8 +255,8 @@ def _fits(view: View, thing: Thing, word: str) -> bool | None:
 
 
 def _forms(word: str) -> frozenset[str]:
-    """A word with its other forms, so that "kneeling" fits "kneel"."""
-    stems = {word, w.singular(word)}
+    """Return a word with its other forms, so that "kneeling" fits "kneel"."""
+    stems = {word, english.singular(word)}
     for ending in ("ing", "ed"):
         if word.endswith(ending) and len(word) > len(ending) + 2:
             base = word.removesuffix(ending)
@@ -261,19 +265,19 @@ def _forms(word: str) -> frozenset[str]:
 
 
 def _in_context(view: View, thing: Thing, word: str) -> bool:
-    """Whether the word names what the thing hangs on ("the gantry sign", "the cabin door")."""
+    """Return whether the word names what the thing belongs to ("the gantry sign", "the cabin door")."""
     holder = thing.parent
     while holder is not None:
-        words = w.letters(view.instances[holder].name).split()
+        words = english.letters(view.instances[holder].name).split()
         carrier = view.by_id.get(holder)
-        if w.singular(word) in words or (carrier is not None and fits_noun(view, carrier, word)):
+        if english.singular(word) in words or (carrier is not None and fits_noun(view, carrier, word)):
             return True
         holder = view.parents.get(holder)
     return False
 
 
 def wears(view: View, thing: Thing, words: Sequence[str], amount: int | None = None) -> bool:
-    """Whether a thing has what the words name: an attribute, a part, or a text. What the scene does not say is not there."""
+    """Return whether a thing has what the words name: an attribute, a part or a text. What the scene does not state is absent."""
     rest = [x for x in words if x not in FILLERS]
     spans = nouns_in(rest, view.nouns)
     start, end = spans[0] if spans else (len(rest) - 1, len(rest))
@@ -281,20 +285,25 @@ def wears(view: View, thing: Thing, words: Sequence[str], amount: int | None = N
     if lexicon().concept(noun) == "thing":  # "carrying something"
         held = [v for k, v in facts(thing) if set(key_words(k)) & {"carrying", "load", "holding"}]
         return any(str(v).lower() not in NOTHING for v in held)
-    names = names_of(noun)
-    for key, value in facts(thing):
-        if _key_is(key, names):
-            said = value_words(value)
-            if str(value).lower() not in NOTHING and value is not False and all(x in said for x in others):
-                return amount is None or not isinstance(value, int) or isinstance(value, bool) or value == amount
-        for chunk in _chunks(value):
-            if any(name in chunk for name in names) and all(x in value_words(chunk) for x in others) and "no" not in chunk.split():
-                return True
+    if any(_attribute_has(key, value, names_of(noun), others, amount) for key, value in facts(thing)):
+        return True
     parts = [t for t in view.things if t.id != thing.id and view.belongs(t.id, thing.id)]
     if any(fits_noun(view, part, noun) and all(_fits(view, part, x) for x in others) for part in parts):
         return True
-    wanted = w.letters(" ".join(rest))
-    return any(wanted in w.letters(text) for text in thing.texts)
+    wanted = english.letters(" ".join(rest))
+    return any(wanted in english.letters(text) for text in thing.texts)
+
+
+def _attribute_has(key: str, value: Attribute, names: frozenset[str], others: Sequence[str], amount: int | None) -> bool:
+    """Return whether an attribute states one of the names, by its key or within its value, together with all other words."""
+    if _key_is(key, names):
+        stated = value_words(value)
+        if str(value).lower() not in NOTHING and value is not False and all(x in stated for x in others):
+            return amount is None or not isinstance(value, int) or isinstance(value, bool) or value == amount
+    return any(
+        any(name in chunk for name in names) and all(x in value_words(chunk) for x in others) and "no" not in chunk.split()
+        for chunk in _chunks(value)
+    )
 
 
 def _key_is(key: str, names: frozenset[str]) -> bool:
@@ -303,27 +312,27 @@ def _key_is(key: str, names: frozenset[str]) -> bool:
 
 
 def names_of(noun: str) -> frozenset[str]:
-    """All names, singular, of what a noun means."""
+    """Return all names, in the singular, of what a noun means."""
     table = lexicon()
     concept = table.concept(noun)
     return frozenset({singular_phrase(noun)}) | (table.all_names(concept) if concept else frozenset())
 
 
 def _chunks(value: object) -> list[str]:
-    """ "orange vest and white helmet" as its parts, so that the vest is not white."""
+    """Split "orange vest and white helmet" into its parts, so that the vest is not white."""
     if not isinstance(value, str):
         return []
     text = value.lower().replace(" and ", ",").replace(" with ", ",").replace(";", ",")
-    return [w.letters(" ".join([*(c.split()[:-1]), w.singular(c.split()[-1])])) for c in text.split(",") if c.strip()]
+    return [english.letters(" ".join([*(c.split()[:-1]), english.singular(c.split()[-1])])) for c in text.split(",") if c.strip()]
 
 
 def bears(thing: Thing, words: Sequence[str]) -> bool:
-    """Whether legible text on a thing contains these words in this order (any legible text when there are none)."""
+    """Return whether legible text on a thing contains these words in this order. Without words, any legible text counts."""
     wanted = f" {' '.join(words)} "
-    return any(wanted in f" {w.letters(text)} " or not words for text in thing.texts) or _plate_is(thing, words)
+    return any(wanted in f" {english.letters(text)} " or not words for text in thing.texts) or _plate_is(thing, words)
 
 
 def _plate_is(thing: Thing, words: Sequence[str]) -> bool:
-    """Plates are compared without spaces, and after "number plate"."""
+    """Compare number plates without spaces, and without the words "number plate"."""
     plain = "".join(x for x in words if x not in {"number", "plate", "registration", "licence", "license"})
-    return len(plain) >= 4 and any(plain == w.letters(text).replace(" ", "") for text in thing.texts)
+    return len(plain) >= 4 and any(plain == english.letters(text).replace(" ", "") for text in thing.texts)

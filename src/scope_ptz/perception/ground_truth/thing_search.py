@@ -1,9 +1,9 @@
-"""Which things of a view a description means.
+"""Finding the things in a view that a description means.
 
 - A fact of the scene comes first ("in the left lane", "in an orange vest"), then the relations of ``relations``.
-- *between*: the middle lies between the middles of the two, sideways, and not clearly before or behind both.
-- Of several matches the one with most pixels comes first, unless a superlative or ordinal orders them; ordinals without a side
-  count from the left. Superlatives keep the best only ("the two nearest": two).
+- *between*: the centre lies sideways between the centres of the two, and not clearly in front of or behind both.
+- Of several matches the one with most pixels comes first, unless a superlative or ordinal orders them. Ordinals without a side
+count from the left. Superlatives keep only the best ("the two nearest" keeps two).
 """
 
 from __future__ import annotations
@@ -12,10 +12,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import cast
 
+from scope_ptz import english
 from scope_ptz.perception.ground_truth.full_names import named_in_full
 from scope_ptz.perception.ground_truth.language import question_tree as s
-from scope_ptz.perception.ground_truth.language import words as w
-from scope_ptz.perception.ground_truth.language.concepts import COLOURS, lexicon, nouns_in
+from scope_ptz.perception.ground_truth.language.concepts import lexicon, nouns_in
 from scope_ptz.perception.ground_truth.relations import (
     BACKDROP,
     NEAR_M,
@@ -33,7 +33,7 @@ _SIDES: dict[str, s.OrderKey] = {"left": "left", "right": "right", "top": "top",
 
 
 def find(view: View, description: s.Description) -> list[Thing]:
-    """Everything that the description means, best first."""
+    """Return everything that the description means, best first."""
     found = things_named(view, description)
     if found or len(description.phrases) != 1:
         return found
@@ -41,7 +41,7 @@ def find(view: View, description: s.Description) -> list[Thing]:
 
 
 def things_named(view: View, description: s.Description) -> list[Thing]:
-    """Only what is a thing of its own, not what people wear."""
+    """Return only things of their own, not what people wear."""
     found = _two_coloured(view, description)
     if found:
         return found
@@ -51,34 +51,34 @@ def things_named(view: View, description: s.Description) -> list[Thing]:
 
 
 def _worn(view: View, phrase: s.Phrase) -> list[Thing]:
-    """ "Hard hats" are no things of their own: they are where the people are who wear them."""
+    """Find "hard hats", which are no things of their own, on the people who wear them."""
     if phrase.tests or phrase.order or phrase.ordinal or not nouns_in(phrase.words):
         return []
     return sorted((t for t in view.things if "person" in t.concepts and wears(view, t, phrase.words)), key=pixels, reverse=True)
 
 
 def _two_coloured(view: View, description: s.Description) -> list[Thing]:
-    """ "Red and white barriers" are those of both colours, where there are such; else the red ones and the white ones."""
+    """Find "red and white barriers": those of both colours if there are any, else the red ones and the white ones."""
     phrases = description.phrases
-    if len(phrases) != 2 or any(len(p.words) < 2 or p.words[0] not in COLOURS for p in phrases):
+    if len(phrases) != 2 or any(len(p.words) < 2 or p.words[0] not in english.COLOURS for p in phrases):
         return []
     first, second = phrases
     if (first.words[1:], first.tests, first.order) != (second.words[1:], second.tests, second.order):
         return []
     wanted = {p.words[0] for p in phrases}
     both = replace(first, words=first.words[1:])
-    return [t for t in find_phrase(view, both) if wanted <= set(w.letters(colour_of(t) or "").split())]
+    return [t for t in find_phrase(view, both) if wanted <= set(english.letters(colour_of(t) or "").split())]
 
 
 def find_phrase(view: View, phrase: s.Phrase) -> list[Thing]:
-    """Everything that one noun phrase means, best first."""
+    """Return everything that one noun phrase means, best first."""
     core, extra, order = _core(view, phrase)
     matches = [t for t in core if all(holds(view, t, test) is True for test in (*phrase.tests, *extra))]
     return _ordered(view, sorted(matches, key=pixels, reverse=True), order, phrase)
 
 
 def noun_of(view: View, words: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """The words up to and with the noun, and the words after it (a predicate: "gate open")."""
+    """Split words into those up to the noun, and those after it (a predicate: "gate open")."""
     spans = nouns_in(words, view.nouns)
     if not spans:
         return (tuple(words[:-1]), tuple(words[-1:])) if len(words) > 1 else (tuple(words), ())
@@ -87,9 +87,9 @@ def noun_of(view: View, words: Sequence[str]) -> tuple[tuple[str, ...], tuple[st
 
 
 def _core(view: View, phrase: s.Phrase) -> tuple[list[Thing], tuple[s.Test, ...], s.Order | None]:
-    """Things that the core words fit, further tests, and the order, where the words hide one ("the left sign")."""
+    """Return the things that the core words fit, further tests, and the order if the words imply one ("the left sign")."""
     words = list(phrase.words)
-    if phrase.amount is not None and phrase.order is None and words and not w.is_plural(words[-1]) and phrase.amount > 1:
+    if phrase.amount is not None and phrase.order is None and words and not english.is_plural(words[-1]) and phrase.amount > 1:
         words.insert(0, str(phrase.amount))
     spans = nouns_in(words, view.nouns)
     carried = any(isinstance(t, s.Relation) and t.kind == "on" for t in phrase.tests)
@@ -104,12 +104,12 @@ def _core(view: View, phrase: s.Phrase) -> tuple[list[Thing], tuple[s.Test, ...]
         plain = [x for x in (*words[:start], *words[end:]) if x not in sides]
         matches = [t for t in _named(view, " ".join(words[start:end]), plain, carried) if _modified(view, t, plain)]
         if sides and matches:
-            return _sided(matches, sides, w.is_plural(words[end - 1]), phrase)
+            return _sided(matches, sides, english.is_plural(words[end - 1]), phrase)
     return [] if spans else [t for t in view.things if _all_words(view, t, words)], (), phrase.order
 
 
 def _named(view: View, noun: str, others: Sequence[str], carried: bool) -> list[Thing]:
-    """Things that a noun names. "The yellow vehicle" may be a machine when no road vehicle is yellow."""
+    """Return the things that a noun names. "The yellow vehicle" may be a machine when no road vehicle is yellow."""
     if lexicon().concept(noun) == "thing":
         return [t for t in view.things if _worth_naming(view, t) or (carried and not t.concepts & BACKDROP)]
     named = [t for t in view.things if fits_noun(view, t, noun)]
@@ -121,7 +121,9 @@ def _named(view: View, noun: str, others: Sequence[str], carried: bool) -> list[
 def _sided(
     matches: list[Thing], sides: list[str], many: bool, phrase: s.Phrase
 ) -> tuple[list[Thing], tuple[s.Test, ...], s.Order | None]:
-    """ "The left sign" is the left-most, "the left signs" are those on the left, "the top right sign" is nearest that corner."""
+    """Apply sides: "the left sign" is the left-most, "the left signs" are on the left, "the top right sign" is nearest that
+    corner.
+    """
     if many:
         return matches, (s.Region(cast("tuple[s.Side, ...]", tuple(sides))),), phrase.order
     if len(sides) == 1 and sides[0] in _SIDES and phrase.order is None:
@@ -130,7 +132,7 @@ def _sided(
 
 
 def _worth_naming(view: View, thing: Thing) -> bool:
-    """Road, grass and sky are no "objects", and neither is a part of something that is itself in view."""
+    """Return whether a thing counts as an object: not road, grass or sky, and not a part of something else in view."""
     return not thing.concepts & BACKDROP and (thing.parent is None or thing.parent not in view.by_id)
 
 
@@ -144,17 +146,17 @@ def _modified(view: View, thing: Thing, others: Sequence[str]) -> bool:
 
 
 def _soft(view: View, thing: Thing, word: str) -> bool:
-    """Whether a word like "big" may be passed over: the scene has no fact about it."""
+    """Return whether a word like "big" can be ignored, because the scene has no fact about it."""
     return word in SOFT and fits_words(view, thing, [word]) is None and not any(word in values for values in view.values.values())
 
 
 def _all_words(view: View, thing: Thing, words: Sequence[str]) -> bool:
-    """An unknown noun: every word must be found in the thing's own words."""
+    """Match an unknown noun: every word must occur in the thing's own words."""
     return not set(words) <= FILLERS and all(fits_words(view, thing, [x]) is True for x in words)
 
 
 def holds(view: View, thing: Thing, test: s.Test) -> bool | None:
-    """Whether a test holds for a thing; None where the scene does not say."""
+    """Return whether a test holds for a thing; None where the scene does not say."""
     match test:
         case s.Not(test=inner):
             answer = holds(view, thing, inner)
@@ -169,6 +171,17 @@ def holds(view: View, thing: Thing, test: s.Test) -> bool | None:
             return bears(thing, words) or (len(words) == 1 and faces(thing, words[0]) is True)
         case s.Has(what=what):
             return _has(view, thing, what)
+        case s.Faces(side=side):
+            return faces(thing, side)
+        case s.Order():
+            return None
+        case _:
+            return _stands(view, thing, test)
+
+
+def _stands(view: View, thing: Thing, test: s.Region | s.Between | s.Relation | s.Measured | s.Within) -> bool:
+    """Return whether a test about place, distance or size holds for a thing."""
+    match test:
         case s.Region():
             return in_region(view, thing, test)
         case s.Between(first=first, second=second):
@@ -181,14 +194,10 @@ def holds(view: View, thing: Thing, test: s.Test) -> bool | None:
         case s.Within(metres=metres, other=other, beyond=beyond):
             gaps = [thing.distance_m] if other is None else [thing.gap_m(o) for o in find(view, other) if o is not thing]
             return bool(gaps) and (min(gaps) <= metres) is not beyond
-        case s.Faces(side=side):
-            return faces(thing, side)
-        case s.Order():
-            return None
 
 
 def _has(view: View, thing: Thing, what: s.Description) -> bool:
-    """All of the listed things: "with a vest and a helmet"."""
+    """Return whether a thing has everything in a list ("with a vest and a helmet")."""
     return all(
         wears(view, thing, phrase.words, phrase.amount)
         and all(not isinstance(t, s.Is | s.Says) or wears(view, thing, (*phrase.words, *t.words)) for t in phrase.tests)
@@ -197,7 +206,7 @@ def _has(view: View, thing: Thing, what: s.Description) -> bool:
 
 
 def related(view: View, thing: Thing, kind: s.RelationKind, other: s.Description) -> bool:
-    """Whether a thing stands in a relation to any thing that fits ``other``."""
+    """Return whether a thing stands in a relation to any thing that fits ``other``."""
     others = things_named(view, other)
     if kind == "on" and thing not in others and _said(view, thing, other):
         return True
@@ -205,9 +214,9 @@ def related(view: View, thing: Thing, kind: s.RelationKind, other: s.Description
 
 
 def _said(view: View, thing: Thing, other: s.Description) -> bool:
-    """ "in the left lane", "in an orange vest": a fact or an outfit that says so."""
+    """Return whether a fact or an outfit states the relation: "in the left lane", "in an orange vest"."""
     words = [x for p in other.phrases for x in p.words]
-    if any(set(words) <= set(said) for said in (w.letters(thing.name).split(), *_values(thing))):
+    if any(set(words) <= set(said) for said in (english.letters(thing.name).split(), *_values(thing))):
         return True
     return wears(view, thing, words)
 
@@ -217,7 +226,7 @@ _LANES = {1: "left inside slow nearside first", 2: "middle centre second", 3: "r
 
 def _values(thing: Thing) -> Iterable[list[str]]:
     for key, value in facts(thing):
-        yield w.letters(f"{key.replace('_', ' ')} {value}").split()
+        yield english.letters(f"{key.replace('_', ' ')} {value}").split()
         if key == "lane" and isinstance(value, int):
             yield ["lane", *_LANES.get(value, "").split()]
 

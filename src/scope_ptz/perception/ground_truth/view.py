@@ -1,4 +1,4 @@
-"""What a frame shows, ready for questions: visible things with their facts, and the texts on them."""
+"""What a frame shows, prepared for questions: visible things with their facts, and the texts on them."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from scope_ptz import english
 from scope_ptz.perception.base import Box
-from scope_ptz.perception.ground_truth.language import words as w
 from scope_ptz.perception.ground_truth.language.concepts import lexicon, singular_phrase
 from scope_ptz.simulator.actors import path_position
 from scope_ptz.simulator.models import Attribute, SceneActor, SceneFile, SceneInstance
@@ -19,12 +19,18 @@ from scope_ptz.simulator.truth import Sighting, TextSighting, ViewTruth
 Floats = NDArray[np.float64]
 
 PART_WORDS = (" with ", " of ", " on ", " in ", " at ", " for ", " by ", " from ", " near ")
-"""What ends the head of a name: "lorry with crane" is a lorry."""
+"""Words that end the head of a name: "lorry with crane" is a lorry."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Thing:
-    """A visible instance. ``low_m``/``high_m``: its world box; ``motion``: "moving", "stationary" or nothing known."""
+    """A visible instance.
+
+    Attributes:
+        low_m: Lowest corner of its box in the world.
+        high_m: Highest corner.
+        motion: "moving", "stationary", or empty when unknown.
+    """
 
     sighting: Sighting
     low_m: Floats
@@ -64,7 +70,7 @@ class Thing:
         return self.sighting.distance_m
 
     def gap_m(self, other: Thing) -> float:
-        """Metres of air between the two world boxes."""
+        """Return the distance in metres between the world boxes of two things."""
         apart = np.maximum(0.0, np.maximum(self.low_m - other.high_m, other.low_m - self.high_m))
         return float(np.linalg.norm(apart))
 
@@ -76,22 +82,22 @@ class View:
     things: tuple[Thing, ...]
     texts: tuple[TextSighting, ...]
     parents: Mapping[str, str]
-    """Instance id to its parent's id, for the whole scene."""
+    """The parent's id of each instance id, for the whole scene."""
     instances: Mapping[str, SceneInstance | SceneActor]
-    """By id, for the whole scene."""
+    """Instances by id, for the whole scene."""
     values: Mapping[str, frozenset[str]]
-    """Attribute key to every word that it takes anywhere in the scene."""
+    """Every word that each attribute key takes anywhere in the scene."""
     nouns: frozenset[str] = field(default=frozenset())
-    """Nouns of the scene beside the lexicon's."""
+    """Nouns of the scene in addition to those of the lexicon."""
     hosts: tuple[Thing, ...] = ()
-    """Things too cut off to count as visible that bear a legible text: a sign that more than fills the frame."""
+    """Things with a legible text that are too cut off to count as visible, such as a sign larger than the frame."""
 
     @cached_property
     def by_id(self) -> dict[str, Thing]:
         return {thing.id: thing for thing in self.things}
 
     def belongs(self, part: str, whole: str) -> bool:
-        """Whether ``part`` is the instance ``whole`` or hangs on it, directly or not."""
+        """Return whether ``part`` is the instance ``whole`` or belongs to it, directly or not."""
         current: str | None = part
         while current is not None:
             if current == whole:
@@ -101,25 +107,25 @@ class View:
 
     @cached_property
     def concepts(self) -> frozenset[str]:
-        """Concepts of the nouns that the scene uses at all, whether or not they are in view."""
+        """Concepts of all nouns that the scene uses, in view or not."""
         table = lexicon()
         return frozenset(k for n in self.nouns if (c := table.concept(n)) for k in table.kinds(c))
 
     def texts_on(self, thing: Thing) -> tuple[TextSighting, ...]:
-        """Texts on a thing and on its parts, top to bottom and left to right."""
+        """Return the texts on a thing and its parts, top to bottom and left to right."""
         return tuple(t for t in self.texts if self.belongs(t.text.parent, thing.id))
 
     def for_reading(self) -> View:
-        """The view with the hosts of legible texts among its things."""
+        """Return the view with the hosts of legible texts among its things."""
         return replace(self, things=(*self.things, *self.hosts))
 
     def top_level(self) -> tuple[Thing, ...]:
-        """Things that are no part of another visible thing."""
+        """Return the things that are no part of another visible thing."""
         return tuple(t for t in self.things if t.parent is None or t.parent not in self.by_id)
 
 
 def read_view(truth: ViewTruth, scene: SceneFile, time_s: float) -> View:
-    """The view of a frame from its ground truth."""
+    """Return the view of a frame from its ground truth."""
     everything: list[SceneInstance | SceneActor] = [*scene.instances, *scene.actors]
     parents = {i.id: i.parent for i in scene.instances if i.parent}
     values: dict[str, set[str]] = {}
@@ -127,7 +133,7 @@ def read_view(truth: ViewTruth, scene: SceneFile, time_s: float) -> View:
     for instance in everything:
         nouns |= {singular_phrase(n.lower()) for n in (instance.category, head_of(instance.name)) if n.strip()}
         for key, value in instance.attributes.items():
-            values.setdefault(key, set()).update(w.letters(str(value)).split())
+            values.setdefault(key, set()).update(english.letters(str(value)).split())
     texts = tuple(sorted(truth.texts, key=lambda t: (round(t.box[1], 2), t.box[0])))
     legible: dict[str, list[str]] = {}
     for text in (t for t in texts if t.legible):
@@ -153,7 +159,7 @@ def read_view(truth: ViewTruth, scene: SceneFile, time_s: float) -> View:
 
 
 def head_of(name: str) -> str:
-    """The part of a name that says what the thing is."""
+    """Return the part of a name that says what the thing is."""
     head = name.lower()
     for mark in PART_WORDS:
         head = head.partition(mark)[0]
@@ -161,7 +167,7 @@ def head_of(name: str) -> str:
 
 
 def concepts_of(instance: SceneInstance | SceneActor) -> frozenset[str]:
-    """Every concept that the instance falls under: by category, by a kind of that, by the noun at the end of its name."""
+    """Return every concept of an instance: by its category, by a more specific kind, and by the noun at the end of its name."""
     table = lexicon()
     found: set[str] = set()
     if instance.category and (concept := table.concept(instance.category.lower())):
@@ -169,14 +175,14 @@ def concepts_of(instance: SceneInstance | SceneActor) -> frozenset[str]:
     for key in ("kind", "type"):
         said = str(instance.attributes.get(key, "")).lower()
         concept = table.concept(said) if said else None
-        # A barrier of the kind "pedestrian" is for pedestrians, and is none.
+        # A barrier of the kind "pedestrian" is for pedestrians and is not a pedestrian.
         if concept and (not found or (table.kinds(concept) & found) - {"thing"}):
             found |= table.kinds(concept)
     name = head_of(instance.name).split()
     for start in range(len(name)):
         noun = " ".join(name[start:])
         if found and instance.category.lower().endswith(f" {noun}"):
-            break  # "lamp" is short for what the category says, a table lamp, and no lamp post
+            break  # "lamp" is short for the category, a table lamp, and does not mean a lamp post
         if concept := table.concept(noun):
             found |= table.kinds(concept)
             break
@@ -184,7 +190,7 @@ def concepts_of(instance: SceneInstance | SceneActor) -> frozenset[str]:
 
 
 def _world_box(instance: SceneInstance | SceneActor, time_s: float) -> tuple[Floats, Floats]:
-    """Lowest and highest corner in the world; an actor's stands on its path, unturned."""
+    """Return the lowest and highest corner in the world. An actor's box stands on its path and is not rotated."""
     if isinstance(instance, SceneInstance):
         return np.array(instance.box_min_m), np.array(instance.box_max_m)
     here = path_position(instance, time_s)
@@ -194,7 +200,7 @@ def _world_box(instance: SceneInstance | SceneActor, time_s: float) -> tuple[Flo
 
 
 def _motion(instance: SceneInstance | SceneActor, time_s: float) -> str:
-    """Actors move while their path does; what is baked stands still."""
+    """Return whether an instance moves. Actors move while their path does; baked things stand still."""
     if isinstance(instance, SceneInstance):
         return "stationary"
     now, soon = path_position(instance, time_s), path_position(instance, time_s + _STEP_S)

@@ -1,8 +1,7 @@
-"""From the numbers that a model writes to boxes and points in [0, 1], whatever convention it was trained in.
+"""From the numbers that a model writes to boxes and points in [0, 1], in any convention.
 
-Models answer in pixels of the picture as they resized it (Qwen2.5-VL), in thousandths (Qwen3-VL, Qwen3.5, Gemini with y first),
-in percent (Molmo) or in [0, 1] (Moondream). What cannot be a place in the frame is dropped and said so; what reaches over the
-border is cut there.
+Models write pixels of the picture as they resized it (Qwen2.5-VL), thousandths (Qwen3-VL, Qwen3.5, and Gemini with y first),
+percent (Molmo) or fractions (Moondream). Impossible places are dropped with a note, and boxes that exceed the frame are clipped.
 """
 
 from __future__ import annotations
@@ -19,18 +18,20 @@ from scope_ptz.perception.base import Box, Point
 Space = Literal["unit", "percent", "thousand", "pixels", "guess"]
 
 MAX_THINGS = 300
-"""Boxes or points kept of one reply. More than this in one frame is a model repeating itself."""
+"""Boxes or points kept of one reply. A reply with more repeats itself."""
 
 MAX_ASPECT = 200.0
-"""Longest side over shortest that the Qwen-VL resize accepts."""
+"""The largest ratio of the longer to the shorter side that the Qwen-VL resize accepts."""
 
 
 @dataclass(frozen=True, slots=True)
 class Convention:
     """How a family of models writes places.
 
-    ``factor``: the model resizes pictures to multiples of this many pixels, so the client does it first and nothing is left for the
-    server to change; None sends frames as they are. ``y_first``: boxes are ``[y, x, y, x]`` and points ``[y, x]``.
+    Attributes:
+        factor: The model resizes pictures to multiples of this many pixels. The client does it first, so that the server
+            changes nothing. None sends frames unchanged.
+        y_first: Whether boxes are ``[y, x, y, x]`` and points ``[y, x]``.
     """
 
     name: str
@@ -58,17 +59,24 @@ CONVENTIONS = {
 
 
 def convention(name: str) -> Convention:
-    """A convention by name; unknown names raise ``UnknownNameError``."""
+    """Return a convention by name.
+
+    Raises:
+        UnknownNameError: There is no such convention.
+    """
     if name not in CONVENTIONS:
         raise UnknownNameError("coordinate convention", name, CONVENTIONS)
     return CONVENTIONS[name]
 
 
 def smart_resize(width: int, height: int, *, factor: int, min_pixels: int, max_pixels: int) -> tuple[int, int]:
-    """The size (width, height) to which Qwen-VL processors bring a picture: multiples of ``factor`` within a pixel budget.
+    """Return the size (width, height) to which Qwen-VL processors resize a picture: multiples of ``factor`` within a pixel
+    budget.
 
-    Same arithmetic as the ``smart_resize`` of the Qwen-VL image processors, and a fixed point of it: a picture that has this
-    size already is left alone by the server. Raises ``PerceptionError`` for pictures that the processors refuse.
+    The arithmetic is that of ``smart_resize`` in the Qwen-VL image processors. A picture of the returned size is not resized again.
+
+    Raises:
+        PerceptionError: The processors refuse a picture of this shape.
     """
     if min(width, height) < 1 or max(width, height) / min(width, height) > MAX_ASPECT:
         raise PerceptionError(f"A picture of {width}x{height} is too narrow to be shown to a model (at most 1:{MAX_ASPECT:.0f}).")
@@ -84,20 +92,20 @@ def smart_resize(width: int, height: int, *, factor: int, min_pixels: int, max_p
 
 
 def fit(width: int, height: int, max_pixels: int) -> tuple[int, int]:
-    """The size (width, height) within a pixel budget at the same aspect; a small picture keeps its own."""
+    """Return the size (width, height) within a pixel budget at the same aspect ratio. A small picture keeps its size."""
     shrink = math.sqrt(width * height / max_pixels)
     return (width, height) if shrink <= 1 else (max(1, math.floor(width / shrink)), max(1, math.floor(height / shrink)))
 
 
 @dataclass(frozen=True, slots=True)
 class RawThing:
-    """What a reply says of one thing: four numbers (a box) or two (a point), in the model's own convention."""
+    """One thing in a reply: four numbers (a box) or two (a point), in the model's convention."""
 
     numbers: tuple[float, ...]
     label: str | None = None
     score: float | None = None
     named: bool = False
-    """Whether the reply names each number ("x_min": ...), so that their order is not the model's habit."""
+    """Whether the reply names each number ("x_min": ...), so that their order needs no convention."""
 
     @property
     def is_box(self) -> bool:
@@ -106,8 +114,12 @@ class RawThing:
 
 @dataclass(frozen=True, slots=True)
 class Located:
-    """Places in the frame, in the order of the reply, and what had to be changed or left out. ``complete`` is False when there
-    are more things than these."""
+    """Places in the frame, in the order of the reply.
+
+    Attributes:
+        notes: What was changed or left out.
+        complete: False when there are more things than these.
+    """
 
     boxes: tuple[Box, ...] = ()
     points: tuple[Point, ...] = ()
@@ -116,10 +128,18 @@ class Located:
 
 
 def located(things: Iterable[RawThing], convention: Convention, sent: tuple[int, int], limit: int = MAX_THINGS) -> Located:
-    """Boxes and points in [0, 1] from a reply. ``sent``: width and height of the picture that the model was given.
+    """Return the boxes and points of a reply in [0, 1].
 
-    Not finite, of no area, wholly outside and repeated things are dropped, each kind counted in the notes. Raises
-    ``PerceptionError`` of kind "malformed" when nothing is left of a reply that named things.
+    Things that are not finite, have no area, lie outside the frame or are repeated are dropped and counted in the notes.
+
+    Args:
+        things: The things in the reply.
+        convention: How the model writes places.
+        sent: Width and height of the picture that the model received.
+        limit: How many things are kept.
+
+    Raises:
+        PerceptionError: The reply named things and none of them is usable (kind "malformed").
     """
     raw = list(things)
     scale_x, scale_y = _scale(raw, convention.space, sent)
@@ -145,7 +165,7 @@ def located(things: Iterable[RawThing], convention: Convention, sent: tuple[int,
 
 
 _LOST = ("not finite", "no place")
-"""Things that the reply names and gives no place to: there are more than those whose place is known."""
+"""Things that the reply names without a place, so there are more things than places."""
 
 
 def _capped(boxes: list[Box], points: list[Point], counts: Counter[str], limit: int) -> Located:
@@ -162,7 +182,7 @@ def _listing(counts: Counter[str]) -> str:
 
 
 def _scale(things: Sequence[RawThing], space: Space, sent: tuple[int, int]) -> tuple[float, float]:
-    """What a reply's x and y are divided by."""
+    """Return the divisors of a reply's x and y."""
     fixed = {"unit": 1.0, "percent": 100.0, "thousand": 1000.0}
     if space == "guess":
         space = _guess(things, sent)
@@ -172,8 +192,11 @@ def _scale(things: Sequence[RawThing], space: Space, sent: tuple[int, int]) -> t
 
 
 def _guess(things: Sequence[RawThing], sent: tuple[int, int]) -> Space:
-    """The convention of a whole reply by its largest number: to 1 fractions, to 1000 thousandths (which is what was asked for),
-    to the size of the picture pixels. One reply has one convention; larger numbers are none."""
+    """Return the convention of a whole reply, judged by its largest number.
+
+    Up to 1 means fractions, up to 1000 thousandths (as requested), up to the size of the picture pixels. One reply uses one
+    convention.
+    """
     finite = [abs(v) for t in things for v in t.numbers if math.isfinite(v)]
     largest = max(finite, default=0.0)
     if largest <= 1.0:
@@ -213,7 +236,7 @@ def _box(unit: list[float], thing: RawThing, counts: Counter[str]) -> Box | None
 
 
 BORDER_SLACK = 0.02
-"""A point this far outside, in frames, is taken to lie on the border."""
+"""How far outside the frame, in frames, a point still counts as lying on the border."""
 
 
 def _point(unit: list[float], thing: RawThing, counts: Counter[str]) -> Point | None:
@@ -234,7 +257,7 @@ _Place = TypeVar("_Place", Box, Point)
 
 
 def _keep(place: _Place | None, kept: dict[tuple[float, ...], _Place], counts: Counter[str]) -> None:
-    """Add a place unless the reply has named it before: a model that repeats itself has not seen two."""
+    """Add a place unless the reply has named it before, because repetition does not mean a second thing."""
     if place is None:
         return
     numbers = (place.x, place.y) if isinstance(place, Point) else (place.x_min, place.y_min, place.x_max, place.y_max)

@@ -1,4 +1,4 @@
-"""A frame is encoded once, however often and by whomever it is sent."""
+"""Encoding of frames for models. Each frame is encoded once per size, however many backends use it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Size = tuple[int, int]
 
 @dataclass(frozen=True)
 class Picture:
-    """A frame as it goes to a model: a JPEG of ``width`` x ``height`` pixels."""
+    """A frame as it is sent to a model: a JPEG of ``width`` x ``height`` pixels."""
 
     jpeg: bytes
     width: int
@@ -36,17 +36,17 @@ class Picture:
 
 
 def resized(image: Image, size: Size | None) -> Image:
-    """An image (H, W, 3) brought to (width, height); the same array when it has that size."""
+    """Return an image (H, W, 3) resized to (width, height), or the same array when it has that size."""
     if size is None or size == (image.shape[1], image.shape[0]):
         return image
     return np.asarray(cv2.resize(image, size, interpolation=_interpolation((image.shape[1], image.shape[0]), size)), dtype=np.uint8)
 
 
 def _interpolation(old: Size, new: Size) -> int:
-    """The cheapest that does no harm.
+    """Return the cheapest interpolation that does no harm.
 
-    Averaging areas pays only where many pixels become one; where a picture grows or shrinks by less than 2%, a few columns and rows
-    that stand twice or are left out are not seen, and nothing blurs.
+    Averaging pays only where many pixels become one. When the size changes by less than 2%, a few repeated or missing rows and
+    columns are invisible, and nothing is blurred.
     """
     if new[0] * new[1] < 0.6 * old[0] * old[1]:
         return cv2.INTER_AREA
@@ -55,9 +55,9 @@ def _interpolation(old: Size, new: Size) -> int:
 
 
 def encode(image: Image, size: Size | None = None) -> Picture:
-    """JPEG of an RGB image (H, W, 3), at another (width, height) when one is given."""
+    """Encode an RGB image (H, W, 3) as JPEG, at another size (width, height) if one is given."""
     picture = resized(image, size)
-    own = picture if picture is not image else None  # converted where it is: fresh memory costs more than the work
+    own = picture if picture is not image else None  # in-place conversion, because allocation costs more than the work
     try:
         swapped = cv2.cvtColor(picture, cv2.COLOR_RGB2BGR, dst=own)
         worked, jpeg = cv2.imencode(".jpg", swapped, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
@@ -66,14 +66,14 @@ def encode(image: Image, size: Size | None = None) -> Picture:
     if not worked:
         raise PerceptionError(f"A frame of {picture.shape[1]}x{picture.shape[0]} pixels cannot be written as JPEG.")
     made = Picture(jpeg.tobytes(), int(picture.shape[1]), int(picture.shape[0]))
-    _ = made.data_url  # made here, in the worker thread
+    _ = made.data_url  # computed here, in the worker thread
     return made
 
 
 _SHARED: FrameMemo[Size | None, Picture] = FrameMemo(encode)
-"""A memo, not state: what it gives depends on the pixels alone. Shared, so that all backends encode a frame once between them."""
+"""A cache, not state: its values depend on the pixels only. All backends share it, so that each frame is encoded once."""
 
 
 async def picture_of(frame: Frame, size: Size | None = None, memo: FrameMemo[Size | None, Picture] = _SHARED) -> Picture:
-    """The JPEG of a frame at a size (width, height), encoded in a worker thread the first time that it is wanted."""
+    """Return the JPEG of a frame at a size (width, height), encoded in a worker thread on first use."""
     return await memo.get_async(frame.image, None if size == (frame.width, frame.height) else size)

@@ -1,4 +1,4 @@
-"""What has been worked out of a picture is remembered for as long as its pixels live."""
+"""A cache of results computed from pictures, kept as long as the picture exists."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ T = TypeVar("T")
 
 
 class FrameMemo(Generic[K, T]):
-    """Results of ``make(image, key)`` by identity of the image. Frames are read-only, so what was found in one stays true; it is
-    forgotten when its image is.
+    """Results of ``make(image, key)`` by identity of the image. Frames are read-only, so a result stays valid until its image is
+    deleted.
 
-    Callers that want the same thing at the same time, in whatever threads, wait for one making of it.
+    Callers that want the same result at the same time, in any thread, share one computation.
     """
 
     def __init__(self, make: Callable[[Image, K], T], size: int = 8) -> None:
@@ -33,7 +33,7 @@ class FrameMemo(Generic[K, T]):
         return len(self._entries)
 
     def get(self, image: Image, key: K) -> T:
-        """Known or made now, in this thread."""
+        """Return the result, computing it in this thread if it is new."""
         entry = self._entry(image, key)
         with entry.lock:
             if not entry.made:
@@ -41,7 +41,7 @@ class FrameMemo(Generic[K, T]):
             return entry.made[0]
 
     async def get_async(self, image: Image, key: K) -> T:
-        """Known, or made in a worker thread."""
+        """Return the result, computing it in a worker thread if it is new."""
         entry = self._entries.get((id(image), key))
         if entry is not None and entry.image() is image and entry.made:
             return entry.made[0]
@@ -59,7 +59,7 @@ class FrameMemo(Generic[K, T]):
             return entry
 
     def _forget(self, place: tuple[int, K], gone: weakref.ref[Any]) -> None:
-        # No lock: this runs wherever the last reference is dropped, possibly in a thread that holds it.
+        # No lock: this runs wherever the last reference is dropped, possibly in a thread that holds the lock.
         entry = self._entries.get(place)
         if entry is not None and entry.image is gone:
             self._entries.pop(place, None)

@@ -1,7 +1,7 @@
-"""Reading what a model wrote: places from JSON in any wrapping, whole or cut off, and plain answers.
+"""Parsing what a model wrote: places from JSON in any wrapping, complete or cut off, and plain answers.
 
-Nothing found is believed only where the reply says so: an empty list, or a short sentence that there is none. Whatever else
-cannot be read raises ``PerceptionError`` of kind "malformed": it is never a zero.
+"Nothing found" counts only where the reply says so, with an empty list or a short sentence. Everything else that cannot be parsed
+raises ``PerceptionError`` of kind "malformed"; it is never a zero.
 """
 
 from __future__ import annotations
@@ -18,23 +18,26 @@ from scope_ptz.errors import PerceptionError
 from scope_ptz.perception.models.coordinates import RawThing
 
 MAX_REPLY_CHARS = 200_000
-"""Of a longer reply the rest is not read: no list of places is that long."""
+"""The rest of a longer reply is ignored; no list of places is that long."""
 
 MAX_ANSWER_CHARS = 2_000
-"""A longer answer is cut: a planner's context is not a dump."""
+"""Longer answers are truncated to protect the planner's context."""
 
 
 @dataclass(frozen=True, slots=True)
 class Places:
-    """Things that a reply names, in its order. ``complete`` is False when it was cut off and there may be more."""
+    """The things that a reply names, in order. ``complete`` is False when the reply was cut off and there may be more."""
 
     things: tuple[RawThing, ...]
     complete: bool = True
 
 
 def read_places(text: str) -> Places:
-    """Boxes and points from a model's text: bare or fenced JSON (several documents too), lists cut at the token limit, point and
-    box tags, corner pairs in prose. A reply that says that there is nothing gives no things."""
+    """Return the boxes and points in a model's text.
+
+    Understands bare and fenced JSON (also several documents), lists cut off at the token limit, point and box tags, and corner
+    pairs in prose. A reply that says that there is nothing gives no things.
+    """
     visible = without_reasoning(text)
     body, whole = visible[:MAX_REPLY_CHARS], len(visible) <= MAX_REPLY_CHARS
     documents, uncut = _documents(body)
@@ -48,7 +51,7 @@ def read_places(text: str) -> Places:
 
 
 def read_answer(text: str) -> str:
-    """The answer in a reply: without reasoning, control characters and outer quotes, and not longer than a planner can use."""
+    """Return the answer in a reply, without reasoning, control characters and outer quotes, and truncated if it is too long."""
     answer = "".join(c for c in without_reasoning(text) if c.isprintable() or c in "\n\t").strip()
     if len(answer) > 1 and answer[0] == answer[-1] == '"' and answer.count('"') == 2:
         answer = answer[1:-1].strip()
@@ -58,7 +61,7 @@ def read_answer(text: str) -> str:
 
 
 def without_reasoning(text: str) -> str:
-    """The reply after its reasoning: ``<think>`` blocks are cut, also when only the closing tag is there or it never closes."""
+    """Return the reply without ``<think>`` blocks, also when only the closing tag is there or the block is never closed."""
     rest = re.sub(r"<think(?:ing)?>.*?</think(?:ing)?>", "", text, flags=re.DOTALL | re.IGNORECASE)
     _, closing, after = rest.rpartition("</think>")
     rest = after if closing else rest
@@ -66,7 +69,7 @@ def without_reasoning(text: str) -> str:
 
 
 def excerpt(text: str, limit: int = 160) -> str:
-    """The beginning of a reply for an error message."""
+    """Return the beginning of a reply for an error message."""
     flat = " ".join(text[: 4 * limit].split())
     return repr(flat if len(flat) <= limit else flat[:limit] + "…")
 
@@ -84,7 +87,7 @@ _UNKNOWN = re.compile(
 
 
 def cannot_tell(answer: str) -> bool:
-    """Whether an answer says no more than that the picture does not tell."""
+    """Return whether an answer only says that the picture does not tell."""
     return bool(_UNKNOWN.match(answer))
 
 
@@ -105,7 +108,7 @@ _START = re.compile(r"[\[{](?=\s*(?:[\[{\]}\"'\-\d]|NaN|Infinity))")
 
 
 def _documents(body: str) -> tuple[list[Any], bool]:
-    """Every JSON document in a text, repaired where it has to be, and whether the last one was closed."""
+    """Return every JSON document in a text, repaired where needed, and whether the last one was closed."""
     decoder, found, at = json.JSONDecoder(), list[Any](), 0
     while start := _START.search(body, at):
         try:
@@ -122,12 +125,14 @@ def _documents(body: str) -> tuple[list[Any], bool]:
 
 
 _DEEPEST = 64
-"""A list of places is no deeper; a model that opens brackets for ever has none to give."""
+"""Maximum nesting; no list of places is deeper, and a model that only opens brackets has no places to give."""
 
 
 def _repair(text: str) -> tuple[Any, bool, int]:
-    """A broken document, whether it was closed, and its length. Of a document cut off only what was complete is kept: half a
-    number is another number."""
+    """Repair a broken document. Returns the document, whether it was closed, and its length.
+
+    Of a document that was cut off only complete values are kept, because half a number is another number.
+    """
     end, stack, last = 0, list[str](), (0, "")
     quote = ""
     previous = ""
@@ -158,11 +163,11 @@ def _lenient(text: str) -> Any:
     try:
         return json.loads(text)
     except (ValueError, RecursionError):
-        from json_repair import repair_json  # only broken replies need it
+        from json_repair import repair_json  # imported late, because only broken replies need it
 
         try:
             return repair_json(text, return_objects=True, skip_json_loads=True)
-        except Exception:  # A library at its wits' end: it raises of all kinds, assertions too, for text that is beyond repair
+        except Exception:  # the library raises exceptions of any kind, even assertions, for text beyond repair
             return None
 
 
@@ -176,7 +181,7 @@ _SIZES = (("x", "y", "width", "height"), ("x", "y", "w", "h"))
 
 
 def _collect(value: Any, depth: int = 0) -> Iterator[RawThing]:
-    """Things anywhere in a JSON value."""
+    """Yield the things anywhere in a JSON value."""
     if depth > 8:
         return
     if isinstance(value, dict):
@@ -194,13 +199,13 @@ def _collect(value: Any, depth: int = 0) -> Iterator[RawThing]:
             return
         found = [list(_collect(inner, depth + 1)) for inner in value]
         for inner, things in zip(value, found, strict=True):
-            # Among places, an object without one is a place that went wrong; it is counted where places are checked.
+            # An object without a place among places is a malformed place; it is counted where places are checked.
             lost = [RawThing(())] if not things and isinstance(inner, dict) and any(found) else []
             yield from things or lost
 
 
 def _named(fields: dict[str, Any]) -> list[RawThing]:
-    """The place that one JSON object gives, as a box, a point or both."""
+    """Return the place in one JSON object, as a box, a point or both."""
     label = next((safe_text(fields[k][:200]) for k in _LABEL_KEYS if isinstance(fields.get(k), str)), None)
     score = next((_number(fields[k]) for k in _SCORE_KEYS if _is_number(fields.get(k))), None)
     found = []
@@ -227,14 +232,14 @@ def _named(fields: dict[str, Any]) -> list[RawThing]:
 
 
 def _parsed(value: Any) -> Any:
-    """A list that was written as a text: "[1, 2, 3, 4]"."""
+    """Parse a list that was written as a string: "[1, 2, 3, 4]"."""
     if isinstance(value, str) and len(value) < 200 and re.fullmatch(r"[\s\[\](),.\d+-]+", value):
         return re.findall(r"[-+]?\d+\.?\d*|[-+]?\.\d+", value)
     return value
 
 
 def _flat(value: Any) -> list[float]:
-    """The numbers of a list that may be nested once (two corners); empty when it is or holds anything else."""
+    """Return the numbers of a list that may be nested once (two corners), empty when it contains anything else."""
     if not isinstance(value, list):
         return []
     inner = [v for part in value for v in (part if isinstance(part, list) else [part])]
@@ -248,7 +253,7 @@ def _is_number(value: Any) -> bool:
 
 
 def _number(value: Any) -> float:
-    """A number as a float; what is none is NaN, which is counted where places are checked."""
+    """Return a value as a float. Anything but a number is NaN, which is counted where places are checked."""
     try:
         return float(value) if _is_number(value) else math.nan
     except OverflowError:
@@ -260,7 +265,7 @@ _CORNER_PAIR = re.compile(r"\(\s*(-?[\d.]+)\s*,\s*(-?[\d.]+)\s*\)\s*,?\s*\(\s*(-
 
 
 def _tagged(body: str) -> Iterator[RawThing]:
-    """Places outside JSON: ``<point x="63.5" y="44.5">`` and ``(x1,y1),(x2,y2)``."""
+    """Yield places outside JSON: ``<point x="63.5" y="44.5">`` and ``(x1,y1),(x2,y2)``."""
     for match in _TAG_NUMBERS.finditer(body) if "<point" in body else ():
         yield RawThing(tuple(_number(v) for v in match.groups()), named=True)
     for match in _CORNER_PAIR.finditer(body):
@@ -268,7 +273,7 @@ def _tagged(body: str) -> Iterator[RawThing]:
 
 
 def _is_empty(document: Any) -> bool:
-    """Whether a document says that nothing was found: an empty list, alone or as the list of an object that reports no error."""
+    """Return whether a document says that nothing was found: an empty list, alone or in an object without an error."""
     if isinstance(document, dict):
         return "error" not in document and any(v == [] for v in document.values())
     return bool(document == [])

@@ -1,7 +1,7 @@
-"""Several eyes as one: text goes to the reader, places to the detector, questions to the model that answers.
+"""Several perception backends as one: a reader for text, a detector for places, an answerer for questions.
 
-Each question has an order of who is asked. The first usable result counts. With ``compare`` the first two are asked at once and
-how far they agree is recorded; without it the next one is asked only when the one before failed.
+Each question has an order in which the backends are asked, and the first usable result counts. With ``compare`` the first two are
+asked at once, and their agreement is recorded. Without it, the next one is asked only after a failure.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from scope_ptz.perception.models.text_requests import is_reading, reading_target
 from scope_ptz.perception.models.tile_geometry import iou
 
 ANY_TEXT = "text"
-"""The description under which a reader gives every text in view, as boxes labelled with it."""
+"""The description under which a reader returns every text in view, as boxes labelled with the text."""
 
 SAME_PLACE_IOU = 0.4
 SAME_PLACE = 0.05
-"""Points this near, in frames, mean the same thing."""
+"""Points this close together, in frames, count as the same place."""
 
 R = TypeVar("R", Caption, Answer, Detections, Points)
 Look = Callable[[Perception], Awaitable[R]]
@@ -34,7 +34,7 @@ Share = Callable[[R, R], float]
 
 @dataclass
 class _Opinion(Generic[R]):
-    """What one of the eyes gave; both None when it was not asked."""
+    """What one backend returned; result and error are None when it was not asked."""
 
     eyes: Perception
     result: R | None = None
@@ -42,12 +42,12 @@ class _Opinion(Generic[R]):
 
     @property
     def usable(self) -> bool:
-        """An answer that is only "I cannot tell" leaves the word to the next."""
+        """Whether the result answers the question. "I cannot tell" passes the question on to the next backend."""
         return self.result is not None and (not isinstance(self.result, Answer) or self.result.known)
 
 
 class RouterPerception(Perception):
-    """Eyes made of others, each optional, at least one of them there."""
+    """A backend made of others. Each of them is optional, but at least one is needed."""
 
     sees_wide = True
 
@@ -93,7 +93,7 @@ class RouterPerception(Perception):
             await part.close()
 
     def _who(self, *parts: Perception | None, skill: Skill | None = None) -> list[Perception]:
-        """Those that are there and have a skill, each once."""
+        """Return the backends that exist and have a skill, each once."""
         there = [p for p in parts if p is not None and (skill is None or skill in p.skills)]
         return list(dict.fromkeys(there))
 
@@ -102,7 +102,7 @@ class RouterPerception(Perception):
         return self._who(self._reader if is_text else None, self._detector, self._answerer, skill=skill)
 
     async def _read(self, frame: Frame, question: str) -> Answer:
-        """What the reader reads, on the thing that the question names where somebody finds that."""
+        """Return what the reader reads on the thing that the question names, if another backend finds that thing."""
         assert self._reader is not None  # noqa: S101
         target = reading_target(question)
         finders = self._who(self._detector, self._answerer, skill="detect")
@@ -140,7 +140,7 @@ class RouterPerception(Perception):
         return self._concluded(opinions, share, perf_counter() - began)
 
     def _concluded(self, opinions: Sequence[_Opinion[R]], share: Share[R], latency_s: float) -> R:
-        """The first usable result, with what the others had to say; without one, all the reasons."""
+        """Return the first usable result with a comparison to the others; without one, raise an error with all reasons."""
         attempts = tuple(a for o in opinions for a in _attempts(o))
         failed = [(o.eyes.name, o.error) for o in opinions if o.error is not None]
         gave = [o.result for o in opinions if o.result is not None]
@@ -166,7 +166,7 @@ async def _ask(opinion: _Opinion[R], look: Look[R]) -> None:
 async def _both(
     one: Awaitable[Answer], other: Awaitable[Detections]
 ) -> tuple[Answer | PerceptionError, Detections | PerceptionError]:
-    """Two looks at once, their errors as values."""
+    """Run two perception calls at once and return their errors as values."""
     results: dict[int, Any] = {}
 
     async def run(index: int, look: Awaitable[Any]) -> None:
@@ -199,7 +199,7 @@ def _holds(box: Box, line: Box) -> bool:
 
 
 def _said_alike(a: Caption | Answer, b: Caption | Answer) -> float:
-    """Share of the words of the shorter text that the other has too."""
+    """Return the share of the words of the shorter text that the other text has, too."""
     one, other = (set(re.findall(r"\w+", x.text.casefold())) - _SMALL_WORDS for x in (a, b))
     if not one or not other:
         return float(one == other)
@@ -221,7 +221,7 @@ _Place = TypeVar("_Place")
 
 
 def _paired(ones: Sequence[_Place], others: Sequence[_Place], same: Callable[[_Place, _Place], bool]) -> float:
-    """Share of all places that have a partner, each used once; two empty looks agree fully."""
+    """Return the share of all places that have a partner, each used once. Two empty results agree fully."""
     left, pairs = list(others), 0
     for one in ones:
         partner = next((i for i, other in enumerate(left) if same(one, other)), None)

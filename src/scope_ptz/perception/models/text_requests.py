@@ -1,4 +1,4 @@
-"""Which questions ask to read, what they ask to read, and which text a description means."""
+"""Which questions ask to read text, what they ask to read, and which text a description means."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _NOT_READING = re.compile(
 
 
 def is_reading(question: str) -> bool:
-    """Whether a question is answered by reading the text in view: a rule of thumb for choosing who is asked first."""
+    """Return whether a question is answered by reading text in view. A heuristic that decides who is asked first."""
     return bool(_READING.search(question)) and not _NOT_READING.search(question)
 
 
@@ -38,7 +38,7 @@ _TARGETS = (
 
 
 def reading_target(question: str) -> str | None:
-    """The thing that bears the text that a question asks for ("the gantry sign"), None when it asks for all text in view."""
+    """Return the thing whose text a question asks for ("the gantry sign"), None when it asks for all text in view."""
     for pattern in _TARGETS:
         if found := pattern.search(question):
             target = re.split(r"\s+(?:and|then|for|to|please|in view|right now)\b", found["x"].strip())[0].strip()
@@ -62,8 +62,11 @@ _ANY_TEXT = re.compile(
 
 
 def wanted_texts(description: str) -> tuple[str, ...] | None:
-    """The texts that a description names: quoted, or after "that says". Empty when it means any text at all; None when it
-    describes something other than text, which reading cannot find."""
+    """Return the texts that a description names, in quotes or after "that says".
+
+    Returns:
+        An empty tuple when any text is meant, None when the description is not about text.
+    """
     if quoted := [a or b for a, b in _QUOTED.findall(description)]:
         return tuple(quoted)
     if saying := _SAYING.search(description):
@@ -72,21 +75,21 @@ def wanted_texts(description: str) -> tuple[str, ...] | None:
 
 
 SAME_TEXT = 0.8
-"""Share of characters that must agree for two texts to be one: OCR mistakes a letter in five at most where it reads at all."""
+"""Share of characters that must agree for two texts to be the same. Where OCR reads at all, it misreads at most a fifth."""
 
 
 def plain(text: str) -> str:
-    """Letters and digits only, lower case."""
+    """Return only the letters and digits of a text, in lower case."""
     return "".join(c for c in text.casefold() if c.isalnum())
 
 
 def likeness(a: str, b: str) -> float:
-    """How much two texts agree, from 0 to 1, by letters and digits in their order."""
+    """Return how much two texts agree, from 0 to 1, comparing letters and digits in order."""
     a, b = plain(a), plain(b)
     return SequenceMatcher(None, a, b, autojunk=False).ratio() if a and b else 0.0
 
 
 def text_fits(wanted: str, line: str) -> bool:
-    """Whether a line of text is, or contains, a wanted text, OCR slips forgiven."""
+    """Return whether a line of text is or contains a wanted text, with tolerance for OCR mistakes."""
     a, b = plain(wanted), plain(line)
     return bool(a) and bool(b) and (a in b or likeness(a, b) >= SAME_TEXT)

@@ -1,4 +1,4 @@
-"""Wide pictures in parts: models and detectors shrink a panorama until nothing small is left of it."""
+"""Overlapping tiles of wide pictures. Models and detectors shrink a whole panorama until nothing small is left."""
 
 from __future__ import annotations
 
@@ -10,21 +10,22 @@ from scope_ptz.perception.base import Box, Point
 from scope_ptz.perception.models.frame_memo import Image
 
 WIDEST = 2.4
-"""Width over height up to which a picture is looked at whole; ordinary frames are 16:9."""
+"""Pictures up to this ratio of width to height are processed whole; ordinary frames are 16:9."""
 
 TILE_ASPECT = 1.6
 OVERLAP = 0.15
-"""Share of a tile that its neighbour sees too, so that nothing narrower is cut in both."""
+"""Share of a tile that its neighbour covers, too, so that nothing narrower is cut in both."""
 
 SAME_BOX = 0.5
-"""Overlap (intersection over the smaller box) from which boxes of two neighbouring tiles are one thing; of the heights, where
-both boxes are cut by the borders of their tiles."""
+"""Overlap from which boxes of neighbouring tiles are the same thing: intersection over the smaller box, or overlap of the
+heights where both boxes are cut by the borders of their tiles.
+"""
 
 SEAM = 0.002
-"""A box this near to the end of a panorama all around, in panoramas, may go on at its other end."""
+"""A box this close to the end of a 360-degree panorama, in panoramas, may continue at the other end."""
 
 CUT = 0.01
-"""A box this near to the border of its tile, in tiles, may go on beyond it."""
+"""A box this close to the border of its tile, in tiles, may continue beyond it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,19 +36,21 @@ class Tile:
     right: int
 
     def crop(self, image: Image) -> Image:
+        """Return the tile's part of an image."""
         return image[:, self.left : self.right]
 
     def place(self, box: Box, width: int) -> Box:
-        """A box of the tile as a box of the whole picture of ``width`` pixels."""
+        """Return a box of the tile as a box of the whole picture, which is ``width`` pixels wide."""
         share, start = (self.right - self.left) / width, self.left / width
         return box.model_copy(update={"x_min": start + box.x_min * share, "x_max": min(1.0, start + box.x_max * share)})
 
     def place_point(self, point: Point, width: int) -> Point:
+        """Return a point of the tile as a point of the whole picture."""
         return point.model_copy(update={"x": min(1.0, (self.left + point.x * (self.right - self.left)) / width)})
 
 
 def tiles(width: int, height: int) -> tuple[Tile, ...]:
-    """Overlapping tiles that cover a picture; one when it is no wider than ordinary frames."""
+    """Return overlapping tiles that cover a picture, just one for a picture no wider than ordinary frames."""
     if width <= WIDEST * height:
         return (Tile(0, width),)
     wide = TILE_ASPECT * height
@@ -57,14 +60,14 @@ def tiles(width: int, height: int) -> tuple[Tile, ...]:
 
 
 def iou(a: Box, b: Box) -> float:
-    """Intersection over union."""
+    """Return intersection over union."""
     shared = _shared(a, b)
     union = a.width * a.height + b.width * b.height - shared
     return shared / union if union > 0 else 0.0
 
 
 def suppressed(boxes: Iterable[Box], threshold: float) -> list[Box]:
-    """Boxes best first, without those that overlap a better one by more than ``threshold`` (intersection over union)."""
+    """Return boxes best first, without those that overlap a better one by more than ``threshold`` (intersection over union)."""
     kept: list[Box] = []
     for box in sorted(boxes, key=lambda b: -(b.score or 0.0)):
         if all(iou(box, other) <= threshold for other in kept):
@@ -74,7 +77,7 @@ def suppressed(boxes: Iterable[Box], threshold: float) -> list[Box]:
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """A box in the whole picture, the tile that it was seen in, and whether that tile's borders cut it."""
+    """A box in the whole picture, its tile, and whether the tile's borders cut it."""
 
     tile: Tile
     box: Box
@@ -83,7 +86,7 @@ class _Part:
 
 
 def merged(parts: Iterable[tuple[Tile, Iterable[Box]]], width: int) -> list[Box]:
-    """Boxes of all tiles in the whole picture; what several tiles saw is one box around all of it."""
+    """Merge the boxes of all tiles. A thing that several tiles saw becomes one box."""
     kept: list[_Part] = []
     for tile, boxes in parts:
         for box in boxes:
@@ -98,7 +101,7 @@ def merged(parts: Iterable[tuple[Tile, Iterable[Box]]], width: int) -> list[Box]
 
 
 def merged_points(parts: Iterable[tuple[Tile, Iterable[Point]]], width: int, near: float) -> list[Point]:
-    """Points of all tiles in the whole picture, once each: two of different tiles within ``near`` of the width are one."""
+    """Merge the points of all tiles. Two points of different tiles within ``near`` of the width are one."""
     kept: list[tuple[Tile, Point]] = []
     for tile, points in parts:
         for point in (tile.place_point(p, width) for p in points):
@@ -109,7 +112,7 @@ def merged_points(parts: Iterable[tuple[Tile, Iterable[Point]]], width: int, nea
 
 
 def without_seam_twins(boxes: list[Box]) -> list[Box]:
-    """Boxes of a panorama all around, where what lies behind the seam shows at both ends: of such a pair the wider half stays."""
+    """Drop the narrower half of things that show at both ends of a 360-degree panorama."""
     twins = {
         (i, j)
         for i, left in enumerate(boxes)
@@ -130,7 +133,7 @@ def _shared(a: Box, b: Box) -> float:
 
 
 def _is_same(left: _Part, right: _Part) -> bool:
-    """Whether the part seen in a tile further right is more of what was seen before, or the same again."""
+    """Return whether a box in a tile further right continues or repeats a box seen before."""
     a, b = left.box, right.box
     smaller = min(a.width * a.height, b.width * b.height)
     if smaller > 0 and _shared(a, b) / smaller >= SAME_BOX:

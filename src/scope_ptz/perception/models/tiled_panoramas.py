@@ -1,4 +1,4 @@
-"""Panoramas for eyes that would shrink them: things are looked for part by part, at the resolution of ordinary frames."""
+"""Panoramas for backends that would shrink them: things are searched part by part, at the resolution of ordinary frames."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from scope_ptz.perception.base import Answer, Caption, Detections, Perception, P
 from scope_ptz.perception.models.tile_geometry import Tile, merged, merged_points, tiles, without_seam_twins
 
 AT_ONCE = 4
-"""Parts that are looked at together; servers queue what is more."""
+"""Parts that are processed at the same time; servers queue more."""
 
 SAME_POINT = 0.15
-"""Of the height of the panorama: points of two parts this near to one another are one thing."""
+"""Points of two parts this close together, in heights of the panorama, are one thing."""
 
 FULL_TURN_DEG = 359.5
 
@@ -28,8 +28,10 @@ R = TypeVar("R", Detections, Points)
 
 
 class WidePerception(Perception):
-    """Other eyes, shown stitched panoramas in overlapping parts when they are to find things. A part that fails fails the look:
-    a count of the rest would be too low. Ordinary frames, questions and captions go through as they are.
+    """Wraps a backend and gives it stitched panoramas in overlapping parts when it searches for things.
+
+    A failure of one part fails the whole call, because a count of the rest would be too low. Ordinary frames, questions and
+    captions are passed on unchanged.
     """
 
     sees_wide = True
@@ -71,7 +73,7 @@ class WidePerception(Perception):
 
 
 def _parts(frame: Frame) -> list[tuple[Tile, Frame]]:
-    """The frame itself, or the overlapping parts of a panorama, each a frame of its own."""
+    """Return the frame itself, or the overlapping parts of a panorama as frames."""
     whole = frame.projection
     cuts = tiles(frame.width, frame.height)
     if len(cuts) == 1 or not isinstance(whole, Equirectangular):
@@ -89,7 +91,11 @@ def _part(frame: Frame, whole: Equirectangular, tile: Tile) -> Frame:
 
 
 async def _all(looks: list[tuple[Tile, Callable[[], Awaitable[R]]]]) -> list[tuple[Tile, R]]:
-    """All looks, a few at a time, in their order. Raises the first error, with the attempts of all."""
+    """Run all calls, a few at a time, and return the results in order.
+
+    Raises:
+        PerceptionError: The first error, with the attempts of all calls.
+    """
     results: dict[int, R] = {}
     errors: list[PerceptionError] = []
     limiter = anyio.CapacityLimiter(AT_ONCE)
@@ -114,7 +120,7 @@ async def _all(looks: list[tuple[Tile, Callable[[], Awaitable[R]]]]) -> list[tup
 
 
 def _together(parts: list[R], began: float) -> R:
-    """What the looks at all parts have in common, as one result without its places."""
+    """Combine the results of all parts into one, without their places."""
     update = {
         "raw": "\n".join(part.raw for part in parts),
         "notes": tuple(dict.fromkeys(note for part in parts for note in part.notes)),

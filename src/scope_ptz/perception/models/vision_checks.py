@@ -1,4 +1,4 @@
-"""What eyes must do, as checks that run against any backend and its server, on a frame of the user's choice."""
+"""Checks of a perception backend and its server, on a frame of the user's choice."""
 
 from __future__ import annotations
 
@@ -14,9 +14,15 @@ _MANY = 100
 
 
 async def check_perception(eyes: Perception, frame: Frame, *, thing: str, absent: str = "purple elephant") -> AsyncIterator[Check]:
-    """Check each skill of the eyes. ``thing`` is in the frame, ``absent`` is not.
+    """Check each skill of a backend.
 
-    That a reply became a result at all shows that it was read, and that its boxes lie in the frame.
+    A reply that becomes a result was parsed, and its boxes lie in the frame.
+
+    Args:
+        perception: The backend.
+        frame: The frame to look at.
+        thing: Something that is in the frame.
+        absent: Something that is not in the frame.
     """
     if "caption" in eyes.skills:
         yield await checked("a caption", lambda: _caption(eyes, frame))

@@ -1,4 +1,4 @@
-"""Asking a vision-language model in its own convention, and turning its words into results. Shared by served and local models."""
+"""From the reply of a vision-language model to a perception result. Shared by served and local models."""
 
 from __future__ import annotations
 
@@ -15,29 +15,40 @@ from scope_ptz.perception.models.encoding import Size
 from scope_ptz.perception.models.reply_parsing import cannot_tell, excerpt, read_answer, read_places
 
 MAX_RAW_CHARS = 20_000
-"""Of a longer reply the trace keeps this much."""
+"""Longer replies are truncated in the trace."""
 
 
 class VisionReply:
-    """A model's words about one frame, ready to become a result.
+    """A model's reply about one frame, which can be read as any kind of result.
 
-    ``attempts`` of the call are put into results and errors; a reply that the server delivered and nobody can read counts
-    against its last attempt. ``cut``: the server says that the reply stopped at the token limit.
+    Results and errors include the ``attempts`` of the call. A reply that was delivered but cannot be read counts against its last
+    attempt.
     """
 
     def __init__(self, source: str, text: str, began: float, attempts: tuple[Attempt, ...] = (), *, cut: bool = False) -> None:
+        """Set up the reply.
+
+        Args:
+            source: Who replied.
+            text: The text of the reply.
+            began: When the call began, by ``perf_counter``.
+            attempts: The requests of the call.
+            cut: Whether the reply stopped at the token limit.
+        """
         self.source, self.text, self.attempts, self.cut, self._began = source, text, attempts, cut, began
 
     def preceded(self, error: PerceptionError) -> VisionReply:
-        """The same reply, with what was tried before it in vain."""
+        """Return the same reply, with the attempts of an earlier failure before its own."""
         earlier = tuple(a for a in error.attempts if isinstance(a, Attempt))
         return VisionReply(self.source, self.text, self._began, (*earlier, *self.attempts), cut=self.cut)
 
     def caption(self) -> Caption:
+        """Return the reply as a caption."""
         with blamed(self.source, self.attempts):
             return Caption(text=read_answer(self.text), **self._common(self._cut_answer()))
 
     def answer(self) -> Answer:
+        """Return the reply as an answer."""
         with blamed(self.source, self.attempts):
             text = read_answer(self.text)
         return Answer(text=text, known=not cannot_tell(text), **self._common(self._cut_answer()))
@@ -46,13 +57,14 @@ class VisionReply:
         return ("The answer was cut off at the token limit.",) if self.cut else ()
 
     def detections(self, convention: Convention, sent: Size) -> Detections:
+        """Return the boxes in the reply."""
         found, complete, notes = self._located(convention, sent)
         if found.points and not found.boxes:
             raise self.unreadable("points instead of boxes")
         return Detections(boxes=found.boxes, complete=complete, **self._common(notes))
 
     def points(self, convention: Convention, sent: Size) -> Points:
-        """Points, or the middles of boxes from a model that knows only these."""
+        """Return the points in the reply, or the centres of its boxes."""
         found, complete, notes = self._located(convention, sent)
         points = found.points or tuple(Point(x=b.centre[0], y=b.centre[1], label=b.label) for b in found.boxes)
         return Points(points=points, complete=complete, **self._common(notes))
@@ -66,6 +78,7 @@ class VisionReply:
         return found, found.complete and whole, found.notes + notes
 
     def unreadable(self, what: str) -> PerceptionError:
+        """Return the error of a reply that cannot be read."""
         kind = FailureKind.MALFORMED
         return PerceptionError(
             f"{self.source} gave {what}: {excerpt(self.text)}", kind=kind.value, attempts=_with_kind(self.attempts, kind)
@@ -79,7 +92,7 @@ class VisionReply:
 
 @contextmanager
 def blamed(source: str, attempts: tuple[Attempt, ...]) -> Iterator[None]:
-    """Errors in reading a reply say whose it was, and count against the attempt that brought it."""
+    """Name the source in errors about its reply, and count them against the attempt that brought the reply."""
     try:
         yield
     except PerceptionError as error:
@@ -94,7 +107,7 @@ def _with_kind(attempts: tuple[Attempt, ...], kind: FailureKind) -> tuple[Attemp
 
 @contextmanager
 def served(source: str) -> Iterator[None]:
-    """What a server failed to do becomes a ``PerceptionError`` with its kind and everything that was tried."""
+    """Turn a server's failure into a ``PerceptionError`` with its kind and all attempts."""
     try:
         yield
     except ServerFailure as failure:

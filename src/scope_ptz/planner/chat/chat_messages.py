@@ -1,7 +1,7 @@
-"""S_t as chat messages.
+"""The state S_t as chat messages.
 
-Append-only: the messages of a step are those of the step before and more behind them, byte for byte, so that a server's prefix
-cache hits. The one exception stands last: the newest view, for planners that see, is replaced by a newer one.
+The messages are append-only: those of a step begin with the messages of the step before, byte for byte, so that the server's prefix
+cache works. The only exception comes last: for planners that take images, the newest view replaces the older one.
 """
 
 from __future__ import annotations
@@ -34,11 +34,15 @@ The results come back in <tool_response> elements. These are the tools, as JSON 
 def build_messages(
     state: State, prompt: Prompt, *, notation: Notation = "native", sees: bool = False, switch: str = "", brief_before: int = 0
 ) -> list[Message]:
-    """The messages for a state.
+    """Return the messages for a state.
 
-    ``notation``: whether tools go through the server's own interface or through the text; ``switch``: words that turn a model's
-    thinking on or off, put at the end of what the user says; ``brief_before``: of so many of the oldest exchanges only the
-    essence is told.
+    Args:
+        state: The state of the run.
+        prompt: The system prompt.
+        notation: Whether tools use the server's own interface or the text.
+        sees: Whether the model takes images.
+        switch: Words at the end of the user messages that switch the model's reasoning.
+        brief_before: How many of the oldest exchanges are shortened to what later steps need.
     """
     writer = _Writer(notation, brief_before, in_parts=sees)
     briefing = state.briefing
@@ -70,11 +74,10 @@ def _instruction(text: str, start: Pose | None, switch: str) -> str:
 
 
 class _Writer:
-    """Puts messages one after the other; what a user says twice in a row becomes one message, because templates want turns to
-    alternate."""
+    """Appends messages. Consecutive user messages become one, because chat templates require alternating turns."""
 
     def __init__(self, notation: Notation, brief_before: int, *, in_parts: bool) -> None:
-        """``in_parts``: pictures may follow, so what users say is a list of parts from the start."""
+        """Set up the writer. ``in_parts``: user messages are lists of parts from the start, because pictures may follow."""
         self.messages: list[Message] = []
         self._in_parts = in_parts
         self._notation, self._brief_before, self._exchanges = notation, brief_before, 0
@@ -86,7 +89,7 @@ class _Writer:
     def user(self, content: str | list[Message]) -> None:
         last = self.messages[-1]
         if last["role"] == "user":
-            # A new object: what was handed out before must not change under its reader.
+            # A new object, because a caller may still hold the old one.
             self.messages[-1] = {"role": "user", "content": [*_parts(last["content"]), *_parts(content)]}
         else:
             self.add({"role": "user", "content": _parts(content) if self._in_parts else content})
@@ -122,21 +125,24 @@ class _Writer:
         self.user("\n".join(results))
 
     def _unique(self, call_id: str) -> str:
-        """Ids are the server's own where they can be; some servers give the same one to every call."""
+        """Return the server's own id where possible; some servers give every call the same one."""
         if not call_id or call_id in self._used:
-            call_id = f"call{len(self._used) + 1:05d}"  # Nine letters and digits: Mistral's templates take nothing else.
+            call_id = f"call{len(self._used) + 1:05d}"  # nine letters and digits, as Mistral's templates require
         self._used.add(call_id)
         return call_id
 
 
 def callable_name(name: str) -> str:
-    """A tool's name as the interface allows it; what a model made up may hold anything."""
+    """Return a tool name with only the characters that the interface allows. Models may make up any name."""
     return re.sub(r"[^\w-]", "_", name, flags=re.ASCII)[:64] or "unreadable"
 
 
 def _arguments(call: ToolCall) -> str:
-    """Always an object: servers put it through their templates, and fail when it is none. The error beside it quotes what was
-    wrong."""
+    """Return the arguments as a JSON object.
+
+    Servers put them through their chat templates, which fail on anything else. The error message of a malformed call quotes the
+    original.
+    """
     return json.dumps(call.arguments, ensure_ascii=False)
 
 

@@ -1,6 +1,6 @@
-"""The harmony format of the gpt-oss models, for servers that pass it on as text: messages in channels.
+"""The harmony format of the gpt-oss models, for servers that return it as text: messages in channels.
 
-``<|channel|>analysis<|message|>...<|end|>`` is reasoning, ``final`` the answer, and a call is addressed to its tool:
+``<|channel|>analysis<|message|>...<|end|>`` is reasoning, ``final`` is the answer, and a call is addressed to its tool:
 ``<|channel|>commentary to=functions.go_home <|constrain|>json<|message|>{}<|call|>``.
 """
 
@@ -13,7 +13,10 @@ _RECIPIENT = re.compile(r"to=(?:functions\.)?([\w.-]+)")
 
 
 def read_harmony(text: str) -> tuple[str, list[str]]:
-    """The text without its channels, and the reasoning. Calls are left in it as ``<tool_call>`` elements, arguments as written."""
+    """Return the text without its channels, and the reasoning.
+
+    Calls remain in the text as ``<tool_call>`` elements, with their arguments as written.
+    """
     if "<|channel|>" not in text:
         return text, []
     said: list[str] = []
@@ -22,7 +25,7 @@ def read_harmony(text: str) -> tuple[str, list[str]]:
     in_body = False
     pieces = _TOKEN.split(text)
     if pieces[0].strip():
-        header = pieces[0]  # The prompt ended in the role, or in the channel's name.
+        header = pieces[0]  # the prompt ended with the role or the name of the channel
     for token, piece in zip(pieces[1::2], pieces[2::2], strict=True):
         if token == "message":  # noqa: S105 - a token of a language, not of a login
             in_body = True

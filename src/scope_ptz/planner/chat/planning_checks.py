@@ -1,4 +1,4 @@
-"""What a server must do for a planner, as checks that run against any address: tool calls and their results, streamed and whole."""
+"""Checks of a server's use as a planner: tool calls and answers from their results, streamed and whole."""
 
 from __future__ import annotations
 
@@ -19,7 +19,13 @@ _MOST_WORDS = 160
 async def check_planning(
     endpoint: Endpoint, tools: Sequence[dict[str, Any]], options: ChatOptions | None = None
 ) -> AsyncIterator[Check]:
-    """Check that a server's model can plan. ``tools``: the nine tools' schemas."""
+    """Check whether a server's model can plan.
+
+    Args:
+        endpoint: The server.
+        tools: The schemas of the nine tools.
+        options: How to ask the model.
+    """
     options = options or ChatOptions()
     for stream in (False, True):
         how = ", streamed" if stream else ""
@@ -35,13 +41,13 @@ async def check_planning(
 
 
 def probe(instruction: str, tools: Sequence[dict[str, Any]], *history: Exchange) -> State:
-    """A state in which the right decision is plain."""
+    """Return a state in which the right decision is obvious."""
     briefing = Briefing(presets=("gate", "highway"), pose=Pose(), limits=Limits())
     return State(instruction=instruction, briefing=briefing, history=history, tools=tuple(tools))
 
 
 def picture_taken() -> Exchange:
-    """The step after which a picture is there."""
+    """Return the step after which a picture has been taken."""
     return Exchange(outcomes=(ToolOutcome(call=ToolCall(id="call-1", name="take_image"), result=_TAKEN),))
 
 

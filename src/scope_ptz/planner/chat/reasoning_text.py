@@ -1,7 +1,7 @@
-"""Reasoning apart from the answer: what a model thinks is kept in traces and never shown or answered with.
+"""Separating reasoning from the answer. Reasoning is kept in traces, and never shown or used as an answer.
 
-Servers that know the model return its reasoning in a field of its own. Others leave it in the text, between marks that differ
-by family.
+Servers that know the model return its reasoning in a field of its own. Others leave it in the text, between marks that differ by
+family.
 """
 
 from __future__ import annotations
@@ -26,19 +26,24 @@ _GRANITE = re.compile(
     r"\A\s*here(?:'s| is) my thought process:(?P<thought>.*?)here(?:'s| is) my response:", re.IGNORECASE | re.DOTALL
 )
 _CALL_BEGINS = re.compile(r"<tool_call>|<function=|<\|tool_call|\[TOOL_CALLS\]|<｜tool▁calls▁begin｜>")
-"""A model that begins a call has stopped thinking, whether it said so or not."""
+"""The beginning of a call, which also ends reasoning that was not closed."""
 
 
 @dataclass(frozen=True, slots=True)
 class Parted:
-    """A reply in its parts; both stripped, either may be empty."""
+    """The two parts of a reply, stripped; either may be empty."""
 
     text: str
     reasoning: str
 
 
 def part(text: str, field: str = "") -> Parted:
-    """Part a reply. ``text``: the content as it came; ``field``: reasoning that the server already separated."""
+    """Separate a reply into text and reasoning.
+
+    Args:
+        text: The content as the server returned it.
+        field: Reasoning that the server already separated.
+    """
     rest, thoughts = read_harmony(text)
     if granite := _GRANITE.match(rest):
         thoughts.append(granite["thought"])
@@ -50,14 +55,14 @@ def part(text: str, field: str = "") -> Parted:
 
 
 def _take(text: str, opening: str, closing: str, thoughts: list[str]) -> str:
-    """Move what stands between the marks from ``text`` to ``thoughts``. One pass, however many marks there are."""
+    """Move the text between two marks from ``text`` to ``thoughts``, in one pass."""
     kept: list[str] = []
     at, inside, seen = 0, False, False
     for mark in re.finditer(f"{re.escape(opening)}|{re.escape(closing)}", text):
         opens = mark[0] == opening
         if inside and opens:
             continue
-        # Closed without having been opened: the chat template had put the opening mark into the prompt.
+        # Closed without being opened: the chat template put the opening mark into the prompt.
         (thoughts if inside or not (opens or seen) else kept).append(text[at : mark.start()])
         at, inside, seen = mark.end(), opens, True
     rest = text[at:]

@@ -1,7 +1,7 @@
-"""The built-in planner: a grammar of camera operation, an interpreter, and no model.
+"""The built-in planner: a grammar of camera operation and an interpreter, without a model.
 
-Text becomes lexemes (``tokens``, ``lexicon``, ``numerals``), lexemes a tree (``language.lark``, ``rules``, ``chart``), the tree
-typed steps (``build``, ``compose``), names are bound (``resolve``), and ``program`` runs the steps against the history.
+``lexing`` turns text into lexemes, ``parsing`` turns lexemes into the steps of ``instruction_tree``, ``binding`` resolves the names
+in them, and ``execution`` runs the steps against the history.
 """
 
 from __future__ import annotations
@@ -16,7 +16,9 @@ __all__ = ["GrammarPlanner", "Understanding", "understand"]
 
 
 class GrammarPlanner(Planner):
-    """Plans by rules. Each step replays the program against the recorded outcomes, so nothing is kept in between."""
+    """A planner that follows rules. Each step replays the program against the recorded outcomes, so no state is kept between
+    steps.
+    """
 
     name = "grammar"
 
@@ -25,7 +27,7 @@ class GrammarPlanner(Planner):
 
 
 def decide(state: State) -> Decision:
-    """The next decision, from the state alone."""
+    """Return the next decision, which depends only on the state."""
     meaning = understand(state.instruction, state.briefing.presets, state.conversation)
     if meaning.refusal:
         return Finish(kind="refused", text=meaning.refusal)

@@ -1,4 +1,4 @@
-"""The typed syntax tree of an instruction. Names are as the person said them; ``resolve`` binds presets and pronouns."""
+"""The typed steps of an instruction. Names are as the user wrote them; ``binding`` resolves presets and pronouns."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Axis = Literal["pan", "tilt"]
 
 @dataclass(frozen=True, slots=True)
 class Amount:
-    """How far: degrees, or "little", "lot", "limit" (all the way), "unsaid", or the "same" as the turn before."""
+    """How far: degrees, "little", "lot", "limit" (all the way), "unsaid", or the "same" as the turn before."""
 
     kind: Literal["degrees", "little", "lot", "limit", "unsaid", "same"] = "unsaid"
     degrees: float = 0.0
@@ -34,7 +34,13 @@ class Amount:
 
 @dataclass(frozen=True, slots=True)
 class Turn:
-    """A relative turn. ``sign``: +1 right or up, -1 left or down; ``step``: of a move made in steps, ``steps``: how many."""
+    """A relative turn.
+
+    Attributes:
+        sign: +1 for right or up, -1 for left or down.
+        step: The step size of a turn made in steps.
+        steps: The number of these steps.
+    """
 
     axis: Axis
     sign: int
@@ -53,7 +59,7 @@ class Zoom:
 
 @dataclass(frozen=True, slots=True)
 class Aim:
-    """An absolute wish: degrees for pan and tilt, magnification for zoom."""
+    """An absolute target: degrees for pan and tilt, magnification for zoom."""
 
     axis: Literal["pan", "tilt", "zoom"]
     value: float
@@ -64,7 +70,7 @@ Part = Turn | Zoom | Aim
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """``verb``: whether the person said a verb for it ("left 5" has none, and may lean on the move before)."""
+    """A move. ``verb`` is whether the instruction has a verb for it; "left 5" has none and may belong to the move before."""
 
     parts: tuple[Part, ...]
     verb: bool = True
@@ -72,7 +78,7 @@ class Move:
 
 @dataclass(frozen=True, slots=True)
 class Further:
-    """ "Another 15": the turn before, by another amount."""
+    """The turn before, by another amount ("another 15")."""
 
     amount: Amount
 
@@ -87,12 +93,14 @@ class Back:
 
 @dataclass(frozen=True, slots=True)
 class Home:
-    pass
+    """Go to the home view."""
 
 
 @dataclass(frozen=True, slots=True)
 class GoPreset:
-    """``how``: "go" names a place for certain; "show" and "bare" may mean a thing instead."""
+    """Go to a preset. ``how`` is "go" when the words certainly name a place; with "show", "look" and "bare" they may name a
+    thing.
+    """
 
     ref: PresetRef
     how: Literal["go", "show", "look", "bare"] = "go"
@@ -100,29 +108,33 @@ class GoPreset:
 
 @dataclass(frozen=True, slots=True)
 class GoThere:
-    """Go to the preset just spoken of, or to the winner of a comparison."""
+    """Go to the preset mentioned last, or to the winner of a comparison."""
 
 
 @dataclass(frozen=True, slots=True)
 class ListPresets:
-    pass
+    """List the presets."""
 
 
 @dataclass(frozen=True, slots=True)
 class Snap:
+    """Take pictures, of a thing if one is given."""
+
     times: int = 1
     of: Thing | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Count:
+    """Count things."""
+
     things: tuple[Thing, ...]
     view: View | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Ask:
-    """``embedded``: said inside another sentence ("tell me if it is open")."""
+    """Ask a question about the scene. ``embedded``: it is part of another sentence ("tell me if it is open")."""
 
     question: str
     view: View | None = None
@@ -131,31 +143,37 @@ class Ask:
 
 @dataclass(frozen=True, slots=True)
 class Rescope:
-    """ "And then in the whole scene": the count or question before, in another view."""
+    """Repeat the count or question before in another view ("and then in the whole scene")."""
 
     view: View
 
 
 @dataclass(frozen=True, slots=True)
 class Read:
+    """Read the text on a thing."""
+
     thing: Thing
     view: View | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class ZoomTo:
+    """Zoom in on a thing."""
+
     thing: Thing
 
 
 @dataclass(frozen=True, slots=True)
 class Track:
+    """Follow a thing."""
+
     thing: Thing
     seconds: float = 10.0
 
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """The most that a loop may move: a number of moves, or degrees in all."""
+    """The most that a loop may move: a number of moves, or degrees in total."""
 
     moves: int | None = None
     degrees: float | None = None
@@ -163,7 +181,7 @@ class Bound:
 
 @dataclass(frozen=True, slots=True)
 class Repeat:
-    """``group``: set off by a comma, so that it may cover more than the step before it."""
+    """Repeat steps. ``group``: it is set off by a comma, so it may cover more than the step before."""
 
     body: tuple[Step, ...]
     times: int
@@ -172,7 +190,7 @@ class Repeat:
 
 @dataclass(frozen=True, slots=True)
 class DoAgain:
-    """ "Do that three times": what came before, ``times`` in all, or ``times`` more."""
+    """Repeat the steps before, ``times`` in total, or ``times`` more."""
 
     times: int | None = None
     more: bool = False
@@ -180,6 +198,8 @@ class DoAgain:
 
 @dataclass(frozen=True, slots=True)
 class Loop:
+    """Repeat steps until a condition is met."""
+
     body: tuple[Step, ...]
     until: Condition
     bound: Bound | None = None
@@ -188,6 +208,8 @@ class Loop:
 
 @dataclass(frozen=True, slots=True)
 class If:
+    """Do steps when a condition is met, and others when it is not."""
+
     condition: Condition
     then: tuple[Step, ...]
     otherwise: tuple[Step, ...] = ()
@@ -195,21 +217,21 @@ class If:
 
 @dataclass(frozen=True, slots=True)
 class EachTime:
-    """Something to do after every move of the step before."""
+    """Do something after every move of the step before."""
 
     body: tuple[Step, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Between:
-    """Something to do between the repetitions of the step before ("three photos, panning left 10 between each")."""
+    """Do something between the repetitions of the step before ("three photos, panning left 10 between each")."""
 
     body: tuple[Step, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class AtIntervals:
-    """Something to do every so many degrees of a turn: of ``move``, else of the step before."""
+    """Do something at regular intervals of a turn: of ``move``, or of the step before."""
 
     body: tuple[Step, ...]
     degrees: float
@@ -218,7 +240,10 @@ class AtIntervals:
 
 @dataclass(frozen=True, slots=True)
 class ThanBefore:
-    """ "Are there more than before?": against the count before the moves just made. No thing: of what was counted."""
+    """Compare a count with the count before the moves just made ("are there more than before?").
+
+    An empty thing means what was counted last.
+    """
 
     thing: Thing
     wish: Wish = "more"
@@ -226,14 +251,14 @@ class ThanBefore:
 
 @dataclass(frozen=True, slots=True)
 class Mention:
-    """ "I am looking for a yellow van": names a thing that later words refer to."""
+    """Name a thing that later words refer to ("I am looking for a yellow van")."""
 
     thing: Thing
 
 
 @dataclass(frozen=True, slots=True)
 class AtPlaces:
-    """Do the body at each of the places; no places: at every preset."""
+    """Do the body at each of the places; no places means every preset."""
 
     places: tuple[PresetRef, ...]
     body: tuple[Step, ...]
@@ -241,14 +266,19 @@ class AtPlaces:
 
 @dataclass(frozen=True, slots=True)
 class SameAt:
-    """What came before, at other places."""
+    """Repeat the steps before at other places."""
 
     places: tuple[PresetRef, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class WhichPreset:
-    """Count at each place and tell which has most (or fewest). ``go``: and go there. ``any_of``: which show any at all."""
+    """Count at each place and report which shows most (or fewest).
+
+    Attributes:
+        go: Whether to go there.
+        any_of: Whether to report which places show any at all.
+    """
 
     thing: Thing
     wish: Wish = "more"
@@ -270,7 +300,7 @@ class Compare:
 
 @dataclass(frozen=True, slots=True)
 class BeforeAfter:
-    """Count, move, count again."""
+    """Count, move and count again."""
 
     thing: Thing
     moves: tuple[Step, ...]
@@ -279,41 +309,45 @@ class BeforeAfter:
 
 @dataclass(frozen=True, slots=True)
 class Sweep:
-    """Look all around: sets the scope of the questions that follow. ``turn``: said so that it may also be a mere turn."""
+    """Look all around, which sets the scope of the questions that follow.
+
+    Attributes:
+        turn: Whether the words may also mean a mere turn of the camera.
+    """
 
     turn: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Forbid:
-    """ "Do not ...": nothing to do."""
+    """Something not to do, which leaves nothing to do."""
 
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """ "Say so", "let me know": the answer does that anyway."""
+    """A request to report ("let me know"), which the answer fulfils anyway."""
 
 
 @dataclass(frozen=True, slots=True)
 class CameraState:
-    pass
+    """Report the camera's pose."""
 
 
 @dataclass(frozen=True, slots=True)
 class Help:
-    pass
+    """Report what the planner can do."""
 
 
 @dataclass(frozen=True, slots=True)
 class WhatAbout:
-    """ "And the trucks?": the last question again, about another thing."""
+    """The last question again, about another thing ("and the trucks?")."""
 
     thing: Thing
 
 
 @dataclass(frozen=True, slots=True)
 class Unclear:
-    """Understood, but not what is wanted: the question to ask."""
+    """A step that is understood only in part, with the question to ask."""
 
     question: str
 
@@ -327,7 +361,7 @@ Step = (
 
 @dataclass(frozen=True, slots=True)
 class Linked:
-    """A step and what joined it to the one before: "and", "," (","), "then", "." or "" for the first."""
+    """A step with the link to the step before: "and", ",", "then", "." or "" for the first."""
 
     link: str
     step: Step

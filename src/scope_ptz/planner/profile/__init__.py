@@ -1,4 +1,4 @@
-"""How steadily a planner chooses its tools: whether small edits of the prompt or of the instruction change what it calls."""
+"""How stable a planner's tool choice is when the prompt or the instruction is edited slightly."""
 
 from scope_ptz.planner.profile.edits import INSTRUCTION_EDITS, PROMPT_EDITS, Edit
 from scope_ptz.planner.profile.first_calls import Row, Trial, ask_once, load_rows

@@ -1,5 +1,7 @@
-"""One instruction put to a planner, without a camera: what it calls first, whether that is valid, right, or a move the wrong
-way round."""
+"""Put one instruction to a planner without a camera, and check its first calls.
+
+A call can be valid, be the expected one, or be inverted: a move in the opposite direction.
+"""
 
 from __future__ import annotations
 
@@ -32,7 +34,7 @@ class Call(_Model):
 
 
 class Row(_Model):
-    """An instruction and the calls that carry it out. ``alternatives``: other tools that are as good to begin with."""
+    """An instruction with the calls that carry it out. ``alternatives`` are other tools that are as good for the first call."""
 
     instruction: str
     kind: str
@@ -41,10 +43,14 @@ class Row(_Model):
 
 
 class Trial(_Model):
-    """What a planner made of an instruction in its first step.
+    """What a planner did in its first step.
 
-    ``calls``: those that are valid; ``invalid``: how many are not; ``failure``: the way in which the planner failed, if it did;
-    ``right``: the first call is the expected one; ``inverted``: it turns or zooms the opposite way.
+    Attributes:
+        calls: The valid calls.
+        invalid: The number of invalid calls.
+        failure: How the planner failed, None when it did not.
+        right: Whether the first call is the expected one.
+        inverted: Whether it turns or zooms in the opposite direction.
     """
 
     row: Row
@@ -62,13 +68,13 @@ class Trial(_Model):
 
 
 def load_rows() -> tuple[Row, ...]:
-    """The packaged instructions, every kind of them."""
+    """Return the packaged instructions."""
     lines = (files("scope_ptz") / "data" / "profile_instructions.jsonl").read_text(encoding="utf-8").splitlines()
     return tuple(Row.model_validate(json.loads(line)) for line in lines)
 
 
 async def ask_once(planner: Planner, row: Row, *, asked: str | None = None, edit: str = "") -> Trial:
-    """Put an instruction to a planner; ``asked``: the words, when they were edited."""
+    """Put an instruction to a planner. ``asked`` is the edited wording, if any."""
     words = row.instruction if asked is None else asked
     state = State(
         instruction=words, briefing=Briefing(presets=PRESETS, pose=Pose(), limits=Limits()), tools=tuple(schemas())
@@ -106,7 +112,7 @@ def _valid(name: str, arguments: dict[str, Any]) -> bool:
 
 
 def is_right(row: Row, call: Call) -> bool:
-    """Whether a call is the first that is expected. Descriptions by their words; questions only by being asked."""
+    """Return whether a call is the expected first one. Descriptions are compared by their words, questions not at all."""
     expected = row.calls[0]
     if call.name in row.alternatives:
         return True
@@ -114,9 +120,10 @@ def is_right(row: Row, call: Call) -> bool:
 
 
 def same_arguments(one: Call, other: Call) -> bool:
-    """Whether two calls of a tool come to the same: numbers alike, descriptions of the same words, questions at the same view.
+    """Return whether two calls of a tool are equivalent: equal numbers, descriptions of the same words, and questions about the
+    same view.
 
-    In a file of expected calls ``{"contains": [words, ...]}`` may stand for a text; these words in any order are enough.
+    In a file of expected calls, ``{"contains": [words, ...]}`` may replace a text; the words may come in any order.
     """
     wanted = {key: value["contains"] for key, value in one.arguments.items() if isinstance(value, dict) and "contains" in value}
     plain = Call(name=one.name, arguments=one.arguments | {key: " ".join(words) for key, words in wanted.items()})
@@ -140,26 +147,26 @@ def _words(text: str) -> list[str]:
 
 
 def same_choice(one: Sequence[Call], other: Sequence[Call]) -> bool:
-    """Whether two planners began with the same tools, as far as both went."""
+    """Return whether two planners began with the same tools, as far as both went."""
     if not one or not other:
         return not one and not other
     return all(a.name == b.name for a, b in zip(one, other, strict=False))
 
 
 def same_calls(one: Sequence[Call], other: Sequence[Call]) -> bool:
-    """The same with the same arguments."""
+    """Return whether two planners began with the same tools and arguments."""
     return same_choice(one, other) and all(same_arguments(a, b) for a, b in zip(one, other, strict=False))
 
 
 def is_inverted(row: Row, calls: Sequence[Call]) -> bool:
-    """Whether the first move goes right for left, up for down, or in for out."""
+    """Return whether the first move goes right instead of left, up instead of down, or in instead of out."""
     wanted = next((_directions(c) for c in row.calls if c.name == "adjust_ptz"), None)
     made = next((_directions(c) for c in calls if c.name == "adjust_ptz"), None)
     return wanted is not None and made is not None and any(w * m < 0 for w, m in zip(wanted, made, strict=True))
 
 
 def _directions(call: Call) -> tuple[float, float, float]:
-    """Signs of pan, tilt and zoom; none of a call that cannot be made."""
+    """Return the signs of pan, tilt and zoom of a move, all zero for an invalid call."""
     try:
         move = AdjustPtz.model_validate(call.arguments)
     except ValidationError:

@@ -1,9 +1,9 @@
-"""The measurement: every instruction as it is, again as it is (what the server varies by itself), and under each edit."""
+"""The measurement: every instruction unedited, unedited again (which shows the server's own variation), and under each edit."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import anyio
@@ -23,7 +23,7 @@ class _Model(BaseModel):
 
 
 class Rate(_Model):
-    """``count`` of ``of``, with Wilson's 95% interval; all None when nothing was asked."""
+    """A count out of a total with Wilson's 95% interval; share and interval are None for a total of zero."""
 
     count: int
     of: int
@@ -33,6 +33,7 @@ class Rate(_Model):
 
     @classmethod
     def over(cls, hits: Iterable[bool]) -> Rate:
+        """Return the rate of the true values."""
         found = list(hits)
         count, of = sum(found), len(found)
         if not of:
@@ -45,7 +46,12 @@ class Rate(_Model):
 
 
 class EditEffect(_Model):
-    """What an edit did. ``tools_changed``: another tool was chosen than without it; ``calls_changed``: that, or other arguments."""
+    """What an edit changed.
+
+    Attributes:
+        tools_changed: How often another tool was chosen than without the edit.
+        calls_changed: How often the tool or its arguments changed.
+    """
 
     edit: str
     where: str
@@ -56,12 +62,11 @@ class EditEffect(_Model):
 
 
 class Sensitivity(_Model):
-    """The report.
+    """The report of a measurement.
 
-    ``valid``, ``right``, ``inverted``, ``failed`` are of the instructions as they are. A trial in which the planner or its server
-    failed counts in ``failed`` only: it chose nothing, so its choice did not change. ``noise`` is how often the tools change
-    when nothing was edited: what edits do is what exceeds it. ``inverted_anywhere`` is over all trials with a move in them.
-    ``inversions`` and ``changes`` are examples.
+    ``valid``, ``right``, ``inverted`` and ``failed`` are about the unedited instructions. A trial in which the planner or its
+    server failed counts only in ``failed``. ``noise`` is how often the tools change without any edit, so an edit's effect is what
+    exceeds it. ``inverted_anywhere`` covers all trials with a move. ``inversions`` and ``changes`` are examples.
     """
 
     prompt: str
@@ -97,8 +102,16 @@ async def measure_sensitivity(
     at_once: int = 4,
     progress: Callable[[int, int], None] = lambda done, of: None,  # noqa: ARG005
 ) -> Sensitivity:
-    """Ask everything, ``at_once`` requests at a time. ``make_planner`` is called once for each edited prompt; ``progress``:
-    done, of."""
+    """Measure how sensitive a planner is to edits.
+
+    Args:
+        make_planner: Makes a planner; called once for each variant of the prompt.
+        prompt: The unedited prompt.
+        rows: The instructions; None selects the packaged ones.
+        edits: The edits to try.
+        at_once: How many requests may run at a time.
+        progress: Called with the number of trials done and in total.
+    """
     rows = load_rows() if rows is None else rows
     cases = _cases(rows, prompt, edits)
     planners = {text: make_planner(variant) for text, variant in {case.prompt.text: case.prompt for case in cases}.items()}
@@ -137,44 +150,74 @@ def _cases(rows: Sequence[Row], prompt: Prompt, edits: Sequence[Edit]) -> list[_
 
 
 def _report(prompt: Prompt, rows: Sequence[Row], cases: Sequence[_Case], trials: Sequence[Trial]) -> Sensitivity:
-    plain = {trial.row.instruction: trial for trial in trials if not trial.edit}
-    chose = {words: trial for words, trial in plain.items() if trial.failure is None}
-    pairs = [
-        (case, trial)
-        for case, trial in zip(cases, trials, strict=True)
-        if trial.edit and trial.failure is None and trial.row.instruction in chose
-    ]
-
-    def changed(trial: Trial) -> bool:
-        return not same_choice(plain[trial.row.instruction].calls, trial.calls)
-
-    def effect(name: str, where: str) -> EditEffect:
-        edited = [trial for case, trial in pairs if (case.edit, case.where) == (name, where)]
-        return EditEffect(
-            edit=name,
-            where=where,
-            tools_changed=Rate.over(changed(t) for t in edited),
-            calls_changed=Rate.over(not same_calls(plain[t.row.instruction].calls, t.calls) for t in edited),
-            right=Rate.over(t.right for t in edited),
-            inverted=Rate.over(t.inverted for t in edited if _moves(t)),
-        )
-
-    names = list(dict.fromkeys((case.edit, case.where) for case in cases if case.where))
+    """Return the report of all trials, given in the order of their cases."""
+    unedited = {trial.row.instruction: trial for trial in trials if not trial.edit}
+    planned = [trial for trial in unedited.values() if trial.failure is None]
+    pairs = _pairs(cases, trials, unedited)
+    by = {where: [pair for pair in pairs if pair.case.where == where] for where in ("prompt", "instruction")}
     return Sensitivity(
         prompt=prompt.name,
         instructions=len(rows),
-        valid=Rate.over(not t.invalid and bool(t.calls) for t in chose.values()),
-        right=Rate.over(t.right for t in chose.values()),
-        inverted=Rate.over(t.inverted for t in chose.values() if _moves(t)),
-        failed=Rate.over(t.failure is not None for t in plain.values()),
-        noise=Rate.over(changed(t) for case, t in pairs if case.edit == AGAIN),
-        by_prompt=Rate.over(changed(t) for case, t in pairs if case.where == "prompt"),
-        by_instruction=Rate.over(changed(t) for case, t in pairs if case.where == "instruction"),
-        inverted_anywhere=Rate.over(t.inverted for t in trials if t.failure is None and _moves(t)),
-        edits=tuple(effect(name, where) for name, where in names),
+        valid=Rate.over(not t.invalid and bool(t.calls) for t in planned),
+        right=Rate.over(t.right for t in planned),
+        inverted=_inverted(planned),
+        failed=Rate.over(t.failure is not None for t in unedited.values()),
+        noise=_changed(pair for pair in pairs if pair.case.edit == AGAIN),
+        by_prompt=_changed(by["prompt"]),
+        by_instruction=_changed(by["instruction"]),
+        inverted_anywhere=_inverted(t for t in trials if t.failure is None),
+        edits=_effects(cases, pairs),
         inversions=tuple(_example(t) for t in trials if t.inverted)[:20],
-        changes=tuple(_example(t) for case, t in pairs if case.where and changed(t))[:20],
+        changes=tuple(_example(pair.edited) for pair in pairs if pair.case.where and pair.changed)[:20],
     )
+
+
+@dataclass(frozen=True, slots=True)
+class _Pair:
+    """The same instruction without and with an edit; the planner did not fail at either."""
+
+    case: _Case
+    unedited: Trial
+    edited: Trial
+
+    @property
+    def changed(self) -> bool:
+        return not same_choice(self.unedited.calls, self.edited.calls)
+
+
+def _pairs(cases: Sequence[_Case], trials: Sequence[Trial], unedited: Mapping[str, Trial]) -> list[_Pair]:
+    """Pair every edited trial with the unedited trial of its instruction, where the planner failed at neither."""
+    return [
+        _Pair(case, unedited[case.row.instruction], trial)
+        for case, trial in zip(cases, trials, strict=True)
+        if trial.edit and trial.failure is None and unedited[case.row.instruction].failure is None
+    ]
+
+
+def _changed(pairs: Iterable[_Pair]) -> Rate:
+    return Rate.over(pair.changed for pair in pairs)
+
+
+def _effects(cases: Sequence[_Case], pairs: Sequence[_Pair]) -> tuple[EditEffect, ...]:
+    """Return what each edit did, in the order in which the edits were tried."""
+    names = dict.fromkeys((case.edit, case.where) for case in cases if case.where)
+    return tuple(_effect(name, where, [p for p in pairs if (p.case.edit, p.case.where) == (name, where)]) for name, where in names)
+
+
+def _effect(name: str, where: str, pairs: Sequence[_Pair]) -> EditEffect:
+    return EditEffect(
+        edit=name,
+        where=where,
+        tools_changed=_changed(pairs),
+        calls_changed=Rate.over(not same_calls(pair.unedited.calls, pair.edited.calls) for pair in pairs),
+        right=Rate.over(pair.edited.right for pair in pairs),
+        inverted=_inverted(pair.edited for pair in pairs),
+    )
+
+
+def _inverted(trials: Iterable[Trial]) -> Rate:
+    """Return how often a move goes the opposite way, among the instructions that ask for a move."""
+    return Rate.over(t.inverted for t in trials if _moves(t))
 
 
 def _moves(trial: Trial) -> bool:

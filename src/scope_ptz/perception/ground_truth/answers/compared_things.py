@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections import Counter
 
+from scope_ptz import english
 from scope_ptz.perception.ground_truth.answers.restating import COMPARATIVES, none_of, noun, the
 from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, metres, name, place, reply, unknown
 from scope_ptz.perception.ground_truth.answers.values import value_of
 from scope_ptz.perception.ground_truth.language import question_tree as s
-from scope_ptz.perception.ground_truth.language import words as w
 from scope_ptz.perception.ground_truth.relations import rank_key
 from scope_ptz.perception.ground_truth.thing_facts import colour_of
 from scope_ptz.perception.ground_truth.thing_search import find, find_phrase
@@ -93,7 +93,7 @@ def compare_count(view: View, question: s.CompareCount) -> AnswerText:
         return _most_of(view, question)
     a, b = len(find(view, question.first)), len(find(view, question.second))
     first, second = noun(view, question.first, many=True), noun(view, question.second, many=True)
-    counts = f"{w.counted(a, noun(view, question.first))} and {w.counted(b, noun(view, question.second))}"
+    counts = f"{english.counted(a, noun(view, question.first))} and {english.counted(b, noun(view, question.second))}"
     if question.which:
         ahead = (a > b) == (question.sense == "more")
         verdict = "there are equally many" if a == b else f"there are {question.sense} {first if ahead else second}"
@@ -110,9 +110,9 @@ def _most_of(view: View, question: s.CompareCount) -> AnswerText:
     counts = [len(find(view, kind)) for kind in kinds]
     best = (min if question.sense == "fewer" else max)(counts)
     first = [noun(view, kind, many=True) for kind, count in zip(kinds, counts, strict=True) if count == best]
-    listed = w.listing([w.counted(count, noun(view, kind)) for kind, count in zip(kinds, counts, strict=True)])
+    listed = english.listing([english.counted(count, noun(view, kind)) for kind, count in zip(kinds, counts, strict=True)])
     sense = "fewest" if question.sense == "fewer" else "most"
-    verdict = f"there are {sense} {first[0]}" if len(first) == 1 else f"there are equally many {w.listing(first)}"
+    verdict = f"there are {sense} {first[0]}" if len(first) == 1 else f"there are equally many {english.listing(first)}"
     return reply(f"{verdict}: {listed}")
 
 
@@ -123,7 +123,7 @@ def count_kinds(view: View, question: s.CountKinds) -> AnswerText:
     many = "" if len(values) == 1 else "s"
     anything = question.what.phrases[0].words == ("thing",)
     of = "" if anything else f" of {noun(view, question.what)}"
-    listed = f": {w.listing(list(values))}" if values else ""
+    listed = f": {english.listing(list(values))}" if values else ""
     return reply(f"I can see {len(values)} {'colour' if colour else 'kind'}{many}{of}{listed}")
 
 
@@ -145,5 +145,5 @@ def most_common(view: View, question: s.MostCommon) -> AnswerText:
     best = [v for v, n in counts.items() if n == target]
     kind = f"{'least' if question.least else 'most'} common {'colour' if colour else 'kind'}"
     if len(best) > 1:
-        return reply(f"{w.listing(best)} are equally common ({target} each)")
+        return reply(f"{english.listing(best)} are equally common ({target} each)")
     return reply(f"the {kind} is {best[0]}: {target} of {len(found)} {noun(view, question.what, many=True)}")

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from scope_ptz import english
 from scope_ptz.perception.ground_truth.answers.restating import holds_words, none_of, not_told, noun
 from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, are, name, reply, several, unknown
 from scope_ptz.perception.ground_truth.language import question_tree as s
-from scope_ptz.perception.ground_truth.language import words as w
 from scope_ptz.perception.ground_truth.thing_facts import wears
 from scope_ptz.perception.ground_truth.thing_search import find, things_named
 from scope_ptz.perception.ground_truth.view import Thing, View
@@ -33,7 +33,7 @@ def exists(view: View, question: s.Exists) -> AnswerText:
         yes = question.least <= len(found) and (question.most is None or len(found) <= question.most)
         return reply(f"{'yes' if yes else 'no'}, there {are(len(found))} {len(found)} {noun(view, question.what, len(found) != 1)}")
     if not found and not question.negated and (owner := _owner(view, question.what)) is not None:
-        return reply(f"yes, the {name(owner)} has {w.article(' '.join(question.what.phrases[0].words))}")
+        return reply(f"yes, the {name(owner)} has {english.article(' '.join(question.what.phrases[0].words))}")
     if not found:
         return reply(f"{'yes' if question.negated else 'no'}, {none_of(view, question.what)}")
     return reply(f"{'no' if question.negated else 'yes'}, {there_are(view, question.what, found)}")
@@ -51,7 +51,7 @@ def there_are(view: View, what: s.Description, found: list[Thing]) -> str:
     """ "there are 2 cars: a red car on the left and a white car in the middle"."""
     worn = not things_named(view, what)
     if len(found) == 1:
-        return f"there is {w.article(noun(view, what))} on {several(found)}" if worn else f"there is {several(found)}"
+        return f"there is {english.article(noun(view, what))} on {several(found)}" if worn else f"there is {several(found)}"
     said = f"there are {len(found)} {noun(view, what, many=True)}"
     return f"{said}{', on' if worn else ':'} {several(found)}" if len(found) <= TOLD_APART else said
 
@@ -72,4 +72,4 @@ def _each(view: View, question: s.Count) -> str:
     """ "4 cars and 1 van"."""
     parts = [s.Description((p,)) for p in question.what.phrases]
     counts = [(len(find(view, narrowed(p, question.tests))), p) for p in parts]
-    return w.listing([f"{n} {noun(view, p, many=n != 1)}" for n, p in counts])
+    return english.listing([f"{n} {noun(view, p, many=n != 1)}" for n, p in counts])

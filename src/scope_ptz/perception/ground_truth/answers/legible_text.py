@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+from scope_ptz import english
 from scope_ptz.perception.ground_truth.answers.restating import none_of, plural, the
 from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, reply, unknown
 from scope_ptz.perception.ground_truth.language import question_tree as s
-from scope_ptz.perception.ground_truth.language import words as w
 from scope_ptz.perception.ground_truth.thing_search import find
 from scope_ptz.perception.ground_truth.view import Thing, View, concepts_of
 from scope_ptz.simulator.truth import MAX_READING_ANGLE_DEG, MIN_CAP_HEIGHT_PX, TextSighting
@@ -57,11 +57,13 @@ def _read(view: View, what: s.Description | None, texts: Sequence[TextSighting],
     subject = the(view, what, plural(what)) if what else "the picture"
     legible = list(dict.fromkeys(t.text.text for t in texts if t.legible))
     if legible:
-        quoted = w.listing([f'"{t}"' for t in legible])
+        quoted = english.listing([f'"{t}"' for t in legible])
         if plate:
-            return AnswerText(w.sentence(f"the number plate reads {quoted}"))
+            return AnswerText(english.sentence(f"the number plate reads {quoted}"))
         return AnswerText(
-            w.sentence(f"{subject} {'read' if what and plural(what) else 'reads'} {quoted}" if what else f"I can read {quoted}")
+            english.sentence(
+                f"{subject} {'read' if what and plural(what) else 'reads'} {quoted}" if what else f"I can read {quoted}"
+            )
         )
     if texts:
         thing = "a number plate" if plate else "text"
@@ -92,7 +94,7 @@ def text_exists(view: View, question: s.TextExists) -> AnswerText:
         where = f"on {the(view, question.what, plural(question.what))}"
     legible = list(dict.fromkeys(t.text.text for t in texts if t.legible))
     if legible:
-        return reply(f"yes, I can read {w.listing([f'{chr(34)}{t}{chr(34)}' for t in legible])} {where}")
+        return reply(f"yes, I can read {english.listing([f'{chr(34)}{t}{chr(34)}' for t in legible])} {where}")
     if texts:
         return unknown(f"there is text {where}, but it is {why_not(texts)} to read")
     return reply(f"no, there is no text {where}")
@@ -103,5 +105,5 @@ def spoken_texts(view: View, signs: Sequence[Thing], fact: str) -> AnswerText | 
     texts = _texts(view, signs, plate=False)
     legible = list(dict.fromkeys(t.text.text for t in texts if t.legible and ("limit" not in fact or _is_limit(view, t))))
     if legible:
-        return AnswerText(w.sentence(f"the {fact} reads {w.listing([f'{chr(34)}{t}{chr(34)}' for t in legible])}"))
+        return AnswerText(english.sentence(f"the {fact} reads {english.listing([f'{chr(34)}{t}{chr(34)}' for t in legible])}"))
     return _read(view, None, texts, plate=False) if texts else None

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 
+from scope_ptz import english
 from scope_ptz.perception.ground_truth.answers.counted_things import narrowed
 from scope_ptz.perception.ground_truth.answers.restating import after_noun, holds_words, none_of, noun
 from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, metres, name, names, place, reply, several, unknown
 from scope_ptz.perception.ground_truth.answers.values import UNSEEN, anywhere
 from scope_ptz.perception.ground_truth.answers.verdicts import missing_reference
 from scope_ptz.perception.ground_truth.language import question_tree as s
-from scope_ptz.perception.ground_truth.language import words as w
 from scope_ptz.perception.ground_truth.relations import NEAR_M, relation_holds
 from scope_ptz.perception.ground_truth.thing_search import find
 from scope_ptz.perception.ground_truth.view import Thing, View
@@ -29,9 +29,9 @@ def where(view: View, question: s.Where) -> AnswerText:
         )
     if len(found) > MAX_PLACED:
         spots = Counter(place(t) for t in found)
-        said = w.listing([f"{n} {spot}" for spot, n in spots.items()])
+        said = english.listing([f"{n} {spot}" for spot, n in spots.items()])
     else:
-        said = w.listing([f"{w.article(name(t))} {place(t)} about {metres(t.distance_m)} away" for t in found])
+        said = english.listing([f"{english.article(name(t))} {place(t)} about {metres(t.distance_m)} away" for t in found])
     return reply(f"there are {len(found)} {noun(view, question.what, many=True)}: {said}")
 
 
@@ -96,7 +96,7 @@ def _nothing(view: View, question: s.What, description: s.Description) -> Answer
     if loose and not find(view, question.what):
         return anywhere(view, (*question.what.phrases[0].words, *loose))
     if description.phrases[0].words == ("thing",):
-        return reply(f"I can see nothing {w.listing([after_noun(view, t) for t in question.tests])}")
+        return reply(f"I can see nothing {english.listing([after_noun(view, t) for t in question.tests])}")
     return reply(none_of(view, description))
 
 
@@ -128,5 +128,5 @@ def identify(view: View, question: s.Identify) -> AnswerText:
     if not found:
         return fact if fact.known or UNSEEN & set(phrase.words) else unknown(f"I cannot tell: {none_of(view, question.what)}")
     if len(found) == 1:
-        return reply(f"it is {w.article(name(found[0]))} {place(found[0])}, about {metres(found[0].distance_m)} away")
+        return reply(f"it is {english.article(name(found[0]))} {place(found[0])}, about {metres(found[0].distance_m)} away")
     return reply(f"there are {len(found)}: {names(found)}")

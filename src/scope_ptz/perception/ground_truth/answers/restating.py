@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from scope_ptz import english
 from scope_ptz.perception.ground_truth.language import question_tree as s
-from scope_ptz.perception.ground_truth.language import words as w
 from scope_ptz.perception.ground_truth.language.concepts import lexicon, nouns_in
 from scope_ptz.perception.ground_truth.relations import BACKDROP
 from scope_ptz.perception.ground_truth.thing_search import noun_of
@@ -35,20 +35,20 @@ _FROM = {"left": "from the left", "right": "from the right", "top": "from the to
 
 def plural(description: s.Description) -> bool:
     """Whether the asker spoke of several."""
-    return len(description.phrases) > 1 or any(w.is_plural(x) for p in description.phrases for x in p.words[-1:])
+    return len(description.phrases) > 1 or any(english.is_plural(x) for p in description.phrases for x in p.words[-1:])
 
 
 def noun(view: View, description: s.Description, many: bool = False) -> str:
     """A description in words again, without articles: "red cars behind the barrier"."""
     several = len(description.phrases) > 1
-    return w.listing([_phrase(view, p, many or (several and plural(s.Description((p,))))) for p in description.phrases])
+    return english.listing([_phrase(view, p, many or (several and plural(s.Description((p,))))) for p in description.phrases])
 
 
 def the(view: View, description: s.Description, many: bool = False) -> str:
     """ "the red car", "the van and the lorry"."""
     if len(description.phrases) == 1:
         return f"the {noun(view, description, many)}"
-    return w.listing([f"the {_phrase(view, p, plural(s.Description((p,))))}" for p in description.phrases])
+    return english.listing([f"the {_phrase(view, p, plural(s.Description((p,))))}" for p in description.phrases])
 
 
 def as_asked(view: View, description: s.Description) -> str:
@@ -58,10 +58,10 @@ def as_asked(view: View, description: s.Description) -> str:
 
 def _phrase(view: View, phrase: s.Phrase, many: bool) -> str:
     head, after = noun_of(view, phrase.words)
-    core = [*head[:-1], _PRONOUNS.get(head[-1], w.singular(head[-1]))] if head else ["thing"]
+    core = [*head[:-1], _PRONOUNS.get(head[-1], english.singular(head[-1]))] if head else ["thing"]
     if phrase.order is not None or phrase.ordinal is not None:
         return " ".join([*_ranked(view, phrase, " ".join(core)), *after, *_tests(view, phrase)])
-    shown = w.plural(" ".join(core)) if many else " ".join(core)
+    shown = english.plural(" ".join(core)) if many else " ".join(core)
     return " ".join([shown, *after, *_tests(view, phrase)])
 
 
@@ -70,7 +70,7 @@ def _tests(view: View, phrase: s.Phrase) -> list[str]:
 
 
 def _ranked(view: View, phrase: s.Phrase, core: str) -> list[str]:
-    nth = {None: "", -1: "last"}.get(phrase.ordinal, f"{phrase.ordinal}{_suffix(phrase.ordinal or 0)}")
+    nth = {None: "", -1: "last"}.get(phrase.ordinal, f"{phrase.ordinal}{english.ordinal_suffix(phrase.ordinal or 0)}")
     if phrase.order is None:
         return [nth, core]
     if phrase.order.reference is not None:
@@ -78,10 +78,6 @@ def _ranked(view: View, phrase: s.Phrase, core: str) -> list[str]:
     if nth and phrase.order.key in _FROM:
         return [nth, core, _FROM[phrase.order.key]]
     return [x for x in (nth, SUPERLATIVES[phrase.order.key], core) if x]
-
-
-def _suffix(number: int) -> str:
-    return "th" if number in {11, 12, 13} else {1: "st", 2: "nd", 3: "rd"}.get(number % 10, "th")
 
 
 def after_noun(view: View, test: s.Test) -> str:
@@ -94,11 +90,11 @@ def after_noun(view: View, test: s.Test) -> str:
         case s.Not(test=s.Has(what=what)):
             return f"without {_items(what)}"
         case s.Not(test=s.Any(tests=tests)):
-            return f"other than {w.listing([after_noun(view, t) for t in tests])}"
+            return f"other than {english.listing([after_noun(view, t) for t in tests])}"
         case s.Not(test=inner):
             return f"not {after_noun(view, inner)}"
         case s.Any(tests=tests):
-            return w.listing([after_noun(view, t) for t in tests], "or")
+            return english.listing([after_noun(view, t) for t in tests], "or")
         case s.Order(key=key, reference=reference):
             return f"{SUPERLATIVES[key]} to {as_asked(view, reference)}" if reference else SUPERLATIVES[key]
         case _:
@@ -127,12 +123,14 @@ def _plain(view: View, test: s.Test) -> str:
 
 
 def _items(what: s.Description) -> str:
-    return w.listing([" ".join(p.words) if p.words[-1] in _PRONOUNS else w.article(" ".join(p.words)) for p in what.phrases])
+    return english.listing(
+        [" ".join(p.words) if p.words[-1] in _PRONOUNS else english.article(" ".join(p.words)) for p in what.phrases]
+    )
 
 
 def holds_words(view: View, tests: Sequence[s.Test], count: int, negated: bool = False) -> str:
     """Tests as a predicate: "are parked", "does not have a ladder", "is next to the van"."""
-    return w.listing([_predicate(view, t, count, negated) for t in tests], "or" if negated else "and")
+    return english.listing([_predicate(view, t, count, negated) for t in tests], "or" if negated else "and")
 
 
 def _predicate(view: View, test: s.Test, count: int, negated: bool) -> str:
@@ -145,8 +143,8 @@ def _predicate(view: View, test: s.Test, count: int, negated: bool) -> str:
             return f"{_do('bear', 'bears', count, negated)} text that I can read"
         case s.Says(words=words):
             return f'{_do("say", "says", count, negated)} "{" ".join(words).upper()}"'
-        case s.Is(words=words) if words and w.is_plural(words[-1]) is False and words[-1] in _NOUNLIKE:
-            return f"{_be(count, negated)} {w.article(' '.join(words))}"
+        case s.Is(words=words) if words and english.is_plural(words[-1]) is False and words[-1] in _NOUNLIKE:
+            return f"{_be(count, negated)} {english.article(' '.join(words))}"
         case _:
             return f"{_be(count, negated)} {after_noun(view, test)}"
 
@@ -178,7 +176,7 @@ def none_of(view: View, description: s.Description) -> str:
     """ "there is no red car in view"."""
     many = plural(description)
     only_one = len(description.phrases) > 1 and not any(plural(s.Description((p,))) for p in description.phrases)
-    said = w.listing([noun(view, s.Description((p,)), many and not only_one) for p in description.phrases], "or")
+    said = english.listing([noun(view, s.Description((p,)), many and not only_one) for p in description.phrases], "or")
     return f"there {'are' if many and not only_one else 'is'} no {said} in view"
 
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 
+from scope_ptz import english
 from scope_ptz.perception.ground_truth.answers.counted_things import narrowed
 from scope_ptz.perception.ground_truth.answers.locations import what
 from scope_ptz.perception.ground_truth.answers.restating import none_of, noun
 from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, are, metres, name, names, place, reply
 from scope_ptz.perception.ground_truth.answers.values import pose_of
 from scope_ptz.perception.ground_truth.language import question_tree as s
-from scope_ptz.perception.ground_truth.language import words as w
 from scope_ptz.perception.ground_truth.relations import BACKDROP
 from scope_ptz.perception.ground_truth.thing_facts import COLOUR_KEYS, NOTHING, colour_of, fact_words, facts, key_words
 from scope_ptz.perception.ground_truth.thing_search import find
@@ -31,9 +31,9 @@ def describe(view: View, question: s.Describe) -> AnswerText:
     groups = _groups(t for t in view.top_level() if not t.concepts & BACKDROP)
     if not groups:
         return reply("I can see nothing that stands out")
-    said = w.listing(groups[:MAX_GROUPS])
+    said = english.listing(groups[:MAX_GROUPS])
     texts = list(dict.fromkeys(t.text.text for t in view.texts if t.legible))[:MAX_TEXTS]
-    readable = f". I can read {w.listing([f'{chr(34)}{t}{chr(34)}' for t in texts])}" if texts else ""
+    readable = f". I can read {english.listing([f'{chr(34)}{t}{chr(34)}' for t in texts])}" if texts else ""
     return reply(f"I can see {said}{readable}")
 
 
@@ -55,7 +55,7 @@ def _describe_things(view: View, what: s.Description, tests: tuple[s.Test, ...])
         return reply(none_of(view, what))
     if len(found) > MAX_TEXTS:
         return reply(f"there are {len(found)} {noun(view, what, many=True)}: {names(found)}")
-    return AnswerText(" ".join(w.sentence(_told(t)) for t in found))
+    return AnswerText(" ".join(english.sentence(_told(t)) for t in found))
 
 
 def _told(thing: Thing) -> str:
@@ -64,7 +64,7 @@ def _told(thing: Thing) -> str:
     ]
     told += [" ".join(key_words(k)) for k, v in facts(thing) if v is True]
     texts = [f'it reads "{t}"' for t in thing.texts]
-    spot = f"there is {w.article(name(thing))} {place(thing)}, about {metres(thing.distance_m)} away"
+    spot = f"there is {english.article(name(thing))} {place(thing)}, about {metres(thing.distance_m)} away"
     return "; ".join([spot, *([", ".join(told)] if told else []), *texts])
 
 
@@ -76,14 +76,14 @@ def _groups(things: Iterable[Thing]) -> list[str]:
     said = []
     for kind, members in by_kind.items():
         if len(members) == 1:
-            said.append(f"{w.article(name(members[0]))} {place(members[0])}")
+            said.append(f"{english.article(name(members[0]))} {place(members[0])}")
             continue
         colours = Counter(c for c in map(colour_of, members) if c)
         if list(colours.values()) == [len(members)]:
-            said.append(f"{len(members)} {next(iter(colours))} {w.plural(kind)}")
+            said.append(f"{len(members)} {next(iter(colours))} {english.plural(kind)}")
             continue
-        shown = f" ({w.listing([f'{n} {c}' for c, n in colours.most_common()])})" if colours and len(colours) <= 4 else ""
-        said.append(f"{w.counted(len(members), kind)}{shown}")
+        shown = f" ({english.listing([f'{n} {c}' for c, n in colours.most_common()])})" if colours and len(colours) <= 4 else ""
+        said.append(f"{english.counted(len(members), kind)}{shown}")
     return said
 
 
@@ -92,8 +92,8 @@ def happening(view: View) -> AnswerText:
     busy = Counter((t.category, doing) for t in view.top_level() if (doing := _doing(t)) is not None)
     if not busy:
         return AnswerText(f"Nothing is moving. {describe(view, s.Describe()).text}")
-    said = [f"{w.article(k) if n == 1 else w.counted(n, k)} {are(n)} {doing}" for (k, doing), n in busy.items()]
-    return reply(w.listing(said[:MAX_GROUPS]))
+    said = [f"{english.article(k) if n == 1 else english.counted(n, k)} {are(n)} {doing}" for (k, doing), n in busy.items()]
+    return reply(english.listing(said[:MAX_GROUPS]))
 
 
 def _doing(thing: Thing) -> str | None:

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from scope_ptz.perception.ground_truth.language import words as w
+from scope_ptz import english
 from scope_ptz.perception.ground_truth.relations import SIDE_BAND
 from scope_ptz.perception.ground_truth.thing_facts import colour_of
 from scope_ptz.perception.ground_truth.view import Thing
@@ -23,34 +23,34 @@ class AnswerText(NamedTuple):
 
 
 def reply(text: str) -> AnswerText:
-    return AnswerText(w.sentence(text))
+    return AnswerText(english.sentence(text))
 
 
 def unknown(text: str) -> AnswerText:
-    return AnswerText(w.sentence(text), known=False)
+    return AnswerText(english.sentence(text), known=False)
 
 
 def name(thing: Thing) -> str:
     """What to call a thing: its name, with its colour where the name has none."""
     colour = colour_of(thing)
-    words = w.letters(thing.name).split()
+    words = english.letters(thing.name).split()
     shown = thing.name if thing.name[:2].isupper() else thing.name[:1].lower() + thing.name[1:]
-    return shown if colour is None or set(w.letters(colour).split()) & set(words) else f"{colour} {shown}"
+    return shown if colour is None or set(english.letters(colour).split()) & set(words) else f"{colour} {shown}"
 
 
 def names(things: Iterable[Thing]) -> str:
     """ "a white van, 2 traffic cones and a worker", in the order given."""
     counts = Counter(name(t) for t in things)
-    said = [w.article(n) if c == 1 else f"{c} {w.plural(n)}" for n, c in counts.items()]
+    said = [english.article(n) if c == 1 else f"{c} {english.plural(n)}" for n, c in counts.items()]
     if len(said) > MAX_NAMED:
         more = sum(list(counts.values())[MAX_NAMED:])
         said = [*said[:MAX_NAMED], f"{more} more thing{'s' if more > 1 else ''}"]
-    return w.listing(said)
+    return english.listing(said)
 
 
 def several(things: Sequence[Thing]) -> str:
     """Things told apart by where they are: "a white van on the left and a red car in the middle"."""
-    return w.listing([f"{w.article(name(t))} {place(t)}" for t in things])
+    return english.listing([f"{english.article(name(t))} {place(t)}" for t in things])
 
 
 def place(thing: Thing) -> str:

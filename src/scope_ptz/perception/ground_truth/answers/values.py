@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
+from scope_ptz import english
 from scope_ptz.perception.ground_truth.answers.legible_text import spoken_texts
 from scope_ptz.perception.ground_truth.answers.restating import as_asked, none_of, noun, plural, the
 from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, are, place, reply, unknown
 from scope_ptz.perception.ground_truth.language import question_tree as s
-from scope_ptz.perception.ground_truth.language import words as w
 from scope_ptz.perception.ground_truth.language.concepts import singular_phrase
 from scope_ptz.perception.ground_truth.thing_facts import (
     COLOUR_KEYS,
@@ -62,9 +62,10 @@ def ask(view: View, question: s.Ask) -> AnswerText:
         who = the(view, question.what, many=len(told) > 1)
         return reply(f"{who} {are(len(told))} {verb}{told[0][1]}")
     if not plural(question.what) and len(told) <= 4:
-        return reply(w.listing([f"the {t.category} {place(t)} is {verb}{v}" for t, v in told]))
+        return reply(english.listing([f"the {t.category} {place(t)} is {verb}{v}" for t, v in told]))
     return reply(
-        f"{len(told)} {noun(view, question.what, many=True)}: " + w.listing([f"{n} {verb}{v}" for v, n in distinct.most_common()])
+        f"{len(told)} {noun(view, question.what, many=True)}: "
+        + english.listing([f"{n} {verb}{v}" for v, n in distinct.most_common()])
     )
 
 
@@ -75,10 +76,10 @@ def value_of(thing: Thing, attribute: Sequence[str]) -> str | None:
         return colour if colour or "person" not in thing.concepts else _clothes(thing)
     if _is_clothes(attribute):
         return _clothes(thing)
-    wanted = {canonical(w.singular(x)) for x in attribute}
+    wanted = {canonical(english.singular(x)) for x in attribute}
     synonyms = {x for group in _KEY_SYNONYMS.values() if group & set(attribute) for x in group}
     for key, value in facts(thing):
-        keys = {canonical(w.singular(x)) for x in key_words(key)}
+        keys = {canonical(english.singular(x)) for x in key_words(key)}
         if wanted <= keys or keys & synonyms or keys <= wanted:
             return _value(key, value)
     if set(attribute) & _DOING and (pose := pose_of(thing)) is not None:
@@ -136,8 +137,8 @@ def _clothes(thing: Thing) -> str | None:
         elif is_worn(key):
             item = " ".join(x for x in key_words(key) if x not in COLOUR_KEYS)
             lacking = value is False or str(value).lower() in {"none", "no"}
-            worn.append(f"no {item}" if lacking else w.article(item) if value is True else w.article(f"{value} {item}"))
-    return w.listing(worn) if worn else None
+            worn.append(f"no {item}" if lacking else english.article(item) if value is True else english.article(f"{value} {item}"))
+    return english.listing(worn) if worn else None
 
 
 def _of_a_part(view: View, question: s.Ask) -> AnswerText | None:
@@ -147,10 +148,10 @@ def _of_a_part(view: View, question: s.Ask) -> AnswerText | None:
     found = part_values(view, question.what)
     if not found:
         return None
-    part = w.singular(question.what.phrases[0].words[-1])
+    part = english.singular(question.what.phrases[0].words[-1])
     if len({v for _, v in found}) == 1:
         return reply(f"the {part} is {found[0][1]}" if len(found) == 1 else f"all {len(found)} are {found[0][1]}")
-    return reply(w.listing([f"the {part} of the {t.category} {place(t)} is {v}" for t, v in found]))
+    return reply(english.listing([f"the {part} of the {t.category} {place(t)} is {v}" for t, v in found]))
 
 
 def part_values(view: View, what: s.Description) -> list[tuple[Thing, str]]:
@@ -181,7 +182,7 @@ def anywhere(view: View, attribute: Sequence[str]) -> AnswerText:
     told = [(t, v) for t in view.things for v in [value_of(t, attribute)] if v is not None and _says(t, attribute)]
     if told:
         values = list(dict.fromkeys(v for _, v in told))
-        return reply(f"the {' '.join(attribute)} is {w.listing(values)}")
+        return reply(f"the {' '.join(attribute)} is {english.listing(values)}")
     signs = find(view, s.Description((s.Phrase(tuple(attribute)),)))
     if "limit" in attribute:
         signs = [t for t in (signs or view.for_reading().things) if any(x.strip().isdigit() for x in t.texts)] or signs
@@ -192,8 +193,8 @@ def anywhere(view: View, attribute: Sequence[str]) -> AnswerText:
 
 def _says(thing: Thing, attribute: Sequence[str]) -> bool:
     """Whether a key of the thing speaks of every word asked for."""
-    wanted = {canonical(w.singular(x)) for x in attribute}
-    return any(wanted <= {canonical(w.singular(x)) for x in (*key_words(k), *value_words(v))} for k, v in facts(thing))
+    wanted = {canonical(english.singular(x)) for x in attribute}
+    return any(wanted <= {canonical(english.singular(x)) for x in (*key_words(k), *value_words(v))} for k, v in facts(thing))
 
 
 def absent(view: View, subject: s.Description) -> AnswerText:

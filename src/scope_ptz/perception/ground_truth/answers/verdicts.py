@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from scope_ptz import english
 from scope_ptz.perception.ground_truth.answers.counted_things import exists
 from scope_ptz.perception.ground_truth.answers.restating import after_noun, as_asked, holds_words, none_of, noun, plural, the
 from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, name, place, reply, unknown
 from scope_ptz.perception.ground_truth.answers.values import absent, part_values
 from scope_ptz.perception.ground_truth.language import question_tree as s
-from scope_ptz.perception.ground_truth.language import words as w
-from scope_ptz.perception.ground_truth.language.concepts import COLOURS, nouns_in
+from scope_ptz.perception.ground_truth.language.concepts import nouns_in
 from scope_ptz.perception.ground_truth.thing_facts import canonical, colour_of, fact_words, fits_noun, opposite
 from scope_ptz.perception.ground_truth.thing_search import find, holds, noun_of
 from scope_ptz.perception.ground_truth.view import Thing, View
@@ -36,7 +36,7 @@ def yes_no(view: View, question: s.YesNo) -> AnswerText:
         return unknown(f"I cannot tell: {none_of(view, missing)}")
     answers = [_every([holds(view, t, test) for test in tests]) for t in found]
     if None in answers and True not in answers:
-        said = w.listing([after_noun(view, t) for t in tests])
+        said = english.listing([after_noun(view, t) for t in tests])
         return unknown(f"I cannot tell whether {as_asked(view, subject)} {'are' if plural(subject) else 'is'} {said}")
     choice = _choice(view, tests, found)
     if choice is not None:
@@ -52,9 +52,9 @@ def _as_text(view: View, subject: s.Description, tests: tuple[s.Test, ...]) -> A
     texts = [text for t in find(view.for_reading(), tests[0].other) for text in t.texts]
     if not texts:
         return None
-    wanted = w.letters(" ".join(phrase.words))
-    yes = any(wanted in w.letters(text) for text in texts)
-    quoted = w.listing([f'"{text}"' for text in dict.fromkeys(texts)])
+    wanted = english.letters(" ".join(phrase.words))
+    yes = any(wanted in english.letters(text) for text in texts)
+    quoted = english.listing([f'"{text}"' for text in dict.fromkeys(texts)])
     return reply(f"{'yes' if yes else 'no'}, {as_asked(view, tests[0].other)} reads {quoted}")
 
 
@@ -66,7 +66,7 @@ def _of_a_part(view: View, subject: s.Description, tests: tuple[s.Test, ...]) ->
     wanted = canonical(tests[0].words[-1])
     value = canonical(values[0][1].lower())
     noun_said = subject.phrases[0].words[-1]
-    said = f"the {noun_said} {'are' if w.is_plural(noun_said) else 'is'} {value}"
+    said = f"the {noun_said} {'are' if english.is_plural(noun_said) else 'is'} {value}"
     return reply(f"{'yes' if wanted in value.split() else 'no'}, {said}")
 
 
@@ -125,7 +125,7 @@ def _choice(view: View, tests: Sequence[s.Test], found: list[Thing]) -> AnswerTe
         return reply(f"the {name(found[0])} {holds_words(view, held, 1)}")
     if held:
         counts = [(sum(holds(view, t, o) is True for t in found), o) for o in held]
-        return reply(w.listing([f"{n} of {len(found)} {holds_words(view, [o], n)}" for n, o in counts]))
+        return reply(english.listing([f"{n} of {len(found)} {holds_words(view, [o], n)}" for n, o in counts]))
     fact = _instead(view, options[0], found)
     return reply(f"neither: {fact}") if fact else None
 
@@ -133,9 +133,8 @@ def _choice(view: View, tests: Sequence[s.Test], found: list[Thing]) -> AnswerTe
 def _verdict(
     view: View, scope: str, subject: s.Description, tests: tuple[s.Test, ...], found: list[Thing], yes: list[Thing]
 ) -> AnswerText:
+    """Answer yes or no. ``found``: the things asked about; ``yes``: those of them for which the tests hold."""
     total, many = len(found), noun(view, subject, many=True)
-    union = len(subject.phrases) > 1
-    said = the(view, subject) if total == 1 and not union else as_asked(view, subject)
     if any(p.words[-1] in _EVERYBODY for p in subject.phrases if p.words):
         scope = "all"
     some = scope == "any" or any(p.words[-1] in _ANYBODY for p in subject.phrases if p.words)
@@ -143,19 +142,31 @@ def _verdict(
     if scope == "none":
         return reply(f"no, {share}" if yes else f"yes, none of the {many} {holds_words(view, tests, 1)}")
     if not yes:
-        fact = _instead(view, tests[-1], found) if len(tests) == 1 and not union else None
-        if fact:
-            return reply(f"no, {fact}")
-        if some or (total > 1 and not union):
-            return reply(f"no, none of the {total} {many} in view {holds_words(view, tests, 1)}")
-        return reply(f"no, {said} {holds_words(view, tests, total, negated=True)}")
+        return _none_of_them(view, subject, tests, found, some=some)
     if len(yes) == total:
-        every = f"{'both' if total == 2 else f'all {total}'} {many}" if total > 1 and not union else said
+        several = total > 1 and len(subject.phrases) == 1
+        every = f"{'both' if total == 2 else f'all {total}'} {many}" if several else _subject_words(view, subject, total)
         return reply(f"yes, {every} {holds_words(view, tests, total)}")
     if scope == "all" or (plural(subject) and not some):
         return reply(f"no, only {share}")
     where = f": the one {place(yes[0])}" if len(yes) == 1 else ""
     return reply(f"yes, {share}{where}")
+
+
+def _none_of_them(view: View, subject: s.Description, tests: tuple[s.Test, ...], found: list[Thing], *, some: bool) -> AnswerText:
+    """Answer no, with what is the case instead where that is known. ``some``: the question was about any of the things."""
+    total, union = len(found), len(subject.phrases) > 1
+    fact = _instead(view, tests[-1], found) if len(tests) == 1 and not union else None
+    if fact:
+        return reply(f"no, {fact}")
+    if some or (total > 1 and not union):
+        return reply(f"no, none of the {total} {noun(view, subject, many=True)} in view {holds_words(view, tests, 1)}")
+    return reply(f"no, {_subject_words(view, subject, total)} {holds_words(view, tests, total, negated=True)}")
+
+
+def _subject_words(view: View, subject: s.Description, total: int) -> str:
+    """Return the subject in words: "the red car", "the cars"."""
+    return the(view, subject) if total == 1 and len(subject.phrases) == 1 else as_asked(view, subject)
 
 
 def _instead(view: View, test: s.Test, found: list[Thing]) -> str | None:
@@ -165,13 +176,13 @@ def _instead(view: View, test: s.Test, found: list[Thing]) -> str | None:
     thing, wanted = found[0], canonical(test.words[-1])
     colour = colour_of(thing)
     kind = thing.category
-    if wanted in COLOURS and colour:
-        return f"the {kind} is {colour}" if len(found) == 1 else f"the {w.plural(kind)} are {colour}"
+    if wanted in english.COLOURS and colour:
+        return f"the {kind} is {colour}" if len(found) == 1 else f"the {english.plural(kind)} are {colour}"
     for fact in sorted(fact_words(thing)):
         if opposite(wanted, fact):
-            return f"the {kind} is {fact}" if len(found) == 1 else f"the {w.plural(kind)} are {fact}"
+            return f"the {kind} is {fact}" if len(found) == 1 else f"the {english.plural(kind)} are {fact}"
     if nouns_in(test.words) and not fits_noun(view, thing, test.words[-1]):
-        return f"it is {w.article(name(thing))}"
+        return f"it is {english.article(name(thing))}"
     return None
 
 
@@ -180,4 +191,4 @@ def is_a(view: View, question: s.IsA) -> AnswerText:
     if not found:
         return unknown(f"I cannot tell: {none_of(view, question.subject)}")
     fitting = find(view, question.what)
-    return reply(f"{'yes' if found[0] in fitting else 'no'}, it is {w.article(name(found[0]))}")
+    return reply(f"{'yes' if found[0] in fitting else 'no'}, it is {english.article(name(found[0]))}")

@@ -7,40 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 
-from scope_ptz.perception.ground_truth.language.words import singular
-
-COLOURS = frozenset(
-    [
-        "red",
-        "orange",
-        "yellow",
-        "green",
-        "blue",
-        "purple",
-        "violet",
-        "pink",
-        "brown",
-        "black",
-        "white",
-        "grey",
-        "gray",
-        "silver",
-        "gold",
-        "golden",
-        "beige",
-        "cream",
-        "tan",
-        "amber",
-        "turquoise",
-        "teal",
-        "cyan",
-        "magenta",
-        "maroon",
-        "navy",
-        "lime",
-        "olive",
-    ]
-)
+from scope_ptz import english
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +39,7 @@ class Lexicon:
 def singular_phrase(phrase: str) -> str:
     """The phrase with its last word in the singular."""
     *first, last = phrase.split()
-    return " ".join([*first, singular(last)])
+    return " ".join([*first, english.singular(last)])
 
 
 @cache

@@ -7,8 +7,8 @@ from typing import Any, cast
 
 from lark import Token, Transformer
 
+from scope_ptz import english
 from scope_ptz.perception.ground_truth.language import question_tree as s
-from scope_ptz.perception.ground_truth.language import words as w
 from scope_ptz.perception.ground_truth.language.concepts import nouns_in
 
 Children = list[Any]
@@ -56,7 +56,7 @@ class Rank(tuple[s.OrderKey | None, int | None, int | None]):
 
 def _digits(token: Token) -> str:
     """ "Lane two" is lane 2."""
-    number = w.number(str(token))
+    number = english.cardinal(str(token))
     return str(token) if number is None else str(number)
 
 
@@ -101,7 +101,7 @@ class NounPhrases(Transformer[Token, Any]):
     def order(self, c: Children) -> Rank:
         key = cast("s.OrderKey | None", value_of(c, "SUP") or value_of(c, "CMP"))
         ordinal, amount = value_of(c, "ORD"), value_of(c, "NUM")
-        return Rank((key, int(ordinal) if ordinal else None, w.number(amount) if amount else None))
+        return Rank((key, int(ordinal) if ordinal else None, english.cardinal(amount) if amount else None))
 
     def np(self, c: Children) -> s.Phrase:
         (core,) = of_kind(c, Core)
@@ -129,7 +129,7 @@ class NounPhrases(Transformer[Token, Any]):
         order: s.Order | None = None
         ordinal: int | None = None
         number = value_of(c, "NUM")
-        amount = w.number(number) if number else None
+        amount = english.cardinal(number) if number else None
         for key, nth, ranked_amount in of_kind(c, Rank):
             order = s.Order(key) if key else None
             ordinal = nth
@@ -160,7 +160,7 @@ class NounPhrases(Transformer[Token, Any]):
     def limit(self, c: Children) -> s.Within:
         other = descriptions(c)
         beyond = bool(tokens_of(c, "BEYOND")) or value_of(c, "CMP") == "furthest"
-        return s.Within(float(w.number(value_of(c, "NUM") or "0") or 0), other[0] if other else None, beyond)
+        return s.Within(float(english.cardinal(value_of(c, "NUM") or "0") or 0), other[0] if other else None, beyond)
 
     def of(self, c: Children) -> s.Relation:
         return s.Relation("on", descriptions(c)[0], "of")
@@ -199,7 +199,7 @@ class NounPhrases(Transformer[Token, Any]):
 
     def says(self, c: Children) -> s.Says:
         literal = value_of(c, "TEXT") or " ".join(x for core in of_kind(c, Core) for x in core)
-        return s.Says(tuple(w.letters(literal).split()))
+        return s.Says(tuple(english.letters(literal).split()))
 
     def ordered(self, c: Children) -> s.Order:
         reference = descriptions(c)

@@ -10,8 +10,9 @@ from typing import Any
 from lark import Token
 from lark.lexer import Lexer
 
-from scope_ptz.perception.ground_truth.language import words as w
+from scope_ptz import english
 from scope_ptz.perception.ground_truth.language.concepts import lexicon
+from scope_ptz.perception.ground_truth.language.word_splitting import split
 
 _FRAME_WORDS = frozenset(
     [
@@ -87,42 +88,53 @@ def _phrases() -> tuple[dict[tuple[str, ...], tuple[str, str]], int]:
 
 
 def tokenise(text: str) -> list[Token]:
-    """Typed tokens of a description or question."""
-    words = _without_frame(w.split(text))
-    table, longest = _phrases()
+    """Return the typed tokens of a description or question."""
+    words = _without_frame(split(text))
+    table, _ = _phrases()
     tokens: list[Token] = []
     i = 0
     while i < len(words):
         if size := _noun(words, i, table):
             tokens += [Token("W", word) for word in words[i : i + size]]
             i += size
-            continue
-        for size in range(min(longest, len(words) - i), 0, -1):
-            found = table.get(tuple(words[i : i + size]))
-            if found and (tokens or found[0] != "THAT"):
-                break
+        elif size := _closed_class_length(words, i, starts=not tokens):
+            i = _add_closed_class(tokens, words, i, size)
         else:
             counts = words[i] == "one" and i + 1 < len(words) and (words[i + 1],) not in table
             tokens.append(Token("NUM", "1") if counts else _open(words[i]))
             i += 1
-            continue
-        kind, value = found
-        raw = " ".join(words[i : i + size])
-        if raw in _PARTICLES and i + size == len(words):
-            if not tokens or tokens[0].type not in {"WHAT", "WHICH", "WHERE"}:
-                tokens.append(Token("W", raw))
-        elif kind != "SKIP":
-            if kind in {"WHICH", "WHAT"} and [t.type for t in tokens] == ["REL"]:
-                tokens.pop()  # "in which lane is ..."
-            tokens.append(Token(kind, f"{value}:{raw}" if kind == "REL" else raw if kind in {"SAYS", "READ"} else value))
-        i += size
-        if kind == "SAYS" and not (tokens[0].type == "WHAT" and any(t.type == "DOES" for t in tokens)):
-            literal, i = _literal(words, i)
-            if literal:
-                tokens.append(Token("TEXT", literal))
     while tokens and tokens[0].type == "COMMA":
         tokens.pop(0)
     return tokens
+
+
+def _closed_class_length(words: list[str], start: int, *, starts: bool) -> int:
+    """Return how many words from here on are a closed-class phrase, 0 for none. ``starts``: no token came before."""
+    table, longest = _phrases()
+    for size in range(min(longest, len(words) - start), 0, -1):
+        found = table.get(tuple(words[start : start + size]))
+        if found and not (starts and found[0] == "THAT"):
+            return size
+    return 0
+
+
+def _add_closed_class(tokens: list[Token], words: list[str], i: int, size: int) -> int:
+    """Append the token of a closed-class phrase. Return the index of the next word."""
+    kind, value = _phrases()[0][tuple(words[i : i + size])]
+    raw = " ".join(words[i : i + size])
+    if raw in _PARTICLES and i + size == len(words):
+        if not tokens or tokens[0].type not in {"WHAT", "WHICH", "WHERE"}:
+            tokens.append(Token("W", raw))
+    elif kind != "SKIP":
+        if kind in {"WHICH", "WHAT"} and [t.type for t in tokens] == ["REL"]:
+            tokens.pop()  # "in which lane is ..."
+        tokens.append(Token(kind, f"{value}:{raw}" if kind == "REL" else raw if kind in {"SAYS", "READ"} else value))
+    i += size
+    if kind == "SAYS" and not (tokens[0].type == "WHAT" and any(t.type == "DOES" for t in tokens)):
+        literal, i = _literal(words, i)
+        if literal:
+            tokens.append(Token("TEXT", literal))
+    return i
 
 
 def _noun(words: list[str], start: int, table: dict[tuple[str, ...], tuple[str, str]]) -> int:
@@ -140,9 +152,9 @@ _LONGEST_NOUN = 4
 def _open(word: str) -> Token:
     if word[0] in "\"'" and len(word) > 2:
         return Token("TEXT", word[1:-1])
-    if w.ordinal(word) is not None:
-        return Token("ORD", str(w.ordinal(word)))
-    if w.number(word) is not None and word != "one":
+    if english.ordinal(word) is not None:
+        return Token("ORD", str(english.ordinal(word)))
+    if english.cardinal(word) is not None and word != "one":
         return Token("NUM", word)
     return Token("W", word)
 

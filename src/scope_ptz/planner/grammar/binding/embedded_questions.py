@@ -1,10 +1,13 @@
-"""Embedded questions made direct: "tell me if it's open" asks "Is it open?", "tell me its colour" asks "What is its colour?"."""
+"""Embedded questions made direct.
+
+"Tell me if it's open" asks "Is it open?", and "tell me its colour" asks "What is its colour?".
+"""
 
 from __future__ import annotations
 
 import re
 
-from scope_ptz.planner.grammar.execution.sentences import noun
+from scope_ptz.planner.grammar.execution.sentences import head_and_rest
 
 _BE = r"is|are|was|were|isn't|aren't"
 _AUXILIARY = rf"{_BE}|has|have|can|could|will|should"
@@ -23,13 +26,16 @@ _WH = re.compile(
     r" ((?:the|an?|that|this|these|those|its|their|his|her|it|they|he|she|each|every|all|both|any)\b.*?)",
     re.IGNORECASE,
 )
+_PLURAL = re.compile(r"(?:[^s]s|\b(?:people|men|women|children|feet))$", re.IGNORECASE)
+"""Whatever looks like a plural. Recorded plans depend on this test, so it stays coarse: "this" counts as a plural."""
+
 _ASKED = re.compile(
     r"(what|which|who|whom|whose|where|when|why|how|is|are|was|were|do|does|did|can|could|has|have|any)\b", re.IGNORECASE
 )
 
 
 def embedded(text: str) -> str:
-    """The direct question in what follows "tell me"; a text that is one already stays as it is."""
+    """Return the direct question in the words after "tell me". A text that is a direct question is returned unchanged."""
     said = text.strip().rstrip("?!. ").replace("’", "'")
     made = _yes_no(said) or _about_you(said) or _wh(said) or _named(said)
     return f"{made[0].upper()}{made[1:]}?" if made else text.strip()
@@ -54,7 +60,7 @@ def _is_spelled(short: re.Match[str]) -> str:
 
 
 def _about_you(said: str) -> str | None:
-    """ "What you see", "what you can see there"."""
+    """Return the question in "what you see" or "what you can see there"."""
     found = re.fullmatch(
         r"(what(?: else)?|which \w+|how many \w+|who(?:m)?) you (can )?(see|find|notice|spot|observe)( .+)?", said, re.IGNORECASE
     )
@@ -62,7 +68,7 @@ def _about_you(said: str) -> str | None:
 
 
 def _wh(said: str) -> str | None:
-    """ "What colour the door is", "where the truck is parked", "what the sign says"."""
+    """Return the question in "what colour the door is", "where the truck is parked" or "what the sign says"."""
     if found := re.fullmatch(rf"{_WH.pattern} ({_AUXILIARY})( .+)?", said, re.IGNORECASE):
         return f"{found[1]} {found[3]} {found[2]}{found[4] or ''}"
     if found := re.fullmatch(rf"{_WH.pattern} ({'|'.join(_SAID)})( .+)?", said, re.IGNORECASE):
@@ -74,13 +80,13 @@ def _wh(said: str) -> str | None:
 
 
 def _named(said: str) -> str | None:
-    """ "Its number plate", "the colour of the door"."""
+    """Return the question about a named thing: "its number plate", "the colour of the door"."""
     if about := re.fullmatch(r"(?:something |more )?about (.+)", said, re.IGNORECASE):
         return f"what can you say about {about[1]}"
     if _ASKED.match(said):
         return None
     head = re.split(r" (?:of|on|in|at|for|to|with|near|behind|from|by|that|which|who) ", said)[0]
-    many = noun(head, 1) != head and not re.search(r"ss$|'s$", head)
+    many = _PLURAL.search(head_and_rest(head)[0]) and not re.search(r"\bbus$|ss$|'s$", head)
     return (
         f"what {'are' if many else 'is'} {said}"
         if re.match(r"(the|its|their|his|her|an?|this|that|these|those)\b", said, re.IGNORECASE)

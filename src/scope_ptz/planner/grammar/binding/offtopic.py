@@ -1,4 +1,4 @@
-"""Which questions a camera can answer at all, and which wishes it must refuse."""
+"""Which questions a camera can answer, and which instructions it must refuse."""
 
 from __future__ import annotations
 
@@ -16,10 +16,11 @@ REFUSAL = "I will not help with that: this camera is not for harming or spying o
 
 
 def is_about_the_scene(question: str) -> bool:
-    """False for questions that no picture can answer."""
+    """Return False for questions that no picture can answer."""
     text = " ".join(question.lower().replace("’", "'").split())
     return not (any(re.search(rf"\b{re.escape(phrase)}\b", text) for phrase in word_list("elsewhere")) or _SUM.search(text))
 
 
 def is_harmful(instruction: str) -> bool:
+    """Return whether an instruction asks to harm or spy on people."""
     return bool(_HARM.search(instruction))

@@ -1,4 +1,4 @@
-"""Binding names: presets to the camera's list, pronouns to what was named last, and the scope that a sweep sets."""
+"""Resolving names: presets to the camera's list, pronouns to the last named thing, and the scope that a sweep sets."""
 
 from __future__ import annotations
 
@@ -51,17 +51,17 @@ _BESIDE = re.compile(
 
 
 class UnresolvedError(Exception):
-    """Something that needs a question back to the person; the message is that question."""
+    """A name cannot be resolved. The message is the question to ask the user."""
 
 
 def match_exactly(name: str, presets: Sequence[str]) -> str | None:
-    """The preset of that name, whatever its case, spaces and hyphens."""
+    """Return the preset of that name, ignoring case, spaces and hyphens."""
     wanted = "".join(preset_key(name))
     return next((preset for preset in presets if "".join(preset_key(preset)) == wanted), None)
 
 
 def match_preset(name: str, presets: Sequence[str]) -> str | None:
-    """The preset that a name means: exact but for case, spaces and hyphens, else one that is clearly closest."""
+    """Return the preset that a name means: an exact match, or else the one that is clearly closest; None when there is none."""
     wanted = "".join(preset_key(name))
     keys = {preset: "".join(preset_key(preset)) for preset in presets}
     exact = match_exactly(name, presets)
@@ -82,7 +82,7 @@ def match_preset(name: str, presets: Sequence[str]) -> str | None:
 
 
 def abbreviates(short: str, long: str) -> bool:
-    """Whether a word is another with vowels left out: "hwy" for "highway"."""
+    """Return whether a word is another with vowels left out: "hwy" for "highway"."""
     letters = iter(long)
     return (
         len(short) >= _SHORTEST_ABBREVIATION
@@ -93,7 +93,7 @@ def abbreviates(short: str, long: str) -> bool:
 
 
 def plausible_name(text: str) -> bool:
-    """Whether words may be a preset's name, where no presets are known: few, and none that tells how the camera moves."""
+    """Return whether words may be a preset's name when no presets are known: few words, none of them about camera motion."""
     words = [(word,) for word in preset_key(text)]
     telling = {
         "DEG", "PRON", "NUM", "LEFT", "RIGHT", "UP", "DOWN", "ZOOM", "PAN",
@@ -106,7 +106,16 @@ def plausible_name(text: str) -> bool:
 
 @dataclass(slots=True)
 class Resolver:
-    """Binds one instruction. ``presets`` None: not known, names are taken as said."""
+    """Binds the steps of one instruction.
+
+    Attributes:
+        presets: The camera's presets; None when they are unknown, so that names are accepted as written.
+        antecedent: The thing that a pronoun refers to.
+        preset: The preset that "there" refers to.
+        compared: Whether presets were compared.
+        counted: Whether something was counted.
+        sweeping: Whether questions are about the whole scene.
+    """
 
     presets: tuple[str, ...] | None
     conversation: tuple[PastTurn, ...] = ()
@@ -126,16 +135,20 @@ class Resolver:
                         self.preset = str(arguments.get("name", ""))
 
     def bind(self, steps: Sequence[ast.Step]) -> tuple[ast.Step, ...]:
-        """The steps with all names bound. Raises ``UnresolvedError``."""
+        """Return the steps with all names resolved.
+
+        Raises:
+            UnresolvedError: A name needs a question to the user.
+        """
         out: list[ast.Step] = []
         for step in steps:
             bound = self._bind(self._completed(step, out))
             again = bool(out) and isinstance(out[-1], ast.ZoomTo) and list(bound) == out[-1:]
-            out.extend([] if again else bound)  # "find it, zoom in on it" is one wish
+            out.extend([] if again else bound)  # "find it, zoom in on it" is one request
         return tuple(out)
 
     def _completed(self, step: ast.Step, before: Sequence[ast.Step]) -> ast.Step:
-        """ "Read the left sign and then the right one": a bare thing takes the verb of the step before it."""
+        """Give a bare thing the verb of the step before it, as in "read the left sign and then the right one"."""
         last = before[-1] if before else None
         bare = isinstance(step, ast.GoPreset) and step.how == "bare" and step.ref.determined
         if not bare or not isinstance(step, ast.GoPreset) or (self.presets and self.find_place(step.ref)):
@@ -164,7 +177,7 @@ class Resolver:
         return ast.Thing(self.antecedent, definite=True)
 
     def _with_noun(self, text: str) -> str:
-        """ "The nearest one" after cars were spoken of: the nearest car."""
+        """Replace "one" by the last noun: "the nearest one" after cars is the nearest car."""
         head = re.split(r" (?:on|in|at|by|with|near|behind) ", self.antecedent)[0].split(" ")[-1]
         return _ONES.sub(lambda match: noun(head, 2 if match[0].lower() == "ones" else 1), text) if head else text
 
@@ -244,7 +257,7 @@ class Resolver:
 
     def _ask(self, step: ast.Ask) -> Sequence[ast.Step]:
         if self.counted and _WINNER.fullmatch(step.question.strip()):
-            return []  # the answer tells the counts
+            return []  # the answer states the counts
         if _DESCRIBE.fullmatch(step.question.strip()):
             return [ast.Ask("Describe the scene.", self._view(step.view))]
         if not is_about_the_scene(step.question):
@@ -263,7 +276,7 @@ class Resolver:
         return [*place, ast.Ask(question, self._view(step.view))]
 
     def _asked_at(self, question: str) -> tuple[str, list[ast.Step]]:
-        """A question with the preset that it ends in ("... at gate?") taken out of it."""
+        """Take the preset out of a question that ends in one ("... at gate?")."""
         match = re.fullmatch(r"(.+?) (?:at|from) (the )?([\w -]+?)( preset| view| position)?\?*", question.strip(), re.IGNORECASE)
         name = match_exactly(match[3], self.presets or ()) if match and (match[4] or not match[2]) else None
         if not match or not name:
@@ -368,7 +381,7 @@ class Resolver:
         return [replace(step, thing=self.thing(step.thing), moves=self.bind(step.moves))]
 
     def condition(self, condition: ast.Condition) -> ast.Condition:
-        """A condition with its things bound."""
+        """Return a condition with its things resolved."""
         if isinstance(condition, ast.Seen):
             return replace(condition, thing=self.thing(condition.thing), view=self._view(condition.view))
         if isinstance(condition, ast.Readable):

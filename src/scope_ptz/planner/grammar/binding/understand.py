@@ -1,4 +1,4 @@
-"""What an instruction means, or what to ask back."""
+"""The meaning of an instruction, or the question to ask."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _EXAMPLES = "'pan right 20 degrees', 'how many cars are there?', or 'zoom in on 
 
 @dataclass(frozen=True, slots=True)
 class Understanding:
-    """Bound steps, or a question back, or a refusal."""
+    """Bound steps, a question or a refusal."""
 
     steps: tuple[ast.Step, ...] = ()
     clarification: str | None = None
@@ -24,7 +24,13 @@ class Understanding:
 
 
 def understand(instruction: str, presets: Sequence[str] | None, conversation: Sequence[PastTurn] = ()) -> Understanding:
-    """The meaning of an instruction; ``presets`` None takes preset names as they are said. Never raises on any text."""
+    """Return the meaning of an instruction. Never raises, whatever the text.
+
+    Args:
+        instruction: What the user typed.
+        presets: The camera's presets; None accepts preset names as written.
+        conversation: The earlier turns.
+    """
     if not instruction.strip():
         return Understanding(clarification=f"What shall I do? For example: {_EXAMPLES}.")
     if is_harmful(instruction):
@@ -46,7 +52,7 @@ def understand(instruction: str, presets: Sequence[str] | None, conversation: Se
 
 
 def _as_question(resolver: Resolver, instruction: str) -> tuple[ast.Step, ...]:
-    """A question that no rule covers is still a question about the scene."""
+    """Return a question to perception for a question that no rule covers."""
     text = instruction.strip()
     if text.endswith("?") and len(text.split()) > 1 and text.count("?") == 1 and is_about_the_scene(text):
         return resolver.bind([ast.Ask(text)])

@@ -1,4 +1,4 @@
-"""What a conversation tells about where the camera has been."""
+"""Where the camera has been, according to the conversation."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _MOVES = TOOLS.moving
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where the camera stood: at a preset, at home, or only at a pose."""
+    """A place where the camera stood: at a preset, at home, or only at a pose."""
 
     pose: Pose
     preset: str | None = None
@@ -24,14 +24,19 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Whereabouts:
-    """``preset``: where the camera still stands; ``before``: where it stood before the last turn that moved it."""
+    """Where the camera has been.
+
+    Attributes:
+        preset: The preset where the camera still stands.
+        before: Where it stood before the last turn that moved it.
+    """
 
     preset: str | None = None
     before: Place | None = None
 
 
 def whereabouts(conversation: Sequence[PastTurn]) -> Whereabouts:
-    """Read off the results of earlier turns."""
+    """Return where the camera has been, from the results of earlier turns."""
     here: Place | None = None
     before: Place | None = None
     for turn in conversation:
@@ -53,7 +58,7 @@ def _pose(result: dict[str, Any] | None) -> Pose | None:
 
 
 def _before(outcome: ToolOutcome, after: Pose) -> Place | None:
-    """Where a first relative move started, as far as its arguments tell; a clamped move tells nothing."""
+    """Return where a first relative move started, as far as its arguments determine it; None for a clamped move."""
     arguments = outcome.call.arguments
     if outcome.call.name != "adjust_ptz" or (outcome.result or {}).get("clamped") or arguments.get("zoom_limit"):
         return None

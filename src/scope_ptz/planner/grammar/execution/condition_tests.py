@@ -1,4 +1,4 @@
-"""Conditions and comparisons: steps whose course depends on what is seen."""
+"""Conditions and comparisons: steps whose course depends on what is visible."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from scope_ptz.tools.arguments import View
 
 
 class Judging(Session):
-    """The part of a run that tests and compares."""
+    """The part of a run that tests conditions and compares counts."""
 
     # Conditions --------------------------------------------------------------------------------------------------------
 
     def _test(self, condition: ast.Condition) -> Run:
-        """Whether a condition holds, and the sentence that says what was seen."""
+        """Return whether a condition holds, and the sentence that states what was seen."""
         met, why = yield from self._judge(condition)
         return (met or self.assume_met), why
 
@@ -70,6 +70,6 @@ class Judging(Session):
 
 
 def reading(thing: str) -> str:
-    """The question that reads a thing's text."""
+    """Return the question that asks for a thing's text."""
     plural = say.noun(thing, 1) != thing
     return f"What {'do' if plural else 'does'} the {thing} say?"

@@ -1,4 +1,4 @@
-"""From wishes about motion to the arguments of ``adjust_ptz``, given where the camera is."""
+"""From requested motion to the arguments of ``adjust_ptz``, given the camera's pose."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from scope_ptz.planner.grammar.instruction_tree import Aim, Amount, Move, Turn, 
 _DEFAULT_DEG, _LITTLE_DEG = 10.0, 5.0
 _LOT_DEG = {"pan": 45.0, "tilt": 20.0}
 _LIMIT_DEG = {"pan": 360.0, "tilt": 90.0}
-_LOOP_PAN_DEG = 15.0  # 24 such steps, the most that a loop makes unasked, go once around
+_LOOP_PAN_DEG = 15.0  # a loop makes 24 steps unless told otherwise, which is one full turn
 _LOOP_ZOOM_FACTOR = 1.5
 _SAME = 1e-6
 
 
 def arguments_of(move: Move, pose: Pose, limits: Limits, in_loop: bool = False) -> dict[str, Any]:
-    """The call that makes a move; empty when the camera is where it should be. Whole numbers come as integers."""
+    """Return the arguments of the call that makes a move, empty when the camera is already there. Whole numbers are integers."""
     arguments: dict[str, Any] = {}
     for part in move.parts:
         if isinstance(part, Turn):
@@ -30,7 +30,7 @@ def arguments_of(move: Move, pose: Pose, limits: Limits, in_loop: bool = False) 
 
 
 def returning(to: Pose, pose: Pose, limits: Limits) -> dict[str, Any]:
-    """The relative move from ``pose`` back to ``to``."""
+    """Return the arguments of the relative move from ``pose`` back to ``to``."""
     pan = to.pan_deg - pose.pan_deg
     arguments = {
         "pan_deg": wrap_pan_deg(pan) if limits.pan_endless else pan,
@@ -41,11 +41,12 @@ def returning(to: Pose, pose: Pose, limits: Limits) -> dict[str, Any]:
 
 
 def _idle(key: str, value: float) -> bool:
+    """Return whether a value means no motion."""
     return abs(value - (1.0 if key == "zoom_factor" else 0.0)) < _SAME
 
 
 def tidy(value: Any) -> Any:
-    """Numbers as a person would write them: no rounding noise, no trailing ".0"."""
+    """Return a number without rounding noise and without a trailing ".0"."""
     if not isinstance(value, float):
         return value
     rounded = round(value, 6)

@@ -1,9 +1,9 @@
-"""Running bound steps: a generator that yields tool calls, takes their outcomes, and says in plain words what they showed.
+"""Running bound steps: a generator that yields tool calls, takes their outcomes and reports the results in words.
 
-The planner replays it against the recorded history at every step, so it must depend on nothing but its inputs.
+The planner replays it against the recorded history at every step, so it depends on nothing but its inputs.
 """
 
-# ruff: noqa: ARG002 - the methods of steps share one signature
+# ruff: noqa: ARG002 - all step methods share one signature
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from scope_ptz import english
 from scope_ptz.geometry import Pose
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.execution import sentences as say
@@ -28,10 +29,10 @@ _MOST_MOVES_SAID = 100
 
 
 class Program(Judging):
-    """One run of one instruction's steps: a method for each kind of step."""
+    """One run of the steps of an instruction, with one method for each kind of step."""
 
     def run(self, steps: Sequence[ast.Step]) -> Run:
-        """All steps; afterwards ``answer()`` tells the result."""
+        """Run all steps. Afterwards ``answer()`` returns the result."""
         start = Place(self.pose, self.been.preset, home=self.been.before is None and self.pose == Pose())
         self._trail = [self.been.before, start] if self.been.before else [start]
         try:
@@ -114,7 +115,7 @@ class Program(Judging):
     def _listpresets(self, step: ast.ListPresets) -> Run:
         result = yield from self._moved("get_presets")
         names = list(result.get("presets", ()))
-        self._note(f"The presets are {say.listed(names)}" if names else "This camera has no presets")
+        self._note(f"The presets are {english.listing(names)}" if names else "This camera has no presets")
 
     def _snap(self, step: ast.Snap) -> Run:
         if step.of is not None:
@@ -137,7 +138,7 @@ class Program(Judging):
             return
         self._wandered = True
         many = f" ({result['matches']} matched; {result['chosen'] or 'one was chosen'})" if result.get("matches", 1) > 1 else ""
-        limits = f", as far as the {say.listed(list(result['limited_by']))} limit allows" if result.get("limited_by") else ""
+        limits = f", as far as the {english.listing(list(result['limited_by']))} limit allows" if result.get("limited_by") else ""
         self._note(f"I zoomed in on {_the(step.thing)}{many}{limits}")
 
     def _track(self, step: ast.Track) -> Run:
@@ -232,7 +233,7 @@ class Program(Judging):
         yield from self._unmet(step, best, f", and stopped after {say.moves_text(last, done)}")
 
     def _unmet(self, step: ast.Loop, best: int, how: str) -> Run:
-        """The end of a loop that never saw what it waited for: what was wanted otherwise, or an honest stop."""
+        """End a loop whose condition was never met: do what the instruction asks for in that case, or stop and say so."""
         reason = f"I never {say.condition_text(step.until)}{_most(best)}{how}"
         if not step.otherwise:
             raise HaltedError(reason)
@@ -240,7 +241,7 @@ class Program(Judging):
         yield from self._all(step.otherwise)
 
     def _allowance(self, step: ast.Loop) -> int:
-        """How many times a loop may move: as said, else once over the whole range."""
+        """Return how many times a loop may move: as often as the instruction says, or once over the whole range."""
         bound = step.bound or ast.Bound()
         if bound.moves is not None:
             return min(bound.moves, _MOST_MOVES_SAID)
@@ -281,11 +282,13 @@ class Program(Judging):
             yield from self._moved("go_to_preset", name=place.name)
             self._arrived(place.name)
             counts[place.name] = yield from self._counted(text, "current")
-        self._note(f"I can see {say.listed([f'{say.counted(text, count)} at {name}' for name, count in counts.items()])}")
+        self._note(f"I can see {english.listing([f'{say.counted(text, count)} at {name}' for name, count in counts.items()])}")
         if step.any_of:
             seen = [name for name, count in counts.items() if count]
             self._note(
-                f"{noun_any(text)} can be seen at {say.listed(seen)}" if seen else f"{noun_any(text)} can be seen at none of them"
+                f"{noun_any(text)} can be seen at {english.listing(seen)}"
+                if seen
+                else f"{noun_any(text)} can be seen at none of them"
             )
             self._winner = seen[0] if seen else None
             return
@@ -298,7 +301,7 @@ class Program(Judging):
             else ("the most" if step.wish == "more" else "the fewest")
         )
         verb = f"shows {superlative} {say.noun(text, 2)}"
-        self._note(f"It is a tie between {say.listed(winners)}" if len(winners) > 1 else f"Preset {winners[0]} {verb}")
+        self._note(f"It is a tie between {english.listing(winners)}" if len(winners) > 1 else f"Preset {winners[0]} {verb}")
         if step.go:
             yield from self._gothere(ast.GoThere())
 

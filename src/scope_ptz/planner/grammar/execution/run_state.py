@@ -1,4 +1,4 @@
-"""The state of one run and the calls that it makes."""
+"""The state of one run, and the calls that it makes."""
 
 from __future__ import annotations
 
@@ -16,13 +16,19 @@ Run = Generator[Wanted, ToolOutcome, Any]
 
 
 class HaltedError(Exception):
-    """The run cannot go on; the message says why."""
+    """The run cannot continue; the message says why."""
 
 
 @dataclass
 class Session:
-    """``assume_met``: take every condition as met, to show a plan without a camera. ``been``: what the conversation tells of
-    where the camera was; ``notes``: the sentences of the answer; ``sources``: who looked."""
+    """The state of one run.
+
+    Attributes:
+        assume_met: Whether every condition counts as met, to show a plan without a camera.
+        been: Where the camera was, according to the conversation.
+        notes: The sentences of the answer.
+        sources: Who answered the perception calls.
+    """
 
     limits: Limits
     pose: Pose
@@ -39,6 +45,7 @@ class Session:
     _last_yes: bool = False
 
     def answer(self) -> str:
+        """Return the answer: all notes, and the note about the sources."""
         text = " ".join(say.sentence(note) for note in self.notes if note) or "There was nothing to do."
         return text + say.source_text(self.sources)
 
@@ -55,14 +62,14 @@ class Session:
         return outcome
 
     def _moved(self, tool: str, **arguments: Any) -> Run:
-        """A move; a failed one ends the run, for nothing that follows could be trusted."""
+        """Make a call that moves the camera. A failure ends the run, because the following steps would be meaningless."""
         outcome: ToolOutcome = yield from self._call(tool, **arguments)
         if outcome.error is not None or outcome.result is None:
             raise HaltedError(f"I stopped because the camera did not do {tool}: {outcome.error or 'no result'}")
         return outcome.result
 
     def _looked(self, tool: str, **arguments: Any) -> Run:
-        """A look at the scene, tried twice; None when both fail, with a note."""
+        """Make a perception call and repeat it once after a failure. Return None, with a note, when both fail."""
         outcome: ToolOutcome = yield from self._call(tool, **arguments)
         if outcome.error is not None:
             outcome = yield from self._call(tool, **arguments)
@@ -72,7 +79,7 @@ class Session:
         return outcome.result
 
     def _needed(self, tool: str, **arguments: Any) -> Run:
-        """A look that decides what happens next; without it the run ends."""
+        """Make a perception call that later steps depend on. A failure ends the run."""
         result = yield from self._looked(tool, **arguments)
         if result is None:
             raise HaltedError("I stopped there, because what comes next depends on it")

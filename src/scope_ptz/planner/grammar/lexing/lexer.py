@@ -1,7 +1,7 @@
-"""From text to lexemes: words are grouped into known phrases, numbers are read, everything else stays free text.
+"""From text to lexemes: words are grouped into known phrases, numbers are read, and the rest stays free text.
 
-Each lexeme may be several terminals at once ("left" is a direction or a verb); the grammar decides. Lexemes keep their place
-in the original text, so descriptions and questions are passed on as the person typed them.
+A lexeme may be several terminals at once ("left" is a direction or a verb); the grammar decides. Lexemes keep their position in the
+original text, so descriptions and questions are passed on as the user typed them.
 """
 
 from __future__ import annotations
@@ -10,8 +10,9 @@ import re
 import unicodedata
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import takewhile
 
-from scope_ptz.planner.grammar.lexing.number_phrases import read_number
+from scope_ptz.planner.grammar.lexing.number_phrases import Number, read_number
 from scope_ptz.planner.grammar.lexing.vocabulary import NUMBER_WORDS, phrase_table, spelling, word_list
 
 _TOKEN = re.compile(
@@ -36,7 +37,14 @@ _DIAGONALS = ("UPLEFT", "UPRIGHT", "DOWNLEFT", "DOWNRIGHT")
 
 @dataclass(frozen=True, slots=True)
 class Lexeme:
-    """``kinds``: the terminals it may be; ``start``, ``end``: characters in the original text; ``value``: of a number."""
+    """A unit of the text.
+
+    Attributes:
+        kinds: The terminals that it may be.
+        start: The index of its first character in the original text.
+        end: The index after its last character.
+        value: The value of a number.
+    """
 
     kinds: frozenset[str]
     start: int
@@ -53,7 +61,7 @@ class _Word:
 
 
 def _words(text: str) -> list[_Word]:
-    """Raw tokens. Apostrophes split words ("don't" is don, t) and hyphens separate them."""
+    """Return the raw tokens. Apostrophes and hyphens separate words ("don't" becomes don, t)."""
     out: list[_Word] = []
     lowered = "".join(c.lower() if len(c.lower()) == 1 else c for c in text)
     for match in _TOKEN.finditer(lowered):
@@ -74,7 +82,7 @@ def _words(text: str) -> list[_Word]:
 
 
 def _without_step_numbers(words: list[_Word]) -> list[_Word]:
-    """Turn "step 1:" into a sentence end."""
+    """Replace "step 1:" by a sentence end."""
     out, i = list[_Word](), 0
     while i < len(words):
         if words[i].text == "step" and [w.kind for w in words[i + 1 : i + 3]] == ["num", "mark"]:
@@ -87,7 +95,7 @@ def _without_step_numbers(words: list[_Word]) -> list[_Word]:
 
 
 def _without_list_numbers(words: list[_Word]) -> list[_Word]:
-    """Turn the "1." and "2)" of a numbered list into sentence ends; they must count up from one."""
+    """Replace the "1." or "2)" of a numbered list by sentence ends. The numbers must count up from one."""
     wanted, out = 1, list[_Word]()
     for i, word in enumerate(words):
         after = words[i + 1].text if i + 1 < len(words) else ""
@@ -101,7 +109,7 @@ def _without_list_numbers(words: list[_Word]) -> list[_Word]:
 
 
 def distance_one(a: str, b: str) -> bool:
-    """Whether one insertion, deletion, substitution or swap of neighbours makes ``a`` into ``b``."""
+    """Return whether one insertion, deletion, substitution or swap of neighbouring letters turns ``a`` into ``b``."""
     if abs(len(a) - len(b)) > 1 or a == b:
         return a == b
     head = next((i for i, (x, y) in enumerate(zip(a, b, strict=False)) if x != y), min(len(a), len(b)))
@@ -111,7 +119,7 @@ def distance_one(a: str, b: str) -> bool:
 
 
 def _respelled(word: str, candidates: Iterable[str]) -> str | None:
-    """The one command word that a misspelt word can only mean, if there is exactly one."""
+    """Return the command word that a misspelt word stands for, None unless there is exactly one."""
     if len(word) < 3 or word in word_list("real words") or (word,) in phrase_table():
         return None
     close = [c for c in candidates if len(c) >= 3 and distance_one(word, c)]
@@ -119,7 +127,7 @@ def _respelled(word: str, candidates: Iterable[str]) -> str | None:
 
 
 class Lexer:
-    """Lexemes of a text, given the preset names that count as words of the language."""
+    """Produces the lexemes of a text. The names of the presets count as words of the language."""
 
     def __init__(self, presets: tuple[str, ...] = ()) -> None:
         self._table = phrase_table()
@@ -136,50 +144,54 @@ class Lexer:
         return _merge_text(out, text)
 
     def _next(self, words: list[_Word], i: int, before: list[Lexeme]) -> tuple[Lexeme | None, int]:
+        """Return the lexeme that begins at word ``i``, None for words without meaning, and the index after it."""
         word = words[i]
         if word.kind in {"mark", "arrow", "dash"}:
             kind = _MARKS.get(word.text) or ("THEN" if word.kind == "arrow" else "COMMA")
             return Lexeme(frozenset({kind}), word.start, word.end), i + 1
         if word.kind == "quote":
             return Lexeme(frozenset({"TEXT"}), word.start, word.end), i + 1
-        run = []
-        for w in words[i : i + _LONGEST_PHRASE]:
-            if w.kind not in {"word", "num"}:
-                break
-            run.append(w.text)
-        preset = self._longest([(preset_key(w) or (w,))[0] for w in run], self._presets) if self._presets else 0
-        phrase = self._longest(run, self._table)
-        if run[:1] == ["the"] and phrase > 1 and self._presets:
-            named = self._longest([(preset_key(w) or (w,))[0] for w in run[1:]], self._presets)
-            phrase = 1 if named >= phrase - 1 else phrase  # "the overview" where a preset is called so
-        if (
-            before
-            and phrase > 1
-            and run[0] in {"up", "down"}
-            and before[-1].kinds & _TURNED
-            and not self._table[tuple(run[:phrase])] & {"UP", "DOWN", *_DIAGONALS}
-        ):
-            phrase = 1  # "tilt up to 10" is a direction, not a limit
+        run = [w.text for w in takewhile(lambda w: w.kind in {"word", "num"}, words[i : i + _LONGEST_PHRASE])]
+        preset = self._preset_length(run)
+        phrase = self._phrase_length(run, before)
         number = read_number(run, [(w.start, w.end) for w in words[i : i + len(run)]])
-        if run[:2] == ["if", "you"] and phrase > 1 and "FILLER" in self._table[tuple(run[:phrase])] and phrase < len(run):
-            phrase = 1  # "if you can see" is a condition, "if you can" at the end is politeness
-        if (
-            run[:1] == ["or"]
-            and phrase > 1
-            and self._table[tuple(run[:phrase])] & {"ORMORE", "ORFEWER"}
-            and not (before and "NUM" in before[-1].kinds)
-        ):
-            phrase = 1
         if preset >= max(phrase, number.used, 1):
             return Lexeme(frozenset({"PRESETNAME"}), word.start, words[i + preset - 1].end), i + preset
         if number.used and number.used >= phrase:
-            if _starts_clause(before) and "FILLER" in self._table.get(tuple(run[: number.used]), ()):
-                return None, i + number.used  # "first, ..."
-            kinds = number.kinds | (self._table[tuple(run[:phrase])] if phrase == number.used else frozenset())
-            return Lexeme(frozenset(kinds), word.start, words[i + number.used - 1].end, number.value), i + number.used
+            return self._number(words, i, number, run[:phrase], before), i + number.used
         if phrase:
             return self._phrase(words, i, phrase, before), i + phrase
         return self._unknown(words, i, before), i + 1
+
+    def _preset_length(self, run: list[str]) -> int:
+        """Return how many words of a run are the name of a preset."""
+        return self._longest([(preset_key(w) or (w,))[0] for w in run], self._presets) if self._presets else 0
+
+    def _phrase_length(self, run: list[str], before: list[Lexeme]) -> int:
+        """Return how many words of a run are one known phrase; some phrases are no phrase in their context."""
+        phrase = self._longest(run, self._table)
+        if phrase < 2:
+            return phrase
+        kinds = self._table[tuple(run[:phrase])]
+        after = before[-1].kinds if before else frozenset[str]()
+        splits = False
+        if run[0] == "the":  # "the overview" where a preset is called so
+            splits = bool(self._presets) and self._preset_length(run[1:]) >= phrase - 1
+        elif run[0] in {"up", "down"}:  # "tilt up to 10" is a direction, not a limit
+            splits = bool(after & _TURNED) and not kinds & {"UP", "DOWN", *_DIAGONALS}
+        elif run[:2] == ["if", "you"]:  # "if you can see" is a condition, "if you can" at the end is politeness
+            splits = "FILLER" in kinds and phrase < len(run)
+        elif run[0] == "or":
+            splits = bool(kinds & {"ORMORE", "ORFEWER"}) and "NUM" not in after
+        return 1 if splits else phrase
+
+    def _number(self, words: list[_Word], i: int, number: Number, phrase: list[str], before: list[Lexeme]) -> Lexeme | None:
+        """Return the lexeme of a number, None when it only orders sentences ("first, ...")."""
+        used = words[i : i + number.used]
+        if _starts_clause(before) and "FILLER" in self._table.get(tuple(w.text for w in used), ()):
+            return None
+        kinds = number.kinds | (self._table[tuple(phrase)] if len(phrase) == number.used else frozenset())
+        return Lexeme(frozenset(kinds), used[0].start, used[-1].end, number.value)
 
     def _phrase(self, words: list[_Word], i: int, length: int, before: list[Lexeme]) -> Lexeme | None:
         kinds = self._table[tuple(w.text for w in words[i : i + length])]
@@ -225,7 +237,7 @@ def _starts_clause(before: list[Lexeme]) -> bool:
 
 
 def _append(out: list[Lexeme], lexeme: Lexeme) -> None:
-    """Add a lexeme; neighbouring separators become one, and none stands before words that bind to what went before."""
+    """Append a lexeme. Neighbouring separators are merged, and dropped before words that attach to the words before them."""
     if lexeme.kinds <= {*SEPARATORS}:
         if not out:
             return
@@ -244,7 +256,7 @@ def _append(out: list[Lexeme], lexeme: Lexeme) -> None:
 
 
 def _merge_text(lexemes: list[Lexeme], text: str) -> list[Lexeme]:
-    """Join neighbouring free words, and colours with "and" between them ("red and white barriers"), into one lexeme."""
+    """Merge neighbouring free words into one lexeme, and colours with "and" between them ("red and white barriers")."""
     out: list[Lexeme] = []
     for i, lexeme in enumerate(lexemes):
         free = "TEXT" in lexeme.kinds
@@ -264,7 +276,7 @@ def _merge_text(lexemes: list[Lexeme], text: str) -> list[Lexeme]:
 
 
 def preset_key(name: str) -> tuple[str, ...]:
-    """A preset name as the lexer sees it: lower-case words without accents, and numbers in digits."""
+    """Return a preset name as the lexer sees it: lower-case words without accents, numbers in digits."""
     plain = unicodedata.normalize("NFKD", name.lower())
     words = re.findall(r"[^\W\d_]+|\d+", "".join(c for c in plain if not unicodedata.combining(c)))
     return tuple(str(int(NUMBER_WORDS[w])) if w in NUMBER_WORDS and NUMBER_WORDS[w] < 100 else w for w in words)

@@ -1,10 +1,12 @@
 """A weighted chart parser for a grammar that Lark has compiled.
 
-Why not a parser of Lark's: operator English is ambiguous ("left" is a direction, a side, a verb; any word may be part of a
-description), so a deterministic parser (LALR) cannot read it, and Lark's Earley parser takes 100 to 900 ms for an instruction,
-because it predicts every alternative of every optional word at every place. Lark reads, checks and expands the grammar; here all
-right-hand sides share one prefix tree and only what the lexemes at hand can begin is tried, bottom-up, which takes a few
-milliseconds. Of all readings the one with the highest sum of rule priorities wins, then the one with fewest rules.
+Lark's own parsers do not fit. Operator English is ambiguous ("left" is a direction, a side or a verb, and any word may be part of a
+description), so a deterministic LALR parser cannot read it. Lark's Earley parser takes 100 to 900 ms for an instruction, because it
+predicts every alternative of every optional word at every position.
+
+So Lark only reads, checks and expands the grammar. Here all right-hand sides share one prefix tree, and only constituents that the
+given lexemes can begin are tried, bottom-up, which takes a few milliseconds. The reading with the highest sum of rule priorities
+wins; among equals, the one with the fewest rules.
 """
 
 from __future__ import annotations
@@ -20,7 +22,7 @@ _ORDER_COST = 1e-8
 
 @dataclass(slots=True)
 class _Node:
-    """A prefix of right-hand sides: where each next symbol leads, and the rules that are complete here."""
+    """A prefix of right-hand sides: where each next symbol leads, and which rules are complete here."""
 
     children: dict[int, _Node] = field(default_factory=dict)
     complete: list[tuple[int, float, Rule]] = field(default_factory=list)
@@ -28,7 +30,7 @@ class _Node:
 
 @dataclass(frozen=True, slots=True)
 class Leaf:
-    """A terminal as it was read; ``index`` counts lexemes."""
+    """A terminal of a parse tree; ``index`` is the position of its lexeme."""
 
     kind: str
     index: int
@@ -36,7 +38,7 @@ class Leaf:
 
 @dataclass(frozen=True, slots=True)
 class Branch:
-    """A rule as it was used; ``name`` is its alias or else its own name."""
+    """An applied rule; ``name`` is its alias, or its own name when it has none."""
 
     name: str
     children: tuple[Leaf | Branch, ...]
@@ -47,7 +49,7 @@ _Best = tuple[float, _Link | None, Rule | None]
 
 
 class ChartParser:
-    """Parses sequences of lexemes, each given as the terminals that it may be."""
+    """Parses sequences of lexemes. Each lexeme is given as the set of terminals that it may be."""
 
     def __init__(self, rules: Sequence[Rule]) -> None:
         self._ids: dict[str, int] = {}
@@ -64,7 +66,7 @@ class ChartParser:
         return self._ids.setdefault(name, len(self._ids))
 
     def parse(self, lexemes: Sequence[Collection[str]], start: str) -> Branch | None:
-        """The best reading of all the lexemes as ``start``, or None."""
+        """Return the best reading of all lexemes as ``start``, None when there is none."""
         n = len(lexemes)
         chart: list[dict[int, dict[int, _Best]]] = [{} for _ in range(n + 1)]
         for i in range(n - 1, -1, -1):
@@ -75,7 +77,7 @@ class ChartParser:
         return tree[0] if isinstance(tree[0], Branch) else None
 
     def _fill(self, chart: list[dict[int, dict[int, _Best]]], i: int, terminals: list[int]) -> None:
-        """Find all constituents that start at ``i``; those that start later are complete already."""
+        """Find all constituents that start at ``i``. Those that start later are complete already."""
         here = chart[i]
         reached: dict[tuple[int, int], float] = {}
         agenda: list[tuple[int, int]] = []
@@ -106,7 +108,9 @@ class ChartParser:
                         edges.append((child, next_end, score + best[0], (link, following, end, next_end)))
 
     def _tree(self, chart: list[dict[int, dict[int, _Best]]], symbol: int, start: int, end: int) -> list[Leaf | Branch]:
-        """The nodes that a constituent contributes to its parent: rules named with ``_`` and some with ``?`` dissolve."""
+        """Return the nodes that a constituent contributes to its parent. Rules whose names begin with ``_``, and some with
+        ``?``, are dissolved.
+        """
         _, link, rule = chart[start][symbol][end]
         if rule is None:
             return [Leaf(self._names[symbol], start)]

@@ -1,4 +1,4 @@
-"""How neighbouring steps of a sentence act together: moves joined by "and", "each time", "do that again"."""
+"""How neighbouring steps of a sentence combine: moves joined by "and", "each time", "do that again"."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _CONTRADICTION = "Those two directions contradict each other. Which way shall I 
 
 
 def compose(linked: Sequence[Linked], before: Sequence[Step]) -> list[Step]:
-    """The steps so far with one sentence's steps added."""
+    """Return the steps so far together with the steps of one sentence."""
     out = list(before)
     for item in linked:
         _add(out, item.link, item.step)
@@ -48,39 +48,14 @@ def compose(linked: Sequence[Linked], before: Sequence[Step]) -> list[Step]:
 
 
 def _add(out: list[Step], link: str, step: Step) -> None:
-    last = out[-1] if out else None
+    """Append a step to the steps so far, or let it change them."""
     if isinstance(step, Move):
         step = _with_same_amounts(step, out)
-    if isinstance(step, EachTime):
-        _add_each_time(out, step)
-    elif isinstance(step, Between):
-        out[-1:] = _interleaved(last, step.body)
-    elif isinstance(step, AtIntervals):
-        _add_at_intervals(out, step)
-    elif isinstance(step, Rescope):
-        out.append(replace(last, view=step.view) if isinstance(last, Count | Ask) else Unclear("What shall I look for there?"))
-    elif isinstance(step, ThanBefore):
-        _add_than_before(out, step)
-    elif isinstance(step, DoAgain) and out:
-        _add_again(out, step)
-    elif isinstance(step, Further):
-        turn = next((p for p in reversed(last.parts) if isinstance(p, Turn)), None) if isinstance(last, Move) else None
-        out.append(Move((replace(turn, amount=step.amount),)) if turn else Unclear("Which way shall I turn, and how far?"))
-    elif isinstance(step, SameAt):
-        out.append(AtPlaces(step.places, _done_at_place(out)))
-    elif isinstance(step, Repeat) and link in {"and", ","} and last is not None and _covers_before(step, last):
-        out[-1] = Repeat(tuple(compose([Linked(link, s) for s in step.body], [last])), step.times)
-    elif isinstance(step, Loop) and link == "and" and isinstance(last, Move) and isinstance(step.body[0], Count | Snap | Ask):
-        out[-1] = _stepped_loop(replace(step, body=(last, *step.body)))
-    elif isinstance(step, Loop | Repeat) and link == "and" and isinstance(last, Move) and (leaning := _leaning(step.body[0])):
-        joined = _joined(last, leaning)
-        out[-1:] = [replace(step, body=(joined[0], *step.body[1:]))] if len(joined) == 1 else [*joined[:-1], step]
-    elif isinstance(step, Move) and link == "and" and isinstance(last, Move):
-        out[-1:] = _joined(last, step)
-    elif isinstance(last, AtPlaces) and not last.body and (link == "and" or not last.places):
-        out[-1] = replace(last, body=(step,))
-    elif isinstance(last, AtPlaces) and last.body and link == "and" and not isinstance(step, GoPreset | Home | AtPlaces):
-        out[-1] = replace(last, body=tuple(compose([Linked("and", step)], last.body)))
+    if _add_modifier(out, step):
+        return
+    last = out[-1] if out else None
+    if last is not None and (joined := _joined_to_last(last, link, step)) is not None:
+        out[-1:] = joined
     elif isinstance(step, Loop | Repeat):
         out.append(_stepped_loop(step))
     elif isinstance(step, GoPreset) and step.how == "bare" and link == "and" and isinstance(last, Ask):
@@ -89,19 +64,79 @@ def _add(out: list[Step], link: str, step: Step) -> None:
         out.append(_stepped(step))
 
 
+def _add_modifier(out: list[Step], step: Step) -> bool:
+    """Apply a step that only has a meaning together with the steps before it. Return whether it is such a step."""
+    last = out[-1] if out else None
+    match step:
+        case EachTime():
+            _add_each_time(out, step)
+        case Between():
+            out[-1:] = _interleaved(last, step.body)
+        case AtIntervals():
+            _add_at_intervals(out, step)
+        case Rescope():
+            out.append(replace(last, view=step.view) if isinstance(last, Count | Ask) else Unclear("What shall I look for there?"))
+        case ThanBefore():
+            _add_than_before(out, step)
+        case DoAgain() if out:
+            _add_again(out, step)
+        case Further():
+            _add_further(out, step)
+        case SameAt():
+            out.append(AtPlaces(step.places, _done_at_place(out)))
+        case _:
+            return False
+    return True
+
+
+def _add_further(out: list[Step], step: Further) -> None:
+    """Repeat the last turn by another amount."""
+    last = out[-1] if out else None
+    turn = next((p for p in reversed(last.parts) if isinstance(p, Turn)), None) if isinstance(last, Move) else None
+    out.append(Move((replace(turn, amount=step.amount),)) if turn else Unclear("Which way shall I turn, and how far?"))
+
+
+def _joined_to_last(last: Step, link: str, step: Step) -> list[Step] | None:
+    """Return what replaces the last step when the new step belongs to it, None when the new step stands alone."""
+    if isinstance(step, Repeat) and link in {"and", ","} and _covers_before(step, last):
+        return [Repeat(tuple(compose([Linked(link, s) for s in step.body], [last])), step.times)]
+    if isinstance(last, Move):
+        return _joined_to_move(last, step) if link == "and" else None
+    return _joined_to_places(last, link, step) if isinstance(last, AtPlaces) else None
+
+
+def _joined_to_move(last: Move, step: Step) -> list[Step] | None:
+    """Join a step to a move with "and" between them: another move, or a loop that includes the move."""
+    if isinstance(step, Loop) and isinstance(step.body[0], Count | Snap | Ask):
+        return [_stepped_loop(replace(step, body=(last, *step.body)))]
+    if isinstance(step, Loop | Repeat) and (leaning := _leaning(step.body[0])):
+        joined = _joined(last, leaning)
+        return [replace(step, body=(joined[0], *step.body[1:]))] if len(joined) == 1 else [*joined[:-1], step]
+    return _joined(last, step) if isinstance(step, Move) else None
+
+
+def _joined_to_places(last: AtPlaces, link: str, step: Step) -> list[Step] | None:
+    """Add a step to what is done at each of several places."""
+    if not last.body and (link == "and" or not last.places):
+        return [replace(last, body=(step,))]
+    if last.body and link == "and" and not isinstance(step, GoPreset | Home | AtPlaces):
+        return [replace(last, body=tuple(compose([Linked("and", step)], last.body)))]
+    return None
+
+
 def _covers_before(step: Repeat, last: Step) -> bool:
-    """Whether "three times" covers the step before too: set off by a comma, or a picture after a move."""
+    """Return whether "three times" also covers the step before: when it is set off by a comma, or is a picture after a move."""
     pictured = isinstance(step.body[-1], Snap) and isinstance(last, Move)
     return (step.group or pictured) and not isinstance(last, GoPreset | Home | Repeat | Loop)
 
 
 def _leaning(step: Step) -> Move | None:
-    """A move without a verb of its own, which leans on the move before it."""
+    """Return the step if it is a move without a verb of its own, which depends on the move before it; else None."""
     return step if isinstance(step, Move) and not step.verb else None
 
 
 def _joined(first: Move, second: Move) -> list[Step]:
-    """Two moves with "and" between them: one move where the axes differ."""
+    """Join two moves with "and" between them: one move when their axes differ."""
     axes = [_axis(p) for p in (*first.parts, *second.parts)]
     if len(set(axes)) == len(axes):
         parts = first.parts if second.verb else tuple(_shared(p, second.parts) for p in first.parts)
@@ -118,7 +153,7 @@ def _axis(part: Part) -> str:
 
 
 def _shared(part: Part, others: tuple[Part, ...]) -> Part:
-    """ "Up and left 20": the amount said last holds for both."""
+    """Return a part with the amount that was given last: in "up and left 20" it holds for both."""
     last = others[-1]
     if isinstance(part, Turn) and part.amount is None and part.step is None and isinstance(last, Turn):
         return replace(part, amount=last.amount, step=last.step, steps=last.steps)
@@ -126,13 +161,14 @@ def _shared(part: Part, others: tuple[Part, ...]) -> Part:
 
 
 def _step_size(step: Step) -> Turn | None:
+    """Return the turn of a move that is made in steps, None when there is none."""
     if isinstance(step, Move):
         return next((p for p in step.parts if isinstance(p, Turn) and p.step), None)
     return None
 
 
 def _stepped(step: Step) -> Step:
-    """ "90 degrees in 30 degree steps" is three moves; "in 30 degree steps" alone is one."""
+    """Expand a move in steps: "90 degrees in 30 degree steps" is three moves, "in 30 degree steps" alone is one."""
     turn = _step_size(step)
     if turn is None or turn.step is None or not isinstance(step, Move):
         return step
@@ -150,7 +186,7 @@ def _stepped(step: Step) -> Step:
 
 
 def _stepped_loop(step: Loop | Repeat) -> Step:
-    """In a loop the step is what moves; the total is its bound."""
+    """Expand a loop over a move in steps: each iteration makes one step, and the total bounds the loop."""
     turn = _step_size(step.body[0])
     if turn is None or not isinstance(step.body[0], Move):
         return step
@@ -163,6 +199,7 @@ def _stepped_loop(step: Loop | Repeat) -> Step:
 
 
 def _add_each_time(out: list[Step], step: EachTime) -> None:
+    """Add something to do after every move of the steps before."""
     for i in range(len(out) - 1, -1, -1):
         target = out[i]
         if isinstance(target, Repeat | Loop | AtPlaces):
@@ -178,14 +215,14 @@ def _add_each_time(out: list[Step], step: EachTime) -> None:
 
 
 def _done_at_place(out: list[Step]) -> tuple[Step, ...]:
-    """What was done at the place that the steps end at."""
+    """Return the steps that were done at the last place."""
     if out and isinstance(out[-1], AtPlaces):
         return out[-1].body
     return tuple(out[max((i + 1 for i, s in enumerate(out) if isinstance(s, GoPreset | Home)), default=0) :])
 
 
 def _add_again(out: list[Step], step: DoAgain) -> None:
-    """Repeat what came before, from the last step that goes to a place."""
+    """Repeat the steps since the last one that goes to a place."""
     if isinstance(out[-1], GoPreset) and len(out) > 1:
         out.extend(_done_at_place(out[:-1]))
         return
@@ -199,7 +236,7 @@ def _add_again(out: list[Step], step: DoAgain) -> None:
 
 
 def _interleaved(step: Step | None, between: tuple[Step, ...]) -> list[Step]:
-    """What is done several times, with something else in between."""
+    """Return repeated steps with other steps between the repetitions."""
     times = step.times if isinstance(step, Snap | Repeat) else 1
     if step is None or times < 2:
         return [*([step] if step else []), Unclear("How many times shall I do that?")]
@@ -208,6 +245,7 @@ def _interleaved(step: Step | None, between: tuple[Step, ...]) -> list[Step]:
 
 
 def _add_at_intervals(out: list[Step], step: AtIntervals) -> None:
+    """Add something to do at regular intervals of a turn."""
     move = step.move
     if move is None and out and isinstance(last := out[-1], Move) and any(isinstance(p, Turn) for p in last.parts):
         move = last
@@ -228,7 +266,7 @@ def _add_at_intervals(out: list[Step], step: AtIntervals) -> None:
 
 
 def _add_than_before(out: list[Step], step: ThanBefore) -> None:
-    """Against the last count, which is taken anew; else the moves just made are what lies between two counts."""
+    """Compare with the last count by counting again, or else compare before and after the moves just made."""
     counts = [s for s in out if isinstance(s, Count)]
     first = next((i + 1 for i in range(len(out) - 1, -1, -1) if not isinstance(out[i], Move | Repeat)), 0)
     moves = tuple(out[first:])
@@ -241,7 +279,7 @@ def _add_than_before(out: list[Step], step: ThanBefore) -> None:
 
 
 def _with_same_amounts(move: Move, before: Sequence[Step]) -> Step:
-    """ "By the same amount": as far as the last turn."""
+    """Resolve "by the same amount" to the amount of the last turn."""
     turns = [p for s in before if isinstance(s, Move) for p in s.parts if isinstance(p, Turn)]
     if not any(isinstance(p, Turn) and p.amount and p.amount.kind == "same" for p in move.parts):
         return move

@@ -1,6 +1,6 @@
 """Builders for the rules about conditions and comparisons."""
 
-# ruff: noqa: ARG002 - the methods of rules share one signature
+# ruff: noqa: ARG002 - all rule methods share one signature
 
 from __future__ import annotations
 
@@ -30,6 +30,8 @@ from scope_ptz.planner.grammar.parsing.tree_nodes import Node
 
 class JudgingRules(SceneRules):
     # Conditions --------------------------------------------------------------------------------------------------------
+    """Rules about conditions and comparisons."""
+
     def seen(self, node: Node) -> Condition:
         quantity = next(
             (q for b in node.branches() if isinstance(q := self.visit(b) if b.name not in {"np", *SCOPES} else None, Quantity)),
@@ -52,7 +54,7 @@ class JudgingRules(SceneRules):
         return Seen(self._people(node), Quantity("==", 0), self._view(node))
 
     def _people(self, node: Node) -> Thing:
-        """ "Anyone in the lane": people in the lane."""
+        """Return "people in the lane" for "anyone in the lane"."""
         return Thing(described(" ".join(["people", *(self.text(b.all_leaves()) for b in node.branches("words"))])))
 
     def unseen_both(self, node: Node) -> Condition:
@@ -71,7 +73,7 @@ class JudgingRules(SceneRules):
         return self._holds(node, False)
 
     def _holds(self, node: Node, wanted: bool) -> Condition:
-        """ "The gate is open" is asked; "any worker is not wearing a helmet" is counted."""
+        """Build a question for "the gate is open", and a count for "any worker is not wearing a helmet"."""
         thing, predicate = self._thing(node), self.text(node.branches("words")[0].all_leaves())
         if any(np.has("ANY") for b in node.branches("subject") for np in b.branches("np")):
             return Seen(Thing(f"{thing.text} {'' if wanted else 'not '}{predicate}"))

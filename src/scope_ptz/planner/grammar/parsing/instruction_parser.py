@@ -1,4 +1,4 @@
-"""From text to syntax tree, with the grammar of ``language.lark``."""
+"""From the text of an instruction to its steps, with the grammar of ``language.lark``."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ MOST_LEXEMES = 120
 
 @dataclass(frozen=True, slots=True)
 class Parsed:
-    """``steps`` is None when the text is not in the language."""
+    """The result of parsing. ``steps`` is None when the text is not in the language."""
 
     text: str
     steps: tuple[Step, ...] | None
@@ -37,13 +37,18 @@ class Parsed:
 
 @lru_cache(maxsize=2)
 def parser(presets_known: bool) -> ChartParser:
-    """The grammar, loaded on first use. Without known presets no free words after "at" or "in" are taken for one."""
+    """Return the parser, loaded on first use.
+
+    Args:
+        presets_known: Whether the camera's presets are known. Without them, free words after "at" or "in" are not taken for a
+            preset.
+    """
     return ChartParser([rule for rule in load_rules() if presets_known or rule.name not in _GUESSES])
 
 
 @lru_cache(maxsize=512)
 def roles(kinds: frozenset[str]) -> frozenset[str]:
-    """The terminals that a lexeme may be, with what it is inside a description: WORD (free), SOFT or HARD (at a cost)."""
+    """Return the terminals that a lexeme may be, with its role inside a description: WORD (free), SOFT or HARD (at a cost)."""
     if kinds & _FREE:
         return kinds | {"WORD"}
     if kinds & _BINDING or "GERUND" in kinds:
@@ -53,7 +58,7 @@ def roles(kinds: frozenset[str]) -> frozenset[str]:
 
 @lru_cache(maxsize=512)
 def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
-    """The syntax tree of an instruction. Never raises on any text."""
+    """Return the steps of an instruction. Never raises, whatever the text."""
     from scope_ptz.planner.grammar.parsing.step_builder import Builder
 
     lexemes = Lexer(presets).lexemes(text[:LONGEST_TEXT])

@@ -1,6 +1,6 @@
 """Builders for the rules about motion."""
 
-# ruff: noqa: ARG002 - the methods of rules share one signature
+# ruff: noqa: ARG002 - all rule methods share one signature
 
 from __future__ import annotations
 
@@ -40,7 +40,12 @@ _VERBS = (
 
 
 class StepSize:
-    """A "in 15 degree steps", with how many if said; ``whole``: so many steps of the whole, "20 degrees in 2 steps"."""
+    """The size of the steps of a move: "in 15 degree steps".
+
+    Attributes:
+        count: How many steps, where the instruction gives a number.
+        whole: Whether the count divides the whole move, as in "20 degrees in 2 steps".
+    """
 
     def __init__(self, size: Amount, count: int | None = None, whole: bool = False) -> None:
         self.size, self.count, self.whole = size, count, whole
@@ -48,6 +53,8 @@ class StepSize:
 
 class MoveRules(Rules):
     # Amounts -----------------------------------------------------------------------------------------------------------
+    """Rules about motion."""
+
     def degrees(self, node: Node) -> Amount:
         return Amount("degrees", self.visit(node.branches()[0]))
 
@@ -123,7 +130,7 @@ class MoveRules(Rules):
         return Move(tuple(parts), verb=bool(said & {*_VERBS, "ZOOM", "LOOKAT", "SET", "CLOSER", "WIDER", "LEVEL"}))
 
     def _turns(self, node: Node, directions: list[tuple[str, int]]) -> tuple[Part, ...]:
-        """Turns in the directions, with the amount and the step that are said with them."""
+        """Return turns in the given directions, with the amount and step size of the node."""
         amount: Amount | None = None
         step: StepSize | None = None
         for how in node.branches("how"):
@@ -148,7 +155,7 @@ class MoveRules(Rules):
     turn_late = turn
 
     def turn_at(self, node: Node) -> tuple[Part, ...] | Unclear:
-        """ "Point the camera to the left"; "zoom in on the left" names no thing."""
+        """Build "point the camera to the left". "Zoom in on the left" names no thing and asks back."""
         if not self.words_of(node.leaves("LOOKAT")[0]).startswith(_AIMING):
             return Unclear("On what shall I zoom in?")
         return self.turn(node)
@@ -192,7 +199,7 @@ class MoveRules(Rules):
         made: tuple[Part, ...] | Unclear = self.visit(node.branches()[0])
         return made
 
-    # Absolute wishes ---------------------------------------------------------------------------------------------------
+    # Absolute targets --------------------------------------------------------------------------------------------------
     def _aimed(self, node: Node, axis: Any) -> tuple[Part, ...]:
         value = next(self.visit(b) for b in node.branches() if b.name.startswith("angle"))
         signs = [sign for b in node.branches() if b.name in _DIRECTIONS for a, sign in _DIRECTIONS[b.name] if a == axis]
@@ -272,7 +279,7 @@ class MoveRules(Rules):
         return (Zoom("in" if self.visit(node.branches()[0]) > 0 else "out"),)
 
     def zoom_right(self, node: Node) -> tuple[Part, ...] | Unclear:
-        """ "Zoom right out": right to the stop."""
+        """Build "zoom right out", where "right" means all the way."""
         return (
             self.zoom_limit(node) if self.text(node.leaves("RIGHT")).lower() == "right" else Unclear("Shall I zoom, or turn right?")
         )

@@ -1,8 +1,8 @@
 """The rules of ``language.lark`` in the plain form that the chart parser takes, compiled by Lark ahead of time.
 
-Lark needs about half a second to read and expand the grammar, which every ``scope ask`` would wait for. So the expanded rules
-are kept beside the grammar in ``language.rules``, headed by the hash of the grammar that they came from. Rules that do not fit
-the grammar are compiled anew, so an edited grammar is in force at once; ``renew()`` writes the file again.
+Lark needs about half a second to read and expand the grammar, which would delay every ``scope ask``. So the expanded rules are
+stored beside the grammar in ``language.rules``, with the hash of their grammar in the first line. When the hash does not match, the
+rules are compiled again, so an edited grammar takes effect at once. ``renew()`` rewrites the file.
 """
 
 from __future__ import annotations
@@ -17,8 +17,14 @@ _SOURCE, _COMPILED = "language.lark", "language.rules"
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """``name``: what the symbols make together. ``label``: what its node is called. ``inline``: its parts go to its parent
-    instead, always ("_"), or when there is only one ("?")."""
+    """A grammar rule.
+
+    Attributes:
+        name: The symbol on the left-hand side.
+        symbols: The symbols on the right-hand side.
+        label: The name of the rule's node in the tree.
+        inline: When the node's children go to its parent instead: always ("_"), or when there is only one ("?").
+    """
 
     name: str
     symbols: tuple[str, ...]
@@ -31,19 +37,20 @@ class Rule:
 
     @staticmethod
     def read(line: str) -> Rule:
+        """Parse a line of ``language.rules``."""
         inline, name, priority, label, *symbols = line.split(" ")
         return Rule(name, tuple(symbols), int(priority), label, inline.strip("."))
 
 
 def load_rules() -> list[Rule]:
-    """The rules in force."""
+    """Return the rules of the current grammar."""
     source = _text(_SOURCE)
     head, *lines = _text(_COMPILED).splitlines()
     return [Rule.read(line) for line in lines] if head == _heading(source) else compile_rules(source)
 
 
 def compile_rules(source: str) -> list[Rule]:
-    """A grammar's rules, with options, repetitions and groups expanded by Lark."""
+    """Return a grammar's rules, with options, repetitions and groups expanded by Lark."""
     from lark import Lark
 
     compiled = Lark(source, parser="earley", lexer="basic", maybe_placeholders=False).rules
@@ -60,17 +67,17 @@ def compile_rules(source: str) -> list[Rule]:
 
 
 def compiled_text(source: str) -> str:
-    """What ``language.rules`` must hold."""
+    """Return the expected content of ``language.rules``."""
     return "\n".join([_heading(source), *map(str, compile_rules(source)), ""])
 
 
 def renew() -> None:
-    """Write the compiled rules beside the grammar, after it was edited."""
+    """Rewrite ``language.rules`` after the grammar was edited."""
     Path(__file__).with_name(_COMPILED).write_text(compiled_text(_text(_SOURCE)), encoding="utf-8")
 
 
 def is_current() -> bool:
-    """Whether the compiled rules are those of the grammar."""
+    """Return whether the compiled rules belong to the current grammar."""
     return _text(_COMPILED) == compiled_text(_text(_SOURCE))
 
 

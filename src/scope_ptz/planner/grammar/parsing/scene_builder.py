@@ -1,6 +1,6 @@
-"""Builders for the rules about places, things, questions, conditions and comparisons."""
+"""Builders for the rules about places, things and questions."""
 
-# ruff: noqa: ARG002 - the methods of rules share one signature
+# ruff: noqa: ARG002 - all rule methods share one signature
 
 from __future__ import annotations
 
@@ -58,6 +58,8 @@ _DURATIONS = {"seconds", "minutes", "part_minute", "minute_and_part", "minutes_s
 
 class SceneRules(Rules):
     # Descriptions ------------------------------------------------------------------------------------------------------
+    """Rules about places, things and questions."""
+
     def np(self, node: Node) -> Thing:
         parts = node.branches("words", "relative")
         determiner = any(self.words_of(leaf).split()[0] in {"the", "that", "this", "these", "those"} for leaf in node.leaves("DET"))
@@ -89,14 +91,14 @@ class SceneRules(Rules):
 
     # Things ------------------------------------------------------------------------------------------------------------
     def fill_with(self, node: Node) -> Step:
-        """ "Zoom in until the truck fills the frame" is what zooming in on it does."""
+        """Build "zoom in until the truck fills the frame", which is the same as zooming in on it."""
         return ZoomTo(self._thing(node))
 
     def zoom_to(self, node: Node) -> Step:
         return ZoomTo(self._thing(node))
 
     def also(self, node: Node) -> Step:
-        """ "Zoom in on the bench, then on the bin": the verb is the one before."""
+        """Build "zoom in on the bench, then on the bin": the second part takes the verb of the first."""
         leaves = node.branches("free_name")[0].all_leaves()
         return GoPreset(PresetRef(self._free_name(node), determined=leaves[0].kind == "DET"), "bare")
 
@@ -203,7 +205,7 @@ class SceneRules(Rules):
 
     # Counting and asking -----------------------------------------------------------------------------------------------
     def count(self, node: Node) -> Step | tuple[Step, ...]:
-        """Things side by side, unless the last of them is a question of its own."""
+        """Build a count of several things, unless the last of them is a question of its own."""
         *things, last = self._things(node)
         if things and _ASKING.match(last.text):
             return (Count(tuple(things), self._view(node)), Ask(last.text + "?", self._view(node)))
@@ -213,7 +215,7 @@ class SceneRules(Rules):
         return Count((Thing(),), self._view(node))
 
     def count_those(self, node: Node) -> Step:
-        """ "How many cars are in the left lane" or "... are red": the description with what is said of it."""
+        """Build "how many cars are in the left lane" or "... are red" as a count of a longer description."""
         thing = self._thing(node)
         leaves = node.branches("words")[0].all_leaves()
         rest = self.text(leaves)
@@ -232,7 +234,7 @@ class SceneRules(Rules):
         return Count((Thing(f"{self._thing(node).text} {self.text(node.branches('between')[0].all_leaves())}"),), self._view(node))
 
     def count_parts(self, node: Node) -> Step:
-        """ "How many windows does the building have"."""
+        """Build "how many windows does the building have"."""
         part, whole = self._things(node)[:2]
         return Count((Thing(f"{part.text} of the {whole.text}"),), self._view(node))
 
@@ -284,7 +286,10 @@ class SceneRules(Rules):
 
 
 def described(text: str) -> str:
-    """A description without the verb of its relative clause: "people that aren't wearing helmets", "people not wearing helmets"."""
+    """Return a description without the verb of its relative clause.
+
+    For example "people that aren't wearing helmets" becomes "people not wearing helmets".
+    """
     for pattern, plain in _RELATIVE:
         text = pattern.sub(plain, text)
     return " ".join(text.split())

@@ -1,9 +1,10 @@
-"""From the parser's tree to the typed syntax tree: one method a rule of ``language.lark``.
+"""From the parser's tree to the steps of ``instruction_tree``: one method for each rule of ``language.lark``.
 
-The rules about motion are in ``build_moves``, those about seeing, comparing and conditions in ``build_scene``.
+The rules about motion are in ``move_builder``, those about places, things and questions in ``scene_builder``, and those about
+conditions and comparisons in ``condition_builder``.
 """
 
-# ruff: noqa: ARG002 - the methods of rules share one signature
+# ruff: noqa: ARG002 - all rule methods share one signature
 
 from __future__ import annotations
 
@@ -52,7 +53,7 @@ class Builder(MoveRules, JudgingRules):
     """Builds the steps of one instruction."""
 
     def extend(self, tree: Branch, before: list[Step]) -> list[Step]:
-        """The steps so far with those of one more sentence."""
+        """Return the steps so far together with those of one more sentence."""
         return compose(self._linked(Node(tree)), before)
 
     def _linked(self, node: Node) -> list[Linked]:
@@ -74,7 +75,7 @@ class Builder(MoveRules, JudgingRules):
         return made if isinstance(made, tuple) else (made,)
 
     def _body(self, node: Node, index: int) -> tuple[Step, ...]:
-        """The steps of the child at ``index`` among the branches."""
+        """Return the steps of the child branch at ``index``."""
         return self._as_steps(self.visit(node.branches()[index]))
 
     # Steps -------------------------------------------------------------------------------------------------------------
@@ -93,12 +94,12 @@ class Builder(MoveRules, JudgingRules):
         return Repeat(body, times, group=node.has("COMMA"))
 
     def repeated_each(self, node: Node) -> tuple[Step, ...]:
-        """ "Pan left 20 three times taking a picture after each"."""
+        """Build "pan left 20 three times taking a picture after each"."""
         return (*self._body(node, 0), EachTime(self._body(node, 1)))
 
     @staticmethod
     def _repeated_by(body: tuple[Step, ...], times: int, size: Amount | StepSize) -> Step:
-        """ "Turn left twice by 30"."""
+        """Build "turn left twice by 30"."""
         amount = size if isinstance(size, Amount) else size.size
         move = body[0]
         if len(body) > 1 or not isinstance(move, Move) or not all(isinstance(p, Turn) and p.amount is None for p in move.parts):
@@ -154,7 +155,7 @@ class Builder(MoveRules, JudgingRules):
         return If(condition, blocks[0], blocks[1] if len(blocks) > 1 else ())
 
     def if_at(self, node: Node) -> Step:
-        """ "If there are no cars at gate, ...": the place is where the condition is tested."""
+        """Build "if there are no cars at gate, ...": the condition is tested at that place."""
         condition, places, *blocks = (self.visit(b) for b in node.branches())
         return AtPlaces(places, (If(condition, blocks[0], blocks[1] if len(blocks) > 1 else ()),))
 
@@ -175,7 +176,7 @@ class Builder(MoveRules, JudgingRules):
         return Between(self._body(node, 0))
 
     def at_intervals(self, node: Node) -> Step:
-        """ "Take a photo every 30 degrees while panning right 90"."""
+        """Build "take a photo every 30 degrees while panning right 90"."""
         if any(not self.words_of(leaf).startswith(("every", "each")) for b in node.branches("every") for leaf in b.leaves()):
             return Unclear("How far apart shall that be?")
         branches = [b for b in node.branches() if b.name != "every"]
@@ -188,7 +189,7 @@ class Builder(MoveRules, JudgingRules):
         return AtIntervals(body, abs(self.visit(branches[size])), move)
 
     def stepped_first(self, node: Node) -> Step:
-        """ "In 10 degree steps, pan right 40"."""
+        """Build "in 10 degree steps, pan right 40"."""
         size, move = (self.visit(b) for b in node.branches())
         if not isinstance(move, Move):
             return move  # type: ignore[no-any-return]
@@ -201,7 +202,7 @@ class Builder(MoveRules, JudgingRules):
         return AtPlaces(tuple(self.visit(place) for place in places), self._as_steps(self.visit(act)))
 
     def each_time_that(self, node: Node) -> tuple[Step, ...]:
-        """ "Take a picture every time you pan right": after each move."""
+        """Build "take a picture every time you pan right": a picture after each move."""
         return (*self._body(node, 1), EachTime(self._body(node, 0)))
 
     def find_by(self, node: Node) -> Step:
@@ -221,7 +222,7 @@ class Builder(MoveRules, JudgingRules):
         return If(Negated(condition), self._as_steps(act), block[0] if block else ())
 
     def do_at(self, node: Node) -> Step:
-        """ "At gate, count the cars", or the other way round."""
+        """Build "at gate, count the cars", in either order."""
         parts = [b for b in node.branches() if b.name != "visit"]
         places, act = sorted(parts, key=lambda b: b.name not in {"every_place", "place_list"})
         return AtPlaces(self.visit(places), self._as_steps(self.visit(act)))
@@ -230,7 +231,7 @@ class Builder(MoveRules, JudgingRules):
         return SameAt(self.visit(node.branches()[0]))
 
     def count_at(self, node: Node) -> tuple[Step, ...]:
-        """ "Count cars at gate and trucks at highway"."""
+        """Build "count cars at gate and trucks at highway"."""
         made = [self.visit(b) for b in node.branches("np", "named", "numbered", "marked", "unmarked", "known_ref")]
         return tuple(AtPlaces((place,), (Count((thing,)),)) for thing, place in zip(made[::2], made[1::2], strict=True))
 
@@ -241,14 +242,14 @@ class Builder(MoveRules, JudgingRules):
         return AtPlaces(places, ())
 
     def roam(self, node: Node) -> Step:
-        """ "Pan until ...", no direction said: to the right."""
+        """Build "pan until ..." without a direction, which pans right."""
         return Move((Turn("pan", 1),))
 
     def report(self, node: Node) -> Step:
         return Report()
 
     def further(self, node: Node) -> Step:
-        """ "Then another 15": the same way again."""
+        """Build "then another 15", which continues in the same direction."""
         return Further(Amount("degrees", self.number(node)))
 
     def further_little(self, node: Node) -> Step:
