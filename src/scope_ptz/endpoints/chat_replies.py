@@ -1,4 +1,4 @@
-"""From an OpenAI-style completion, whole or in pieces, to a ``ChatReply``. Lenient in form, strict where there is nothing."""
+"""From an OpenAI-style completion, complete or in chunks, to a ``ChatReply``. Lenient about form, strict about empty replies."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ K = FailureKind
 
 
 class RawToolCall(BaseModel):
-    """A tool call as the server gave it: ``arguments_text`` should be JSON, and may be anything."""
+    """A tool call as the server returned it. ``arguments_text`` should be JSON, but may be anything."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -25,7 +25,12 @@ class RawToolCall(BaseModel):
 
 
 class ChatReply(BaseModel):
-    """``reasoning`` is only what the server keeps apart from ``text``. ``first_token_s``: streamed replies only."""
+    """A reply of a chat model.
+
+    Attributes:
+        reasoning: Reasoning that the server separated from the text.
+        first_token_s: Seconds to the first token, for streamed replies only.
+    """
 
     model_config = ConfigDict(frozen=True)
 
@@ -43,7 +48,7 @@ class ChatReply(BaseModel):
 
 
 class Gathering:
-    """What has come of a reply so far. A whole completion is a stream of one piece."""
+    """Collects the chunks of a reply. A complete reply is a stream with one chunk."""
 
     def __init__(self, endpoint: Endpoint) -> None:
         self.endpoint = endpoint
@@ -58,7 +63,7 @@ class Gathering:
         self._usage: dict[str, Any] = {}
 
     def add(self, data: dict[str, Any]) -> bool:
-        """Take in a completion or a chunk. Whether it brought anything of the reply itself."""
+        """Add a completion or a chunk. Return whether it contained any part of the reply itself."""
         self.pieces += 1
         self.model = self.model or _text_of(data.get("model"))
         self._usage = _object_of(data.get("usage")) or self._usage
@@ -82,7 +87,7 @@ class Gathering:
         calls = message.get("tool_calls") or []
         if not isinstance(calls, list):
             raise self._malformed("'tool_calls' is no list")
-        if not calls and message.get("function_call"):  # the interface before tools
+        if not calls and message.get("function_call"):  # the older interface, before tools
             calls = [{"index": 0, "function": message["function_call"]}]
         self._text.append(text)
         self._reasoning.append(reasoning)
@@ -116,8 +121,11 @@ class Gathering:
         held["arguments"] += arguments
 
     def _slot(self, index: Any, call_id: str, name: str, arguments: str) -> int | None:
-        """The call that a piece goes on with; None when it begins one. Pieces of a call share an index; some servers give none,
-        give every call the same one, or repeat id and name in every piece."""
+        """Return the call that a chunk continues, None when it begins a new one.
+
+        Chunks of a call share an index. Some servers send no index, send the same one for every call, or repeat id and name in each
+        chunk.
+        """
         slot = self._slots.get(index) if isinstance(index, int) else len(self._calls) - 1 if self._calls else None
         if slot is None or not name:
             return slot
@@ -126,10 +134,10 @@ class Gathering:
         return None if another or (arguments and _is_object(held["arguments"])) else slot
 
     def reply(self) -> ChatReply:
-        """The whole.
+        """Return the complete reply.
 
         Raises:
-            ServerFailure: there is nothing in it.
+            ServerFailure: The reply is empty.
         """
         text, reasoning = self._clean("".join(self._text)), self._clean("".join(self._reasoning))
         read, written = (_count_of(self._usage.get(name)) for name in ("prompt_tokens", "completion_tokens"))
@@ -167,7 +175,7 @@ def _object_of(value: Any) -> dict[str, Any] | None:
 
 
 def _is_object(arguments: str) -> bool:
-    """Whether arguments are complete, so that what comes with a name of its own is another call."""
+    """Return whether arguments are complete, so that a following chunk with a name is another call."""
     try:
         return isinstance(json.loads(arguments), dict)
     except (ValueError, RecursionError):
@@ -175,5 +183,5 @@ def _is_object(arguments: str) -> bool:
 
 
 def _count_of(value: Any) -> int:
-    """A token count; anything else that a server may put there is none."""
+    """Return a token count, 0 for anything else that a server may send."""
     return value if isinstance(value, int) and not isinstance(value, bool) and 0 <= value < 2**53 else 0

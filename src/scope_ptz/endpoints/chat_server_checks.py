@@ -1,4 +1,4 @@
-"""What a chat server must do, as checks that run against any address: the part that has nothing to do with cameras."""
+"""Checks of a chat server at any address: the part that has nothing to do with cameras."""
 
 from __future__ import annotations
 
@@ -19,19 +19,23 @@ Verdict = Literal["ok", "partly", "failed"]
 UNREACHABLE = frozenset(
     {FailureKind.REFUSED, FailureKind.DNS, FailureKind.TLS, FailureKind.CONNECT_TIMEOUT, FailureKind.UNAUTHORISED}
 )
-"""After one of these no further check can tell anything."""
+"""After one of these failures no further check can show anything."""
 _GREETING = [
     {"role": "system", "content": "You answer in one short sentence."},
     {"role": "user", "content": "Say hello."},
 ]
 LAST = "a model that is not there"
-"""The check that is reached when the server is there at all."""
+"""The check that is reached only when the server answers at all."""
 _NO_MODEL = "no-model-has-this-name"
 
 
 class Check(BaseModel):
-    """``partly``: SCOPE works with it, but not as well as it could; ``failed``: it does not, and ``kind`` is the failure's, if one
-    was raised."""
+    """The result of one check.
+
+    Attributes:
+        verdict: "partly" means that SCOPE works with the server, but not as well as it could; "failed" means that it does not.
+        kind: The kind of the failure, if one was raised.
+    """
 
     model_config = ConfigDict(frozen=True)
 
@@ -46,7 +50,7 @@ Finding = tuple[Verdict, str]
 
 
 async def checked(what: str, look: Callable[[], Awaitable[Finding]]) -> Check:
-    """Run one check; an error that SCOPE raises on purpose is a failed check."""
+    """Run one check. An error that SCOPE raises on purpose is a failed check."""
     began, kind = perf_counter(), ""
     try:
         verdict, detail = await look()
@@ -56,7 +60,7 @@ async def checked(what: str, look: Callable[[], Awaitable[Finding]]) -> Check:
 
 
 async def check_chat(endpoint: Endpoint) -> AsyncIterator[Check]:
-    """Check a chat server; ends early when nobody is there or the key is wrong."""
+    """Check a chat server. The checks end early when the server is not there or the key is wrong."""
     patient = endpoint.model_copy(update={"retries": 1})
     client = ChatClient(patient)
     try:

@@ -1,4 +1,4 @@
-"""A call to a model server: bounded retries with full jitter, one deadline over all of them, a circuit breaker."""
+"""Calls to a model server with bounded retries and full jitter, one deadline for all attempts, and a circuit breaker."""
 
 from __future__ import annotations
 
@@ -31,16 +31,16 @@ RETRIED = frozenset(
         K.MALFORMED,
     }
 )
-"""What may go better the next time. A wrong key, path, request or content type will not."""
+"""Failures that may not occur again. A wrong key, path, request or content type will."""
 
 FIRST_PAUSE_S = 0.5
 LONGEST_PAUSE_S = 8.0
 LONGEST_RETRY_AFTER_S = 30.0
-"""A server that asks for more patience than this is a failure now."""
+"""A server that asks for a longer pause counts as failed."""
 
 
 class Caller:
-    """One per endpoint, shared by all calls to it, also concurrent ones."""
+    """Makes calls to one endpoint. All calls to the endpoint share it, including concurrent ones."""
 
     def __init__(
         self,
@@ -54,10 +54,10 @@ class Caller:
         self.rng, self.breaker = rng or random.Random(), breaker or Breaker()
 
     async def call(self, attempt: Callable[[], Awaitable[T]]) -> tuple[T, tuple[Attempt, ...]]:
-        """What ``attempt`` returned in the end, and everything that was tried for it.
+        """Return the result of ``attempt`` and all attempts made for it.
 
         Raises:
-            ServerFailure: all was in vain; ``history`` says what was tried.
+            ServerFailure: All attempts failed; ``history`` lists them.
         """
         tried: list[Attempt] = []
         deadline = perf_counter() + self.endpoint.timeouts.total_s
@@ -75,7 +75,10 @@ class Caller:
     async def _try(
         self, attempt: Callable[[], Awaitable[T]], deadline: float, waited_s: float, tried: list[Attempt]
     ) -> T | ServerFailure:
-        """One attempt, recorded. A failure is returned, so that no library exception, which may quote a key, hangs on to it."""
+        """Make and record one attempt.
+
+        A failure is returned instead of raised, so that it carries no library exception, which may quote a key.
+        """
         closed_for_s = self.breaker.wait_s()
         if closed_for_s is not None:
             tried.append(Attempt(kind=K.CIRCUIT_OPEN, waited_s=waited_s))
@@ -99,7 +102,7 @@ class Caller:
             if limit.cancelled_caught:
                 detail = f"{self.endpoint.timeouts.total_s:g} s were allowed"
                 failure = ServerFailure(K.TOTAL_TIMEOUT, where=self.endpoint.url, detail=detail)
-            assert failure is not None  # noqa: S101 - the scope ends by a result, a failure or its deadline
+            assert failure is not None  # noqa: S101 - the scope ends with a result, a failure or its deadline
             self.breaker.failed(failure)
             reported = True
         finally:
@@ -119,7 +122,7 @@ class Caller:
         return failure
 
     def _pause_s(self, failure: ServerFailure, attempts: int) -> float | None:
-        """How long to wait before the next attempt; None when there shall be none."""
+        """Return the pause before the next attempt, None when there is none."""
         if failure.kind not in RETRIED or attempts > self.endpoint.retries:
             return None
         jitter_s = self.rng.uniform(0.0, min(LONGEST_PAUSE_S, FIRST_PAUSE_S * 2.0 ** (attempts - 1)))
@@ -129,7 +132,7 @@ class Caller:
         return asked_s + 0.1 * jitter_s if asked_s <= LONGEST_RETRY_AFTER_S else None
 
     def _least_s(self, failure: ServerFailure) -> float:
-        """The time that another attempt must have to be worth it: a silent server may be as silent again."""
+        """Return the time that another attempt needs to be worthwhile. A silent server may be silent for as long again."""
         return self.endpoint.timeouts.first_byte_s if failure.kind is K.FIRST_BYTE_TIMEOUT else 0.0
 
     def _left_alone(self, for_s: float) -> ServerFailure:

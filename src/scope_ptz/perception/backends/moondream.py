@@ -1,4 +1,4 @@
-"""Moondream over HTTP: moondream-station, the cloud, or any endpoint that speaks the same four paths."""
+"""Moondream over HTTP: moondream-station, the cloud, or any server with the same four paths."""
 
 from __future__ import annotations
 
@@ -22,9 +22,14 @@ UNIT = convention("unit")
 
 
 class MoondreamOptions(Options):
-    """``max_pixels``: larger frames are shrunk to it, since the model looks at a few crops of 378 pixels; ``max_objects``: left
-    alone when None, and the server stops at its own limit; ``reasoning``: of Moondream 3, for questions; ``caption_length``:
-    short, normal or long."""
+    """Options of the backend.
+
+    Attributes:
+        max_pixels: Larger frames are shrunk to this, because the model looks at a few crops of 378 pixels.
+        max_objects: How many objects to request; None leaves it to the server's own limit.
+        reasoning: Whether Moondream 3 reasons about questions.
+        caption_length: "short", "normal" or "long".
+    """
 
     max_pixels: int = 2048 * 2048
     max_objects: int | None = MAX_THINGS
@@ -33,7 +38,7 @@ class MoondreamOptions(Options):
 
 
 class MoondreamPerception(Perception):
-    """Eyes behind Moondream's own protocol. Coordinates come in [0, 1], without scores or labels."""
+    """Perception over Moondream's own protocol. Coordinates are in [0, 1], without scores or labels."""
 
     def __init__(self, client: JsonClient, options: MoondreamOptions | None = None, name: str = "moondream") -> None:
         self.name, self._client, self._options = name, client, options or MoondreamOptions()
@@ -59,7 +64,7 @@ class MoondreamPerception(Perception):
         await self._client.close()
 
     async def _locate(self, frame: Frame, path: str, description: str, wanted: str) -> VisionReply:
-        """A list of places. A server that refuses the wish for more of them is asked without, now and from then on."""
+        """Request a list of places. A server that refuses the requested limit is asked without it, now and from then on."""
         fields: dict[str, Any] = {"object": one_line(description)}
         if self._limit is None:
             return await self._ask(frame, path, fields, wanted)
@@ -73,7 +78,7 @@ class MoondreamPerception(Perception):
             return reply.preceded(error)
 
     async def _ask(self, frame: Frame, path: str, fields: dict[str, Any], wanted: str) -> VisionReply:
-        """One request; the reply holds the text or the JSON of the field that was wanted."""
+        """Send one request. The reply holds the text or the JSON of the ``wanted`` field."""
         began = perf_counter()
         picture = await picture_of(frame, fit(frame.width, frame.height, self._options.max_pixels))
         body = _body(picture.data_url, {**fields, "stream": False})
@@ -94,11 +99,12 @@ class MoondreamPerception(Perception):
 
 
 def _body(data_url: str, fields: dict[str, Any]) -> bytes:
-    """The request as JSON. The picture is pasted in: it is base64, which needs no escaping, and long."""
+    """Return the request as JSON. The picture is inserted as it is, because base64 needs no escaping and is long."""
     rest = json.dumps(fields, separators=(",", ":"), ensure_ascii=False)[1:]
     return f'{{"image_url":"{data_url}",{rest}'.encode()
 
 
 def make(spec: BackendSpec) -> Perception:
+    """Return the backend that a spec describes."""
     client = JsonClient(spec.needed_endpoint(), key_header=KEY_HEADER)
     return MoondreamPerception(client, MoondreamOptions.of(spec), spec.name)

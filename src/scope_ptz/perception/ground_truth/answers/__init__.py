@@ -1,4 +1,4 @@
-"""Answers to parsed questions about a view: one short English sentence, and whether it is known."""
+"""Answers to parsed questions about a view: one short English sentence, and whether the answer is known."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ __all__ = ["AnswerText", "answer"]
 
 
 def answer(view: View, question: s.Question | None) -> AnswerText:
-    """The answer to a parsed question; None (a question that fits no rule) cannot be answered."""
+    """Return the answer to a parsed question. None, a question that fits no rule, cannot be answered."""
     match question:
         case s.Exists():
             return exists(view, question)

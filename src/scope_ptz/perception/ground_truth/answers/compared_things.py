@@ -1,4 +1,4 @@
-"""Which of two, how far, more or fewer, the most common."""
+"""Answers that compare: which of several, how far, more or fewer, the most common."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _ALIKE = 0.02
 
 
 def which(view: View, question: s.Which) -> AnswerText:
-    """The one of several that comes first by a comparison."""
+    """Answer which of several things comes first in a comparison."""
     options = question.options.phrases
     if len(options) == 1:
         found = sorted(find(view, question.options), key=rank_key(question.key))
@@ -52,7 +52,7 @@ def _equal(key: s.OrderKey, a: Thing, b: Thing) -> bool:
 
 
 def compare(view: View, question: s.Compare) -> AnswerText:
-    """Yes or no: does the first come before the second?"""
+    """Answer whether the first thing comes before the second."""
     for description in (question.first, question.second):
         if not find(view, description):
             return unknown(f"I cannot tell: {none_of(view, description)}")
@@ -67,7 +67,7 @@ def compare(view: View, question: s.Compare) -> AnswerText:
 
 
 def how_far(view: View, question: s.HowFar) -> AnswerText:
-    """Metres from the camera, or between two things."""
+    """Answer with the distance in metres from the camera, or between two things."""
     for description in (question.what, question.other):
         if description is not None and not find(view, description):
             return unknown(f"I cannot tell: {none_of(view, description)}")
@@ -86,7 +86,7 @@ def how_far(view: View, question: s.HowFar) -> AnswerText:
 
 
 def compare_count(view: View, question: s.CompareCount) -> AnswerText:
-    """Which of two kinds there are more of, or fewer, or whether there are. Of one kind at two places a picture shows only one."""
+    """Answer which of two kinds there are more or fewer of, or whether there are. One picture cannot compare two places."""
     if not question.second.phrases:
         return unknown("I cannot tell: I see one picture, and nothing else to compare it with")
     if question.which and len(question.second.phrases) > 1:
@@ -105,7 +105,7 @@ def compare_count(view: View, question: s.CompareCount) -> AnswerText:
 
 
 def _most_of(view: View, question: s.CompareCount) -> AnswerText:
-    """ "Which are there most of: cars, vans or lorries?" """
+    """Answer "which are there most of: cars, vans or lorries?"."""
     kinds = [s.Description((phrase,)) for phrase in (*question.first.phrases, *question.second.phrases)]
     counts = [len(find(view, kind)) for kind in kinds]
     best = (min if question.sense == "fewer" else max)(counts)
@@ -117,7 +117,7 @@ def _most_of(view: View, question: s.CompareCount) -> AnswerText:
 
 
 def count_kinds(view: View, question: s.CountKinds) -> AnswerText:
-    """How many different values an attribute takes, or how many kinds of thing there are."""
+    """Answer how many different values an attribute takes, or how many kinds of thing there are."""
     colour = question.attribute == ("colour",)
     values = Counter(v for t in find(view, question.what) if (v := _kind(t, colour)) is not None)
     many = "" if len(values) == 1 else "s"
@@ -132,7 +132,7 @@ def _kind(thing: Thing, colour: bool) -> str | None:
 
 
 def most_common(view: View, question: s.MostCommon) -> AnswerText:
-    """The most or least frequent value of an attribute, or kind of thing."""
+    """Answer with the most or least frequent value of an attribute, or kind of thing."""
     found = find(view, question.what)
     if not found:
         return unknown(f"I cannot tell: {none_of(view, question.what)}")

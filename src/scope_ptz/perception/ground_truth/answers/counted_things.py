@@ -1,4 +1,4 @@
-"""Is there, how many."""
+"""Answers to "is there" and "how many"."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from scope_ptz.perception.ground_truth.thing_search import find, things_named
 from scope_ptz.perception.ground_truth.view import Thing, View
 
 TOLD_APART = 3
-"""Up to this many things are named one by one."""
+"""Up to this many things are listed one by one."""
 
 
 def narrowed(description: s.Description, tests: tuple[s.Test, ...]) -> s.Description:
-    """The description with more tests; a superlative among them becomes its order."""
+    """Return the description with more tests. A superlative among them becomes its order."""
     orders = [t for t in tests if isinstance(t, s.Order)]
     rest = tuple(t for t in tests if not isinstance(t, s.Order))
     return s.Description(
@@ -26,6 +26,7 @@ def narrowed(description: s.Description, tests: tuple[s.Test, ...]) -> s.Descrip
 
 
 def exists(view: View, question: s.Exists) -> AnswerText:
+    """Answer whether there is something."""
     if not_told(view, question.what):
         return unknown(f"I cannot tell: the scene says nothing of any {noun(view, question.what)}")
     found = find(view, question.what)
@@ -40,7 +41,7 @@ def exists(view: View, question: s.Exists) -> AnswerText:
 
 
 def _owner(view: View, what: s.Description) -> Thing | None:
-    """ "A beacon on the van" may be a fact of the van rather than a thing of its own."""
+    """Return the thing that has the described part as an attribute ("a beacon on the van"), None for none."""
     phrase = what.phrases[0]
     if len(what.phrases) != 1 or len(phrase.tests) != 1 or not isinstance(test := phrase.tests[0], s.Relation) or test.kind != "on":
         return None
@@ -48,7 +49,7 @@ def _owner(view: View, what: s.Description) -> Thing | None:
 
 
 def there_are(view: View, what: s.Description, found: list[Thing]) -> str:
-    """ "there are 2 cars: a red car on the left and a white car in the middle"."""
+    """Return a list of found things: "there are 2 cars: a red car on the left and a white car in the middle"."""
     worn = not things_named(view, what)
     if len(found) == 1:
         return f"there is {english.article(noun(view, what))} on {several(found)}" if worn else f"there is {several(found)}"
@@ -57,6 +58,7 @@ def there_are(view: View, what: s.Description, found: list[Thing]) -> str:
 
 
 def count(view: View, question: s.Count) -> AnswerText:
+    """Answer how many there are."""
     if not_told(view, question.what):
         return unknown(f"I cannot tell: the scene says nothing of any {noun(view, question.what)}")
     total = len(find(view, narrowed(question.what, question.tests)))
@@ -69,7 +71,7 @@ def count(view: View, question: s.Count) -> AnswerText:
 
 
 def _each(view: View, question: s.Count) -> str:
-    """ "4 cars and 1 van"."""
+    """Return the counts of all parts of a description: "4 cars and 1 van"."""
     parts = [s.Description((p,)) for p in question.what.phrases]
     counts = [(len(find(view, narrowed(p, question.tests))), p) for p in parts]
     return english.listing([f"{n} {noun(view, p, many=n != 1)}" for n, p in counts])

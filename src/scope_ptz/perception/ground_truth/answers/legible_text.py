@@ -1,4 +1,4 @@
-"""Texts: only what is legible is read; what is not is said to be there, with the reason."""
+"""Answers about texts. Only legible text is read; for other text the answer says that it is there and why it cannot be read."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from scope_ptz.simulator.truth import MAX_READING_ANGLE_DEG, MIN_CAP_HEIGHT_PX, 
 
 
 def read(view: View, question: s.Read) -> AnswerText:
-    """What a thing says; a thing's number plate; or everything that can be read."""
+    """Answer what a thing says, what its number plate says, or everything that can be read."""
     if question.what is None:
         return _read(view, None, [t for t in view.texts if not question.plate or is_plate(view, t)], question.plate)
     things = find(view.for_reading(), question.what)
     if not things and _PLATES.issuperset(phrase.words for phrase in question.what.phrases):
-        return read(view, s.Read(None, plate=True))  # whose plate is not said, and plates are texts of vehicles here
+        return read(view, s.Read(None, plate=True))  # a plate without its vehicle; plates are texts of vehicles
     if not things:
         return unknown(f"I cannot tell: {none_of(view, question.what)}")
     texts = _texts(view, things, question.plate)
@@ -33,7 +33,7 @@ def _texts(view: View, things: Sequence[Thing], plate: bool) -> list[TextSightin
 
 
 def is_plate(view: View, text: TextSighting) -> bool:
-    """Whether a text is a vehicle's number plate: by what it is on, or by its form on a vehicle."""
+    """Return whether a text is a vehicle's number plate: by what it is on, or by its form on a vehicle."""
     bearer = view.instances[text.text.parent]
     concepts = concepts_of(bearer)
     return "number plate" in concepts or ("vehicle" in concepts and _PLATE.fullmatch(text.text.text.replace(" ", "")) is not None)
@@ -45,7 +45,7 @@ _PLATES = {words for noun in ("plate", "plates") for words in (("number", noun),
 
 
 def _is_limit(view: View, text: TextSighting) -> bool:
-    """Whether a number is a speed limit: the scene calls it the signal, or it is a multiple of ten on a sign."""
+    """Return whether a number is a speed limit: the scene says so, or it is a multiple of ten on a sign."""
     bearer = view.instances[text.text.parent]
     said = text.text.text.strip()
     if "signal" in bearer.attributes:
@@ -74,7 +74,7 @@ def _read(view: View, what: s.Description | None, texts: Sequence[TextSighting],
 
 
 def why_not(texts: Sequence[TextSighting]) -> str:
-    """Why the largest of some illegible texts cannot be read."""
+    """Return why the largest of some illegible texts cannot be read."""
     best = max(texts, key=lambda t: t.cap_height_px)
     if best.cap_height_px < MIN_CAP_HEIGHT_PX:
         return "too small"
@@ -82,7 +82,7 @@ def why_not(texts: Sequence[TextSighting]) -> str:
 
 
 def text_exists(view: View, question: s.TextExists) -> AnswerText:
-    """Whether there is text, and what it says."""
+    """Answer whether there is text, and what it says."""
     if question.what is None:
         texts: Sequence[TextSighting] = view.texts
         where = "in view"
@@ -101,7 +101,7 @@ def text_exists(view: View, question: s.TextExists) -> AnswerText:
 
 
 def spoken_texts(view: View, signs: Sequence[Thing], fact: str) -> AnswerText | None:
-    """A fact ("speed limit") that stands on some signs, None when they bear no text."""
+    """Answer with a fact ("speed limit") that is written on some signs, None when they have no text."""
     texts = _texts(view, signs, plate=False)
     legible = list(dict.fromkeys(t.text.text for t in texts if t.legible and ("limit" not in fact or _is_limit(view, t))))
     if legible:

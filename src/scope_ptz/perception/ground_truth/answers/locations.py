@@ -1,4 +1,4 @@
-"""Where is it, what is there."""
+"""Answers to "where is it" and "what is there"."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ _BACKDROP = frozenset({"surface", "sky", "plant life", "mountain"})
 
 
 def where(view: View, question: s.Where) -> AnswerText:
+    """Answer where things are."""
     found = find(view, question.what)
     if not found:
         return reply(none_of(view, question.what))
@@ -36,7 +37,7 @@ def where(view: View, question: s.Where) -> AnswerText:
 
 
 def neighbour(view: View, thing: Thing) -> str:
-    """ ", next to the barrier": its relation to the most telling thing around, or nothing."""
+    """Return a thing's relation to the most telling thing around it (", next to the barrier"), or nothing."""
     others = [
         t
         for t in view.top_level()
@@ -55,14 +56,14 @@ def neighbour(view: View, thing: Thing) -> str:
 
 
 def _depth_side(view: View, thing: Thing, other: Thing) -> str:
-    """ "behind", "in front of" or nothing."""
+    """Return "behind", "in front of" or nothing."""
     if relation_holds(view, thing, "behind", other):
         return "behind"
     return "in front of" if relation_holds(view, thing, "front", other) else ""
 
 
 def what(view: View, question: s.What) -> AnswerText:
-    """Names everything that fits."""
+    """Answer with the names of everything that fits."""
     if _is_a_list(question.what):
         return _of_a_list(view, question)
     missing = next((m for m in (missing_reference(view, t) for t in question.tests) if m is not None), None)
@@ -76,7 +77,7 @@ def what(view: View, question: s.What) -> AnswerText:
 
 
 def _is_a_list(description: s.Description) -> bool:
-    """ "The following", "these": no thing, but whatever is listed after it."""
+    """Return whether a description ("the following", "these") names no thing but refers to a list after it."""
     words = {word for phrase in description.phrases for word in phrase.words}
     return bool(words) and words <= {"following", "these", "those", "them"}
 
@@ -91,7 +92,7 @@ def _of_a_list(view: View, question: s.What) -> AnswerText:
 
 
 def _nothing(view: View, question: s.What, description: s.Description) -> AnswerText:
-    """What may be a fact rather than a thing ("which lane is closed"), what nothing is said about, or what is not there."""
+    """Answer with a fact ("which lane is closed"), or say that nothing fits or that the scene does not say."""
     loose = [x for t in question.tests if isinstance(t, s.Is) for x in t.words]
     if loose and not find(view, question.what):
         return anywhere(view, (*question.what.phrases[0].words, *loose))
@@ -101,13 +102,13 @@ def _nothing(view: View, question: s.What, description: s.Description) -> Answer
 
 
 def _by_nearness(view: View, tests: tuple[s.Test, ...], found: list[Thing]) -> list[Thing]:
-    """Things beside something are told nearest to it first."""
+    """Sort things beside something by their distance to it."""
     anchors = [a for t in tests if isinstance(t, s.Relation) for a in find(view, t.other)]
     return sorted(found, key=lambda t: min(t.gap_m(a) for a in anchors)) if anchors else found
 
 
 def told(view: View, tests: tuple[s.Test, ...], found: list[Thing]) -> AnswerText:
-    """ "A white van and 2 traffic cones are behind the barrier"."""
+    """Answer with things and their places: "a white van and 2 traffic cones are behind the barrier"."""
     said = tuple(t for t in tests if not isinstance(t, s.Order))
     if len(said) < len(tests):
         return reply(f"it is the {name(found[0])} {place(found[0])}, about {metres(found[0].distance_m)} away")
@@ -118,7 +119,7 @@ def told(view: View, tests: tuple[s.Test, ...], found: list[Thing]) -> AnswerTex
 
 
 def identify(view: View, question: s.Identify) -> AnswerText:
-    """What a thing is; or, when the words name a fact rather than a thing ("the speed limit"), that fact."""
+    """Answer what a thing is. When the words name a fact ("the speed limit"), answer with that fact."""
     phrase = question.what.phrases[0]
     fact = anywhere(view, phrase.words)
     carried = all(isinstance(t, s.Relation) and t.kind == "on" for t in phrase.tests)

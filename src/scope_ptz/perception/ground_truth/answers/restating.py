@@ -1,4 +1,4 @@
-"""How descriptions and tests are put into words again, so that an answer says what it understood."""
+"""Descriptions and tests put into words again, so that an answer shows how the question was understood."""
 
 from __future__ import annotations
 
@@ -34,25 +34,25 @@ _FROM = {"left": "from the left", "right": "from the right", "top": "from the to
 
 
 def plural(description: s.Description) -> bool:
-    """Whether the asker spoke of several."""
+    """Return whether the question is about several things."""
     return len(description.phrases) > 1 or any(english.is_plural(x) for p in description.phrases for x in p.words[-1:])
 
 
 def noun(view: View, description: s.Description, many: bool = False) -> str:
-    """A description in words again, without articles: "red cars behind the barrier"."""
+    """Return a description in words, without articles: "red cars behind the barrier"."""
     several = len(description.phrases) > 1
     return english.listing([_phrase(view, p, many or (several and plural(s.Description((p,))))) for p in description.phrases])
 
 
 def the(view: View, description: s.Description, many: bool = False) -> str:
-    """ "the red car", "the van and the lorry"."""
+    """Return a description with definite articles: "the red car", "the van and the lorry"."""
     if len(description.phrases) == 1:
         return f"the {noun(view, description, many)}"
     return english.listing([f"the {_phrase(view, p, plural(s.Description((p,))))}" for p in description.phrases])
 
 
 def as_asked(view: View, description: s.Description) -> str:
-    """The description with an article, singular or plural as it was asked for."""
+    """Return a description with an article, singular or plural as in the question."""
     return the(view, description, plural(description))
 
 
@@ -81,7 +81,7 @@ def _ranked(view: View, phrase: s.Phrase, core: str) -> list[str]:
 
 
 def after_noun(view: View, test: s.Test) -> str:
-    """A test as what follows a noun: "behind the barrier", "with a helmet", "that are parked"."""
+    """Return a test as words after a noun: "behind the barrier", "with a helmet", "that are parked"."""
     match test:
         case s.Has(what=what, worn=worn):
             return f"{'wearing' if worn else 'with'} {_items(what)}"
@@ -129,7 +129,7 @@ def _items(what: s.Description) -> str:
 
 
 def holds_words(view: View, tests: Sequence[s.Test], count: int, negated: bool = False) -> str:
-    """Tests as a predicate: "are parked", "does not have a ladder", "is next to the van"."""
+    """Return tests as a predicate: "are parked", "does not have a ladder", "is next to the van"."""
     return english.listing([_predicate(view, t, count, negated) for t in tests], "or" if negated else "and")
 
 
@@ -163,6 +163,7 @@ def _do(many: str, one: str, count: int, negated: bool) -> str:
 
 
 def region_words(sides: Sequence[str], half: bool) -> str:
+    """Return the words for a part of the frame."""
     if tuple(sides) in {("near",), ("far",)}:
         return "in the foreground" if sides[0] == "near" else "in the distance"
     if half:
@@ -173,7 +174,7 @@ def region_words(sides: Sequence[str], half: bool) -> str:
 
 
 def none_of(view: View, description: s.Description) -> str:
-    """ "there is no red car in view"."""
+    """Return that nothing fits: "there is no red car in view"."""
     many = plural(description)
     only_one = len(description.phrases) > 1 and not any(plural(s.Description((p,))) for p in description.phrases)
     said = english.listing([noun(view, s.Description((p,)), many and not only_one) for p in description.phrases], "or")
@@ -181,7 +182,9 @@ def none_of(view: View, description: s.Description) -> str:
 
 
 def not_told(view: View, description: s.Description) -> bool:
-    """Whether the noun is of the background ("lanes", "sky") and the scene has no such thing: not seeing it means nothing."""
+    """Return whether the noun names a background ("lanes", "sky") that the scene does not have, so that not seeing it means
+    nothing.
+    """
     for phrase in description.phrases:
         spans = nouns_in(phrase.words, view.nouns)
         concept = lexicon().concept(" ".join(phrase.words[slice(*spans[0])])) if spans else None

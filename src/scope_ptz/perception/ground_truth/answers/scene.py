@@ -1,4 +1,4 @@
-"""What is to be seen as a whole, and what is going on."""
+"""Answers about the scene as a whole, and about what is happening."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ STILL = frozenset({None, "parked", "open", "closed", "lit", "unlit", "standing",
 
 
 def describe(view: View, question: s.Describe) -> AnswerText:
-    """What can be seen, biggest first, with the texts that can be read."""
+    """Describe what can be seen, largest first, with the texts that can be read."""
     if question.what is not None:
         return _describe_things(view, question.what, question.tests)
     if question.tests:
@@ -38,7 +38,7 @@ def describe(view: View, question: s.Describe) -> AnswerText:
 
 
 def _load_of(view: View, tests: tuple[s.Test, ...]) -> AnswerText | None:
-    """What is on something that the scene says to carry a load: that, rather than another thing that lies upon it."""
+    """Answer with the load of something that carries one according to the scene, None when the question is about something else."""
     match tests:
         case (s.Relation(kind="on", other=other),):
             bearer = next(iter(find(view, other)), None)
@@ -49,7 +49,7 @@ def _load_of(view: View, tests: tuple[s.Test, ...]) -> AnswerText | None:
 
 
 def _describe_things(view: View, what: s.Description, tests: tuple[s.Test, ...]) -> AnswerText:
-    """One or several things with everything that the scene says of them."""
+    """Describe things with everything that the scene states about them."""
     found = find(view, narrowed(what, tests))
     if not found:
         return reply(none_of(view, what))
@@ -69,7 +69,7 @@ def _told(thing: Thing) -> str:
 
 
 def _groups(things: Iterable[Thing]) -> list[str]:
-    """ "3 cars (2 white, 1 red)", largest on screen first."""
+    """Return groups of things, largest on screen first: "3 cars (2 white, 1 red)"."""
     by_kind: dict[str, list[Thing]] = {}
     for thing in sorted(things, key=lambda t: -t.sighting.pixels):
         by_kind.setdefault(thing.category, []).append(thing)
@@ -88,7 +88,7 @@ def _groups(things: Iterable[Thing]) -> list[str]:
 
 
 def happening(view: View) -> AnswerText:
-    """Who and what moves or works; without that, what is to be seen."""
+    """Answer who and what moves or works; if nothing does, what can be seen."""
     busy = Counter((t.category, doing) for t in view.top_level() if (doing := _doing(t)) is not None)
     if not busy:
         return AnswerText(f"Nothing is moving. {describe(view, s.Describe()).text}")

@@ -12,26 +12,28 @@ from scope_ptz.perception.ground_truth.thing_facts import colour_of
 from scope_ptz.perception.ground_truth.view import Thing
 
 MAX_NAMED = 8
-"""Lists of things go no further than this."""
+"""Lists of things are truncated after this many."""
 
 
 class AnswerText(NamedTuple):
-    """``known`` is False for "I cannot tell"."""
+    """An answer in words. ``known`` is False for "I cannot tell"."""
 
     text: str
     known: bool = True
 
 
 def reply(text: str) -> AnswerText:
+    """Return a known answer."""
     return AnswerText(english.sentence(text))
 
 
 def unknown(text: str) -> AnswerText:
+    """Return an answer that says why the question cannot be answered."""
     return AnswerText(english.sentence(text), known=False)
 
 
 def name(thing: Thing) -> str:
-    """What to call a thing: its name, with its colour where the name has none."""
+    """Return what to call a thing: its name, with its colour if the name has none."""
     colour = colour_of(thing)
     words = english.letters(thing.name).split()
     shown = thing.name if thing.name[:2].isupper() else thing.name[:1].lower() + thing.name[1:]
@@ -39,7 +41,7 @@ def name(thing: Thing) -> str:
 
 
 def names(things: Iterable[Thing]) -> str:
-    """ "a white van, 2 traffic cones and a worker", in the order given."""
+    """Return a list of things in the given order: "a white van, 2 traffic cones and a worker"."""
     counts = Counter(name(t) for t in things)
     said = [english.article(n) if c == 1 else f"{c} {english.plural(n)}" for n, c in counts.items()]
     if len(said) > MAX_NAMED:
@@ -49,12 +51,12 @@ def names(things: Iterable[Thing]) -> str:
 
 
 def several(things: Sequence[Thing]) -> str:
-    """Things told apart by where they are: "a white van on the left and a red car in the middle"."""
+    """Return things with their places: "a white van on the left and a red car in the middle"."""
     return english.listing([f"{english.article(name(t))} {place(t)}" for t in things])
 
 
 def place(thing: Thing) -> str:
-    """Where in the frame: "on the left", "at the top right", "in the middle"."""
+    """Return where a thing is in the frame: "on the left", "at the top right", "in the middle"."""
     x, y = thing.box.centre
     side = "left" if x < SIDE_BAND else "right" if x > 1 - SIDE_BAND else ""
     level = "top" if y < SIDE_BAND * 0.75 else "bottom" if y > 1 - SIDE_BAND * 0.75 else ""
@@ -64,7 +66,7 @@ def place(thing: Thing) -> str:
 
 
 def metres(distance_m: float) -> str:
-    """Rounded as a person would say it."""
+    """Return a distance, rounded as a person would round it."""
     if distance_m < 3:
         return f"{distance_m:.1f} m"
     step = 1 if distance_m < 20 else 5 if distance_m < 100 else 10
@@ -72,4 +74,5 @@ def metres(distance_m: float) -> str:
 
 
 def are(count: int) -> str:
+    """Return "is" or "are" for a count."""
     return "is" if count == 1 else "are"

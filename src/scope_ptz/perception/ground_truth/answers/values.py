@@ -1,4 +1,4 @@
-"""Colours, states, clothes and other facts of things."""
+"""Answers about colours, states, clothes and other facts of things."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from scope_ptz.perception.ground_truth.view import Thing, View
 UNSEEN = frozenset(
     "it time day weather date temperature mood today season month year hour brand owner price name age".split()  # noqa: SIM905
 )
-"""Subjects that no picture's truth holds."""
+"""Subjects about which no picture holds the truth."""
 _DOING = frozenset(["doing", "activity", "action", "up"])
 _KEY_SYNONYMS = {
     "state": {"state", "status", "condition", "position"},
@@ -43,7 +43,7 @@ _KEY_SYNONYMS = {
 
 
 def ask(view: View, question: s.Ask) -> AnswerText:
-    """The value of an attribute, of one thing or of several."""
+    """Answer with the value of an attribute, of one thing or of several."""
     if question.what is None:
         return anywhere(view, question.attribute)
     found = find(view, question.what)
@@ -70,7 +70,7 @@ def ask(view: View, question: s.Ask) -> AnswerText:
 
 
 def value_of(thing: Thing, attribute: Sequence[str]) -> str | None:
-    """An attribute of a thing in words, None when the scene has none."""
+    """Return an attribute of a thing in words, None when the scene has none."""
     if attribute[-1] in COLOUR_KEYS:
         colour = colour_of(thing)
         return colour if colour or "person" not in thing.concepts else _clothes(thing)
@@ -97,7 +97,7 @@ _VERBS = {
     "wearing clothes clothing outfit": "wearing ", "carrying load cargo holding": "carrying ", "made material": "made of ",
     "direction pointing facing heading way": "facing ", "lane": "in ", "carriageway": "on the ",
 }  # fmt: skip
-"""What goes between "is" and the value of some attributes."""
+"""The words between "is" and the value of some attributes."""
 _GERUNDS = {
     "stand": "standing", "walk": "walking", "kneel": "kneeling", "shovel": "shovelling", "carry": "carrying something",
     "point": "pointing", "phone": "talking on the phone", "clipboard": "holding a clipboard", "sit": "sitting", "run": "running",
@@ -106,7 +106,7 @@ _GERUNDS = {
 
 
 def pose_of(thing: Thing) -> str | None:
-    """What a person or machine is doing, as the scene states it."""
+    """Return what a person or machine is doing, as the scene states it."""
     for key in ("activity", "action", "doing", "task", "pose", "state"):
         if isinstance(value := thing.attributes.get(key), str):
             return _GERUNDS.get(value, value)
@@ -129,7 +129,7 @@ def _is_clothes(attribute: Sequence[str]) -> bool:
 
 
 def _clothes(thing: Thing) -> str | None:
-    """What a person wears: "an orange vest and a white helmet"."""
+    """Return what a person wears: "an orange vest and a white helmet"."""
     worn: list[str] = []
     for key, value in facts(thing):
         if key in {"wearing", "clothing", "clothes", "outfit", "ppe"}:
@@ -142,7 +142,7 @@ def _clothes(thing: Thing) -> str | None:
 
 
 def _of_a_part(view: View, question: s.Ask) -> AnswerText | None:
-    """ "The colour of the worker's helmet", where the helmet is no thing of its own but a fact of the worker."""
+    """Answer about a part that is a fact of its owner: "the colour of the worker's helmet"."""
     if question.what is None:
         return None
     found = part_values(view, question.what)
@@ -155,7 +155,7 @@ def _of_a_part(view: View, question: s.Ask) -> AnswerText | None:
 
 
 def part_values(view: View, what: s.Description) -> list[tuple[Thing, str]]:
-    """Owners and values of a part that is a fact of its owner: "helmet of the worker", "cabin door"."""
+    """Return owners and values of a part that is a fact of its owner: "helmet of the worker", "cabin door"."""
     phrase = what.phrases[0]
     owners = [t.other for t in phrase.tests if isinstance(t, s.Relation) and t.kind == "on"]
     part = phrase.words
@@ -176,7 +176,7 @@ def _part_value(thing: Thing, words: Sequence[str]) -> str | None:
 
 
 def anywhere(view: View, attribute: Sequence[str]) -> AnswerText:
-    """ "Which lane is closed?", "what is the speed limit?": any thing with such a fact, else a text of such a sign."""
+    """Answer about a fact of any thing ("which lane is closed?"), or else about a text on a sign ("what is the speed limit?")."""
     if tuple(attribute) == ("thing",) or set(attribute) & UNSEEN:
         return unknown("I cannot tell that from the picture")
     told = [(t, v) for t in view.things for v in [value_of(t, attribute)] if v is not None and _says(t, attribute)]
@@ -192,13 +192,13 @@ def anywhere(view: View, attribute: Sequence[str]) -> AnswerText:
 
 
 def _says(thing: Thing, attribute: Sequence[str]) -> bool:
-    """Whether a key of the thing speaks of every word asked for."""
+    """Return whether a fact of the thing covers every word asked for."""
     wanted = {canonical(english.singular(x)) for x in attribute}
     return any(wanted <= {canonical(english.singular(x)) for x in (*key_words(k), *value_words(v))} for k, v in facts(thing))
 
 
 def absent(view: View, subject: s.Description) -> AnswerText:
-    """The answer to a question about something that is not in view."""
+    """Answer a question about something that is not in view."""
     if any(p.words and p.words[-1] in UNSEEN for p in subject.phrases):
         return unknown("I cannot tell that from the picture")
     return unknown(f"I cannot tell: {none_of(view, subject)}")

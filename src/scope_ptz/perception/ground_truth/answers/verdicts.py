@@ -1,4 +1,4 @@
-"""Yes or no about what is in view."""
+"""Yes-or-no answers about what is in view."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ _EVERYBODY = frozenset(["everyone", "everybody", "everything", "they"])
 
 
 def yes_no(view: View, question: s.YesNo) -> AnswerText:
+    """Answer whether something holds for the subject."""
     subject, tests = _parts(view, question)
     if not tests:
         return exists(view, s.Exists(subject))
@@ -45,7 +46,7 @@ def yes_no(view: View, question: s.YesNo) -> AnswerText:
 
 
 def _as_text(view: View, subject: s.Description, tests: tuple[s.Test, ...]) -> AnswerText | None:
-    """ "Is Brampton on the sign?" asks for a text when Brampton is no thing."""
+    """Answer "is Brampton on the sign?" as a question about text, when Brampton is no thing."""
     phrase = subject.phrases[0]
     if len(tests) != 1 or not isinstance(tests[0], s.Relation) or tests[0].kind != "on" or nouns_in(phrase.words, view.nouns):
         return None
@@ -59,7 +60,7 @@ def _as_text(view: View, subject: s.Description, tests: tuple[s.Test, ...]) -> A
 
 
 def _of_a_part(view: View, subject: s.Description, tests: tuple[s.Test, ...]) -> AnswerText | None:
-    """ "Is the cabin door open?", where the door is a fact of the cabin."""
+    """Answer "is the cabin door open?" when the door is a fact of the cabin."""
     values = part_values(view, subject)
     if not values or len(tests) != 1 or not isinstance(tests[0], s.Is):
         return None
@@ -71,7 +72,7 @@ def _of_a_part(view: View, subject: s.Description, tests: tuple[s.Test, ...]) ->
 
 
 def missing_reference(view: View, test: s.Test) -> s.Description | None:
-    """What a relation refers to, when nothing like it is in view."""
+    """Return what a relation refers to when nothing like it is in view."""
     match test:
         case s.Not(test=inner):
             return missing_reference(view, inner)
@@ -87,7 +88,10 @@ def missing_reference(view: View, test: s.Test) -> s.Description | None:
 
 
 def _parts(view: View, question: s.YesNo) -> tuple[s.Description, tuple[s.Test, ...]]:
-    """Who is asked about, and what is asked: the predicate may hide behind the noun ("gate open") or be the last restriction."""
+    """Split a question into its subject and its tests.
+
+    The predicate may follow the noun within the subject ("gate open"), or be the subject's last restriction.
+    """
     *others, last = question.subject.phrases
     tests = list(question.tests)
     if tests and isinstance(tests[0], s.Is) and not last.tests and not last.order:
@@ -116,7 +120,7 @@ def _every(answers: Sequence[bool | None]) -> bool | None:
 
 
 def _choice(view: View, tests: Sequence[s.Test], found: list[Thing]) -> AnswerText | None:
-    """ "Red or white?" is answered by naming the one that holds."""
+    """Answer "red or white?" by naming the one that holds."""
     if len(tests) != 1 or not isinstance(tests[0], s.Any):
         return None
     options = tests[0].tests
@@ -170,7 +174,7 @@ def _subject_words(view: View, subject: s.Description, total: int) -> str:
 
 
 def _instead(view: View, test: s.Test, found: list[Thing]) -> str | None:
-    """What is the case instead of a loose word: "the van is white", "the gate is closed"."""
+    """Return what is the case instead of a loose word: "the van is white", "the gate is closed"."""
     if not isinstance(test, s.Is) or len({name(t) for t in found}) > 1:
         return None
     thing, wanted = found[0], canonical(test.words[-1])
@@ -187,6 +191,7 @@ def _instead(view: View, test: s.Test, found: list[Thing]) -> str | None:
 
 
 def is_a(view: View, question: s.IsA) -> AnswerText:
+    """Answer whether a thing is of a kind."""
     found = find(view, question.subject)
     if not found:
         return unknown(f"I cannot tell: {none_of(view, question.subject)}")

@@ -1,4 +1,4 @@
-"""Which of several readings is meant: a cost for each, from preferences that hold for all scenes."""
+"""The choice between several readings: a cost for each, by preferences that hold for all scenes."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ _TEXTS = frozenset(
         "colors",
     ]
 )
-"""Words of texts and of properties, which are read or told and are no things."""
+"""Words for texts and properties, which name no things."""
 
 
 def cost(reading: Any) -> tuple[float, str]:
-    """Lower is better; the text of the reading breaks ties, so that the choice never depends on the parser's order."""
+    """Return the cost of a reading; lower is better. Its text breaks ties, so the choice never depends on the parser's order."""
     kind = 0.0 if isinstance(reading, _SPECIFIC) else 20.0
     return kind + _cost(reading), repr(reading)
 
@@ -69,14 +69,16 @@ def _cost(node: Any) -> float:
 
 
 def _misplaced(node: Any) -> float:
-    """Clothes on what is no person: "the worker next to the van wearing a helmet" is about the worker."""
+    """Return the cost of clothes on something that is no person: "the worker next to the van wearing a helmet" is about the
+    worker.
+    """
     if not isinstance(node, s.Phrase) or not any(isinstance(t, s.Has) and t.worn for t in node.tests):
         return 0.0
     return 0.0 if is_person(node.words) else 50.0
 
 
 def is_person(words: Sequence[str]) -> bool:
-    """Whether the noun of a phrase is a kind of person."""
+    """Return whether the noun of a phrase is a kind of person."""
     spans = nouns_in(words)
     concept = lexicon().concept(" ".join(words[slice(*spans[0])])) if spans else None
     return concept is not None and "person" in lexicon().kinds(concept)

@@ -1,4 +1,4 @@
-"""What nouns mean: concepts, their other names, and what is a kind of what."""
+"""What nouns mean: concepts, their other names, and the kinds that they belong to."""
 
 from __future__ import annotations
 
@@ -12,12 +12,14 @@ from scope_ptz import english
 
 @dataclass(frozen=True, slots=True)
 class Lexicon:
+    """All concepts with their names and parents."""
+
     parents: dict[str, tuple[str, ...]]
     names: dict[str, str]
-    """Every noun, singular, to its concept."""
+    """Every noun, in the singular, with its concept."""
 
     def concept(self, phrase: str) -> str | None:
-        """The concept of a noun in the singular or plural."""
+        """Return the concept of a noun in the singular or plural."""
         words = phrase.replace("-", " ").split()
         for form in (phrase, singular_phrase(phrase), " ".join(words), singular_phrase(" ".join(words))):
             if form in self.names:
@@ -25,26 +27,26 @@ class Lexicon:
         return None
 
     def kinds(self, concept: str) -> frozenset[str]:
-        """The concept and everything that it is a kind of."""
+        """Return the concept and everything that it is a kind of."""
         found = {concept}
         for parent in self.parents.get(concept, ()):
             found |= self.kinds(parent)
         return frozenset(found)
 
     def all_names(self, concept: str) -> frozenset[str]:
-        """Every noun, singular, for the concept or a kind of it."""
+        """Return every noun, in the singular, for the concept or a kind of it."""
         return frozenset(name for name, meant in self.names.items() if concept in self.kinds(meant))
 
 
 def singular_phrase(phrase: str) -> str:
-    """The phrase with its last word in the singular."""
+    """Return the phrase with its last word in the singular."""
     *first, last = phrase.split()
     return " ".join([*first, english.singular(last)])
 
 
 @cache
 def lexicon() -> Lexicon:
-    """The lexicon of ``lexicon.txt``."""
+    """Return the lexicon of ``lexicon.txt``."""
     parents: dict[str, tuple[str, ...]] = {}
     names: dict[str, str] = {}
     others: list[tuple[str, str]] = []
@@ -63,9 +65,11 @@ def lexicon() -> Lexicon:
 
 
 def nouns_in(words: Sequence[str], known: frozenset[str] = frozenset()) -> list[tuple[int, int]]:
-    """Spans ``[start, end)`` of words that could be the noun, best first: the last one in the phrase, longest reading first.
+    """Return spans ``[start, end)`` of words that could be the noun, best first: at the end of the phrase, longest first.
 
-    ``known``: nouns beside the lexicon's (categories and names of the scene), singular.
+    Args:
+        words: The words of the phrase.
+        known: Nouns in addition to the lexicon's (categories and names of the scene), in the singular.
     """
     table = lexicon()
     spans = [

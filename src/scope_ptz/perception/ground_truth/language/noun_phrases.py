@@ -1,4 +1,4 @@
-"""From parse trees of noun phrases to the plain data of ``syntax``."""
+"""From parse trees of noun phrases to the data of ``question_tree``."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def descriptions(children: Children) -> list[s.Description]:
 
 
 def tests_of(children: Children) -> tuple[s.Test, ...]:
-    """Tests among the children; those of a predicate (a plain tuple) are spliced in."""
+    """Return the tests among the children, including those of a predicate."""
     found: list[s.Test] = []
     for child in children:
         if isinstance(child, _Predicate):
@@ -43,7 +43,7 @@ def tests_of(children: Children) -> tuple[s.Test, ...]:
 
 
 class _Predicate(tuple[s.Test, ...]):
-    """The tests of "that is ...", "is ...?"."""
+    """The tests of "that is ..." or "is ...?"."""
 
 
 class Core(tuple[str, ...]):
@@ -51,34 +51,36 @@ class Core(tuple[str, ...]):
 
 
 class Rank(tuple[s.OrderKey | None, int | None, int | None]):
-    """Superlative, ordinal, amount."""
+    """Superlative, ordinal and amount."""
 
 
 def _digits(token: Token) -> str:
-    """ "Lane two" is lane 2."""
+    """Return a number word in digits: "lane two" is lane 2."""
     number = english.cardinal(str(token))
     return str(token) if number is None else str(number)
 
 
 class NounPhrases(Transformer[Token, Any]):
-    """Noun phrases and what may follow them."""
+    """Builds noun phrases and what may follow them."""
 
     def description(self, c: Children) -> s.Description:
         return cast(s.Description, c[0])
 
     def anywhere(self, c: Children) -> s.Description:
-        """ "Behind the barrier": everything there."""
+        """Build "behind the barrier": everything there."""
         return s.Description((s.Phrase(("thing",), tests_of(c)),))
 
     def np_to(self, c: Children) -> s.Phrase:
-        """ "The closest cone to the van"."""
+        """Build "the closest cone to the van"."""
         *front, other = c
         phrase = self.np(front)
         key: s.OrderKey = phrase.order.key if phrase.order else "nearest"
         return replace(phrase, order=s.Order(key, s.Description((other,))))
 
     def nps(self, c: Children) -> s.Description:
-        """What follows the last nouns goes for all ("cars and vans on the left"); so does a noun ("red or blue cars")."""
+        """Build a list. What follows the last noun applies to all ("cars and vans on the left"), and so does the noun ("red or
+        blue cars").
+        """
         phrases: list[s.Phrase] = of_kind(c, s.Phrase)
         last = phrases[-1]
         spans = nouns_in(last.words)
@@ -108,7 +110,7 @@ class NounPhrases(Transformer[Token, Any]):
         return self._phrase(c, core)
 
     def np_of(self, c: Children) -> s.Phrase:
-        """ "the largest of the vehicles", "the nearest"."""
+        """Build "the largest of the vehicles" or "the nearest"."""
         described = of_kind(c, s.Description)
         if not described:
             return self._phrase(c, Core(("thing",)))
@@ -116,7 +118,7 @@ class NounPhrases(Transformer[Token, Any]):
         return self._phrase([*c, *first.tests], Core(first.words))
 
     def np_owned(self, c: Children) -> s.Phrase:
-        """ "the worker's helmet": the helmet on the worker."""
+        """Build "the worker's helmet" as the helmet on the worker."""
         (owner,), (core,) = of_kind(c, s.Phrase), of_kind(c, Core)
         rest = [x for x in c if x is not owner and x is not core]
         return self._phrase([*rest, s.Relation("on", s.Description((owner,)))], core)
@@ -212,7 +214,7 @@ class NounPhrases(Transformer[Token, Any]):
         return _Predicate(tests_of(c))
 
     def predicate(self, c: Children) -> _Predicate:
-        """ "red or blue" holds when either does, everything else when all do."""
+        """Build a predicate. "Red or blue" holds when either does; other tests must all hold."""
         tests = tests_of(c)
         return _Predicate((s.Any(tests),) if tokens_of(c, "OR") and len(tests) > 1 else tests)
 

@@ -1,4 +1,4 @@
-"""From parse trees of questions to the plain data of ``syntax``."""
+"""From parse trees of questions to the data of ``question_tree``."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _THE_VIEW = frozenset(
 
 
 def _bearer(what: s.Description) -> s.Description | None:
-    """What bears a text: "the words on the van" are the van's; None for "the text"."""
+    """Return what bears a text ("the words on the van" are the van's), None for "the text"."""
     phrase = what.phrases[0]
     if phrase.words[-1] not in _TEXTS:
         return what
@@ -57,11 +57,11 @@ _TEXTS = frozenset(
 
 
 class Subject(tuple[s.Description, str]):
-    """Subject of a yes/no question, with its scope."""
+    """The subject of a yes-or-no question, with its scope."""
 
 
 class Builder(NounPhrases):
-    """Questions."""
+    """Builds questions."""
 
     def question(self, c: Children) -> s.Question:
         return cast(s.Question, next(x for x in c if not isinstance(x, Token)))
@@ -88,7 +88,7 @@ class Builder(NounPhrases):
         return s.Count(what, (s.Relation("on", owner),))
 
     def count_any(self, c: Children) -> s.Count:
-        """ "How many are wearing helmets?" is about people, "how many are red?" about anything."""
+        """Build "how many are wearing helmets?", which is about people, or "how many are red?", which is about anything."""
         tests = tests_of(c)
         worn = any(isinstance(t, s.Has) and t.worn for t in tests)
         return s.Count(s.Description((s.Phrase(("people" if worn else "things",)),)), tests)
@@ -131,7 +131,7 @@ class Builder(NounPhrases):
         return s.Ask(("colour",), self._owned(descriptions(c)))
 
     def _owned(self, found: list[s.Description]) -> s.Description:
-        """ "What colour helmet is the worker wearing": the helmet on the worker."""
+        """Return the helmet on the worker for "what colour helmet is the worker wearing"."""
         if len(found) == 1:
             return found[0]
         part, owner = found

@@ -1,4 +1,4 @@
-"""Reading descriptions and questions: lark finds every reading that the grammar allows, the cheapest one wins."""
+"""Parsing descriptions and questions. Lark finds every reading that the grammar allows, and the cheapest one wins."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MAX_TOKENS = 40
 """Longer input is no description of a picture, and would take long to parse."""
 
 MAX_LINKS = 6
-"""Readings multiply with every "next to", "with" and "that": with more of them nobody could say what belongs to what."""
+"""The number of readings multiplies with every "next to", "with" and "that"; with more of them the meaning is unclear anyway."""
 
 _LINKS = frozenset({"REL", "WITH", "WITHOUT", "WEAR", "HAVE", "OF", "BETWEEN", "THAT", "FROM", "TO", "EXCEPT"})
 
@@ -32,7 +32,7 @@ def _grammar() -> Lark:
 
 @lru_cache(maxsize=512)
 def parse_description(text: str) -> Description:
-    """The best reading of a noun phrase; one that fits no rule is taken as a bag of words, which must all apply."""
+    """Return the best reading of a noun phrase. A text that fits no rule becomes a list of words that must all apply."""
     found = _best(text, "description")
     if isinstance(found, Description):
         return found
@@ -41,7 +41,7 @@ def parse_description(text: str) -> Description:
 
 @lru_cache(maxsize=512)
 def parse_question(text: str) -> Question | None:
-    """The best reading of a question, None when it fits no rule."""
+    """Return the best reading of a question, None when it fits no rule."""
     found = _best(text, "question") or _best(text, "description")
     if not isinstance(found, Description):
         return found

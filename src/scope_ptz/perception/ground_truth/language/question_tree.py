@@ -1,4 +1,4 @@
-"""What a description or a question says, as plain data. Words are lower case; nothing is resolved against a scene yet."""
+"""Descriptions and questions as plain data. Words are in lower case, and nothing is resolved against a scene yet."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ Words = tuple[str, ...]
 
 @dataclass(frozen=True, slots=True)
 class Phrase:
-    """One noun phrase. ``words`` is its core as said ("red car", "cars parked"); where the noun ends is decided with the scene."""
+    """One noun phrase. ``words`` is its core ("red car", "cars parked"); the scene decides where the noun ends."""
 
     words: Words
     tests: tuple[Test, ...] = ()
     order: Order | None = None
     ordinal: int | None = None
     amount: int | None = None
-    """How many are meant ("the two nearest cones"); matters only beside ``order``."""
+    """How many are meant ("the two nearest cones"); used only together with ``order``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class Description:
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """A superlative; with ``reference`` nearest or furthest from that ("closest to the van"), else from the camera."""
+    """A superlative: nearest to or furthest from ``reference`` ("closest to the van"), or else from the camera."""
 
     key: OrderKey
     reference: Description | None = None
@@ -40,7 +40,7 @@ class Order:
 
 @dataclass(frozen=True, slots=True)
 class Relation:
-    """``said``: the preposition as it was said, where several mean one kind."""
+    """A relation to other things. ``said`` is the preposition in the text, because several prepositions mean one kind."""
 
     kind: RelationKind
     other: Description
@@ -49,13 +49,15 @@ class Relation:
 
 @dataclass(frozen=True, slots=True)
 class Between:
+    """A place between two things."""
+
     first: Description
     second: Description
 
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """A part of the frame: one or two sides; ``half`` means the half ("left half"), else a third ("on the left")."""
+    """A part of the frame: one or two sides. ``half`` means a half ("left half") instead of a band ("on the left")."""
 
     sides: tuple[Side, ...]
     half: bool = False
@@ -63,7 +65,7 @@ class Region:
 
 @dataclass(frozen=True, slots=True)
 class Has:
-    """ "with a yellow helmet", "wearing orange vests". ``worn`` when only a person can be meant."""
+    """A test for what something has ("with a yellow helmet", "wearing orange vests"). ``worn``: only a person can be meant."""
 
     what: Description
     worn: bool = False
@@ -71,7 +73,7 @@ class Has:
 
 @dataclass(frozen=True, slots=True)
 class Says:
-    """Bears a text: these words, or any text at all when there are none."""
+    """Bears a text: these words, or any text when there are none."""
 
     words: Words
 
@@ -92,7 +94,7 @@ class Faces:
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """ "Closer than the van", "bigger than the car"."""
+    """A comparison of size or distance ("closer than the van", "bigger than the car")."""
 
     key: OrderKey
     other: Description
@@ -100,7 +102,7 @@ class Measured:
 
 @dataclass(frozen=True, slots=True)
 class Within:
-    """Closer than so many metres to the camera or to ``other``; ``beyond``: further."""
+    """Within some metres of the camera or of ``other``; with ``beyond``, further away than that."""
 
     metres: float
     other: Description | None = None
@@ -109,6 +111,8 @@ class Within:
 
 @dataclass(frozen=True, slots=True)
 class Not:
+    """The opposite of a test."""
+
     test: Test
 
 
@@ -127,7 +131,13 @@ Test = Relation | Between | Region | Has | Says | Is | Faces | Measured | Within
 
 @dataclass(frozen=True, slots=True)
 class Exists:
-    """ "Is there ..."; ``negated``: "is there no ..."; ``least``/``most``: how many there must be."""
+    """Ask whether there is something.
+
+    Attributes:
+        negated: Whether the question is "is there no ...".
+        least: How many there must be at least.
+        most: How many there may be at most.
+    """
 
     what: Description
     negated: bool = False
@@ -137,7 +147,7 @@ class Exists:
 
 @dataclass(frozen=True, slots=True)
 class Count:
-    """ "How many ... (are ...)"."""
+    """Ask how many there are, or for how many the tests hold."""
 
     what: Description
     tests: tuple[Test, ...] = ()
@@ -145,7 +155,7 @@ class Count:
 
 @dataclass(frozen=True, slots=True)
 class CountKinds:
-    """ "How many colours/kinds of car are there?" """
+    """Ask how many colours or kinds of a thing there are."""
 
     attribute: Words
     what: Description
@@ -153,7 +163,7 @@ class CountKinds:
 
 @dataclass(frozen=True, slots=True)
 class YesNo:
-    """ "Is/are/does SUBJECT TEST?". ``tests`` may be empty: then the predicate hides in the words of the subject."""
+    """Ask whether tests hold for a subject. Without tests, the predicate is within the words of the subject."""
 
     subject: Description
     tests: tuple[Test, ...]
@@ -162,7 +172,7 @@ class YesNo:
 
 @dataclass(frozen=True, slots=True)
 class IsA:
-    """ "Is the red vehicle a bus?" """
+    """Ask whether something is of a kind ("is the red vehicle a bus?")."""
 
     subject: Description
     what: Description
@@ -170,7 +180,7 @@ class IsA:
 
 @dataclass(frozen=True, slots=True)
 class Ask:
-    """ "What colour is the van?", "which lane is closed?": the value of an attribute. ``what`` None: of anything."""
+    """Ask for the value of an attribute ("what colour is the van?", "which lane is closed?"). ``what`` None means any thing."""
 
     attribute: Words
     what: Description | None
@@ -178,7 +188,7 @@ class Ask:
 
 @dataclass(frozen=True, slots=True)
 class Read:
-    """Text on something, or all text (``what`` None). ``plate``: the number plate only."""
+    """Ask for the text on something, or for all text when ``what`` is None. ``plate``: only the number plate."""
 
     what: Description | None
     plate: bool = False
@@ -186,19 +196,21 @@ class Read:
 
 @dataclass(frozen=True, slots=True)
 class TextExists:
-    """ "Is there any text (on the van)?", "can you read the sign?" """
+    """Ask whether there is any text, or whether it can be read."""
 
     what: Description | None
 
 
 @dataclass(frozen=True, slots=True)
 class Where:
+    """Ask where something is."""
+
     what: Description
 
 
 @dataclass(frozen=True, slots=True)
 class What:
-    """ "What is behind the barrier?", "which cars are parked?", "who is next to the van?": name all that fit."""
+    """Ask for the names of all things that fit ("what is behind the barrier?", "which cars are parked?")."""
 
     what: Description
     tests: tuple[Test, ...] = ()
@@ -206,14 +218,14 @@ class What:
 
 @dataclass(frozen=True, slots=True)
 class Identify:
-    """ "What is the thing on the left?", "what kind of vehicle is behind the fence?" """
+    """Ask what something is ("what is the thing on the left?", "what kind of vehicle is behind the fence?")."""
 
     what: Description
 
 
 @dataclass(frozen=True, slots=True)
 class Which:
-    """ "Which is closer, the van or the lorry?" """
+    """Ask which of several things comes first ("which is closer, the van or the lorry?")."""
 
     key: OrderKey
     options: Description
@@ -221,13 +233,15 @@ class Which:
 
 @dataclass(frozen=True, slots=True)
 class HowFar:
+    """Ask how far away something is, from the camera or from ``other``."""
+
     what: Description
     other: Description | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Compare:
-    """ "Is the van bigger/closer/further left than the lorry?" """
+    """Ask whether one thing exceeds another ("is the van bigger than the lorry?")."""
 
     key: OrderKey
     first: Description
@@ -236,7 +250,7 @@ class Compare:
 
 @dataclass(frozen=True, slots=True)
 class CompareCount:
-    """ "Are there more/fewer/as many cars than vans?"; with ``which`` "which are there more of, cars or vans?" """
+    """Ask whether there are more, fewer or as many of one kind as of another. ``which``: ask which there are more of."""
 
     sense: Literal["more", "fewer", "same"]
     first: Description
@@ -246,7 +260,7 @@ class CompareCount:
 
 @dataclass(frozen=True, slots=True)
 class MostCommon:
-    """ "Which colour of car is most common?", "what is the most common vehicle?" """
+    """Ask for the most or least common colour or kind."""
 
     attribute: Words
     what: Description
@@ -255,7 +269,7 @@ class MostCommon:
 
 @dataclass(frozen=True, slots=True)
 class Describe:
-    """ "What do you see (on the left)?", "describe the van"."""
+    """Ask for a description of the view, of a part of it, or of a thing."""
 
     tests: tuple[Test, ...] = ()
     what: Description | None = None
@@ -263,7 +277,7 @@ class Describe:
 
 @dataclass(frozen=True, slots=True)
 class Happening:
-    """ "What is happening?" """
+    """Ask what is happening."""
 
 
 Question = (

@@ -1,4 +1,6 @@
-"""From text to typed tokens: the closed-class phrases of the vocabulary, numbers, ordinals, quoted text, and ``W`` for all else."""
+"""From text to typed tokens: the closed-class phrases of the vocabulary, numbers, ordinals, quoted text, and ``W`` for other
+words.
+"""
 
 from __future__ import annotations
 
@@ -59,7 +61,7 @@ _PARTICLES = frozenset(["on", "off", "up", "down", "in", "out"])
 
 
 class Passed(Lexer):
-    """Hands lark the tokens that were made here."""
+    """A lexer that gives Lark the tokens made in this module."""
 
     __future_interface__ = 1
 
@@ -72,7 +74,7 @@ class Passed(Lexer):
 
 @cache
 def _phrases() -> tuple[dict[tuple[str, ...], tuple[str, str]], int]:
-    """Every closed-class phrase with its type and value, and the length of the longest."""
+    """Return every closed-class phrase with its type and value, and the length of the longest."""
     table: dict[tuple[str, ...], tuple[str, str]] = {}
     for line in files(__package__).joinpath("vocabulary.txt").read_text("utf-8").splitlines():
         if not line.strip() or line.startswith("#"):
@@ -138,7 +140,7 @@ def _add_closed_class(tokens: list[Token], words: list[str], i: int, size: int) 
 
 
 def _noun(words: list[str], start: int, table: dict[tuple[str, ...], tuple[str, str]]) -> int:
-    """How many words from here on are a known noun that holds a word of the closed classes ("charging points"); else 0."""
+    """Return how many words from here on are a known noun that contains a closed-class word ("charging points"), 0 for none."""
     for size in range(min(_LONGEST_NOUN, len(words) - start), 1, -1):
         phrase = words[start : start + size]
         if any((word,) in table for word in phrase[1:]) and (phrase[0],) not in table and lexicon().concept(" ".join(phrase)):
@@ -160,7 +162,7 @@ def _open(word: str) -> Token:
 
 
 def _literal(words: list[str], start: int) -> tuple[str, int]:
-    """The text after "says": the quoted string, or everything up to the end."""
+    """Return the text after "says": the quoted string, or everything up to the end."""
     if start < len(words) and words[start][0] in "\"'":
         return words[start].strip("\"'"), start + 1
     end = start
@@ -172,7 +174,7 @@ def _literal(words: list[str], start: int) -> tuple[str, int]:
 
 
 def _without_frame(words: list[str]) -> list[str]:
-    """Drops "in the picture", "of the whole scene" and the like: everything is about the picture."""
+    """Drop "in the picture", "of the whole scene" and the like, because every question is about the picture."""
     kept: list[str] = []
     i = 0
     while i < len(words):
@@ -191,10 +193,10 @@ def _without_frame(words: list[str]) -> list[str]:
 
 
 def _ends_in_place(words: list[str], at: int) -> bool:
-    """Whether the words end in "site" or the like here ("on site", but not "on the site office")."""
+    """Return whether the words end in "site" or the like here ("on site", but not "on the site office")."""
     return at < len(words) and words[at] in _PLACE_WORDS and words[at + 1 :] in ([], ["?"])
 
 
 def _closes(words: list[str], at: int) -> bool:
-    """Whether the frame word ends its phrase ("the camera" but not "the camera van")."""
+    """Return whether the frame word ends its phrase ("the camera" but not "the camera van")."""
     return at + 1 >= len(words) or words[at + 1] not in _FRAME_WORDS

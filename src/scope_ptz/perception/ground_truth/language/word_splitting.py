@@ -15,7 +15,10 @@ _SPLIT = re.compile(r'"[^"]*"|(?<![a-z0-9])\'[^\']+\'(?![a-z0-9])|[a-z0-9]+(?:[-
 
 
 def split(text: str) -> list[str]:
-    """Lower-case words, numbers, commas and quoted strings (quotes kept); contractions undone, possessives as ``x 's``."""
+    """Return lower-case words, numbers, commas and quoted strings with their quotes.
+
+    Contractions are expanded, and possessives are split into the word and ``'s``.
+    """
     plain = unicodedata.normalize("NFKC", text).lower()
     for curly, straight in (("\u2019", "'"), ("\u2018", "'"), ("\u201c", '"'), ("\u201d", '"')):
         plain = plain.replace(curly, straight)
