@@ -20,7 +20,7 @@ from tests.perception import yard
 
 def ground_truth() -> GroundTruthPerception:
     return GroundTruthPerception(
-        cast(Any, lambda _: yard.StandInScene()), look=lambda _s, _v, projection, _t: yard.truth(projection)
+        cast(Any, lambda _: yard.StandInScene()), read_truth=lambda _s, _v, projection, _t: yard.truth(projection)
     )
 
 
@@ -67,7 +67,7 @@ async def test_damaged_packs_are_no_empty_answers() -> None:
         raise PackError("ids.png is damaged")
 
     with pytest.raises(PerceptionError, match="damaged"):
-        await GroundTruthPerception(cast(Any, lambda _: yard.StandInScene()), look=broken).detect(yard.frame(), "car")
+        await GroundTruthPerception(cast(Any, lambda _: yard.StandInScene()), read_truth=broken).detect(yard.frame(), "car")
 
 
 @pytest.mark.anyio

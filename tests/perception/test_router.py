@@ -180,7 +180,7 @@ async def test_a_sign_that_is_not_found_is_said_and_all_text_given() -> None:
 async def test_what_none_can_do_is_an_error() -> None:
     eyes = RouterPerception(detector=Stand("owl", FINDS))
     assert eyes.skills == FINDS
-    with pytest.raises(PerceptionError, match="None of the eyes"):
+    with pytest.raises(PerceptionError, match="No part of"):
         await eyes.query(FRAME, "what colour is the door?")
 
 
@@ -199,5 +199,5 @@ def test_made_from_a_spec() -> None:
     }
     eyes = make_backend(BackendSpec(name="composed", backend="router", options=parts))
     assert isinstance(eyes, RouterPerception) and eyes.name == "composed" and eyes.skills == ALL_SKILLS
-    with pytest.raises(ConfigError, match="made of nothing"):
+    with pytest.raises(ConfigError, match="combines no backends"):
         make_backend(BackendSpec(name="composed", backend="router"))

@@ -19,7 +19,7 @@ from scope_ptz.perception.backends import make_backend
 from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import Answer, Box, Caption, Detections, Perception, Point, Points
 from scope_ptz.perception.models.tile_geometry import OVERLAP, TILE_ASPECT, iou, suppressed, tiles
-from scope_ptz.perception.models.tiled_panoramas import WidePerception
+from scope_ptz.perception.models.tiled_panoramas import TiledPerception
 from tests.perception import pictures
 
 HEIGHT, WIDTH = 200, 1600
@@ -100,7 +100,7 @@ def test_tiles_cover_the_picture_and_overlap(width: int, height: int) -> None:
     ids=["apart", "in an overlap", "across a border", "across all", "at the end", "neighbours", "none"],
 )
 async def test_everything_is_found_once_where_it_is(spans: list[tuple[int, int]]) -> None:
-    eyes = WidePerception(Blobs())
+    eyes = TiledPerception(Blobs())
     found = await eyes.detect(panorama(*spans), "blob")
     seen = sorted((b.x_min * WIDTH, b.x_max * WIDTH) for b in found.boxes)
     assert np.allclose(seen, sorted(spans), atol=1.0) if spans else seen == []
@@ -110,7 +110,7 @@ async def test_everything_is_found_once_where_it_is(spans: list[tuple[int, int]]
 @pytest.mark.anyio
 async def test_parts_are_frames_of_their_own_looked_at_together() -> None:
     blobs = Blobs()
-    found = await WidePerception(blobs).detect(panorama((10, 30)), "blob")
+    found = await TiledPerception(blobs).detect(panorama((10, 30)), "blob")
     assert set(blobs.shown) == {(320, HEIGHT)} and blobs.spans[0] == pytest.approx(280 * 320 / WIDTH)
     assert 1 < blobs.most_at_once <= 4
     assert len(found.attempts) == len(blobs.shown) and found.notes == ("as seen",)
@@ -118,29 +118,29 @@ async def test_parts_are_frames_of_their_own_looked_at_together() -> None:
 
 @pytest.mark.anyio
 async def test_points_are_found_once_too() -> None:
-    found = await WidePerception(Blobs()).point(panorama((10, 30), (300, 320), (900, 960)), "blob")
+    found = await TiledPerception(Blobs()).point(panorama((10, 30), (300, 320), (900, 960)), "blob")
     assert sorted(p.x * WIDTH for p in found.points) == pytest.approx([20, 310, 930], abs=2)
 
 
 @pytest.mark.anyio
 async def test_a_part_that_fails_fails_the_look() -> None:
     with pytest.raises(PerceptionError, match="tired") as caught:
-        await WidePerception(Blobs(fails_on=3)).detect(panorama((10, 30)), "blob")
+        await TiledPerception(Blobs(fails_on=3)).detect(panorama((10, 30)), "blob")
     assert caught.value.kind == "server-error" and "server-error" in [a.kind for a in caught.value.attempts]
 
 
 @pytest.mark.anyio
 async def test_behind_the_seam_of_a_full_turn_is_one_thing() -> None:
     spans = [(0, 30), (1580, WIDTH), (700, 720)]
-    around = await WidePerception(Blobs()).detect(panorama(*spans, full_turn=True), "blob")
+    around = await TiledPerception(Blobs()).detect(panorama(*spans, full_turn=True), "blob")
     assert len(around.boxes) == 2
-    assert len((await WidePerception(Blobs()).detect(panorama(*spans), "blob")).boxes) == 3
+    assert len((await TiledPerception(Blobs()).detect(panorama(*spans), "blob")).boxes) == 3
 
 
 @pytest.mark.anyio
 async def test_ordinary_frames_and_questions_go_through_whole() -> None:
     blobs = Blobs()
-    eyes = WidePerception(blobs)
+    eyes = TiledPerception(blobs)
     await eyes.detect(pictures.frame(), "blob")
     await eyes.point(pictures.frame(), "blob")
     assert blobs.shown == [(640, 360)] * 2
@@ -150,8 +150,8 @@ async def test_ordinary_frames_and_questions_go_through_whole() -> None:
 def test_eyes_that_would_shrink_a_panorama_are_wrapped() -> None:
     endpoint = {"url": "http://127.0.0.1:9/v1", "model": "m"}
     served = make_backend(BackendSpec(name="eyes", backend="moondream", endpoint=endpoint))  # type: ignore[arg-type]
-    assert isinstance(served, WidePerception) and served.name == "eyes"
-    assert not isinstance(make_backend(BackendSpec(name="ocr", backend="ocr")), WidePerception)
+    assert isinstance(served, TiledPerception) and served.name == "eyes"
+    assert not isinstance(make_backend(BackendSpec(name="ocr", backend="ocr")), TiledPerception)
 
 
 def test_overlap_and_suppression() -> None:

@@ -114,14 +114,14 @@ def test_models_answer_to_their_names(registry: Registry, name: str) -> None:
     assert registry.model(name).name == "qwen3-4b"
 
 
-def test_pairs_are_made_of_any_planner_and_eyes(registry: Registry) -> None:
+def test_pairs_are_made_of_any_planner_and_perception(registry: Registry) -> None:
     pair = registry.pair("qwen3.5-4b+rapidocr")
     assert (pair.planner, pair.perception, pair.paper_average) == ("qwen3.5-4b", "rapidocr", None)
     both = registry.pair("qwen3.5-9b")
     assert both.planner == both.perception == "qwen3.5-9b"
-    with pytest.raises(ConfigError, match="planner only"):
+    with pytest.raises(ConfigError, match="only a planner"):
         registry.pair("qwen3-4b")
-    with pytest.raises(ConfigError, match="cannot see"):
+    with pytest.raises(ConfigError, match="cannot be used for perception"):
         registry.pair("qwen3-4b+qwen3-4b")
     with pytest.raises(UnknownNameError, match="Did you mean 'qwen3-4b'"):
         registry.pair("qwen3-4c+moondream2")

@@ -49,11 +49,11 @@ class Check(BaseModel):
 Finding = tuple[Verdict, str]
 
 
-async def checked(what: str, look: Callable[[], Awaitable[Finding]]) -> Check:
+async def checked(what: str, check: Callable[[], Awaitable[Finding]]) -> Check:
     """Run one check. An error that SCOPE raises on purpose is a failed check."""
     began, kind = perf_counter(), ""
     try:
-        verdict, detail = await look()
+        verdict, detail = await check()
     except ScopeError as error:
         verdict, detail, kind = "failed", str(error), str(getattr(error, "kind", None) or "")
     return Check(what=what, verdict=verdict, detail=detail, kind=kind, seconds=round(perf_counter() - began, 3))
@@ -90,15 +90,15 @@ async def _listing(endpoint: Endpoint) -> Finding:
 
 async def _answers(client: ChatClient, *, stream: bool) -> Finding:
     reply = await client.complete(_GREETING, stream=stream)
-    said = f"{reply.output_tokens} tokens in {reply.seconds:.2f} s"
+    figures = f"{reply.output_tokens} tokens in {reply.seconds:.2f} s"
     if not (reply.text or reply.reasoning):
         return "failed", "the reply is empty"
     if not reply.output_tokens:
         return "partly", "it does not count tokens, so neither budgets nor speeds can be told"
     if stream and reply.first_token_s is None:
-        return "partly", f"{said}; not streamed: it came as a whole"
+        return "partly", f"{figures}; not streamed: it came as a whole"
     first = f", the first after {reply.first_token_s:.2f} s" if reply.first_token_s is not None else ""
-    return "ok", said + first
+    return "ok", figures + first
 
 
 async def _two_at_once(client: ChatClient) -> Finding:

@@ -112,8 +112,8 @@ class ServerFailure(ScopeError):  # noqa: N818 - named like the kinds in this pa
         facts = [f"HTTP {status}"] if status is not None and status != 200 else []
         facts += [f"{len(history)} attempts"] if len(history) > 1 else []
         aside = f" ({', '.join(facts)})" if facts else ""
-        said = f": {detail.rstrip('. ')}" if detail else ""
-        super().__init__(f"The model server at {where} {what}{aside}{said}. {remedy}")
+        message = f": {detail.rstrip('. ')}" if detail else ""
+        super().__init__(f"The model server at {where} {what}{aside}{message}. {remedy}")
 
     @property
     def attempts(self) -> int:

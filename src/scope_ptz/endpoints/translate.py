@@ -96,12 +96,12 @@ def _body_text(response: Any) -> str:
 
 def status_failure(status: int, headers: Mapping[str, str], body: str, endpoint: Endpoint) -> ServerFailure:
     """Return the failure for a reply whose status is not success."""
-    said = _Said(body)
+    parsed = _ErrorBody(body)
     if 300 <= status < 400:
-        kind, said.message = K.NOT_FOUND, f"it sends on to {headers.get('location', 'nowhere')}"
-    elif status in (400, 413, 422, 500) and said.overflow:
+        kind, parsed.message = K.NOT_FOUND, f"it sends on to {headers.get('location', 'nowhere')}"
+    elif status in (400, 413, 422, 500) and parsed.overflow:
         kind = K.CONTEXT_OVERFLOW
-    elif status in (401, 402, 403, 407) or (status == 429 and said.spent):
+    elif status in (401, 402, 403, 407) or (status == 429 and parsed.spent):
         kind = K.UNAUTHORISED
     elif status == 429:
         kind = K.RATE_LIMITED
@@ -111,7 +111,7 @@ def status_failure(status: int, headers: Mapping[str, str], body: str, endpoint:
         kind = K.SERVER_ERROR
     else:
         kind = K.BAD_REQUEST
-    detail = in_brief(said.message, endpoint.secret)
+    detail = in_brief(parsed.message, endpoint.secret)
     return ServerFailure(kind, where=endpoint.url, status=status, retry_after_s=retry_after_s(headers), detail=detail)
 
 
@@ -119,16 +119,16 @@ def error_body(body: dict[str, Any], endpoint: Endpoint, status: int = 200) -> S
     """Return the failure in a reply that claims success, None when there is no error in it."""
     if not body.get("error") and body.get("object") != "error" and not _only_words(body):
         return None
-    said = _Said(json.dumps(body))
-    if said.overflow:
+    parsed = _ErrorBody(json.dumps(body))
+    if parsed.overflow:
         kind = K.CONTEXT_OVERFLOW
-    elif said.tags & {"429", "rate_limit_exceeded"}:
+    elif parsed.tags & {"429", "rate_limit_exceeded"}:
         kind = K.RATE_LIMITED
-    elif said.tags & {"401", "403", "invalid_api_key"}:
+    elif parsed.tags & {"401", "403", "invalid_api_key"}:
         kind = K.UNAUTHORISED
     else:
         kind = K.ERROR_BODY
-    return ServerFailure(kind, where=endpoint.url, status=status, detail=in_brief(said.message, endpoint.secret))
+    return ServerFailure(kind, where=endpoint.url, status=status, detail=in_brief(parsed.message, endpoint.secret))
 
 
 _WORDS = frozenset({"detail", "message"})
@@ -140,7 +140,7 @@ def _only_words(body: dict[str, Any]) -> bool:
     return body.keys() <= _AROUND_WORDS and any(body.get(name) for name in _WORDS)
 
 
-class _Said:
+class _ErrorBody:
     """An error body.
 
     Attributes:

@@ -137,7 +137,7 @@ class Perception(ABC):
 
     name: str
     skills: frozenset[Skill] = ALL_SKILLS
-    sees_wide: bool = False
+    handles_panoramas: bool = False
     """Whether it finds small things in a panorama by itself. Other backends get panoramas in parts (``models.tiled_panoramas``)."""
 
     @abstractmethod

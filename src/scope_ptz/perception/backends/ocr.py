@@ -45,7 +45,7 @@ class OcrPerception(Perception):
     mean that there is no car. Each frame is read once and remembered for further questions.
     """
 
-    sees_wide = True
+    handles_panoramas = True
 
     def __init__(self, reader: Reader, name: str = "ocr") -> None:
         self.name = name

@@ -96,8 +96,10 @@ class OpenAIVisionPerception(Perception):
         return await picture_of(frame, size)
 
     def _read(self, reply: tuple[ChatReply, tuple[Attempt, ...]], began: float) -> VisionReply:
-        said, earlier = reply
-        return VisionReply(self.name, said.text, began, (*earlier, *said.attempts), cut=said.finish_reason == "length")
+        chat_reply, earlier = reply
+        return VisionReply(
+            self.name, chat_reply.text, began, (*earlier, *chat_reply.attempts), cut=chat_reply.finish_reason == "length"
+        )
 
     async def _ask(
         self, picture: Picture, prompt: str, schema: dict[str, Any] | None = None

@@ -123,24 +123,24 @@ class LocalMoondreamPerception(Perception):
         return VisionReply(self.name, json.dumps({"objects": found}, default=float), began).points(UNIT, (1, 1))
 
     async def _call(self, frame: Frame, method: str, field: str, *given: str, **options: str) -> Any:
-        def look() -> Any:
+        def call() -> Any:
             with self._lock:
                 if self._model is None:
                     self._model = self._load()
                 return getattr(self._model, method)(_pillow(frame.image), *given, **options)[field]
 
-        return await _in_thread(self.name, look)
+        return await _in_thread(self.name, call)
 
 
-async def _in_thread(name: str, look: Callable[[], Any]) -> Any:
+async def _in_thread(name: str, call: Callable[[], Any]) -> Any:
     """Run a model in a worker thread. Any failure becomes a ``PerceptionError``."""
     try:
-        return await to_thread.run_sync(look)
+        return await to_thread.run_sync(call)
     except PerceptionError:
         raise
     # Models run their own code, and out-of-memory errors have a different class on every device.
     except Exception as error:
-        raise PerceptionError(f"{name} could not look: {type(error).__name__}: {error}") from error
+        raise PerceptionError(f"{name} could not call: {type(error).__name__}: {error}") from error
 
 
 def _pillow(image: Image) -> Any:

@@ -19,7 +19,7 @@ from scope_ptz.perception.ground_truth.view import Thing, View, read_view
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.truth import ViewTruth, view_truth
 
-Look = Callable[[Scene, str, Projection, float], ViewTruth]
+TruthReader = Callable[[Scene, str, Projection, float], ViewTruth]
 
 
 class GroundTruthPerception(Perception):
@@ -30,17 +30,17 @@ class GroundTruthPerception(Perception):
     """
 
     name = "ground-truth"
-    sees_wide = True
+    handles_panoramas = True
 
-    def __init__(self, open_scene: Callable[[str], Scene], look: Look = view_truth) -> None:
+    def __init__(self, open_scene: Callable[[str], Scene], read_truth: TruthReader = view_truth) -> None:
         """Set up the backend.
 
         Args:
             open_scene: Returns a scene by name.
-            look: Computes the ground truth of a view.
+            read_truth: Computes the ground truth of a view.
         """
         self.open_scene = open_scene
-        self.look = look
+        self.read_truth = read_truth
 
     async def caption(self, frame: Frame) -> Caption:
         began = time.perf_counter()
@@ -75,7 +75,7 @@ class GroundTruthPerception(Perception):
             )
         try:
             scene = self.open_scene(origin.scene)
-            truth = self.look(scene, origin.viewpoint, frame.projection, origin.time_s)
+            truth = self.read_truth(scene, origin.viewpoint, frame.projection, origin.time_s)
         except (PackError, UnknownNameError) as error:
             raise PerceptionError(f"The ground truth of this frame cannot be read: {error}") from error
         return read_view(self.perceived(truth, frame, asked), scene.file, origin.time_s)

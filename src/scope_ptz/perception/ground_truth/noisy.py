@@ -47,7 +47,7 @@ class NoisyPerception(GroundTruthPerception):
     name = "noisy-ground-truth"
 
     def __init__(self, truth: GroundTruthPerception, seed: int, noise: Noise | None = None) -> None:
-        super().__init__(truth.open_scene, truth.look)
+        super().__init__(truth.open_scene, truth.read_truth)
         self._seed = seed
         self._noise = noise or Noise()
 

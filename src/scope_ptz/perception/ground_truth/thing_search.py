@@ -208,15 +208,15 @@ def _has(view: View, thing: Thing, what: s.Description) -> bool:
 def related(view: View, thing: Thing, kind: s.RelationKind, other: s.Description) -> bool:
     """Return whether a thing stands in a relation to any thing that fits ``other``."""
     others = things_named(view, other)
-    if kind == "on" and thing not in others and _said(view, thing, other):
+    if kind == "on" and thing not in others and _stated(view, thing, other):
         return True
     return any(relation_holds(view, thing, kind, o) for o in others if o is not thing)
 
 
-def _said(view: View, thing: Thing, other: s.Description) -> bool:
+def _stated(view: View, thing: Thing, other: s.Description) -> bool:
     """Return whether a fact or an outfit states the relation: "in the left lane", "in an orange vest"."""
     words = [x for p in other.phrases for x in p.words]
-    if any(set(words) <= set(said) for said in (english.letters(thing.name).split(), *_values(thing))):
+    if any(set(words) <= set(stated) for stated in (english.letters(thing.name).split(), *_values(thing))):
         return True
     return wears(view, thing, words)
 

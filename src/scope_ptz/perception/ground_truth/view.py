@@ -173,8 +173,8 @@ def concepts_of(instance: SceneInstance | SceneActor) -> frozenset[str]:
     if instance.category and (concept := table.concept(instance.category.lower())):
         found |= table.kinds(concept)
     for key in ("kind", "type"):
-        said = str(instance.attributes.get(key, "")).lower()
-        concept = table.concept(said) if said else None
+        kind = str(instance.attributes.get(key, "")).lower()
+        concept = table.concept(kind) if kind else None
         # A barrier of the kind "pedestrian" is for pedestrians and is not a pedestrian.
         if concept and (not found or (table.kinds(concept) & found) - {"thing"}):
             found |= table.kinds(concept)

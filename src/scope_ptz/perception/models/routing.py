@@ -28,7 +28,7 @@ SAME_PLACE = 0.05
 """Points this close together, in frames, count as the same place."""
 
 R = TypeVar("R", Caption, Answer, Detections, Points)
-Look = Callable[[Perception], Awaitable[R]]
+PerceptionCall = Callable[[Perception], Awaitable[R]]
 Share = Callable[[R, R], float]
 
 
@@ -36,7 +36,7 @@ Share = Callable[[R, R], float]
 class _Opinion(Generic[R]):
     """What one backend returned; result and error are None when it was not asked."""
 
-    eyes: Perception
+    backend: Perception
     result: R | None = None
     error: PerceptionError | None = None
 
@@ -49,7 +49,7 @@ class _Opinion(Generic[R]):
 class RouterPerception(Perception):
     """A backend made of others. Each of them is optional, but at least one is needed."""
 
-    sees_wide = True
+    handles_panoramas = True
 
     def __init__(
         self,
@@ -67,26 +67,26 @@ class RouterPerception(Perception):
 
     async def caption(self, frame: Frame) -> Caption:
         order = self._who(self._answerer, self._reader, skill="caption")
-        return await self._first_usable(order, lambda eyes: eyes.caption(frame), _said_alike, compare=False)
+        return await self._first_usable(order, lambda backend: backend.caption(frame), _shared_words, compare=False)
 
     async def query(self, frame: Frame, question: str) -> Answer:
         if not is_reading(question) or self._reader is None:
             order = self._who(self._answerer, skill="query")
-            return await self._first_usable(order, lambda eyes: eyes.query(frame, question), _said_alike)
+            return await self._first_usable(order, lambda backend: backend.query(frame, question), _shared_words)
 
-        async def look(eyes: Perception) -> Answer:
-            return await (self._read(frame, question) if eyes is self._reader else eyes.query(frame, question))
+        async def call(backend: Perception) -> Answer:
+            return await (self._read(frame, question) if backend is self._reader else backend.query(frame, question))
 
         order = self._who(self._reader, self._answerer, skill="query")
-        return await self._first_usable(order, look, _said_alike)
+        return await self._first_usable(order, call, _shared_words)
 
     async def detect(self, frame: Frame, description: str) -> Detections:
         order = self._finders(description, "detect")
-        return await self._first_usable(order, lambda eyes: eyes.detect(frame, description), _same_boxes)
+        return await self._first_usable(order, lambda backend: backend.detect(frame, description), _same_boxes)
 
     async def point(self, frame: Frame, description: str) -> Points:
         order = self._finders(description, "point")
-        return await self._first_usable(order, lambda eyes: eyes.point(frame, description), _same_points)
+        return await self._first_usable(order, lambda backend: backend.point(frame, description), _same_points)
 
     async def close(self) -> None:
         for part in self._who(self._reader, self._detector, self._answerer):
@@ -124,25 +124,27 @@ class RouterPerception(Perception):
         attempts = everything.attempts + bearers.attempts
         return everything.model_copy(update={"text": text, "attempts": attempts, "latency_s": perf_counter() - began})
 
-    async def _first_usable(self, order: Sequence[Perception], look: Look[R], share: Share[R], *, compare: bool = True) -> R:
+    async def _first_usable(
+        self, order: Sequence[Perception], call: PerceptionCall[R], share: Share[R], *, compare: bool = True
+    ) -> R:
         if not order:
-            raise PerceptionError(f"None of the eyes of {self.name} can do this.")
+            raise PerceptionError(f"No part of {self.name} can do this.")
         began = perf_counter()
-        opinions = [_Opinion[R](eyes) for eyes in order]
+        opinions = [_Opinion[R](backend) for backend in order]
         first = opinions[: 2 if self._compare and compare else 1]
         async with anyio.create_task_group() as group:
             for opinion in first:
-                group.start_soon(_ask, opinion, look)
+                group.start_soon(_ask, opinion, call)
         for opinion in opinions[len(first) :]:
             if any(o.usable for o in opinions):
                 break
-            await _ask(opinion, look)
+            await _ask(opinion, call)
         return self._concluded(opinions, share, perf_counter() - began)
 
     def _concluded(self, opinions: Sequence[_Opinion[R]], share: Share[R], latency_s: float) -> R:
         """Return the first usable result with a comparison to the others; without one, raise an error with all reasons."""
         attempts = tuple(a for o in opinions for a in _attempts(o))
-        failed = [(o.eyes.name, o.error) for o in opinions if o.error is not None]
+        failed = [(o.backend.name, o.error) for o in opinions if o.error is not None]
         gave = [o.result for o in opinions if o.result is not None]
         ranked = [o.result for o in opinions if o.usable and o.result is not None] or gave
         if not ranked:
@@ -156,9 +158,9 @@ class RouterPerception(Perception):
         return best.model_copy(update=update)
 
 
-async def _ask(opinion: _Opinion[R], look: Look[R]) -> None:
+async def _ask(opinion: _Opinion[R], call: PerceptionCall[R]) -> None:
     try:
-        opinion.result = await look(opinion.eyes)
+        opinion.result = await call(opinion.backend)
     except PerceptionError as error:
         opinion.error = error
 
@@ -169,9 +171,9 @@ async def _both(
     """Run two perception calls at once and return their errors as values."""
     results: dict[int, Any] = {}
 
-    async def run(index: int, look: Awaitable[Any]) -> None:
+    async def run(index: int, call: Awaitable[Any]) -> None:
         try:
-            results[index] = await look
+            results[index] = await call
         except PerceptionError as error:
             results[index] = error
 
@@ -198,7 +200,7 @@ def _holds(box: Box, line: Box) -> bool:
     return box.x_min <= x <= box.x_max and box.y_min <= y <= box.y_max
 
 
-def _said_alike(a: Caption | Answer, b: Caption | Answer) -> float:
+def _shared_words(a: Caption | Answer, b: Caption | Answer) -> float:
     """Return the share of the words of the shorter text that the other text has, too."""
     one, other = (set(re.findall(r"\w+", x.text.casefold())) - _SMALL_WORDS for x in (a, b))
     if not one or not other:

@@ -27,30 +27,30 @@ FULL_TURN_DEG = 359.5
 R = TypeVar("R", Detections, Points)
 
 
-class WidePerception(Perception):
+class TiledPerception(Perception):
     """Wraps a backend and gives it stitched panoramas in overlapping parts when it searches for things.
 
     A failure of one part fails the whole call, because a count of the rest would be too low. Ordinary frames, questions and
     captions are passed on unchanged.
     """
 
-    sees_wide = True
+    handles_panoramas = True
 
-    def __init__(self, eyes: Perception) -> None:
-        self.eyes, self.name, self.skills = eyes, eyes.name, eyes.skills
+    def __init__(self, backend: Perception) -> None:
+        self.backend, self.name, self.skills = backend, backend.name, backend.skills
 
     async def caption(self, frame: Frame) -> Caption:
-        return await self.eyes.caption(frame)
+        return await self.backend.caption(frame)
 
     async def query(self, frame: Frame, question: str) -> Answer:
-        return await self.eyes.query(frame, question)
+        return await self.backend.query(frame, question)
 
     async def detect(self, frame: Frame, description: str) -> Detections:
         parts = _parts(frame)
         if len(parts) == 1:
-            return await self.eyes.detect(frame, description)
+            return await self.backend.detect(frame, description)
         began = perf_counter()
-        seen = await _all([(tile, partial(self.eyes.detect, part, description)) for tile, part in parts])
+        seen = await _all([(tile, partial(self.backend.detect, part, description)) for tile, part in parts])
         boxes = merged(((tile, found.boxes) for tile, found in seen), frame.width)
         if isinstance(frame.projection, Equirectangular) and frame.projection.pan_span_deg >= FULL_TURN_DEG:
             boxes = without_seam_twins(boxes)
@@ -61,15 +61,15 @@ class WidePerception(Perception):
     async def point(self, frame: Frame, description: str) -> Points:
         parts = _parts(frame)
         if len(parts) == 1:
-            return await self.eyes.point(frame, description)
+            return await self.backend.point(frame, description)
         began = perf_counter()
-        seen = await _all([(tile, partial(self.eyes.point, part, description)) for tile, part in parts])
+        seen = await _all([(tile, partial(self.backend.point, part, description)) for tile, part in parts])
         near = SAME_POINT / 5 * frame.height / frame.width
         points = merged_points(((tile, found.points) for tile, found in seen), frame.width, near)
         return _together([found for _, found in seen], began).model_copy(update={"points": tuple(points)})
 
     async def close(self) -> None:
-        await self.eyes.close()
+        await self.backend.close()
 
 
 def _parts(frame: Frame) -> list[tuple[Tile, Frame]]:
@@ -90,7 +90,7 @@ def _part(frame: Frame, whole: Equirectangular, tile: Tile) -> Frame:
     return Frame(np.ascontiguousarray(tile.crop(frame.image)), frame.pose, span_deg, frame.time_s, projection, frame.origin)
 
 
-async def _all(looks: list[tuple[Tile, Callable[[], Awaitable[R]]]]) -> list[tuple[Tile, R]]:
+async def _all(calls: list[tuple[Tile, Callable[[], Awaitable[R]]]]) -> list[tuple[Tile, R]]:
     """Run all calls, a few at a time, and return the results in order.
 
     Raises:
@@ -100,7 +100,7 @@ async def _all(looks: list[tuple[Tile, Callable[[], Awaitable[R]]]]) -> list[tup
     errors: list[PerceptionError] = []
     limiter = anyio.CapacityLimiter(AT_ONCE)
 
-    async def look(index: int, ask: Callable[[], Awaitable[R]]) -> None:
+    async def run(index: int, ask: Callable[[], Awaitable[R]]) -> None:
         async with limiter:
             if errors:
                 return
@@ -110,13 +110,13 @@ async def _all(looks: list[tuple[Tile, Callable[[], Awaitable[R]]]]) -> list[tup
                 errors.append(error)
 
     async with anyio.create_task_group() as group:
-        for index, (_, ask) in enumerate(looks):
-            group.start_soon(look, index, ask)
+        for index, (_, ask) in enumerate(calls):
+            group.start_soon(run, index, ask)
     if errors:
         tried: list[Tried] = [attempt for found in results.values() for attempt in found.attempts]
         tried += [attempt for error in errors for attempt in error.attempts]
         raise PerceptionError(str(errors[0]), kind=errors[0].kind, attempts=tried) from errors[0]
-    return [(tile, results[index]) for index, (tile, _) in enumerate(looks)]
+    return [(tile, results[index]) for index, (tile, _) in enumerate(calls)]
 
 
 def _together(parts: list[R], began: float) -> R:

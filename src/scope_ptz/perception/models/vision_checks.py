@@ -13,7 +13,9 @@ _MOST_WORDS = 120
 _MANY = 100
 
 
-async def check_perception(eyes: Perception, frame: Frame, *, thing: str, absent: str = "purple elephant") -> AsyncIterator[Check]:
+async def check_perception(
+    perception: Perception, frame: Frame, *, thing: str, absent: str = "purple elephant"
+) -> AsyncIterator[Check]:
     """Check each skill of a backend.
 
     A reply that becomes a result was parsed, and its boxes lie in the frame.
@@ -24,36 +26,36 @@ async def check_perception(eyes: Perception, frame: Frame, *, thing: str, absent
         thing: Something that is in the frame.
         absent: Something that is not in the frame.
     """
-    if "caption" in eyes.skills:
-        yield await checked("a caption", lambda: _caption(eyes, frame))
-    if "query" in eyes.skills:
-        yield await checked("a question", lambda: _query(eyes, frame))
-    if "detect" in eyes.skills:
-        yield await checked(f"boxes of '{thing}'", lambda: _detect(eyes, frame, thing, expected=True))
-        yield await checked(f"boxes of '{absent}'", lambda: _detect(eyes, frame, absent, expected=False))
-    if "point" in eyes.skills:
-        yield await checked(f"points on '{thing}'", lambda: _point(eyes, frame, thing))
+    if "caption" in perception.skills:
+        yield await checked("a caption", lambda: _caption(perception, frame))
+    if "query" in perception.skills:
+        yield await checked("a question", lambda: _query(perception, frame))
+    if "detect" in perception.skills:
+        yield await checked(f"boxes of '{thing}'", lambda: _detect(perception, frame, thing, expected=True))
+        yield await checked(f"boxes of '{absent}'", lambda: _detect(perception, frame, absent, expected=False))
+    if "point" in perception.skills:
+        yield await checked(f"points on '{thing}'", lambda: _point(perception, frame, thing))
 
 
-async def _caption(eyes: Perception, frame: Frame) -> Finding:
-    return _said((await eyes.caption(frame)).text)
+async def _caption(perception: Perception, frame: Frame) -> Finding:
+    return _stated((await perception.caption(frame)).text)
 
 
-async def _query(eyes: Perception, frame: Frame) -> Finding:
-    return _said((await eyes.query(frame, _QUESTION)).text)
+async def _query(perception: Perception, frame: Frame) -> Finding:
+    return _stated((await perception.query(frame, _QUESTION)).text)
 
 
-def _said(text: str) -> Finding:
+def _stated(text: str) -> Finding:
     words = " ".join(text.split())
     return ("ok", f"'{words[:_MOST_WORDS]}'") if words else ("failed", "it said nothing")
 
 
-async def _detect(eyes: Perception, frame: Frame, thing: str, *, expected: bool) -> Finding:
-    return _found(len((await eyes.detect(frame, thing)).boxes), expected=expected)
+async def _detect(perception: Perception, frame: Frame, thing: str, *, expected: bool) -> Finding:
+    return _found(len((await perception.detect(frame, thing)).boxes), expected=expected)
 
 
-async def _point(eyes: Perception, frame: Frame, thing: str) -> Finding:
-    return _found(len((await eyes.point(frame, thing)).points), expected=True)
+async def _point(perception: Perception, frame: Frame, thing: str) -> Finding:
+    return _found(len((await perception.point(frame, thing)).points), expected=True)
 
 
 def _found(count: int, *, expected: bool) -> Finding:

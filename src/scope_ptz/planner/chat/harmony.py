@@ -19,7 +19,7 @@ def read_harmony(text: str) -> tuple[str, list[str]]:
     """
     if "<|channel|>" not in text:
         return text, []
-    said: list[str] = []
+    visible: list[str] = []
     thoughts: list[str] = []
     header = ""
     in_body = False
@@ -29,21 +29,21 @@ def read_harmony(text: str) -> tuple[str, list[str]]:
     for token, piece in zip(pieces[1::2], pieces[2::2], strict=True):
         if token == "message":  # noqa: S105 - a token of a language, not of a login
             in_body = True
-            _sort(header, piece.strip(), said, thoughts)
+            _file(header, piece.strip(), visible, thoughts)
         elif token in ("start", "channel", "constrain"):
             header = piece if in_body else f"{header} {piece}"
             in_body = False
         else:
             header, in_body = "", False
-            said.append(piece)
-    return "".join(said), thoughts
+            visible.append(piece)
+    return "".join(visible), thoughts
 
 
-def _sort(header: str, body: str, said: list[str], thoughts: list[str]) -> None:
+def _file(header: str, body: str, visible: list[str], thoughts: list[str]) -> None:
     recipient = _RECIPIENT.search(header)
     if recipient:
-        said.append(f"<tool_call><function={recipient[1]}>{body}</function></tool_call>")
+        visible.append(f"<tool_call><function={recipient[1]}>{body}</function></tool_call>")
     elif "analysis" in header:
         thoughts.append(body)
     else:
-        said.append(body + "\n")
+        visible.append(body + "\n")

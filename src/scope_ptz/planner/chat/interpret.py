@@ -116,9 +116,9 @@ def _cut_short(text: str) -> str:
 
 
 def _ending(text: str, *, called: bool) -> tuple[str, str]:
-    said = _KIND.match(text)
-    if said and (rest := text[said.end() :].strip()):
-        return ("clarification" if said["kind"].upper() == "CLARIFY" else "refused"), rest
+    prefix = _KIND.match(text)
+    if prefix and (rest := text[prefix.end() :].strip()):
+        return ("clarification" if prefix["kind"].upper() == "CLARIFY" else "refused"), rest
     return ("clarification" if not called and _QUESTION.search(text) else "answered"), text
 
 

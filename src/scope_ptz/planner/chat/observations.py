@@ -28,17 +28,17 @@ def observation(outcome: ToolOutcome, *, brief: bool = False) -> str:
         error = seen_text(outcome.error or "The tool gave no result.", mark=False)
         return _line({"error": error[:BRIEF_CHARS] if brief else error})
     result = outcome.result
-    told: dict[str, Any] = {key: _rounded(result[key]) for key in _KEPT if result.get(key) not in (None, (), [], "")}
+    content: dict[str, Any] = {key: _rounded(result[key]) for key in _KEPT if result.get(key) not in (None, (), [], "")}
     if result.get("complete") is False:
-        told["complete"] = False
+        content["complete"] = False
     if brief:
-        told |= {key: seen_text(result[key][:BRIEF_CHARS]) for key in _SEEN_TEXTS if result.get(key)}
+        content |= {key: seen_text(result[key][:BRIEF_CHARS]) for key in _SEEN_TEXTS if result.get(key)}
     else:
-        told |= _boxes(result.get("boxes") or ())
+        content |= _boxes(result.get("boxes") or ())
         # The message holds everything else: the answer, its source, corrections and a second opinion.
-        told["message"] = seen_text(str(result.get("message", "")), mark="source" in result)
-    told["pose"] = _rounded(result.get("pose"))
-    return _line(told)
+        content["message"] = seen_text(str(result.get("message", "")), mark="source" in result)
+    content["pose"] = _rounded(result.get("pose"))
+    return _line(content)
 
 
 def seen_text(text: str, *, mark: bool = True) -> str:

@@ -8,7 +8,7 @@ from typing import Literal
 from scope_ptz.tools.arguments import View
 
 Operator = Literal[">=", "<=", ">", "<", "=="]
-Wish = Literal["more", "fewer"]
+Sense = Literal["more", "fewer"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +91,7 @@ class Outnumbers:
 
     first: Thing
     second: Thing
-    wish: Wish = "more"
+    sense: Sense = "more"
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +101,7 @@ class PresetWins:
     thing: Thing
     first: PresetRef
     second: PresetRef
-    wish: Wish = "more"
+    sense: Sense = "more"
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,8 +17,8 @@ from scope_ptz.planner.grammar.conditions import PresetWins as PresetWins
 from scope_ptz.planner.grammar.conditions import Quantity as Quantity
 from scope_ptz.planner.grammar.conditions import Readable as Readable
 from scope_ptz.planner.grammar.conditions import Seen as Seen
+from scope_ptz.planner.grammar.conditions import Sense as Sense
 from scope_ptz.planner.grammar.conditions import Thing as Thing
-from scope_ptz.planner.grammar.conditions import Wish as Wish
 from scope_ptz.tools.arguments import View
 
 Axis = Literal["pan", "tilt"]
@@ -246,7 +246,7 @@ class ThanBefore:
     """
 
     thing: Thing
-    wish: Wish = "more"
+    sense: Sense = "more"
 
 
 @dataclass(frozen=True, slots=True)
@@ -281,7 +281,7 @@ class WhichPreset:
     """
 
     thing: Thing
-    wish: Wish = "more"
+    sense: Sense = "more"
     places: tuple[PresetRef, ...] = ()
     go: bool = False
     any_of: bool = False
@@ -294,7 +294,7 @@ class Compare:
 
     first: Thing
     second: Thing
-    wish: Wish = "more"
+    sense: Sense = "more"
     view: View | None = None
 
 
@@ -304,7 +304,7 @@ class BeforeAfter:
 
     thing: Thing
     moves: tuple[Step, ...]
-    wish: Wish = "more"
+    sense: Sense = "more"
 
 
 @dataclass(frozen=True, slots=True)

@@ -59,11 +59,11 @@ def compare(view: View, question: s.Compare) -> AnswerText:
     first = find(view, question.first)[0]
     second = next((t for t in find(view, question.second) if t is not first), first)
     key = rank_key(question.key)
-    said = f"{the(view, question.first)} is {{}}{COMPARATIVES[question.key]} than {the(view, question.second)}"
+    statement = f"{the(view, question.first)} is {{}}{COMPARATIVES[question.key]} than {the(view, question.second)}"
     if question.key in {"nearest", "furthest"}:
-        said += f" (about {metres(first.distance_m)} against {metres(second.distance_m)})"
+        statement += f" (about {metres(first.distance_m)} against {metres(second.distance_m)})"
     ahead = key(first) < key(second) and not _equal(question.key, first, second)
-    return reply(f"yes, {said.format('')}" if ahead else f"no, {said.format('not ')}")
+    return reply(f"yes, {statement.format('')}" if ahead else f"no, {statement.format('not ')}")
 
 
 def how_far(view: View, question: s.HowFar) -> AnswerText:
@@ -100,8 +100,8 @@ def compare_count(view: View, question: s.CompareCount) -> AnswerText:
         return reply(f"{verdict}: {counts}")
     yes = {"more": a > b, "fewer": a < b, "same": a == b}[question.sense]
     than = {"more": "more", "fewer": "fewer"}.get(question.sense)
-    said = f"{than} {first} than {second}" if than else f"as many {first} as {second}"
-    return reply(f"{'yes' if yes else 'no'}, there are {'' if yes else 'not '}{said}: {counts}")
+    statement = f"{than} {first} than {second}" if than else f"as many {first} as {second}"
+    return reply(f"{'yes' if yes else 'no'}, there are {'' if yes else 'not '}{statement}: {counts}")
 
 
 def _most_of(view: View, question: s.CompareCount) -> AnswerText:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from scope_ptz import english
-from scope_ptz.perception.ground_truth.answers.restating import holds_words, none_of, not_told, noun
+from scope_ptz.perception.ground_truth.answers.restating import holds_words, none_of, not_stated, noun
 from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, are, name, reply, several, unknown
 from scope_ptz.perception.ground_truth.language import question_tree as s
 from scope_ptz.perception.ground_truth.thing_facts import wears
@@ -27,7 +27,7 @@ def narrowed(description: s.Description, tests: tuple[s.Test, ...]) -> s.Descrip
 
 def exists(view: View, question: s.Exists) -> AnswerText:
     """Answer whether there is something."""
-    if not_told(view, question.what):
+    if not_stated(view, question.what):
         return unknown(f"I cannot tell: the scene says nothing of any {noun(view, question.what)}")
     found = find(view, question.what)
     if question.least != 1 or question.most is not None:
@@ -53,21 +53,21 @@ def there_are(view: View, what: s.Description, found: list[Thing]) -> str:
     worn = not things_named(view, what)
     if len(found) == 1:
         return f"there is {english.article(noun(view, what))} on {several(found)}" if worn else f"there is {several(found)}"
-    said = f"there are {len(found)} {noun(view, what, many=True)}"
-    return f"{said}{', on' if worn else ':'} {several(found)}" if len(found) <= TOLD_APART else said
+    statement = f"there are {len(found)} {noun(view, what, many=True)}"
+    return f"{statement}{', on' if worn else ':'} {several(found)}" if len(found) <= TOLD_APART else statement
 
 
 def count(view: View, question: s.Count) -> AnswerText:
     """Answer how many there are."""
-    if not_told(view, question.what):
+    if not_stated(view, question.what):
         return unknown(f"I cannot tell: the scene says nothing of any {noun(view, question.what)}")
     total = len(find(view, narrowed(question.what, question.tests)))
     if len(question.what.phrases) > 1:
         return reply(f"there {are(total)} {total} in view: {_each(view, question)}")
-    said = f"{total} {noun(view, question.what, many=total != 1)}"
+    statement = f"{total} {noun(view, question.what, many=total != 1)}"
     if question.tests:
-        return reply(f"{said} {holds_words(view, question.tests, total)}")
-    return reply(f"there {are(total)} {said} in view")
+        return reply(f"{statement} {holds_words(view, question.tests, total)}")
+    return reply(f"there {are(total)} {statement} in view")
 
 
 def _each(view: View, question: s.Count) -> str:

@@ -47,10 +47,10 @@ _PLATES = {words for noun in ("plate", "plates") for words in (("number", noun),
 def _is_limit(view: View, text: TextSighting) -> bool:
     """Return whether a number is a speed limit: the scene says so, or it is a multiple of ten on a sign."""
     bearer = view.instances[text.text.parent]
-    said = text.text.text.strip()
+    content = text.text.text.strip()
     if "signal" in bearer.attributes:
-        return said == str(bearer.attributes["signal"])
-    return said.isdigit() and int(said) % 10 == 0 and "sign" in concepts_of(bearer)
+        return content == str(bearer.attributes["signal"])
+    return content.isdigit() and int(content) % 10 == 0 and "sign" in concepts_of(bearer)
 
 
 def _read(view: View, what: s.Description | None, texts: Sequence[TextSighting], plate: bool) -> AnswerText:

@@ -30,10 +30,10 @@ def where(view: View, question: s.Where) -> AnswerText:
         )
     if len(found) > MAX_PLACED:
         spots = Counter(place(t) for t in found)
-        said = english.listing([f"{n} {spot}" for spot, n in spots.items()])
+        places = english.listing([f"{n} {spot}" for spot, n in spots.items()])
     else:
-        said = english.listing([f"{english.article(name(t))} {place(t)} about {metres(t.distance_m)} away" for t in found])
-    return reply(f"there are {len(found)} {noun(view, question.what, many=True)}: {said}")
+        places = english.listing([f"{english.article(name(t))} {place(t)} about {metres(t.distance_m)} away" for t in found])
+    return reply(f"there are {len(found)} {noun(view, question.what, many=True)}: {places}")
 
 
 def neighbour(view: View, thing: Thing) -> str:
@@ -73,7 +73,7 @@ def what(view: View, question: s.What) -> AnswerText:
     found = find(view, description)
     if not found:
         return _nothing(view, question, description)
-    return told(view, question.tests, _by_nearness(view, question.tests, found))
+    return things_in_words(view, question.tests, _by_nearness(view, question.tests, found))
 
 
 def _is_a_list(description: s.Description) -> bool:
@@ -107,15 +107,15 @@ def _by_nearness(view: View, tests: tuple[s.Test, ...], found: list[Thing]) -> l
     return sorted(found, key=lambda t: min(t.gap_m(a) for a in anchors)) if anchors else found
 
 
-def told(view: View, tests: tuple[s.Test, ...], found: list[Thing]) -> AnswerText:
+def things_in_words(view: View, tests: tuple[s.Test, ...], found: list[Thing]) -> AnswerText:
     """Answer with things and their places: "a white van and 2 traffic cones are behind the barrier"."""
-    said = tuple(t for t in tests if not isinstance(t, s.Order))
-    if len(said) < len(tests):
+    rest = tuple(t for t in tests if not isinstance(t, s.Order))
+    if len(rest) < len(tests):
         return reply(f"it is the {name(found[0])} {place(found[0])}, about {metres(found[0].distance_m)} away")
-    if not said:
+    if not rest:
         return reply(several(found) if len(found) <= 3 else f"I can see {names(found)}")
-    where_ = f", {place(found[0])}" if len(found) == 1 and not any(isinstance(t, s.Region) for t in said) else ""
-    return reply(f"{names(found)} {holds_words(view, said, len(found))}{where_}")
+    where_ = f", {place(found[0])}" if len(found) == 1 and not any(isinstance(t, s.Region) for t in rest) else ""
+    return reply(f"{names(found)} {holds_words(view, rest, len(found))}{where_}")
 
 
 def identify(view: View, question: s.Identify) -> AnswerText:

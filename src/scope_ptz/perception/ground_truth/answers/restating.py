@@ -66,7 +66,7 @@ def _phrase(view: View, phrase: s.Phrase, many: bool) -> str:
 
 
 def _tests(view: View, phrase: s.Phrase) -> list[str]:
-    return [said for said in (after_noun(view, t) for t in phrase.tests) if said]
+    return [words for words in (after_noun(view, t) for t in phrase.tests) if words]
 
 
 def _ranked(view: View, phrase: s.Phrase, core: str) -> list[str]:
@@ -103,8 +103,8 @@ def after_noun(view: View, test: s.Test) -> str:
 
 def _plain(view: View, test: s.Test) -> str:
     match test:
-        case s.Relation(kind=kind, other=other, said=said):
-            return f"{said if kind == 'on' and said else _RELATIONS[kind]} {as_asked(view, other)}"
+        case s.Relation(kind=kind, other=other, preposition=preposition):
+            return f"{preposition if kind == 'on' and preposition else _RELATIONS[kind]} {as_asked(view, other)}"
         case s.Within(metres=metres, other=other, beyond=beyond):
             of = f" of {as_asked(view, other)}" if other else ""
             return f"{'more than' if beyond else 'within'} {metres:g} m{of}"
@@ -177,11 +177,11 @@ def none_of(view: View, description: s.Description) -> str:
     """Return that nothing fits: "there is no red car in view"."""
     many = plural(description)
     only_one = len(description.phrases) > 1 and not any(plural(s.Description((p,))) for p in description.phrases)
-    said = english.listing([noun(view, s.Description((p,)), many and not only_one) for p in description.phrases], "or")
-    return f"there {'are' if many and not only_one else 'is'} no {said} in view"
+    words = english.listing([noun(view, s.Description((p,)), many and not only_one) for p in description.phrases], "or")
+    return f"there {'are' if many and not only_one else 'is'} no {words} in view"
 
 
-def not_told(view: View, description: s.Description) -> bool:
+def not_stated(view: View, description: s.Description) -> bool:
     """Return whether the noun names a background ("lanes", "sky") that the scene does not have, so that not seeing it means
     nothing.
     """

@@ -31,10 +31,10 @@ def describe(view: View, question: s.Describe) -> AnswerText:
     groups = _groups(t for t in view.top_level() if not t.concepts & BACKDROP)
     if not groups:
         return reply("I can see nothing that stands out")
-    said = english.listing(groups[:MAX_GROUPS])
+    parts = english.listing(groups[:MAX_GROUPS])
     texts = list(dict.fromkeys(t.text.text for t in view.texts if t.legible))[:MAX_TEXTS]
     readable = f". I can read {english.listing([f'{chr(34)}{t}{chr(34)}' for t in texts])}" if texts else ""
-    return reply(f"I can see {said}{readable}")
+    return reply(f"I can see {parts}{readable}")
 
 
 def _load_of(view: View, tests: tuple[s.Test, ...]) -> AnswerText | None:
@@ -55,17 +55,17 @@ def _describe_things(view: View, what: s.Description, tests: tuple[s.Test, ...])
         return reply(none_of(view, what))
     if len(found) > MAX_TEXTS:
         return reply(f"there are {len(found)} {noun(view, what, many=True)}: {names(found)}")
-    return AnswerText(" ".join(english.sentence(_told(t)) for t in found))
+    return AnswerText(" ".join(english.sentence(_with_details(t)) for t in found))
 
 
-def _told(thing: Thing) -> str:
-    told = [
+def _with_details(thing: Thing) -> str:
+    details = [
         f"{' '.join(key_words(k))} {v}" for k, v in facts(thing) if k not in COLOUR_KEYS and not isinstance(v, bool) and k != "kind"
     ]
-    told += [" ".join(key_words(k)) for k, v in facts(thing) if v is True]
+    details += [" ".join(key_words(k)) for k, v in facts(thing) if v is True]
     texts = [f'it reads "{t}"' for t in thing.texts]
     spot = f"there is {english.article(name(thing))} {place(thing)}, about {metres(thing.distance_m)} away"
-    return "; ".join([spot, *([", ".join(told)] if told else []), *texts])
+    return "; ".join([spot, *([", ".join(details)] if details else []), *texts])
 
 
 def _groups(things: Iterable[Thing]) -> list[str]:
@@ -73,18 +73,18 @@ def _groups(things: Iterable[Thing]) -> list[str]:
     by_kind: dict[str, list[Thing]] = {}
     for thing in sorted(things, key=lambda t: -t.sighting.pixels):
         by_kind.setdefault(thing.category, []).append(thing)
-    said = []
+    parts = []
     for kind, members in by_kind.items():
         if len(members) == 1:
-            said.append(f"{english.article(name(members[0]))} {place(members[0])}")
+            parts.append(f"{english.article(name(members[0]))} {place(members[0])}")
             continue
         colours = Counter(c for c in map(colour_of, members) if c)
         if list(colours.values()) == [len(members)]:
-            said.append(f"{len(members)} {next(iter(colours))} {english.plural(kind)}")
+            parts.append(f"{len(members)} {next(iter(colours))} {english.plural(kind)}")
             continue
         shown = f" ({english.listing([f'{n} {c}' for c, n in colours.most_common()])})" if colours and len(colours) <= 4 else ""
-        said.append(f"{english.counted(len(members), kind)}{shown}")
-    return said
+        parts.append(f"{english.counted(len(members), kind)}{shown}")
+    return parts
 
 
 def happening(view: View) -> AnswerText:
@@ -92,8 +92,8 @@ def happening(view: View) -> AnswerText:
     busy = Counter((t.category, doing) for t in view.top_level() if (doing := _doing(t)) is not None)
     if not busy:
         return AnswerText(f"Nothing is moving. {describe(view, s.Describe()).text}")
-    said = [f"{english.article(k) if n == 1 else english.counted(n, k)} {are(n)} {doing}" for (k, doing), n in busy.items()]
-    return reply(english.listing(said[:MAX_GROUPS]))
+    parts = [f"{english.article(k) if n == 1 else english.counted(n, k)} {are(n)} {doing}" for (k, doing), n in busy.items()]
+    return reply(english.listing(parts[:MAX_GROUPS]))
 
 
 def _doing(thing: Thing) -> str | None:

@@ -43,11 +43,11 @@ def name(thing: Thing) -> str:
 def names(things: Iterable[Thing]) -> str:
     """Return a list of things in the given order: "a white van, 2 traffic cones and a worker"."""
     counts = Counter(name(t) for t in things)
-    said = [english.article(n) if c == 1 else f"{c} {english.plural(n)}" for n, c in counts.items()]
-    if len(said) > MAX_NAMED:
+    parts = [english.article(n) if c == 1 else f"{c} {english.plural(n)}" for n, c in counts.items()]
+    if len(parts) > MAX_NAMED:
         more = sum(list(counts.values())[MAX_NAMED:])
-        said = [*said[:MAX_NAMED], f"{more} more thing{'s' if more > 1 else ''}"]
-    return english.listing(said)
+        parts = [*parts[:MAX_NAMED], f"{more} more thing{'s' if more > 1 else ''}"]
+    return english.listing(parts)
 
 
 def several(things: Sequence[Thing]) -> str:

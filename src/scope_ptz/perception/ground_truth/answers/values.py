@@ -50,21 +50,21 @@ def ask(view: View, question: s.Ask) -> AnswerText:
     if not found:
         return _of_a_part(view, question) or absent(view, question.what)
     values = [(t, value_of(t, question.attribute)) for t in found]
-    told = [(t, v) for t, v in values if v is not None]
-    if not told:
+    stated = [(t, v) for t, v in values if v is not None]
+    if not stated:
         attribute = " ".join(question.attribute)
         return unknown(f"I cannot tell: the scene does not say ({attribute} of {as_asked(view, question.what)})")
     verb = next((v for words, v in _VERBS.items() if set(words.split()) & set(question.attribute)), "")
-    if verb == "facing " and all("direction" in t.attributes for t, _ in told):
+    if verb == "facing " and all("direction" in t.attributes for t, _ in stated):
         verb = "pointing "
-    distinct = Counter(v for _, v in told)
+    distinct = Counter(v for _, v in stated)
     if len(distinct) == 1:
-        who = the(view, question.what, many=len(told) > 1)
-        return reply(f"{who} {are(len(told))} {verb}{told[0][1]}")
-    if not plural(question.what) and len(told) <= 4:
-        return reply(english.listing([f"the {t.category} {place(t)} is {verb}{v}" for t, v in told]))
+        who = the(view, question.what, many=len(stated) > 1)
+        return reply(f"{who} {are(len(stated))} {verb}{stated[0][1]}")
+    if not plural(question.what) and len(stated) <= 4:
+        return reply(english.listing([f"the {t.category} {place(t)} is {verb}{v}" for t, v in stated]))
     return reply(
-        f"{len(told)} {noun(view, question.what, many=True)}: "
+        f"{len(stated)} {noun(view, question.what, many=True)}: "
         + english.listing([f"{n} {verb}{v}" for v, n in distinct.most_common()])
     )
 
@@ -179,9 +179,9 @@ def anywhere(view: View, attribute: Sequence[str]) -> AnswerText:
     """Answer about a fact of any thing ("which lane is closed?"), or else about a text on a sign ("what is the speed limit?")."""
     if tuple(attribute) == ("thing",) or set(attribute) & UNSEEN:
         return unknown("I cannot tell that from the picture")
-    told = [(t, v) for t in view.things for v in [value_of(t, attribute)] if v is not None and _says(t, attribute)]
-    if told:
-        values = list(dict.fromkeys(v for _, v in told))
+    stated = [(t, v) for t in view.things for v in [value_of(t, attribute)] if v is not None and _says(t, attribute)]
+    if stated:
+        values = list(dict.fromkeys(v for _, v in stated))
         return reply(f"the {' '.join(attribute)} is {english.listing(values)}")
     signs = find(view, s.Description((s.Phrase(tuple(attribute)),)))
     if "limit" in attribute:

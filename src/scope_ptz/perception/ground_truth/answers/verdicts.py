@@ -37,8 +37,8 @@ def yes_no(view: View, question: s.YesNo) -> AnswerText:
         return unknown(f"I cannot tell: {none_of(view, missing)}")
     answers = [_every([holds(view, t, test) for test in tests]) for t in found]
     if None in answers and True not in answers:
-        said = english.listing([after_noun(view, t) for t in tests])
-        return unknown(f"I cannot tell whether {as_asked(view, subject)} {'are' if plural(subject) else 'is'} {said}")
+        predicate = english.listing([after_noun(view, t) for t in tests])
+        return unknown(f"I cannot tell whether {as_asked(view, subject)} {'are' if plural(subject) else 'is'} {predicate}")
     choice = _choice(view, tests, found)
     if choice is not None:
         return choice
@@ -66,9 +66,9 @@ def _of_a_part(view: View, subject: s.Description, tests: tuple[s.Test, ...]) ->
         return None
     wanted = canonical(tests[0].words[-1])
     value = canonical(values[0][1].lower())
-    noun_said = subject.phrases[0].words[-1]
-    said = f"the {noun_said} {'are' if english.is_plural(noun_said) else 'is'} {value}"
-    return reply(f"{'yes' if wanted in value.split() else 'no'}, {said}")
+    part = subject.phrases[0].words[-1]
+    statement = f"the {part} {'are' if english.is_plural(part) else 'is'} {value}"
+    return reply(f"{'yes' if wanted in value.split() else 'no'}, {statement}")
 
 
 def missing_reference(view: View, test: s.Test) -> s.Description | None:

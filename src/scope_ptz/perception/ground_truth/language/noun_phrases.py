@@ -153,8 +153,8 @@ class NounPhrases(Transformer[Token, Any]):
         return s.Not(tests_of(c)[0])
 
     def relation(self, c: Children) -> s.Relation:
-        kind, _, said = str(c[0]).partition(":")
-        return s.Relation(cast(s.RelationKind, kind), descriptions(c)[0], said)
+        kind, _, preposition = str(c[0]).partition(":")
+        return s.Relation(cast(s.RelationKind, kind), descriptions(c)[0], preposition)
 
     def either(self, c: Children) -> s.Any:
         return s.Any(tuple(self.relation([t, *descriptions(c)]) for t in tokens_of(c, "REL")))

@@ -40,11 +40,11 @@ class Order:
 
 @dataclass(frozen=True, slots=True)
 class Relation:
-    """A relation to other things. ``said`` is the preposition in the text, because several prepositions mean one kind."""
+    """A relation to other things. ``preposition`` is the preposition in the text, because several prepositions mean one kind."""
 
     kind: RelationKind
     other: Description
-    said: str = ""
+    preposition: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from scope_ptz.planner.grammar.execution.sentences import head_and_rest
 
 _BE = r"is|are|was|were|isn't|aren't"
 _AUXILIARY = rf"{_BE}|has|have|can|could|will|should"
-_SAID = {
+_BASE_FORMS = {
     "says": "say", "say": "say", "reads": "say", "read": "say", "shows": "show", "show": "show", "has": "have", "have": "have",
     "means": "mean", "looks": "look", "look": "look", "wears": "wear", "carries": "carry", "holds": "hold", "does": "do",
     "contains": "contain", "weighs": "weigh", "costs": "cost", "lists": "list", "displays": "display",
@@ -36,13 +36,13 @@ _ASKED = re.compile(
 
 def embedded(text: str) -> str:
     """Return the direct question in the words after "tell me". A text that is a direct question is returned unchanged."""
-    said = text.strip().rstrip("?!. ").replace("’", "'")
-    made = _yes_no(said) or _about_you(said) or _wh(said) or _named(said)
+    phrase = text.strip().rstrip("?!. ").replace("’", "'")
+    made = _yes_no(phrase) or _about_you(phrase) or _wh(phrase) or _named(phrase)
     return f"{made[0].upper()}{made[1:]}?" if made else text.strip()
 
 
-def _yes_no(said: str) -> str | None:
-    found = _YES_NO.fullmatch(said)
+def _yes_no(phrase: str) -> str | None:
+    found = _YES_NO.fullmatch(phrase)
     if not found:
         return None
     clause = re.sub(r"\b(there|it|they|that|anyone|anybody|someone|everyone)'(s|re)\b", _is_spelled, found[1])
@@ -59,36 +59,36 @@ def _is_spelled(short: re.Match[str]) -> str:
     return f"{short[1]} {'are' if short[2] == 're' else 'is'}"
 
 
-def _about_you(said: str) -> str | None:
+def _about_you(phrase: str) -> str | None:
     """Return the question in "what you see" or "what you can see there"."""
     found = re.fullmatch(
-        r"(what(?: else)?|which \w+|how many \w+|who(?:m)?) you (can )?(see|find|notice|spot|observe)( .+)?", said, re.IGNORECASE
+        r"(what(?: else)?|which \w+|how many \w+|who(?:m)?) you (can )?(see|find|notice|spot|observe)( .+)?", phrase, re.IGNORECASE
     )
     return f"{found[1]} {'can' if found[2] else 'do'} you {found[3]}{found[4] or ''}" if found else None
 
 
-def _wh(said: str) -> str | None:
+def _wh(phrase: str) -> str | None:
     """Return the question in "what colour the door is", "where the truck is parked" or "what the sign says"."""
-    if found := re.fullmatch(rf"{_WH.pattern} ({_AUXILIARY})( .+)?", said, re.IGNORECASE):
+    if found := re.fullmatch(rf"{_WH.pattern} ({_AUXILIARY})( .+)?", phrase, re.IGNORECASE):
         return f"{found[1]} {found[3]} {found[2]}{found[4] or ''}"
-    if found := re.fullmatch(rf"{_WH.pattern} ({'|'.join(_SAID)})( .+)?", said, re.IGNORECASE):
+    if found := re.fullmatch(rf"{_WH.pattern} ({'|'.join(_BASE_FORMS)})( .+)?", phrase, re.IGNORECASE):
         many = re.match(r"they|these|those", found[2], re.IGNORECASE)
-        return f"{found[1]} {'do' if many else 'does'} {found[2]} {_SAID[found[3].lower()]}{found[4] or ''}"
-    if found := re.fullmatch(r"what(?:'s| is) happening(.*)", said, re.IGNORECASE):
+        return f"{found[1]} {'do' if many else 'does'} {found[2]} {_BASE_FORMS[found[3].lower()]}{found[4] or ''}"
+    if found := re.fullmatch(r"what(?:'s| is) happening(.*)", phrase, re.IGNORECASE):
         return f"what is happening{found[1]}"
     return None
 
 
-def _named(said: str) -> str | None:
+def _named(phrase: str) -> str | None:
     """Return the question about a named thing: "its number plate", "the colour of the door"."""
-    if about := re.fullmatch(r"(?:something |more )?about (.+)", said, re.IGNORECASE):
+    if about := re.fullmatch(r"(?:something |more )?about (.+)", phrase, re.IGNORECASE):
         return f"what can you say about {about[1]}"
-    if _ASKED.match(said):
+    if _ASKED.match(phrase):
         return None
-    head = re.split(r" (?:of|on|in|at|for|to|with|near|behind|from|by|that|which|who) ", said)[0]
+    head = re.split(r" (?:of|on|in|at|for|to|with|near|behind|from|by|that|which|who) ", phrase)[0]
     many = _PLURAL.search(head_and_rest(head)[0]) and not re.search(r"\bbus$|ss$|'s$", head)
     return (
-        f"what {'are' if many else 'is'} {said}"
-        if re.match(r"(the|its|their|his|her|an?|this|that|these|those)\b", said, re.IGNORECASE)
+        f"what {'are' if many else 'is'} {phrase}"
+        if re.match(r"(the|its|their|his|her|an?|this|that|these|those)\b", phrase, re.IGNORECASE)
         else None
     )

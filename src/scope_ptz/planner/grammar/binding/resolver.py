@@ -374,7 +374,7 @@ class Resolver:
         first, second = self.thing(step.first), self.thing(step.second)
         places = [match_preset(t.text, self.presets) if self.presets else None for t in (first, second)]
         if all(places):
-            return self._whichpreset(ast.WhichPreset(ast.Thing(), step.wish, tuple(ast.PresetRef(p or "") for p in places)))
+            return self._whichpreset(ast.WhichPreset(ast.Thing(), step.sense, tuple(ast.PresetRef(p or "") for p in places)))
         return [replace(step, first=first, second=second, view=self._view(step.view))]
 
     def _beforeafter(self, step: ast.BeforeAfter) -> Sequence[ast.Step]:

@@ -33,7 +33,7 @@ class Judging(Session):
         if isinstance(condition, ast.Outnumbers):
             first = yield from self._counted(condition.first.text, "current")
             second = yield from self._counted(condition.second.text, "current")
-            met = first > second if condition.wish == "more" else first < second
+            met = first > second if condition.sense == "more" else first < second
             return met, f"I can see {say.counted(condition.first.text, first)} and {say.counted(condition.second.text, second)}"
         if isinstance(condition, ast.Readable):
             result = yield from self._needed("query_answer", question=reading(condition.thing.text), view="current")
@@ -44,16 +44,16 @@ class Judging(Session):
                 yield from self._moved("go_to_preset", name=place.name)
                 counts.append((yield from self._counted(condition.thing.text, "current")))
             first, second = (f"{say.counted(condition.thing.text, n)}" for n in counts)
-            met = counts[0] > counts[1] if condition.wish == "more" else counts[0] < counts[1]
+            met = counts[0] > counts[1] if condition.sense == "more" else counts[0] < counts[1]
             return met, f"I can see {first} at {condition.first.name} and {second} at {condition.second.name}"
         subject = f"the {condition.subject.text}" if condition.subject.definite else condition.subject.text
         result = yield from self._needed(
             "query_answer", question=condition.question or f"is {subject} {condition.predicate}?", view="current"
         )
-        said = result["answer"].strip().lower()
-        if not result.get("known", True) or not said.startswith(("yes", "no")):
+        answer = result["answer"].strip().lower()
+        if not result.get("known", True) or not answer.startswith(("yes", "no")):
             return False, f"I cannot tell whether {subject} is {condition.predicate}: {result['answer']}"
-        return said.startswith("yes") == condition.wanted, result["answer"]
+        return answer.startswith("yes") == condition.wanted, result["answer"]
 
     def _joined(self, condition: ast.Joined) -> Run:
         reasons = []

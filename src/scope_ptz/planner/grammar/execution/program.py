@@ -273,8 +273,8 @@ class Program(Judging):
         if before == after:
             self._note("The number is the same before and after")
         else:
-            when = "before" if (before > after) == (step.wish == "more") else "after"
-            self._note(f"There are {step.wish} {say.noun(text, 2)} {when} the move")
+            when = "before" if (before > after) == (step.sense == "more") else "after"
+            self._note(f"There are {step.sense} {say.noun(text, 2)} {when} the move")
 
     def _whichpreset(self, step: ast.WhichPreset) -> Run:
         text, counts = step.thing.text, dict[str, int]()
@@ -292,13 +292,13 @@ class Program(Judging):
             )
             self._winner = seen[0] if seen else None
             return
-        best = (max if step.wish == "more" else min)(counts.values())
+        best = (max if step.sense == "more" else min)(counts.values())
         winners = [name for name, count in counts.items() if count == best]
         self._winner = winners[0] if len(winners) == 1 or self.assume_met else None
         superlative = (
-            ("more" if step.wish == "more" else "fewer")
+            ("more" if step.sense == "more" else "fewer")
             if len(counts) == 2
-            else ("the most" if step.wish == "more" else "the fewest")
+            else ("the most" if step.sense == "more" else "the fewest")
         )
         verb = f"shows {superlative} {say.noun(text, 2)}"
         self._note(f"It is a tie between {english.listing(winners)}" if len(winners) > 1 else f"Preset {winners[0]} {verb}")

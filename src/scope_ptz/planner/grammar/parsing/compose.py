@@ -273,7 +273,7 @@ def _add_than_before(out: list[Step], step: ThanBefore) -> None:
     if counts:
         out.append(replace(counts[-1], things=(step.thing,)) if step.thing.text else counts[-1])
     elif moves and step.thing.text:
-        out[first:] = [BeforeAfter(step.thing, moves, step.wish)]
+        out[first:] = [BeforeAfter(step.thing, moves, step.sense)]
     else:
         out.append(Unclear("More of what, and than when?"))
 

@@ -80,16 +80,16 @@ class JudgingRules(SceneRules):
         return Holds(thing, predicate, wanted)
 
     def says(self, node: Node) -> Condition:
-        said = self.text(node.branches("words")[0].all_leaves())
-        return Holds(self._thing(node), said, question=f"does the {self._thing(node).text} say {said}?")
+        text = self.text(node.branches("words")[0].all_leaves())
+        return Holds(self._thing(node), text, question=f"does the {self._thing(node).text} say {text}?")
 
     def preset_wins(self, node: Node) -> Condition:
         first, second = (self.visit(b) for b in node.branches("named", "numbered", "marked"))
-        return PresetWins(self._thing(node), first, second, self._wish(node))
+        return PresetWins(self._thing(node), first, second, self._sense(node))
 
     def outnumbers(self, node: Node) -> Condition:
         first, second = self._things(node)[:2]
-        return Outnumbers(first, second, self._wish(node))
+        return Outnumbers(first, second, self._sense(node))
 
     def all_of(self, node: Node) -> Condition:
         return Joined(tuple(self.visit(b) for b in node.branches()), "all")
@@ -123,7 +123,7 @@ class JudgingRules(SceneRules):
 
     # Comparison --------------------------------------------------------------------------------------------------------
     def which_preset(self, node: Node) -> Step:
-        return WhichPreset(self._thing(node), self._wish(node), self._places(node))
+        return WhichPreset(self._thing(node), self._sense(node), self._places(node))
 
     def preset_with(self, node: Node) -> Step:
         return WhichPreset(self._thing(node), "more", self._places(node), any_of=True)
@@ -134,11 +134,11 @@ class JudgingRules(SceneRules):
         return Unclear("What shall I count to tell which is busier: vehicles or people?")
 
     def than_before(self, node: Node) -> Step:
-        return ThanBefore(self._thing(node), self._wish(node))
+        return ThanBefore(self._thing(node), self._sense(node))
 
     def compare_things(self, node: Node) -> Step:
         first, second = self._things(node)[:2]
-        return Compare(first, second, self._wish(node), self._view(node))
+        return Compare(first, second, self._sense(node), self._view(node))
 
     def compare_where(self, node: Node) -> Step:
         thing = self.visit(node.branches("np")[0]).text
@@ -147,10 +147,10 @@ class JudgingRules(SceneRules):
         second = self.text(side.all_leaves())
         if not side.branches("near_words"):
             second = f"{first.split(' ')[0]} {second}"
-        return Compare(Thing(f"{thing} {first}"), Thing(f"{thing} {second}"), self._wish(node), self._view(node))
+        return Compare(Thing(f"{thing} {first}"), Thing(f"{thing} {second}"), self._sense(node), self._view(node))
 
     def before_after(self, node: Node) -> Step:
         moves = self.visit(node.branches("move")[0])
-        return moves if isinstance(moves, Unclear) else BeforeAfter(self._thing(node), (moves,), self._wish(node))
+        return moves if isinstance(moves, Unclear) else BeforeAfter(self._thing(node), (moves,), self._sense(node))
 
     reveals = before_after

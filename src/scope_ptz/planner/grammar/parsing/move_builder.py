@@ -126,8 +126,8 @@ class MoveRules(Rules):
                 and not any(p.axis == "tilt" for p in parts if not isinstance(p, Zoom))
             ):
                 return Unclear("The camera tilts up and down and pans left and right. Which of the two shall I do?")
-        said = {leaf.kind for leaf in node.branches()[0].all_leaves()}
-        return Move(tuple(parts), verb=bool(said & {*_VERBS, "ZOOM", "LOOKAT", "SET", "CLOSER", "WIDER", "LEVEL"}))
+        kinds = {leaf.kind for leaf in node.branches()[0].all_leaves()}
+        return Move(tuple(parts), verb=bool(kinds & {*_VERBS, "ZOOM", "LOOKAT", "SET", "CLOSER", "WIDER", "LEVEL"}))
 
     def _turns(self, node: Node, directions: list[tuple[str, int]]) -> tuple[Part, ...]:
         """Return turns in the given directions, with the amount and step size of the node."""
@@ -297,8 +297,8 @@ class MoveRules(Rules):
         return self._zoomed(node, 1, bare=True)
 
     def zoom_double(self, node: Node) -> tuple[Part, ...]:
-        said = " ".join(self.words_of(leaf) for leaf in node.leaves())
-        return (Zoom("factor", 3.0 if "tripl" in said or "thr" in said else 4.0 if "quadr" in said or "four" in said else 2.0),)
+        words = " ".join(self.words_of(leaf) for leaf in node.leaves())
+        return (Zoom("factor", 3.0 if "tripl" in words or "thr" in words else 4.0 if "quadr" in words or "four" in words else 2.0),)
 
     def zoom_halve(self, node: Node) -> tuple[Part, ...]:
         return (Zoom("factor", 1 / (3.0 if any("thr" in self.words_of(leaf) for leaf in node.leaves()) else 2.0)),)
@@ -321,8 +321,8 @@ class MoveRules(Rules):
         return ("percent" if node.has("PERCENT") else "factor"), self.number(node)
 
     def z_twice(self, node: Node) -> tuple[str, float]:
-        said = " ".join(self.words_of(leaf) for leaf in node.leaves())
-        return "factor", 3.0 if "thr" in said else 4.0 if "four" in said else 2.0
+        words = " ".join(self.words_of(leaf) for leaf in node.leaves())
+        return "factor", 3.0 if "thr" in words else 4.0 if "four" in words else 2.0
 
     def z_fraction(self, node: Node) -> tuple[str, float]:
         return "fraction", self.fraction(node)

@@ -65,9 +65,9 @@ class SceneRules(Rules):
         determiner = any(self.words_of(leaf).split()[0] in {"the", "that", "this", "these", "those"} for leaf in node.leaves("DET"))
         leaves = parts[0].all_leaves()
         odd = not any(leaf.kind == "WORD" or self.lexemes[leaf.index].kinds & _NOUNS for leaf in leaves)
-        said = described(self.text([leaf for part in parts for leaf in part.all_leaves()]))
-        bare = _FUSED.sub("", said)  # "the site office": "the site" is one lexeme
-        return Thing(bare, definite=determiner or bare != said, odd=odd)
+        text = described(self.text([leaf for part in parts for leaf in part.all_leaves()]))
+        bare = _FUSED.sub("", text)  # "the site office": "the site" is one lexeme
+        return Thing(bare, definite=determiner or bare != text, odd=odd)
 
     def thing(self, node: Node) -> Thing:
         made: Thing = self.visit(node.branches()[0])
@@ -157,8 +157,8 @@ class SceneRules(Rules):
         return GoThere()
 
     def named(self, node: Node) -> PresetRef:
-        said = bool(node.leaves("PRESETWORD")) or not node.leaves("DET")
-        return PresetRef(self.text(node.leaves("PRESETNAME")), sure=said)
+        certain = bool(node.leaves("PRESETWORD")) or not node.leaves("DET")
+        return PresetRef(self.text(node.leaves("PRESETNAME")), sure=certain)
 
     def numbered(self, node: Node) -> PresetRef:
         return PresetRef(self.text(node.all_leaves()), number=round(self.number(node)), sure=True)
@@ -187,9 +187,9 @@ class SceneRules(Rules):
 
     def go_winner(self, node: Node) -> Step:
         winner = node.branches()[0]
-        return WhichPreset(self._thing(winner), self._wish(winner), self._places(winner), go=True)
+        return WhichPreset(self._thing(winner), self._sense(winner), self._places(winner), go=True)
 
-    def _wish(self, node: Node) -> Any:
+    def _sense(self, node: Node) -> Any:
         return next((b.name for b in node.branches("more", "fewer")), "fewer" if node.has("LESSER", "FEWERTHAN") else "more")
 
     def _places(self, node: Node) -> tuple[PresetRef, ...]:
@@ -227,8 +227,8 @@ class SceneRules(Rules):
         if any(re.match(r"ha(?:s|ve|sn|ven)\b", self.words_of(leaf)) for leaf in node.leaves("BE")):
             return Count((Thing(f"{thing.text} {'without' if denied else 'with'} {rest}"),), self._view(node))
         adjective = " " not in rest and leaves[0].kind == "WORD" and not rest.endswith("ing") and not denied
-        said = f"{rest} {thing.text}" if adjective else f"{thing.text} {'not ' if denied else ''}{rest}"
-        return Count((Thing(described(said)),), self._view(node))
+        text = f"{rest} {thing.text}" if adjective else f"{thing.text} {'not ' if denied else ''}{rest}"
+        return Count((Thing(described(text)),), self._view(node))
 
     def count_between(self, node: Node) -> Step:
         return Count((Thing(f"{self._thing(node).text} {self.text(node.branches('between')[0].all_leaves())}"),), self._view(node))

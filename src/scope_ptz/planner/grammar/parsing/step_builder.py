@@ -265,8 +265,8 @@ class Builder(MoveRules, JudgingRules):
         return DoAgain()
 
     def sweep(self, node: Node) -> Step:
-        said = " ".join(self.words_of(leaf) for leaf in node.leaves("SWEEP"))
-        return Sweep(turn="360" in said)
+        words = " ".join(self.words_of(leaf) for leaf in node.leaves("SWEEP"))
+        return Sweep(turn="360" in words)
 
     # Quantities --------------------------------------------------------------------------------------------------------
     def n_times(self, node: Node) -> int:

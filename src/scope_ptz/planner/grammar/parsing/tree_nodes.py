@@ -82,8 +82,8 @@ class Rules:
 
     def how_often(self, node: Node) -> int:
         """Return 3 for "thrice" or "a few times", 2 for "twice"."""
-        said = " ".join(self.words_of(leaf) for leaf in node.leaves("TWICE"))
-        return 3 if "thrice" in said or "few" in said else 2
+        words = " ".join(self.words_of(leaf) for leaf in node.leaves("TWICE"))
+        return 3 if "thrice" in words or "few" in words else 2
 
     def text(self, leaves: Sequence[Leaf]) -> str:
         """Return the original words from the first to the last of the leaves."""
@@ -91,5 +91,5 @@ class Rules:
             return ""
         start = self.lexemes[leaves[0].index].start
         end = self.lexemes[leaves[-1].index].end
-        said = " ".join(self.source[start:end].split())
-        return said.lower() if self.shouting else said
+        words = " ".join(self.source[start:end].split())
+        return words.lower() if self.shouting else words
