@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from scope_ptz.builtin_names import DEFAULT_SCENE
 from scope_ptz.cli.endings import ending
 from scope_ptz.cli.model_options import (
     DetectorOption,
@@ -112,7 +113,7 @@ def profile(
     ] = None,
     limit: Annotated[int | None, typer.Option("--limit", min=1, help="Only so many instructions, evenly chosen.")] = None,
     frames: Annotated[int, typer.Option("--frames", min=1, help="Frames that the eyes look at.")] = 6,
-    scene: Annotated[str, typer.Option("--scene", help="Scene that the frames are of.")] = "highway-works",
+    scene: Annotated[str, typer.Option("--scene", help="Scene that the frames are of.")] = DEFAULT_SCENE,
     prompts: Annotated[
         bool, typer.Option("--prompts", help="Also: how tool choice changes with small edits of prompt and instruction.")
     ] = False,

@@ -15,6 +15,7 @@ from pydantic import BaseModel, ValidationError
 from rich.console import Console
 from rich.progress import Progress, TextColumn
 
+from scope_ptz.builtin_names import DEFAULT_SCENE
 from scope_ptz.cli.endings import FAILED, put_json
 from scope_ptz.cli.profile_report import PerceptionSpeed, Side, show
 from scope_ptz.endpoints.serving_facts import memory_gb, serving_facts
@@ -48,7 +49,7 @@ class Extent:
     instructions: Path | None = None
     limit: int | None = None
     frames: int = 6
-    scene: str = "highway-works"
+    scene: str = DEFAULT_SCENE
     prompts: bool = False
 
 

@@ -15,13 +15,13 @@ from scope_ptz.bench.judging.tally import without_verdict
 from scope_ptz.bench.reports.labels import served_instead, split_name
 from scope_ptz.bench.scoring.trials import Evaluation, ModelCard, Trial
 from scope_ptz.bench.statistics.clustered import Estimate, Scores, macro_weights, share
+from scope_ptz.builtin_names import GRAMMAR, GROUND_TRUTH
 from scope_ptz.errors import UnknownNameError
 from scope_ptz.registry import Model, Registry
 
 Kind = Literal["models", "reference", "blind", "person"]
 """``reference``: the grammar planner or ground-truth eyes took part; ``blind``: nothing was seen; ``person``: a human baseline."""
 PERSON = "person"
-GRAMMAR, GROUND_TRUTH = "grammar", "ground-truth"
 """What is no model and makes no noise either: noisy eyes are the ground truth made worse."""
 HEADLINE_STRATA = ("core", "imported")
 FULL_PRECISION = ("fp32", "fp16", "bf16")

@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from anyio import to_thread
 
+from scope_ptz.builtin_names import GROUND_TRUTH
 from scope_ptz.camera.base import Frame
 from scope_ptz.errors import PackError, PerceptionError, UnknownNameError
 from scope_ptz.geometry import Projection
@@ -29,7 +30,7 @@ class GroundTruthPerception(Perception):
     nearest car"); they carry the thing's name and no score.
     """
 
-    name = "ground-truth"
+    name = GROUND_TRUTH
     handles_panoramas = True
 
     def __init__(self, open_scene: Callable[[str], Scene], read_truth: TruthReader = view_truth) -> None:

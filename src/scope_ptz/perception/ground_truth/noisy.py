@@ -10,6 +10,7 @@ import math
 import random
 from dataclasses import dataclass, replace
 
+from scope_ptz.builtin_names import NOISY_SOURCE
 from scope_ptz.camera.base import Frame
 from scope_ptz.perception.ground_truth import GroundTruthPerception
 from scope_ptz.simulator.truth import MIN_CAP_HEIGHT_PX, Sighting, TextSighting, ViewTruth
@@ -44,7 +45,7 @@ class Noise:
 class NoisyPerception(GroundTruthPerception):
     """Adds errors to the ground truth. They are consistent within one question, and differ between questions."""
 
-    name = "noisy-ground-truth"
+    name = NOISY_SOURCE
 
     def __init__(self, truth: GroundTruthPerception, seed: int, noise: Noise | None = None) -> None:
         super().__init__(truth.open_scene, truth.read_truth)

@@ -6,6 +6,7 @@ in them, and ``execution`` runs the steps against the history.
 
 from __future__ import annotations
 
+from scope_ptz.builtin_names import GRAMMAR
 from scope_ptz.errors import PlannerError
 from scope_ptz.planner.base import CallTools, Decision, Finish, Planner, State, ToolCall, ToolOutcome
 from scope_ptz.planner.grammar.binding.understand import Understanding, understand
@@ -20,7 +21,7 @@ class GrammarPlanner(Planner):
     steps.
     """
 
-    name = "grammar"
+    name = GRAMMAR
 
     async def step(self, state: State) -> Decision:
         return decide(state)

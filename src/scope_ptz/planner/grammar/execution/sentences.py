@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from scope_ptz import english
+from scope_ptz.builtin_names import GROUND_TRUTH
 from scope_ptz.english.nouns import plural_noun
 from scope_ptz.planner.grammar.instruction_tree import (
     Condition,
@@ -154,5 +155,5 @@ def source_text(sources: Sequence[str]) -> str:
     """Return the note about who answered, empty for no sources."""
     if not sources:
         return ""
-    named = ["the simulator's ground truth" if source == "ground-truth" else source for source in sources]
+    named = ["the simulator's ground truth" if source == GROUND_TRUTH else source for source in sources]
     return f" (Source: {english.listing(named)}.)"
