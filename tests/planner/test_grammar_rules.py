@@ -1,4 +1,4 @@
-"""The compiled grammar is the grammar."""
+"""The compiled rules match the grammar."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ async def measure(make: Callable[[Prompt], Planner], rows: tuple[Row, ...] = ROW
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.instruction)
-def test_the_instructions_mean_what_they_are_said_to(row: Row) -> None:
+def test_the_grammar_plans_the_packaged_instructions_as_expected(row: Row) -> None:
     made = plan(row.instruction, PRESETS)
     assert [call.name for call in made.calls] == [call.name for call in row.calls]
     assert is_right(row, Call(name=made.calls[0].name, arguments=made.calls[0].arguments))
@@ -51,7 +51,7 @@ def test_the_instructions_are_balanced_between_directions() -> None:
     assert abs(sum(p > 0 for p in pans) - sum(p < 0 for p in pans)) <= 3
 
 
-def test_edits_leave_directions_and_numbers_alone() -> None:
+def test_edits_keep_directions_and_numbers() -> None:
     for edit in INSTRUCTION_EDITS:
         assert any(edit.apply(row.instruction) != row.instruction for row in ROWS), edit.name
         for row in ROWS:
@@ -89,7 +89,7 @@ async def test_inverted_moves_are_found() -> None:
     assert "adjust_ptz(pan_deg=20)" in report.inversions[0]
 
 
-async def test_a_planner_that_depends_on_its_prompt_is_found_out() -> None:
+async def test_a_planner_that_depends_on_its_prompt_is_detected() -> None:
     def go_home(_: State, decision: Decision) -> Decision:
         assert isinstance(decision, CallTools)
         return CallTools(calls=(decision.calls[0].model_copy(update={"name": "go_home", "arguments": {}}),))
@@ -103,7 +103,7 @@ async def test_a_planner_that_depends_on_its_prompt_is_found_out() -> None:
     assert report.by_prompt.share == round(1 / len(PROMPT_EDITS), 4)
 
 
-async def test_failures_and_wrong_calls_are_told_apart() -> None:
+async def test_failures_and_wrong_calls_are_counted_separately() -> None:
     def spoil(state: State, decision: Decision) -> Decision:
         assert isinstance(decision, CallTools)
         if "left" in state.instruction:
@@ -115,7 +115,7 @@ async def test_failures_and_wrong_calls_are_told_apart() -> None:
     assert report.valid.of == report.right.of == 1
 
 
-async def test_a_server_that_fails_changes_no_choice() -> None:
+async def test_a_failing_server_does_not_count_as_a_changed_choice() -> None:
     def gone(state: State, decision: Decision) -> Decision:
         raise PlannerError("gone", kind="refused")
 
@@ -142,7 +142,7 @@ def test_inversion_and_rates() -> None:
     assert 0 < rate.low < 0.25 < rate.high < 1
 
 
-def test_rows_of_other_files_may_ask_for_words_only() -> None:
+def test_expected_texts_may_be_lists_of_words() -> None:
     words = {"question": {"contains": ["gantry sign"]}, "view": "current"}
     row = Row(instruction="read it", kind="object", calls=(Call(name="query_answer", arguments=words),))
     assert is_right(row, Call(name="query_answer", arguments={"question": "What does it say?"}))

@@ -1,4 +1,4 @@
-"""Reading completions: the habits of many servers, and nothing that breaks files or terminals."""
+"""Parsing completions in the formats of many servers, without characters that break files or terminals."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ SAYINGS = st.builds(
 
 @settings(deadline=None)
 @given(SAYINGS)
-def test_streamed_or_whole_the_reply_is_the_same(say: Say) -> None:
+def test_streamed_and_complete_replies_are_equal(say: Say) -> None:
     if not (say.text.strip() or say.reasoning.strip() or say.tool_calls):
         return
     whole = gather(completion(say))
@@ -69,7 +69,7 @@ ANY_JSON = st.recursive(
 
 @settings(deadline=None)
 @given(st.dictionaries(st.sampled_from(["choices", "usage", "model"]), ANY_JSON))
-def test_whatever_comes_is_a_reply_or_a_failure(data: dict[str, Any]) -> None:
+def test_any_data_is_a_reply_or_a_failure(data: dict[str, Any]) -> None:
     try:
         reply = gather(data)
     except ServerFailure as failure:
@@ -80,7 +80,7 @@ def test_whatever_comes_is_a_reply_or_a_failure(data: dict[str, Any]) -> None:
 
 @settings(deadline=None)
 @given(st.binary() | ANY_JSON.map(lambda data: json.dumps({"a": data}).encode()))
-def test_whatever_bytes_come_they_are_an_object_or_a_failure(body: bytes) -> None:
+def test_any_bytes_are_an_object_or_a_failure(body: bytes) -> None:
     try:
         data = load_object(body, AT, 200)
     except ServerFailure:
@@ -118,22 +118,22 @@ def test_content_in_parts() -> None:
 @pytest.mark.parametrize(
     "usage", [None, [], "much", {"prompt_tokens": None}, {"prompt_tokens": -1}, {"prompt_tokens": float("nan")}]
 )
-def test_odd_counts_are_none(usage: Any) -> None:
+def test_invalid_token_counts_are_zero(usage: Any) -> None:
     assert gather({"choices": [{"message": {"content": "x"}}], "usage": usage}).input_tokens == 0
 
 
-def test_nothing_that_breaks_files_or_terminals() -> None:
+def test_characters_that_break_files_or_terminals_are_replaced() -> None:
     body = b'{"choices":[{"message":{"content":"a\\ud800b\\u001b[2Jc\\u0000\\u009b d\\n"}}]}'
     reply = gather(load_object(body, AT, 200))
     assert reply.text == "a\ufffdb\ufffd[2Jc\ufffd\ufffd d\n"
     reply.model_dump_json().encode()
 
 
-def test_raw_line_ends_in_strings_are_let_pass() -> None:
+def test_raw_line_ends_in_strings_are_accepted() -> None:
     assert load_object(b'{"a": "x\ny"}', AT, 200) == {"a": "x\ny"}
 
 
-def test_a_whole_call_is_never_a_piece_of_another() -> None:
+def test_a_complete_call_is_not_joined_to_another() -> None:
     reply = gather({"choices": [{"message": {"tool_calls": [call("{}", index=0, id="a"), call("{}", index=0, id="a")]}}]})
     assert [call.arguments_text for call in reply.tool_calls] == ["{}", "{}"]
 
@@ -162,13 +162,13 @@ def test_the_interface_before_tools(streamed: bool) -> None:
     "body",
     [{"detail": "not loaded"}, {"message": "not loaded", "code": 500}, {"status": "error", "message": "not loaded"}],
 )
-def test_a_body_of_nothing_but_words_is_an_error(body: dict[str, Any]) -> None:
+def test_a_body_with_only_a_message_is_an_error(body: dict[str, Any]) -> None:
     with pytest.raises(ServerFailure) as raised:
         load_object(json.dumps(body).encode(), AT, 200)
     assert raised.value.kind == FailureKind.ERROR_BODY
     assert "not loaded" in str(raised.value)
 
 
-def test_what_cannot_be_read_is_quoted_in_brief() -> None:
+def test_unreadable_bodies_are_quoted_briefly() -> None:
     with pytest.raises(ServerFailure, match="in 'Internal Server Error'"):
         load_object(b"Internal Server Error", AT, 200)

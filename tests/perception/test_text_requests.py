@@ -47,7 +47,7 @@ def test_reading_questions_and_their_targets(question: str, target: str | None) 
         "how many words are on the sign?",
     ],
 )
-def test_questions_that_want_more_than_reading(question: str) -> None:
+def test_questions_that_are_not_only_about_reading(question: str) -> None:
     assert not is_reading(question)
 
 
@@ -83,10 +83,10 @@ def test_texts_that_a_description_names(description: str, wanted: tuple[str, ...
         ("出口", "出口 14", True),
     ],
 )
-def test_texts_fit_slips_forgiven(wanted: str, line: str, fits: bool) -> None:
+def test_texts_match_despite_ocr_mistakes(wanted: str, line: str, fits: bool) -> None:
     assert text_fits(wanted, line) is fits
 
 
-def test_likeness_is_between_nothing_and_all() -> None:
+def test_likeness_is_between_zero_and_one() -> None:
     assert likeness("EXIT 14", "exit-14") == 1.0
     assert likeness("", "") == 0.0

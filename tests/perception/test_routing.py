@@ -1,4 +1,4 @@
-"""Who is asked what, who steps in, and how far they agree."""
+"""Which backend is asked, which one replaces a failed one, and how far two agree."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ class TestRouter(PerceptionConformance):
 
 
 @pytest.mark.anyio
-async def test_each_kind_of_question_goes_to_its_own_eyes() -> None:
+async def test_each_question_type_goes_to_its_backend() -> None:
     ocr, owl, vlm = Stand("ocr"), Stand("owl", FINDS, boxes=(box(0.1),)), Stand("vlm")
     eyes = RouterPerception(reader=ocr, detector=owl, answerer=vlm, compare=False)
     assert (await eyes.query(FRAME, "what colour is the door?")).source == "vlm"
@@ -103,7 +103,7 @@ async def test_each_kind_of_question_goes_to_its_own_eyes() -> None:
 
 
 @pytest.mark.anyio
-async def test_two_are_asked_at_once_and_agreement_is_recorded() -> None:
+async def test_two_backends_are_asked_at_once_and_their_agreement_is_recorded() -> None:
     owl = Stand("owl", FINDS, boxes=(box(0.1), box(0.5)), wait_s=0.2)
     vlm = Stand("vlm", boxes=(box(0.11),), wait_s=0.2)
     with anyio.fail_after(0.35):
@@ -132,7 +132,7 @@ async def test_agreement_on_places(mine: tuple[Box, ...], other: tuple[Box, ...]
 
 
 @pytest.mark.anyio
-async def test_the_next_steps_in_for_one_that_failed_and_that_is_said() -> None:
+async def test_the_next_backend_replaces_a_failed_one_with_a_note() -> None:
     owl, vlm = Stand("owl", FINDS, broken=True), Stand("vlm", boxes=(box(0.3),))
     for compare in (True, False):
         found = await RouterPerception(detector=owl, answerer=vlm, compare=compare).detect(FRAME, "cone")
@@ -141,7 +141,7 @@ async def test_the_next_steps_in_for_one_that_failed_and_that_is_said() -> None:
 
 
 @pytest.mark.anyio
-async def test_when_all_fail_it_is_an_error_with_all_that_was_tried() -> None:
+async def test_when_all_backends_fail_the_error_has_all_attempts() -> None:
     eyes = RouterPerception(detector=Stand("owl", FINDS, broken=True), answerer=Stand("vlm", broken=True))
     with pytest.raises(PerceptionError, match=r"owl is broken vlm is broken") as caught:
         await eyes.detect(FRAME, "cone")
@@ -149,7 +149,7 @@ async def test_when_all_fail_it_is_an_error_with_all_that_was_tried() -> None:
 
 
 @pytest.mark.anyio
-async def test_a_reader_that_sees_no_text_leaves_the_word_to_the_model() -> None:
+async def test_the_model_answers_when_the_reader_finds_no_text() -> None:
     ocr, vlm = Stand("ocr", text="nothing", known=False), Stand("vlm", text="EXIT 14")
     answer = await RouterPerception(reader=ocr, answerer=vlm, compare=False).query(FRAME, "read the text")
     assert (answer.source, answer.text) == ("vlm", "EXIT 14")
@@ -158,7 +158,7 @@ async def test_a_reader_that_sees_no_text_leaves_the_word_to_the_model() -> None
 
 
 @pytest.mark.anyio
-async def test_reading_is_kept_to_the_thing_that_was_named() -> None:
+async def test_only_text_on_the_named_thing_is_read() -> None:
     ocr = Stand("ocr", text="everything", boxes=(box(0.15, 0.1, "EXIT"), box(0.6, 0.6, "CAFE")))
     owl = Stand("owl", FINDS, boxes=(Box(x_min=0.1, y_min=0.0, x_max=0.4, y_max=0.4),))
     eyes = RouterPerception(reader=ocr, detector=owl, answerer=Stand("vlm", text="The sign says exit."))
@@ -169,7 +169,7 @@ async def test_reading_is_kept_to_the_thing_that_was_named() -> None:
 
 
 @pytest.mark.anyio
-async def test_a_sign_that_is_not_found_is_said_and_all_text_given() -> None:
+async def test_a_sign_that_is_not_found_is_noted_and_all_text_is_given() -> None:
     ocr = Stand("ocr", text='It reads: "CAFE".', boxes=(box(0.6, 0.6, "CAFE"),))
     for owl in (Stand("owl", FINDS), Stand("owl", FINDS, broken=True), Stand("owl", FINDS, boxes=(box(0.0),))):
         answer = await RouterPerception(reader=ocr, detector=owl).query(FRAME, "what does the gantry sign say?")
@@ -177,7 +177,7 @@ async def test_a_sign_that_is_not_found_is_said_and_all_text_given() -> None:
 
 
 @pytest.mark.anyio
-async def test_what_none_can_do_is_an_error() -> None:
+async def test_a_skill_that_no_part_has_is_an_error() -> None:
     eyes = RouterPerception(detector=Stand("owl", FINDS))
     assert eyes.skills == FINDS
     with pytest.raises(PerceptionError, match="No part of"):

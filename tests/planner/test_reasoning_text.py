@@ -32,7 +32,7 @@ CALL = '<tool_call>{"name": "go_home", "arguments": {}}</tool_call>'
         ),
     ],
 )
-def test_parting(text: str, answer: str, reasoning: str) -> None:
+def test_reasoning_is_separated_from_text(text: str, answer: str, reasoning: str) -> None:
     parted = part(text)
     assert (parted.text, parted.reasoning) == (answer, reasoning)
 

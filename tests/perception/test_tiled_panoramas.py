@@ -1,4 +1,4 @@
-"""Panoramas part by part: everything is found once, small things at the resolution of a frame."""
+"""Panoramas in parts: everything is found once, small things at the resolution of a frame."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def test_tiles_cover_the_picture_and_overlap(width: int, height: int) -> None:
     ],
     ids=["apart", "in an overlap", "across a border", "across all", "at the end", "neighbours", "none"],
 )
-async def test_everything_is_found_once_where_it_is(spans: list[tuple[int, int]]) -> None:
+async def test_things_in_a_panorama_are_found_once_at_their_place(spans: list[tuple[int, int]]) -> None:
     eyes = TiledPerception(Blobs())
     found = await eyes.detect(panorama(*spans), "blob")
     seen = sorted((b.x_min * WIDTH, b.x_max * WIDTH) for b in found.boxes)
@@ -108,7 +108,7 @@ async def test_everything_is_found_once_where_it_is(spans: list[tuple[int, int]]
 
 
 @pytest.mark.anyio
-async def test_parts_are_frames_of_their_own_looked_at_together() -> None:
+async def test_parts_are_frames_that_are_processed_together() -> None:
     blobs = Blobs()
     found = await TiledPerception(blobs).detect(panorama((10, 30)), "blob")
     assert set(blobs.shown) == {(320, HEIGHT)} and blobs.spans[0] == pytest.approx(280 * 320 / WIDTH)
@@ -117,20 +117,20 @@ async def test_parts_are_frames_of_their_own_looked_at_together() -> None:
 
 
 @pytest.mark.anyio
-async def test_points_are_found_once_too() -> None:
+async def test_points_in_a_panorama_are_found_once() -> None:
     found = await TiledPerception(Blobs()).point(panorama((10, 30), (300, 320), (900, 960)), "blob")
     assert sorted(p.x * WIDTH for p in found.points) == pytest.approx([20, 310, 930], abs=2)
 
 
 @pytest.mark.anyio
-async def test_a_part_that_fails_fails_the_look() -> None:
+async def test_a_failing_part_fails_the_call() -> None:
     with pytest.raises(PerceptionError, match="tired") as caught:
         await TiledPerception(Blobs(fails_on=3)).detect(panorama((10, 30)), "blob")
     assert caught.value.kind == "server-error" and "server-error" in [a.kind for a in caught.value.attempts]
 
 
 @pytest.mark.anyio
-async def test_behind_the_seam_of_a_full_turn_is_one_thing() -> None:
+async def test_a_thing_at_the_seam_of_a_full_turn_is_one_thing() -> None:
     spans = [(0, 30), (1580, WIDTH), (700, 720)]
     around = await TiledPerception(Blobs()).detect(panorama(*spans, full_turn=True), "blob")
     assert len(around.boxes) == 2
@@ -138,7 +138,7 @@ async def test_behind_the_seam_of_a_full_turn_is_one_thing() -> None:
 
 
 @pytest.mark.anyio
-async def test_ordinary_frames_and_questions_go_through_whole() -> None:
+async def test_ordinary_frames_and_questions_are_not_split() -> None:
     blobs = Blobs()
     eyes = TiledPerception(blobs)
     await eyes.detect(pictures.frame(), "blob")
@@ -147,7 +147,7 @@ async def test_ordinary_frames_and_questions_go_through_whole() -> None:
     assert (await eyes.query(panorama(), "what?")).text == (await eyes.caption(panorama())).text == f"{WIDTH} wide"
 
 
-def test_eyes_that_would_shrink_a_panorama_are_wrapped() -> None:
+def test_backends_that_cannot_handle_panoramas_are_wrapped() -> None:
     endpoint = {"url": "http://127.0.0.1:9/v1", "model": "m"}
     served = make_backend(BackendSpec(name="eyes", backend="moondream", endpoint=endpoint))  # type: ignore[arg-type]
     assert isinstance(served, TiledPerception) and served.name == "eyes"
