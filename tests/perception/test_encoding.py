@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from scope_ptz.errors import PerceptionError
-from scope_ptz.perception.models.encoding import Picture, Size, encode, picture_of
+from scope_ptz.perception.models.encoding import EncodedPicture, Size, encode, picture_of
 from scope_ptz.perception.models.frame_memo import FrameMemo, Image
 from tests.perception import pictures
 
@@ -39,14 +39,14 @@ async def test_concurrent_callers_share_one_encoding() -> None:
     made: list[Size | None] = []
     together = threading.Barrier(2, timeout=5)
 
-    def slow(image: Image, size: Size | None) -> Picture:
+    def slow(image: Image, size: Size | None) -> EncodedPicture:
         made.append(size)
         if len(made) <= 2:
             together.wait()  # two sizes are encoded side by side
         return encode(image, size)
 
-    memo, frame = FrameMemo[Size | None, Picture](slow), pictures.frame()
-    got: list[Picture] = []
+    memo, frame = FrameMemo[Size | None, EncodedPicture](slow), pictures.frame()
+    got: list[EncodedPicture] = []
 
     async def ask(size: Size | None) -> None:
         got.append(await picture_of(frame, size, memo))

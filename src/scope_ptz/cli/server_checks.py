@@ -10,7 +10,7 @@ from rich.text import Text
 
 from scope_ptz.cli.display import plain
 from scope_ptz.cli.endings import FAILED, put_json
-from scope_ptz.endpoints.chat_server_checks import LAST, Check, Verdict, check_chat
+from scope_ptz.endpoints.chat_server_checks import LAST, ServerCheck, Verdict, check_chat
 from scope_ptz.errors import InputError
 from scope_ptz.factory.cameras import open_camera
 from scope_ptz.factory.models import ModelOptions, ResolvedPerception, ResolvedPlanner, make_perception, resolve_models
@@ -24,7 +24,7 @@ _MARKS: dict[Verdict, tuple[str, str]] = {"ok": ("ok", "green"), "partly": ("--"
 
 def check_servers(wishes: ModelOptions, *, as_json: bool) -> int:
     """Print every check as it ends; exit code 1 when one of them failed."""
-    found: list[tuple[str, Check]] = []
+    found: list[tuple[str, ServerCheck]] = []
     console = Console(highlight=False)
 
     async def work() -> None:
@@ -42,7 +42,7 @@ def check_servers(wishes: ModelOptions, *, as_json: bool) -> int:
     return FAILED if any(check.verdict == "failed" for _, check in found) else 0
 
 
-async def _checks(planner: ResolvedPlanner, eyes: ResolvedPerception) -> AsyncIterator[tuple[str, Check]]:
+async def _checks(planner: ResolvedPlanner, eyes: ResolvedPerception) -> AsyncIterator[tuple[str, ServerCheck]]:
     if planner.endpoint is not None:
         from scope_ptz.planner.chat.planning_checks import check_planning
         from scope_ptz.tools.registry import schemas
@@ -66,7 +66,7 @@ async def _checks(planner: ResolvedPlanner, eyes: ResolvedPerception) -> AsyncIt
                 await perception.close()
 
 
-def _show(console: Console, about: str, check: Check) -> None:
+def _show(console: Console, about: str, check: ServerCheck) -> None:
     mark, style = _MARKS[check.verdict]
     head = Text.assemble((f"{mark}  ", style), (f"{plain(about)}: {check.what}", "bold"), (f"  {check.seconds:.2f} s  ", "dim"))
     console.print(head + Text(plain(check.detail)), soft_wrap=True)

@@ -29,7 +29,7 @@ LAST = "a model that is not there"
 _NO_MODEL = "no-model-has-this-name"
 
 
-class Check(BaseModel):
+class ServerCheck(BaseModel):
     """The result of one check.
 
     Attributes:
@@ -49,17 +49,17 @@ class Check(BaseModel):
 Finding = tuple[Verdict, str]
 
 
-async def checked(what: str, check: Callable[[], Awaitable[Finding]]) -> Check:
+async def checked(what: str, check: Callable[[], Awaitable[Finding]]) -> ServerCheck:
     """Run one check. An error that SCOPE raises on purpose is a failed check."""
     began, kind = perf_counter(), ""
     try:
         verdict, detail = await check()
     except ScopeError as error:
         verdict, detail, kind = "failed", str(error), str(getattr(error, "kind", None) or "")
-    return Check(what=what, verdict=verdict, detail=detail, kind=kind, seconds=round(perf_counter() - began, 3))
+    return ServerCheck(what=what, verdict=verdict, detail=detail, kind=kind, seconds=round(perf_counter() - began, 3))
 
 
-async def check_chat(endpoint: Endpoint) -> AsyncIterator[Check]:
+async def check_chat(endpoint: Endpoint) -> AsyncIterator[ServerCheck]:
     """Check a chat server. The checks end early when the server is not there or the key is wrong."""
     patient = endpoint.model_copy(update={"retries": 1})
     client = ChatClient(patient)

@@ -11,7 +11,7 @@ from scope_ptz.bench.answers.result import Reading, Unreadable, Value
 from scope_ptz.bench.answers.text import Script
 from scope_ptz.bench.answers.words import clean
 from scope_ptz.bench.tasks.expected import Text
-from scope_ptz.english.numbers import SMALL_NUMBERS
+from scope_ptz.english.number_words import SMALL_NUMBERS
 
 APART = " / "
 """Between texts that stand apart from each other."""

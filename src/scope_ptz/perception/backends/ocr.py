@@ -19,7 +19,7 @@ from scope_ptz.perception.backends.spec import BackendSpec, Options, need
 from scope_ptz.perception.base import Answer, Box, Caption, Detections, Perception, Point, Points
 from scope_ptz.perception.models.frame_memo import FrameMemo, Image
 from scope_ptz.perception.models.text_requests import is_reading, text_fits, wanted_texts
-from scope_ptz.perception.models.tile_geometry import Tile, merged, tiles
+from scope_ptz.perception.models.tile_geometry import PanoramaTile, merged, tiles
 
 Reader = Callable[[Image], "list[Line]"]
 
@@ -111,7 +111,7 @@ def in_reading_order(lines: list[Line]) -> list[Line]:
 def read_tiles(reader: Reader, image: Image) -> list[Line]:
     """Return all lines of a picture. A panorama is read in overlapping parts at full resolution."""
     width, height = image.shape[1], image.shape[0]
-    parts: list[tuple[Tile, list[Box]]] = []
+    parts: list[tuple[PanoramaTile, list[Box]]] = []
     for tile in tiles(width, height):
         try:
             parts.append((tile, [line.box for line in reader(np.ascontiguousarray(tile.crop(image)))]))

@@ -14,7 +14,7 @@ from scope_ptz.errors import PerceptionError
 from scope_ptz.perception.backends.spec import BackendSpec, Options
 from scope_ptz.perception.base import ALL_SKILLS, Answer, Caption, Detections, Perception, Points, Skill
 from scope_ptz.perception.models.coordinates import Convention, convention
-from scope_ptz.perception.models.encoding import Picture, picture_of
+from scope_ptz.perception.models.encoding import EncodedPicture, picture_of
 from scope_ptz.perception.models.vision_prompts import (
     CAPTION_PROMPT,
     detect_prompt,
@@ -91,7 +91,7 @@ class OpenAIVisionPerception(Perception):
             raise place_error(self.name)
         return self._style
 
-    async def _picture(self, frame: Frame) -> Picture:
+    async def _picture(self, frame: Frame) -> EncodedPicture:
         size = sent_size(frame, self._style or convention("generic"), self._options.max_pixels)
         return await picture_of(frame, size)
 
@@ -102,7 +102,7 @@ class OpenAIVisionPerception(Perception):
         )
 
     async def _ask(
-        self, picture: Picture, prompt: str, schema: dict[str, Any] | None = None
+        self, picture: EncodedPicture, prompt: str, schema: dict[str, Any] | None = None
     ) -> tuple[ChatReply, tuple[Attempt, ...]]:
         """Return the reply and the earlier attempts. Fields that a server refuses are left out, now and from then on."""
         refused, earlier = set(self._refused), tuple[Attempt, ...]()
@@ -130,7 +130,7 @@ class OpenAIVisionPerception(Perception):
             fields["response_format"] = {"type": "json_schema", "json_schema": {"name": "places", "schema": schema, "strict": True}}
         return {name: value for name, value in fields.items() if name not in refused}
 
-    async def _complete(self, picture: Picture, prompt: str, fields: dict[str, Any]) -> ChatReply:
+    async def _complete(self, picture: EncodedPicture, prompt: str, fields: dict[str, Any]) -> ChatReply:
         content = [{"type": "image_url", "image_url": {"url": picture.data_url}}, {"type": "text", "text": prompt}]
         with served(self.name):
             return await self._client.complete([{"role": "user", "content": content}], extra=fields)

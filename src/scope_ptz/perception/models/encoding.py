@@ -19,7 +19,7 @@ Size = tuple[int, int]
 
 
 @dataclass(frozen=True)
-class Picture:
+class EncodedPicture:
     """A frame as it is sent to a model: a JPEG of ``width`` x ``height`` pixels."""
 
     jpeg: bytes
@@ -54,7 +54,7 @@ def _interpolation(old: Size, new: Size) -> int:
     return cv2.INTER_NEAREST_EXACT if slight else cv2.INTER_LINEAR
 
 
-def encode(image: Image, size: Size | None = None) -> Picture:
+def encode(image: Image, size: Size | None = None) -> EncodedPicture:
     """Encode an RGB image (H, W, 3) as JPEG, at another size (width, height) if one is given."""
     picture = resized(image, size)
     own = picture if picture is not image else None  # in-place conversion, because allocation costs more than the work
@@ -65,15 +65,17 @@ def encode(image: Image, size: Size | None = None) -> Picture:
         worked = False
     if not worked:
         raise PerceptionError(f"A frame of {picture.shape[1]}x{picture.shape[0]} pixels cannot be written as JPEG.")
-    made = Picture(jpeg.tobytes(), int(picture.shape[1]), int(picture.shape[0]))
+    made = EncodedPicture(jpeg.tobytes(), int(picture.shape[1]), int(picture.shape[0]))
     _ = made.data_url  # computed here, in the worker thread
     return made
 
 
-_SHARED: FrameMemo[Size | None, Picture] = FrameMemo(encode)
+_SHARED: FrameMemo[Size | None, EncodedPicture] = FrameMemo(encode)
 """A cache, not state: its values depend on the pixels only. All backends share it, so that each frame is encoded once."""
 
 
-async def picture_of(frame: Frame, size: Size | None = None, memo: FrameMemo[Size | None, Picture] = _SHARED) -> Picture:
+async def picture_of(
+    frame: Frame, size: Size | None = None, memo: FrameMemo[Size | None, EncodedPicture] = _SHARED
+) -> EncodedPicture:
     """Return the JPEG of a frame at a size (width, height), encoded in a worker thread on first use."""
     return await memo.get_async(frame.image, None if size == (frame.width, frame.height) else size)

@@ -25,14 +25,14 @@ MAX_ANSWER_CHARS = 2_000
 
 
 @dataclass(frozen=True, slots=True)
-class Places:
+class ParsedPlaces:
     """The things that a reply names, in order. ``complete`` is False when the reply was cut off and there may be more."""
 
     things: tuple[RawThing, ...]
     complete: bool = True
 
 
-def read_places(text: str) -> Places:
+def read_places(text: str) -> ParsedPlaces:
     """Return the boxes and points in a model's text.
 
     Understands bare and fenced JSON (also several documents), lists cut off at the token limit, point and box tags, and corner
@@ -43,9 +43,9 @@ def read_places(text: str) -> Places:
     documents, uncut = _documents(body)
     things = tuple(thing for document in documents for thing in _collect(document)) or tuple(_tagged(body))
     if things:
-        return Places(things, whole and uncut)
+        return ParsedPlaces(things, whole and uncut)
     if whole and uncut and (any(_is_empty(d) for d in documents) or _says_none(body)):
-        return Places(())
+        return ParsedPlaces(())
     cut = "" if uncut else " (cut off before the first place was complete)"
     raise PerceptionError(f"The reply names no places that can be read{cut}: {excerpt(text)}", kind="malformed")
 

@@ -29,7 +29,7 @@ CUT = 0.01
 
 
 @dataclass(frozen=True, slots=True)
-class Tile:
+class PanoramaTile:
     """A part of a picture over its full height, in pixels."""
 
     left: int
@@ -49,14 +49,14 @@ class Tile:
         return point.model_copy(update={"x": min(1.0, (self.left + point.x * (self.right - self.left)) / width)})
 
 
-def tiles(width: int, height: int) -> tuple[Tile, ...]:
+def tiles(width: int, height: int) -> tuple[PanoramaTile, ...]:
     """Return overlapping tiles that cover a picture, just one for a picture no wider than ordinary frames."""
     if width <= WIDEST * height:
-        return (Tile(0, width),)
+        return (PanoramaTile(0, width),)
     wide = TILE_ASPECT * height
     count = math.ceil((width - wide) / (wide * (1 - OVERLAP))) + 1
     step = (width - wide) / (count - 1)
-    return tuple(Tile(round(i * step), min(width, round(i * step + wide))) for i in range(count))
+    return tuple(PanoramaTile(round(i * step), min(width, round(i * step + wide))) for i in range(count))
 
 
 def iou(a: Box, b: Box) -> float:
@@ -79,13 +79,13 @@ def suppressed(boxes: Iterable[Box], threshold: float) -> list[Box]:
 class _Part:
     """A box in the whole picture, its tile, and whether the tile's borders cut it."""
 
-    tile: Tile
+    tile: PanoramaTile
     box: Box
     cut_left: bool
     cut_right: bool
 
 
-def merged(parts: Iterable[tuple[Tile, Iterable[Box]]], width: int) -> list[Box]:
+def merged(parts: Iterable[tuple[PanoramaTile, Iterable[Box]]], width: int) -> list[Box]:
     """Merge the boxes of all tiles. A thing that several tiles saw becomes one box."""
     kept: list[_Part] = []
     for tile, boxes in parts:
@@ -100,9 +100,9 @@ def merged(parts: Iterable[tuple[Tile, Iterable[Box]]], width: int) -> list[Box]
     return [part.box for part in kept]
 
 
-def merged_points(parts: Iterable[tuple[Tile, Iterable[Point]]], width: int, near: float) -> list[Point]:
+def merged_points(parts: Iterable[tuple[PanoramaTile, Iterable[Point]]], width: int, near: float) -> list[Point]:
     """Merge the points of all tiles. Two points of different tiles within ``near`` of the width are one."""
-    kept: list[tuple[Tile, Point]] = []
+    kept: list[tuple[PanoramaTile, Point]] = []
     for tile, points in parts:
         for point in (tile.place_point(p, width) for p in points):
             twins = (p for other, p in kept if other != tile)

@@ -14,7 +14,7 @@ from scope_ptz.camera.base import Frame
 from scope_ptz.errors import PerceptionError, Tried
 from scope_ptz.geometry import Equirectangular
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
-from scope_ptz.perception.models.tile_geometry import Tile, merged, merged_points, tiles, without_seam_twins
+from scope_ptz.perception.models.tile_geometry import PanoramaTile, merged, merged_points, tiles, without_seam_twins
 
 AT_ONCE = 4
 """Parts that are processed at the same time; servers queue more."""
@@ -72,16 +72,16 @@ class TiledPerception(Perception):
         await self.backend.close()
 
 
-def _parts(frame: Frame) -> list[tuple[Tile, Frame]]:
+def _parts(frame: Frame) -> list[tuple[PanoramaTile, Frame]]:
     """Return the frame itself, or the overlapping parts of a panorama as frames."""
     whole = frame.projection
     cuts = tiles(frame.width, frame.height)
     if len(cuts) == 1 or not isinstance(whole, Equirectangular):
-        return [(Tile(0, frame.width), frame)]
+        return [(PanoramaTile(0, frame.width), frame)]
     return [(tile, _part(frame, whole, tile)) for tile in cuts]
 
 
-def _part(frame: Frame, whole: Equirectangular, tile: Tile) -> Frame:
+def _part(frame: Frame, whole: Equirectangular, tile: PanoramaTile) -> Frame:
     density = whole.pan_span_deg / whole.width
     left_deg, span_deg = whole.left_pan_deg + tile.left * density, (tile.right - tile.left) * density
     projection = Equirectangular(
@@ -90,7 +90,7 @@ def _part(frame: Frame, whole: Equirectangular, tile: Tile) -> Frame:
     return Frame(np.ascontiguousarray(tile.crop(frame.image)), frame.pose, span_deg, frame.time_s, projection, frame.origin)
 
 
-async def _all(calls: list[tuple[Tile, Callable[[], Awaitable[R]]]]) -> list[tuple[Tile, R]]:
+async def _all(calls: list[tuple[PanoramaTile, Callable[[], Awaitable[R]]]]) -> list[tuple[PanoramaTile, R]]:
     """Run all calls, a few at a time, and return the results in order.
 
     Raises:

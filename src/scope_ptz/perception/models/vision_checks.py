@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import AsyncIterator
 
 from scope_ptz.camera.base import Frame
-from scope_ptz.endpoints.chat_server_checks import Check, Finding, checked
+from scope_ptz.endpoints.chat_server_checks import Finding, ServerCheck, checked
 from scope_ptz.perception.base import Perception
 
 _QUESTION = "What is the main thing in this picture? Answer in a few words."
@@ -15,7 +15,7 @@ _MANY = 100
 
 async def check_perception(
     perception: Perception, frame: Frame, *, thing: str, absent: str = "purple elephant"
-) -> AsyncIterator[Check]:
+) -> AsyncIterator[ServerCheck]:
     """Check each skill of a backend.
 
     A reply that becomes a result was parsed, and its boxes lie in the frame.

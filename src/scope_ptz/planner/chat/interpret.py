@@ -15,7 +15,7 @@ from scope_ptz.endpoints.failures import Attempt, FailureKind
 from scope_ptz.errors import PlannerError
 from scope_ptz.planner.base import CallTools, Decision, Finish, Served, State, ToolCall, Usage
 from scope_ptz.planner.chat.reasoning_text import part
-from scope_ptz.planner.chat.tool_text import Found, find_calls
+from scope_ptz.planner.chat.tool_text import FoundCalls, find_calls
 from scope_ptz.planner.chat.written import Signatures, WrittenCall, plain_name, read_arguments
 
 MOST_CALLS = 32
@@ -71,7 +71,7 @@ def _useless(reply: ChatReply) -> tuple[Attempt, ...]:
     return (*reply.attempts[:-1], *(last.model_copy(update=cost) for last in reply.attempts[-1:]))
 
 
-def _native(reply: ChatReply, text: str) -> Found | None:
+def _native(reply: ChatReply, text: str) -> FoundCalls | None:
     if not reply.tool_calls:
         return None
     calls = []
@@ -79,21 +79,21 @@ def _native(reply: ChatReply, text: str) -> Found | None:
         arguments, malformed = read_arguments(raw.arguments_text)
         calls.append(WrittenCall(plain_name(raw.name), arguments, malformed))
     # Some servers leave the calls in the text after they have parsed them.
-    return Found(tuple(calls), find_calls(text, Signatures({}), marked_only=True).rest, "native")
+    return FoundCalls(tuple(calls), find_calls(text, Signatures({}), marked_only=True).rest, "native")
 
 
-def _in_text(text: str, reasoning: str, state: State) -> Found:
+def _in_text(text: str, reasoning: str, state: State) -> FoundCalls:
     tools = Signatures.of(state.tools)
     found = find_calls(text, tools)
     if not found.calls and not text:
         # A model that calls before it closes its reasoning: the server took the call for reasoning, too.
         inside = find_calls(reasoning, tools, marked_only=True)
         if inside.calls:
-            return Found(inside.calls, "", inside.notation)
+            return FoundCalls(inside.calls, "", inside.notation)
     return found
 
 
-def _tool_calls(reply: ChatReply, found: Found, step: int) -> tuple[ToolCall, ...]:
+def _tool_calls(reply: ChatReply, found: FoundCalls, step: int) -> tuple[ToolCall, ...]:
     ids = [raw.id for raw in reply.tool_calls] if found.notation == "native" else []
     calls = []
     for index, written in enumerate(found.calls[:MOST_CALLS]):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import AsyncIterator, Sequence
 from typing import Any
 
-from scope_ptz.endpoints.chat_server_checks import Check, Finding, checked
+from scope_ptz.endpoints.chat_server_checks import Finding, ServerCheck, checked
 from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import Briefing, CallTools, Decision, Exchange, Finish, State, ToolCall, ToolOutcome
@@ -18,7 +18,7 @@ _MOST_WORDS = 160
 
 async def check_planning(
     endpoint: Endpoint, tools: Sequence[dict[str, Any]], options: ChatOptions | None = None
-) -> AsyncIterator[Check]:
+) -> AsyncIterator[ServerCheck]:
     """Check whether a server's model can plan.
 
     Args:

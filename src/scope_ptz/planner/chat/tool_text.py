@@ -22,7 +22,7 @@ _Reader = Callable[[str, Signatures], list[WrittenCall]]
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class FoundCalls:
     """The calls found in a text.
 
     Attributes:
@@ -35,14 +35,14 @@ class Found:
     notation: str
 
 
-def find_calls(text: str, tools: Signatures, *, marked_only: bool = False) -> Found:
+def find_calls(text: str, tools: Signatures, *, marked_only: bool = False) -> FoundCalls:
     """Return the calls in a text, in order. Of several notations, the first one that occurs is used."""
     text = readable(text)
     for notation, pattern, reader in _MARKED:
         inside = [(match, reader(match["body"], tools)) for match in pattern.finditer(text)]
         if any(calls for _, calls in inside):
-            return Found(tuple(call for _, calls in inside for call in calls), pattern.sub("", text).strip(), notation)
-    return Found((), text.strip(), "") if marked_only else _unmarked(text, tools)
+            return FoundCalls(tuple(call for _, calls in inside for call in calls), pattern.sub("", text).strip(), notation)
+    return FoundCalls((), text.strip(), "") if marked_only else _unmarked(text, tools)
 
 
 def _json_or_markup(body: str, tools: Signatures) -> list[WrittenCall]:
@@ -183,21 +183,21 @@ _MOST_STARTS = 20
 _FENCE = re.compile(r"```[\w-]*[ \t]*\n(?P<body>.*?)(?:\n[ \t]*```|\Z)", re.DOTALL)
 
 
-def _unmarked(text: str, tools: Signatures) -> Found:
+def _unmarked(text: str, tools: Signatures) -> FoundCalls:
     """Return JSON or Python calls in a code fence, or in a text that consists of calls only."""
     fences = [(m, _known(m["body"], tools)) for m in _FENCE.finditer(text)]
     if any(calls for _, calls in fences):
         rest = text
         for match, calls in fences:
             rest = rest.replace(match[0], "") if calls else rest
-        return Found(tuple(call for _, calls in fences for call in calls), rest.strip(), "fence")
+        return FoundCalls(tuple(call for _, calls in fences for call in calls), rest.strip(), "fence")
     if calls := _known(text, tools):
-        return Found(tuple(calls), "", "bare")
+        return FoundCalls(tuple(calls), "", "bare")
     # Prose followed by nothing but calls.
     for match in islice(re.finditer(r"^[ \t]*[\[{]", text, re.MULTILINE), _MOST_STARTS):
         if calls := _known(text[match.start() :], tools):
-            return Found(tuple(calls), text[: match.start()].strip(), "bare")
-    return Found((), text.strip(), "")
+            return FoundCalls(tuple(calls), text[: match.start()].strip(), "bare")
+    return FoundCalls((), text.strip(), "")
 
 
 def _known(body: str, tools: Signatures) -> list[WrittenCall]:

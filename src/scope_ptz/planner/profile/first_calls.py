@@ -28,21 +28,21 @@ class _Model(BaseModel):
     model_config = ConfigDict(frozen=True)
 
 
-class Call(_Model):
+class FirstCall(_Model):
     name: str
     arguments: dict[str, Any] = {}
 
 
-class Row(_Model):
+class InstructionRow(_Model):
     """An instruction with the calls that carry it out. ``alternatives`` are other tools that are as good for the first call."""
 
     instruction: str
     kind: str
-    calls: tuple[Call, ...]
+    calls: tuple[FirstCall, ...]
     alternatives: tuple[str, ...] = ()
 
 
-class Trial(_Model):
+class PlannerTrial(_Model):
     """What a planner did in its first step.
 
     Attributes:
@@ -53,10 +53,10 @@ class Trial(_Model):
         inverted: Whether it turns or zooms in the opposite direction.
     """
 
-    row: Row
+    row: InstructionRow
     edit: str
     asked: str
-    calls: tuple[Call, ...] = ()
+    calls: tuple[FirstCall, ...] = ()
     invalid: int = 0
     text: str = ""
     failure: str | None = None
@@ -67,13 +67,13 @@ class Trial(_Model):
     usage: Usage = Usage()
 
 
-def load_rows() -> tuple[Row, ...]:
+def load_rows() -> tuple[InstructionRow, ...]:
     """Return the packaged instructions."""
     lines = (files("scope_ptz") / "data" / "profile_instructions.jsonl").read_text(encoding="utf-8").splitlines()
-    return tuple(Row.model_validate(json.loads(line)) for line in lines)
+    return tuple(InstructionRow.model_validate(json.loads(line)) for line in lines)
 
 
-async def ask_once(planner: Planner, row: Row, *, asked: str | None = None, edit: str = "") -> Trial:
+async def ask_once(planner: Planner, row: InstructionRow, *, asked: str | None = None, edit: str = "") -> PlannerTrial:
     """Put an instruction to a planner. ``asked`` is the edited wording, if any."""
     words = row.instruction if asked is None else asked
     state = State(
@@ -84,11 +84,13 @@ async def ask_once(planner: Planner, row: Row, *, asked: str | None = None, edit
         decision = await planner.step(state)
     except PlannerError as error:
         failure = error.kind or "planner-error"
-        return Trial(row=row, edit=edit, asked=words, failure=failure, text=str(error), seconds=perf_counter() - began)
+        return PlannerTrial(row=row, edit=edit, asked=words, failure=failure, text=str(error), seconds=perf_counter() - began)
     seconds = perf_counter() - began
     wanted = decision.calls if isinstance(decision, CallTools) else ()
-    calls = tuple(Call(name=c.name, arguments=c.arguments) for c in wanted if c.problem is None and _valid(c.name, c.arguments))
-    return Trial(
+    calls = tuple(
+        FirstCall(name=c.name, arguments=c.arguments) for c in wanted if c.problem is None and _valid(c.name, c.arguments)
+    )
+    return PlannerTrial(
         row=row,
         edit=edit,
         asked=words,
@@ -111,7 +113,7 @@ def _valid(name: str, arguments: dict[str, Any]) -> bool:
     return True
 
 
-def is_right(row: Row, call: Call) -> bool:
+def is_right(row: InstructionRow, call: FirstCall) -> bool:
     """Return whether a call is the expected first one. Descriptions are compared by their words, questions not at all."""
     expected = row.calls[0]
     if call.name in row.alternatives:
@@ -119,14 +121,14 @@ def is_right(row: Row, call: Call) -> bool:
     return call.name == expected.name and same_arguments(expected, call)
 
 
-def same_arguments(one: Call, other: Call) -> bool:
+def same_arguments(one: FirstCall, other: FirstCall) -> bool:
     """Return whether two calls of a tool are equivalent: equal numbers, descriptions of the same words, and questions about the
     same view.
 
     In a file of expected calls, ``{"contains": [words, ...]}`` may replace a text; the words may come in any order.
     """
     wanted = {key: value["contains"] for key, value in one.arguments.items() if isinstance(value, dict) and "contains" in value}
-    plain = Call(name=one.name, arguments=one.arguments | {key: " ".join(words) for key, words in wanted.items()})
+    plain = FirstCall(name=one.name, arguments=one.arguments | {key: " ".join(words) for key, words in wanted.items()})
     try:
         a, b = (parse_call(call.name, call.arguments)[1].model_dump(exclude={"question"}) for call in (plain, other))
     except ToolCallError:
@@ -146,26 +148,26 @@ def _words(text: str) -> list[str]:
     return [w.removesuffix("s") for w in re.findall(r"\w+", text.lower()) if w not in ("the", "a", "an", "all", "any")]
 
 
-def same_choice(one: Sequence[Call], other: Sequence[Call]) -> bool:
+def same_choice(one: Sequence[FirstCall], other: Sequence[FirstCall]) -> bool:
     """Return whether two planners began with the same tools, as far as both went."""
     if not one or not other:
         return not one and not other
     return all(a.name == b.name for a, b in zip(one, other, strict=False))
 
 
-def same_calls(one: Sequence[Call], other: Sequence[Call]) -> bool:
+def same_calls(one: Sequence[FirstCall], other: Sequence[FirstCall]) -> bool:
     """Return whether two planners began with the same tools and arguments."""
     return same_choice(one, other) and all(same_arguments(a, b) for a, b in zip(one, other, strict=False))
 
 
-def is_inverted(row: Row, calls: Sequence[Call]) -> bool:
+def is_inverted(row: InstructionRow, calls: Sequence[FirstCall]) -> bool:
     """Return whether the first move goes right instead of left, up instead of down, or in instead of out."""
     wanted = next((_directions(c) for c in row.calls if c.name == "adjust_ptz"), None)
     made = next((_directions(c) for c in calls if c.name == "adjust_ptz"), None)
     return wanted is not None and made is not None and any(w * m < 0 for w, m in zip(wanted, made, strict=True))
 
 
-def _directions(call: Call) -> tuple[float, float, float]:
+def _directions(call: FirstCall) -> tuple[float, float, float]:
     """Return the signs of pan, tilt and zoom of a move, all zero for an invalid call."""
     try:
         move = AdjustPtz.model_validate(call.arguments)

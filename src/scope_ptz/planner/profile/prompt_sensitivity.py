@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict
 from scope_ptz.planner.base import Planner
 from scope_ptz.planner.chat.prompts import Prompt
 from scope_ptz.planner.profile.edits import INSTRUCTION_EDITS, PROMPT_EDITS, Edit
-from scope_ptz.planner.profile.first_calls import Row, Trial, ask_once, load_rows, same_calls, same_choice
+from scope_ptz.planner.profile.first_calls import InstructionRow, PlannerTrial, ask_once, load_rows, same_calls, same_choice
 
 AGAIN = "asked again unchanged"
 _Z = 1.96
@@ -86,7 +86,7 @@ class Sensitivity(_Model):
 
 @dataclass(frozen=True, slots=True)
 class _Case:
-    row: Row
+    row: InstructionRow
     edit: str
     where: str
     asked: str
@@ -97,7 +97,7 @@ async def measure_sensitivity(
     make_planner: Callable[[Prompt], Planner],
     prompt: Prompt,
     *,
-    rows: Sequence[Row] | None = None,
+    rows: Sequence[InstructionRow] | None = None,
     edits: Sequence[Edit] = (*PROMPT_EDITS, *INSTRUCTION_EDITS),
     at_once: int = 4,
     progress: Callable[[int, int], None] = lambda done, of: None,  # noqa: ARG005
@@ -115,7 +115,7 @@ async def measure_sensitivity(
     rows = load_rows() if rows is None else rows
     cases = _cases(rows, prompt, edits)
     planners = {text: make_planner(variant) for text, variant in {case.prompt.text: case.prompt for case in cases}.items()}
-    trials: dict[int, Trial] = {}
+    trials: dict[int, PlannerTrial] = {}
     limiter = anyio.CapacityLimiter(at_once)
 
     async def ask(number: int, case: _Case) -> None:
@@ -134,7 +134,7 @@ async def measure_sensitivity(
     return _report(prompt, rows, cases, [trials[number] for number in range(len(cases))])
 
 
-def _cases(rows: Sequence[Row], prompt: Prompt, edits: Sequence[Edit]) -> list[_Case]:
+def _cases(rows: Sequence[InstructionRow], prompt: Prompt, edits: Sequence[Edit]) -> list[_Case]:
     cases = [_Case(row, edit, "", row.instruction, prompt) for edit in ("", AGAIN) for row in rows]
     for edit in edits:
         if edit.where == "prompt":
@@ -149,7 +149,7 @@ def _cases(rows: Sequence[Row], prompt: Prompt, edits: Sequence[Edit]) -> list[_
     return cases
 
 
-def _report(prompt: Prompt, rows: Sequence[Row], cases: Sequence[_Case], trials: Sequence[Trial]) -> Sensitivity:
+def _report(prompt: Prompt, rows: Sequence[InstructionRow], cases: Sequence[_Case], trials: Sequence[PlannerTrial]) -> Sensitivity:
     """Return the report of all trials, given in the order of their cases."""
     unedited = {trial.row.instruction: trial for trial in trials if not trial.edit}
     planned = [trial for trial in unedited.values() if trial.failure is None]
@@ -177,15 +177,15 @@ class _Pair:
     """The same instruction without and with an edit; the planner did not fail at either."""
 
     case: _Case
-    unedited: Trial
-    edited: Trial
+    unedited: PlannerTrial
+    edited: PlannerTrial
 
     @property
     def changed(self) -> bool:
         return not same_choice(self.unedited.calls, self.edited.calls)
 
 
-def _pairs(cases: Sequence[_Case], trials: Sequence[Trial], unedited: Mapping[str, Trial]) -> list[_Pair]:
+def _pairs(cases: Sequence[_Case], trials: Sequence[PlannerTrial], unedited: Mapping[str, PlannerTrial]) -> list[_Pair]:
     """Pair every edited trial with the unedited trial of its instruction, where the planner failed at neither."""
     return [
         _Pair(case, unedited[case.row.instruction], trial)
@@ -215,15 +215,15 @@ def _effect(name: str, where: str, pairs: Sequence[_Pair]) -> EditEffect:
     )
 
 
-def _inverted(trials: Iterable[Trial]) -> Rate:
+def _inverted(trials: Iterable[PlannerTrial]) -> Rate:
     """Return how often a move goes the opposite way, among the instructions that ask for a move."""
     return Rate.over(t.inverted for t in trials if _moves(t))
 
 
-def _moves(trial: Trial) -> bool:
+def _moves(trial: PlannerTrial) -> bool:
     return any(call.name == "adjust_ptz" for call in trial.row.calls)
 
 
-def _example(trial: Trial) -> str:
+def _example(trial: PlannerTrial) -> str:
     calls = "; ".join(f"{c.name}({', '.join(f'{k}={v!r}' for k, v in c.arguments.items())})" for c in trial.calls)
     return f"{trial.asked!r} ({trial.edit or 'as it is'}): {calls or trial.failure or 'no call'}"

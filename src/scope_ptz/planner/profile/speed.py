@@ -8,7 +8,7 @@ from statistics import median
 
 from pydantic import BaseModel, ConfigDict
 
-from scope_ptz.planner.profile.first_calls import Trial
+from scope_ptz.planner.profile.first_calls import PlannerTrial
 from scope_ptz.planner.profile.prompt_sensitivity import Rate
 
 
@@ -52,7 +52,7 @@ class Speed(BaseModel):
     first_failure: str = ""
 
 
-def speed_of(trials: Sequence[Trial], warm_up: Trial | None = None) -> Speed:
+def speed_of(trials: Sequence[PlannerTrial], warm_up: PlannerTrial | None = None) -> Speed:
     """Return the speed of a planner. ``warm_up`` is a trial before the others, used only for its error message."""
     good = [t for t in trials if t.failure is None]
     called = [t for t in good if t.calls or t.invalid]
@@ -69,7 +69,7 @@ def speed_of(trials: Sequence[Trial], warm_up: Trial | None = None) -> Speed:
     )
 
 
-def _tokens_per_s(trial: Trial) -> float | None:
+def _tokens_per_s(trial: PlannerTrial) -> float | None:
     """Return tokens per second after the first token, None for replies that were not streamed or are too short."""
     if trial.first_token_s is None or trial.usage.output_tokens < 2:
         return None

@@ -60,7 +60,7 @@ class Subject(tuple[s.Description, str]):
     """The subject of a yes-or-no question, with its scope."""
 
 
-class Builder(NounPhrases):
+class QuestionBuilder(NounPhrases):
     """Builds questions."""
 
     def question(self, c: Children) -> s.Question:

@@ -11,7 +11,7 @@ from lark.visitors import CollapseAmbiguities
 
 from scope_ptz.perception.ground_truth.language.ambiguity import cost
 from scope_ptz.perception.ground_truth.language.concepts import nouns_in
-from scope_ptz.perception.ground_truth.language.question_builder import Builder
+from scope_ptz.perception.ground_truth.language.question_builder import QuestionBuilder
 from scope_ptz.perception.ground_truth.language.question_tree import Description, Exists, Phrase, Question
 from scope_ptz.perception.ground_truth.language.tokeniser import Passed, tokenise
 
@@ -57,5 +57,5 @@ def _best(text: str, start: str) -> Description | Question | None:
         forest = _grammar().parse(tokens, start=start)
     except LarkError:
         return None
-    readings = [Builder().transform(tree) for tree in CollapseAmbiguities().transform(forest)]
+    readings = [QuestionBuilder().transform(tree) for tree in CollapseAmbiguities().transform(forest)]
     return min(readings, key=cost, default=None)

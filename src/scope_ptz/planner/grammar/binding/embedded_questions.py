@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 
-from scope_ptz.planner.grammar.execution.sentences import head_and_rest
+from scope_ptz.planner.grammar.execution.answer_sentences import head_and_rest
 
 _BE = r"is|are|was|were|isn't|aren't"
 _AUXILIARY = rf"{_BE}|has|have|can|could|will|should"

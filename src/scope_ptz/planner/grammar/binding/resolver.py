@@ -11,7 +11,7 @@ from scope_ptz.planner.base import PastTurn
 from scope_ptz.planner.grammar import instruction_tree as ast
 from scope_ptz.planner.grammar.binding.embedded_questions import embedded
 from scope_ptz.planner.grammar.binding.offtopic import is_about_the_scene
-from scope_ptz.planner.grammar.execution.sentences import noun
+from scope_ptz.planner.grammar.execution.answer_sentences import noun
 from scope_ptz.planner.grammar.lexing.lexer import distance_one, preset_key
 from scope_ptz.planner.grammar.lexing.vocabulary import phrase_table
 from scope_ptz.tools.arguments import View

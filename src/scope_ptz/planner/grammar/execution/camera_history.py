@@ -14,7 +14,7 @@ _MOVES = TOOLS.moving
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class VisitedPlace:
     """A place where the camera stood: at a preset, at home, or only at a pose."""
 
     pose: Pose
@@ -32,13 +32,13 @@ class Whereabouts:
     """
 
     preset: str | None = None
-    before: Place | None = None
+    before: VisitedPlace | None = None
 
 
 def whereabouts(conversation: Sequence[PastTurn]) -> Whereabouts:
     """Return where the camera has been, from the results of earlier turns."""
-    here: Place | None = None
-    before: Place | None = None
+    here: VisitedPlace | None = None
+    before: VisitedPlace | None = None
     for turn in conversation:
         at_start = here
         for outcome in (o for exchange in turn.exchanges for o in exchange.outcomes):
@@ -48,7 +48,9 @@ def whereabouts(conversation: Sequence[PastTurn]) -> Whereabouts:
             at_start = at_start or _before(outcome, pose)
             before = at_start or before
             name = outcome.call.arguments.get("name")
-            here = Place(pose, str(name) if outcome.call.name == "go_to_preset" else None, home=outcome.call.name == "go_home")
+            here = VisitedPlace(
+                pose, str(name) if outcome.call.name == "go_to_preset" else None, home=outcome.call.name == "go_home"
+            )
     return Whereabouts(here.preset if here else None, before)
 
 
@@ -57,10 +59,10 @@ def _pose(result: dict[str, Any] | None) -> Pose | None:
     return Pose(pose["pan_deg"], pose["tilt_deg"], pose["zoom"]) if isinstance(pose, dict) else None
 
 
-def _before(outcome: ToolOutcome, after: Pose) -> Place | None:
+def _before(outcome: ToolOutcome, after: Pose) -> VisitedPlace | None:
     """Return where a first relative move started, as far as its arguments determine it; None for a clamped move."""
     arguments = outcome.call.arguments
     if outcome.call.name != "adjust_ptz" or (outcome.result or {}).get("clamped") or arguments.get("zoom_limit"):
         return None
     factor = arguments.get("zoom_factor", 1 + arguments.get("zoom_percent", 0) / 100)
-    return Place(after.turned(-arguments.get("pan_deg", 0), -arguments.get("tilt_deg", 0)).zoomed(1 / factor))
+    return VisitedPlace(after.turned(-arguments.get("pan_deg", 0), -arguments.get("tilt_deg", 0)).zoomed(1 / factor))

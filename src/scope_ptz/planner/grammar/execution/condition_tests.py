@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from scope_ptz.planner.grammar import instruction_tree as ast
-from scope_ptz.planner.grammar.execution import sentences as say
-from scope_ptz.planner.grammar.execution.run_state import Run, Session
+from scope_ptz.planner.grammar.execution import answer_sentences as say
+from scope_ptz.planner.grammar.execution.run_state import Run, RunState
 from scope_ptz.tools.arguments import View
 
 
-class Judging(Session):
+class Judging(RunState):
     """The part of a run that tests conditions and compares counts."""
 
     # Conditions --------------------------------------------------------------------------------------------------------

@@ -14,8 +14,8 @@ from typing import Any
 from scope_ptz import english
 from scope_ptz.geometry import Pose
 from scope_ptz.planner.grammar import instruction_tree as ast
-from scope_ptz.planner.grammar.execution import sentences as say
-from scope_ptz.planner.grammar.execution.camera_history import Place
+from scope_ptz.planner.grammar.execution import answer_sentences as say
+from scope_ptz.planner.grammar.execution.camera_history import VisitedPlace
 from scope_ptz.planner.grammar.execution.condition_tests import Judging, reading
 from scope_ptz.planner.grammar.execution.move_arguments import arguments_of, returning
 from scope_ptz.planner.grammar.execution.run_state import HaltedError, Run
@@ -33,7 +33,7 @@ class Program(Judging):
 
     def run(self, steps: Sequence[ast.Step]) -> Run:
         """Run all steps. Afterwards ``answer()`` returns the result."""
-        start = Place(self.pose, self.been.preset, home=self.been.before is None and self.pose == Pose())
+        start = VisitedPlace(self.pose, self.been.preset, home=self.been.before is None and self.pose == Pose())
         self._trail = [self.been.before, start] if self.been.before else [start]
         try:
             yield from self._all(steps)
@@ -70,7 +70,7 @@ class Program(Judging):
         else:
             self._note("The camera is still where it was")
 
-    def _zoom_back(self, place: Place) -> Run:
+    def _zoom_back(self, place: VisitedPlace) -> Run:
         zoomed = Pose(self.pose.pan_deg, self.pose.tilt_deg, place.pose.zoom)
         if self._wandered or not returning(zoomed, self.pose, self.limits):
             yield from self._move(ast.Move((ast.Zoom("out"),)))
@@ -82,7 +82,7 @@ class Program(Judging):
         result = yield from self._moved("adjust_ptz", **arguments)
         self._note(f"{say.move_text(arguments)} to go back; the camera is at {say.pose_text(result['pose'])}")
 
-    def _go(self, place: Place) -> Run:
+    def _go(self, place: VisitedPlace) -> Run:
         if place.preset:
             yield from self._gopreset(ast.GoPreset(ast.PresetRef(place.preset)))
         elif place.home:
@@ -91,7 +91,7 @@ class Program(Judging):
             yield from self._return(place.pose)
 
     def _arrived(self, preset: str | None, home: bool = False) -> None:
-        self._trail.append(Place(self.pose, preset, home))
+        self._trail.append(VisitedPlace(self.pose, preset, home))
         self._wandered = False
 
     def _home(self, step: ast.Home) -> Run:

@@ -8,8 +8,8 @@ from typing import Any
 
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import ToolOutcome
-from scope_ptz.planner.grammar.execution import sentences as say
-from scope_ptz.planner.grammar.execution.camera_history import Place, Whereabouts
+from scope_ptz.planner.grammar.execution import answer_sentences as say
+from scope_ptz.planner.grammar.execution.camera_history import VisitedPlace, Whereabouts
 
 Wanted = tuple[str, dict[str, Any]]
 Run = Generator[Wanted, ToolOutcome, Any]
@@ -20,7 +20,7 @@ class HaltedError(Exception):
 
 
 @dataclass
-class Session:
+class RunState:
     """The state of one run.
 
     Attributes:
@@ -37,7 +37,7 @@ class Session:
     notes: list[str] = field(default_factory=list)
     sources: list[str] = field(default_factory=list)
     _missing: set[str] = field(default_factory=set)
-    _trail: list[Place] = field(default_factory=list)
+    _trail: list[VisitedPlace] = field(default_factory=list)
     _winner: str | None = None
     _wandered: bool = False
     _sent_home: bool = False

@@ -12,7 +12,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import takewhile
 
-from scope_ptz.planner.grammar.lexing.number_phrases import Number, read_number
+from scope_ptz.planner.grammar.lexing.number_phrases import SpokenNumber, read_number
 from scope_ptz.planner.grammar.lexing.vocabulary import NUMBER_WORDS, phrase_table, spelling, word_list
 
 _TOKEN = re.compile(
@@ -185,7 +185,7 @@ class Lexer:
             splits = bool(kinds & {"ORMORE", "ORFEWER"}) and "NUM" not in after
         return 1 if splits else phrase
 
-    def _number(self, words: list[_Word], i: int, number: Number, phrase: list[str], before: list[Lexeme]) -> Lexeme | None:
+    def _number(self, words: list[_Word], i: int, number: SpokenNumber, phrase: list[str], before: list[Lexeme]) -> Lexeme | None:
         """Return the lexeme of a number, None when it only orders sentences ("first, ...")."""
         used = words[i : i + number.used]
         if _starts_clause(before) and "FILLER" in self._table.get(tuple(w.text for w in used), ()):

@@ -6,14 +6,14 @@ import re
 from dataclasses import dataclass
 from itertools import takewhile
 
-from scope_ptz.english.numbers import FRACTIONS
+from scope_ptz.english.number_words import FRACTIONS
 from scope_ptz.planner.grammar.lexing.vocabulary import NUMBER_WORDS, ORDINAL_WORDS
 
 _DIGITS = re.compile(r"[-+−]?\d*\.?\d+")
 
 
 @dataclass(frozen=True, slots=True)
-class Number:
+class SpokenNumber:
     """A number at the start of a list of words.
 
     Attributes:
@@ -31,7 +31,7 @@ class Number:
         return frozenset({self.kind, "FRACTION"} if self.kind == "ORDINAL" and self.value > 2 else {self.kind})
 
 
-def read_number(words: list[str], spans: list[tuple[int, int]] | None = None) -> Number:
+def read_number(words: list[str], spans: list[tuple[int, int]] | None = None) -> SpokenNumber:
     """Return the number that the words begin with.
 
     Args:
@@ -39,38 +39,38 @@ def read_number(words: list[str], spans: list[tuple[int, int]] | None = None) ->
         spans: Their positions in the text, which tell "1st" from "1 st".
     """
     if not words:
-        return Number()
+        return SpokenNumber()
     if "/" in words[0]:
         above, below = words[0].split("/")
-        return Number(int(above) / int(below), 1, "FRACTION") if int(below) else Number()
+        return SpokenNumber(int(above) / int(below), 1, "FRACTION") if int(below) else SpokenNumber()
     if _DIGITS.fullmatch(words[0]):
         return _digits(words, spans)
     sign, start = (-1, 1) if words[0] in {"minus", "negative"} else (1, 0)
     if start and (len(words) == 1 or not (_DIGITS.fullmatch(words[1]) or words[1] in NUMBER_WORDS)):
-        return Number()
+        return SpokenNumber()
     if start and _DIGITS.fullmatch(words[1]):
         inner = _digits(words[1:], spans[1:] if spans else None)
-        return Number(-inner.value, inner.used + 1)
+        return SpokenNumber(-inner.value, inner.used + 1)
     value, used = _cardinal(words[start:])
     if used:
         extra, more = _fraction_after(words[start + used :])
-        return Number(sign * (value + extra), start + used + more)
+        return SpokenNumber(sign * (value + extra), start + used + more)
     if words[0] in FRACTIONS and words[0] not in ORDINAL_WORDS:
         if words[:3] == ["half", "a", "dozen"]:
-            return Number(6, 3)
-        return Number(FRACTIONS[words[0]], 1, "FRACTION")
+            return SpokenNumber(6, 3)
+        return SpokenNumber(FRACTIONS[words[0]], 1, "FRACTION")
     if words[0] in ORDINAL_WORDS:
-        return Number(ORDINAL_WORDS[words[0]], 1, "ORDINAL")
-    return Number()
+        return SpokenNumber(ORDINAL_WORDS[words[0]], 1, "ORDINAL")
+    return SpokenNumber()
 
 
-def _digits(words: list[str], spans: list[tuple[int, int]] | None) -> Number:
+def _digits(words: list[str], spans: list[tuple[int, int]] | None) -> SpokenNumber:
     value = float(words[0].replace("−", "-"))
     glued = len(words) > 1 and spans is not None and spans[0][1] == spans[1][0]
     if glued and words[1] in {"st", "nd", "rd", "th"}:
-        return Number(value, 2, "ORDINAL")
+        return SpokenNumber(value, 2, "ORDINAL")
     extra, more = _fraction_after(words[1:])
-    return Number(value + (extra if value >= 0 else -extra), 1 + more)
+    return SpokenNumber(value + (extra if value >= 0 else -extra), 1 + more)
 
 
 def _cardinal(words: list[str]) -> tuple[float, int]:

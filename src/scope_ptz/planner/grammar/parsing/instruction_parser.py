@@ -59,7 +59,7 @@ def roles(kinds: frozenset[str]) -> frozenset[str]:
 @lru_cache(maxsize=512)
 def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
     """Return the steps of an instruction. Never raises, whatever the text."""
-    from scope_ptz.planner.grammar.parsing.step_builder import Builder
+    from scope_ptz.planner.grammar.parsing.step_builder import StepBuilder
 
     lexemes = Lexer(presets).lexemes(text[:LONGEST_TEXT])
     if not lexemes or len(lexemes) > MOST_LEXEMES:
@@ -69,7 +69,7 @@ def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
         tree = parser(bool(presets)).parse([roles(lexeme.kinds) for lexeme in lexemes[first:last]], "sentence")
         if tree is None:
             return Parsed(text, None)
-        steps = Builder(text, lexemes[first:last]).extend(tree, steps)
+        steps = StepBuilder(text, lexemes[first:last]).extend(tree, steps)
     return Parsed(text, tuple(steps))
 
 

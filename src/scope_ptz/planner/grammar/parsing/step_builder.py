@@ -49,7 +49,7 @@ from scope_ptz.planner.grammar.parsing.tree_nodes import Node
 _LINKS = {"AND": "and", "COMMA": ",", "THEN": "then"}
 
 
-class Builder(MoveRules, JudgingRules):
+class StepBuilder(MoveRules, JudgingRules):
     """Builds the steps of one instruction."""
 
     def extend(self, tree: Branch, before: list[Step]) -> list[Step]:
