@@ -62,22 +62,22 @@ class RouterPerception(Perception):
     ) -> None:
         self.name, self._compare = name, compare
         self._reader, self._detector, self._answerer = reader, detector, answerer
-        parts = self._who(reader, detector, answerer)
+        parts = self._available(reader, detector, answerer)
         self.skills = frozenset[Skill](skill for part in parts for skill in part.skills)
 
     async def caption(self, frame: Frame) -> Caption:
-        order = self._who(self._answerer, self._reader, skill="caption")
+        order = self._available(self._answerer, self._reader, skill="caption")
         return await self._first_usable(order, lambda backend: backend.caption(frame), _shared_words, compare=False)
 
     async def query(self, frame: Frame, question: str) -> Answer:
         if not is_reading(question) or self._reader is None:
-            order = self._who(self._answerer, skill="query")
+            order = self._available(self._answerer, skill="query")
             return await self._first_usable(order, lambda backend: backend.query(frame, question), _shared_words)
 
         async def call(backend: Perception) -> Answer:
             return await (self._read(frame, question) if backend is self._reader else backend.query(frame, question))
 
-        order = self._who(self._reader, self._answerer, skill="query")
+        order = self._available(self._reader, self._answerer, skill="query")
         return await self._first_usable(order, call, _shared_words)
 
     async def detect(self, frame: Frame, description: str) -> Detections:
@@ -89,23 +89,23 @@ class RouterPerception(Perception):
         return await self._first_usable(order, lambda backend: backend.point(frame, description), _same_points)
 
     async def close(self) -> None:
-        for part in self._who(self._reader, self._detector, self._answerer):
+        for part in self._available(self._reader, self._detector, self._answerer):
             await part.close()
 
-    def _who(self, *parts: Perception | None, skill: Skill | None = None) -> list[Perception]:
+    def _available(self, *parts: Perception | None, skill: Skill | None = None) -> list[Perception]:
         """Return the backends that exist and have a skill, each once."""
         there = [p for p in parts if p is not None and (skill is None or skill in p.skills)]
         return list(dict.fromkeys(there))
 
     def _finders(self, description: str, skill: Skill) -> list[Perception]:
         is_text = wanted_texts(description) is not None
-        return self._who(self._reader if is_text else None, self._detector, self._answerer, skill=skill)
+        return self._available(self._reader if is_text else None, self._detector, self._answerer, skill=skill)
 
     async def _read(self, frame: Frame, question: str) -> Answer:
         """Return what the reader reads on the thing that the question names, if another backend finds that thing."""
         assert self._reader is not None  # noqa: S101
         target = reading_target(question)
-        finders = self._who(self._detector, self._answerer, skill="detect")
+        finders = self._available(self._detector, self._answerer, skill="detect")
         if target is None or not finders:
             return await self._reader.query(frame, question)
         began = perf_counter()
