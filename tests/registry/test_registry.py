@@ -162,7 +162,7 @@ def test_users_can_add_entries(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("models: [", "no YAML"),
+        ("models: [", "not valid YAML"),
         ("models: {x: {repo: a}}", "models.x.roles"),
         ("models: 3", "models"),
         ("nonsense: 1", "nonsense"),
@@ -173,7 +173,7 @@ def test_users_can_add_entries(tmp_path: Path) -> None:
         (OWN.replace("vllm: {}", "vlm: {}"), "no such server"),
         (OWN.replace("perception: moondream2", "perception: moondream9"), "moondream9"),
         ("pairs: [{planner: x}]", "pairs.0.perception"),
-        ("!!python/object/apply:os.system ['true']", "no YAML"),
+        ("!!python/object/apply:os.system ['true']", "not valid YAML"),
     ],
 )
 def test_errors_name_the_file_and_the_field(tmp_path: Path, text: str, told: str) -> None:

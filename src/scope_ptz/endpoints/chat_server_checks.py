@@ -82,7 +82,7 @@ async def _listing(endpoint: Endpoint) -> Finding:
     except ServerFailure as failure:
         if failure.kind in UNREACHABLE:
             raise
-        return "partly", f"{failure} The model's name must be given by hand."
+        return "partly", f"{failure} Give the model's name yourself."
     if endpoint.model in served:
         return "ok", f"{len(served)}, '{endpoint.model}' among them"
     return "partly", f"'{endpoint.model}' is not among them: {', '.join(served[:10]) or 'none'}"
@@ -94,9 +94,9 @@ async def _answers(client: ChatClient, *, stream: bool) -> Finding:
     if not (reply.text or reply.reasoning):
         return "failed", "the reply is empty"
     if not reply.output_tokens:
-        return "partly", "it does not count tokens, so neither budgets nor speeds can be told"
+        return "partly", "it does not report token counts, so budgets and speeds are unknown"
     if stream and reply.first_token_s is None:
-        return "partly", f"{figures}; not streamed: it came as a whole"
+        return "partly", f"{figures}; not streamed: it arrived in one piece"
     first = f", the first after {reply.first_token_s:.2f} s" if reply.first_token_s is not None else ""
     return "ok", figures + first
 
@@ -125,7 +125,7 @@ async def _refuses(endpoint: Endpoint) -> Finding:
     except ServerFailure as failure:
         if failure.kind in (FailureKind.NOT_FOUND, FailureKind.BAD_REQUEST):
             return "ok", f"refused: {failure.kind.value}"
-        return "partly", f"it is no clear refusal: {failure}"
+        return "partly", f"it is not a clear refusal: {failure}"
     finally:
         await client.close()
-    return "partly", f"'{reply.model or 'some model'}' answers under any name: check that it is the right one"
+    return "partly", f"'{reply.model or 'some model'}' answers to any model name: check that it is the right model"

@@ -120,7 +120,7 @@ def _read(text: str, where: str) -> tuple[dict[str, Server], dict[str, Model], d
     try:
         content = yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))  # noqa: S506 - both are safe loaders
     except yaml.YAMLError as error:
-        raise ConfigError(f"{where} is no YAML: {' '.join(str(error).split())}.") from error
+        raise ConfigError(f"{where} is not valid YAML: {' '.join(str(error).split())}.") from error
     spot: tuple[str | int, ...] = ()
     try:
         file = _File.model_validate(content or {})

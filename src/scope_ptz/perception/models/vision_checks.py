@@ -47,7 +47,7 @@ async def _query(perception: Perception, frame: Frame) -> Finding:
 
 def _stated(text: str) -> Finding:
     words = " ".join(text.split())
-    return ("ok", f"'{words[:_MOST_WORDS]}'") if words else ("failed", "it said nothing")
+    return ("ok", f"'{words[:_MOST_WORDS]}'") if words else ("failed", "the answer is empty")
 
 
 async def _detect(perception: Perception, frame: Frame, thing: str, *, expected: bool) -> Finding:
@@ -62,5 +62,5 @@ def _found(count: int, *, expected: bool) -> Finding:
     if count > _MANY:
         return "partly", f"{count}: it repeats itself"
     if expected:
-        return ("ok", f"{count} found") if count else ("partly", "none found, where there are some")
-    return ("ok", "none, as it should be") if not count else ("partly", f"{count} found, where there are none")
+        return ("ok", f"{count} found") if count else ("partly", "none found, although there are some")
+    return ("ok", "none, as expected") if not count else ("partly", f"{count} found, although there are none")

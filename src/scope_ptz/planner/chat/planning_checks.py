@@ -34,7 +34,7 @@ async def check_planning(
         )
         try:
             yield await checked(f"a tool call{how}", lambda p=planner: _calls(p, tools))  # type: ignore[misc]
-            yield await checked(f"arguments of their type{how}", lambda p=planner: _turns(p, tools))  # type: ignore[misc]
+            yield await checked(f"arguments of the right type{how}", lambda p=planner: _turns(p, tools))  # type: ignore[misc]
             yield await checked(f"an answer from a tool's result{how}", lambda p=planner: _concludes(p, tools))  # type: ignore[misc]
         finally:
             await planner.close()
@@ -54,9 +54,9 @@ def picture_taken() -> Exchange:
 async def _calls(planner: ChatPlanner, tools: Sequence[dict[str, Any]]) -> Finding:
     decision = await planner.step(probe(PICTURE, tools))
     if not isinstance(decision, CallTools):
-        return "failed", f"no call; it said: {_brief(decision)}"
+        return "failed", f"no call; it answered: {_brief(decision)}"
     if "take_image" not in [call.name for call in decision.calls]:
-        return "partly", f"another call than the one that was plain: {_brief(decision)}"
+        return "partly", f"another call than the obvious one: {_brief(decision)}"
     source = decision.served.calls_from if decision.served else ""
     if source != "native":
         return "partly", f"read from the text ({source}): the server does not parse this model's calls"
@@ -66,21 +66,21 @@ async def _calls(planner: ChatPlanner, tools: Sequence[dict[str, Any]]) -> Findi
 async def _turns(planner: ChatPlanner, tools: Sequence[dict[str, Any]]) -> Finding:
     decision = await planner.step(probe(TURN, tools))
     if not isinstance(decision, CallTools):
-        return "partly", f"no call; it said: {_brief(decision)}"
+        return "partly", f"no call; it answered: {_brief(decision)}"
     call = decision.calls[0]
     if call.name != "adjust_ptz" or call.arguments.get("pan_deg") != 20:
-        return "partly", f"adjust_ptz(pan_deg=20) was plain; it called {_brief(decision)}"
+        return "partly", f"adjust_ptz(pan_deg=20) was expected; it called {_brief(decision)}"
     return "ok", _brief(decision)
 
 
 async def _concludes(planner: ChatPlanner, tools: Sequence[dict[str, Any]]) -> Finding:
     decision = await planner.step(probe(PICTURE, tools, picture_taken()))
     if not isinstance(decision, Finish):
-        return "partly", f"it goes on although all is done: {_brief(decision)}"
+        return "partly", f"it continues although the task is done: {_brief(decision)}"
     if "<think" in decision.text:
-        return "failed", f"its thoughts are in the answer: {_brief(decision)}"
+        return "failed", f"its reasoning is in the answer: {_brief(decision)}"
     if not (decision.usage.input_tokens and decision.usage.output_tokens):
-        return "partly", f"tokens are not counted; it said: {_brief(decision)}"
+        return "partly", f"it does not report token counts; it answered: {_brief(decision)}"
     return "ok", _brief(decision)
 
 
