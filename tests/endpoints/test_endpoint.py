@@ -70,12 +70,12 @@ def test_keys_from_files(tmp_path: Path) -> None:
 
 
 def test_keys_from_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
-    for role in ("PLANNER", "EYES", "JUDGE"):
+    for role in ("PLANNER", "PERCEPTION", "JUDGE"):
         monkeypatch.setenv(f"SCOPE_{role}_KEY", f"{KEY}-{role}")
     settings = load_settings()
     assert KEY not in f"{settings} {settings!r}"
     assert settings.perception_key is not None
-    assert settings.perception_key.get_secret_value() == f"{KEY}-EYES"
+    assert settings.perception_key.get_secret_value() == f"{KEY}-PERCEPTION"
 
 
 @pytest.mark.parametrize(("total_s", "first_byte_s"), [(0.5, 0.5), (30, 30), (100, 60), (600, 300)])

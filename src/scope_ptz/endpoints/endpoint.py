@@ -86,7 +86,7 @@ def checked_url(url: str) -> str:
     parts = _split(url)
     if parts is None or parts.scheme not in ("http", "https") or not parts.hostname:
         shown = _without_secrets(url)
-        raise ConfigError(f"'{shown}' is not the address of a model server. Give a full one, such as http://127.0.0.1:8000/v1.")
+        raise ConfigError(f"'{shown}' is no address of a model server. Give a full one, such as http://127.0.0.1:8000/v1.")
     if parts.username is not None or parts.password is not None:
         raise ConfigError(
             f"The address of {parts.hostname} has a user or password in it. Leave it out, and give the key by its variable."
@@ -125,7 +125,7 @@ def checked_key(key: str) -> SecretStr | None:
         return None
     if len(key) > MAX_KEY_CHARS or not key.isascii() or not key.isprintable() or " " in key:
         raise ConfigError(
-            "The key of a model server contains characters that keys cannot contain. Check that the whole file or variable is the key."
+            "The key of a model server contains characters that no key has. Check that the whole file or variable is the key."
         )
     return SecretStr(key)
 
