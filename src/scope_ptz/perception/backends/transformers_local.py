@@ -140,7 +140,7 @@ async def _in_thread(name: str, call: Callable[[], Any]) -> Any:
         raise
     # Models run their own code, and out-of-memory errors have a different class on every device.
     except Exception as error:
-        raise PerceptionError(f"{name} could not call: {type(error).__name__}: {error}") from error
+        raise PerceptionError(f"{name} could not look: {type(error).__name__}: {error}") from error
 
 
 def _pillow(image: Image) -> Any:
