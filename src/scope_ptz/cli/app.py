@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from scope_ptz.builtin_names import DEFAULT_SCENE
 from scope_ptz.cli.bench import bench_app
 from scope_ptz.cli.endings import ending
 from scope_ptz.cli.model_commands import doctor, models_app, profile
@@ -110,7 +111,7 @@ def _asking(
 @app.command()
 def ask(
     instruction: Annotated[str, typer.Argument(help="What the camera should do, in plain words.")],
-    scene: SceneOption = "highway-works",
+    scene: SceneOption = DEFAULT_SCENE,
     camera: CameraOption = None,
     viewpoint: ViewpointOption = None,
     preset: PresetOption = None,
@@ -150,7 +151,7 @@ def ask(
 
 @app.command()
 def chat(
-    scene: SceneOption = "highway-works",
+    scene: SceneOption = DEFAULT_SCENE,
     camera: CameraOption = None,
     viewpoint: ViewpointOption = None,
     preset: PresetOption = None,

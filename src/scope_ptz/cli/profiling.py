@@ -30,7 +30,7 @@ from scope_ptz.factory.models import (
     resolve_models,
 )
 from scope_ptz.factory.scenes import open_scene
-from scope_ptz.planner.profile import Row, Sensitivity, ask_once, load_rows, measure_sensitivity
+from scope_ptz.planner.profile import InstructionRow, Sensitivity, ask_once, load_rows, measure_sensitivity
 from scope_ptz.planner.profile.speed import Spread, speed_of
 
 if TYPE_CHECKING:
@@ -80,27 +80,27 @@ def profile(wishes: ModelOptions, extent: Extent, *, as_json: bool) -> int:
     return FAILED if report["real_time"] == "unknown" else 0
 
 
-def _rows(extent: Extent) -> tuple[Row, ...]:
+def _rows(extent: Extent) -> tuple[InstructionRow, ...]:
     rows = load_rows() if extent.instructions is None else _read(extent.instructions)
     if extent.limit is not None and extent.limit < len(rows):
         rows = tuple(rows[i * len(rows) // extent.limit] for i in range(extent.limit))
     return rows
 
 
-def _read(source: Path) -> tuple[Row, ...]:
+def _read(source: Path) -> tuple[InstructionRow, ...]:
     """The lines of a file of instructions that have calls; other lines expect a question back, and are no test of calls."""
     try:
         lines = source.read_text(encoding="utf-8").splitlines()
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"{source} cannot be read: {error}.") from error
-    rows: list[Row] = []
+    rows: list[InstructionRow] = []
     for number, line in enumerate(lines, 1):
         if not line.strip():
             continue
         try:
             given = _Line.model_validate_json(line)
             if given.calls:
-                rows.append(Row.model_validate(given.model_dump()))
+                rows.append(InstructionRow.model_validate(given.model_dump()))
         except ValidationError as error:
             first = error.errors(include_url=False)[0]
             where = ".".join(str(part) for part in first["loc"])
@@ -117,7 +117,7 @@ class _Line(BaseModel):
     alternatives: tuple[str, ...] = ()
 
 
-async def _planner_side(choice: ResolvedPlanner, rows: tuple[Row, ...]) -> Side:
+async def _planner_side(choice: ResolvedPlanner, rows: tuple[InstructionRow, ...]) -> Side:
     assert choice.endpoint is not None  # noqa: S101 - asked for only then
     planner, trials = make_planner(choice), []
     try:
@@ -216,7 +216,7 @@ async def _look(eyes: Perception, frames: list[Frame]) -> PerceptionSpeed:
     )
 
 
-async def _sensitivity(choice: ResolvedPlanner, rows: tuple[Row, ...]) -> Sensitivity:
+async def _sensitivity(choice: ResolvedPlanner, rows: tuple[InstructionRow, ...]) -> Sensitivity:
     from scope_ptz.planner.chat import ChatOptions, ChatPlanner, Prompt, load_prompt
 
     assert choice.endpoint is not None  # noqa: S101 - asked for only then

@@ -8,13 +8,13 @@ import anyio
 from rich.console import Console
 from rich.text import Text
 
+from scope_ptz.builtin_names import DEFAULT_SCENE
 from scope_ptz.cli.display import plain
 from scope_ptz.cli.endings import FAILED, put_json
 from scope_ptz.endpoints.chat_server_checks import LAST, ServerCheck, Verdict, check_chat
 from scope_ptz.errors import InputError
 from scope_ptz.factory.cameras import open_camera
 from scope_ptz.factory.models import ModelOptions, ResolvedPerception, ResolvedPlanner, make_perception, resolve_models
-from scope_ptz.factory.scenes import DEFAULT_SCENE
 
 THING = "traffic cone"
 """What the demo scene's home view certainly shows."""
