@@ -15,10 +15,11 @@ from typing import Literal
 from rich.console import Console
 from rich.text import Text
 
+from scope_ptz.builtin_names import DEFAULT_SCENE
 from scope_ptz.cli.cards import folder_bytes
 from scope_ptz.cli.endings import FAILED, put_json
 from scope_ptz.errors import PackError
-from scope_ptz.factory.scenes import DEFAULT_SCENE, open_scene, scene_search
+from scope_ptz.factory.scenes import open_scene, scene_search
 from scope_ptz.settings import ScopeSettings, load_settings
 from scope_ptz.version import __version__
 
