@@ -35,7 +35,7 @@ from scope_ptz.cli.bench_inputs import worlds_of
 from scope_ptz.factory.validation_perception import KnownViews
 from scope_ptz.perception.base import Perception
 from scope_ptz.perception.ground_truth import GroundTruthPerception
-from scope_ptz.perception.noisy import NoisyPerception
+from scope_ptz.perception.ground_truth.noisy import NoisyPerception
 from scope_ptz.planner.grammar import GrammarPlanner
 from scope_ptz.simulator.clock import SceneClock
 from scope_ptz.simulator.pack import Scene
@@ -125,7 +125,7 @@ def _eyes(name: str, worlds: Mapping[str, Scene]) -> Perception:
         return truth
     from scope_ptz.perception.backends import make_backend
     from scope_ptz.perception.backends.spec import BackendSpec
-    from scope_ptz.perception.router import RouterPerception
+    from scope_ptz.perception.models.routing import RouterPerception
 
     return RouterPerception(reader=make_backend(BackendSpec(name="rapidocr", backend="ocr")), detector=truth, answerer=truth)
 

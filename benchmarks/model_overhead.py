@@ -33,9 +33,9 @@ from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose
 from scope_ptz.perception.backends import make_backend
 from scope_ptz.perception.backends.spec import BackendSpec
-from scope_ptz.perception.encoding import JPEG_QUALITY
+from scope_ptz.perception.models.encoding import JPEG_QUALITY
 from scope_ptz.planner.base import Briefing, Exchange, State, ToolCall, ToolOutcome
-from scope_ptz.planner.chat.messages import build_messages
+from scope_ptz.planner.chat.chat_messages import build_messages
 from scope_ptz.planner.chat.planner import ChatOptions, ChatPlanner
 from scope_ptz.tools.registry import schemas
 

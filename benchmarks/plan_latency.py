@@ -15,7 +15,7 @@ from pathlib import Path
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import Briefing, State
 from scope_ptz.planner.grammar import GrammarPlanner
-from scope_ptz.planner.grammar.parse import parser
+from scope_ptz.planner.grammar.parsing.instruction_parser import parser
 
 DATA = Path(__file__).parents[1] / "tests" / "data" / "instructions.jsonl"
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from scope_ptz.factory.validation_perception import is_plain_noun
-from scope_ptz.perception.view import read_view
+from scope_ptz.perception.ground_truth.view import read_view
 from tests.perception import yard
 
 VIEW = read_view(yard.truth(), yard.SCENE, 5.0)

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from scope_ptz.planner.chat.conformance import PICTURE, TURN
+from scope_ptz.planner.chat.planning_checks import PICTURE, TURN
 from tests.cli.conftest import SCENE, Scope
 from tests.support.misbehaving import (
     MODEL,

@@ -1,10 +1,9 @@
-"""The whole agent against model servers that misbehave: every failure is a counted event, never a crash and never a zero."""
+"""The whole agent with misbehaving model servers: every failure is a counted event, never a crash and never a zero."""
 
 from __future__ import annotations
 
 import json
 from pathlib import Path
-from time import perf_counter
 from typing import Any
 
 import pytest
@@ -14,10 +13,10 @@ from scope_ptz.agent.loop import Agent
 from scope_ptz.agent.records import Called, Ended, RunResult
 from scope_ptz.agent.store import NoImages
 from scope_ptz.agent.trace import TraceWriter
-from scope_ptz.endpoints.calls import Caller
 from scope_ptz.endpoints.chat import ChatClient
 from scope_ptz.endpoints.endpoint import Endpoint, Timeouts
 from scope_ptz.endpoints.failures import FailureKind
+from scope_ptz.endpoints.retries import Caller
 from scope_ptz.perception.backends import make_backend
 from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import Perception
@@ -103,7 +102,7 @@ async def test_a_planner_whose_server_is_gone(stream: bool, tmp_path: Path) -> N
 
 @pytest.mark.parametrize("stream", [False, True], ids=["whole", "streaming"])
 @pytest.mark.parametrize("fault", [f for f in FAULTS if f.name in ("503", "cut off", "no choices", "401")], ids=lambda f: f.name)
-async def test_a_planner_whose_server_fails_in_the_midst_keeps_what_was_done(fault: Fault, stream: bool, tmp_path: Path) -> None:
+async def test_a_planner_whose_server_fails_midway_keeps_the_completed_steps(fault: Fault, stream: bool, tmp_path: Path) -> None:
     with Misbehaving([say("", COUNT)], then=fault.make()) as server:
         told = await run(planner_at(server.url, stream=stream), ScriptedPerception(3), tmp_path)
     assert (told.ended.outcome, told.ended.kind, told.ended.steps) == ("planner_error", fault.expected(stream).value, 2)
@@ -111,7 +110,7 @@ async def test_a_planner_whose_server_fails_in_the_midst_keeps_what_was_done(fau
 
 
 @pytest.mark.parametrize("stream", [False, True], ids=["whole", "streaming"])
-async def test_what_a_retry_makes_good_is_counted_all_the_same(stream: bool, tmp_path: Path) -> None:
+async def test_failures_repaired_by_a_retry_are_counted(stream: bool, tmp_path: Path) -> None:
     script = [http_status(503), say("", COUNT), http_status(429), body("{"), say("Three cones.")]
     with Misbehaving(script) as server:
         told = await run(planner_at(server.url, stream=stream, retries=2), ScriptedPerception(3), tmp_path)
@@ -155,7 +154,7 @@ async def test_odd_calls_come_back_to_the_planner_as_errors(call: tuple[str, Any
     assert told.calls[0].outcome.error[:40] in last["content"]
 
 
-async def test_an_endless_answer_is_an_answer_cut_short(tmp_path: Path) -> None:
+async def test_an_endless_answer_is_truncated(tmp_path: Path) -> None:
     with Misbehaving(then=say("a" * 200_000)) as server:
         told = await run(planner_at(server.url, stream=True), ScriptedPerception(3), tmp_path)
     assert told.ended.outcome == "answered"
@@ -176,7 +175,7 @@ async def test_answers_in_any_language_are_answers(text: str, tmp_path: Path) ->
     [(backend, f) for f in FAULTS for backend in ("moondream", "openai_vision") if backend != "moondream" or not f.chat_only],
     ids=lambda value: value.name if isinstance(value, Fault) else value,
 )
-async def test_eyes_whose_server_fails_are_an_error_that_the_planner_sees(
+async def test_a_failing_perception_server_is_an_error_for_the_planner(
     backend: str, fault: Fault, tool: tuple[str, dict[str, Any]], tmp_path: Path
 ) -> None:
     planner = ScriptedPlanner(calls(tool), answer("I could not see."))
@@ -192,19 +191,17 @@ async def test_eyes_whose_server_fails_are_an_error_that_the_planner_sees(
 
 
 @pytest.mark.parametrize("backend", ["moondream", "openai_vision"])
-async def test_eyes_whose_server_is_gone_cost_no_timeout_at_every_call(backend: str, tmp_path: Path) -> None:
+async def test_an_unreachable_perception_server_opens_the_breaker(backend: str, tmp_path: Path) -> None:
     planner = ScriptedPlanner(*[calls(COUNT)] * 8, answer("I could not see."))
-    began = perf_counter()
     with never_accepts() as url:
         told = await run(planner, eyes_at(url, backend, Timeouts(connect_s=0.2)), tmp_path)
-    assert perf_counter() - began < 5.0
     assert told.ended.outcome == "answered"
     assert told.ended.perception_failures == 8
     assert told.ended.server_events == {"connect-timeout": 3, "circuit-open": 5}
 
 
 @pytest.mark.parametrize("backend", ["moondream", "openai_vision"])
-async def test_eyes_recover(backend: str, tmp_path: Path) -> None:
+async def test_perception_recovers(backend: str, tmp_path: Path) -> None:
     found = say(json.dumps([{"bbox_2d": [1, 1, 9, 9], "label": "cone"}])) if backend == "openai_vision" else good()
     planner = ScriptedPlanner(calls(COUNT), calls(COUNT), answer("One."))
     with Misbehaving([http_status(500)], then=found) as server:
@@ -261,7 +258,7 @@ NOT_FINITE = [
 
 @pytest.mark.parametrize("text", NOT_FINITE, ids=["NaN", "infinity"])
 @pytest.mark.parametrize("backend", ["moondream", "openai_vision"])
-async def test_places_that_are_no_numbers_are_never_a_zero(text: str, backend: str, tmp_path: Path) -> None:
+async def test_places_that_are_no_numbers_are_errors(text: str, backend: str, tmp_path: Path) -> None:
     """A box that cannot be read is no proof that nothing is there: the look as a whole fails."""
     reply = body(text) if backend == "moondream" else say(text)
     planner = ScriptedPlanner(calls(COUNT), answer("So."))
@@ -307,7 +304,7 @@ def _many(number: int) -> list[tuple[float, float]]:
 
 
 @pytest.mark.parametrize("backend", ["moondream", "openai_vision"])
-async def test_500_points_are_limited_and_said_to_be(backend: str) -> None:
+async def test_500_points_are_limited_and_incomplete(backend: str) -> None:
     frame = await ScriptedCamera().frame()
     if backend == "moondream":
         reply = moondream_says(point={"points": [{"x": x, "y": y} for x, y in _many(500)]})

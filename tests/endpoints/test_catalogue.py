@@ -1,4 +1,4 @@
-"""Finding a server's models and where its API begins."""
+"""Finding a server's models and the base address of its API."""
 
 from __future__ import annotations
 
@@ -48,13 +48,13 @@ def test_no_list_is_a_failure_of_its_kind(behaviour: Behaviour, kind: FailureKin
     assert failure.value.kind is kind
 
 
-def test_entries_without_a_name_are_passed_over() -> None:
+def test_entries_without_a_name_are_skipped() -> None:
     listing = {"data": [{"id": "a"}, {"id": 3}, "x", {}, {"id": ""}, {"id": "b"}]}
     with Misbehaving(then=body(json.dumps(listing))) as server:
         assert anyio.run(served_models, Endpoint(url=server.url)) == ("a", "b")
 
 
-def test_nobody_waits_long_for_a_list(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_list_of_models_has_a_short_timeout(monkeypatch: pytest.MonkeyPatch) -> None:
     from scope_ptz.endpoints import catalogue
     from scope_ptz.endpoints.endpoint import Timeouts
 

@@ -1,4 +1,4 @@
-"""Addresses and keys: what is taken, what is refused, and that a key is never shown."""
+"""Addresses and keys: what is accepted, what is refused, and that a key is never shown."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def test_addresses(given: str, kept: str) -> None:
         f"user:{KEY}@host/v1", f"ftp://user:{KEY}@host", "http://ho st/v1", "http://host/v1\x00",
     ],
 )  # fmt: skip
-def test_no_addresses(url: str) -> None:
+def test_invalid_addresses_are_errors(url: str) -> None:
     with pytest.raises(ConfigError) as caught:
         Endpoint(url=url)
     assert KEY not in str(caught.value)
@@ -47,7 +47,7 @@ def test_a_key_is_never_shown() -> None:
 
 
 @pytest.mark.parametrize("key", [f"{KEY}\nX-Other: 1", f"{KEY} more", f"{KEY}é", KEY * 1000])
-def test_no_keys(key: str) -> None:
+def test_invalid_keys_are_errors(key: str) -> None:
     with pytest.raises(ConfigError) as caught:
         Endpoint(url="http://host/v1", key=SecretStr(key))
     assert KEY not in str(caught.value)
@@ -70,22 +70,22 @@ def test_keys_from_files(tmp_path: Path) -> None:
 
 
 def test_keys_from_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
-    for role in ("PLANNER", "EYES", "JUDGE"):
+    for role in ("PLANNER", "PERCEPTION", "JUDGE"):
         monkeypatch.setenv(f"SCOPE_{role}_KEY", f"{KEY}-{role}")
     settings = load_settings()
     assert KEY not in f"{settings} {settings!r}"
     assert settings.perception_key is not None
-    assert settings.perception_key.get_secret_value() == f"{KEY}-EYES"
+    assert settings.perception_key.get_secret_value() == f"{KEY}-PERCEPTION"
 
 
 @pytest.mark.parametrize(("total_s", "first_byte_s"), [(0.5, 0.5), (30, 30), (100, 60), (600, 300)])
-def test_patience_within_a_time(total_s: float, first_byte_s: float) -> None:
+def test_timeouts_within_a_time(total_s: float, first_byte_s: float) -> None:
     patience = Timeouts.within(total_s)
     assert (patience.first_byte_s, patience.total_s) == (first_byte_s, total_s)
     assert patience.connect_s <= total_s
 
 
 @pytest.mark.parametrize("seconds", [0, -1, float("nan"), float("inf")])
-def test_patience_is_positive_and_finite(seconds: float) -> None:
+def test_timeouts_are_positive_and_finite(seconds: float) -> None:
     with pytest.raises(ValueError, match="total_s"):
         Timeouts(total_s=seconds)

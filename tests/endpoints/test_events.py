@@ -51,7 +51,7 @@ def test_every_form_in_any_cut(form: str, line_end: str, mark: bool, data: st.Da
 
 
 @given(st.lists(st.binary(max_size=30)))
-def test_whatever_comes_nothing_breaks(parts: list[bytes]) -> None:
+def test_any_bytes_are_parsed_without_an_exception(parts: list[bytes]) -> None:
     events = Events()
     for part in parts:
         events.feed(part)
@@ -74,7 +74,7 @@ async def test_an_answer_that_begins_with_a_mark_and_ends_without_a_line_end(lin
     ("content", "kind"),
     [("", FailureKind.EMPTY), ("<html>Please log in</html>", FailureKind.MALFORMED), ("data: {}\n\n", FailureKind.CUT_OFF)],
 )
-async def test_a_stream_that_is_none_says_what_it_is(content: str, kind: FailureKind) -> None:
+async def test_a_reply_that_is_no_stream_is_described(content: str, kind: FailureKind) -> None:
     with Misbehaving(then=body(content, "text/event-stream")) as server:
         client = ChatClient(Endpoint(url=server.url, retries=0))
         with pytest.raises(ServerFailure) as raised:

@@ -1,4 +1,4 @@
-"""Every misbehaviour is told as what it is, by both clients, streaming and not, and never with the key in it."""
+"""Every misbehaviour of a server has its own failure kind, with both clients, streaming or not, and never shows the key."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from typing import Any
 
 import pytest
 
-from scope_ptz.endpoints.calls import Caller
 from scope_ptz.endpoints.chat import ChatClient
 from scope_ptz.endpoints.endpoint import Endpoint, Timeouts
 from scope_ptz.endpoints.failures import Attempt, FailureKind, ServerFailure, count_failures
 from scope_ptz.endpoints.http import JsonClient
+from scope_ptz.endpoints.retries import Caller
 from tests.support.faults import FAULTS, PATIENT, Fault
 from tests.support.misbehaving import Misbehaving, body, never_accepts, nobody_listens, speaks_no_tls, status
 
@@ -70,7 +70,7 @@ async def test_refused(how: str) -> None:
 
 
 @pytest.mark.parametrize("how", ["whole", "json"])
-async def test_connections_that_are_never_taken(how: str) -> None:
+async def test_connect_timeout(how: str) -> None:
     with never_accepts() as url:
         failure = await failure_of(lambda: ask(endpoint(url, timeouts=Timeouts(connect_s=0.2, total_s=5)), how))
     assert failure.kind is FailureKind.CONNECT_TIMEOUT
@@ -84,14 +84,14 @@ async def test_unknown_hosts(how: str) -> None:
 
 
 @pytest.mark.parametrize("how", ["whole", "json"])
-async def test_tls_where_there_is_none(how: str) -> None:
+async def test_https_to_a_server_without_tls(how: str) -> None:
     with speaks_no_tls() as url:
         failure = await failure_of(lambda: ask(endpoint(url), how))
     assert failure.kind is FailureKind.TLS
 
 
 @pytest.mark.parametrize("how", ["whole", "streaming", "json"])
-async def test_a_retry_makes_good_what_it_can(how: str) -> None:
+async def test_retries_repair_temporary_failures(how: str) -> None:
     for fault in FAULTS:
         if fault.name not in ("429", "503", "connection reset", "cut off", "no JSON", "200 with an error body"):
             continue
@@ -118,7 +118,7 @@ async def _no_sleep(_: float) -> None:
         {"error": {"message": "No.", "type": "exceed_context_size_error"}},
     ],
 )
-async def test_every_server_words_overflow_in_its_own_way(words: Any) -> None:
+async def test_context_overflow_is_recognised_for_every_server(words: Any) -> None:
 
     inside = json.dumps(words if isinstance(words, dict) else {"error": words})
     with Misbehaving([status(400, words), body(inside)]) as server:

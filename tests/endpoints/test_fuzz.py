@@ -1,4 +1,4 @@
-"""Damaged replies of every sort, drawn by lot: a run ends in a typed way, and blames the server rather than the camera."""
+"""Randomly damaged replies: a run ends with a typed outcome that blames the server, not the camera."""
 
 from __future__ import annotations
 
@@ -120,7 +120,7 @@ async def test_planners(stream: bool) -> None:
 
 @pytest.mark.parametrize("tool", ["count_objects", "zoom_to_object", "query_answer"])
 @pytest.mark.parametrize("backend", ["moondream", "openai_vision"])
-async def test_eyes(backend: str, tool: str) -> None:
+async def test_perception_backends(backend: str, tool: str) -> None:
     rng = random.Random(6)
     call = (tool, {"question": "what is it?"} if tool == "query_answer" else {"description": "cones"})
 

@@ -1,4 +1,4 @@
-"""What servers tell of themselves, each in its own place."""
+"""What servers report about themselves, each at its own path."""
 
 from __future__ import annotations
 
@@ -49,18 +49,18 @@ def test_vllm() -> None:
 
 
 @pytest.mark.parametrize(("places", "expected"), [(OLLAMA, 5.0), (SGLANG, 10.75)])
-def test_memory_where_it_is_told(places: dict[str, str], expected: float) -> None:
+def test_memory_is_read_where_it_is_reported(places: dict[str, str], expected: float) -> None:
     assert memory_gb(facts(telling(places))) == expected
 
 
 @pytest.mark.parametrize("behaviour", [status(500), body("{"), body("[1, 2"), body('{"id": NaN}'), huge()])
-def test_a_bad_server_tells_nothing_and_breaks_nothing(behaviour: Behaviour) -> None:
+def test_a_bad_server_gives_no_facts_and_no_error(behaviour: Behaviour) -> None:
     assert set(facts(behaviour)) <= {
         f"{place} id" for place in ("/v1/models", "/version", "/props", "/api/ps", "/get_server_info", "/v1/stats")
     }
 
 
-def test_silence_is_not_waited_for(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_silent_server_gives_no_facts(monkeypatch: pytest.MonkeyPatch) -> None:
     from scope_ptz.endpoints import serving_facts as module
     from scope_ptz.endpoints.endpoint import Timeouts
 

@@ -1,4 +1,4 @@
-"""What servers say, told in words that a person can use."""
+"""Server errors in words that a user can act on."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def test_every_status_and_body_is_a_failure(status: int, body: str, secret: str)
         ({"answer": "an error occurred in the picture"}, None),
     ],
 )
-def test_errors_in_the_guise_of_success(body: dict[str, Any], kind: FailureKind | None) -> None:
+def test_errors_with_a_success_status(body: dict[str, Any], kind: FailureKind | None) -> None:
     failure = error_body(body, AT)
     assert (failure.kind if failure else None) is kind
 
@@ -93,7 +93,7 @@ def test_whatever_looks_like_a_key_is_hidden(text: str) -> None:
     assert not any(part in in_brief(text, "") for part in ("abcdef", "abc_DEF"))
 
 
-def test_a_placeholder_for_a_key_does_not_blot_out_words() -> None:
+def test_a_placeholder_key_does_not_hide_words() -> None:
     assert in_brief("none of the models is loaded", "none") == "none of the models is loaded"
 
 

@@ -1,4 +1,4 @@
-"""What goes over the wire: connections are reused, and no credential leaves but the endpoint's own."""
+"""HTTP traffic: connections are reused, and only the endpoint's own credential is sent."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ async def test_json_connections_are_reused_and_calls_run_together() -> None:
     assert len(server.requests) == 10
 
 
-async def test_no_credentials_of_others_travel(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_no_other_credentials_are_sent(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("OPENAI_API_KEY", "sk-for-openai-only")
     monkeypatch.setenv("OPENAI_ADMIN_KEY", "sk-admin-only")
     monkeypatch.setenv("OPENAI_ORG_ID", "org-of-mine")
@@ -107,7 +107,7 @@ async def test_the_request_is_what_was_asked_for() -> None:
     assert streamed["stream_options"] == {"include_usage": True}
 
 
-async def test_servers_that_refuse_to_count_tokens_are_asked_without() -> None:
+async def test_servers_that_refuse_token_counts_are_asked_without() -> None:
     with Misbehaving([status(422, {"detail": "Unexpected fields: stream_options"})]) as server:
         client = ChatClient(Endpoint(url=server.url, retries=0))
         reply = await client.complete(MESSAGES, stream=True)
@@ -132,7 +132,7 @@ async def test_a_stream_is_the_same_reply() -> None:
     assert 0 < streamed.first_token_s <= streamed.seconds
 
 
-async def test_a_server_that_ignores_the_wish_to_stream_or_compresses() -> None:
+async def test_a_server_that_ignores_streaming_or_compresses() -> None:
     whole = json.dumps(completion(Say("Fine."))).encode()
     packed = body(gzip.compress(whole), headers={"Content-Encoding": "gzip"})
     with Misbehaving([body(whole), packed, body(whole, content_type="")]) as server:

@@ -17,7 +17,7 @@ from scope_ptz.perception.backends import make_backend
 from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import Perception
 from scope_ptz.perception.conformance import PerceptionConformance
-from scope_ptz.perception.coordinates import smart_resize
+from scope_ptz.perception.models.coordinates import smart_resize
 from tests.full import vision
 from tests.full.serving import transformers_serve
 

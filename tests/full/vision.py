@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.camera.base import Frame
-from scope_ptz.perception.coordinates import convention
-from scope_ptz.perception.grounding import CAPTION_PROMPT, detect_prompt, point_prompt, query_prompt, sent_size
+from scope_ptz.perception.models.coordinates import convention
+from scope_ptz.perception.models.vision_prompts import CAPTION_PROMPT, detect_prompt, point_prompt, query_prompt, sent_size
 from tests.perception import pictures
 
 STYLE = convention("qwen3-vl")

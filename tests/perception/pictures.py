@@ -1,4 +1,4 @@
-"""Frames with real pixels, for eyes that look at them."""
+"""Frames with real pixels, for backends that look at pixels."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The two simulated backends against the shipped conformance suite, and what is special about each."""
+"""The two simulated backends: the conformance suite, and their own behaviour."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from scope_ptz.geometry import Equirectangular
 from scope_ptz.perception.base import Perception
 from scope_ptz.perception.conformance import PerceptionConformance
 from scope_ptz.perception.ground_truth import GroundTruthPerception
-from scope_ptz.perception.noisy import Noise, NoisyPerception
+from scope_ptz.perception.ground_truth.noisy import Noise, NoisyPerception
 from tests.perception import yard
 
 
 def ground_truth() -> GroundTruthPerception:
     return GroundTruthPerception(
-        cast(Any, lambda _: yard.StandInScene()), look=lambda _s, _v, projection, _t: yard.truth(projection)
+        cast(Any, lambda _: yard.StandInScene()), read_truth=lambda _s, _v, projection, _t: yard.truth(projection)
     )
 
 
@@ -48,7 +48,7 @@ class TestNoisy(TestGroundTruth):
 
 
 @pytest.mark.anyio
-async def test_conformance_names_what_is_wrong() -> None:
+async def test_conformance_reports_each_failure() -> None:
     class Broken(TestGroundTruth):
         present = "unicorn"
 
@@ -62,12 +62,12 @@ async def test_real_frames_are_refused_with_a_reason() -> None:
 
 
 @pytest.mark.anyio
-async def test_damaged_packs_are_no_empty_answers() -> None:
+async def test_damaged_packs_are_errors() -> None:
     def broken(*_: object) -> Any:
         raise PackError("ids.png is damaged")
 
     with pytest.raises(PerceptionError, match="damaged"):
-        await GroundTruthPerception(cast(Any, lambda _: yard.StandInScene()), look=broken).detect(yard.frame(), "car")
+        await GroundTruthPerception(cast(Any, lambda _: yard.StandInScene()), read_truth=broken).detect(yard.frame(), "car")
 
 
 @pytest.mark.anyio
@@ -126,7 +126,7 @@ async def test_small_things_are_missed_more_often() -> None:
 
 
 @pytest.mark.anyio
-async def test_things_are_seen_twice_and_texts_misread() -> None:
+async def test_noise_duplicates_things_and_misreads_texts() -> None:
     bad = Noise(miss=0.0, duplicate=1.0, misread=1.0)
     eyes = NoisyPerception(ground_truth(), seed=1, noise=bad)
     assert len((await eyes.detect(yard.frame(), "excavator")).boxes) == 2
@@ -134,7 +134,7 @@ async def test_things_are_seen_twice_and_texts_misread() -> None:
 
 
 @pytest.mark.anyio
-async def test_no_noise_is_the_truth() -> None:
+async def test_noise_of_zero_gives_the_truth() -> None:
     clean = NoisyPerception(ground_truth(), seed=1, noise=Noise(miss=0.0, duplicate=0.0, misread=0.0, jitter=0.0))
     for description in ("cars", "signs", "workers with helmets"):
         assert (await clean.detect(yard.frame(), description)).boxes == (

@@ -1,4 +1,4 @@
-"""Coordinates of every convention come out in [0, 1], and the resize arithmetic is the models' own."""
+"""Coordinates of every convention become [0, 1], and the resize arithmetic is that of the models."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from scope_ptz.errors import PerceptionError, UnknownNameError
-from scope_ptz.perception.coordinates import (
+from scope_ptz.perception.models.coordinates import (
     CONVENTIONS,
     MAX_THINGS,
     RawThing,
@@ -38,7 +38,7 @@ def test_resized_sides_are_multiples_within_the_budget(width: int, height: int, 
 
 
 @given(sides, sides, factors, budgets)
-def test_a_resized_picture_is_left_alone_by_the_server(width: int, height: int, factor: int, budget: tuple[int, int]) -> None:
+def test_a_resized_picture_keeps_its_size(width: int, height: int, factor: int, budget: tuple[int, int]) -> None:
     assume(max(width, height) / min(width, height) <= 150)
     low, high = budget
     once = smart_resize(width, height, factor=factor, min_pixels=low, max_pixels=high)
@@ -47,7 +47,7 @@ def test_a_resized_picture_is_left_alone_by_the_server(width: int, height: int, 
 
 
 @given(st.integers(200, 4000), st.integers(200, 4000), factors)
-def test_the_aspect_is_kept_to_a_step_of_the_factor(width: int, height: int, factor: int) -> None:
+def test_resizing_keeps_the_aspect_ratio_within_one_step(width: int, height: int, factor: int) -> None:
     wide, tall = smart_resize(width, height, factor=factor, min_pixels=56 * 56, max_pixels=1280 * 28 * 28)
     scale = wide / width
     assert abs(height * scale - tall) <= factor * (1 + height / width)
@@ -58,18 +58,18 @@ def test_the_aspect_is_kept_to_a_step_of_the_factor(width: int, height: int, fac
     [((1280, 720), 28, (1288, 728)), ((1280, 720), 32, (1280, 704)), ((640, 480), 28, (644, 476)), ((50, 20), 28, (112, 56))],
 )
 def test_known_sizes(size: tuple[int, int], factor: int, expected: tuple[int, int]) -> None:
-    """Worked out by hand from the published arithmetic (Python's rounding to even included)."""
+    """Computed by hand from the published arithmetic, including Python's rounding to even."""
     assert smart_resize(*size, factor=factor, min_pixels=3136, max_pixels=12845056) == expected
 
 
 @pytest.mark.parametrize("size", [(0, 10), (4020, 20), (1, 500)])
-def test_pictures_that_models_refuse(size: tuple[int, int]) -> None:
+def test_pictures_that_are_too_narrow_are_errors(size: tuple[int, int]) -> None:
     with pytest.raises(PerceptionError, match="too narrow"):
         smart_resize(*size, factor=28, min_pixels=3136, max_pixels=12845056)
 
 
 @given(sides, sides, st.integers(64 * 64, 4_000_000))
-def test_fit_keeps_to_the_budget_and_never_enlarges(width: int, height: int, budget: int) -> None:
+def test_fit_respects_the_budget_and_never_enlarges(width: int, height: int, budget: int) -> None:
     wide, tall = fit(width, height, budget)
     assert wide <= width and tall <= height and min(wide, tall) >= 1
     if min(wide, tall) > 1:
@@ -105,7 +105,7 @@ raw_things = st.lists(
 
 @pytest.mark.parametrize("name", sorted(CONVENTIONS))
 @given(raw=raw_things)
-def test_whatever_a_model_says_comes_out_checked(name: str, raw: list[tuple[float, ...]]) -> None:
+def test_any_numbers_become_valid_places_or_an_error(name: str, raw: list[tuple[float, ...]]) -> None:
     try:
         found = located([RawThing(n) for n in raw], convention(name), SENT)
     except PerceptionError as error:
@@ -118,13 +118,13 @@ def test_whatever_a_model_says_comes_out_checked(name: str, raw: list[tuple[floa
     assert bool(found.boxes or found.points) or not raw
 
 
-def test_what_reaches_over_the_border_is_cut_and_said() -> None:
+def test_boxes_beyond_the_border_are_clipped_and_noted() -> None:
     found = located([RawThing((-50, 100, 1500, 600))], convention("qwen2.5-vl"), SENT)
     assert found.boxes[0].x_min == 0 and found.boxes[0].x_max == 1
     assert "1 cut at the border" in found.notes[0]
 
 
-def test_what_is_no_place_is_dropped_and_counted() -> None:
+def test_invalid_places_are_dropped_and_counted() -> None:
     things = [(10, 10, 500, 500), (math.nan, 0, 5, 5), (5, 5, 5, 90), (1200, 10, 1500, 90), (10, 10, 500, 500), (1, 2, 3)]
     found = located([RawThing(t) for t in things], convention("thousand"), SENT)
     assert len(found.boxes) == 1
@@ -132,7 +132,7 @@ def test_what_is_no_place_is_dropped_and_counted() -> None:
         assert what in found.notes[0]
 
 
-def test_a_thing_whose_place_is_lost_makes_a_count_a_lower_bound() -> None:
+def test_a_thing_without_a_place_makes_the_result_incomplete() -> None:
     cone, lost = RawThing((10, 10, 500, 500)), RawThing((math.nan, 0, 5, 5))
     assert not located([cone, lost], convention("thousand"), SENT).complete
     assert not located([cone, RawThing(())], convention("thousand"), SENT).complete
@@ -141,19 +141,19 @@ def test_a_thing_whose_place_is_lost_makes_a_count_a_lower_bound() -> None:
 
 
 @pytest.mark.parametrize("numbers", [(1500, 10, 1900, 90), (math.nan,) * 4, (math.inf, 1), (5, 5, 5, 5), ()])
-def test_a_reply_of_which_nothing_is_left_is_an_error_and_no_zero(numbers: tuple[float, ...]) -> None:
+def test_a_reply_without_any_valid_place_is_an_error(numbers: tuple[float, ...]) -> None:
     with pytest.raises(PerceptionError) as caught:
         located([RawThing(numbers)], convention("thousand"), SENT)
     assert caught.value.kind == "malformed"
 
 
-def test_five_hundred_things_are_capped_and_said_to_be_more() -> None:
+def test_too_many_things_are_truncated_and_incomplete() -> None:
     found = located([RawThing((x, y)) for x in range(0, 1000, 40) for y in range(0, 1000, 50)], convention("thousand"), SENT)
     assert len(found.points) == MAX_THINGS and not found.complete
     assert "500 things" in found.notes[-1]
 
 
-def test_swapped_corners_are_put_right() -> None:
+def test_swapped_corners_are_corrected() -> None:
     (box,) = located([RawThing((900, 800, 100, 200))], convention("thousand"), SENT).boxes
     assert (box.x_min, box.y_min, box.x_max, box.y_max) == (0.1, 0.2, 0.9, 0.8)
 
@@ -167,20 +167,20 @@ def test_named_numbers_need_no_order() -> None:
     ("box", "expected"),
     [((0.1, 0.2, 0.5, 0.6), 0.1), ((100, 200, 500, 600), 0.1), ((128.8, 72.8, 1280, 700), 0.1), ((0, 0, 1, 1), 0.0)],
 )
-def test_one_convention_for_a_whole_reply_is_guessed(box: tuple[float, ...], expected: float) -> None:
+def test_the_convention_of_a_reply_is_guessed_from_its_largest_number(box: tuple[float, ...], expected: float) -> None:
     assert located([RawThing(box)], convention("generic"), SENT).boxes[0].x_min == pytest.approx(expected)
 
 
-def test_no_guess_beyond_the_picture() -> None:
+def test_numbers_beyond_the_picture_are_an_error() -> None:
     with pytest.raises(PerceptionError, match="convention is not known"):
         located([RawThing((10, 10, 5000, 600))], convention("generic"), SENT)
 
 
-def test_scores_that_are_none_are_left_out() -> None:
+def test_invalid_scores_are_dropped() -> None:
     found = located([RawThing((1, 1, 9, 9), score=s) for s in (7.0,)], convention("thousand"), SENT)
     assert found.boxes[0].score is None
 
 
-def test_unknown_conventions_are_named() -> None:
+def test_an_unknown_convention_is_an_error() -> None:
     with pytest.raises(UnknownNameError, match="qwen3-vl"):
         convention("qwen3")

@@ -39,7 +39,7 @@ def test_a_file_in_the_package_is_a_backend(tmp_path: Path, monkeypatch: pytest.
     assert backends.make_backend(BackendSpec(name="dark", backend="blindfold")).name == "dark"
 
 
-def test_an_installed_package_may_bring_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_installed_package_can_add_a_backend(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "someones_eyes.py").write_text(ONE_FILE)
     info = tmp_path / "someones_eyes-1.0.dist-info"
     info.mkdir()
@@ -50,7 +50,7 @@ def test_an_installed_package_may_bring_one(tmp_path: Path, monkeypatch: pytest.
     assert backends.make_backend(BackendSpec(name="dark", backend="hooded")).name == "dark"
 
 
-def test_the_built_in_ones() -> None:
+def test_built_in_backends_are_listed() -> None:
     assert {"moondream", "openai_vision", "transformers_local", "zero_shot", "ocr", "router"} <= set(backends.backend_names())
     with pytest.raises(UnknownNameError, match="Did you mean 'moondream'"):
         backends.make_backend(BackendSpec(name="x", backend="moondreem"))

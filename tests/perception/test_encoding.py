@@ -1,4 +1,4 @@
-"""A frame is encoded once, and what is remembered of it goes when it does."""
+"""Each frame is encoded once, and the cache forgets deleted frames."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from scope_ptz.errors import PerceptionError
-from scope_ptz.perception.encoding import Picture, Size, encode, picture_of
-from scope_ptz.perception.memo import FrameMemo, Image
+from scope_ptz.perception.models.encoding import EncodedPicture, Size, encode, picture_of
+from scope_ptz.perception.models.frame_memo import FrameMemo, Image
 from tests.perception import pictures
 
 
@@ -25,7 +25,7 @@ def test_colours_survive() -> None:
     assert picture.data_url.startswith("data:image/jpeg;base64,/9j/")
 
 
-def test_another_size() -> None:
+def test_a_frame_can_be_encoded_at_another_size() -> None:
     assert encode(pictures.frame().image, (56, 84)).size == (56, 84)
 
 
@@ -35,18 +35,18 @@ def test_frames_too_large_for_jpeg_are_an_error() -> None:
 
 
 @pytest.mark.anyio
-async def test_once_for_many_callers_at_once() -> None:
+async def test_concurrent_callers_share_one_encoding() -> None:
     made: list[Size | None] = []
     together = threading.Barrier(2, timeout=5)
 
-    def slow(image: Image, size: Size | None) -> Picture:
+    def slow(image: Image, size: Size | None) -> EncodedPicture:
         made.append(size)
         if len(made) <= 2:
             together.wait()  # two sizes are encoded side by side
         return encode(image, size)
 
-    memo, frame = FrameMemo[Size | None, Picture](slow), pictures.frame()
-    got: list[Picture] = []
+    memo, frame = FrameMemo[Size | None, EncodedPicture](slow), pictures.frame()
+    got: list[EncodedPicture] = []
 
     async def ask(size: Size | None) -> None:
         got.append(await picture_of(frame, size, memo))
@@ -60,7 +60,7 @@ async def test_once_for_many_callers_at_once() -> None:
     assert len({id(p) for p in got}) == 2
 
 
-def test_equal_frames_are_not_the_same_frame() -> None:
+def test_equal_frames_are_encoded_separately() -> None:
     made: list[int] = []
 
     def number(image: Image, key: None) -> int:
@@ -72,7 +72,7 @@ def test_equal_frames_are_not_the_same_frame() -> None:
     assert [memo.get(one.image, None), memo.get(other.image, None), memo.get(one.image, None)] == [1, 2, 1]
 
 
-def test_forgotten_with_the_frame_and_bounded() -> None:
+def test_the_cache_forgets_deleted_frames_and_is_bounded() -> None:
     memo = FrameMemo[None, int](lambda image, _: int(image[0, 0, 0]), size=2)
     frames = [pictures.frame(np.full((2, 2, 3), i, np.uint8)) for i in range(4)]
     assert [memo.get(f.image, None) for f in frames] == [0, 1, 2, 3]
@@ -82,7 +82,7 @@ def test_forgotten_with_the_frame_and_bounded() -> None:
     assert len(memo) == 0
 
 
-def test_a_making_that_failed_is_tried_again() -> None:
+def test_a_failed_computation_is_repeated() -> None:
     tries: list[int] = []
 
     def make(image: Image, key: None) -> int:

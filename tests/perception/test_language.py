@@ -1,4 +1,4 @@
-"""Descriptions and questions over the yard: what they find and what they are answered."""
+"""Descriptions and questions about the yard: the things found, and the answers."""
 
 from __future__ import annotations
 
@@ -7,10 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from scope_ptz.perception.answers import answer
-from scope_ptz.perception.language import parse_description, parse_question, words
-from scope_ptz.perception.matching import find
-from scope_ptz.perception.view import concepts_of, read_view
+from scope_ptz import english
+from scope_ptz.perception.ground_truth.answers import answer
+from scope_ptz.perception.ground_truth.language import parse_description, parse_question
+from scope_ptz.perception.ground_truth.thing_search import find
+from scope_ptz.perception.ground_truth.view import concepts_of, read_view
 from scope_ptz.simulator.models import SceneInstance
 from tests.perception import yard
 
@@ -41,7 +42,7 @@ def test_question(question: str, expected: str) -> None:
         ("golden van on a lead", "golden van on a lead"),
     ],
 )
-def test_a_thing_by_the_whole_name_that_the_scene_gives_it(name: str, asked: str) -> None:
+def test_things_are_found_by_their_full_name(name: str, asked: str) -> None:
     truth = yard.truth()
     named = [
         replace(s, instance=s.instance.model_copy(update={"name": name})) if s.instance.id == "van-01" else s
@@ -52,14 +53,14 @@ def test_a_thing_by_the_whole_name_that_the_scene_gives_it(name: str, asked: str
 
 
 @pytest.mark.parametrize("absent", yard.ABSENT)
-def test_what_the_scene_calls_absent_is_absent(absent: str) -> None:
+def test_things_that_the_scene_lists_as_absent_are_not_found(absent: str) -> None:
     assert find(VIEW, parse_description(absent)) == []
     assert answer(VIEW, parse_question(f"is there a {absent}?")) == (f"No, there is no {absent} in view.", True)
     assert answer(VIEW, parse_question(f"how many {absent}s are there?"))[0].startswith("There are 0 ")
 
 
 @pytest.mark.parametrize("prefix", ["", "please ", "can you tell me ", "Hey, "])
-def test_courtesy_changes_nothing(prefix: str) -> None:
+def test_polite_words_do_not_change_the_answer(prefix: str) -> None:
     assert answer(VIEW, parse_question(prefix + "how many cars are there right now?")) == ("There are 4 cars in view.", True)
 
 
@@ -75,7 +76,7 @@ def test_illegible_text_is_never_read() -> None:
     assert find(VIEW, parse_description("the cabin that says site office")) == []
 
 
-def test_text_like_attributes_are_not_read_from_the_table() -> None:
+def test_attributes_that_repeat_a_text_are_not_used() -> None:
     rows = [r if r[0] != "sign-03" else (*r[:5], {**r[5], "reads": "ROAD CLOSED"}, r[6]) for r in yard.ROWS]
     (row,) = (r for r in rows if r[0] == "sign-03")
     instance = yard.INSTANCES[0].model_copy(update={"id": row[0], "name": row[2], "category": row[1], "attributes": row[5]})
@@ -85,7 +86,7 @@ def test_text_like_attributes_are_not_read_from_the_table() -> None:
     assert find(view, parse_description("the sign that says road closed")) == []
 
 
-def test_nonsense_is_answered_without_guessing() -> None:
+def test_nonsense_is_answered_as_unknown() -> None:
     for question in ("", "???", "flibber the wug", "why?", "a " * 200):
         assert answer(VIEW, parse_question(question)).known is False
     for description in ("???", "a " * 200, "the wug"):
@@ -100,17 +101,17 @@ def test_nonsense_is_answered_without_guessing() -> None:
     ],
 )  # fmt: skip
 def test_plurals(many: str, one: str) -> None:
-    assert words.singular(many) == one
-    assert words.plural(one) == many
+    assert english.singular(many) == one
+    assert english.plural(one) == many
 
 
 @pytest.mark.parametrize(("word", "value"), [("7", 7), ("twelve", 12), ("twenty-five", 25), ("zero", 0), ("fivety", None)])
 def test_numbers(word: str, value: int | None) -> None:
-    assert words.number(word) == value
+    assert english.cardinal(word) == value
 
 
-def test_the_short_form_of_a_category_means_nothing_else() -> None:
-    """A "lit cream lamp" in a shop window is a table lamp, and no lamp post, which a lamp in a street mostly is."""
+def test_the_short_form_of_a_category_is_not_another_category() -> None:
+    """A "lit cream lamp" in a shop window is a table lamp, although "lamp" in a street mostly means a lamp post."""
     lamp = SceneInstance(
         id="x", number=1, category="table lamp", name="lit cream lamp", attributes={}, box_min_m=(0, 0, 0), box_max_m=(1, 1, 1)
     )

@@ -1,4 +1,4 @@
-"""Detectors and models in process, with stand-ins for their weights; the real loading code is proved in the full tier."""
+"""Detectors and models in this process, with fakes for their weights. The full tier tests the real loading code."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from scope_ptz.perception.backends import zero_shot
 from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import Perception
 from scope_ptz.perception.conformance import PerceptionConformance
-from scope_ptz.perception.coordinates import convention
-from scope_ptz.perception.memo import Image
+from scope_ptz.perception.models.coordinates import convention
+from scope_ptz.perception.models.frame_memo import Image
 from tests.perception import pictures
 
 
@@ -48,7 +48,7 @@ class TestZeroShot(PerceptionConformance):
 
 
 @pytest.mark.anyio
-async def test_detections_are_suppressed_cut_and_sorted() -> None:
+async def test_detections_are_suppressed_clipped_and_sorted() -> None:
     seen = await zero_shot.ZeroShotPerception(detector).detect(pictures.frame(), "thing")
     assert [b.score for b in seen.boxes] == [0.9, 0.5]
     assert (seen.boxes[1].x_max, seen.boxes[1].y_max) == (1.0, 1.0)
@@ -57,7 +57,7 @@ async def test_detections_are_suppressed_cut_and_sorted() -> None:
 
 @pytest.mark.anyio
 @pytest.mark.parametrize("error", [RuntimeError("CUDA out of memory"), ValueError("bad"), IndexError("argmax")])
-async def test_a_detector_that_breaks_is_an_error(error: Exception) -> None:
+async def test_a_failing_detector_is_an_error(error: Exception) -> None:
     def broken(image: Image, phrase: str) -> zero_shot.Found:
         raise error
 
@@ -116,14 +116,14 @@ class TestChatInProcess(PerceptionConformance):
 
 
 @pytest.mark.anyio
-async def test_places_are_in_the_frame_whatever_size_the_model_saw() -> None:
+async def test_places_are_scaled_from_the_size_that_the_model_received() -> None:
     eyes = local.LocalChatPerception(chat, convention("qwen2.5-vl"), local.LocalOptions(max_pixels=100_000))
     (box,) = (await eyes.detect(pictures.frame(width=1280, height=720), "thing")).boxes
     assert (box.x_min, box.y_min, box.x_max, box.y_max) == pytest.approx((0.25, 0.25, 0.5, 0.5), abs=0.01)
 
 
 @pytest.mark.anyio
-async def test_whatever_a_model_fails_with_is_an_error() -> None:
+async def test_any_exception_of_a_model_is_a_perception_error() -> None:
     def load() -> Any:
         raise OSError("no such repository")
 
@@ -137,7 +137,7 @@ def make(**options: Any) -> Perception:
     return local.make(BackendSpec(name="eyes", backend="transformers_local", model="someone/model", options=options))
 
 
-def test_code_of_strangers_runs_only_when_it_was_read(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_remote_code_runs_only_at_a_pinned_commit(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(local, "need", lambda *_: None)
     assert isinstance(make(), local.LocalChatPerception)
     with pytest.raises(ConfigError, match="trust_remote_code"):
@@ -147,6 +147,6 @@ def test_code_of_strangers_runs_only_when_it_was_read(monkeypatch: pytest.Monkey
     assert isinstance(make(family="moondream", trust_remote_code=True, revision="0" * 40), local.LocalMoondreamPerception)
 
 
-def test_what_is_not_installed_is_said_before_anything_starts() -> None:
+def test_missing_packages_are_reported_first() -> None:
     with pytest.raises(ConfigError, match=r"scope-ptz\[local\]"):
         specs.need("local", "no_such_package_anywhere")

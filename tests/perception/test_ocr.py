@@ -1,4 +1,4 @@
-"""OCR on pixels of a real camera's frame, with the reader that the extra installs."""
+"""OCR on the pixels of a real camera's frame, with the reader from the extra."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from scope_ptz.perception.backends import make_backend, ocr
 from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import Box, Perception
 from scope_ptz.perception.conformance import PerceptionConformance
-from scope_ptz.perception.memo import Image
+from scope_ptz.perception.models.frame_memo import Image
 from tests.perception import pictures
 
 
@@ -59,7 +59,7 @@ async def test_a_text_is_found_where_it_is(eyes: Perception) -> None:
 
 
 @pytest.mark.anyio
-async def test_an_empty_wall_is_known_to_be_empty_and_no_answer(eyes: Perception) -> None:
+async def test_a_wall_without_text_gives_no_texts_and_no_answer(eyes: Perception) -> None:
     frame = pictures.frame()
     answer = await eyes.query(frame, "what does it say?")
     assert not answer.known and "no readable text" in answer.text
@@ -68,7 +68,7 @@ async def test_an_empty_wall_is_known_to_be_empty_and_no_answer(eyes: Perception
 
 @pytest.mark.anyio
 @pytest.mark.parametrize("description", ["traffic cone", "cars", "sign"])
-async def test_asked_for_other_things_it_never_says_none(eyes: Perception, description: str) -> None:
+async def test_descriptions_of_other_things_are_errors(eyes: Perception, description: str) -> None:
     for look in (eyes.detect, eyes.point):
         with pytest.raises(PerceptionError, match="only finds text"):
             await look(BOARD, description)
@@ -98,7 +98,7 @@ async def test_a_frame_is_read_once() -> None:
 
 
 @pytest.mark.anyio
-async def test_panoramas_are_read_in_parts_and_nothing_twice() -> None:
+async def test_panoramas_are_read_in_parts_without_duplicates() -> None:
     """A reader that reads one bright column where there is one."""
 
     def reader(image: Image) -> list[ocr.Line]:
@@ -116,7 +116,7 @@ async def test_panoramas_are_read_in_parts_and_nothing_twice() -> None:
 
 
 @pytest.mark.anyio
-async def test_a_reader_that_breaks_is_an_error() -> None:
+async def test_a_failing_reader_is_an_error() -> None:
     def reader(image: Image) -> list[ocr.Line]:
         raise RuntimeError("onnxruntime is out of memory")
 
@@ -124,5 +124,5 @@ async def test_a_reader_that_breaks_is_an_error() -> None:
         await ocr.OcrPerception(reader).query(pictures.frame(), "read it")
 
 
-def test_quotes_in_texts_cannot_break_out() -> None:
+def test_quotes_within_texts_are_replaced() -> None:
     assert ocr.quoted([line('say "hi"', 0.1, 0.1)]) == "\"say 'hi'\""

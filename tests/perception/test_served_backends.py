@@ -1,4 +1,4 @@
-"""Moondream and OpenAI-compatible eyes against a real HTTP server, well and badly behaved."""
+"""Moondream and OpenAI-compatible vision models behind a real HTTP server, well and badly behaved."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from scope_ptz.perception.backends import make_backend
 from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import Perception
 from scope_ptz.perception.conformance import PerceptionConformance
-from scope_ptz.perception.coordinates import CONVENTIONS, convention
+from scope_ptz.perception.models.coordinates import CONVENTIONS, convention
 from tests.perception import pictures
 from tests.perception.test_coordinates import written
 from tests.support import misbehaving as bad
@@ -157,7 +157,7 @@ async def test_boxes_of_every_convention_and_frame_size(style: str, size: tuple[
 
 
 @pytest.mark.anyio
-async def test_qwen_is_sent_a_size_that_it_will_not_change_and_that_the_prompt_states() -> None:
+async def test_qwen_receives_a_size_that_it_keeps_and_the_prompt_states() -> None:
     with Misbehaving(then=bad.good(chat_mind("qwen2.5-vl"))) as server:
         async with opened(server.url, "openai_vision", coordinates="qwen2.5-vl") as eyes:
             await eyes.detect(pictures.frame(width=1280, height=720), "thing")
@@ -167,7 +167,7 @@ async def test_qwen_is_sent_a_size_that_it_will_not_change_and_that_the_prompt_s
 
 
 @pytest.mark.anyio
-async def test_what_a_request_says() -> None:
+async def test_the_content_of_a_chat_request() -> None:
     with Misbehaving(then=bad.good(chat_mind("generic"))) as server:
         async with opened(
             server.url, "openai_vision", options={"extra": {"chat_template_kwargs": {"enable_thinking": False}}}
@@ -182,7 +182,7 @@ async def test_what_a_request_says() -> None:
 
 
 @pytest.mark.anyio
-async def test_what_a_moondream_request_says() -> None:
+async def test_the_content_of_a_moondream_request() -> None:
     with Misbehaving() as server:
         async with opened(server.url, "moondream", options={"reasoning": True}) as eyes:
             await eyes.query(pictures.frame(), 'is the door "open"?')
@@ -212,7 +212,7 @@ async def test_a_schema_that_a_server_refuses_is_not_sent_again() -> None:
 
 
 @pytest.mark.anyio
-async def test_a_wrong_model_name_is_no_reason_to_give_up_the_schema() -> None:
+async def test_a_wrong_model_name_does_not_drop_the_schema() -> None:
     with Misbehaving(then=bad.status(400, "no such model")) as server:
         async with opened(server.url, "openai_vision") as eyes:
             with pytest.raises(PerceptionError, match="no such model"):
@@ -240,21 +240,21 @@ async def test_fields_that_a_server_names_are_left_out() -> None:
 
 
 @pytest.mark.anyio
-async def test_a_grammar_that_breaks_a_server_is_given_up() -> None:
+async def test_a_schema_that_breaks_a_server_is_dropped() -> None:
     with Misbehaving([bad.status(500, "failed to parse grammar")], then=bad.good(chat_mind("generic"))) as server:
         async with opened(server.url, "openai_vision") as eyes:
             assert len((await eyes.detect(pictures.frame(), "thing")).boxes) == 1
 
 
 @pytest.mark.anyio
-async def test_an_answer_cut_at_the_token_limit_says_so() -> None:
+async def test_an_answer_cut_off_at_the_token_limit_has_a_note() -> None:
     with Misbehaving(then=bad.good(Say("A road with", finish_reason="length"))) as server:
         async with opened(server.url, "openai_vision") as eyes:
             assert "cut off" in (await eyes.query(pictures.frame(), "what is it?")).notes[0]
 
 
 @pytest.mark.anyio
-async def test_a_moondream_that_knows_no_settings_is_asked_without() -> None:
+async def test_moondream_without_settings_is_asked_without_them() -> None:
     with Misbehaving([bad.status(422, "unknown field settings")]) as server:
         async with opened(server.url, "moondream") as eyes:
             for _ in range(2):
@@ -273,7 +273,7 @@ async def test_a_reply_cut_at_the_token_limit_is_not_complete() -> None:
 
 
 @pytest.mark.anyio
-async def test_a_model_that_gives_no_places_says_so() -> None:
+async def test_a_model_without_places_is_an_error() -> None:
     with Misbehaving() as server:
         async with opened(server.url, "openai_vision", coordinates="none") as eyes:
             assert eyes.skills == {"caption", "query"}
@@ -304,7 +304,7 @@ NAN = math.nan
     ],
     ids=["nan", "infinity", "point", "outside", "word", "missing", "null", "text", "object", "nothing", "number"],
 )
-async def test_places_that_are_none_are_errors_and_no_zeros(backend: str, things: Any) -> None:
+async def test_invalid_places_are_errors(backend: str, things: Any) -> None:
     with Misbehaving(then=reply(backend, things)) as server:
         async with opened(server.url, backend, coordinates="unit") as eyes:
             for look in (eyes.detect, eyes.point):
@@ -316,7 +316,7 @@ async def test_places_that_are_none_are_errors_and_no_zeros(backend: str, things
 
 @pytest.mark.anyio
 @pytest.mark.parametrize("backend", BACKENDS)
-async def test_a_box_beyond_the_border_and_five_hundred_points(backend: str) -> None:
+async def test_boxes_are_clipped_and_500_points_limited(backend: str) -> None:
     over = [{"x_min": -0.2, "y_min": 0.5, "x_max": 0.5, "y_max": 1.7}]
     many = [{"x": x / 25, "y": y / 20} for x in range(25) for y in range(20)]
     with Misbehaving([reply(backend, over), reply(backend, many)]) as server:
@@ -337,7 +337,7 @@ async def test_nothing_found_is_empty(backend: str) -> None:
 
 
 @pytest.mark.anyio
-async def test_another_language_is_an_answer_but_no_list() -> None:
+async def test_another_language_is_an_answer_but_not_a_list() -> None:
     with Misbehaving(then=bad.say("画面里有三个锥桶。")) as server:
         async with opened(server.url, "openai_vision") as eyes:
             assert (await eyes.query(pictures.frame(), "how many cones?")).text == "画面里有三个锥桶。"
@@ -384,7 +384,7 @@ async def test_every_failure_is_a_perception_error(backend: str, case: str, skil
 
 @pytest.mark.anyio
 @pytest.mark.parametrize("backend", BACKENDS)
-async def test_nobody_there(backend: str) -> None:
+async def test_an_unreachable_server_is_a_perception_error(backend: str) -> None:
     with bad.nobody_listens() as url:
         async with opened(url, backend) as eyes:
             with pytest.raises(PerceptionError) as caught:
@@ -395,7 +395,7 @@ async def test_nobody_there(backend: str) -> None:
 @pytest.mark.anyio
 @pytest.mark.parametrize("backend", BACKENDS)
 @pytest.mark.parametrize("text", ["", "  \n"])
-async def test_empty_questions_go_nowhere(backend: str, text: str) -> None:
+async def test_empty_questions_are_not_sent(backend: str, text: str) -> None:
     with Misbehaving() as server:
         async with opened(server.url, backend) as eyes:
             for ask in (eyes.query, eyes.detect, eyes.point):
@@ -419,7 +419,7 @@ async def test_empty_answers_are_errors() -> None:
 
 
 @pytest.mark.anyio
-async def test_honest_ignorance_is_marked() -> None:
+async def test_i_cannot_tell_is_marked_as_unknown() -> None:
     with Misbehaving(then=bad.say("I cannot tell.")) as server:
         async with opened(server.url, "openai_vision") as eyes:
             assert not (await eyes.query(pictures.frame(), "what is behind the wall?")).known
@@ -440,5 +440,5 @@ def test_wrong_specs_are_explained(change: dict[str, Any], message: str) -> None
         make_backend(spec("http://127.0.0.1:9/v1", "openai_vision").model_copy(update=change))
 
 
-def test_written_is_the_inverse_of_reading() -> None:
+def test_places_survive_writing_and_reading() -> None:
     assert written((0.1, 0.2, 0.3, 0.4), "gemini") == pytest.approx((200, 100, 400, 300))

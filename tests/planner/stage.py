@@ -1,4 +1,4 @@
-"""A scripted camera for planner tests: it keeps its pose and answers looks from a script."""
+"""A scripted camera for planner tests. It keeps its pose and answers perception calls from a script."""
 
 from __future__ import annotations
 

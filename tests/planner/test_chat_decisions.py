@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
+from scope_ptz.endpoints.chat_replies import ChatReply, RawToolCall
 from scope_ptz.endpoints.failures import FailureKind, ServerFailure
-from scope_ptz.endpoints.replies import ChatReply, RawToolCall
 from scope_ptz.errors import PlannerError
 from scope_ptz.planner.base import CallTools, Finish
 from scope_ptz.planner.chat import ChatOptions, prompt_names
@@ -57,14 +57,14 @@ def test_arguments_that_are_no_object_become_a_call_with_a_problem(arguments: st
     assert len(call.problem) < 500
 
 
-def test_calls_that_the_server_also_left_in_the_text_are_not_said_twice() -> None:
+def test_calls_that_the_server_left_in_the_text_are_removed() -> None:
     twice = 'I go. <tool_call>{"name": "go_home", "arguments": {}}</tool_call>'
     decision = decide(reply(twice, ("a", "go_home", "{}")), state())
     assert isinstance(decision, CallTools)
     assert (len(decision.calls), decision.thought) == (1, "I go.")
 
 
-def test_schemas_are_plain_and_say_the_same() -> None:
+def test_plain_schemas_keep_their_meaning() -> None:
     for plain, full in zip(plain_schemas(schemas()), schemas(), strict=True):
         assert plain["function"]["name"] == full["function"]["name"]
         theirs, ours = plain["function"]["parameters"], full["function"]["parameters"]
@@ -82,7 +82,7 @@ def test_ids_are_made_where_the_server_gives_none() -> None:
     assert [c.id for c in decision.calls] == ["s0003c001", "s0003c002"]
 
 
-def test_a_model_that_runs_away_is_held() -> None:
+def test_the_number_of_calls_is_limited() -> None:
     many = [(f"c{n}", "go_home", "{}") for n in range(500)]
     decision = decide(reply("", *many), state())
     assert isinstance(decision, CallTools)
@@ -112,7 +112,7 @@ def test_calls_in_reasoning_count_only_when_nothing_was_said() -> None:
         ("The sign says: REFUSE: no entry", 1, ("answered", "The sign says: REFUSE: no entry")),
     ],
 )
-def test_endings(text: str, steps: int, ending: tuple[str, str]) -> None:
+def test_the_end_of_a_run(text: str, steps: int, ending: tuple[str, str]) -> None:
     assert finish(text, steps) == ending
 
 
@@ -127,19 +127,19 @@ def test_endings(text: str, steps: int, ending: tuple[str, str]) -> None:
         (reply("<|im_end|>"), None, "empty"),
     ],
 )
-def test_replies_that_are_no_decision(given: ChatReply, window: int | None, kind: str) -> None:
+def test_replies_without_a_decision_are_errors(given: ChatReply, window: int | None, kind: str) -> None:
     with pytest.raises(PlannerError) as caught:
         decide(given, state(), context_tokens=window)
     assert caught.value.kind == kind
 
 
-def test_an_endless_answer_is_cut_and_says_so() -> None:
+def test_an_endless_answer_is_truncated_and_marked() -> None:
     _, text = finish("ha " * 100_000, 1)
     assert len(text) < 21_000
     assert text.endswith("more characters)")
 
 
-def test_finished_calls_of_a_cut_reply_are_made() -> None:
+def test_complete_calls_of_a_cut_reply_are_made() -> None:
     cut = reply("", ("a", "go_home", "{}"), ("b", "adjust_ptz", '{"pan_'), finish_reason="length")
     decision = decide(cut, state())
     assert isinstance(decision, CallTools)
@@ -166,7 +166,7 @@ def test_families(model: str, family: str) -> None:
     assert family_of(model).name == family
 
 
-def test_thinking_is_switched_as_each_family_wants_it() -> None:
+def test_reasoning_is_switched_as_each_family_requires() -> None:
     off = switch_for("Qwen/Qwen3-32B", "off", "vllm")
     assert (off.fields, off.words) == ({"chat_template_kwargs": {"enable_thinking": False}}, "/no_think")
     assert switch_for("Qwen/Qwen3.5-9B", "on", None).fields == {"chat_template_kwargs": {"enable_thinking": True}}
@@ -184,7 +184,7 @@ def refusal(words: str, kind: FailureKind = FailureKind.BAD_REQUEST) -> ServerFa
     return ServerFailure(kind, where="http://x/v1", status=400, detail=words)
 
 
-def test_a_server_is_not_sent_again_what_it_refused() -> None:
+def test_refused_fields_are_not_sent_again() -> None:
     dialect = Dialect("native", fixed=False)
     wanted = {"temperature": 0.0, "seed": None, "max_tokens": 9, "chat_template_kwargs": {"enable_thinking": False}}
     sent = dialect.fields(wanted)

@@ -10,7 +10,7 @@ import pytest
 from scope_ptz.errors import ConfigError, UnknownNameError
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import Briefing, Exchange, PastTurn, Picture, State, ToolCall, ToolOutcome
-from scope_ptz.planner.chat.messages import build_messages
+from scope_ptz.planner.chat.chat_messages import build_messages
 from scope_ptz.planner.chat.observations import MOST_BOXES, observation
 from scope_ptz.planner.chat.prompts import Prompt, load_prompt, prompt_names
 from scope_ptz.planner.chat.window import estimated_tokens, fits, shortenings
@@ -68,7 +68,7 @@ def test_messages_are_append_only(notation: Any, sees: bool) -> None:
         before = now
 
 
-def test_a_conversation_goes_on_where_its_first_turn_ended() -> None:
+def test_a_conversation_continues_after_its_first_turn() -> None:
     one = state(*exchanges(2))
     first = build_messages(one, PROMPT)
     turn = PastTurn(instruction=one.instruction, exchanges=one.history, reply="It is there.", start=one.briefing.pose)
@@ -81,7 +81,7 @@ def test_a_conversation_goes_on_where_its_first_turn_ended() -> None:
     assert second[-1]["content"].endswith("and now left")
 
 
-def test_the_newest_view_stands_last_and_alone() -> None:
+def test_only_the_newest_view_is_sent_and_comes_last() -> None:
     taken = outcome(
         "take_image", arguments={}, result={"message": "Saved.", "pose": POSE, "file": "pictures/001.png"}, picture=VIEW
     )
@@ -101,7 +101,7 @@ def test_turns_alternate_for_planners_that_see_from_the_start() -> None:
     assert [part["type"] for part in messages[1]["content"]] == ["text", "text", "image_url"]
 
 
-def test_calls_that_servers_would_choke_on_are_made_presentable() -> None:
+def test_calls_that_servers_would_reject_are_repaired() -> None:
     odd = ToolCall(id="", name="no such tool!", arguments={}, problem="cannot be read: {oops")
     same = ToolCall(id="", name="", arguments={})
     history = Exchange(outcomes=(ToolOutcome(call=odd, error="cannot be read: {oops"), ToolOutcome(call=same, error="no name")))
@@ -150,7 +150,7 @@ def test_observations_are_concise() -> None:
     assert len(observation(huge)) < 5000
 
 
-def test_old_observations_are_shortened_and_the_newest_stay_whole() -> None:
+def test_only_old_observations_are_shortened() -> None:
     answered = {"answer": "word " * 200, "message": "word " * 200, "known": True, "source": "eyes", "pose": POSE}
     steps = [Exchange(outcomes=(outcome("query_answer", n, result=answered),)) for n in range(10)]
     full = state(*steps)

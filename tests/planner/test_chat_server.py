@@ -83,7 +83,7 @@ async def test_a_whole_run(stream: bool) -> None:
 
 
 @pytest.mark.parametrize("stream", [True, False])
-async def test_replies_of_no_use_cost_tokens_too(stream: bool) -> None:
+async def test_tokens_of_unusable_replies_are_counted(stream: bool) -> None:
     with Misbehaving([good(Say(text=""))], then=good(Say("Done."))) as server:
         mended = await ask(server.url, stream=stream)
     with Misbehaving(then=good(Say(text=""))) as server:
@@ -136,19 +136,19 @@ async def test_wrong_calls_come_back_to_the_planner(call: tuple[str, Any], words
     assert words in json.loads(told["content"])["error"]
 
 
-async def test_failures_that_a_retry_makes_good_are_counted() -> None:
+async def test_failures_repaired_by_a_retry_are_counted() -> None:
     with Misbehaving([status(503), say("", TURN), status(429, headers={"Retry-After": "0"})], then=say("Done.")) as server:
         run = await ask(server.url)
     assert (run.ended.outcome, run.ended.server_events) == ("answered", {"rate-limited": 1, "server-error": 1})
 
 
-async def test_a_server_that_is_not_there_is_an_outcome() -> None:
+async def test_an_unreachable_server_is_an_outcome() -> None:
     with nobody_listens() as url:
         run = await ask(url)
     assert (run.ended.outcome, run.ended.kind, run.ended.server_events) == ("planner_error", "refused", {"refused": 2})
 
 
-async def test_a_server_without_tools_is_talked_to_in_text() -> None:
+async def test_a_server_without_tools_gets_them_in_the_text() -> None:
     def mind(request: Request) -> Say:
         last = request.data["messages"][-1]["content"]
         done = "<tool_response>" in last
@@ -216,7 +216,7 @@ async def test_a_full_context_is_an_outcome_or_old_observations_are_shortened(
         assert "context" in run.ended.text
 
 
-async def test_a_known_window_is_kept_to_without_asking_in_vain(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_a_known_context_size_avoids_failing_requests(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tests.planner.test_chat_server.ScriptedPerception", Talkative)
     with Misbehaving(then=small_window(13_500, by_steps(*[LONG] * 6, Say("A car.")))) as server:
         run = await ask(server.url, summarise=True, context_tokens=4096)
@@ -261,7 +261,7 @@ async def test_only_reasoning_is_an_error() -> None:
     assert (run.ended.outcome, run.ended.kind, run.ended.server_events) == ("planner_error", "empty", {"empty": 1})
 
 
-async def test_an_unlucky_choice_of_characters_does_not_break_the_trace() -> None:
+async def test_unprintable_characters_do_not_break_the_trace() -> None:
     odd: Callable[[Request], Say] = lambda _: Say("\ud83d Four \x00 cones.")  # noqa: E731
     with Misbehaving(then=good(odd)) as server:
         run = await ask(server.url, stream=False)

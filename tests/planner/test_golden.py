@@ -1,4 +1,4 @@
-"""The golden plans of the design, exactly."""
+"""The exact plans of the design's example instructions."""
 
 from __future__ import annotations
 

@@ -12,14 +12,14 @@ from scope_ptz.planner.base import CallTools, Decision, Planner, State
 from scope_ptz.planner.chat.prompts import Prompt, load_prompt, prompt_names
 from scope_ptz.planner.grammar import GrammarPlanner
 from scope_ptz.planner.plan import plan
-from scope_ptz.planner.profile import INSTRUCTION_EDITS, PROMPT_EDITS, Row, Sensitivity, load_rows, measure_sensitivity
-from scope_ptz.planner.profile.report import Rate
-from scope_ptz.planner.profile.trials import PRESETS, Call, is_inverted, is_right
+from scope_ptz.planner.profile import INSTRUCTION_EDITS, PROMPT_EDITS, InstructionRow, Sensitivity, load_rows, measure_sensitivity
+from scope_ptz.planner.profile.first_calls import PRESETS, FirstCall, is_inverted, is_right
+from scope_ptz.planner.profile.prompt_sensitivity import Rate
 
 pytestmark = pytest.mark.anyio
 PROMPT = load_prompt()
 ROWS = load_rows()
-TURN = Row(instruction="pan left 20", kind="move", calls=(Call(name="adjust_ptz", arguments={"pan_deg": -20}),))
+TURN = InstructionRow(instruction="pan left 20", kind="move", calls=(FirstCall(name="adjust_ptz", arguments={"pan_deg": -20}),))
 
 
 class Altered(Planner):
@@ -34,15 +34,17 @@ class Altered(Planner):
         return self._alter(state, await self._grammar.step(state))
 
 
-async def measure(make: Callable[[Prompt], Planner], rows: tuple[Row, ...] = ROWS[::6], **options: object) -> Sensitivity:
+async def measure(
+    make: Callable[[Prompt], Planner], rows: tuple[InstructionRow, ...] = ROWS[::6], **options: object
+) -> Sensitivity:
     return await measure_sensitivity(make, PROMPT, rows=rows, **options)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.instruction)
-def test_the_instructions_mean_what_they_are_said_to(row: Row) -> None:
+def test_the_grammar_plans_the_packaged_instructions_as_expected(row: InstructionRow) -> None:
     made = plan(row.instruction, PRESETS)
     assert [call.name for call in made.calls] == [call.name for call in row.calls]
-    assert is_right(row, Call(name=made.calls[0].name, arguments=made.calls[0].arguments))
+    assert is_right(row, FirstCall(name=made.calls[0].name, arguments=made.calls[0].arguments))
 
 
 def test_the_instructions_are_balanced_between_directions() -> None:
@@ -51,7 +53,7 @@ def test_the_instructions_are_balanced_between_directions() -> None:
     assert abs(sum(p > 0 for p in pans) - sum(p < 0 for p in pans)) <= 3
 
 
-def test_edits_leave_directions_and_numbers_alone() -> None:
+def test_edits_keep_directions_and_numbers() -> None:
     for edit in INSTRUCTION_EDITS:
         assert any(edit.apply(row.instruction) != row.instruction for row in ROWS), edit.name
         for row in ROWS:
@@ -89,7 +91,7 @@ async def test_inverted_moves_are_found() -> None:
     assert "adjust_ptz(pan_deg=20)" in report.inversions[0]
 
 
-async def test_a_planner_that_depends_on_its_prompt_is_found_out() -> None:
+async def test_a_planner_that_depends_on_its_prompt_is_detected() -> None:
     def go_home(_: State, decision: Decision) -> Decision:
         assert isinstance(decision, CallTools)
         return CallTools(calls=(decision.calls[0].model_copy(update={"name": "go_home", "arguments": {}}),))
@@ -103,7 +105,7 @@ async def test_a_planner_that_depends_on_its_prompt_is_found_out() -> None:
     assert report.by_prompt.share == round(1 / len(PROMPT_EDITS), 4)
 
 
-async def test_failures_and_wrong_calls_are_told_apart() -> None:
+async def test_failures_and_wrong_calls_are_counted_separately() -> None:
     def spoil(state: State, decision: Decision) -> Decision:
         assert isinstance(decision, CallTools)
         if "left" in state.instruction:
@@ -115,7 +117,7 @@ async def test_failures_and_wrong_calls_are_told_apart() -> None:
     assert report.valid.of == report.right.of == 1
 
 
-async def test_a_server_that_fails_changes_no_choice() -> None:
+async def test_a_failing_server_does_not_count_as_a_changed_choice() -> None:
     def gone(state: State, decision: Decision) -> Decision:
         raise PlannerError("gone", kind="refused")
 
@@ -129,12 +131,14 @@ async def test_a_server_that_fails_changes_no_choice() -> None:
 
 
 def test_inversion_and_rates() -> None:
-    assert is_inverted(TURN, [Call(name="adjust_ptz", arguments={"pan_deg": 20})])
-    assert not is_inverted(TURN, [Call(name="adjust_ptz", arguments={"pan_deg": -90})])
-    assert not is_inverted(TURN, [Call(name="go_home")])
-    out = Row(instruction="zoom out", kind="zoom", calls=(Call(name="adjust_ptz", arguments={"zoom_limit": "out"}),))
-    assert is_inverted(out, [Call(name="adjust_ptz", arguments={"zoom_factor": 2})])
-    assert not is_inverted(out, [Call(name="adjust_ptz", arguments={"zoom_percent": -50})])
+    assert is_inverted(TURN, [FirstCall(name="adjust_ptz", arguments={"pan_deg": 20})])
+    assert not is_inverted(TURN, [FirstCall(name="adjust_ptz", arguments={"pan_deg": -90})])
+    assert not is_inverted(TURN, [FirstCall(name="go_home")])
+    out = InstructionRow(
+        instruction="zoom out", kind="zoom", calls=(FirstCall(name="adjust_ptz", arguments={"zoom_limit": "out"}),)
+    )
+    assert is_inverted(out, [FirstCall(name="adjust_ptz", arguments={"zoom_factor": 2})])
+    assert not is_inverted(out, [FirstCall(name="adjust_ptz", arguments={"zoom_percent": -50})])
     assert Rate.over([]) == Rate(count=0, of=0, share=None, low=None, high=None)
     rate = Rate.over([True, False, False, False])
     assert rate.low is not None
@@ -142,16 +146,16 @@ def test_inversion_and_rates() -> None:
     assert 0 < rate.low < 0.25 < rate.high < 1
 
 
-def test_rows_of_other_files_may_ask_for_words_only() -> None:
+def test_expected_texts_may_be_lists_of_words() -> None:
     words = {"question": {"contains": ["gantry sign"]}, "view": "current"}
-    row = Row(instruction="read it", kind="object", calls=(Call(name="query_answer", arguments=words),))
-    assert is_right(row, Call(name="query_answer", arguments={"question": "What does it say?"}))
-    assert not is_right(row, Call(name="query_answer", arguments={"question": "What does it say?", "view": "full"}))
-    row = Row(
-        instruction="go", kind="object", calls=(Call(name="zoom_to_object", arguments={"description": {"contains": ["van"]}}),)
+    row = InstructionRow(instruction="read it", kind="object", calls=(FirstCall(name="query_answer", arguments=words),))
+    assert is_right(row, FirstCall(name="query_answer", arguments={"question": "What does it say?"}))
+    assert not is_right(row, FirstCall(name="query_answer", arguments={"question": "What does it say?", "view": "full"}))
+    row = InstructionRow(
+        instruction="go", kind="object", calls=(FirstCall(name="zoom_to_object", arguments={"description": {"contains": ["van"]}}),)
     )
-    assert is_right(row, Call(name="zoom_to_object", arguments={"description": "the white van"}))
-    assert not is_right(row, Call(name="zoom_to_object", arguments={"description": "the lorry"}))
-    wrong = Row(instruction="go", kind="move", calls=(Call(name="adjust_ptz", arguments={"speed": 1}),))
-    assert not is_right(wrong, Call(name="adjust_ptz", arguments={"pan_deg": 1}))
-    assert not is_inverted(wrong, [Call(name="adjust_ptz", arguments={"pan_deg": 1})])
+    assert is_right(row, FirstCall(name="zoom_to_object", arguments={"description": "the white van"}))
+    assert not is_right(row, FirstCall(name="zoom_to_object", arguments={"description": "the lorry"}))
+    wrong = InstructionRow(instruction="go", kind="move", calls=(FirstCall(name="adjust_ptz", arguments={"speed": 1}),))
+    assert not is_right(wrong, FirstCall(name="adjust_ptz", arguments={"pan_deg": 1}))
+    assert not is_inverted(wrong, [FirstCall(name="adjust_ptz", arguments={"pan_deg": 1})])

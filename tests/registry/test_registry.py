@@ -1,4 +1,4 @@
-"""The registry against the paper's model table, and what users may add to it."""
+"""The registry: the paper's model table, and the entries of users."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 
 from scope_ptz.errors import ConfigError, UnknownNameError
 from scope_ptz.perception.backends import backend_names
-from scope_ptz.perception.coordinates import CONVENTIONS
+from scope_ptz.perception.models.coordinates import CONVENTIONS
 from scope_ptz.planner.chat.families import switch_for
 from scope_ptz.registry import Registry, load_registry
 
@@ -44,7 +44,7 @@ def registry() -> Registry:
 
 
 @pytest.mark.parametrize(("role", "table"), [("planner", PAPER_PLANNERS), ("perception", PAPER_EYES)])
-def test_the_papers_models_stand_as_in_its_table(registry: Registry, role: str, table: list[tuple[str, float, float, str]]) -> None:
+def test_the_papers_models_match_its_table(registry: Registry, role: str, table: list[tuple[str, float, float, str]]) -> None:
     found = [
         (m.title, m.size_b, m.active_b, m.precision) for m in registry.models.values() if m.origin == "paper" and m.roles == (role,)
     ]
@@ -110,18 +110,18 @@ def test_memory_is_parameters_times_bytes_plus_cache_plus_runtime(registry: Regi
 
 
 @pytest.mark.parametrize("name", ["qwen3-4b", "Qwen3-4B-Instruct-2507", "QWEN/Qwen3-4B-Instruct-2507"])
-def test_models_answer_to_their_names(registry: Registry, name: str) -> None:
+def test_models_are_found_by_their_names(registry: Registry, name: str) -> None:
     assert registry.model(name).name == "qwen3-4b"
 
 
-def test_pairs_are_made_of_any_planner_and_eyes(registry: Registry) -> None:
+def test_pairs_are_made_of_any_planner_and_perception(registry: Registry) -> None:
     pair = registry.pair("qwen3.5-4b+rapidocr")
     assert (pair.planner, pair.perception, pair.paper_average) == ("qwen3.5-4b", "rapidocr", None)
     both = registry.pair("qwen3.5-9b")
     assert both.planner == both.perception == "qwen3.5-9b"
-    with pytest.raises(ConfigError, match="planner only"):
+    with pytest.raises(ConfigError, match="only a planner"):
         registry.pair("qwen3-4b")
-    with pytest.raises(ConfigError, match="cannot see"):
+    with pytest.raises(ConfigError, match="cannot be used for perception"):
         registry.pair("qwen3-4b+qwen3-4b")
     with pytest.raises(UnknownNameError, match="Did you mean 'qwen3-4b'"):
         registry.pair("qwen3-4c+moondream2")
@@ -148,7 +148,7 @@ pairs:
 """
 
 
-def test_users_add_their_own(tmp_path: Path) -> None:
+def test_users_can_add_entries(tmp_path: Path) -> None:
     file = tmp_path / "models.yaml"
     file.write_text(OWN)
     registry = load_registry(file)
@@ -162,7 +162,7 @@ def test_users_add_their_own(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("models: [", "no YAML"),
+        ("models: [", "not valid YAML"),
         ("models: {x: {repo: a}}", "models.x.roles"),
         ("models: 3", "models"),
         ("nonsense: 1", "nonsense"),
@@ -173,16 +173,16 @@ def test_users_add_their_own(tmp_path: Path) -> None:
         (OWN.replace("vllm: {}", "vlm: {}"), "no such server"),
         (OWN.replace("perception: moondream2", "perception: moondream9"), "moondream9"),
         ("pairs: [{planner: x}]", "pairs.0.perception"),
-        ("!!python/object/apply:os.system ['true']", "no YAML"),
+        ("!!python/object/apply:os.system ['true']", "not valid YAML"),
     ],
 )
-def test_a_wrong_file_is_told_by_file_and_field(tmp_path: Path, text: str, told: str) -> None:
+def test_errors_name_the_file_and_the_field(tmp_path: Path, text: str, told: str) -> None:
     file = tmp_path / "models.yaml"
     file.write_text(text)
     with pytest.raises((ConfigError, UnknownNameError), match=told.replace(".", r"\.")):
         load_registry(file)
 
 
-def test_a_file_that_is_not_there(tmp_path: Path) -> None:
+def test_a_missing_file_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match="cannot be read"):
         load_registry(tmp_path / "none.yaml")

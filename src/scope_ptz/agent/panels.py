@@ -9,9 +9,9 @@ from pydantic import ValidationError
 
 from scope_ptz.agent.records import Called
 from scope_ptz.agent.trace import Trace
+from scope_ptz.english import counted, singular
 from scope_ptz.geometry import Pose
 from scope_ptz.perception.base import Box
-from scope_ptz.perception.language.words import counted, singular
 from scope_ptz.planner.base import ToolOutcome
 
 _MOVES = ("adjust_ptz", "go_to_preset", "go_home")

@@ -6,7 +6,7 @@ import anyio
 
 from scope_ptz.agent.timing import Stopwatch, TimedCamera
 from scope_ptz.camera.base import Camera, Frame
-from scope_ptz.perception.encoding import picture_of
+from scope_ptz.perception.models.encoding import picture_of
 from scope_ptz.planner.base import Picture
 from scope_ptz.tools.context import ImageStore
 

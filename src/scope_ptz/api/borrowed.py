@@ -32,7 +32,7 @@ class BorrowedPerception(Perception):
 
     def __init__(self, perception: Perception) -> None:
         self._perception = perception
-        self.name, self.skills, self.sees_wide = perception.name, perception.skills, perception.sees_wide
+        self.name, self.skills, self.handles_panoramas = perception.name, perception.skills, perception.handles_panoramas
 
     async def caption(self, frame: Frame) -> Caption:
         return await self._perception.caption(frame)

@@ -12,6 +12,7 @@ from scope_ptz.agent.records import Budgets
 from scope_ptz.api.async_scope import AsyncScope
 from scope_ptz.api.options import ServedModels, SessionOptions, StrPath
 from scope_ptz.api.scope import Scope
+from scope_ptz.builtin_names import DEFAULT_SCENE
 from scope_ptz.camera.base import Camera
 from scope_ptz.errors import InputError
 from scope_ptz.perception.base import Perception
@@ -19,7 +20,7 @@ from scope_ptz.planner.base import Planner
 
 
 def open(  # noqa: A001 - the public name, used as scope_ptz.open
-    camera: Camera | str = "highway-works",
+    camera: Camera | str = DEFAULT_SCENE,
     *,
     planner: Planner | str | None = None,
     perception: Perception | str | None = None,
@@ -96,7 +97,7 @@ def open(  # noqa: A001 - the public name, used as scope_ptz.open
 
 
 def open_async(
-    camera: Camera | str = "highway-works",
+    camera: Camera | str = DEFAULT_SCENE,
     *,
     planner: Planner | str | None = None,
     perception: Perception | str | None = None,

@@ -127,7 +127,7 @@ def _run_all(names: list[str], each: RunOptions, console: Console) -> dict[str, 
 
 def _wishes(shared: ModelOptions, name: str) -> ModelOptions:
     """A pair with what is said of all. A server's address is for a model; the built-in planner and eyes have none."""
-    from scope_ptz.factory.model_specs import BUILT_IN_PERCEPTION, GRAMMAR
+    from scope_ptz.builtin_names import BUILT_IN_PERCEPTION, GRAMMAR
 
     planner, _, eyes = name.partition("+")
     wishes = replace(shared, pair=name)

@@ -16,18 +16,19 @@ import anyio
 from rich.console import Console
 from rich.text import Text
 
+from scope_ptz.builtin_names import DEFAULT_SCENE
 from scope_ptz.cli.display import plain
 from scope_ptz.cli.exit import FAILED, put_json, run_async
 from scope_ptz.errors import ConfigError, InputError, PackError
 from scope_ptz.factory.cameras import open_camera
 from scope_ptz.factory.models import ModelOptions, make_perception, resolve_models
-from scope_ptz.factory.scenes import DEFAULT_SCENE, scene_search
+from scope_ptz.factory.scenes import scene_search
 from scope_ptz.settings import ScopeSettings, load_settings
 from scope_ptz.simulator.card import folder_bytes, megabytes
 from scope_ptz.version import __version__
 
 if TYPE_CHECKING:
-    from scope_ptz.endpoints.conformance import Check
+    from scope_ptz.endpoints.chat_server_checks import ServerCheck
     from scope_ptz.factory.models import ResolvedPerception, ResolvedPlanner
 
 Verdict = Literal["ok", "optional", "missing"]
@@ -159,7 +160,7 @@ def _blender(settings: ScopeSettings) -> Finding:
 
 def check_servers(options: ModelOptions, *, as_json: bool) -> int:
     """Print each check of the model servers as it ends, and return 1 if one of them failed."""
-    found: list[tuple[str, Check]] = []
+    found: list[tuple[str, ServerCheck]] = []
     console = Console(highlight=False)
 
     async def work() -> None:
@@ -177,11 +178,11 @@ def check_servers(options: ModelOptions, *, as_json: bool) -> int:
     return FAILED if any(check.verdict == "failed" for _, check in found) else 0
 
 
-async def _server_checks(planner: ResolvedPlanner, perception: ResolvedPerception) -> AsyncIterator[tuple[str, Check]]:
+async def _server_checks(planner: ResolvedPlanner, perception: ResolvedPerception) -> AsyncIterator[tuple[str, ServerCheck]]:
     """Yield the checks of both servers, each with the name of its server."""
     if planner.endpoint is not None:
-        from scope_ptz.endpoints.conformance import LAST, check_chat
-        from scope_ptz.planner.chat.conformance import check_planning
+        from scope_ptz.endpoints.chat_server_checks import LAST, check_chat
+        from scope_ptz.planner.chat.planning_checks import check_planning
         from scope_ptz.tools.registry import schemas
 
         server, alive = f"planner {planner.name}".strip(), False
@@ -192,7 +193,7 @@ async def _server_checks(planner: ResolvedPlanner, perception: ResolvedPerceptio
             async for check in check_planning(planner.endpoint, schemas(), planner.options):
                 yield server, check
     if perception.spec is not None:
-        from scope_ptz.perception.examination import check_perception
+        from scope_ptz.perception.models.vision_checks import check_perception
 
         backend = make_perception(perception, None, 0)
         try:
@@ -203,7 +204,7 @@ async def _server_checks(planner: ResolvedPlanner, perception: ResolvedPerceptio
             await backend.close()
 
 
-def _show_check(console: Console, server: str, check: Check) -> None:
+def _show_check(console: Console, server: str, check: ServerCheck) -> None:
     mark, style = _MARKS[check.verdict]
     head = Text.assemble((f"{mark}  ", style), (f"{plain(server)}: {check.what}", "bold"), (f"  {check.seconds:.2f} s  ", "dim"))
     console.print(head + Text(plain(check.detail)), soft_wrap=True)

@@ -12,7 +12,7 @@ from scope_ptz.cli.display import plain
 from scope_ptz.cli.exit import put, put_json
 from scope_ptz.errors import ConfigError, UnknownNameError
 from scope_ptz.registry import Model, Registry, Role, load_registry
-from scope_ptz.registry.entries import RUNTIME_GB, WINDOW
+from scope_ptz.registry.model_entries import RUNTIME_GB, WINDOW
 from scope_ptz.settings import load_settings
 
 MEMORY_NOTE = (

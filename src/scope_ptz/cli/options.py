@@ -75,8 +75,8 @@ class StartFlags:
         Args:
             realtime: Whether moves take as long as with a real camera.
         """
+        from scope_ptz.builtin_names import DEFAULT_SCENE
         from scope_ptz.factory.cameras import open_camera
-        from scope_ptz.factory.scenes import DEFAULT_SCENE
 
         if self.camera is not None and self.scene is not None:
             raise InputError("Give --camera or --scene, not both: --scene NAME is short for --camera sim:NAME.")

@@ -26,9 +26,9 @@ from scope_ptz.factory.models import (
     make_planner,
     resolve_models,
 )
-from scope_ptz.planner.profile import Row, Sensitivity, ask_once, load_rows, measure_sensitivity, read_rows
+from scope_ptz.planner.profile import InstructionRow, Sensitivity, ask_once, load_rows, measure_sensitivity, read_rows
 from scope_ptz.planner.profile.perception_speed import PerceptionSpeed, measure_perception
-from scope_ptz.planner.profile.report import Rate
+from scope_ptz.planner.profile.prompt_sensitivity import Rate
 from scope_ptz.planner.profile.speed import Speed, Spread, speed_of
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ def profile(options: ModelOptions, extent: Extent, *, as_json: bool) -> int:
     return FAILED if report["real_time"] == "unknown" else 0
 
 
-def _rows(extent: Extent) -> tuple[Row, ...]:
+def _rows(extent: Extent) -> tuple[InstructionRow, ...]:
     rows = load_rows() if extent.instructions is None else read_rows(extent.instructions)
     if extent.limit is not None and extent.limit < len(rows):
         rows = tuple(rows[i * len(rows) // extent.limit] for i in range(extent.limit))
@@ -113,7 +113,7 @@ def _rows(extent: Extent) -> tuple[Row, ...]:
 
 
 # Measuring -------------------------------------------------------------------------------------------------------------
-async def _planner_side(choice: ResolvedPlanner, rows: tuple[Row, ...]) -> Side:
+async def _planner_side(choice: ResolvedPlanner, rows: tuple[InstructionRow, ...]) -> Side:
     assert choice.endpoint is not None  # noqa: S101 - called only with a server
     planner, trials = make_planner(choice), []
     try:
@@ -180,7 +180,7 @@ async def _frames(scene_name: str, count: int) -> list[Frame]:
         return frames
 
 
-async def _sensitivity(choice: ResolvedPlanner, rows: tuple[Row, ...]) -> Sensitivity:
+async def _sensitivity(choice: ResolvedPlanner, rows: tuple[InstructionRow, ...]) -> Sensitivity:
     from scope_ptz.planner.chat import ChatOptions, ChatPlanner, Prompt, load_prompt
 
     assert choice.endpoint is not None  # noqa: S101 - called only with a server

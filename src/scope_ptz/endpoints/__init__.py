@@ -1,4 +1,4 @@
-"""Model servers: where they are, how they are asked, and how they fail.
+"""Model servers: addresses, requests and failures.
 
-Nothing of an HTTP library is imported before the first request, so commands that need no server start at once.
+No HTTP library is imported before the first request, so commands that need no server start fast.
 """

@@ -1,4 +1,4 @@
-"""Reading what a server sent: capped, decoded, and made safe to store and to show."""
+"""Reading what a server sent: limited in size, decoded, and safe to store and to print."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 K = FailureKind
 
 _QUOTED = 80
-"""Bytes of an unreadable body that its failure shows."""
+"""Bytes of an unreadable body that the error message shows."""
 
 _JSON_TYPE = re.compile(r"^(application|text)/([\w.+-]+\+)?json$")
 _UNSAFE = re.compile("[\\x00-\\x08\\x0b\\x0c\\x0e-\\x1f\\x7f-\\x9f\\ud800-\\udfff]")
@@ -25,26 +25,29 @@ _UNSAFE_ESCAPE = re.compile(rb"\\u(00[0189]|[dD][89a-fA-F])|\\[bf]|[\x00-\x08\x0
 
 
 def content_type(response: Response) -> str:
-    """The media type alone, lower case; empty when the server states none."""
+    """Return the media type in lower case, empty when the server states none."""
     return str(response.headers.get("content-type", "")).partition(";")[0].strip().lower()
 
 
 def is_json(media_type: str) -> bool:
+    """Return whether a media type is JSON; a missing one counts as JSON."""
     return not media_type or _JSON_TYPE.match(media_type) is not None
 
 
 def wrong_type(media_type: str, endpoint: Endpoint, status: int) -> ServerFailure:
+    """Return the failure for a reply of the wrong content type."""
     return ServerFailure(
         K.WRONG_CONTENT_TYPE, where=endpoint.url, status=status, detail=f"content type {media_type or 'missing'}"[:100]
     )
 
 
 def too_large(endpoint: Endpoint, status: int) -> ServerFailure:
+    """Return the failure for a reply above ``MAX_BODY_BYTES``."""
     return ServerFailure(K.TOO_LARGE, where=endpoint.url, status=status, detail=f"over {MAX_BODY_BYTES // 2**20} MB")
 
 
 async def chunks(response: Response, endpoint: Endpoint) -> AsyncGenerator[bytes, None]:
-    """The body as it comes, decompressed, up to ``MAX_BODY_BYTES``. A silence in its midst is a broken answer."""
+    """Yield the decompressed body in pieces, up to ``MAX_BODY_BYTES``. A timeout in the middle counts as a broken reply."""
     import httpx2
 
     received = 0
@@ -62,10 +65,10 @@ async def chunks(response: Response, endpoint: Endpoint) -> AsyncGenerator[bytes
 
 
 async def read_object(response: Response, endpoint: Endpoint) -> dict[str, Any]:
-    """A whole JSON object.
+    """Return a complete JSON object.
 
     Raises:
-        ServerFailure: wrong content type, nothing, too much, no JSON, no object, or an error in the guise of success.
+        ServerFailure: Wrong content type, an empty or too large body, invalid JSON, no object, or an error reported as success.
     """
     media_type = content_type(response)
     if not is_json(media_type):
@@ -75,11 +78,11 @@ async def read_object(response: Response, endpoint: Endpoint) -> dict[str, Any]:
 
 
 def load_object(body: bytes, endpoint: Endpoint, status: int) -> dict[str, Any]:
-    """A JSON object from bytes, without the key and without characters that break files or terminals."""
+    """Return a JSON object from bytes, without the key and without characters that break files or terminals."""
     if not body.strip():
         raise ServerFailure(K.EMPTY, where=endpoint.url, status=status, detail="an empty body")
     try:
-        # Some servers put raw line ends into strings.
+        # Not strict, because some servers put raw line ends into strings.
         data: Any = json.loads(scrub(body.decode("utf-8"), endpoint.secret), strict=False)
     except (ValueError, RecursionError) as error:
         detail = f"{_no_json(error)} in '{in_brief(body[:_QUOTED].decode(errors='replace'), endpoint.secret)}'"
@@ -110,5 +113,5 @@ def _safe(value: Any) -> Any:
 
 
 def safe_text(text: str) -> str:
-    """Text without control characters and lone surrogates: files cannot hold the latter, and terminals obey the former."""
+    """Return text without control characters, which terminals obey, and lone surrogates, which files cannot hold."""
     return _UNSAFE.sub("\ufffd", text)

@@ -1,4 +1,4 @@
-"""A circuit breaker: a dead server is left alone for a while instead of costing a timeout at every call."""
+"""A circuit breaker: a dead server is not asked for a while, instead of causing a timeout in every call."""
 
 from __future__ import annotations
 
@@ -13,8 +13,10 @@ DEAD_STATUS = frozenset({502, 503, 504})
 
 
 class Breaker:
-    """Closed until ``threshold`` attempts in a row found the server dead; then open for ``pause_s``, which doubles up to
-    ``longest_pause_s`` each time that the one request let through afterwards fails too.
+    """Opens when ``threshold`` consecutive attempts found the server dead.
+
+    It stays open for ``pause_s``, then lets one request through. Each time that this request fails, too, the pause doubles, up to
+    ``longest_pause_s``.
     """
 
     def __init__(
@@ -34,11 +36,11 @@ class Breaker:
 
     @property
     def last(self) -> ServerFailure | None:
-        """The failure that was seen last, None after a success."""
+        """The last failure, None after a success."""
         return self._last
 
     def wait_s(self) -> float | None:
-        """None when a request may go out now, which it then must report on; else for how long none may."""
+        """Return how many seconds no request may be sent, None when one may be sent now. Its outcome must then be reported."""
         if self._open_until is None:
             return None
         left = self._open_until - self.clock()
@@ -48,10 +50,11 @@ class Breaker:
         return None
 
     def succeeded(self) -> None:
+        """Report a successful request."""
         self._failures, self._open_until, self._pause_s, self._probing, self._last = 0, None, self.pause_s, False, None
 
     def failed(self, failure: ServerFailure) -> None:
-        """Any answer but a dead server's shows that it lives."""
+        """Report a failed request. A failure that only a living server can cause counts as a success."""
         if failure.kind not in DEAD and failure.status not in DEAD_STATUS:
             self.succeeded()
             return
@@ -64,5 +67,5 @@ class Breaker:
         self._probing = False
 
     def abandoned(self) -> None:
-        """The request was cancelled: nothing is known."""
+        """Report a cancelled request, which shows nothing about the server."""
         self._probing = False

@@ -1,33 +1,33 @@
-"""What a server has on offer: its list of models, and where its API begins."""
+"""A server's list of models, and the base address of its API."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from scope_ptz.endpoints.bodies import read_object
-from scope_ptz.endpoints.calls import Caller
 from scope_ptz.endpoints.endpoint import Endpoint, Timeouts
 from scope_ptz.endpoints.failures import FailureKind, ServerFailure
+from scope_ptz.endpoints.retries import Caller
 from scope_ptz.endpoints.translate import status_failure
 
 PATIENCE = Timeouts(connect_s=3.0, first_byte_s=3.0, total_s=5.0)
-"""The list is a convenience: nobody shall wait long for it."""
+"""Short, because the list is only a convenience."""
 
 
 async def served_models(endpoint: Endpoint) -> tuple[str, ...]:
-    """The names under which a server serves models, as ``GET /models`` lists them.
+    """Return the names under which a server serves models, from ``GET /models``.
 
     Raises:
-        ServerFailure: there is no such list.
+        ServerFailure: There is no such list.
     """
     return tuple(str(entry["id"]) for entry in await _entries(endpoint))
 
 
 async def find_api(endpoint: Endpoint) -> tuple[Endpoint, tuple[str, ...]]:
-    """The endpoint and its models; when only its address with ``/v1`` has a list, then that one.
+    """Return the endpoint and its models. When only the address with ``/v1`` has a list, return that endpoint.
 
     Raises:
-        ServerFailure: neither has one.
+        ServerFailure: Neither address has a list.
     """
     try:
         return endpoint, await served_models(endpoint)

@@ -1,4 +1,4 @@
-"""The chat client: the ``openai`` client, with this project's retries, deadlines and reading of replies."""
+"""The chat client: the ``openai`` client with this project's retries, deadlines and parsing of replies."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import anyio
 from pydantic_core import to_json
 
 from scope_ptz.endpoints.bodies import chunks, content_type, is_json, load_object, read_object, wrong_type
-from scope_ptz.endpoints.calls import Caller
+from scope_ptz.endpoints.chat_replies import ChatReply, Gathering, RawToolCall
 from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.endpoints.events import DONE, Events
 from scope_ptz.endpoints.failures import Attempt, FailureKind, ServerFailure, in_brief
-from scope_ptz.endpoints.replies import ChatReply, Gathering, RawToolCall
+from scope_ptz.endpoints.retries import Caller
 
 if TYPE_CHECKING:
     from httpx2 import Response
@@ -25,11 +25,11 @@ K = FailureKind
 EVENT_STREAM = "text/event-stream"
 UNKNOWN_FIELD = 422
 DRAIN_S = 0.1
-"""A stream that has said all is read to its end, so that its connection can be used again, but not for longer than this."""
+"""How long a finished stream is read to its end, so that its connection can be used again."""
 
 
 class ChatClient:
-    """Asks one OpenAI-compatible server. May be shared by concurrent callers in one event loop."""
+    """A client of one OpenAI-compatible server. Concurrent callers in one event loop may share it."""
 
     def __init__(self, endpoint: Endpoint, *, caller: Caller | None = None) -> None:
         self.endpoint = endpoint
@@ -46,36 +46,37 @@ class ChatClient:
         extra: dict[str, Any] | None = None,
         **options: Any,
     ) -> ChatReply:
-        """The model's reply.
+        """Return the model's reply.
 
         Args:
-            messages: the conversation in the wire format.
-            tools: function schemas on offer.
-            stream: let the reply come as it is made, which tells the time to its first token. The reply is the same.
-            extra: fields of the request that only some servers know.
-            options: further fields of the request, such as ``temperature``; those that are None are left out.
+            messages: The conversation in the wire format.
+            tools: Function schemas of the offered tools.
+            stream: Whether to stream the reply, which measures the time to its first token. The reply is the same.
+            extra: Request fields that only some servers know.
+            options: Further request fields, such as ``temperature``; those that are None are left out.
 
         Raises:
-            ServerFailure: there was no usable reply.
+            ServerFailure: There was no usable reply.
         """
         body: dict[str, Any] = {"model": self.endpoint.model, "messages": messages}
         if tools:
             body["tools"] = tools
         body.update((name, value) for name, value in options.items() if value is not None)
         body.update(extra or {})
-        self._client()  # made before the clock runs: importing the library takes most of a second
+        self._client()  # made before the clock starts, because importing the library takes most of a second
         began = perf_counter()
         reply, attempts = await (self._streamed(body | {"stream": True}) if stream else self._called(body))
         return reply.model_copy(update={"attempts": attempts, "seconds": perf_counter() - began})
 
     async def _called(self, body: dict[str, Any]) -> tuple[ChatReply, tuple[Attempt, ...]]:
-        # Written here once, and by a writer that is quick with pictures; the library's own takes several times as long.
+        # Serialised once, by a serialiser that is fast with pictures; the library's own takes several times as long.
         content, streaming = to_json(body, inf_nan_mode="null"), bool(body.get("stream"))
         return await self.caller.call(lambda: self._exchange(content, streaming))
 
     async def _streamed(self, body: dict[str, Any]) -> tuple[ChatReply, tuple[Attempt, ...]]:
-        """With a count of tokens at the end, which a stream has only on request. A server that refuses the request for it is
-        asked without, now and from then on.
+        """Stream with a token count at the end, which servers send only on request.
+
+        A server that refuses this request field is asked without it, now and from then on.
         """
         if not self._counts_tokens:
             return await self._called(body)
@@ -97,7 +98,7 @@ class ChatClient:
         from openai import AsyncStream
 
         began = perf_counter()
-        # Every response is taken unread, also a whole one: the size of its body is checked while it comes.
+        # No response is read by the library, so that the size of its body can be limited.
         answer = await self._client().post(
             "/chat/completions", cast_to=httpx2.Response, content=content, stream=True, stream_cls=AsyncStream[Any]
         )
@@ -147,7 +148,7 @@ class ChatClient:
         return gathering.reply().model_copy(update={"first_token_s": first_token_s})
 
     def _broken_off(self, gathering: Gathering, head: bytes, status: int) -> ServerFailure:
-        """A stream without an end: it stopped in its midst, or never was one. ``head``: how it began."""
+        """Return the failure for a stream without an end: it broke off, or it was no stream. ``head`` is its beginning."""
         where = self.endpoint.url
         if gathering.pieces:
             return ServerFailure(K.CUT_OFF, where=where, status=status, detail="the stream ended before the answer did")
@@ -162,7 +163,7 @@ class ChatClient:
 
             from scope_ptz.endpoints.transport import make_client
 
-            # The key is put in by our transport, which lets nothing of OPENAI_... variables through.
+            # The transport adds the key, and removes everything that comes from OPENAI_... variables.
             client = make_client(self.endpoint)
             self._openai = AsyncOpenAI(
                 api_key="unused", base_url=self.endpoint.url, max_retries=0, http_client=client, timeout=client.timeout

@@ -1,4 +1,4 @@
-"""Where a model server is, and how patient to be with it."""
+"""The address of a model server, and how long to wait for it."""
 
 from __future__ import annotations
 
@@ -15,8 +15,12 @@ MAX_BODY_BYTES = 8 * 1024 * 1024
 
 
 class Timeouts(BaseModel):
-    """Seconds. ``connect_s``: to be connected; ``first_byte_s``: longest silence while waiting for a reply; ``total_s``: a call
-    with all its retries.
+    """Timeouts in seconds.
+
+    Attributes:
+        connect_s: The time to connect.
+        first_byte_s: The longest silence while waiting for a reply.
+        total_s: The time for a call with all its retries.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -27,7 +31,7 @@ class Timeouts(BaseModel):
 
     @classmethod
     def within(cls, total_s: float) -> Timeouts:
-        """For a call that may take ``total_s``: a slow machine needs half of a long time for its first word."""
+        """Return timeouts for a call that may take ``total_s``. A slow machine may need half of a long time for its first token."""
         usual = cls()
         return cls(
             connect_s=min(usual.connect_s, total_s),
@@ -37,7 +41,7 @@ class Timeouts(BaseModel):
 
 
 class Endpoint(BaseModel):
-    """A model server. ``url``: for OpenAI-compatible servers the base with its ``/v1``. ``key`` is never shown anywhere."""
+    """A model server. For OpenAI-compatible servers ``url`` includes ``/v1``. ``key`` is never shown anywhere."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", hide_input_in_errors=True)
 
@@ -59,7 +63,7 @@ class Endpoint(BaseModel):
 
     @property
     def secret(self) -> str:
-        """The key in clear text, empty when there is none. For request headers and for scrubbing, nothing else."""
+        """The key in clear text, empty when there is none. Only for request headers and for removing it from texts."""
         return self.key.get_secret_value() if self.key is not None else ""
 
     @property
@@ -68,15 +72,15 @@ class Endpoint(BaseModel):
 
     @property
     def loopback(self) -> bool:
-        """Whether the server is on this very machine: no proxy leads there."""
+        """Whether the server is on this machine, where no proxy leads."""
         return self.host == "localhost" or self.host.startswith("127.") or self.host == "::1"
 
 
 def checked_url(url: str) -> str:
-    """An http(s) address without a trailing slash.
+    """Return an http(s) address without a trailing slash.
 
     Raises:
-        ConfigError: it is none, or it carries what does not belong into an address (user, password, query, fragment).
+        ConfigError: It is no such address, or it contains a user, password, query or fragment.
     """
     url = url.strip()
     parts = _split(url)
@@ -97,44 +101,44 @@ def checked_url(url: str) -> str:
 def _split(url: str) -> SplitResult | None:
     try:
         parts = urlsplit(url)
-        _ = parts.port  # read here, because a bad port raises only when it is read
+        _ = parts.port  # an invalid port raises only when it is read
     except ValueError:
         return None
     return parts
 
 
 def _without_secrets(url: str) -> str:
-    """An address as it may be shown: nothing before an @ and nothing after a ?."""
+    """Return an address that is safe to show: nothing before an @ and nothing after a ?."""
     bare = url.split("?", 1)[0].split("#", 1)[0]
     scheme, separator, rest = bare.rpartition("://")
     return (scheme + separator + rest.rpartition("@")[2])[:200]
 
 
 def checked_key(key: str) -> SecretStr | None:
-    """A key that fits into a header; None when it is blank.
+    """Return a key that fits into a header, None when it is blank.
 
     Raises:
-        ConfigError: it cannot be a key. The message does not show it.
+        ConfigError: It cannot be a key. The message does not show it.
     """
     key = key.strip()
     if not key:
         return None
     if len(key) > MAX_KEY_CHARS or not key.isascii() or not key.isprintable() or " " in key:
         raise ConfigError(
-            "The key of a model server has characters that no key has. Check that the whole file or variable is the key."
+            "The key of a model server contains characters that no key has. Check that the whole file or variable is the key."
         )
     return SecretStr(key)
 
 
 def key_from_file(path: Path) -> SecretStr | None:
-    """The key that a file holds.
+    """Return the key in a file.
 
     Raises:
-        ConfigError: the file cannot be read, or holds something that is no key.
+        ConfigError: The file cannot be read, or its content cannot be a key.
     """
     try:
         with path.open(encoding="utf-8") as file:
             return checked_key(file.read(MAX_KEY_CHARS + 2))
     except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "it is no text"
+        reason = error.strerror if isinstance(error, OSError) else "it is not text"
         raise ConfigError(f"The key file {path} cannot be read: {reason}.") from None

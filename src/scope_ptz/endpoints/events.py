@@ -1,4 +1,4 @@
-"""Server-sent events, from bytes that come in any cut."""
+"""Server-sent events, parsed from bytes that arrive in arbitrary pieces."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ DONE = b"[DONE]"
 
 
 class Events:
-    """The data of events, one after the other.
+    """Parses the data of events.
 
-    By the standard: any of the three line ends, comments and other fields skipped, an event's data lines joined, a byte order mark
-    dropped. Beyond it: servers that leave out the blank line behind an event, or the last line end, are understood too.
+    According to the standard, any of three line ends is accepted, comments and other fields are skipped, the data lines of an event
+    are joined, and a byte order mark is dropped. In addition, the blank line after an event or the last line end may be missing.
     """
 
     def __init__(self) -> None:
@@ -21,11 +21,11 @@ class Events:
         self._begun = False
 
     def feed(self, piece: bytes) -> list[bytes]:
-        """The events that a piece completes."""
+        """Return the events that a piece completes."""
         text = self._rest + piece
         if not self._begun:
             if codecs.BOM_UTF8.startswith(text):
-                self._rest = text  # Not enough yet to tell, or nothing but the mark
+                self._rest = text  # too short to tell, or nothing but the mark
                 return []
             text, self._begun = text.removeprefix(codecs.BOM_UTF8), True
         # A carriage return at the end may be half of a line end.
@@ -35,7 +35,7 @@ class Events:
         return [event for line in lines for event in self._line(line)]
 
     def end(self) -> list[bytes]:
-        """The events of what is left when nothing more comes."""
+        """Return the remaining events at the end of the stream."""
         rest, self._rest = self._rest.strip(b"\r").removeprefix(codecs.BOM_UTF8), b""
         return [*self._line(rest), *self._line(b"")]
 
@@ -52,7 +52,7 @@ class Events:
 
 
 def _whole(data: bytes) -> bool:
-    """Whether data needs no further line. Asked only where a line of data follows another at once, which is rare."""
+    """Return whether data needs no further line. Called only when one data line follows another, which is rare."""
     if data == DONE:
         return True
     try:

@@ -1,4 +1,4 @@
-"""How a model server can fail: one kind for each way, and what a user can do about it."""
+"""The ways in which a model server can fail, and what a user can do about each."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from scope_ptz.errors import ScopeError
 
 MAX_DETAIL_CHARS = 300
 MIN_SCRUBBED_CHARS = 6
-"""Shorter keys ("none", "EMPTY") are placeholders for servers that want none, and ordinary words."""
+"""Shorter keys ("none", "EMPTY") are placeholders for servers without keys, and may be ordinary words."""
 
 
 class FailureKind(StrEnum):
-    """A way to fail. The values are counted in traces, so they never change."""
+    """A way to fail. Traces store the values, so they never change."""
 
     REFUSED = "refused"
     DNS = "dns"
@@ -66,9 +66,13 @@ _WORDS: dict[FailureKind, tuple[str, str]] = {
 
 
 class Attempt(BaseModel):
-    """One request of a call. ``kind`` is None when it worked; ``waited_s``: the pause before it.
+    """One request of a call.
 
-    ``input_tokens`` and ``output_tokens``: what a reply cost that was of no use; a good one says so itself.
+    Attributes:
+        kind: How it failed, None when it succeeded.
+        waited_s: The pause before it.
+        input_tokens: Input tokens of a reply that was unusable; usable replies carry their own counts.
+        output_tokens: Output tokens of a reply that was unusable.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -81,9 +85,15 @@ class Attempt(BaseModel):
     output_tokens: int = 0
 
 
-class ServerFailure(ScopeError):  # noqa: N818 - what it is, as the room calls it
-    """A model server did not give a usable reply. ``detail`` is what it said, cut and without keys; ``where`` its address;
-    ``tokens``: input and output of a reply that holds nothing."""
+class ServerFailure(ScopeError):  # noqa: N818 - named like the kinds in this package
+    """A model server gave no usable reply.
+
+    Attributes:
+        where: The server's address.
+        detail: The server's message, truncated and without keys.
+        history: All attempts of the call.
+        tokens: Input and output tokens of an empty reply.
+    """
 
     def __init__(
         self,
@@ -102,8 +112,8 @@ class ServerFailure(ScopeError):  # noqa: N818 - what it is, as the room calls i
         facts = [f"HTTP {status}"] if status is not None and status != 200 else []
         facts += [f"{len(history)} attempts"] if len(history) > 1 else []
         aside = f" ({', '.join(facts)})" if facts else ""
-        said = f": {detail.rstrip('. ')}" if detail else ""
-        super().__init__(f"The model server at {where} {what}{aside}{said}. {remedy}")
+        message = f": {detail.rstrip('. ')}" if detail else ""
+        super().__init__(f"The model server at {where} {what}{aside}{message}. {remedy}")
 
     @property
     def attempts(self) -> int:
@@ -111,7 +121,7 @@ class ServerFailure(ScopeError):  # noqa: N818 - what it is, as the room calls i
         return len(self.history)
 
     def after(self, history: Iterable[Attempt]) -> ServerFailure:
-        """The same failure, with everything that was tried."""
+        """Return the same failure with all attempts."""
         return ServerFailure(
             self.kind,
             where=self.where,
@@ -124,12 +134,12 @@ class ServerFailure(ScopeError):  # noqa: N818 - what it is, as the room calls i
 
 
 def count_failures(attempts: Iterable[Attempt]) -> dict[str, int]:
-    """How often each kind occurred, also where a retry made it good."""
+    """Return how often each kind occurred, including failures that a retry repaired."""
     return dict(Counter(attempt.kind.value for attempt in attempts if attempt.kind is not None))
 
 
 def scrub(text: str, secret: str) -> str:
-    """A server's words without the key, which some servers repeat."""
+    """Return a server's message without the key, which some servers repeat."""
     if len(secret) >= MIN_SCRUBBED_CHARS and secret in text:
         return text.replace(secret, "***")
     return text
@@ -139,7 +149,7 @@ _BEARER = re.compile(r"\b(Bearer\s+|sk-)[\w.~+/=-]{6,}", re.IGNORECASE)
 
 
 def in_brief(text: str, secret: str) -> str:
-    """What a server said, on one line, cut to a readable length, without anything that looks like a key."""
+    """Return a server's message on one line, truncated, without anything that looks like a key."""
     line = " ".join("".join(c if c.isprintable() else " " for c in text[:4000]).split())
     line = _BEARER.sub(r"\1***", scrub(line, secret))
     return line if len(line) <= MAX_DETAIL_CHARS else line[: MAX_DETAIL_CHARS - 1] + "…"

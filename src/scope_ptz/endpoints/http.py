@@ -1,4 +1,4 @@
-"""A client for servers that speak plain JSON."""
+"""A client for servers with a plain JSON interface."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from scope_ptz.endpoints.bodies import read_object
-from scope_ptz.endpoints.calls import Caller
 from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.endpoints.failures import Attempt
+from scope_ptz.endpoints.retries import Caller
 from scope_ptz.endpoints.translate import status_failure
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class JsonClient:
-    """POST JSON, get a JSON object. ``key_header``: where this kind of server wants its key."""
+    """Posts JSON and returns a JSON object. ``key_header`` is the header for the key."""
 
     def __init__(self, endpoint: Endpoint, *, key_header: str = "Authorization", caller: Caller | None = None) -> None:
         self.endpoint, self.key_header = endpoint, key_header
@@ -24,10 +24,10 @@ class JsonClient:
         self._client: AsyncClient | None = None
 
     async def post(self, path: str, body: bytes | dict[str, Any]) -> tuple[dict[str, Any], tuple[Attempt, ...]]:
-        """The reply to a JSON body, which may be given as bytes when it is encoded already.
+        """Return the reply to a JSON body, which may be bytes when it is already encoded.
 
         Raises:
-            ServerFailure: there was no usable reply.
+            ServerFailure: There was no usable reply.
         """
         content = body if isinstance(body, bytes) else json.dumps(body, separators=(",", ":"), allow_nan=False).encode()
         if self._client is None:

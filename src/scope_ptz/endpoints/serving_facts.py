@@ -1,4 +1,4 @@
-"""How a server says that it was set up: its version, window, precision, memory. Each kind of server tells in its own place."""
+"""How a server was set up, as it reports: version, context, precision, memory. Each kind of server reports it at another path."""
 
 from __future__ import annotations
 
@@ -17,7 +17,9 @@ if TYPE_CHECKING:
     from httpx2 import AsyncClient
 
 PLACES = ("/v1/models", "/version", "/props", "/api/ps", "/get_server_info", "/metrics", "/v1/stats")
-"""vLLM and most: models, version; llama.cpp: props; Ollama: ps; SGLang: server info; vLLM: metrics; Moondream Station: stats."""
+"""vLLM and most others: models, version; llama.cpp: props; Ollama: ps; SGLang: server info; vLLM: metrics; Moondream Station:
+stats.
+"""
 _WANTED = re.compile(
     r"^(id|owned_by|root|max_model_len|version|build_info|model_path|n_ctx|size|size_vram|context_length|parameter_size"
     r"|quantization(_level)?|dtype|tp_size|tensor_parallel_size|memory_usage|weight|kvcache|kv_cache_dtype|attention_backend"
@@ -30,7 +32,7 @@ _MOST = 40
 
 
 async def serving_facts(endpoint: Endpoint) -> dict[str, str]:
-    """What the server tells of itself, by place and field; empty when it tells nothing. Never raises for a server's sake."""
+    """Return what the server reports about itself, by path and field. Never raises because of the server."""
     from scope_ptz.endpoints.transport import make_client
 
     quick = endpoint.model_copy(update={"timeouts": PATIENCE})
@@ -72,7 +74,7 @@ def _labels(labels: str) -> Iterator[tuple[str, str]]:
 
 
 def _walk(content: Any, depth: int) -> Iterator[tuple[str, str]]:
-    """Wanted fields of nested JSON, not very deep."""
+    """Yield wanted fields of nested JSON, to a limited depth."""
     if depth > 4:
         return
     if isinstance(content, Mapping):
@@ -87,7 +89,7 @@ def _walk(content: Any, depth: int) -> Iterator[tuple[str, str]]:
 
 
 def memory_gb(facts: Mapping[str, str]) -> float | None:
-    """GB that the model takes, where the server tells it: Ollama's video memory, SGLang's weights and cache."""
+    """Return the GB that the model takes, where the server reports it: Ollama's video memory, SGLang's weights and cache."""
     by_name = {key.split(" ", 1)[1]: value for key, value in facts.items()}
     try:
         if "size_vram" in by_name:

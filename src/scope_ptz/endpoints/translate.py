@@ -1,4 +1,4 @@
-"""From what HTTP libraries raise, and from what servers say, to a ``ServerFailure``."""
+"""From exceptions of HTTP libraries and error replies of servers to a ``ServerFailure``."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ _OVERFLOW = re.compile(
     r"|exceed\w*[^.]{0,40}(context|number of tokens|token limit)|reduce the length|tokens to keep from the initial prompt",
     re.IGNORECASE,
 )
-"""Words of vLLM, SGLang, llama.cpp, LM Studio, TGI, OpenAI and its imitators. There is no common error code."""
+"""Messages of vLLM, SGLang, llama.cpp, LM Studio, TGI, OpenAI and compatible servers, which share no error code."""
 
 _SPENT = re.compile(r"insufficient_quota|billing|payment|credits?\b", re.IGNORECASE)
 
 
 def as_failure(error: BaseException, endpoint: Endpoint) -> ServerFailure | None:
-    """The failure that an exception of a client library stands for; None when it is something else, such as a bug."""
+    """Return the failure that a client library's exception stands for, None when it is something else, such as a bug."""
     import httpx2
 
     chain = list(_chain(error))
     for link in chain:
         if isinstance(link, ServerFailure):
             return link
-    openai = sys.modules.get("openai")  # What never was imported raised nothing, and importing it takes most of a second
+    openai = sys.modules.get("openai")  # not imported here, because that takes most of a second
     for link in chain:
         if openai is not None and isinstance(link, openai.APIStatusError):
             return status_failure(link.response.status_code, link.response.headers, _body_text(link.response), endpoint)
@@ -50,7 +50,7 @@ def as_failure(error: BaseException, endpoint: Endpoint) -> ServerFailure | None
 
 
 def _chain(error: BaseException) -> Iterator[BaseException]:
-    """An exception and all that led to it, members of groups included."""
+    """Yield an exception and everything that led to it, including members of groups."""
     waiting, seen = [error], set[int]()
     while waiting:
         link = waiting.pop(0)
@@ -90,18 +90,18 @@ def _transport_kind(error: Exception, chain: list[BaseException], endpoint: Endp
 def _body_text(response: Any) -> str:
     try:
         return str(response.text)
-    except Exception:  # The body was never read, or its compression or encoding is broken: the status says enough
+    except Exception:  # an unread body or broken compression or encoding; the status says enough
         return ""
 
 
 def status_failure(status: int, headers: Mapping[str, str], body: str, endpoint: Endpoint) -> ServerFailure:
-    """What a reply with another status than success means."""
-    said = _Said(body)
+    """Return the failure for a reply whose status is not success."""
+    parsed = _ErrorBody(body)
     if 300 <= status < 400:
-        kind, said.message = K.NOT_FOUND, f"it sends on to {headers.get('location', 'nowhere')}"
-    elif status in (400, 413, 422, 500) and said.overflow:
+        kind, parsed.message = K.NOT_FOUND, f"it sends on to {headers.get('location', 'nowhere')}"
+    elif status in (400, 413, 422, 500) and parsed.overflow:
         kind = K.CONTEXT_OVERFLOW
-    elif status in (401, 402, 403, 407) or (status == 429 and said.spent):
+    elif status in (401, 402, 403, 407) or (status == 429 and parsed.spent):
         kind = K.UNAUTHORISED
     elif status == 429:
         kind = K.RATE_LIMITED
@@ -111,24 +111,24 @@ def status_failure(status: int, headers: Mapping[str, str], body: str, endpoint:
         kind = K.SERVER_ERROR
     else:
         kind = K.BAD_REQUEST
-    detail = in_brief(said.message, endpoint.secret)
+    detail = in_brief(parsed.message, endpoint.secret)
     return ServerFailure(kind, where=endpoint.url, status=status, retry_after_s=retry_after_s(headers), detail=detail)
 
 
 def error_body(body: dict[str, Any], endpoint: Endpoint, status: int = 200) -> ServerFailure | None:
-    """The failure in a reply that claims success; None when there is no error in it."""
+    """Return the failure in a reply that claims success, None when there is no error in it."""
     if not body.get("error") and body.get("object") != "error" and not _only_words(body):
         return None
-    said = _Said(json.dumps(body))
-    if said.overflow:
+    parsed = _ErrorBody(json.dumps(body))
+    if parsed.overflow:
         kind = K.CONTEXT_OVERFLOW
-    elif said.tags & {"429", "rate_limit_exceeded"}:
+    elif parsed.tags & {"429", "rate_limit_exceeded"}:
         kind = K.RATE_LIMITED
-    elif said.tags & {"401", "403", "invalid_api_key"}:
+    elif parsed.tags & {"401", "403", "invalid_api_key"}:
         kind = K.UNAUTHORISED
     else:
         kind = K.ERROR_BODY
-    return ServerFailure(kind, where=endpoint.url, status=status, detail=in_brief(said.message, endpoint.secret))
+    return ServerFailure(kind, where=endpoint.url, status=status, detail=in_brief(parsed.message, endpoint.secret))
 
 
 _WORDS = frozenset({"detail", "message"})
@@ -136,12 +136,17 @@ _AROUND_WORDS = _WORDS | {"code", "error", "status", "status_code", "statusCode"
 
 
 def _only_words(body: dict[str, Any]) -> bool:
-    """Whether a body is a message and nothing else: how gateways, and frameworks without a convention, tell of errors."""
+    """Return whether a body consists of a message only, as gateways and simple frameworks report errors."""
     return body.keys() <= _AROUND_WORDS and any(body.get(name) for name in _WORDS)
 
 
-class _Said:
-    """An error body. ``message``: its human part, from the usual places, else the body without markup; ``tags``: its codes."""
+class _ErrorBody:
+    """An error body.
+
+    Attributes:
+        message: Its human-readable part from the usual fields, or else the body without markup.
+        tags: Its error codes.
+    """
 
     def __init__(self, body: str) -> None:
         try:
@@ -162,7 +167,7 @@ class _Said:
 
     @property
     def spent(self) -> bool:
-        """Whether waiting will not help, because there is nothing left to spend."""
+        """Whether waiting will not help because the credit is used up."""
         return any(_SPENT.search(text) for text in (self.message, *self.tags))
 
 
@@ -171,7 +176,7 @@ def _as_text(value: Any) -> str:
 
 
 def retry_after_s(headers: Mapping[str, str]) -> float | None:
-    """What Retry-After asks for, as seconds from now; None when it is absent or makes no sense."""
+    """Return the seconds that Retry-After asks for, None when it is absent or invalid."""
     milliseconds = _number(headers.get("retry-after-ms"))
     if milliseconds is not None:
         return milliseconds / 1000

@@ -1,4 +1,4 @@
-"""The HTTP client under every model client. Imported at the first request, because it imports an HTTP library."""
+"""The HTTP client of all model clients. It is imported at the first request, because it imports an HTTP library."""
 
 from __future__ import annotations
 
@@ -16,16 +16,17 @@ _KEPT_HEADERS = frozenset(
     {"host", "accept", "accept-encoding", "connection", "content-type", "content-length", "transfer-encoding", "user-agent"}
 )
 _COMPRESSION = 128
-"""A compressed body may be larger than what is sent by this factor, or nearly so."""
+"""Factor by which a compressed body may grow."""
 
 
 def make_client(endpoint: Endpoint, *, key_header: str = "Authorization") -> httpx2.AsyncClient:
-    """A client that keeps its connections, obeys the endpoint's timeouts, and sends the endpoint's key and no other credential.
+    """Return a client that keeps its connections, applies the endpoint's timeouts, and sends no credential but the endpoint's
+    key.
 
-    It follows no redirect, because a key must not travel to where the user did not send it.
+    It follows no redirects, because the key must not be sent where the user did not send it.
 
     Raises:
-        ServerFailure: the environment names a proxy or certificates that cannot be used.
+        ServerFailure: The environment names a proxy or certificates that cannot be used.
     """
     secret = endpoint.secret
     ours = {"user-agent": f"scope-ptz/{__version__}"}
@@ -33,7 +34,7 @@ def make_client(endpoint: Endpoint, *, key_header: str = "Authorization") -> htt
         ours[key_header] = f"Bearer {secret}" if key_header == "Authorization" else secret
 
     async def only_ours(request: httpx2.Request) -> None:
-        # The openai client adds headers from OPENAI_... variables: credentials for another server.
+        # The openai client adds headers from OPENAI_... variables, which are credentials for another server.
         for name in [name for name in request.headers if name.lower() not in _KEPT_HEADERS]:
             del request.headers[name]
         request.headers.update(ours)
@@ -45,7 +46,7 @@ def make_client(endpoint: Endpoint, *, key_header: str = "Authorization") -> htt
     try:
         return _open(endpoint, {"request": [only_ours], "response": [capped]})
     except (ValueError, OSError, ImportError, httpx2.InvalidURL) as error:
-        # Not in its own words: a proxy's address may hold a password.
+        # The original message is not shown, because a proxy's address may contain a password.
         detail = f"the environment's proxy or certificate settings cannot be used ({type(error).__name__})"
         raise ServerFailure(FailureKind.REFUSED, where=endpoint.url, detail=detail) from None
 
@@ -56,15 +57,15 @@ def _open(endpoint: Endpoint, hooks: dict[str, list[Callable[..., Any]]]) -> htt
         timeout=httpx2.Timeout(patience.first_byte_s, connect=patience.connect_s, pool=patience.total_s),
         limits=httpx2.Limits(max_connections=64, max_keepalive_connections=16, keepalive_expiry=30.0),
         headers={"accept-encoding": "identity"},
-        trust_env=not endpoint.loopback,  # No proxy leads to this very machine, whatever the environment says
-        verify=endpoint.url.startswith("https:"),  # Loading certificates for plain http would take a tenth of a second
+        trust_env=not endpoint.loopback,  # no proxy leads to this machine, whatever the environment says
+        verify=endpoint.url.startswith("https:"),  # loading certificates takes a tenth of a second
         follow_redirects=False,
         event_hooks=hooks,
     )
 
 
 class _Capped(httpx2.AsyncByteStream):
-    """A body that fails beyond its cap, whoever reads it, error bodies included."""
+    """A body that fails above its limit for any reader, including error bodies."""
 
     def __init__(self, stream: httpx2.AsyncByteStream, response: httpx2.Response, endpoint: Endpoint) -> None:
         compressed = response.headers.get("content-encoding", "identity") != "identity"

@@ -5,17 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from scope_ptz.builtin_names import BUILT_IN_PERCEPTION, CHAT, GRAMMAR
 from scope_ptz.entry_points import PERCEPTION, PLANNERS, find, installed, normalised
 from scope_ptz.errors import ConfigError, InputError, UnknownNameError
-from scope_ptz.factory.model_specs import (
-    BUILT_IN_PERCEPTION,
-    CHAT,
-    GRAMMAR,
-    ModelOptions,
-    ResolvedPair,
-    ResolvedPerception,
-    ResolvedPlanner,
-)
+from scope_ptz.factory.model_specs import ModelOptions, ResolvedPair, ResolvedPerception, ResolvedPlanner
 from scope_ptz.factory.option_values import parse_options
 from scope_ptz.factory.served_names import registered_model, with_served_name
 from scope_ptz.settings import ScopeSettings

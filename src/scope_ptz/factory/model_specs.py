@@ -15,14 +15,6 @@ if TYPE_CHECKING:
     from scope_ptz.planner.spec import PlannerSpec
     from scope_ptz.registry import Model
 
-GRAMMAR = "grammar"
-"""The built-in rule-based planner."""
-
-CHAT = "chat"
-"""A chat model that is known only by its server."""
-
-BUILT_IN_PERCEPTION = ("ground-truth", "noisy")
-
 
 @dataclass(frozen=True, slots=True)
 class ModelOptions:

@@ -6,10 +6,9 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from scope_ptz.builtin_names import BUILT_IN_PERCEPTION, GRAMMAR, GROUND_TRUTH, NOISY
 from scope_ptz.errors import ConfigError, InputError
 from scope_ptz.factory.model_specs import (
-    BUILT_IN_PERCEPTION,
-    GRAMMAR,
     ModelOptions,
     ResolvedPair,
     ResolvedPerception,
@@ -18,7 +17,7 @@ from scope_ptz.factory.model_specs import (
 
 if TYPE_CHECKING:
     from scope_ptz.perception.base import Perception
-    from scope_ptz.perception.ground_truth import Look
+    from scope_ptz.perception.ground_truth import TruthReader
     from scope_ptz.planner.base import Planner
     from scope_ptz.planner.spec import PlannerSpec
     from scope_ptz.simulator.pack import Scene
@@ -38,7 +37,7 @@ __all__ = [
 
 GROUND_TRUTH_NOTE = "Perception is the simulator's own ground truth, not a model."
 NOISY_NOTE = "Perception is the simulator's ground truth with seeded mistakes, not a model."
-_NOTES = {"ground-truth": GROUND_TRUTH_NOTE, "noisy": NOISY_NOTE}
+_NOTES = {GROUND_TRUTH: GROUND_TRUTH_NOTE, NOISY: NOISY_NOTE}
 
 
 async def resolve_models(options: ModelOptions) -> ResolvedPair:
@@ -105,7 +104,7 @@ def make_plugin_planner(spec: PlannerSpec) -> Planner:
 
 
 def make_perception(
-    resolved: ResolvedPerception, scenes: Callable[[str], Scene] | None, seed: int, look: Look | None = None
+    resolved: ResolvedPerception, scenes: Callable[[str], Scene] | None, seed: int, read_truth: TruthReader | None = None
 ) -> Perception:
     """Make perception.
 
@@ -113,7 +112,7 @@ def make_perception(
         resolved: What to make.
         scenes: Opens the scenes of simulated frames by name; None for a camera without ground truth.
         seed: Seed for the mistakes of ``noisy``.
-        look: Reads the ground truth of a view; the default reads it anew each time.
+        read_truth: Reads the ground truth of a view; the default reads it anew each time.
 
     Raises:
         InputError: Built-in perception is requested for a camera without ground truth.
@@ -132,10 +131,10 @@ def make_perception(
         )
     from scope_ptz.perception.ground_truth import GroundTruthPerception
 
-    truth = GroundTruthPerception(scenes) if look is None else GroundTruthPerception(scenes, look)
-    if resolved.name == "ground-truth":
+    truth = GroundTruthPerception(scenes) if read_truth is None else GroundTruthPerception(scenes, read_truth)
+    if resolved.name == GROUND_TRUTH:
         return truth
-    from scope_ptz.perception.noisy import NoisyPerception
+    from scope_ptz.perception.ground_truth.noisy import NoisyPerception
 
     return NoisyPerception(truth, seed=seed)
 

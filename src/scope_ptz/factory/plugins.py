@@ -77,7 +77,7 @@ def _own_names(kind: Kind) -> frozenset[str]:
         from scope_ptz.factory.cameras import BUILT_IN_SCHEMES
 
         return frozenset(BUILT_IN_SCHEMES)
-    from scope_ptz.factory.model_specs import BUILT_IN_PERCEPTION, CHAT, GRAMMAR
+    from scope_ptz.builtin_names import BUILT_IN_PERCEPTION, CHAT, GRAMMAR
     from scope_ptz.registry import load_registry
     from scope_ptz.settings import load_settings
 

@@ -11,8 +11,6 @@ from scope_ptz.settings import ScopeSettings, load_settings
 if TYPE_CHECKING:
     from scope_ptz.simulator.pack import Scene
 
-DEFAULT_SCENE = "highway-works"
-
 
 def scene_search(settings: ScopeSettings) -> tuple[Path, ...]:
     """Return the folders that are searched for scenes before the built-in ones.

@@ -1,7 +1,7 @@
 """The perception contract: what can be asked about a frame, and the typed results.
 
-Boxes and points are normalised to [0, 1], origin top-left, whatever the model behind it says. A failure raises
-``PerceptionError``: it is never a zero, an empty list or an invented success.
+Boxes and points are normalised to [0, 1] with the origin at the top left, whatever the model behind them reports. A failure raises
+``PerceptionError``; it is never a zero, an empty list or an invented success.
 """
 
 from __future__ import annotations
@@ -21,14 +21,17 @@ ALL_SKILLS: frozenset[Skill] = frozenset(("caption", "query", "detect", "point")
 
 
 class Agreement(BaseModel):
-    """How far a second opinion on the same question went along: ``share`` from 0 to 1, ``agrees`` from a half on."""
+    """How far a second opinion on the same question agrees.
+
+    ``share`` goes from 0 to 1; one half or more counts as agreement.
+    """
 
     model_config = ConfigDict(frozen=True)
 
     other: str
-    """Who was asked as well."""
+    """The backend that was asked as well."""
     said: str
-    """What it said, in short; for places how many."""
+    """Its answer in short; for places, how many it found."""
     share: Unit
 
     @property
@@ -37,10 +40,15 @@ class Agreement(BaseModel):
 
 
 class _Result(BaseModel):
-    """``source`` names who looked ("ground-truth", "moondream3"), ``raw`` is its reply as it came, ``latency_s`` wall time.
+    """Common fields of all results.
 
-    ``notes`` say what was corrected or left out of the reply, or who failed before ``source`` was asked; ``agreement`` is there
-    when a second backend was asked too; ``attempts`` are the calls to a model server that it took.
+    Attributes:
+        source: Who answered ("ground-truth", "moondream3").
+        raw: The reply as it was received.
+        latency_s: Wall time in seconds.
+        notes: What was corrected or left out of the reply, and who failed before ``source`` was asked.
+        agreement: The comparison with a second backend, if one was asked.
+        attempts: The requests to a model server.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -54,7 +62,7 @@ class _Result(BaseModel):
 
 
 class Box(BaseModel):
-    """A box in a frame, normalised; ``label`` and ``score`` where the model gives them."""
+    """A box in a frame, normalised. ``label`` and ``score`` are set where the model gives them."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -85,6 +93,8 @@ class Box(BaseModel):
 
 
 class Point(BaseModel):
+    """A point in a frame, normalised."""
+
     model_config = ConfigDict(frozen=True)
 
     x: Unit
@@ -93,56 +103,58 @@ class Point(BaseModel):
 
 
 class Caption(_Result):
+    """A short description of a frame."""
+
     text: str
 
 
 class Answer(_Result):
-    """``text`` is what to tell the user; ``known`` is False when the honest answer is "I cannot tell"."""
+    """The answer to a question. ``known`` is False when the honest answer is "I cannot tell"."""
 
     text: str
     known: bool = True
 
 
 class Detections(_Result):
-    """Every match, best first. Empty means looked and found nothing; not ``complete`` that there are more than these."""
+    """Boxes of all matches, best first. Empty means that there is no match; ``complete`` is False when there are more."""
 
     boxes: tuple[Box, ...]
     complete: bool = True
 
 
 class Points(_Result):
-    """Every match, best first. Empty means looked and found nothing; not ``complete`` that there are more than these."""
+    """Points on all matches, best first. Empty means that there is no match; ``complete`` is False when there are more."""
 
     points: tuple[Point, ...]
     complete: bool = True
 
 
 class Perception(ABC):
-    """Eyes: a vision-language model, a detector, OCR, or the simulator's ground truth.
+    """Base class of perception backends: a vision-language model, a detector, OCR, or the simulator's ground truth.
 
-    What a backend cannot do at all (a detector asked a question) is missing from its ``skills`` and raises ``PerceptionError``.
+    A skill that a backend lacks (a detector cannot answer questions) is missing from ``skills`` and raises ``PerceptionError``.
     """
 
     name: str
     skills: frozenset[Skill] = ALL_SKILLS
-    sees_wide: bool = False
-    """Whether it finds small things in a panorama by itself. ``perception.wide`` shows the others one part after another."""
+    handles_panoramas: bool = False
+    """Whether it finds small things in a panorama by itself. Other backends get panoramas in parts (``models.tiled_panoramas``)."""
 
     @abstractmethod
     async def caption(self, frame: Frame) -> Caption:
-        """A short description of the view."""
+        """Return a short description of the view."""
 
     @abstractmethod
     async def query(self, frame: Frame, question: str) -> Answer:
-        """The answer to a question about the view."""
+        """Return the answer to a question about the view."""
 
     @abstractmethod
     async def detect(self, frame: Frame, description: str) -> Detections:
-        """Boxes of everything that fits a description."""
+        """Return boxes of everything that fits a description."""
 
     @abstractmethod
     async def point(self, frame: Frame, description: str) -> Points:
-        """One point on everything that fits a description."""
+        """Return one point on everything that fits a description."""
 
     async def close(self) -> None:
-        """Release what the backend holds. The default holds nothing."""
+        """Release the backend's resources. The default has none."""

@@ -1,6 +1,6 @@
-"""What every perception must do, as checks that any ``Perception`` can be put through.
+"""Conformance checks that every perception backend must pass.
 
-With pytest, subclass it and say how to make the backend and a frame; every ``test_`` method then is a test::
+With pytest, subclass ``PerceptionConformance`` and provide the backend and a frame; each ``test_`` method is a test::
 
     @pytest.mark.anyio
     class TestMyPerception(PerceptionConformance):
@@ -11,7 +11,7 @@ With pytest, subclass it and say how to make the backend and a frame; every ``te
         def frame(self):
             return Frame(...)
 
-Without pytest, ``await TestMyPerception().findings()`` runs all checks and names what failed.
+Without pytest, ``await TestMyPerception().findings()`` runs all checks and returns the failures.
 """
 
 from __future__ import annotations
@@ -27,34 +27,34 @@ from scope_ptz.perception.base import Answer, Caption, Detections, Perception, P
 
 
 class PerceptionConformance(ABC):
-    """Checks against the ``Perception`` contract; they say nothing of how well a backend sees."""
+    """Checks of the ``Perception`` contract. They do not measure how well a backend sees."""
 
     present: str = "thing"
     """A description that fits something in the frame."""
     absent: str = "purple unicorn"
     """A description that fits nothing in the frame."""
     question: str | None = None
-    """A question that the backend can answer from the frame; None asks whether there is something ``present``."""
+    """A question that the backend can answer from the frame; None asks whether ``present`` is there."""
 
     @abstractmethod
     def perception(self) -> AbstractAsyncContextManager[Perception]:
-        """A backend ready for use, released afterwards."""
+        """Return a context manager with a backend that is ready for use."""
 
     @abstractmethod
     def frame(self) -> Frame:
-        """A frame that the backend can read."""
+        """Return a frame that the backend can read."""
 
     def unreadable_frame(self) -> Frame | None:
-        """A frame that the backend must refuse, None when there is no such thing."""
+        """Return a frame that the backend must refuse, None when there is no such frame."""
         return None
 
     async def findings(self) -> dict[str, str]:
-        """Run all checks; name and reason of each that failed."""
+        """Run all checks. Return name and reason of each failure."""
         failed = {}
         for name in sorted(n for n in dir(self) if n.startswith("test_")):
             try:
                 await getattr(self, name)()
-            except Exception as error:  # a check that breaks in any way has failed
+            except Exception as error:  # any exception is a failed check
                 failed[name] = f"{type(error).__name__}: {error}"
         return failed
 
@@ -148,7 +148,7 @@ class PerceptionConformance(ABC):
             _expect(bool((frame.image == before).all()), "looking at a frame changed its pixels")
 
     def _questions(self, perception: Perception, frame: Frame) -> dict[Skill, Callable[[], Awaitable[object]]]:
-        """One question for each skill."""
+        """Return one question for each skill."""
         question = self.question or "How many things are there?"
         return {
             "detect": lambda: perception.detect(frame, self.present),

@@ -1,7 +1,8 @@
-"""The planner contract. A planner is a pure function of (U, H_t): it keeps nothing between steps.
+"""The planner contract.
 
-U is the instruction and H_t everything that happened so far. Each step it either ends the run (an answer, a clarifying question,
-a refusal) or asks for tool calls, whose results are appended before it is asked again.
+A planner is a pure function of the instruction U and the history H_t; it keeps nothing between steps. At each step it either ends
+the run (with an answer, a clarifying question or a refusal) or requests tool calls. Their results are appended to the history
+before it is asked again.
 """
 
 from __future__ import annotations
@@ -22,8 +23,11 @@ class _Model(BaseModel):
 
 
 class ToolCall(_Model):
-    """A call as the planner wants it: not yet validated. ``problem``: why it cannot be made as it was written, which is an
-    error."""
+    """A tool call as the planner requests it, before validation.
+
+    Attributes:
+        problem: Why the call cannot be made as it was written; such a call becomes an error.
+    """
 
     id: str
     name: str
@@ -32,14 +36,14 @@ class ToolCall(_Model):
 
 
 class Picture(_Model):
-    """A frame as planners that see get it, a JPEG as a data URL. It is kept out of traces, which name the file instead."""
+    """A frame for planners that take images: a JPEG as a data URL. Traces name the image file instead."""
 
     data_url: str = Field(repr=False)
     caption: str
 
 
 class ToolOutcome(_Model):
-    """What a call brought back: ``error`` is set when it failed. ``result`` is the tool's result as JSON data."""
+    """What a tool call returned: its result as JSON data, or ``error`` when it failed."""
 
     call: ToolCall
     result: dict[str, Any] | None = None
@@ -48,14 +52,14 @@ class ToolOutcome(_Model):
 
 
 class Exchange(_Model):
-    """One step of a run: the calls that the planner made together and what came back, in order."""
+    """One step of a run: the calls that the planner requested together, with their outcomes in the same order."""
 
     outcomes: tuple[ToolOutcome, ...]
     thought: str = ""
 
 
 class PastTurn(_Model):
-    """An earlier turn of a conversation. ``start``: where the camera looked when it began."""
+    """An earlier turn of a conversation. ``start`` is the camera pose at its beginning."""
 
     instruction: str
     exchanges: tuple[Exchange, ...]
@@ -64,7 +68,7 @@ class PastTurn(_Model):
 
 
 class Briefing(_Model):
-    """What the planner may know of the camera when a run starts."""
+    """What the planner knows about the camera when a run starts."""
 
     presets: tuple[str, ...]
     pose: Pose
@@ -72,9 +76,10 @@ class Briefing(_Model):
 
 
 class State(_Model):
-    """S_t: the goal U, the history H_t (observations O_t are the results in it), and what came before in a conversation.
+    """The state S_t: the instruction U, the history H_t with the observations in its results, and the earlier conversation.
 
-    ``view``: the newest frame, for planners that see; older ones are not kept.
+    Attributes:
+        view: The newest frame, for planners that take images; older frames are not kept.
     """
 
     instruction: str
@@ -86,7 +91,9 @@ class State(_Model):
 
 
 class Usage(_Model):
-    """Tokens that a step cost; zero for planners without tokens. ``cached_tokens``: those of the input that the server had kept."""
+    """Tokens used by a step, zero for planners without tokens. ``cached_tokens`` are the input tokens that the server had
+    cached.
+    """
 
     input_tokens: int = 0
     output_tokens: int = 0
@@ -97,8 +104,14 @@ class Usage(_Model):
 
 
 class Served(_Model):
-    """How a model server answered: ``model`` as it names itself, ``first_token_s`` where it streams, ``calls_from`` the notation in
-    which calls were found ("native", or one written into the text), ``attempts`` with those that failed."""
+    """How a model server answered.
+
+    Attributes:
+        model: The model's name as the server reports it.
+        first_token_s: Seconds to the first token of a streamed reply.
+        calls_from: The notation of the calls: "native", or the name of one written into the text.
+        attempts: All requests, including failed ones.
+    """
 
     model: str = ""
     finish_reason: str | None = None
@@ -109,9 +122,12 @@ class Served(_Model):
 
 
 class CallTools(_Model):
-    """``thought``: what the planner says beside its calls; ``reasoning``: what it thought, for traces only.
+    """The decision to call tools.
 
-    ``opened``: whether it took the picture that it was offered (None: whoever sees is given it).
+    Attributes:
+        thought: Text that accompanies the calls.
+        reasoning: The planner's reasoning, kept in traces only.
+        opened: Whether the planner took the picture that was offered; None when pictures are sent with every request.
     """
 
     kind: Literal["call"] = "call"
@@ -124,7 +140,11 @@ class CallTools(_Model):
 
 
 class Finish(_Model):
-    """The end of a run. ``text`` is the answer, the clarifying question, or the reason for refusing. ``opened`` as above."""
+    """The end of a run. ``text`` is the answer, the clarifying question or the reason for the refusal.
+
+    Attributes:
+        opened: As in ``CallTools``.
+    """
 
     kind: Literal["answered", "clarification", "refused"]
     text: str = Field(min_length=1)
@@ -138,19 +158,28 @@ Decision = CallTools | Finish
 
 
 class Planner(ABC):
-    """``sees``: it wants frames (``State.view``, pictures of take_image); ``details``: what a trace should say about it, no
-    secrets."""
+    """Base class of planners.
+
+    Attributes:
+        name: The planner's name in traces and results.
+        sees: Whether it takes images: ``State.view`` and the pictures of ``take_image``.
+    """
 
     name: str
     sees: bool = False
 
     @property
     def details(self) -> dict[str, str]:
+        """Facts about the planner for traces. They must not contain secrets."""
         return {}
 
     @abstractmethod
     async def step(self, state: State) -> Decision:
-        """The next decision. Raises ``PlannerError`` when there is none."""
+        """Return the next decision.
+
+        Raises:
+            PlannerError: The planner has no decision.
+        """
 
     async def close(self) -> None:
-        """Release what the planner holds. The default holds nothing."""
+        """Release the planner's resources. The default has none."""

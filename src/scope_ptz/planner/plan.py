@@ -1,5 +1,7 @@
-"""What would be done, without a camera: the grammar's plan, unrolled as if every tool succeeded and every condition were met
-at its first test."""
+"""The grammar planner's plan for an instruction, without a camera.
+
+The plan is unrolled as if every tool call succeeded and every condition were met at its first test.
+"""
 
 from __future__ import annotations
 
@@ -9,10 +11,10 @@ from typing import Any
 
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import ToolCall, ToolOutcome
+from scope_ptz.planner.grammar.binding.understand import understand
+from scope_ptz.planner.grammar.execution.program import Program
 from scope_ptz.planner.grammar.outline import OutlineBlock
 from scope_ptz.planner.grammar.outline import outline as make_outline
-from scope_ptz.planner.grammar.program import Program
-from scope_ptz.planner.grammar.understand import understand
 
 _MOST_CALLS = 200
 _ZOOM_ON_OBJECT = 2.0
@@ -20,6 +22,8 @@ _ZOOM_ON_OBJECT = 2.0
 
 @dataclass(frozen=True, slots=True)
 class PlannedCall:
+    """A tool call of a plan."""
+
     name: str
     arguments: dict[str, Any]
 
@@ -58,7 +62,15 @@ def plan(
     preset_poses: Mapping[str, Pose] | None = None,
     limits: Limits = Limits(),  # noqa: B008 - immutable
 ) -> Plan:
-    """The plan for an instruction. With no presets given, preset names are taken as they are said."""
+    """Return the plan for an instruction.
+
+    Args:
+        instruction: What the user typed.
+        presets: The camera's presets; without any, preset names are accepted as written.
+        pose: The camera's pose at the start.
+        preset_poses: Poses of the presets; unknown ones count as the home pose.
+        limits: The camera's limits.
+    """
     meaning = understand(instruction, tuple(presets) or None)
     if meaning.refusal or meaning.clarification:
         return Plan(instruction, False, (), meaning.clarification or meaning.refusal)
@@ -80,7 +92,7 @@ def plan(
 
 @dataclass(slots=True)
 class _Imagined:
-    """A camera that only keeps its pose; whatever is looked for is there."""
+    """A camera that only tracks its pose, in a scene where everything is found."""
 
     pose: Pose
     limits: Limits

@@ -1,7 +1,10 @@
-"""Which models can plan and which can see, what they need, and how each server is started. Data, not code: ``data/models.yaml``."""
+"""Which models can plan and which can be used for perception, what they need, and how to serve them.
 
-from scope_ptz.registry.entries import Model, Pair, Precision, Role, Server, Serving, Thinking
+The data is in ``data/models.yaml``.
+"""
+
 from scope_ptz.registry.load import Registry, load_registry
+from scope_ptz.registry.model_entries import Model, Pair, Precision, Role, Server, Serving, Thinking
 
 __all__ = [
     "Model",

@@ -1,4 +1,4 @@
-"""Reading the registry: what is shipped, and on top of it what the user adds."""
+"""Loading the registry: the packaged entries, and the user's own on top."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from scope_ptz.errors import ConfigError, UnknownNameError
-from scope_ptz.registry.entries import Model, Pair, Role, Server
+from scope_ptz.registry.model_entries import Model, Pair, Role, Server
 
 SHIPPED = "models.yaml"
 
 
 class _File(BaseModel):
-    """The YAML as it is written: names are keys."""
+    """The YAML file as it is written: names are keys."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -32,42 +32,60 @@ class Registry:
         self.servers, self.models, self.pairs = dict(servers), dict(models), dict(pairs)
 
     def model(self, name: str, role: Role | None = None) -> Model:
-        """A model by its name or full title, in any case. Raises ``UnknownNameError``."""
+        """Return a model by its name or full title, in any case.
+
+        Raises:
+            UnknownNameError: There is no such model.
+            ConfigError: The model cannot play the role.
+        """
         wanted = name.strip().lower()
         model = self.models.get(wanted) or next((m for m in self.models.values() if wanted in _names(m)), None)
         if model is None:
             raise UnknownNameError(role or "model", name, self.named(role))
         if role is not None and role not in model.roles:
-            can = "plan" if role == "planner" else "see"
+            can = "plan" if role == "planner" else "be used for perception"
             raise ConfigError(f"{model.name} cannot {can}. Those that can: {', '.join(self.named(role))}.")
         return model
 
     def named(self, role: Role | None = None) -> list[str]:
-        """Names of the models that can play a role."""
+        """Return the names of the models that can play a role."""
         return [m.name for m in self.models.values() if role is None or role in m.roles]
 
     def pair(self, text: str) -> Pair:
-        """A pair by name, ``PLANNER+EYES``, or one model that is both. Raises ``UnknownNameError`` or ``ConfigError``."""
+        """Return a pair by name, by ``PLANNER+PERCEPTION``, or by one model that does both.
+
+        Raises:
+            UnknownNameError: There is no such model.
+            ConfigError: The model can play only one of the roles.
+        """
         if text in self.pairs:
             return self.pairs[text]
-        planner, plus, eyes = text.partition("+")
+        planner, plus, perception = text.partition("+")
         if plus:
-            one, two = self.model(planner, "planner"), self.model(eyes, "perception")
+            one, two = self.model(planner, "planner"), self.model(perception, "perception")
             known = self.pairs.get(f"{one.name}+{two.name}")
             return known or Pair(name=f"{one.name}+{two.name}", planner=one.name, perception=two.name)
         model = self.model(text)
         if set(model.roles) != {"planner", "perception"}:
-            raise ConfigError(f"{model.name} is a {model.roles[0]} only. Give a pair: PLANNER+EYES, see `scope models pairs`.")
+            raise ConfigError(f"{model.name} is only a {model.roles[0]} model. Give PLANNER+PERCEPTION, see `scope models pairs`.")
         return Pair(name=model.name, planner=model.name, perception=model.name)
 
     def server(self, name: str) -> Server:
-        """A server by name. Raises ``UnknownNameError``."""
+        """Return a server by name.
+
+        Raises:
+            UnknownNameError: There is no such server.
+        """
         if name not in self.servers:
             raise UnknownNameError("server", name, self.servers)
         return self.servers[name]
 
     def commands(self, model: Model, server: str) -> tuple[str, ...]:
-        """The exact commands that serve a model, one a line. Raises ``ConfigError`` for a server that cannot run it."""
+        """Return the exact commands that serve a model, one per line.
+
+        Raises:
+            ConfigError: The server cannot run the model.
+        """
         program = self.server(server)
         if server not in model.serve:
             able = ", ".join(model.serve) or "none"
@@ -78,9 +96,10 @@ class Registry:
 
 
 def load_registry(user_file: Path | None = None) -> Registry:
-    """The shipped registry, with the user's entries added; an entry of the same name replaces the shipped one.
+    """Return the packaged registry with the user's entries. An entry of the same name replaces the packaged one.
 
-    Raises ``ConfigError`` that names the file and the field when something in it is wrong.
+    Raises:
+        ConfigError: Something in the user's file is wrong; the message names the file and the field.
     """
     shipped = files("scope_ptz").joinpath("data", SHIPPED).read_text(encoding="utf-8")
     servers, models, pairs = _read(shipped, SHIPPED)
@@ -101,7 +120,7 @@ def _read(text: str, where: str) -> tuple[dict[str, Server], dict[str, Model], d
     try:
         content = yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))  # noqa: S506 - both are safe loaders
     except yaml.YAMLError as error:
-        raise ConfigError(f"{where} is no YAML: {' '.join(str(error).split())}.") from error
+        raise ConfigError(f"{where} is not valid YAML: {' '.join(str(error).split())}.") from error
     spot: tuple[str | int, ...] = ()
     try:
         file = _File.model_validate(content or {})
@@ -134,7 +153,7 @@ def _check(registry: Registry, where: Path) -> None:
 
 
 def _filled(line: str, values: Mapping[str, str]) -> str:
-    """A command with its places filled; other braces (JSON in a flag) stay as they are."""
+    """Return a command with its placeholders filled. Other braces, such as JSON in a flag, stay unchanged."""
     for name, value in values.items():
         line = line.replace(f"{{{name}}}", value)
     return " ".join(line.split())

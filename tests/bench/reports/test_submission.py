@@ -15,9 +15,8 @@ import pytest
 from typer.testing import CliRunner, Result
 
 import scope_ptz
-from scope_ptz.bench.engine.cards import DETERMINISTIC
 from scope_ptz.bench.reports.submission import secrets_in, submission_lines, submission_schema, write_submission
-from scope_ptz.bench.reports.submission_checks import BUILT_IN, check_submission
+from scope_ptz.bench.reports.submission_checks import check_submission
 from scope_ptz.bench.reports.submission_trials import checks_of
 from scope_ptz.bench.scoring.checks import run_checks
 from scope_ptz.bench.scoring.trials import CheckRecord, Evaluation, Trial
@@ -224,10 +223,6 @@ def test_what_really_happens_is_not_refused(rows: Rows, tmp_path: Path) -> None:
         changed[0]["card"]["sampling"] = {"planner": known}
         changed[0]["card"]["perception"]["name"] = "moondream2" if known else changed[0]["card"]["planner"]["name"]
         assert faults_of(changed, tmp_path) == ""
-
-
-def test_names_of_built_in_planners_and_eyes_are_those_of_run_cards() -> None:
-    assert BUILT_IN == DETERMINISTIC
 
 
 def test_totals_are_counted_again(rows: Rows, tmp_path: Path) -> None:

@@ -6,14 +6,8 @@ import re
 from collections.abc import Sequence
 
 from scope_ptz.bench.answers.tokenizer import Word
+from scope_ptz.english.number_words import CARDINALS, SCALES, TENS, UNITS
 
-_UNITS = {
-    "zero": 0, "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "seven": 7, "eight": 8, "nine": 9, "ten": 10,
-    "eleven": 11, "twelve": 12, "thirteen": 13, "fourteen": 14, "fifteen": 15, "sixteen": 16, "seventeen": 17, "eighteen": 18,
-    "nineteen": 19,
-}  # fmt: skip
-_TENS = {"twenty": 20, "thirty": 30, "forty": 40, "fifty": 50, "sixty": 60, "seventy": 70, "eighty": 80, "ninety": 90}
-_BIG = {"hundred": 100, "thousand": 1000}
 _BEFORE_ONE = frozenset({
     "is", "are", "was", "were", "be", "see", "sees", "seeing", "count", "counted", "counts", "find", "found", "shows",
     "show", "only", "just", "exactly", "about", "of", "total", "make", "makes", "has", "have", "there", "contains",
@@ -48,16 +42,16 @@ def _number_words(words: Sequence[Word], at: int) -> tuple[float | None, int]:
         text = words[at].text
         if at > start and re.search(r"[^\s-]", words[at].gap):
             break
-        if text in _UNITS and (part % 10 == 0 and (part >= 20 or part == 0 or part % 100 == 0)):
-            part += _UNITS[text]
-        elif text in _TENS and part % 100 == 0:
-            part += _TENS[text]
-        elif text in _BIG:
-            part = (part or 1) * _BIG[text]
+        if text in UNITS and (part % 10 == 0 and (part >= 20 or part == 0 or part % 100 == 0)):
+            part += UNITS[text]
+        elif text in TENS and part % 100 == 0:
+            part += TENS[text]
+        elif text in SCALES:
+            part = (part or 1) * SCALES[text]
             total, part = (total + part, 0) if text == "thousand" else (total, part)
         elif text == "dozen":
             part = (part or 1) * 12
-        elif not (text == "and" and part >= 100 and at + 1 < len(words) and words[at + 1].text in _UNITS | _TENS):
+        elif not (text == "and" and part >= 100 and at + 1 < len(words) and words[at + 1].text in CARDINALS):
             break
         at += 1
     return (None, start) if at == start else (float(total + part), at)

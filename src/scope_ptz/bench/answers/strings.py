@@ -11,13 +11,13 @@ from scope_ptz.bench.answers.quotes import Quote, quoted_lettering, quotes_of
 from scope_ptz.bench.answers.text import AnswerText
 from scope_ptz.bench.answers.tokenizer import clean
 from scope_ptz.bench.tasks.expected import Text
+from scope_ptz.english.number_words import SMALL_NUMBERS
 
 TEXT_SEPARATOR = " / "
 """Separator between texts that are written in separate places."""
 
 _LOOK_ALIKES = str.maketrans({"o": "0", "i": "1", "l": "1", "|": "1", "s": "5", "b": "8"})
-_NUMERALS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
-_DIGITS = {word: str(number) for number, word in enumerate(_NUMERALS)}
+_DIGITS = {word: str(number) for number, word in enumerate(SMALL_NUMBERS[:13])}
 _CUES = (
     (re.compile(r"\b(?:reads?|says?|states?|displays?|spells?)\b\s*:?\s*", re.IGNORECASE), 14),
     (re.compile(r":\s+"), 14),

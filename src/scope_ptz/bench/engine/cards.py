@@ -11,6 +11,7 @@ from pydantic import ValidationError
 
 from scope_ptz.agent.trace import Trace
 from scope_ptz.bench.scoring.trials import ModelCard, RunCard
+from scope_ptz.builtin_names import DETERMINISTIC
 from scope_ptz.errors import TraceError
 
 ENGINE = "inspect-ai"
@@ -19,7 +20,6 @@ SCOPE = "scope"
 PRICE = "price_usd_per_million_tokens"
 AGENT_SOURCE = "agent_source"
 """Of another agent: the digest of its code, among the settings of a run."""
-DETERMINISTIC = ("grammar", "ground-truth", "noisy")
 
 
 def engine_version() -> str:

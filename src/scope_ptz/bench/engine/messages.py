@@ -30,7 +30,7 @@ from scope_ptz.agent.records import Called, Decided, Ended, Started
 from scope_ptz.errors import PlannerError
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import Briefing, CallTools, Exchange, Picture, State, ToolCall, ToolOutcome
-from scope_ptz.planner.chat.messages import callable_name
+from scope_ptz.planner.chat.chat_messages import callable_name
 from scope_ptz.planner.chat.observations import observation
 from scope_ptz.planner.chat.prompts import Prompt
 from scope_ptz.planner.chat.schemas import plain_schemas

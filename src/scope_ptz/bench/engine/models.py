@@ -29,7 +29,7 @@ from scope_ptz.bench.engine.messages import call_id, state_of
 from scope_ptz.bench.engine.wire import WIRE
 from scope_ptz.bench.judging.judge import Complete
 from scope_ptz.planner.base import CallTools, Decision, Planner
-from scope_ptz.planner.chat.messages import callable_name
+from scope_ptz.planner.chat.chat_messages import callable_name
 
 if TYPE_CHECKING:
     from scope_ptz.bench.engine.perception import Eyes

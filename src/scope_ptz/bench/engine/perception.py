@@ -23,7 +23,7 @@ class LoggedPerception(Perception):
 
     def __init__(self, model: Model, eyes: Eyes, *, pictures: bool) -> None:
         self._model, self._eyes, self._pictures = model, eyes, pictures
-        self.name, self.skills, self.sees_wide = eyes.name, eyes.skills, eyes.sees_wide
+        self.name, self.skills, self.handles_panoramas = eyes.name, eyes.skills, eyes.handles_panoramas
 
     async def caption(self, frame: Frame) -> Caption:
         return await self._look(frame, "Caption this view.", lambda: self._eyes.caption(frame))

@@ -13,7 +13,7 @@ from pydantic import TypeAdapter
 from scope_ptz.bench.engine.messages import messages_of, tool_infos
 from scope_ptz.bench.engine.models import ScopeModel
 from scope_ptz.bench.engine.pictures import KeptPictures
-from scope_ptz.endpoints.replies import ChatReply, RawToolCall
+from scope_ptz.endpoints.chat_replies import ChatReply, RawToolCall
 from scope_ptz.errors import CameraError, PerceptionError, PlannerError, ScopeError, ToolCallError, UnknownNameError
 from scope_ptz.planner.base import Decision, Planner, State
 from scope_ptz.planner.chat.interpret import decide

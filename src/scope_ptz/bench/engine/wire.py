@@ -6,8 +6,8 @@ from contextvars import ContextVar
 from typing import Any
 
 from scope_ptz.endpoints.chat import ChatClient
+from scope_ptz.endpoints.chat_replies import ChatReply
 from scope_ptz.endpoints.failures import ServerFailure
-from scope_ptz.endpoints.replies import ChatReply
 
 WIRE: ContextVar[list[dict[str, Any]] | None] = ContextVar("scope_wire", default=None)
 """Requests and replies of the call of a model that is being logged."""

@@ -11,11 +11,11 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from scope_ptz.bench.judging.judge import Completion, JudgeMessage, NoReplyError
 from scope_ptz.endpoints.chat import ChatClient
+from scope_ptz.endpoints.chat_replies import ChatReply
 from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.endpoints.failures import FailureKind, ServerFailure
-from scope_ptz.endpoints.replies import ChatReply
 from scope_ptz.planner.chat.dialect import Dialect
-from scope_ptz.planner.chat.reasoning import part
+from scope_ptz.planner.chat.reasoning_text import part
 
 K = FailureKind
 Form = Literal["json_schema", "json_object", "free"]

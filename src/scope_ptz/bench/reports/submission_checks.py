@@ -15,13 +15,12 @@ from scope_ptz.bench.reports.submission import LINE, Header, TrialLine, secrets_
 from scope_ptz.bench.reports.submission_trials import trial_faults
 from scope_ptz.bench.tasks.splits import SPLITS, load_split
 from scope_ptz.bench.tasks.task import Task
+from scope_ptz.builtin_names import DETERMINISTIC
 from scope_ptz.errors import InputError
 from scope_ptz.version import __version__
 
 MOST_BYTES = 200_000_000
 NOT_RANKED = "not ranked: {pair} uses the grammar planner or ground-truth perception, which are not models"
-BUILT_IN = ("grammar", "ground-truth", "noisy")
-"""Built-in planners and perception backends. They are not models, whatever a header says."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,7 +165,7 @@ def _header_faults(header: Header, lines: Sequence[TrialLine], known: Mapping[st
 
 
 def _built_in(name: str) -> bool:
-    return name.lower().replace("_", "-") in BUILT_IN
+    return name.lower().replace("_", "-") in DETERMINISTIC
 
 
 def _digest_faults(header: Header, known: Mapping[str, Task]) -> Iterator[str]:

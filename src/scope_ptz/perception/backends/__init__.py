@@ -13,7 +13,7 @@ from scope_ptz.entry_points import PERCEPTION, call_factory, find, installed, no
 from scope_ptz.errors import ConfigError, UnknownNameError
 from scope_ptz.perception.backends.spec import BackendSpec
 from scope_ptz.perception.base import Perception
-from scope_ptz.perception.wide import WidePerception
+from scope_ptz.perception.models.tiled_panoramas import TiledPerception
 
 _NO_BACKENDS = {"spec"}
 
@@ -42,7 +42,7 @@ def make_backend(spec: BackendSpec) -> Perception:
         perception = call_factory(entry, Perception, spec)  # type: ignore[type-abstract]
     else:
         raise UnknownNameError("perception backend", spec.backend, backend_names())
-    return perception if perception.sees_wide else WidePerception(perception)
+    return perception if perception.handles_panoramas else TiledPerception(perception)
 
 
 def _make_built_in(name: str, spec: BackendSpec) -> Perception:

@@ -1,4 +1,4 @@
-"""Moondream over HTTP: moondream-station, the cloud, or any endpoint that speaks the same four paths."""
+"""Moondream over HTTP: moondream-station, the cloud, or any server with the same four paths."""
 
 from __future__ import annotations
 
@@ -12,18 +12,24 @@ from scope_ptz.endpoints.http import JsonClient
 from scope_ptz.errors import PerceptionError
 from scope_ptz.perception.backends.spec import BackendSpec, Options
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
-from scope_ptz.perception.coordinates import MAX_THINGS, convention, fit
-from scope_ptz.perception.encoding import picture_of
-from scope_ptz.perception.grounding import Reply, one_line, served
+from scope_ptz.perception.models.coordinates import MAX_THINGS, convention, fit
+from scope_ptz.perception.models.encoding import picture_of
+from scope_ptz.perception.models.vision_prompts import one_line
+from scope_ptz.perception.models.vision_reply import VisionReply, served
 
 KEY_HEADER = "X-Moondream-Auth"
 UNIT = convention("unit")
 
 
 class MoondreamOptions(Options):
-    """``max_pixels``: larger frames are shrunk to it, since the model looks at a few crops of 378 pixels; ``max_objects``: left
-    alone when None, and the server stops at its own limit; ``reasoning``: of Moondream 3, for questions; ``caption_length``:
-    short, normal or long."""
+    """Options of the backend.
+
+    Attributes:
+        max_pixels: Larger frames are shrunk to this, because the model looks at a few crops of 378 pixels.
+        max_objects: How many objects to request; None leaves it to the server's own limit.
+        reasoning: Whether Moondream 3 reasons about questions.
+        caption_length: "short", "normal" or "long".
+    """
 
     max_pixels: int = 2048 * 2048
     max_objects: int | None = MAX_THINGS
@@ -32,7 +38,7 @@ class MoondreamOptions(Options):
 
 
 class MoondreamPerception(Perception):
-    """Eyes behind Moondream's own protocol. Coordinates come in [0, 1], without scores or labels."""
+    """Perception over Moondream's own protocol. Coordinates are in [0, 1], without scores or labels."""
 
     def __init__(self, client: JsonClient, options: MoondreamOptions | None = None, name: str = "moondream") -> None:
         self.name, self._client, self._options = name, client, options or MoondreamOptions()
@@ -57,8 +63,8 @@ class MoondreamPerception(Perception):
     async def close(self) -> None:
         await self._client.close()
 
-    async def _locate(self, frame: Frame, path: str, description: str, wanted: str) -> Reply:
-        """A list of places. A server that refuses the wish for more of them is asked without, now and from then on."""
+    async def _locate(self, frame: Frame, path: str, description: str, wanted: str) -> VisionReply:
+        """Request a list of places. A server that refuses the requested limit is asked without it, now and from then on."""
         fields: dict[str, Any] = {"object": one_line(description)}
         if self._limit is None:
             return await self._ask(frame, path, fields, wanted)
@@ -71,8 +77,8 @@ class MoondreamPerception(Perception):
             self._limit = None
             return reply.preceded(error)
 
-    async def _ask(self, frame: Frame, path: str, fields: dict[str, Any], wanted: str) -> Reply:
-        """One request; the reply holds the text or the JSON of the field that was wanted."""
+    async def _ask(self, frame: Frame, path: str, fields: dict[str, Any], wanted: str) -> VisionReply:
+        """Send one request. The reply holds the text or the JSON of the ``wanted`` field."""
         began = perf_counter()
         picture = await picture_of(frame, fit(frame.width, frame.height, self._options.max_pixels))
         body = _body(picture.data_url, {**fields, "stream": False})
@@ -80,24 +86,25 @@ class MoondreamPerception(Perception):
             data, attempts = await self._client.post(path, body)
         return self._reply(data, wanted, began, attempts)
 
-    def _reply(self, data: dict[str, Any], wanted: str, began: float, attempts: tuple[Attempt, ...]) -> Reply:
+    def _reply(self, data: dict[str, Any], wanted: str, began: float, attempts: tuple[Attempt, ...]) -> VisionReply:
         value = data.get(wanted)
         if wanted in ("answer", "caption"):
             if not isinstance(value, str):
-                raise Reply(self.name, json.dumps(data, default=str), began, attempts).unreadable(f"no {wanted}")
-            return Reply(self.name, value, began, attempts)
-        reply = Reply(self.name, json.dumps({"objects": value}), began, attempts)
+                raise VisionReply(self.name, json.dumps(data, default=str), began, attempts).unreadable(f"no {wanted}")
+            return VisionReply(self.name, value, began, attempts)
+        reply = VisionReply(self.name, json.dumps({"objects": value}), began, attempts)
         if not isinstance(value, list) or not all(isinstance(v, dict) for v in value):
-            raise Reply(self.name, json.dumps(data, default=str), began, attempts).unreadable(f"no list of {wanted}")
+            raise VisionReply(self.name, json.dumps(data, default=str), began, attempts).unreadable(f"no list of {wanted}")
         return reply
 
 
 def _body(data_url: str, fields: dict[str, Any]) -> bytes:
-    """The request as JSON. The picture is pasted in: it is base64, which needs no escaping, and long."""
+    """Return the request as JSON. The picture is inserted as it is, because base64 needs no escaping and is long."""
     rest = json.dumps(fields, separators=(",", ":"), ensure_ascii=False)[1:]
     return f'{{"image_url":"{data_url}",{rest}'.encode()
 
 
 def make(spec: BackendSpec) -> Perception:
+    """Return the backend that a spec describes."""
     client = JsonClient(spec.needed_endpoint(), key_header=KEY_HEADER)
     return MoondreamPerception(client, MoondreamOptions.of(spec), spec.name)

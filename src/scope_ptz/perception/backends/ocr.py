@@ -1,4 +1,4 @@
-"""Reading text in process with rapidocr: no server, and the same for simulated and real cameras."""
+"""Reading text in this process with rapidocr, without a server, for simulated and real cameras alike."""
 
 from __future__ import annotations
 
@@ -17,42 +17,42 @@ from scope_ptz.camera.base import Frame
 from scope_ptz.errors import PerceptionError
 from scope_ptz.perception.backends.spec import BackendSpec, Options, need
 from scope_ptz.perception.base import Answer, Box, Caption, Detections, Perception, Point, Points
-from scope_ptz.perception.memo import FrameMemo, Image
-from scope_ptz.perception.reading import is_reading, text_fits, wanted_texts
-from scope_ptz.perception.tiles import Tile, merged, tiles
+from scope_ptz.perception.models.frame_memo import FrameMemo, Image
+from scope_ptz.perception.models.text_requests import is_reading, text_fits, wanted_texts
+from scope_ptz.perception.models.tile_geometry import PanoramaTile, merged, tiles
 
 Reader = Callable[[Image], "list[Line]"]
 
 
 class OcrOptions(Options):
-    """``min_score``: below it a reading is not believed."""
+    """Options of the backend. Readings with a score below ``min_score`` are dropped."""
 
     min_score: float = 0.5
 
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A line of text as it stands in the picture; ``box`` is labelled with the text."""
+    """A line of text in the picture; ``box`` is labelled with the text."""
 
     text: str
     box: Box
 
 
 class OcrPerception(Perception):
-    """Eyes that see text only. ``detect`` and ``point`` find a text by its wording; asked for other things, or questions that are
-    not answered by reading, they raise ``PerceptionError``: that no text says "car" does not mean that there is no car.
+    """Perception of text only. ``detect`` and ``point`` find a text by its wording.
 
-    A frame is read once, and remembered for further questions about it.
+    Other descriptions, and questions that are not answered by reading, raise ``PerceptionError``: no text that says "car" does not
+    mean that there is no car. Each frame is read once and remembered for further questions.
     """
 
-    sees_wide = True
+    handles_panoramas = True
 
     def __init__(self, reader: Reader, name: str = "ocr") -> None:
         self.name = name
         self._lines: FrameMemo[None, list[Line]] = FrameMemo(lambda image, _: in_reading_order(read_tiles(reader, image)))
 
     async def lines(self, frame: Frame) -> list[Line]:
-        """All text in a frame, top to bottom and left to right."""
+        """Return all text in a frame, top to bottom and left to right."""
         return await self._lines.get_async(frame.image, None)
 
     async def caption(self, frame: Frame) -> Caption:
@@ -89,7 +89,7 @@ class OcrPerception(Perception):
 
 
 def quoted(lines: Iterable[Line]) -> str:
-    """Lines as text for people and planners, each in quotes so that nobody takes it for an instruction."""
+    """Return lines in quotes, so that neither people nor planners take them for an instruction."""
     return ", ".join('"' + line.text.replace('"', "'") + '"' for line in lines)
 
 
@@ -98,7 +98,7 @@ def _raw(lines: Iterable[Line]) -> str:
 
 
 def in_reading_order(lines: list[Line]) -> list[Line]:
-    """Rows from the top, each from the left. A line belongs to a row when its middle lies within the row's first line."""
+    """Return lines row by row. A line belongs to a row when its centre lies within the row's first line."""
     rows: list[list[Line]] = []
     for line in sorted(lines, key=lambda x: x.box.centre[1]):
         if rows and abs(line.box.centre[1] - rows[-1][0].box.centre[1]) < rows[-1][0].box.height / 2:
@@ -109,9 +109,9 @@ def in_reading_order(lines: list[Line]) -> list[Line]:
 
 
 def read_tiles(reader: Reader, image: Image) -> list[Line]:
-    """All lines of a picture; a panorama is read in overlapping parts at its full resolution."""
+    """Return all lines of a picture. A panorama is read in overlapping parts at full resolution."""
     width, height = image.shape[1], image.shape[0]
-    parts: list[tuple[Tile, list[Box]]] = []
+    parts: list[tuple[PanoramaTile, list[Box]]] = []
     for tile in tiles(width, height):
         try:
             parts.append((tile, [line.box for line in reader(np.ascontiguousarray(tile.crop(image)))]))
@@ -121,7 +121,7 @@ def read_tiles(reader: Reader, image: Image) -> list[Line]:
 
 
 class RapidOcr:
-    """The rapidocr engine, loaded at first use. It keeps state while it reads, so one thread reads at a time."""
+    """The rapidocr engine, loaded on first use. It keeps state while it reads, so only one thread reads at a time."""
 
     def __init__(self, min_score: float = 0.5) -> None:
         self._min_score, self._engine, self._lock = min_score, None, threading.Lock()
@@ -129,7 +129,7 @@ class RapidOcr:
     _engine: Any
 
     def __call__(self, image: Image) -> list[Line]:
-        """Lines of an RGB image (H, W, 3)."""
+        """Return the lines of an RGB image (H, W, 3)."""
         with self._lock:
             if self._engine is None:
                 self._engine = self._load()
@@ -152,7 +152,7 @@ class RapidOcr:
 
 
 def _line(corners: np.ndarray[Any, np.dtype[np.float64]], text: str, score: float, image: Image) -> Line | None:
-    """A line from its four corners in pixels (4, 2); None when nothing of it is in the picture."""
+    """Return a line from its four corners in pixels (4, 2), None when nothing of it is in the picture."""
     if not np.isfinite(corners).all():
         return None
     low = np.clip(corners.min(axis=0) / (image.shape[1], image.shape[0]), 0, 1)
@@ -164,5 +164,6 @@ def _line(corners: np.ndarray[Any, np.dtype[np.float64]], text: str, score: floa
 
 
 def make(spec: BackendSpec) -> Perception:
+    """Return the backend that a spec describes."""
     need("ocr", "rapidocr", "onnxruntime")
     return OcrPerception(RapidOcr(OcrOptions.of(spec).min_score), spec.name)

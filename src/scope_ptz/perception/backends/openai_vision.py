@@ -1,4 +1,4 @@
-"""Vision-language models behind an OpenAI-compatible server, each asked in the convention that it was trained in."""
+"""Vision-language models behind an OpenAI-compatible server. Each is asked in the coordinate convention that it was trained in."""
 
 from __future__ import annotations
 
@@ -13,28 +13,33 @@ from scope_ptz.endpoints.failures import Attempt, FailureKind
 from scope_ptz.errors import PerceptionError
 from scope_ptz.perception.backends.spec import BackendSpec, Options
 from scope_ptz.perception.base import ALL_SKILLS, Answer, Caption, Detections, Perception, Points, Skill
-from scope_ptz.perception.coordinates import Convention, convention
-from scope_ptz.perception.encoding import Picture, picture_of
-from scope_ptz.perception.grounding import (
+from scope_ptz.perception.models.coordinates import Convention, convention
+from scope_ptz.perception.models.encoding import EncodedPicture, picture_of
+from scope_ptz.perception.models.vision_prompts import (
     CAPTION_PROMPT,
-    Reply,
     detect_prompt,
     place_error,
     places_schema,
     point_prompt,
     query_prompt,
     sent_size,
-    served,
 )
+from scope_ptz.perception.models.vision_reply import VisionReply, served
 
 NO_PLACES = "none"
-"""Coordinates of a model that gives none: Moondream 3 behind vLLM answers questions and captions only."""
+"""The coordinates of a model that gives none: Moondream 3 behind vLLM only answers questions and writes captions."""
 
 
 class VisionOptions(Options):
-    """``max_pixels``: larger frames are shrunk to it; ``max_tokens``: of a reply, places and answers; ``structured``: whether lists
-    are held to a JSON schema; ``extra``: further request fields that the server or the
-    model family wants, such as ``{"chat_template_kwargs": {"enable_thinking": false}}``."""
+    """Options of the backend.
+
+    Attributes:
+        max_pixels: Larger frames are shrunk to this.
+        max_tokens: The limit of a reply, for places and answers.
+        structured: Whether lists must follow a JSON schema.
+        extra: Further request fields that the server or the model family needs, such as ``{"chat_template_kwargs":
+            {"enable_thinking": false}}``.
+    """
 
     max_pixels: int = Field(default=2048 * 1024, ge=64 * 64)
     max_tokens: int = Field(default=2048, ge=16)
@@ -44,7 +49,7 @@ class VisionOptions(Options):
 
 
 class OpenAIVisionPerception(Perception):
-    """Eyes that chat. ``style`` is how the model writes places; None when it writes none."""
+    """Perception by a chat model with images. ``style`` is how the model writes places, None when it writes none."""
 
     def __init__(
         self, client: ChatClient, style: Convention | None, options: VisionOptions | None = None, name: str = "vision"
@@ -86,18 +91,20 @@ class OpenAIVisionPerception(Perception):
             raise place_error(self.name)
         return self._style
 
-    async def _picture(self, frame: Frame) -> Picture:
+    async def _picture(self, frame: Frame) -> EncodedPicture:
         size = sent_size(frame, self._style or convention("generic"), self._options.max_pixels)
         return await picture_of(frame, size)
 
-    def _read(self, reply: tuple[ChatReply, tuple[Attempt, ...]], began: float) -> Reply:
-        said, earlier = reply
-        return Reply(self.name, said.text, began, (*earlier, *said.attempts), cut=said.finish_reason == "length")
+    def _read(self, reply: tuple[ChatReply, tuple[Attempt, ...]], began: float) -> VisionReply:
+        chat_reply, earlier = reply
+        return VisionReply(
+            self.name, chat_reply.text, began, (*earlier, *chat_reply.attempts), cut=chat_reply.finish_reason == "length"
+        )
 
     async def _ask(
-        self, picture: Picture, prompt: str, schema: dict[str, Any] | None = None
+        self, picture: EncodedPicture, prompt: str, schema: dict[str, Any] | None = None
     ) -> tuple[ChatReply, tuple[Attempt, ...]]:
-        """The reply, and what was tried before it. Fields that a server refuses are left out, now and from then on."""
+        """Return the reply and the earlier attempts. Fields that a server refuses are left out, now and from then on."""
         refused, earlier = set(self._refused), tuple[Attempt, ...]()
         while True:
             fields = self._fields(schema, refused)
@@ -114,7 +121,7 @@ class OpenAIVisionPerception(Perception):
                 return reply, earlier
 
     def _fields(self, schema: dict[str, Any] | None, refused: set[str]) -> dict[str, Any]:
-        """The request beside the conversation. Newer hosted models want ``max_completion_tokens`` for ``max_tokens``."""
+        """Return the request fields besides the conversation. Newer hosted models require ``max_completion_tokens``."""
         limit = "max_completion_tokens" if "max_tokens" in refused else "max_tokens"
         fields: dict[str, Any] = {limit: self._options.max_tokens, **self._options.extra}
         if self._options.temperature is not None:
@@ -123,7 +130,7 @@ class OpenAIVisionPerception(Perception):
             fields["response_format"] = {"type": "json_schema", "json_schema": {"name": "places", "schema": schema, "strict": True}}
         return {name: value for name, value in fields.items() if name not in refused}
 
-    async def _complete(self, picture: Picture, prompt: str, fields: dict[str, Any]) -> ChatReply:
+    async def _complete(self, picture: EncodedPicture, prompt: str, fields: dict[str, Any]) -> ChatReply:
         content = [{"type": "image_url", "image_url": {"url": picture.data_url}}, {"type": "text", "text": prompt}]
         with served(self.name):
             return await self._client.complete([{"role": "user", "content": content}], extra=fields)
@@ -133,7 +140,7 @@ _OTHER_NAMES = {"response_format": ("response_format", "json_schema", "json sche
 
 
 def refused_fields(error: PerceptionError, sent: dict[str, Any]) -> set[str]:
-    """Which fields of a request a server did not want, by its own words; without a word on any, the schema is the likeliest."""
+    """Return the request fields that a server refused according to its message. Without a clue, the schema is the likeliest."""
     if error.kind not in (FailureKind.BAD_REQUEST, FailureKind.SERVER_ERROR):
         return set()
     words = str(error).lower()
@@ -142,6 +149,7 @@ def refused_fields(error: PerceptionError, sent: dict[str, Any]) -> set[str]:
 
 
 def make(spec: BackendSpec) -> Perception:
+    """Return the backend that a spec describes."""
     endpoint = spec.needed_endpoint()
     if spec.model:
         endpoint = endpoint.model_copy(update={"model": spec.model})

@@ -1,4 +1,4 @@
-"""A router as a backend: its options name the eyes that it is made of."""
+"""A router as a backend. Its options describe the backends that it combines."""
 
 from __future__ import annotations
 
@@ -6,12 +6,18 @@ from scope_ptz.errors import ConfigError
 from scope_ptz.perception.backends import make_backend
 from scope_ptz.perception.backends.spec import BackendSpec, Options
 from scope_ptz.perception.base import Perception
-from scope_ptz.perception.router import RouterPerception
+from scope_ptz.perception.models.routing import RouterPerception
 
 
 class RouterOptions(Options):
-    """``reader`` reads text, ``detector`` finds things, ``answerer`` answers questions; ``compare``: ask two where two can, and
-    record how far they agree."""
+    """Options of the backend.
+
+    Attributes:
+        reader: The backend that reads text.
+        detector: The backend that finds things.
+        answerer: The backend that answers questions.
+        compare: Whether to ask two backends where possible and record their agreement.
+    """
 
     reader: BackendSpec | None = None
     detector: BackendSpec | None = None
@@ -20,10 +26,11 @@ class RouterOptions(Options):
 
 
 def make(spec: BackendSpec) -> Perception:
+    """Return the backend that a spec describes."""
     options = RouterOptions.of(spec)
     reader, detector, answerer = (
         make_backend(part) if part else None for part in (options.reader, options.detector, options.answerer)
     )
     if reader is None and detector is None and answerer is None:
-        raise ConfigError(f"The eyes '{spec.name}' are made of nothing. Name a reader, a detector or an answerer.")
+        raise ConfigError(f"The router '{spec.name}' combines no backends. Name a reader, a detector or an answerer.")
     return RouterPerception(reader=reader, detector=detector, answerer=answerer, compare=options.compare, name=spec.name)

@@ -1,4 +1,4 @@
-"""What a backend is made from."""
+"""The description from which a backend is made."""
 
 from __future__ import annotations
 
@@ -12,9 +12,15 @@ from scope_ptz.errors import ConfigError
 
 
 class BackendSpec(BaseModel):
-    """``name``: what results call the eyes; ``backend``: a module of this package or a third party's name; ``model``: as its server
-    or the hub calls it; ``coordinates``: a convention of ``perception.coordinates``; ``options``: what the backend's own model of
-    options reads."""
+    """A perception backend to make.
+
+    Attributes:
+        name: The source that results name.
+        backend: A module of this package, or the name of another package's backend.
+        model: The model's name on its server or on the hub.
+        coordinates: A convention of ``perception.models.coordinates``.
+        options: The backend's own options.
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -26,15 +32,23 @@ class BackendSpec(BaseModel):
     options: dict[str, Any] = Field(default_factory=dict)
 
     def needed_endpoint(self) -> Endpoint:
-        """The endpoint, for backends that ask a server."""
+        """Return the endpoint, for backends that use a server.
+
+        Raises:
+            ConfigError: There is no endpoint.
+        """
         if self.endpoint is None:
-            raise ConfigError(f"The eyes '{self.name}' ask a model server. Say where it is, with --perception-url.")
+            raise ConfigError(f"The perception backend '{self.name}' needs a model server. Give its address with --perception-url.")
         return self.endpoint
 
     def needed_model(self) -> str:
-        """The model, for backends that load one."""
+        """Return the model, for backends that load one.
+
+        Raises:
+            ConfigError: There is no model.
+        """
         if not self.model:
-            raise ConfigError(f"The eyes '{self.name}' need the name or the folder of a model.")
+            raise ConfigError(f"The perception backend '{self.name}' needs the name or the folder of a model.")
         return self.model
 
 
@@ -42,22 +56,31 @@ _Options = TypeVar("_Options", bound="Options")
 
 
 class Options(BaseModel):
-    """Base of a backend's options: unknown and wrong ones are errors of the user."""
+    """Base class of a backend's options. Unknown and wrong options are user errors."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     @classmethod
     def of(cls: type[_Options], spec: BackendSpec) -> _Options:
+        """Return the validated options of a spec.
+
+        Raises:
+            ConfigError: An option is unknown or wrong.
+        """
         try:
             return cls.model_validate(spec.options)
         except ValidationError as error:
             first = error.errors(include_input=False)[0]
             where = ".".join(str(p) for p in first["loc"])
-            raise ConfigError(f"The option '{where}' of the eyes '{spec.name}' is wrong: {first['msg']}.") from None
+            raise ConfigError(f"The option '{where}' of the perception backend '{spec.name}' is wrong: {first['msg']}.") from None
 
 
 def need(extra: str, *packages: str) -> None:
-    """Raise ``ConfigError`` unless all packages of an extra are installed. Nothing is imported."""
+    """Check that all packages of an extra are installed, without importing them.
+
+    Raises:
+        ConfigError: A package is missing.
+    """
     missing = [package for package in packages if find_spec(package) is None]
     if missing:
         raise ConfigError(f"This needs {' and '.join(missing)}. Install with: pip install 'scope-ptz[{extra}]'")

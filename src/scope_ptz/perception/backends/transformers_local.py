@@ -1,4 +1,4 @@
-"""Vision-language models in this process: Moondream's own interface, and the chat models that transformers knows (Qwen-VL)."""
+"""Vision-language models in this process: Moondream's own interface, and chat models that transformers supports (Qwen-VL)."""
 
 from __future__ import annotations
 
@@ -18,21 +18,33 @@ from scope_ptz.camera.base import Frame
 from scope_ptz.errors import ConfigError, PerceptionError
 from scope_ptz.perception.backends.spec import BackendSpec, Options, need
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
-from scope_ptz.perception.coordinates import Convention, convention
-from scope_ptz.perception.encoding import resized
-from scope_ptz.perception.grounding import CAPTION_PROMPT, Reply, detect_prompt, one_line, point_prompt, query_prompt, sent_size
-from scope_ptz.perception.memo import Image
+from scope_ptz.perception.models.coordinates import Convention, convention
+from scope_ptz.perception.models.encoding import resized
+from scope_ptz.perception.models.frame_memo import Image
+from scope_ptz.perception.models.vision_prompts import (
+    CAPTION_PROMPT,
+    detect_prompt,
+    one_line,
+    point_prompt,
+    query_prompt,
+    sent_size,
+)
+from scope_ptz.perception.models.vision_reply import VisionReply
 
 COMMIT = re.compile(r"[0-9a-f]{40}")
 UNIT = convention("unit")
 
 
 class LocalOptions(Options):
-    """``family``: "moondream" for its own interface, "chat" for models with a chat template; ``device`` and ``dtype`` as torch
-    names them, "auto" for the best there is.
+    """Options of the backend.
 
-    Moondream's interface is code of its repository. It is run only when ``trust_remote_code`` says so, from a folder or from the
-    one commit that ``revision`` names.
+    Moondream's interface is code from its repository. It runs only with ``trust_remote_code``, from a folder or from the one commit
+    that ``revision`` names.
+
+    Attributes:
+        family: "moondream" for its own interface, "chat" for models with a chat template.
+        device: The device as torch names it, "auto" for the best available.
+        dtype: The data type as torch names it, or "auto".
     """
 
     family: Literal["moondream", "chat"] = "chat"
@@ -45,13 +57,13 @@ class LocalOptions(Options):
 
 
 class ChatModel(Protocol):
-    """A chat model with a picture: its words, and whether they stopped at the token limit."""
+    """A chat model that takes a picture. It returns its text, and whether the text stopped at the token limit."""
 
     def __call__(self, image: Image, prompt: str) -> tuple[str, bool]: ...
 
 
 class LocalChatPerception(Perception):
-    """A chat model asked in its convention, one frame at a time in a worker thread."""
+    """Perception by a chat model, asked in its coordinate convention, one frame at a time in a worker thread."""
 
     def __init__(self, model: ChatModel, style: Convention, options: LocalOptions | None = None, name: str = "local") -> None:
         self.name, self._model, self._style, self._options = name, model, style, options or LocalOptions()
@@ -75,14 +87,14 @@ class LocalChatPerception(Perception):
     def _size(self, frame: Frame) -> tuple[int, int]:
         return sent_size(frame, self._style, self._options.max_pixels)
 
-    async def _ask(self, frame: Frame, prompt: str) -> Reply:
+    async def _ask(self, frame: Frame, prompt: str) -> VisionReply:
         began, size = perf_counter(), self._size(frame)
         text, cut = await _in_thread(self.name, lambda: self._model(resized(frame.image, size), prompt))
-        return Reply(self.name, text, began, cut=cut)
+        return VisionReply(self.name, text, began, cut=cut)
 
 
 class LocalMoondreamPerception(Perception):
-    """Moondream through the methods that its own code gives a loaded model. ``load`` is called once, in a worker thread."""
+    """Perception through the methods of a loaded Moondream model. ``load`` is called once, in a worker thread."""
 
     def __init__(self, load: Callable[[], Any], name: str = "moondream-local") -> None:
         self.name, self._load, self._model, self._lock = name, load, None, threading.Lock()
@@ -92,41 +104,41 @@ class LocalMoondreamPerception(Perception):
     async def caption(self, frame: Frame) -> Caption:
         began = perf_counter()
         text = await self._call(frame, "caption", "caption", length="short")
-        return Reply(self.name, str(text), began).caption()
+        return VisionReply(self.name, str(text), began).caption()
 
     async def query(self, frame: Frame, question: str) -> Answer:
         if not question.strip():
             raise PerceptionError("The question is empty.")
         began = perf_counter()
-        return Reply(self.name, str(await self._call(frame, "query", "answer", question.strip())), began).answer()
+        return VisionReply(self.name, str(await self._call(frame, "query", "answer", question.strip())), began).answer()
 
     async def detect(self, frame: Frame, description: str) -> Detections:
         began = perf_counter()
         found = await self._call(frame, "detect", "objects", one_line(description))
-        return Reply(self.name, json.dumps({"objects": found}, default=float), began).detections(UNIT, (1, 1))
+        return VisionReply(self.name, json.dumps({"objects": found}, default=float), began).detections(UNIT, (1, 1))
 
     async def point(self, frame: Frame, description: str) -> Points:
         began = perf_counter()
         found = await self._call(frame, "point", "points", one_line(description))
-        return Reply(self.name, json.dumps({"objects": found}, default=float), began).points(UNIT, (1, 1))
+        return VisionReply(self.name, json.dumps({"objects": found}, default=float), began).points(UNIT, (1, 1))
 
     async def _call(self, frame: Frame, method: str, field: str, *given: str, **options: str) -> Any:
-        def look() -> Any:
+        def call() -> Any:
             with self._lock:
                 if self._model is None:
                     self._model = self._load()
                 return getattr(self._model, method)(_pillow(frame.image), *given, **options)[field]
 
-        return await _in_thread(self.name, look)
+        return await _in_thread(self.name, call)
 
 
-async def _in_thread(name: str, look: Callable[[], Any]) -> Any:
-    """Run a model in a worker thread; whatever it fails with is a ``PerceptionError``."""
+async def _in_thread(name: str, call: Callable[[], Any]) -> Any:
+    """Run a model in a worker thread. Any failure becomes a ``PerceptionError``."""
     try:
-        return await to_thread.run_sync(look)
+        return await to_thread.run_sync(call)
     except PerceptionError:
         raise
-    # Models bring their own code, and out-of-memory errors have a class of their own on every device.
+    # Models run their own code, and out-of-memory errors have a different class on every device.
     except Exception as error:
         raise PerceptionError(f"{name} could not look: {type(error).__name__}: {error}") from error
 
@@ -138,7 +150,7 @@ def _pillow(image: Image) -> Any:
 
 
 class TransformersChat:
-    """A processor and a model of transformers, loaded at first use, greedy decoding."""
+    """A transformers processor and model, loaded on first use, with greedy decoding."""
 
     def __init__(self, model: str, options: LocalOptions) -> None:
         self._name, self._options, self._lock = model, options, threading.Lock()
@@ -148,7 +160,7 @@ class TransformersChat:
         with self._lock:
             processor, model = self._loaded = self._loaded or self._load()
             parts = [{"type": "image", "image": _pillow(image)}, {"type": "text", "text": prompt}]
-            # A switch that the template does not know would be taken for an option of the processor.
+            # A template that does not know the switch would pass it on as an option of the processor.
             quiet = {"enable_thinking": False} if "enable_thinking" in str(processor.chat_template) else {}
             inputs = processor.apply_chat_template(
                 [{"role": "user", "content": parts}],
@@ -189,6 +201,7 @@ def _device(options: LocalOptions) -> str:
 
 
 def make(spec: BackendSpec) -> Perception:
+    """Return the backend that a spec describes."""
     need("local", "transformers", "torch")
     options, model = LocalOptions.of(spec), spec.needed_model()
     if options.family == "chat":

@@ -1,4 +1,4 @@
-"""Zero-shot detectors in process: OWLv2 and Grounding DINO through the transformers pipeline."""
+"""Zero-shot detectors in this process: OWLv2 and Grounding DINO through the transformers pipeline."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from scope_ptz.camera.base import Frame
 from scope_ptz.errors import PerceptionError
 from scope_ptz.perception.backends.spec import BackendSpec, Options, need
 from scope_ptz.perception.base import Answer, Box, Caption, Detections, Perception, Point, Points
-from scope_ptz.perception.coordinates import RawThing, convention, located
-from scope_ptz.perception.memo import Image
-from scope_ptz.perception.tiles import suppressed
+from scope_ptz.perception.models.coordinates import RawThing, convention, located
+from scope_ptz.perception.models.frame_memo import Image
+from scope_ptz.perception.models.tile_geometry import suppressed
 
 Found = list[dict[str, Any]]
 Detector = Callable[[Image, str], Found]
@@ -25,8 +25,13 @@ Detector = Callable[[Image, str], Found]
 
 
 class ZeroShotOptions(Options):
-    """``threshold``: lowest score that counts as seen; ``overlap``: of boxes that share more than this (intersection over union)
-    the best stays; ``device``: as torch names it ("cpu", "cuda:0"), "auto" for the best there is."""
+    """Options of the backend.
+
+    Attributes:
+        threshold: The lowest score that counts as a detection.
+        overlap: Of boxes that overlap more than this (intersection over union), only the best is kept.
+        device: The device as torch names it ("cpu", "cuda:0"), "auto" for the best available.
+    """
 
     threshold: float = 0.2
     overlap: float = 0.6
@@ -34,7 +39,7 @@ class ZeroShotOptions(Options):
 
 
 class ZeroShotPerception(Perception):
-    """A detector: it finds what a phrase describes, and can say nothing else. Best score first."""
+    """A detector that finds what a phrase describes, best score first. It cannot answer questions."""
 
     skills = frozenset(("detect", "point"))
 
@@ -78,7 +83,7 @@ def _thing(found: dict[str, Any]) -> RawThing:
 
 
 class PipelineDetector:
-    """The transformers pipeline, loaded at first use, one picture at a time."""
+    """The transformers pipeline, loaded on first use, one picture at a time."""
 
     def __init__(self, model: str, options: ZeroShotOptions) -> None:
         self._model, self._options, self._pipeline, self._lock = model, options, None, threading.Lock()
@@ -110,6 +115,7 @@ class PipelineDetector:
 
 
 def make(spec: BackendSpec) -> Perception:
+    """Return the backend that a spec describes."""
     need("local", "transformers", "torch")
     options = ZeroShotOptions.of(spec)
     return ZeroShotPerception(PipelineDetector(spec.needed_model(), options), options, spec.name)

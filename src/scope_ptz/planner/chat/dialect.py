@@ -1,5 +1,7 @@
-"""What a server turned out not to take. Servers differ in the fields that they know; one that refuses a field says so once and
-is not sent it again. This is knowledge about the server, not about a run.
+"""What a server turned out not to support.
+
+Servers differ in the request fields that they know. A server that refuses a field is not sent it again. This is knowledge about the
+server, not about a run.
 """
 
 from __future__ import annotations
@@ -8,20 +10,20 @@ import re
 from typing import Any
 
 from scope_ptz.endpoints.failures import FailureKind, ServerFailure
-from scope_ptz.planner.chat.messages import Message, Notation
+from scope_ptz.planner.chat.chat_messages import Message, Notation
 
 _REFUSALS = (FailureKind.BAD_REQUEST, FailureKind.SERVER_ERROR, FailureKind.NOT_FOUND, FailureKind.ERROR_BODY)
 _TOOLS = re.compile(
     r"\btools?\b|tool_|tool[- ]|function[- ]call|--jinja|roles? must alternate|(unknown|unexpected|unsupported|invalid) role",
     re.IGNORECASE,
 )
-"""Also of templates that know no role but user and assistant."""
+"""Refusals of tools, also by chat templates that know no roles but user and assistant."""
 _SYSTEM = re.compile(r"system (role|message|prompt)s? (is |are )?not supported|does not support system", re.IGNORECASE)
 _OPTIONAL = ("chat_template_kwargs", "reasoning_effort", "temperature", "seed")
 
 
 class Dialect:
-    """``notation``: how tools are offered; ``fixed``: the user chose it."""
+    """What to leave out of the requests to a server."""
 
     def __init__(self, notation: Notation, *, fixed: bool) -> None:
         self.notation: Notation = notation
@@ -31,11 +33,11 @@ class Dialect:
         self._limit = "max_tokens"
 
     def fields(self, wanted: dict[str, Any]) -> dict[str, Any]:
-        """Of the fields wanted those that the server takes, under the names that it knows."""
+        """Return the requested fields that the server supports, under the names that it knows."""
         return {self._limit if k == "max_tokens" else k: v for k, v in wanted.items() if v is not None and k not in self._refused}
 
     def messages(self, messages: list[Message]) -> list[Message]:
-        """The messages for templates without a system role: what the system says then begins the first user message."""
+        """Return the messages as the server takes them. Without a system role, the system text begins the first user message."""
         if self._system or not messages or messages[0]["role"] != "system":
             return messages
         system, first, *rest = messages
@@ -45,7 +47,7 @@ class Dialect:
         return [{"role": "user", "content": joined}, *rest]
 
     def learn(self, failure: ServerFailure, sent: dict[str, Any], *, with_tools: bool) -> bool:
-        """Whether a refusal was about something that can be left out. Then the next request goes without it."""
+        """Adapt to a refusal. Return whether it was about something that the next request can leave out."""
         if failure.kind not in _REFUSALS:
             return False
         for name in _OPTIONAL:

@@ -1,5 +1,7 @@
-"""How each model family wants its thinking switched on or off, and at which temperature it works. Data: a new family is one
-entry."""
+"""How each model family switches its reasoning on and off, and at which temperature it works.
+
+This is data: a new family is one entry.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,12 @@ Server = Literal["vllm", "sglang", "llama.cpp", "ollama", "transformers", "lm-st
 
 @dataclass(frozen=True, slots=True)
 class Switch:
-    """What to send. ``fields``: of the request; ``words``: at the end of what the user says, for servers that ignore the fields."""
+    """What to send to switch reasoning.
+
+    Attributes:
+        fields: Fields of the request.
+        words: Words at the end of the user message, for servers that ignore the fields.
+    """
 
     fields: Mapping[str, Any] = field(default_factory=dict)
     words: str = ""
@@ -30,11 +37,14 @@ def _template(key: str, value: bool) -> Switch:
 
 @dataclass(frozen=True, slots=True)
 class Family:
-    """A model family by a pattern over model names, tried in order.
+    """A model family, recognised by a pattern over model names. Patterns are tried in order.
 
-    ``on`` and ``off``: how its thinking is switched; None when it cannot be (it always or never thinks). ``thinks``: what it
-    does when nothing is said. ``temperatures``: when it thinks (its makers' recommendation: greedy reasoning goes round in
-    circles), None to leave it to the server; and when it does not (0: the same calls every time).
+    Attributes:
+        thinks: Whether it reasons by default.
+        on: How to switch its reasoning on; None when it cannot be switched.
+        off: How to switch it off.
+        temperatures: The temperature with reasoning (as its makers recommend, because greedy reasoning tends to loop; None
+            leaves it to the server) and without (0 gives the same calls every time).
     """
 
     name: str
@@ -71,7 +81,7 @@ FAMILIES: tuple[Family, ...] = (
         r"gpt-oss",
         thinks=True,
         on=Switch({"reasoning_effort": "medium"}),
-        off=Switch({"reasoning_effort": "low"}),  # It cannot be kept from thinking, only from thinking long.
+        off=Switch({"reasoning_effort": "low"}),  # its reasoning cannot be switched off, only shortened
         temperatures=(1.0, 1.0),
     ),
     Family("glm", r"glm-?4\.[5-9]|glm-?[5-9]", True, _template("enable_thinking", True), _template("enable_thinking", False)),
@@ -83,25 +93,25 @@ FAMILIES: tuple[Family, ...] = (
 UNKNOWN = Family("unknown", "", thinks=False)
 
 _EFFORT = {"on": Switch({"reasoning_effort": "medium"}), "off": Switch({"reasoning_effort": "none"})}
-"""Ollama takes no template arguments and drops them silently; its own interface to thinking is this field."""
+"""Ollama silently drops template arguments; this field is its own switch."""
 
 _KNOWN_PLACES: tuple[tuple[str, Server], ...] = ((":11434", "ollama"), (":1234", "lm-studio"), ("api.openai.com", "openai"))
 
 
 def family_of(model: str) -> Family:
-    """The family of a model by its name, ``UNKNOWN`` when it is none of ours."""
+    """Return the family of a model by its name, ``UNKNOWN`` when no pattern matches."""
     name = model.lower()
     return next((f for f in FAMILIES if re.search(f.pattern, name)), UNKNOWN)
 
 
 def likely_server(url: str) -> Server | None:
-    """The server by its customary address, None when that says nothing."""
+    """Return the server that usually listens at an address, None when the address does not tell."""
     place = urlsplit(url).netloc
     return next((server for mark, server in _KNOWN_PLACES if mark in place), None)
 
 
 def switch_for(model: str, thinking: Thinking, server: Server | None) -> Switch:
-    """What to send so that a model thinks or does not. Nothing when nobody asks, and nothing to a model that has no switch."""
+    """Return what to send to switch a model's reasoning: nothing for "default", and nothing for a model without a switch."""
     if thinking == "default":
         return _NOTHING
     family = family_of(model)
@@ -116,7 +126,7 @@ def switch_for(model: str, thinking: Thinking, server: Server | None) -> Switch:
 
 
 def temperature_for(model: str, thinking: Thinking) -> float | None:
-    """The temperature for this mode; None to leave it to the server."""
+    """Return the temperature for a mode, None to leave it to the server."""
     family = family_of(model)
     thinks = family.thinks if thinking == "default" else thinking == "on"
     return family.temperatures[0 if thinks else 1]

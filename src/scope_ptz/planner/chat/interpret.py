@@ -1,28 +1,28 @@
-"""From a server's reply to a decision. Documented rules, no guesses:
+"""From a server's reply to a decision, by fixed rules:
 
-- Calls are taken from the server's own field; when that is empty, from the text, in any of the notations of ``tool_text``.
-- A reply without calls ends the run. It is a clarification when it begins with ``CLARIFY:``, or when it ends in a question and
-nothing was called yet; a refusal when it begins with ``REFUSE:``; else the answer.
-- A reply that was cut at the token limit is an answer to nothing: a planner error, except for calls that had been finished.
+- Calls are taken from the server's own field. When that is empty, they are taken from the text, in any notation of ``tool_text``.
+- A reply without calls ends the run. It is a clarification when it begins with ``CLARIFY:``, or when it ends with a question before
+any tool was called; a refusal when it begins with ``REFUSE:``; otherwise it is the answer.
+- A reply that was cut off at the token limit is a planner error, except for calls that were complete.
 """
 
 from __future__ import annotations
 
 import re
 
+from scope_ptz.endpoints.chat_replies import ChatReply
 from scope_ptz.endpoints.failures import Attempt, FailureKind
-from scope_ptz.endpoints.replies import ChatReply
 from scope_ptz.errors import PlannerError
 from scope_ptz.planner.base import CallTools, Decision, Finish, Served, State, ToolCall, Usage
-from scope_ptz.planner.chat.reasoning import part
-from scope_ptz.planner.chat.tool_text import Found, find_calls
+from scope_ptz.planner.chat.reasoning_text import part
+from scope_ptz.planner.chat.tool_text import FoundCalls, find_calls
 from scope_ptz.planner.chat.written import Signatures, WrittenCall, plain_name, read_arguments
 
 MOST_CALLS = 32
-"""In one step. A model that writes more has run away."""
+"""Calls executed in one step. A model that writes more is out of control."""
 
 MOST_CHARS = 20_000
-"""Of an answer, and of what is said beside calls. What goes on for longer is cut, and says so."""
+"""Characters kept of an answer, or of the text beside calls. Longer texts are truncated and marked."""
 
 _FULL = 0.98
 _CONTROL = re.compile(r"<\|[\w ]{2,30}\|>|</s>|<(?:end|start)_of_turn>|<turn\|>")
@@ -31,10 +31,15 @@ _QUESTION = re.compile(r"\?[\s\"'*_)]*\Z")
 
 
 def decide(reply: ChatReply, state: State, *, context_tokens: int | None = None) -> Decision:
-    """The decision in a reply. ``context_tokens``: the model's window, where it is known.
+    """Return the decision in a reply.
+
+    Args:
+        reply: The server's reply.
+        state: The state that was sent.
+        context_tokens: The size of the model's context, where it is known.
 
     Raises:
-        PlannerError: there is none. ``kind`` says in which way.
+        PlannerError: The reply holds no decision; ``kind`` says why.
     """
     parted = part(reply.text, reply.reasoning)
     found = _native(reply, parted.text) or _in_text(parted.text, parted.reasoning, state)
@@ -61,34 +66,34 @@ def decide(reply: ChatReply, state: State, *, context_tokens: int | None = None)
 
 
 def _useless(reply: ChatReply) -> tuple[Attempt, ...]:
-    """What was tried for a reply of which nothing can be made, with what it cost."""
+    """Return the attempts of a reply that holds no decision, with the tokens that it used."""
     cost = {"input_tokens": reply.input_tokens, "output_tokens": reply.output_tokens}
     return (*reply.attempts[:-1], *(last.model_copy(update=cost) for last in reply.attempts[-1:]))
 
 
-def _native(reply: ChatReply, text: str) -> Found | None:
+def _native(reply: ChatReply, text: str) -> FoundCalls | None:
     if not reply.tool_calls:
         return None
     calls = []
     for raw in reply.tool_calls:
         arguments, malformed = read_arguments(raw.arguments_text)
         calls.append(WrittenCall(plain_name(raw.name), arguments, malformed))
-    # Some servers leave in the text what they also took from it.
-    return Found(tuple(calls), find_calls(text, Signatures({}), marked_only=True).rest, "native")
+    # Some servers leave the calls in the text after they have parsed them.
+    return FoundCalls(tuple(calls), find_calls(text, Signatures({}), marked_only=True).rest, "native")
 
 
-def _in_text(text: str, reasoning: str, state: State) -> Found:
+def _in_text(text: str, reasoning: str, state: State) -> FoundCalls:
     tools = Signatures.of(state.tools)
     found = find_calls(text, tools)
     if not found.calls and not text:
-        # A model that calls before it closes its reasoning: the server took all of it for reasoning.
+        # A model that calls before it closes its reasoning: the server took the call for reasoning, too.
         inside = find_calls(reasoning, tools, marked_only=True)
         if inside.calls:
-            return Found(inside.calls, "", inside.notation)
+            return FoundCalls(inside.calls, "", inside.notation)
     return found
 
 
-def _tool_calls(reply: ChatReply, found: Found, step: int) -> tuple[ToolCall, ...]:
+def _tool_calls(reply: ChatReply, found: FoundCalls, step: int) -> tuple[ToolCall, ...]:
     ids = [raw.id for raw in reply.tool_calls] if found.notation == "native" else []
     calls = []
     for index, written in enumerate(found.calls[:MOST_CALLS]):
@@ -111,14 +116,14 @@ def _cut_short(text: str) -> str:
 
 
 def _ending(text: str, *, called: bool) -> tuple[str, str]:
-    said = _KIND.match(text)
-    if said and (rest := text[said.end() :].strip()):
-        return ("clarification" if said["kind"].upper() == "CLARIFY" else "refused"), rest
+    prefix = _KIND.match(text)
+    if prefix and (rest := text[prefix.end() :].strip()):
+        return ("clarification" if prefix["kind"].upper() == "CLARIFY" else "refused"), rest
     return ("clarification" if not called and _QUESTION.search(text) else "answered"), text
 
 
 def _cut_off(reply: ChatReply, context_tokens: int | None) -> PlannerError:
-    """A full window when that is certain; else one of two reasons that a server does not tell apart."""
+    """Return the error of a reply that was cut off: by a full context where that is certain, otherwise by one of two limits."""
     if context_tokens is not None and reply.input_tokens + reply.output_tokens >= context_tokens * _FULL:
         words = "The planner's reply was cut off because the model's context is full. Serve the model with a longer context."
         return PlannerError(words, kind=FailureKind.CONTEXT_OVERFLOW.value, attempts=_useless(reply))

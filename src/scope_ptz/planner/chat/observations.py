@@ -1,4 +1,4 @@
-"""What a planner gets to read of a call's outcome: concise, numbers rounded, and text that the camera saw marked as data."""
+"""What a planner reads of a call's outcome: concise, with rounded numbers, and text that the camera saw marked as data."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scope_ptz.planner.base import ToolOutcome
 
 MOST_BOXES = 12
 MOST_CHARS = 4000
-"""Of one text from perception. A longer one is a model that ran on."""
+"""Characters kept of one text from perception. A longer text comes from a model that did not stop."""
 
 BRIEF_CHARS = 120
 
@@ -23,33 +23,33 @@ _HARMLESS = str.maketrans({"<": "‹", ">": "›", "＜": "‹", "＞": "›"})
 
 
 def observation(outcome: ToolOutcome, *, brief: bool = False) -> str:
-    """The outcome as one JSON line. ``brief``: only what later steps may still need, for a context that is nearly full."""
+    """Return the outcome as one JSON line. ``brief``: only what later steps may need, for a context that is nearly full."""
     if outcome.error is not None or outcome.result is None:
         error = seen_text(outcome.error or "The tool gave no result.", mark=False)
         return _line({"error": error[:BRIEF_CHARS] if brief else error})
     result = outcome.result
-    told: dict[str, Any] = {key: _rounded(result[key]) for key in _KEPT if result.get(key) not in (None, (), [], "")}
+    content: dict[str, Any] = {key: _rounded(result[key]) for key in _KEPT if result.get(key) not in (None, (), [], "")}
     if result.get("complete") is False:
-        told["complete"] = False
+        content["complete"] = False
     if brief:
-        told |= {key: seen_text(result[key][:BRIEF_CHARS]) for key in _SEEN_TEXTS if result.get(key)}
+        content |= {key: seen_text(result[key][:BRIEF_CHARS]) for key in _SEEN_TEXTS if result.get(key)}
     else:
-        told |= _boxes(result.get("boxes") or ())
-        # Its sentence says everything else: the answer, who saw it, what was corrected, who sees it differently.
-        told["message"] = seen_text(str(result.get("message", "")), mark="source" in result)
-    told["pose"] = _rounded(result.get("pose"))
-    return _line(told)
+        content |= _boxes(result.get("boxes") or ())
+        # The message holds everything else: the answer, its source, corrections and a second opinion.
+        content["message"] = seen_text(str(result.get("message", "")), mark="source" in result)
+    content["pose"] = _rounded(result.get("pose"))
+    return _line(content)
 
 
 def seen_text(text: str, *, mark: bool = True) -> str:
-    """Text from outside, as data: it can neither end its mark nor hold a token that steers a chat template."""
+    """Return text from outside as data. It can neither close its mark nor contain tokens that steer a chat template."""
     cut = text if len(text) <= MOST_CHARS else text[:MOST_CHARS] + " (cut)"
     harmless = cut.translate(_HARMLESS)
     return f"<camera_text>{harmless}</camera_text>" if mark else harmless
 
 
 def _boxes(boxes: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """Corners in hundredths of the frame, in perception's order; of many only the first."""
+    """Return the corners of the boxes in hundredths of the frame, in perception's order; only the first of many."""
     if not boxes:
         return {}
     corners = [[round(box[k], 2) for k in ("x_min", "y_min", "x_max", "y_max")] for box in boxes[:MOST_BOXES]]

@@ -1,4 +1,4 @@
-"""The planner behind an OpenAI-compatible server."""
+"""The planner that asks a model behind an OpenAI-compatible server."""
 
 from __future__ import annotations
 
@@ -8,32 +8,38 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from scope_ptz.endpoints.chat import ChatClient
+from scope_ptz.endpoints.chat_replies import ChatReply
 from scope_ptz.endpoints.endpoint import Endpoint
 from scope_ptz.endpoints.failures import Attempt, FailureKind, ServerFailure
-from scope_ptz.endpoints.replies import ChatReply
 from scope_ptz.errors import PlannerError
 from scope_ptz.planner.base import Decision, Planner, State
+from scope_ptz.planner.chat.chat_messages import Message, build_messages
 from scope_ptz.planner.chat.dialect import Dialect
 from scope_ptz.planner.chat.families import Server, Thinking, family_of, likely_server, switch_for, temperature_for
 from scope_ptz.planner.chat.interpret import decide
-from scope_ptz.planner.chat.messages import Message, build_messages
 from scope_ptz.planner.chat.prompts import DEFAULT_PROMPT, Prompt, load_prompt
 from scope_ptz.planner.chat.schemas import plain_schemas
 from scope_ptz.planner.chat.window import fits, shortenings
 
 _OVERFLOW, _CUT_OFF = FailureKind.CONTEXT_OVERFLOW, FailureKind.CUT_OFF
 _MOST_LESSONS = 6
-"""A server that still refuses after so many concessions refuses something else."""
+"""How many unsupported features are left out before a server's refusal is final."""
 
 
 class ChatOptions(BaseModel):
     """How to plan with a chat model.
 
-    ``tools``: through the server's own interface ("native"), written into the prompt and read from the text ("text"), or the
-    former until the server refuses it ("auto"). ``sees``: the model gets frames. ``summarise``: when the context is full, tell
-    old observations in brief instead of ending the run (never in evaluations). ``context_tokens``: the window, where it is known.
-    ``max_tokens``: of one reply. ``temperature``: None for what suits the model. ``server``: what serves it, guessed from the
-    address when None. ``family``: a model name that tells the family, when the server serves it under another name.
+    Attributes:
+        tools: How tools are offered: through the server's interface ("native"), in the prompt and the text ("text"), or
+            natively until the server refuses it ("auto").
+        sees: Whether the model takes images.
+        summarise: Whether to shorten old observations when the context is full instead of ending the run. Never used in
+            evaluations.
+        context_tokens: The size of the model's context, where it is known.
+        max_tokens: The limit of one reply.
+        temperature: None selects what suits the model.
+        server: The program that serves the model, guessed from its address when None.
+        family: A model name that determines the family, when the server uses another name.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -53,8 +59,10 @@ class ChatOptions(BaseModel):
 
 
 class ChatPlanner(Planner):
-    """Asks a chat model for each step. Between steps it keeps a connection and what it learned about the server, nothing of a
-    run."""
+    """A planner that asks a chat model at each step.
+
+    Between steps it keeps a connection and what it learned about the server, but nothing about the run.
+    """
 
     def __init__(
         self,
@@ -64,7 +72,14 @@ class ChatPlanner(Planner):
         client: ChatClient | None = None,
         prompt: Prompt | None = None,
     ) -> None:
-        """``prompt``: in place of the named one, for variants that are no files."""
+        """Set up the planner.
+
+        Args:
+            endpoint: The server.
+            options: How to plan.
+            client: A client to use instead of a new one.
+            prompt: A prompt to use instead of the named one, for variants without a file.
+        """
         self.options = options or ChatOptions()
         self.endpoint, self.client = endpoint, client or ChatClient(endpoint)
         self.prompt = prompt or load_prompt(self.options.prompt)
@@ -112,7 +127,7 @@ class ChatPlanner(Planner):
         await self.client.close()
 
     def _levels(self, state: State) -> Iterator[int]:
-        """How much of the history to shorten, in the order in which it is tried."""
+        """Yield how many of the oldest exchanges to shorten, in the order of the attempts."""
         levels = [0, *shortenings(state)] if self.options.summarise else [0]
         for level in levels:
             window = self.options.context_tokens
@@ -131,7 +146,7 @@ class ChatPlanner(Planner):
         return self._dialect.messages(messages)
 
     async def _ask(self, state: State, brief_before: int, tried: list[Attempt]) -> ChatReply:
-        """A reply; what the server refuses and can do without is left out. ``tried`` takes in every request."""
+        """Return a reply. What the server refuses and can do without is left out. Every request is added to ``tried``."""
         for lesson in range(_MOST_LESSONS + 1):
             native = self._dialect.notation == "native"
             fields = self._dialect.fields(self._fields)

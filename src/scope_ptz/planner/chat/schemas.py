@@ -1,7 +1,7 @@
-"""Tool schemas as all servers take them.
+"""Tool schemas in a form that all servers accept.
 
-Some servers compile a schema into a grammar and refuse what they cannot compile (a pattern without anchors, for one), others
-know no unions. What a call may hold is checked here in any case, when it is made; the schema only has to tell the model.
+Some servers compile a schema into a grammar and refuse what they cannot compile, such as a pattern without anchors; others know no
+unions. Arguments are validated when a call is made in any case, so the schema only has to inform the model.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _CHECKED_HERE = (
 
 
 def plain_schemas(tools: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The tools with parameters of one plain type each, an optional one being one that is not required."""
+    """Return the tools with parameters of one plain type each. An optional parameter is one that is not required."""
     return [{**tool, "function": {**tool["function"], "parameters": _parameters(tool["function"]["parameters"])}} for tool in tools]
 
 

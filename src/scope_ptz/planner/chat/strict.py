@@ -1,4 +1,4 @@
-"""JSON as tool calls need it: strict, finite, and without characters that no file can hold."""
+"""Strict JSON for tool calls: only finite numbers, and only characters that a file can hold."""
 
 from __future__ import annotations
 
@@ -10,7 +10,11 @@ __all__ = ["readable", "strict_json"]
 
 
 def strict_json(text: str) -> Any:
-    """Parse JSON; NaN, infinities, numbers that overflow and extreme nesting are errors. Raises ``ValueError``."""
+    """Parse JSON without NaN, infinities, numbers that overflow, or extreme nesting.
+
+    Raises:
+        ValueError: The text is no such JSON.
+    """
     try:
         value = json.loads(readable(text), parse_constant=_no_number, parse_float=_finite)
         return _clean(value) if "\\ud" in text.lower() else value
@@ -19,7 +23,7 @@ def strict_json(text: str) -> Any:
 
 
 def readable(text: str) -> str:
-    """The text with characters that UTF-8 cannot carry (lone surrogates) replaced by question marks."""
+    """Return the text with lone surrogates, which UTF-8 cannot encode, replaced by question marks."""
     return text.encode("utf-8", "replace").decode("utf-8")
 
 

@@ -1,8 +1,8 @@
-"""Tool calls that a server returned as text: found, read, and taken out of the text.
+"""Tool calls that a server returned as text: found, parsed and taken out of the text.
 
-Notations that mark a call (tags) are believed whatever stands in them; what is wrong inside is an error for the planner. Those
-that do not (JSON in a fence or bare, Python calls) count only when they name a tool on offer, so that an answer in JSON stays
-an answer.
+A notation with tags marks its calls, so whatever is inside is taken for a call, and mistakes are reported to the planner. Notations
+without tags (JSON, bare or in a code fence, and Python calls) count only when they name an offered tool, so that an answer in JSON
+stays an answer.
 """
 
 from __future__ import annotations
@@ -22,26 +22,31 @@ _Reader = Callable[[str, Signatures], list[WrittenCall]]
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
-    """``rest``: the text without its calls; ``notation``: how they were written, empty when there are none."""
+class FoundCalls:
+    """The calls found in a text.
+
+    Attributes:
+        rest: The text without its calls.
+        notation: How the calls were written; empty when there are none.
+    """
 
     calls: tuple[WrittenCall, ...]
     rest: str
     notation: str
 
 
-def find_calls(text: str, tools: Signatures, *, marked_only: bool = False) -> Found:
-    """The calls in a text, in order; of several notations the first that is there."""
+def find_calls(text: str, tools: Signatures, *, marked_only: bool = False) -> FoundCalls:
+    """Return the calls in a text, in order. Of several notations, the first one that occurs is used."""
     text = readable(text)
     for notation, pattern, reader in _MARKED:
         inside = [(match, reader(match["body"], tools)) for match in pattern.finditer(text)]
         if any(calls for _, calls in inside):
-            return Found(tuple(call for _, calls in inside for call in calls), pattern.sub("", text).strip(), notation)
-    return Found((), text.strip(), "") if marked_only else _unmarked(text, tools)
+            return FoundCalls(tuple(call for _, calls in inside for call in calls), pattern.sub("", text).strip(), notation)
+    return FoundCalls((), text.strip(), "") if marked_only else _unmarked(text, tools)
 
 
 def _json_or_markup(body: str, tools: Signatures) -> list[WrittenCall]:
-    """The inside of ``<tool_call>``: JSON (Hermes), functions in XML (Qwen3-Coder), or keys and values in XML (GLM)."""
+    """Parse the inside of ``<tool_call>``: JSON (Hermes), XML functions (Qwen3-Coder), or XML keys and values (GLM)."""
     if "<function" in body:
         return _xml_functions(body, tools)
     if "<arg_key>" in body:
@@ -50,8 +55,8 @@ def _json_or_markup(body: str, tools: Signatures) -> list[WrittenCall]:
     return [WrittenCall(name, {})] if name in tools else _json_calls(body, tools) or [wreck(body)]
 
 
-def _json_calls(body: str, tools: Signatures) -> list[WrittenCall]:  # noqa: ARG001 - readers share one signature
-    """JSON objects or lists of them, one after the other; one that cannot be read is a call that fails."""
+def _json_calls(body: str, tools: Signatures) -> list[WrittenCall]:  # noqa: ARG001 - all readers share one signature
+    """Parse a sequence of JSON objects or lists of them. A value that cannot be parsed becomes a call that fails."""
     calls: list[WrittenCall] = []
     for chunk in _json_chunks(body):
         try:
@@ -65,7 +70,7 @@ def _json_calls(body: str, tools: Signatures) -> list[WrittenCall]:  # noqa: ARG
 
 
 def _json_chunks(body: str) -> list[str]:
-    """The JSON values of a text; what follows the last complete one counts as one more when it looks like the start of one."""
+    """Return the JSON values of a text. An incomplete value at the end counts as one more."""
     decoder, chunks, at = JSONDecoder(), [], 0
     while at < len(body):
         if body[at].isspace() or body[at] in ",;":
@@ -107,7 +112,7 @@ def _xml_functions(body: str, tools: Signatures) -> list[WrittenCall]:
 
 
 def _unwrapped(value: str) -> str:
-    """A value without the line breaks that the notation puts around it."""
+    """Return a value without the line breaks that the notation puts around it."""
     return value.removeprefix("\n").removesuffix("\n")
 
 
@@ -122,7 +127,7 @@ _MOST_PYTHON_CHARS = 20_000
 
 
 def _python_calls(body: str, tools: Signatures) -> list[WrittenCall]:
-    """Python calls with literal keyword arguments: ``[adjust_ptz(pan_deg=20), go_home()]``."""
+    """Parse Python calls with literal keyword arguments: ``[adjust_ptz(pan_deg=20), go_home()]``."""
     if body.strip().startswith(("{", "[{")):
         return _json_calls(body, tools)
     if len(body) > _MOST_PYTHON_CHARS:
@@ -150,7 +155,7 @@ def _python_call(node: ast.expr) -> WrittenCall | None:
 
 
 def _mistral(body: str, tools: Signatures) -> list[WrittenCall]:
-    """``[{"name": ..., "arguments": ...}]``, or a name, optionally ``[ARGS]``, and its arguments."""
+    """Parse ``[{"name": ..., "arguments": ...}]``, or a name, optionally ``[ARGS]``, and its arguments."""
     if body.strip().startswith("["):
         return _json_calls(body, tools)
     name, brace, tail = body.replace("[ARGS]", "").partition("{")
@@ -159,7 +164,7 @@ def _mistral(body: str, tools: Signatures) -> list[WrittenCall]:
 
 
 def _between(opening: str, closing: str) -> re.Pattern[str]:
-    """What stands between two marks; the closing one may be missing before the next call and at the end of the text."""
+    """Return a pattern for the text between two marks. The closing mark may be missing before the next call and at the end."""
     return re.compile(f"{opening}(?P<body>.*?)(?:{closing}|(?={opening})|\\Z)", re.DOTALL)
 
 
@@ -174,29 +179,29 @@ _MARKED: tuple[tuple[str, re.Pattern[str], _Reader], ...] = (
     ("llama", _between(r"<\|python_tag\|>", r"<\|eom_id\|>|<\|eot_id\|>"), _json_calls),
 )
 _MOST_STARTS = 20
-"""So many lines of a text are tried as the first of its calls; more are a table or a program, and no calls."""
+"""How many lines of a text are tried as the start of its calls. A text with more is a table or a program."""
 _FENCE = re.compile(r"```[\w-]*[ \t]*\n(?P<body>.*?)(?:\n[ \t]*```|\Z)", re.DOTALL)
 
 
-def _unmarked(text: str, tools: Signatures) -> Found:
-    """JSON or Python calls in a fence, or a text that is nothing else."""
+def _unmarked(text: str, tools: Signatures) -> FoundCalls:
+    """Return JSON or Python calls in a code fence, or in a text that consists of calls only."""
     fences = [(m, _known(m["body"], tools)) for m in _FENCE.finditer(text)]
     if any(calls for _, calls in fences):
         rest = text
         for match, calls in fences:
             rest = rest.replace(match[0], "") if calls else rest
-        return Found(tuple(call for _, calls in fences for call in calls), rest.strip(), "fence")
+        return FoundCalls(tuple(call for _, calls in fences for call in calls), rest.strip(), "fence")
     if calls := _known(text, tools):
-        return Found(tuple(calls), "", "bare")
-    # Prose, and then nothing but calls up to the end.
+        return FoundCalls(tuple(calls), "", "bare")
+    # Prose followed by nothing but calls.
     for match in islice(re.finditer(r"^[ \t]*[\[{]", text, re.MULTILINE), _MOST_STARTS):
         if calls := _known(text[match.start() :], tools):
-            return Found(tuple(calls), text[: match.start()].strip(), "bare")
-    return Found((), text.strip(), "")
+            return FoundCalls(tuple(calls), text[: match.start()].strip(), "bare")
+    return FoundCalls((), text.strip(), "")
 
 
 def _known(body: str, tools: Signatures) -> list[WrittenCall]:
-    """The calls of a text that is nothing but calls of tools on offer; else none."""
+    """Return the calls of a text that consists only of calls of offered tools, else none."""
     body = body.strip()
     calls: list[WrittenCall] = []
     if body.startswith(("{", "[{")):

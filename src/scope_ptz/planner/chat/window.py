@@ -1,7 +1,7 @@
-"""A context that outgrows the model's window.
+"""What to do when a conversation outgrows the model's context.
 
-By default that is the end of a run, with an outcome of its own kind. When the user allows it, old observations are told in
-brief instead: the calls stay, of their results only what was counted, read or found, and where the camera was.
+By default the run ends with an outcome of its own. When the user allows it, old observations are shortened instead: the calls stay,
+and their results keep only counts, readings, findings and poses.
 """
 
 from __future__ import annotations
@@ -13,20 +13,20 @@ from typing import Any
 from scope_ptz.planner.base import State
 
 CHARS_PER_TOKEN = 3.2
-"""On the safe side of what tokenizers make of English and JSON (3.5 to 4.5)."""
+"""A conservative value; tokenizers average 3.5 to 4.5 characters for English and JSON."""
 
 PICTURE_TOKENS = 1300
-"""About what a frame of 1280x720 costs the vision models of today."""
+"""About what a frame of 1280x720 costs current vision models."""
 
 KEPT_WHOLE = 2
-"""The newest exchanges are never shortened: the planner is about to act on them."""
+"""The newest exchanges are never shortened, because the planner is about to act on them."""
 
 _FILL = 0.9
 _REPLY_TOKENS = 512
 
 
 def estimated_tokens(messages: Sequence[Mapping[str, Any]], tools: Sequence[Mapping[str, Any]]) -> int:
-    """A rough count, without the model's tokenizer."""
+    """Return a rough token count, made without the model's tokenizer."""
     chars, pictures = len(json.dumps(tools)), 0
     for message in messages:
         content = message.get("content") or ""
@@ -38,13 +38,15 @@ def estimated_tokens(messages: Sequence[Mapping[str, Any]], tools: Sequence[Mapp
 
 
 def fits(messages: Sequence[Mapping[str, Any]], tools: Sequence[Mapping[str, Any]], context_tokens: int) -> bool:
-    """Whether messages are likely to leave room for a reply in a window."""
+    """Return whether messages are likely to leave room for a reply."""
     return estimated_tokens(messages, tools) + min(_REPLY_TOKENS, context_tokens // 4) <= context_tokens * _FILL
 
 
 def shortenings(state: State) -> Iterator[int]:
-    """How many of the oldest exchanges to tell in brief: half of them (an even number, so that the beginning of the messages
-    changes only now and then and caches keep hitting), then all but the newest."""
+    """Yield how many of the oldest exchanges to shorten: first half of them, then all but the newest.
+
+    Half is rounded to an even number, so that the beginning of the messages changes rarely and caches keep working.
+    """
     exchanges = sum(len(turn.exchanges) for turn in state.conversation) + len(state.history)
     most = exchanges - KEPT_WHOLE
     half = (exchanges // 2) // 2 * 2

@@ -1,4 +1,4 @@
-"""A call as it stands in a text, and the reading of its arguments."""
+"""Calls written as text, and the parsing of their arguments."""
 
 from __future__ import annotations
 
@@ -15,7 +15,11 @@ _SHOWN_CHARS = 300
 
 @dataclass(frozen=True, slots=True)
 class WrittenCall:
-    """``malformed``: what was written where a JSON object should be; ``arguments`` is empty then."""
+    """A call in a text.
+
+    Attributes:
+        malformed: What stood in place of a JSON object; ``arguments`` is empty then.
+    """
 
     name: str
     arguments: dict[str, Any]
@@ -24,12 +28,13 @@ class WrittenCall:
 
 @dataclass(frozen=True, slots=True)
 class Signatures:
-    """The tools on offer: names, and the JSON types of their parameters, for notations that do not mark types."""
+    """The offered tools: their names, and the JSON types of their parameters, for notations without types."""
 
     types: Mapping[str, Mapping[str, frozenset[str]]]
 
     @classmethod
     def of(cls, tools: Sequence[Mapping[str, Any]]) -> Signatures:
+        """Return the signatures of tool schemas."""
         functions = [tool["function"] for tool in tools]
         return cls({f["name"]: {p: _types(s) for p, s in f["parameters"].get("properties", {}).items()} for f in functions})
 
@@ -37,8 +42,10 @@ class Signatures:
         return name in self.types
 
     def value(self, tool: str, parameter: str, text: str) -> Any:
-        """A value that was written without quotes, as its schema wants it; text that does not fit stays text, for validation to
-        refuse."""
+        """Return a value that was written without quotes, converted to the type in the schema.
+
+        Text that does not fit stays text, so that validation refuses it.
+        """
         types = self.types.get(tool, {}).get(parameter, frozenset())
         if types == {"string"}:
             return text
@@ -56,13 +63,15 @@ def _types(schema: Mapping[str, Any]) -> frozenset[str]:
 
 
 def read_arguments(text: str) -> tuple[dict[str, Any], str | None]:
-    """Arguments from their JSON text, and that text again when it holds no object. Nothing at all means no arguments."""
+    """Parse arguments from JSON text. Returns the arguments, and the text itself when it is no object. Empty text means no
+    arguments.
+    """
     stripped = text.strip()
     if not stripped or stripped == "null":
         return {}, None
     try:
         value = strict_json(stripped)
-        if isinstance(value, str):  # Some servers code the object twice.
+        if isinstance(value, str):  # some servers encode the object twice
             value = strict_json(value)
     except ValueError:
         return {}, stripped[:_SHOWN_CHARS]
@@ -70,8 +79,7 @@ def read_arguments(text: str) -> tuple[dict[str, Any], str | None]:
 
 
 def from_object(value: Any) -> WrittenCall | None:
-    """The call in a JSON object such as ``{"name": ..., "arguments": {...}}``, in the spellings that models use; None when
-    there is none."""
+    """Return the call in a JSON object such as ``{"name": ..., "arguments": {...}}``, in the spellings that models use, or None."""
     if not isinstance(value, dict):
         return None
     inner = value.get("function")
@@ -90,12 +98,11 @@ def from_object(value: Any) -> WrittenCall | None:
 
 
 def wreck(text: str) -> WrittenCall:
-    """What was marked as a call and cannot be read: it goes back to the planner as an error, under its name when that can be
-    made out."""
+    """Return a failed call for text that was marked as a call and cannot be parsed, with its name where that can be found."""
     found = _NAME_IN_WRECK.search(text)
     return WrittenCall(plain_name(found["name"]) if found else "", {}, text.strip()[:_SHOWN_CHARS] or "nothing")
 
 
 def plain_name(name: str) -> str:
-    """A tool's name without the namespace that some models put before it."""
+    """Return a tool's name without the namespace that some models put before it."""
     return name.strip().removeprefix("functions.").removeprefix("default_api.")

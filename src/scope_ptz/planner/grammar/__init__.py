@@ -1,31 +1,34 @@
-"""The built-in planner: a grammar of camera operation, an interpreter, and no model.
+"""The built-in planner: a grammar of camera operation and an interpreter, without a model.
 
-Text becomes lexemes (``tokens``, ``lexicon``, ``numerals``), lexemes a tree (``language.lark``, ``rules``, ``chart``), the tree
-typed steps (``build``, ``compose``), names are bound (``resolve``), and ``program`` runs the steps against the history.
+``lexing`` turns text into lexemes, ``parsing`` turns lexemes into the steps of ``instruction_tree``, ``binding`` resolves the names
+in them, and ``execution`` runs the steps against the history.
 """
 
 from __future__ import annotations
 
+from scope_ptz.builtin_names import GRAMMAR
 from scope_ptz.errors import PlannerError
 from scope_ptz.planner.base import CallTools, Decision, Finish, Planner, State, ToolCall, ToolOutcome
-from scope_ptz.planner.grammar.memory import whereabouts
-from scope_ptz.planner.grammar.program import Program
-from scope_ptz.planner.grammar.understand import Understanding, understand
+from scope_ptz.planner.grammar.binding.understand import Understanding, understand
+from scope_ptz.planner.grammar.execution.camera_history import whereabouts
+from scope_ptz.planner.grammar.execution.program import Program
 
 __all__ = ["GrammarPlanner", "Understanding", "understand"]
 
 
 class GrammarPlanner(Planner):
-    """Plans by rules. Each step replays the program against the recorded outcomes, so nothing is kept in between."""
+    """A planner that follows rules. Each step replays the program against the recorded outcomes, so no state is kept between
+    steps.
+    """
 
-    name = "grammar"
+    name = GRAMMAR
 
     async def step(self, state: State) -> Decision:
         return decide(state)
 
 
 def decide(state: State) -> Decision:
-    """The next decision, from the state alone."""
+    """Return the next decision, which depends only on the state."""
     meaning = understand(state.instruction, state.briefing.presets, state.conversation)
     if meaning.refusal:
         return Finish(kind="refused", text=meaning.refusal)

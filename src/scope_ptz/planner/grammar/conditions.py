@@ -8,13 +8,17 @@ from typing import Literal
 from scope_ptz.tools.arguments import View
 
 Operator = Literal[">=", "<=", ">", "<", "=="]
-Wish = Literal["more", "fewer"]
+Sense = Literal["more", "fewer"]
 
 
 @dataclass(frozen=True, slots=True)
 class PresetRef:
-    """A preset by name, or by its number in the list (-1: the last). ``sure``: the person said that it is a preset;
-    ``determined``: said with "the" or "a"."""
+    """A preset by name, or by its number in the list (-1 is the last).
+
+    Attributes:
+        sure: Whether the instruction says that it is a preset.
+        determined: Whether it has an article.
+    """
 
     name: str = ""
     number: int | None = None
@@ -24,7 +28,12 @@ class PresetRef:
 
 @dataclass(frozen=True, slots=True)
 class Thing:
-    """A described thing; an empty description is a pronoun. ``odd``: made of words that name no thing ("times", "closer")."""
+    """A described thing. An empty description is a pronoun.
+
+    Attributes:
+        definite: Whether it has a definite article.
+        odd: Whether it consists of words that name no thing ("times", "closer").
+    """
 
     text: str = ""
     definite: bool = False
@@ -33,6 +42,8 @@ class Thing:
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
+    """A condition on a count."""
+
     operator: Operator = ">="
     number: float = 1
 
@@ -45,7 +56,7 @@ class Quantity:
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """So many of a thing are visible."""
+    """The condition that a number of things are visible."""
 
     thing: Thing
     quantity: Quantity = Quantity()
@@ -54,13 +65,19 @@ class Seen:
 
 @dataclass(frozen=True, slots=True)
 class Readable:
+    """The condition that the text on a thing can be read."""
+
     thing: Thing
 
 
 @dataclass(frozen=True, slots=True)
 class Holds:
-    """A yes-or-no question about the scene; ``wanted``: the answer that meets the condition. ``question``:
-    where it is not "is it so?"."""
+    """A yes-or-no question about the scene.
+
+    Attributes:
+        wanted: The answer that meets the condition.
+        question: The question, when it is another than "is it so?".
+    """
 
     subject: Thing
     predicate: str
@@ -70,31 +87,31 @@ class Holds:
 
 @dataclass(frozen=True, slots=True)
 class Outnumbers:
-    """There are more (or fewer) of the first than of the second."""
+    """The condition that there are more (or fewer) of the first than of the second."""
 
     first: Thing
     second: Thing
-    wish: Wish = "more"
+    sense: Sense = "more"
 
 
 @dataclass(frozen=True, slots=True)
 class PresetWins:
-    """One preset shows more (or fewer) of a thing than another."""
+    """The condition that one preset shows more (or fewer) of a thing than another."""
 
     thing: Thing
     first: PresetRef
     second: PresetRef
-    wish: Wish = "more"
+    sense: Sense = "more"
 
 
 @dataclass(frozen=True, slots=True)
 class Answered:
-    """ "If so": the last question was answered with yes, or the last count was not zero."""
+    """The condition of "if so": the last question was answered with yes, or the last count was not zero."""
 
 
 @dataclass(frozen=True, slots=True)
 class Joined:
-    """Conditions with "and" (all) or "or" (any) between them."""
+    """Conditions joined by "and" (all) or "or" (any)."""
 
     parts: tuple[Condition, ...]
     mode: Literal["all", "any"]
@@ -102,6 +119,8 @@ class Joined:
 
 @dataclass(frozen=True, slots=True)
 class Negated:
+    """The opposite of a condition."""
+
     part: Condition
 
 

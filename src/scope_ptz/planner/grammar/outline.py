@@ -12,11 +12,11 @@ from typing import Any
 
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import ToolCall, ToolOutcome
-from scope_ptz.planner.grammar import answers as say
-from scope_ptz.planner.grammar import syntax as ast
-from scope_ptz.planner.grammar.motion import arguments_of
-from scope_ptz.planner.grammar.program import Program
-from scope_ptz.planner.grammar.session import Run
+from scope_ptz.planner.grammar import instruction_tree as ast
+from scope_ptz.planner.grammar.execution import answer_sentences as say
+from scope_ptz.planner.grammar.execution.move_arguments import arguments_of
+from scope_ptz.planner.grammar.execution.program import Program
+from scope_ptz.planner.grammar.execution.run_state import Run
 
 MAX_LINES = 200  # a longer outline is cut off
 Imagined = Callable[[str, Mapping[str, Any]], dict[str, Any]]
@@ -133,10 +133,10 @@ def condition_text(condition: ast.Condition) -> str:
             if question:
                 return f"the answer to “{question}” is {'yes' if expected else 'no'}"
             return f"{'the ' if subject.definite else ''}{subject.text} is {'' if expected else 'not '}{predicate}"
-        case ast.Outnumbers(first=first, second=second, wish=wish):
-            return f"{wish} {first.text} than {second.text} are visible"
-        case ast.PresetWins(thing=thing, first=first, second=second, wish=wish):
-            return f"{wish} {thing.text} are visible at {first.name} than at {second.name}"
+        case ast.Outnumbers(first=first, second=second, sense=sense):
+            return f"{sense} {first.text} than {second.text} are visible"
+        case ast.PresetWins(thing=thing, first=first, second=second, sense=sense):
+            return f"{sense} {thing.text} are visible at {first.name} than at {second.name}"
         case ast.Negated(part=ast.Answered()):
             return "the answer was no, or nothing was found"
         case ast.Negated(part=ast.Seen(thing=thing, quantity=quantity)) if quantity == ast.Quantity():

@@ -1,16 +1,16 @@
-"""How steadily a planner chooses its tools: whether small edits of the prompt or of the instruction change what it calls."""
+"""How stable a planner's tool choice is when the prompt or the instruction is edited slightly."""
 
 from scope_ptz.planner.profile.edits import INSTRUCTION_EDITS, PROMPT_EDITS, Edit
-from scope_ptz.planner.profile.report import Sensitivity, measure_sensitivity
-from scope_ptz.planner.profile.trials import Row, Trial, ask_once, load_rows, read_rows
+from scope_ptz.planner.profile.first_calls import InstructionRow, PlannerTrial, ask_once, load_rows, read_rows
+from scope_ptz.planner.profile.prompt_sensitivity import Sensitivity, measure_sensitivity
 
 __all__ = [
     "INSTRUCTION_EDITS",
     "PROMPT_EDITS",
     "Edit",
-    "Row",
+    "InstructionRow",
+    "PlannerTrial",
     "Sensitivity",
-    "Trial",
     "ask_once",
     "load_rows",
     "measure_sensitivity",

@@ -1,5 +1,4 @@
-"""Small edits that leave the meaning as it is: what people do without thinking, to instructions and to prompts. All
-deterministic."""
+"""Small edits that keep the meaning of an instruction or prompt, as people make them without thinking. All are deterministic."""
 
 from __future__ import annotations
 
@@ -8,18 +7,19 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
+from scope_ptz.english import number_word
+
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """``apply`` returns the text unchanged where it has nothing to edit; such a case is not asked again."""
+    """An edit. ``apply`` returns the text unchanged where there is nothing to edit; such a case is not asked again."""
 
     name: str
     where: Literal["prompt", "instruction"]
     apply: Callable[[str], str]
 
 
-_NUMBERS = {"5": "five", "8": "eight", "10": "ten", "15": "fifteen", "20": "twenty", "25": "twenty-five", "30": "thirty",
-            "45": "forty-five", "90": "ninety"}  # fmt: skip
+_NUMBERS = {str(number): number_word(number) for number in (5, 8, 10, 15, 20, 25, 30, 45, 90)}
 _OTHER_WORDS = (
     (r"\bpan\b", "turn"),
     (r"\btake a (picture|snapshot)\b", "take a photo"),
@@ -38,12 +38,12 @@ def _lower_first(text: str) -> str:
 
 
 def _request(opening: str, ending: str) -> Callable[[str], str]:
-    """Courtesy around a command. Questions and conditions have a form of their own and stay."""
+    """Return an edit that puts polite words around a command. Questions and conditions stay as they are."""
     return lambda text: text if _ASKS.match(text) else f"{opening}{_lower_first(text.rstrip('.!'))}{ending}"
 
 
 def _typo(text: str) -> str:
-    """Two letters of the longest word swapped, which must be neither a number, a preset nor a direction."""
+    """Swap two letters of the longest word that is no number, preset or direction."""
     words = [w for w in re.findall(r"[a-z]{6,}", text) if w not in _KEPT_WHOLE]
     if not words:
         return text
@@ -79,7 +79,7 @@ INSTRUCTION_EDITS: tuple[Edit, ...] = (
 
 
 def _reversed_rules(text: str) -> str:
-    """The rules of each list in reverse order."""
+    """Reverse the rules of each list."""
     lines, out, rules = text.split("\n"), list[str](), list[str]()
     for line in [*lines, ""]:
         if line.startswith("- "):

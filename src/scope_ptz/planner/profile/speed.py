@@ -1,4 +1,4 @@
-"""How fast a planner's turns are, and how many of its calls are ones that the tools take, from trials of single instructions."""
+"""How fast a planner answers, and how many of its calls are valid, from trials of single instructions."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from statistics import median
 
 from pydantic import BaseModel, ConfigDict
 
-from scope_ptz.planner.profile.report import Rate
-from scope_ptz.planner.profile.trials import Trial
+from scope_ptz.planner.profile.first_calls import PlannerTrial
+from scope_ptz.planner.profile.prompt_sensitivity import Rate
 
 
 class Spread(BaseModel):
@@ -22,7 +22,7 @@ class Spread(BaseModel):
 
     @classmethod
     def of(cls, values: Sequence[float]) -> Spread | None:
-        """None for no values."""
+        """Return the spread of values, None for no values."""
         if not values:
             return None
         ordered = sorted(values)
@@ -30,9 +30,14 @@ class Spread(BaseModel):
 
 
 class Speed(BaseModel):
-    """Seconds and tokens per second. ``valid``: turns that called tools, and only in ways that the tools take, of those that called
-    at all; ``right``: turns whose first call was the expected one. A turn that failed is in ``failures``, by kind, and in no rate;
-    ``first_failure`` is what the first one said."""
+    """The speed of a planner, in seconds and tokens per second.
+
+    Attributes:
+        valid: Turns with only valid calls, out of the turns with calls.
+        right: Turns whose first call was the expected one.
+        failures: Failed turns by kind; they are excluded from all rates and times.
+        first_failure: The message of the first failure.
+    """
 
     model_config = ConfigDict(frozen=True)
 
@@ -47,8 +52,8 @@ class Speed(BaseModel):
     first_failure: str = ""
 
 
-def speed_of(trials: Sequence[Trial], warm_up: Trial | None = None) -> Speed:
-    """The figures of a planner from its trials. ``warm_up``: one before them, which counts for nothing but its words."""
+def speed_of(trials: Sequence[PlannerTrial], warm_up: PlannerTrial | None = None) -> Speed:
+    """Return the speed of a planner. ``warm_up`` is a trial before the others, used only for its error message."""
     good = [t for t in trials if t.failure is None]
     called = [t for t in good if t.calls or t.invalid]
     return Speed(
@@ -64,8 +69,8 @@ def speed_of(trials: Sequence[Trial], warm_up: Trial | None = None) -> Speed:
     )
 
 
-def _tokens_per_s(trial: Trial) -> float | None:
-    """Tokens a second after the first one; None for replies that were not streamed or are too short to tell."""
+def _tokens_per_s(trial: PlannerTrial) -> float | None:
+    """Return tokens per second after the first token, None for replies that were not streamed or are too short."""
     if trial.first_token_s is None or trial.usage.output_tokens < 2:
         return None
     writing_s = trial.seconds - trial.first_token_s

@@ -20,12 +20,8 @@ from scope_ptz.bench.tasks.expected import (
     Text,
     YesNo,
 )
+from scope_ptz.english import number_word
 
-_SMALL = (
-    "zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve", "thirteen",
-    "fourteen", "fifteen", "sixteen", "seventeen", "eighteen", "nineteen",
-)  # fmt: skip
-_TENS = ("", "", "twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety")
 _PLACES = frozenset({"left", "right", "north", "south", "east", "west", "above", "below", "behind"})
 _UNLIKE = "ACDEFHJKMNPRTUVWXY2346790"
 """Letters and digits that replace a letter of a text to simulate a misreading."""
@@ -144,9 +140,7 @@ def in_words(number: int) -> str:
     """Return a whole number in words below 100, else in digits."""
     if not 0 <= number < 100:
         return str(number)
-    if number < 20:
-        return _SMALL[number]
-    return _TENS[number // 10] + (f"-{_SMALL[number % 10]}" if number % 10 else "")
+    return number_word(number)
 
 
 def _numbers(value: float, unit: Sequence[str]) -> tuple[str, ...]:

@@ -1,5 +1,7 @@
-"""Prompts as versioned files. A file that was released is not changed: a better one gets the next number, so that runs can be
-compared."""
+"""System prompts as versioned files.
+
+A released file is never changed. An improved prompt gets the next number, so that runs stay comparable.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,7 @@ _SEEING = (
 
 @dataclass(frozen=True, slots=True)
 class Prompt:
-    """A system prompt with places for what is known of the camera (``$presets``, ``$pan``, ...)."""
+    """A system prompt with placeholders for what is known about the camera (``$presets``, ``$pan``, ...)."""
 
     name: str
     text: str
@@ -32,12 +34,21 @@ class Prompt:
 
     @property
     def digest(self) -> str:
-        """Names the exact text in a trace."""
+        """A short hash that identifies the exact text in a trace."""
         return sha256(self.text.encode()).hexdigest()[:12]
 
     def fill(self, presets: tuple[str, ...], limits: Limits, start: Pose, *, sees: bool = False) -> str:
-        """The prompt for a camera. ``sees``: the planner gets frames. Raises ``ConfigError`` for a place that nothing is known
-        for."""
+        """Return the prompt for a camera.
+
+        Args:
+            presets: The camera's presets.
+            limits: The camera's limits.
+            start: The pose at the start.
+            sees: Whether the planner takes images.
+
+        Raises:
+            ConfigError: The prompt has an unknown placeholder.
+        """
         pose = start.as_dict()
         numbers = {
             "min_tilt": limits.min_tilt_deg,
@@ -61,12 +72,16 @@ class Prompt:
 
 
 def prompt_names() -> tuple[str, ...]:
-    """The prompts that come with the program."""
+    """Return the names of the packaged prompts."""
     return tuple(sorted(f.name.removesuffix(".md") for f in files(__package__).iterdir() if f.name.endswith(".md")))
 
 
 def load_prompt(name: str = DEFAULT_PROMPT) -> Prompt:
-    """A prompt by name. Raises ``UnknownNameError``."""
+    """Return a prompt by name.
+
+    Raises:
+        UnknownNameError: There is no such prompt.
+    """
     names = prompt_names()
     if name not in names:
         raise UnknownNameError("prompt", name, names)

@@ -1,0 +1,23 @@
+"""Names of what is built in: they appear in options, traces, evaluation logs and reports."""
+
+GRAMMAR = "grammar"
+"""The rule-based planner."""
+
+CHAT = "chat"
+"""A planner that is a model behind an OpenAI-compatible server."""
+
+GROUND_TRUTH = "ground-truth"
+"""Perception that reads the simulator's ground truth."""
+
+NOISY = "noisy"
+"""Ground truth with simulated perception errors."""
+
+NOISY_SOURCE = "noisy-ground-truth"
+"""The source that results of noisy perception name."""
+
+BUILT_IN_PERCEPTION = (GROUND_TRUTH, NOISY)
+DETERMINISTIC = (GRAMMAR, GROUND_TRUTH, NOISY)
+"""Planners and perception that need no model: the same input always gives the same output."""
+
+DEFAULT_SCENE = "highway-works"
+"""The scene that commands use unless told otherwise."""

@@ -1,0 +1,131 @@
+"""Checks of a chat server at any address: the part that has nothing to do with cameras."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator, Awaitable, Callable
+from time import perf_counter
+from typing import Literal
+
+import anyio
+from pydantic import BaseModel, ConfigDict
+
+from scope_ptz.endpoints.catalogue import served_models
+from scope_ptz.endpoints.chat import ChatClient
+from scope_ptz.endpoints.endpoint import Endpoint
+from scope_ptz.endpoints.failures import FailureKind, ServerFailure
+from scope_ptz.errors import ScopeError
+
+Verdict = Literal["ok", "partly", "failed"]
+UNREACHABLE = frozenset(
+    {FailureKind.REFUSED, FailureKind.DNS, FailureKind.TLS, FailureKind.CONNECT_TIMEOUT, FailureKind.UNAUTHORISED}
+)
+"""After one of these failures no further check can show anything."""
+_GREETING = [
+    {"role": "system", "content": "You answer in one short sentence."},
+    {"role": "user", "content": "Say hello."},
+]
+LAST = "a model that is not there"
+"""The check that is reached only when the server answers at all."""
+_NO_MODEL = "no-model-has-this-name"
+
+
+class ServerCheck(BaseModel):
+    """The result of one check.
+
+    Attributes:
+        verdict: "partly" means that SCOPE works with the server, but not as well as it could; "failed" means that it does not.
+        kind: The kind of the failure, if one was raised.
+    """
+
+    model_config = ConfigDict(frozen=True)
+
+    what: str
+    verdict: Verdict
+    detail: str = ""
+    kind: str = ""
+    seconds: float = 0.0
+
+
+Finding = tuple[Verdict, str]
+
+
+async def checked(what: str, check: Callable[[], Awaitable[Finding]]) -> ServerCheck:
+    """Run one check. An error that SCOPE raises on purpose is a failed check."""
+    began, kind = perf_counter(), ""
+    try:
+        verdict, detail = await check()
+    except ScopeError as error:
+        verdict, detail, kind = "failed", str(error), str(getattr(error, "kind", None) or "")
+    return ServerCheck(what=what, verdict=verdict, detail=detail, kind=kind, seconds=round(perf_counter() - began, 3))
+
+
+async def check_chat(endpoint: Endpoint) -> AsyncIterator[ServerCheck]:
+    """Check a chat server. The checks end early when the server is not there or the key is wrong."""
+    patient = endpoint.model_copy(update={"retries": 1})
+    client = ChatClient(patient)
+    try:
+        yield await checked("list of models", lambda: _listing(patient))
+        reached = await checked("an answer", lambda: _answers(client, stream=False))
+        yield reached
+        if reached.kind in UNREACHABLE:
+            return
+        yield await checked("an answer, streamed", lambda: _answers(client, stream=True))
+        yield await checked("two requests at once", lambda: _two_at_once(client))
+        yield await checked(LAST, lambda: _refuses(patient))
+    finally:
+        await client.close()
+
+
+async def _listing(endpoint: Endpoint) -> Finding:
+    try:
+        served = await served_models(endpoint)
+    except ServerFailure as failure:
+        if failure.kind in UNREACHABLE:
+            raise
+        return "partly", f"{failure} Give the model's name yourself."
+    if endpoint.model in served:
+        return "ok", f"{len(served)}, '{endpoint.model}' among them"
+    return "partly", f"'{endpoint.model}' is not among them: {', '.join(served[:10]) or 'none'}"
+
+
+async def _answers(client: ChatClient, *, stream: bool) -> Finding:
+    reply = await client.complete(_GREETING, stream=stream)
+    figures = f"{reply.output_tokens} tokens in {reply.seconds:.2f} s"
+    if not (reply.text or reply.reasoning):
+        return "failed", "the reply is empty"
+    if not reply.output_tokens:
+        return "partly", "it does not report token counts, so budgets and speeds are unknown"
+    if stream and reply.first_token_s is None:
+        return "partly", f"{figures}; not streamed: it arrived in one piece"
+    first = f", the first after {reply.first_token_s:.2f} s" if reply.first_token_s is not None else ""
+    return "ok", figures + first
+
+
+async def _two_at_once(client: ChatClient) -> Finding:
+    failures: list[ServerFailure] = []
+
+    async def ask() -> None:
+        try:
+            await client.complete(_GREETING)
+        except ServerFailure as failure:
+            failures.append(failure)
+
+    async with anyio.create_task_group() as group:
+        group.start_soon(ask)
+        group.start_soon(ask)
+    if failures:
+        raise failures[0]
+    return "ok", "both were answered"
+
+
+async def _refuses(endpoint: Endpoint) -> Finding:
+    client = ChatClient(endpoint.model_copy(update={"model": _NO_MODEL}))
+    try:
+        reply = await client.complete(_GREETING)
+    except ServerFailure as failure:
+        if failure.kind in (FailureKind.NOT_FOUND, FailureKind.BAD_REQUEST):
+            return "ok", f"refused: {failure.kind.value}"
+        return "partly", f"it is not a clear refusal: {failure}"
+    finally:
+        await client.close()
+    return "partly", f"'{reply.model or 'some model'}' answers to any model name: check that it is the right model"

@@ -1,0 +1,141 @@
+"""Calls to a model server with bounded retries and full jitter, one deadline for all attempts, and a circuit breaker."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Awaitable, Callable
+from time import perf_counter
+from typing import TypeVar
+
+import anyio
+
+from scope_ptz.endpoints.breaker import Breaker
+from scope_ptz.endpoints.endpoint import Endpoint
+from scope_ptz.endpoints.failures import Attempt, FailureKind, ServerFailure
+from scope_ptz.endpoints.translate import as_failure
+
+K = FailureKind
+T = TypeVar("T")
+
+RETRIED = frozenset(
+    {
+        K.REFUSED,
+        K.DNS,
+        K.CONNECT_TIMEOUT,
+        K.FIRST_BYTE_TIMEOUT,
+        K.RATE_LIMITED,
+        K.SERVER_ERROR,
+        K.ERROR_BODY,
+        K.CUT_OFF,
+        K.EMPTY,
+        K.MALFORMED,
+    }
+)
+"""Failures that may not occur again. A wrong key, path, request or content type will."""
+
+FIRST_PAUSE_S = 0.5
+LONGEST_PAUSE_S = 8.0
+LONGEST_RETRY_AFTER_S = 30.0
+"""A server that asks for a longer pause counts as failed."""
+
+
+class Caller:
+    """Makes calls to one endpoint. All calls to the endpoint share it, including concurrent ones."""
+
+    def __init__(
+        self,
+        endpoint: Endpoint,
+        *,
+        sleep: Callable[[float], Awaitable[None]] = anyio.sleep,
+        rng: random.Random | None = None,
+        breaker: Breaker | None = None,
+    ) -> None:
+        self.endpoint, self.sleep = endpoint, sleep
+        self.rng, self.breaker = rng or random.Random(), breaker or Breaker()
+
+    async def call(self, attempt: Callable[[], Awaitable[T]]) -> tuple[T, tuple[Attempt, ...]]:
+        """Return the result of ``attempt`` and all attempts made for it.
+
+        Raises:
+            ServerFailure: All attempts failed; ``history`` lists them.
+        """
+        tried: list[Attempt] = []
+        deadline = perf_counter() + self.endpoint.timeouts.total_s
+        waited_s = 0.0
+        while True:
+            result = await self._try(attempt, deadline, waited_s, tried)
+            if not isinstance(result, ServerFailure):
+                return result, tuple(tried)
+            pause_s = self._pause_s(result, len(tried))
+            if pause_s is None or perf_counter() + pause_s + self._least_s(result) >= deadline:
+                raise result.after(tried)
+            await self.sleep(pause_s)
+            waited_s = pause_s
+
+    async def _try(
+        self, attempt: Callable[[], Awaitable[T]], deadline: float, waited_s: float, tried: list[Attempt]
+    ) -> T | ServerFailure:
+        """Make and record one attempt.
+
+        A failure is returned instead of raised, so that it carries no library exception, which may quote a key.
+        """
+        closed_for_s = self.breaker.wait_s()
+        if closed_for_s is not None:
+            tried.append(Attempt(kind=K.CIRCUIT_OPEN, waited_s=waited_s))
+            return self._left_alone(closed_for_s)
+        began = perf_counter()
+        failure: ServerFailure | None = None
+        reported = False
+        try:
+            with anyio.move_on_after(deadline - began) as limit:
+                try:
+                    result = await attempt()
+                except Exception as error:
+                    failure = as_failure(error, self.endpoint)
+                    if failure is None:
+                        raise
+                else:
+                    self.breaker.succeeded()
+                    reported = True
+                    tried.append(Attempt(seconds=perf_counter() - began, waited_s=waited_s))
+                    return result
+            if limit.cancelled_caught:
+                detail = f"{self.endpoint.timeouts.total_s:g} s were allowed"
+                failure = ServerFailure(K.TOTAL_TIMEOUT, where=self.endpoint.url, detail=detail)
+            assert failure is not None  # noqa: S101 - the scope ends with a result, a failure or its deadline
+            self.breaker.failed(failure)
+            reported = True
+        finally:
+            if not reported:
+                self.breaker.abandoned()
+        tokens_in, tokens_out = failure.tokens
+        tried.append(
+            Attempt(
+                kind=failure.kind,
+                status=failure.status,
+                seconds=perf_counter() - began,
+                waited_s=waited_s,
+                input_tokens=tokens_in,
+                output_tokens=tokens_out,
+            )
+        )
+        return failure
+
+    def _pause_s(self, failure: ServerFailure, attempts: int) -> float | None:
+        """Return the pause before the next attempt, None when there is none."""
+        if failure.kind not in RETRIED or attempts > self.endpoint.retries:
+            return None
+        jitter_s = self.rng.uniform(0.0, min(LONGEST_PAUSE_S, FIRST_PAUSE_S * 2.0 ** (attempts - 1)))
+        asked_s = failure.retry_after_s
+        if asked_s is None:
+            return jitter_s
+        return asked_s + 0.1 * jitter_s if asked_s <= LONGEST_RETRY_AFTER_S else None
+
+    def _least_s(self, failure: ServerFailure) -> float:
+        """Return the time that another attempt needs to be worthwhile. A silent server may be silent for as long again."""
+        return self.endpoint.timeouts.first_byte_s if failure.kind is K.FIRST_BYTE_TIMEOUT else 0.0
+
+    def _left_alone(self, for_s: float) -> ServerFailure:
+        last = self.breaker.last
+        why = f"last failure: {last.kind.value}; " if last is not None else ""
+        return ServerFailure(K.CIRCUIT_OPEN, where=self.endpoint.url, detail=f"{why}it will be asked again in {for_s:.0f} s")

@@ -1,0 +1,5 @@
+"""Perception that answers from the simulator's ground truth instead of from pixels."""
+
+from scope_ptz.perception.ground_truth.backend import GroundTruthPerception, TruthReader
+
+__all__ = ["GroundTruthPerception", "TruthReader"]

@@ -1,0 +1,77 @@
+"""Answers to "is there" and "how many"."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from scope_ptz import english
+from scope_ptz.perception.ground_truth.answers.restating import holds_words, none_of, not_stated, noun
+from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, are, name, reply, several, unknown
+from scope_ptz.perception.ground_truth.language import question_tree as s
+from scope_ptz.perception.ground_truth.thing_facts import wears
+from scope_ptz.perception.ground_truth.thing_search import find, things_named
+from scope_ptz.perception.ground_truth.view import Thing, View
+
+TOLD_APART = 3
+"""Up to this many things are listed one by one."""
+
+
+def narrowed(description: s.Description, tests: tuple[s.Test, ...]) -> s.Description:
+    """Return the description with more tests. A superlative among them becomes its order."""
+    orders = [t for t in tests if isinstance(t, s.Order)]
+    rest = tuple(t for t in tests if not isinstance(t, s.Order))
+    return s.Description(
+        tuple(replace(p, tests=(*p.tests, *rest), order=orders[0] if orders else p.order) for p in description.phrases)
+    )
+
+
+def exists(view: View, question: s.Exists) -> AnswerText:
+    """Answer whether there is something."""
+    if not_stated(view, question.what):
+        return unknown(f"I cannot tell: the scene says nothing of any {noun(view, question.what)}")
+    found = find(view, question.what)
+    if question.least != 1 or question.most is not None:
+        yes = question.least <= len(found) and (question.most is None or len(found) <= question.most)
+        return reply(f"{'yes' if yes else 'no'}, there {are(len(found))} {len(found)} {noun(view, question.what, len(found) != 1)}")
+    if not found and not question.negated and (owner := _owner(view, question.what)) is not None:
+        return reply(f"yes, the {name(owner)} has {english.article(' '.join(question.what.phrases[0].words))}")
+    if not found:
+        return reply(f"{'yes' if question.negated else 'no'}, {none_of(view, question.what)}")
+    return reply(f"{'no' if question.negated else 'yes'}, {there_are(view, question.what, found)}")
+
+
+def _owner(view: View, what: s.Description) -> Thing | None:
+    """Return the thing that has the described part as an attribute ("a beacon on the van"), None for none."""
+    phrase = what.phrases[0]
+    if len(what.phrases) != 1 or len(phrase.tests) != 1 or not isinstance(test := phrase.tests[0], s.Relation) or test.kind != "on":
+        return None
+    return next((t for t in find(view, test.other) if wears(view, t, phrase.words)), None)
+
+
+def there_are(view: View, what: s.Description, found: list[Thing]) -> str:
+    """Return a list of found things: "there are 2 cars: a red car on the left and a white car in the middle"."""
+    worn = not things_named(view, what)
+    if len(found) == 1:
+        return f"there is {english.article(noun(view, what))} on {several(found)}" if worn else f"there is {several(found)}"
+    statement = f"there are {len(found)} {noun(view, what, many=True)}"
+    return f"{statement}{', on' if worn else ':'} {several(found)}" if len(found) <= TOLD_APART else statement
+
+
+def count(view: View, question: s.Count) -> AnswerText:
+    """Answer how many there are."""
+    if not_stated(view, question.what):
+        return unknown(f"I cannot tell: the scene says nothing of any {noun(view, question.what)}")
+    total = len(find(view, narrowed(question.what, question.tests)))
+    if len(question.what.phrases) > 1:
+        return reply(f"there {are(total)} {total} in view: {_each(view, question)}")
+    statement = f"{total} {noun(view, question.what, many=total != 1)}"
+    if question.tests:
+        return reply(f"{statement} {holds_words(view, question.tests, total)}")
+    return reply(f"there {are(total)} {statement} in view")
+
+
+def _each(view: View, question: s.Count) -> str:
+    """Return the counts of all parts of a description: "4 cars and 1 van"."""
+    parts = [s.Description((p,)) for p in question.what.phrases]
+    counts = [(len(find(view, narrowed(p, question.tests))), p) for p in parts]
+    return english.listing([f"{n} {noun(view, p, many=n != 1)}" for n, p in counts])

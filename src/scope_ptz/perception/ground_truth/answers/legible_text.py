@@ -1,0 +1,109 @@
+"""Answers about texts. Only legible text is read; for other text the answer says that it is there and why it cannot be read."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from scope_ptz import english
+from scope_ptz.perception.ground_truth.answers.restating import none_of, plural, the
+from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, reply, unknown
+from scope_ptz.perception.ground_truth.language import question_tree as s
+from scope_ptz.perception.ground_truth.thing_search import find
+from scope_ptz.perception.ground_truth.view import Thing, View, concepts_of
+from scope_ptz.simulator.truth import MAX_READING_ANGLE_DEG, MIN_CAP_HEIGHT_PX, TextSighting
+
+
+def read(view: View, question: s.Read) -> AnswerText:
+    """Answer what a thing says, what its number plate says, or everything that can be read."""
+    if question.what is None:
+        return _read(view, None, [t for t in view.texts if not question.plate or is_plate(view, t)], question.plate)
+    things = find(view.for_reading(), question.what)
+    if not things and _PLATES.issuperset(phrase.words for phrase in question.what.phrases):
+        return read(view, s.Read(None, plate=True))  # a plate without its vehicle; plates are texts of vehicles
+    if not things:
+        return unknown(f"I cannot tell: {none_of(view, question.what)}")
+    texts = _texts(view, things, question.plate)
+    return _read(view, question.what, texts, question.plate)
+
+
+def _texts(view: View, things: Sequence[Thing], plate: bool) -> list[TextSighting]:
+    found = [t for t in view.texts if any(view.belongs(t.text.parent, x.id) for x in things)]
+    return [t for t in found if is_plate(view, t) == plate] or ([] if plate else found)
+
+
+def is_plate(view: View, text: TextSighting) -> bool:
+    """Return whether a text is a vehicle's number plate: by what it is on, or by its form on a vehicle."""
+    bearer = view.instances[text.text.parent]
+    concepts = concepts_of(bearer)
+    return "number plate" in concepts or ("vehicle" in concepts and _PLATE.fullmatch(text.text.text.replace(" ", "")) is not None)
+
+
+_PLATE = re.compile(r"(?=.*[0-9])[A-Z]{1,3}[0-9]{1,4}[A-Z]{0,3}")
+
+_PLATES = {words for noun in ("plate", "plates") for words in (("number", noun), ("license", noun), ("licence", noun))}
+
+
+def _is_limit(view: View, text: TextSighting) -> bool:
+    """Return whether a number is a speed limit: the scene says so, or it is a multiple of ten on a sign."""
+    bearer = view.instances[text.text.parent]
+    content = text.text.text.strip()
+    if "signal" in bearer.attributes:
+        return content == str(bearer.attributes["signal"])
+    return content.isdigit() and int(content) % 10 == 0 and "sign" in concepts_of(bearer)
+
+
+def _read(view: View, what: s.Description | None, texts: Sequence[TextSighting], plate: bool) -> AnswerText:
+    subject = the(view, what, plural(what)) if what else "the picture"
+    legible = list(dict.fromkeys(t.text.text for t in texts if t.legible))
+    if legible:
+        quoted = english.listing([f'"{t}"' for t in legible])
+        if plate:
+            return AnswerText(english.sentence(f"the number plate reads {quoted}"))
+        return AnswerText(
+            english.sentence(
+                f"{subject} {'read' if what and plural(what) else 'reads'} {quoted}" if what else f"I can read {quoted}"
+            )
+        )
+    if texts:
+        thing = "a number plate" if plate else "text"
+        return unknown(f"there is {thing} {'on ' + subject if what else 'in view'}, but it is {why_not(texts)} to read")
+    if plate:
+        return unknown(f"I cannot tell: I can see no number plate {'on ' + subject if what else 'in view'}")
+    return reply(f"there is no text on {subject}" if what else "there is no text in view")
+
+
+def why_not(texts: Sequence[TextSighting]) -> str:
+    """Return why the largest of some illegible texts cannot be read."""
+    best = max(texts, key=lambda t: t.cap_height_px)
+    if best.cap_height_px < MIN_CAP_HEIGHT_PX:
+        return "too small"
+    return "too oblique" if best.angle_deg > MAX_READING_ANGLE_DEG else "too much hidden or cut off"
+
+
+def text_exists(view: View, question: s.TextExists) -> AnswerText:
+    """Answer whether there is text, and what it says."""
+    if question.what is None:
+        texts: Sequence[TextSighting] = view.texts
+        where = "in view"
+    else:
+        things = find(view.for_reading(), question.what)
+        if not things:
+            return unknown(f"I cannot tell: {none_of(view, question.what)}")
+        texts = [t for t in view.texts if any(view.belongs(t.text.parent, x.id) for x in things)]
+        where = f"on {the(view, question.what, plural(question.what))}"
+    legible = list(dict.fromkeys(t.text.text for t in texts if t.legible))
+    if legible:
+        return reply(f"yes, I can read {english.listing([f'{chr(34)}{t}{chr(34)}' for t in legible])} {where}")
+    if texts:
+        return unknown(f"there is text {where}, but it is {why_not(texts)} to read")
+    return reply(f"no, there is no text {where}")
+
+
+def spoken_texts(view: View, signs: Sequence[Thing], fact: str) -> AnswerText | None:
+    """Answer with a fact ("speed limit") that is written on some signs, None when they have no text."""
+    texts = _texts(view, signs, plate=False)
+    legible = list(dict.fromkeys(t.text.text for t in texts if t.legible and ("limit" not in fact or _is_limit(view, t))))
+    if legible:
+        return AnswerText(english.sentence(f"the {fact} reads {english.listing([f'{chr(34)}{t}{chr(34)}' for t in legible])}"))
+    return _read(view, None, texts, plate=False) if texts else None

@@ -1,0 +1,101 @@
+"""Answers about the scene as a whole, and about what is happening."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+
+from scope_ptz import english
+from scope_ptz.perception.ground_truth.answers.counted_things import narrowed
+from scope_ptz.perception.ground_truth.answers.locations import what
+from scope_ptz.perception.ground_truth.answers.restating import none_of, noun
+from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, are, metres, name, names, place, reply
+from scope_ptz.perception.ground_truth.answers.values import pose_of
+from scope_ptz.perception.ground_truth.language import question_tree as s
+from scope_ptz.perception.ground_truth.relations import BACKDROP
+from scope_ptz.perception.ground_truth.thing_facts import COLOUR_KEYS, NOTHING, colour_of, fact_words, facts, key_words
+from scope_ptz.perception.ground_truth.thing_search import find
+from scope_ptz.perception.ground_truth.view import Thing, View
+
+MAX_GROUPS = 10
+MAX_TEXTS = 3
+STILL = frozenset({None, "parked", "open", "closed", "lit", "unlit", "standing", "full", "empty", "stationary", "fallen"})
+
+
+def describe(view: View, question: s.Describe) -> AnswerText:
+    """Describe what can be seen, largest first, with the texts that can be read."""
+    if question.what is not None:
+        return _describe_things(view, question.what, question.tests)
+    if question.tests:
+        return _load_of(view, question.tests) or what(view, s.What(s.Description((s.Phrase(("thing",)),)), question.tests))
+    groups = _groups(t for t in view.top_level() if not t.concepts & BACKDROP)
+    if not groups:
+        return reply("I can see nothing that stands out")
+    parts = english.listing(groups[:MAX_GROUPS])
+    texts = list(dict.fromkeys(t.text.text for t in view.texts if t.legible))[:MAX_TEXTS]
+    readable = f". I can read {english.listing([f'{chr(34)}{t}{chr(34)}' for t in texts])}" if texts else ""
+    return reply(f"I can see {parts}{readable}")
+
+
+def _load_of(view: View, tests: tuple[s.Test, ...]) -> AnswerText | None:
+    """Answer with the load of something that carries one according to the scene, None when the question is about something else."""
+    match tests:
+        case (s.Relation(kind="on", other=other),):
+            bearer = next(iter(find(view, other)), None)
+            load = bearer.attributes.get("load") if bearer is not None else None
+            if bearer is not None and isinstance(load, str) and load not in NOTHING:
+                return reply(f"the {name(bearer)} {place(bearer)} carries {load}")
+    return None
+
+
+def _describe_things(view: View, what: s.Description, tests: tuple[s.Test, ...]) -> AnswerText:
+    """Describe things with everything that the scene states about them."""
+    found = find(view, narrowed(what, tests))
+    if not found:
+        return reply(none_of(view, what))
+    if len(found) > MAX_TEXTS:
+        return reply(f"there are {len(found)} {noun(view, what, many=True)}: {names(found)}")
+    return AnswerText(" ".join(english.sentence(_with_details(t)) for t in found))
+
+
+def _with_details(thing: Thing) -> str:
+    details = [
+        f"{' '.join(key_words(k))} {v}" for k, v in facts(thing) if k not in COLOUR_KEYS and not isinstance(v, bool) and k != "kind"
+    ]
+    details += [" ".join(key_words(k)) for k, v in facts(thing) if v is True]
+    texts = [f'it reads "{t}"' for t in thing.texts]
+    spot = f"there is {english.article(name(thing))} {place(thing)}, about {metres(thing.distance_m)} away"
+    return "; ".join([spot, *([", ".join(details)] if details else []), *texts])
+
+
+def _groups(things: Iterable[Thing]) -> list[str]:
+    """Return groups of things, largest on screen first: "3 cars (2 white, 1 red)"."""
+    by_kind: dict[str, list[Thing]] = {}
+    for thing in sorted(things, key=lambda t: -t.sighting.pixels):
+        by_kind.setdefault(thing.category, []).append(thing)
+    parts = []
+    for kind, members in by_kind.items():
+        if len(members) == 1:
+            parts.append(f"{english.article(name(members[0]))} {place(members[0])}")
+            continue
+        colours = Counter(c for c in map(colour_of, members) if c)
+        if list(colours.values()) == [len(members)]:
+            parts.append(f"{len(members)} {next(iter(colours))} {english.plural(kind)}")
+            continue
+        shown = f" ({english.listing([f'{n} {c}' for c, n in colours.most_common()])})" if colours and len(colours) <= 4 else ""
+        parts.append(f"{english.counted(len(members), kind)}{shown}")
+    return parts
+
+
+def happening(view: View) -> AnswerText:
+    """Answer who and what moves or works; if nothing does, what can be seen."""
+    busy = Counter((t.category, doing) for t in view.top_level() if (doing := _doing(t)) is not None)
+    if not busy:
+        return AnswerText(f"Nothing is moving. {describe(view, s.Describe()).text}")
+    parts = [f"{english.article(k) if n == 1 else english.counted(n, k)} {are(n)} {doing}" for (k, doing), n in busy.items()]
+    return reply(english.listing(parts[:MAX_GROUPS]))
+
+
+def _doing(thing: Thing) -> str | None:
+    doing = pose_of(thing)
+    return doing if doing not in STILL else "moving" if "moving" in fact_words(thing) else None

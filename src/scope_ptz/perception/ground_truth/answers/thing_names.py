@@ -1,0 +1,78 @@
+"""How things and places are put into words."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+from scope_ptz import english
+from scope_ptz.perception.ground_truth.relations import SIDE_BAND
+from scope_ptz.perception.ground_truth.thing_facts import colour_of
+from scope_ptz.perception.ground_truth.view import Thing
+
+MAX_NAMED = 8
+"""Lists of things are truncated after this many."""
+
+
+class AnswerText(NamedTuple):
+    """An answer in words. ``known`` is False for "I cannot tell"."""
+
+    text: str
+    known: bool = True
+
+
+def reply(text: str) -> AnswerText:
+    """Return a known answer."""
+    return AnswerText(english.sentence(text))
+
+
+def unknown(text: str) -> AnswerText:
+    """Return an answer that says why the question cannot be answered."""
+    return AnswerText(english.sentence(text), known=False)
+
+
+def name(thing: Thing) -> str:
+    """Return what to call a thing: its name, with its colour if the name has none."""
+    colour = colour_of(thing)
+    words = english.letters(thing.name).split()
+    shown = thing.name if thing.name[:2].isupper() else thing.name[:1].lower() + thing.name[1:]
+    return shown if colour is None or set(english.letters(colour).split()) & set(words) else f"{colour} {shown}"
+
+
+def names(things: Iterable[Thing]) -> str:
+    """Return a list of things in the given order: "a white van, 2 traffic cones and a worker"."""
+    counts = Counter(name(t) for t in things)
+    parts = [english.article(n) if c == 1 else f"{c} {english.plural(n)}" for n, c in counts.items()]
+    if len(parts) > MAX_NAMED:
+        more = sum(list(counts.values())[MAX_NAMED:])
+        parts = [*parts[:MAX_NAMED], f"{more} more thing{'s' if more > 1 else ''}"]
+    return english.listing(parts)
+
+
+def several(things: Sequence[Thing]) -> str:
+    """Return things with their places: "a white van on the left and a red car in the middle"."""
+    return english.listing([f"{english.article(name(t))} {place(t)}" for t in things])
+
+
+def place(thing: Thing) -> str:
+    """Return where a thing is in the frame: "on the left", "at the top right", "in the middle"."""
+    x, y = thing.box.centre
+    side = "left" if x < SIDE_BAND else "right" if x > 1 - SIDE_BAND else ""
+    level = "top" if y < SIDE_BAND * 0.75 else "bottom" if y > 1 - SIDE_BAND * 0.75 else ""
+    if side and not level:
+        return f"on the {side}"
+    return f"at the {' '.join(x for x in (level, side) if x)}" if level else "in the middle"
+
+
+def metres(distance_m: float) -> str:
+    """Return a distance, rounded as a person would round it."""
+    if distance_m < 3:
+        return f"{distance_m:.1f} m"
+    step = 1 if distance_m < 20 else 5 if distance_m < 100 else 10
+    return f"{round(distance_m / step) * step:g} m"
+
+
+def are(count: int) -> str:
+    """Return "is" or "are" for a count."""
+    return "is" if count == 1 else "are"

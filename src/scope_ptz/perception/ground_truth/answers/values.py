@@ -1,0 +1,204 @@
+"""Answers about colours, states, clothes and other facts of things."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+
+from scope_ptz import english
+from scope_ptz.perception.ground_truth.answers.legible_text import spoken_texts
+from scope_ptz.perception.ground_truth.answers.restating import as_asked, none_of, noun, plural, the
+from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, are, place, reply, unknown
+from scope_ptz.perception.ground_truth.language import question_tree as s
+from scope_ptz.perception.ground_truth.language.concepts import singular_phrase
+from scope_ptz.perception.ground_truth.thing_facts import (
+    COLOUR_KEYS,
+    NOTHING,
+    canonical,
+    colour_of,
+    fact_words,
+    facts,
+    is_worn,
+    key_words,
+    names_of,
+    opposite,
+    value_words,
+)
+from scope_ptz.perception.ground_truth.thing_search import find
+from scope_ptz.perception.ground_truth.view import Thing, View
+
+UNSEEN = frozenset(
+    "it time day weather date temperature mood today season month year hour brand owner price name age".split()  # noqa: SIM905
+)
+"""Subjects about which no picture holds the truth."""
+_DOING = frozenset(["doing", "activity", "action", "up"])
+_KEY_SYNONYMS = {
+    "state": {"state", "status", "condition", "position"},
+    "kind": {"kind", "type", "make", "model", "sort"},
+    "activity": {"activity", "action", "doing", "task", "up"},
+    "material": {"material", "made"},
+    "direction": {"direction", "pointing", "facing", "heading", "way"},
+    "carrying": {"carrying", "load", "cargo", "holding", "hold", "carry"},
+}
+
+
+def ask(view: View, question: s.Ask) -> AnswerText:
+    """Answer with the value of an attribute, of one thing or of several."""
+    if question.what is None:
+        return anywhere(view, question.attribute)
+    found = find(view, question.what)
+    if not found:
+        return _of_a_part(view, question) or absent(view, question.what)
+    values = [(t, value_of(t, question.attribute)) for t in found]
+    stated = [(t, v) for t, v in values if v is not None]
+    if not stated:
+        attribute = " ".join(question.attribute)
+        return unknown(f"I cannot tell: the scene does not say ({attribute} of {as_asked(view, question.what)})")
+    verb = next((v for words, v in _VERBS.items() if set(words.split()) & set(question.attribute)), "")
+    if verb == "facing " and all("direction" in t.attributes for t, _ in stated):
+        verb = "pointing "
+    distinct = Counter(v for _, v in stated)
+    if len(distinct) == 1:
+        who = the(view, question.what, many=len(stated) > 1)
+        return reply(f"{who} {are(len(stated))} {verb}{stated[0][1]}")
+    if not plural(question.what) and len(stated) <= 4:
+        return reply(english.listing([f"the {t.category} {place(t)} is {verb}{v}" for t, v in stated]))
+    return reply(
+        f"{len(stated)} {noun(view, question.what, many=True)}: "
+        + english.listing([f"{n} {verb}{v}" for v, n in distinct.most_common()])
+    )
+
+
+def value_of(thing: Thing, attribute: Sequence[str]) -> str | None:
+    """Return an attribute of a thing in words, None when the scene has none."""
+    if attribute[-1] in COLOUR_KEYS:
+        colour = colour_of(thing)
+        return colour if colour or "person" not in thing.concepts else _clothes(thing)
+    if _is_clothes(attribute):
+        return _clothes(thing)
+    wanted = {canonical(english.singular(x)) for x in attribute}
+    synonyms = {x for group in _KEY_SYNONYMS.values() if group & set(attribute) for x in group}
+    for key, value in facts(thing):
+        keys = {canonical(english.singular(x)) for x in key_words(key)}
+        if wanted <= keys or keys & synonyms or keys <= wanted:
+            return _value(key, value)
+    if set(attribute) & _DOING and (pose := pose_of(thing)) is not None:
+        return pose
+    if set(attribute) & _DOING:
+        states = fact_words(thing) & {"moving", "stationary", "walking", "working", "upright", "sitting"}
+        return min(states, default=None)
+    if set(attribute) & _KEY_SYNONYMS["state"]:
+        polar = [f for f in sorted(fact_words(thing)) if any(opposite(f, x) for x in _POLAR)]
+        return polar[0] if polar else None
+    return None
+
+
+_VERBS = {
+    "wearing clothes clothing outfit": "wearing ", "carrying load cargo holding": "carrying ", "made material": "made of ",
+    "direction pointing facing heading way": "facing ", "lane": "in ", "carriageway": "on the ",
+}  # fmt: skip
+"""The words between "is" and the value of some attributes."""
+_GERUNDS = {
+    "stand": "standing", "walk": "walking", "kneel": "kneeling", "shovel": "shovelling", "carry": "carrying something",
+    "point": "pointing", "phone": "talking on the phone", "clipboard": "holding a clipboard", "sit": "sitting", "run": "running",
+    "work": "working", "wave": "waving", "dig": "digging", "drive": "driving",
+}  # fmt: skip
+
+
+def pose_of(thing: Thing) -> str | None:
+    """Return what a person or machine is doing, as the scene states it."""
+    for key in ("activity", "action", "doing", "task", "pose", "state"):
+        if isinstance(value := thing.attributes.get(key), str):
+            return _GERUNDS.get(value, value)
+    return None
+
+
+_POLAR = ("open", "closed", "lit", "unlit", "raised", "lowered", "empty", "full", "moving", "stationary")
+
+
+def _value(key: str, value: object) -> str:
+    if key == "lane":
+        return f"lane {value}" if isinstance(value, int) else f"the {value}"
+    if isinstance(value, bool):
+        return " ".join(key_words(key)) if value else f"not {' '.join(key_words(key))}"
+    return str(value)
+
+
+def _is_clothes(attribute: Sequence[str]) -> bool:
+    return attribute[-1] in {"wearing", "clothes", "clothing", "outfit"}
+
+
+def _clothes(thing: Thing) -> str | None:
+    """Return what a person wears: "an orange vest and a white helmet"."""
+    worn: list[str] = []
+    for key, value in facts(thing):
+        if key in {"wearing", "clothing", "clothes", "outfit", "ppe"}:
+            worn += [str(value)]
+        elif is_worn(key):
+            item = " ".join(x for x in key_words(key) if x not in COLOUR_KEYS)
+            lacking = value is False or str(value).lower() in {"none", "no"}
+            worn.append(f"no {item}" if lacking else english.article(item) if value is True else english.article(f"{value} {item}"))
+    return english.listing(worn) if worn else None
+
+
+def _of_a_part(view: View, question: s.Ask) -> AnswerText | None:
+    """Answer about a part that is a fact of its owner: "the colour of the worker's helmet"."""
+    if question.what is None:
+        return None
+    found = part_values(view, question.what)
+    if not found:
+        return None
+    part = english.singular(question.what.phrases[0].words[-1])
+    if len({v for _, v in found}) == 1:
+        return reply(f"the {part} is {found[0][1]}" if len(found) == 1 else f"all {len(found)} are {found[0][1]}")
+    return reply(english.listing([f"the {part} of the {t.category} {place(t)} is {v}" for t, v in found]))
+
+
+def part_values(view: View, what: s.Description) -> list[tuple[Thing, str]]:
+    """Return owners and values of a part that is a fact of its owner: "helmet of the worker", "cabin door"."""
+    phrase = what.phrases[0]
+    owners = [t.other for t in phrase.tests if isinstance(t, s.Relation) and t.kind == "on"]
+    part = phrase.words
+    if not owners and len(phrase.words) > 1:
+        owners, part = [s.Description((s.Phrase(phrase.words[:-1]),))], phrase.words[-1:]
+    if not owners:
+        owners = [s.Description((s.Phrase(("thing",)),))]
+    return [(t, v) for t in find(view, owners[0]) for v in [_part_value(t, part)] if v is not None]
+
+
+def _part_value(thing: Thing, words: Sequence[str]) -> str | None:
+    wanted = names_of(" ".join(words))
+    for key, value in facts(thing):
+        part = singular_phrase(" ".join(x for x in key_words(key) if x not in COLOUR_KEYS) or key)
+        if part in wanted and isinstance(value, str) and value.lower() not in NOTHING:
+            return value
+    return None
+
+
+def anywhere(view: View, attribute: Sequence[str]) -> AnswerText:
+    """Answer about a fact of any thing ("which lane is closed?"), or else about a text on a sign ("what is the speed limit?")."""
+    if tuple(attribute) == ("thing",) or set(attribute) & UNSEEN:
+        return unknown("I cannot tell that from the picture")
+    stated = [(t, v) for t in view.things for v in [value_of(t, attribute)] if v is not None and _says(t, attribute)]
+    if stated:
+        values = list(dict.fromkeys(v for _, v in stated))
+        return reply(f"the {' '.join(attribute)} is {english.listing(values)}")
+    signs = find(view, s.Description((s.Phrase(tuple(attribute)),)))
+    if "limit" in attribute:
+        signs = [t for t in (signs or view.for_reading().things) if any(x.strip().isdigit() for x in t.texts)] or signs
+    return spoken_texts(view, signs, " ".join(attribute)) or unknown(
+        f"I cannot tell: nothing in view says the {' '.join(attribute)}"
+    )
+
+
+def _says(thing: Thing, attribute: Sequence[str]) -> bool:
+    """Return whether a fact of the thing covers every word asked for."""
+    wanted = {canonical(english.singular(x)) for x in attribute}
+    return any(wanted <= {canonical(english.singular(x)) for x in (*key_words(k), *value_words(v))} for k, v in facts(thing))
+
+
+def absent(view: View, subject: s.Description) -> AnswerText:
+    """Answer a question about something that is not in view."""
+    if any(p.words and p.words[-1] in UNSEEN for p in subject.phrases):
+        return unknown("I cannot tell that from the picture")
+    return unknown(f"I cannot tell: {none_of(view, subject)}")

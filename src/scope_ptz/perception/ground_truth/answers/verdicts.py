@@ -1,0 +1,199 @@
+"""Yes-or-no answers about what is in view."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from scope_ptz import english
+from scope_ptz.perception.ground_truth.answers.counted_things import exists
+from scope_ptz.perception.ground_truth.answers.restating import after_noun, as_asked, holds_words, none_of, noun, plural, the
+from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, name, place, reply, unknown
+from scope_ptz.perception.ground_truth.answers.values import absent, part_values
+from scope_ptz.perception.ground_truth.language import question_tree as s
+from scope_ptz.perception.ground_truth.language.concepts import nouns_in
+from scope_ptz.perception.ground_truth.thing_facts import canonical, colour_of, fact_words, fits_noun, opposite
+from scope_ptz.perception.ground_truth.thing_search import find, holds, noun_of
+from scope_ptz.perception.ground_truth.view import Thing, View
+
+_ANYBODY = frozenset(["anyone", "anybody", "someone", "somebody", "anything", "something"])
+
+
+_EVERYBODY = frozenset(["everyone", "everybody", "everything", "they"])
+
+
+def yes_no(view: View, question: s.YesNo) -> AnswerText:
+    """Answer whether something holds for the subject."""
+    subject, tests = _parts(view, question)
+    if not tests:
+        return exists(view, s.Exists(subject))
+    if (text := _as_text(view, subject, tests)) is not None:
+        return text
+    found = find(view, subject)
+    if not found:
+        return _of_a_part(view, subject, tests) or absent(view, subject)
+    missing = next((m for m in (missing_reference(view, t) for t in tests) if m is not None), None)
+    if missing is not None:
+        return unknown(f"I cannot tell: {none_of(view, missing)}")
+    answers = [_every([holds(view, t, test) for test in tests]) for t in found]
+    if None in answers and True not in answers:
+        predicate = english.listing([after_noun(view, t) for t in tests])
+        return unknown(f"I cannot tell whether {as_asked(view, subject)} {'are' if plural(subject) else 'is'} {predicate}")
+    choice = _choice(view, tests, found)
+    if choice is not None:
+        return choice
+    return _verdict(view, question.scope, subject, tests, found, [t for t, ok in zip(found, answers, strict=True) if ok])
+
+
+def _as_text(view: View, subject: s.Description, tests: tuple[s.Test, ...]) -> AnswerText | None:
+    """Answer "is Brampton on the sign?" as a question about text, when Brampton is no thing."""
+    phrase = subject.phrases[0]
+    if len(tests) != 1 or not isinstance(tests[0], s.Relation) or tests[0].kind != "on" or nouns_in(phrase.words, view.nouns):
+        return None
+    texts = [text for t in find(view.for_reading(), tests[0].other) for text in t.texts]
+    if not texts:
+        return None
+    wanted = english.letters(" ".join(phrase.words))
+    yes = any(wanted in english.letters(text) for text in texts)
+    quoted = english.listing([f'"{text}"' for text in dict.fromkeys(texts)])
+    return reply(f"{'yes' if yes else 'no'}, {as_asked(view, tests[0].other)} reads {quoted}")
+
+
+def _of_a_part(view: View, subject: s.Description, tests: tuple[s.Test, ...]) -> AnswerText | None:
+    """Answer "is the cabin door open?" when the door is a fact of the cabin."""
+    values = part_values(view, subject)
+    if not values or len(tests) != 1 or not isinstance(tests[0], s.Is):
+        return None
+    wanted = canonical(tests[0].words[-1])
+    value = canonical(values[0][1].lower())
+    part = subject.phrases[0].words[-1]
+    statement = f"the {part} {'are' if english.is_plural(part) else 'is'} {value}"
+    return reply(f"{'yes' if wanted in value.split() else 'no'}, {statement}")
+
+
+def missing_reference(view: View, test: s.Test) -> s.Description | None:
+    """Return what a relation refers to when nothing like it is in view."""
+    match test:
+        case s.Not(test=inner):
+            return missing_reference(view, inner)
+        case s.Relation(kind=kind, other=other) if kind != "on":
+            others: tuple[s.Description, ...] = (other,)
+        case s.Measured(other=other):
+            others = (other,)
+        case s.Between(first=first, second=second):
+            others = (first, second)
+        case _:
+            others = ()
+    return next((o for o in others if not find(view, o)), None)
+
+
+def _parts(view: View, question: s.YesNo) -> tuple[s.Description, tuple[s.Test, ...]]:
+    """Split a question into its subject and its tests.
+
+    The predicate may follow the noun within the subject ("gate open"), or be the subject's last restriction.
+    """
+    *others, last = question.subject.phrases
+    tests = list(question.tests)
+    if tests and isinstance(tests[0], s.Is) and not last.tests and not last.order:
+        last = replace(last, words=(*last.words, *tests.pop(0).words))  # type: ignore[union-attr]
+    head, after = noun_of(view, last.words)
+    if after:
+        tests.insert(0, s.Is(after))
+        last = replace(last, words=head)
+    if not tests and last.tests:
+        tests = [last.tests[-1]]
+        last = replace(last, tests=last.tests[:-1])
+        others = [replace(p, tests=tuple(t for t in p.tests if t not in tests)) for p in others]
+    if tests and isinstance(hidden := tests[-1], s.Relation):
+        far = hidden.other.phrases[-1]
+        head, after = noun_of(view, far.words)
+        if after and nouns_in(far.words, view.nouns):
+            tests[-1] = replace(hidden, other=s.Description((*hidden.other.phrases[:-1], replace(far, words=head))))
+            tests.append(s.Is(after))
+    while len(tests) > 1 and isinstance(tests[0], s.Region | s.Relation | s.Between):
+        last = replace(last, tests=(*last.tests, tests.pop(0)))
+    return s.Description((*others, last)), tuple(tests)
+
+
+def _every(answers: Sequence[bool | None]) -> bool | None:
+    return False if False in answers else None if None in answers else True
+
+
+def _choice(view: View, tests: Sequence[s.Test], found: list[Thing]) -> AnswerText | None:
+    """Answer "red or white?" by naming the one that holds."""
+    if len(tests) != 1 or not isinstance(tests[0], s.Any):
+        return None
+    options = tests[0].tests
+    held = [o for o in options if any(holds(view, t, o) for t in found)]
+    if held and len(found) == 1:
+        return reply(f"the {name(found[0])} {holds_words(view, held, 1)}")
+    if held:
+        counts = [(sum(holds(view, t, o) is True for t in found), o) for o in held]
+        return reply(english.listing([f"{n} of {len(found)} {holds_words(view, [o], n)}" for n, o in counts]))
+    fact = _instead(view, options[0], found)
+    return reply(f"neither: {fact}") if fact else None
+
+
+def _verdict(
+    view: View, scope: str, subject: s.Description, tests: tuple[s.Test, ...], found: list[Thing], yes: list[Thing]
+) -> AnswerText:
+    """Answer yes or no. ``found``: the things asked about; ``yes``: those of them for which the tests hold."""
+    total, many = len(found), noun(view, subject, many=True)
+    if any(p.words[-1] in _EVERYBODY for p in subject.phrases if p.words):
+        scope = "all"
+    some = scope == "any" or any(p.words[-1] in _ANYBODY for p in subject.phrases if p.words)
+    share = f"{len(yes)} of the {total} {many} {holds_words(view, tests, len(yes))}"
+    if scope == "none":
+        return reply(f"no, {share}" if yes else f"yes, none of the {many} {holds_words(view, tests, 1)}")
+    if not yes:
+        return _none_of_them(view, subject, tests, found, some=some)
+    if len(yes) == total:
+        several = total > 1 and len(subject.phrases) == 1
+        every = f"{'both' if total == 2 else f'all {total}'} {many}" if several else _subject_words(view, subject, total)
+        return reply(f"yes, {every} {holds_words(view, tests, total)}")
+    if scope == "all" or (plural(subject) and not some):
+        return reply(f"no, only {share}")
+    where = f": the one {place(yes[0])}" if len(yes) == 1 else ""
+    return reply(f"yes, {share}{where}")
+
+
+def _none_of_them(view: View, subject: s.Description, tests: tuple[s.Test, ...], found: list[Thing], *, some: bool) -> AnswerText:
+    """Answer no, with what is the case instead where that is known. ``some``: the question was about any of the things."""
+    total, union = len(found), len(subject.phrases) > 1
+    fact = _instead(view, tests[-1], found) if len(tests) == 1 and not union else None
+    if fact:
+        return reply(f"no, {fact}")
+    if some or (total > 1 and not union):
+        return reply(f"no, none of the {total} {noun(view, subject, many=True)} in view {holds_words(view, tests, 1)}")
+    return reply(f"no, {_subject_words(view, subject, total)} {holds_words(view, tests, total, negated=True)}")
+
+
+def _subject_words(view: View, subject: s.Description, total: int) -> str:
+    """Return the subject in words: "the red car", "the cars"."""
+    return the(view, subject) if total == 1 and len(subject.phrases) == 1 else as_asked(view, subject)
+
+
+def _instead(view: View, test: s.Test, found: list[Thing]) -> str | None:
+    """Return what is the case instead of a loose word: "the van is white", "the gate is closed"."""
+    if not isinstance(test, s.Is) or len({name(t) for t in found}) > 1:
+        return None
+    thing, wanted = found[0], canonical(test.words[-1])
+    colour = colour_of(thing)
+    kind = thing.category
+    if wanted in english.COLOURS and colour:
+        return f"the {kind} is {colour}" if len(found) == 1 else f"the {english.plural(kind)} are {colour}"
+    for fact in sorted(fact_words(thing)):
+        if opposite(wanted, fact):
+            return f"the {kind} is {fact}" if len(found) == 1 else f"the {english.plural(kind)} are {fact}"
+    if nouns_in(test.words) and not fits_noun(view, thing, test.words[-1]):
+        return f"it is {english.article(name(thing))}"
+    return None
+
+
+def is_a(view: View, question: s.IsA) -> AnswerText:
+    """Answer whether a thing is of a kind."""
+    found = find(view, question.subject)
+    if not found:
+        return unknown(f"I cannot tell: {none_of(view, question.subject)}")
+    fitting = find(view, question.what)
+    return reply(f"{'yes' if found[0] in fitting else 'no'}, it is {english.article(name(found[0]))}")

@@ -1,0 +1,100 @@
+"""The simulator's ground truth as a perception backend. It reads the scene that a frame was taken in, never the frame's pixels."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+from anyio import to_thread
+
+from scope_ptz.builtin_names import GROUND_TRUTH
+from scope_ptz.camera.base import Frame
+from scope_ptz.errors import PackError, PerceptionError, UnknownNameError
+from scope_ptz.geometry import Projection
+from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Point, Points
+from scope_ptz.perception.ground_truth.answers import AnswerText, answer
+from scope_ptz.perception.ground_truth.language import parse_description, parse_question
+from scope_ptz.perception.ground_truth.language.question_tree import Describe
+from scope_ptz.perception.ground_truth.thing_search import find
+from scope_ptz.perception.ground_truth.view import Thing, View, read_view
+from scope_ptz.simulator.pack import Scene
+from scope_ptz.simulator.truth import ViewTruth, view_truth
+
+TruthReader = Callable[[Scene, str, Projection, float], ViewTruth]
+
+
+class GroundTruthPerception(Perception):
+    """Answers from the ground truth of simulated frames. Frames of real cameras have none and raise ``PerceptionError``.
+
+    Visibility and legibility are as the simulator defines them. Boxes come largest first, unless the description orders them ("the
+    nearest car"); they carry the thing's name and no score.
+    """
+
+    name = GROUND_TRUTH
+    handles_panoramas = True
+
+    def __init__(self, open_scene: Callable[[str], Scene], read_truth: TruthReader = view_truth) -> None:
+        """Set up the backend.
+
+        Args:
+            open_scene: Returns a scene by name.
+            read_truth: Computes the ground truth of a view.
+        """
+        self.open_scene = open_scene
+        self.read_truth = read_truth
+
+    async def caption(self, frame: Frame) -> Caption:
+        began = time.perf_counter()
+        reply = await to_thread.run_sync(lambda: answer(self.view(frame, ""), Describe()))
+        return Caption(text=reply.text, source=self.name, raw=reply.text, latency_s=time.perf_counter() - began)
+
+    async def query(self, frame: Frame, question: str) -> Answer:
+        began = time.perf_counter()
+        reply = await to_thread.run_sync(self._answer, frame, question)
+        return Answer(text=reply.text, known=reply.known, source=self.name, raw=reply.text, latency_s=time.perf_counter() - began)
+
+    async def detect(self, frame: Frame, description: str) -> Detections:
+        began = time.perf_counter()
+        things = await to_thread.run_sync(self._find, frame, description)
+        boxes = tuple(t.box for t in things)
+        return Detections(boxes=boxes, source=self.name, raw=_ids(things), latency_s=time.perf_counter() - began)
+
+    async def point(self, frame: Frame, description: str) -> Points:
+        began = time.perf_counter()
+        things = await to_thread.run_sync(self._find, frame, description)
+        points = tuple(Point(x=t.sighting.point[0], y=t.sighting.point[1], label=t.name) for t in things)
+        return Points(points=points, source=self.name, raw=_ids(things), latency_s=time.perf_counter() - began)
+
+    def view(self, frame: Frame, asked: str) -> View:
+        """Return everything that a simulated frame shows. ``asked`` does not affect the truth, but simulated noise depends on
+        it.
+        """
+        origin = frame.origin
+        if origin is None:
+            raise PerceptionError(
+                "Ground truth exists for simulated frames only, and this frame comes from a real camera. Choose another perception."
+            )
+        try:
+            scene = self.open_scene(origin.scene)
+            truth = self.read_truth(scene, origin.viewpoint, frame.projection, origin.time_s)
+        except (PackError, UnknownNameError) as error:
+            raise PerceptionError(f"The ground truth of this frame cannot be read: {error}") from error
+        return read_view(self.perceived(truth, frame, asked), scene.file, origin.time_s)
+
+    def perceived(self, truth: ViewTruth, frame: Frame, asked: str) -> ViewTruth:  # noqa: ARG002
+        """Return the part of the truth that is perceived, here all of it."""
+        return truth
+
+    def _answer(self, frame: Frame, question: str) -> AnswerText:
+        if not question.strip():
+            raise PerceptionError("The question is empty.")
+        return answer(self.view(frame, question), parse_question(question))
+
+    def _find(self, frame: Frame, description: str) -> list[Thing]:
+        if not description.strip():
+            raise PerceptionError("The description is empty.")
+        return find(self.view(frame, description), parse_description(description))
+
+
+def _ids(things: list[Thing]) -> str:
+    return " ".join(t.id for t in things)

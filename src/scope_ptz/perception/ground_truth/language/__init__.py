@@ -1,0 +1,5 @@
+"""English about pictures: noun phrases ("the second red car from the left") and questions, parsed to plain data."""
+
+from scope_ptz.perception.ground_truth.language.question_parser import parse_description, parse_question
+
+__all__ = ["parse_description", "parse_question"]

@@ -1,0 +1,84 @@
+"""The choice between several readings: a cost for each, by preferences that hold for all scenes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+from scope_ptz.perception.ground_truth.language import question_tree as s
+from scope_ptz.perception.ground_truth.language.concepts import lexicon, nouns_in
+
+_SPECIFIC: tuple[type[Any], ...] = (
+    s.CompareCount, s.Compare, s.Which, s.HowFar, s.MostCommon, s.TextExists, s.Read, s.IsA, s.Where, s.Count, s.CountKinds,
+    s.Happening,
+)  # fmt: skip
+
+_TEXTS = frozenset(
+    [
+        "text",
+        "texts",
+        "writing",
+        "words",
+        "lettering",
+        "written",
+        "printed",
+        "painted",
+        "name",
+        "number",
+        "colour",
+        "colours",
+        "color",
+        "colors",
+    ]
+)
+"""Words for texts and properties, which name no things."""
+
+
+def cost(reading: Any) -> tuple[float, str]:
+    """Return the cost of a reading; lower is better. Its text breaks ties, so the choice never depends on the parser's order."""
+    kind = 0.0 if isinstance(reading, _SPECIFIC) else 20.0
+    return kind + _cost(reading), repr(reading)
+
+
+def _cost(node: Any) -> float:
+    if isinstance(node, tuple):
+        return sum(_cost(child) for child in node)
+    if not is_dataclass(node):
+        return 0.0
+    total = sum(_cost(getattr(node, field.name)) for field in fields(node))
+    match node:
+        case s.Phrase(words=("thing",)):
+            total += 1.5
+        case s.Phrase(words=words):
+            total += 1.0 if nouns_in(words) else 2.0
+            total += 4.0 if words[-1] in _TEXTS else 0.0
+            total += 0.3 if nouns_in(words) and nouns_in(words)[0][1] < len(words) else 0.0
+            total += 0.2 * max(0, len(node.tests) - 1)
+        case s.Is(words=words):
+            total += 3.0 if nouns_in(words) else 0.5
+        case s.Which(options=s.Description(phrases=(_,))):
+            total += 24.0  # "who is nearest the van" does not ask about the van
+        case s.Order(reference=reference):
+            total += 3.0 if reference is not None else 0.0
+        case s.Ask(attribute=words):
+            total += 3.0 if nouns_in(words) else 0.0
+        case _:
+            pass
+    return total + 0.1 * _misplaced(node)
+
+
+def _misplaced(node: Any) -> float:
+    """Return the cost of clothes on something that is no person: "the worker next to the van wearing a helmet" is about the
+    worker.
+    """
+    if not isinstance(node, s.Phrase) or not any(isinstance(t, s.Has) and t.worn for t in node.tests):
+        return 0.0
+    return 0.0 if is_person(node.words) else 50.0
+
+
+def is_person(words: Sequence[str]) -> bool:
+    """Return whether the noun of a phrase is a kind of person."""
+    spans = nouns_in(words)
+    concept = lexicon().concept(" ".join(words[slice(*spans[0])])) if spans else None
+    return concept is not None and "person" in lexicon().kinds(concept)

@@ -1,0 +1,61 @@
+"""Parsing descriptions and questions. Lark finds every reading that the grammar allows, and the cheapest one wins."""
+
+from __future__ import annotations
+
+from functools import cache, lru_cache
+from importlib.resources import files
+
+from lark import Lark
+from lark.exceptions import LarkError
+from lark.visitors import CollapseAmbiguities
+
+from scope_ptz.perception.ground_truth.language.ambiguity import cost
+from scope_ptz.perception.ground_truth.language.concepts import nouns_in
+from scope_ptz.perception.ground_truth.language.question_builder import QuestionBuilder
+from scope_ptz.perception.ground_truth.language.question_tree import Description, Exists, Phrase, Question
+from scope_ptz.perception.ground_truth.language.tokeniser import Passed, tokenise
+
+MAX_TOKENS = 40
+"""Longer input is no description of a picture, and would take long to parse."""
+
+MAX_LINKS = 6
+"""The number of readings multiplies with every "next to", "with" and "that"; with more of them the meaning is unclear anyway."""
+
+_LINKS = frozenset({"REL", "WITH", "WITHOUT", "WEAR", "HAVE", "OF", "BETWEEN", "THAT", "FROM", "TO", "EXCEPT"})
+
+
+@cache
+def _grammar() -> Lark:
+    text = files(__package__).joinpath("grammar.lark").read_text("utf-8")
+    return Lark(text, parser="earley", lexer=Passed, ambiguity="explicit", start=["description", "question"])
+
+
+@lru_cache(maxsize=512)
+def parse_description(text: str) -> Description:
+    """Return the best reading of a noun phrase. A text that fits no rule becomes a list of words that must all apply."""
+    found = _best(text, "description")
+    if isinstance(found, Description):
+        return found
+    return Description((Phrase(tuple(str(t) for t in tokenise(text) if t.type in {"W", "COLOUR", "SIDE", "NUM", "TEXTNOUN"})),))
+
+
+@lru_cache(maxsize=512)
+def parse_question(text: str) -> Question | None:
+    """Return the best reading of a question, None when it fits no rule."""
+    found = _best(text, "question") or _best(text, "description")
+    if not isinstance(found, Description):
+        return found
+    known = all(nouns_in(p.words) for p in found.phrases)  # "any vehicles?" without its verb
+    return Exists(found) if known else None
+
+
+def _best(text: str, start: str) -> Description | Question | None:
+    tokens = tokenise(text)
+    if not 0 < len(tokens) <= MAX_TOKENS or sum(t.type in _LINKS for t in tokens) > MAX_LINKS:
+        return None
+    try:
+        forest = _grammar().parse(tokens, start=start)
+    except LarkError:
+        return None
+    readings = [QuestionBuilder().transform(tree) for tree in CollapseAmbiguities().transform(forest)]
+    return min(readings, key=cost, default=None)

@@ -1,0 +1,286 @@
+"""Descriptions and questions as plain data. Words are in lower case, and nothing is resolved against a scene yet."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+RelationKind = Literal["left", "right", "above", "below", "front", "behind", "near", "on", "facing"]
+Side = Literal["left", "right", "top", "bottom", "middle", "near", "far"]
+OrderKey = Literal["left", "right", "top", "bottom", "nearest", "furthest", "biggest", "smallest", "tallest", "widest"]
+Words = tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Phrase:
+    """One noun phrase. ``words`` is its core ("red car", "cars parked"); the scene decides where the noun ends."""
+
+    words: Words
+    tests: tuple[Test, ...] = ()
+    order: Order | None = None
+    ordinal: int | None = None
+    amount: int | None = None
+    """How many are meant ("the two nearest cones"); used only together with ``order``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Description:
+    """Phrases joined by "and" or "or": everything that fits any of them."""
+
+    phrases: tuple[Phrase, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """A superlative: nearest to or furthest from ``reference`` ("closest to the van"), or else from the camera."""
+
+    key: OrderKey
+    reference: Description | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Relation:
+    """A relation to other things. ``preposition`` is the preposition in the text, because several prepositions mean one kind."""
+
+    kind: RelationKind
+    other: Description
+    preposition: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Between:
+    """A place between two things."""
+
+    first: Description
+    second: Description
+
+
+@dataclass(frozen=True, slots=True)
+class Region:
+    """A part of the frame: one or two sides. ``half`` means a half ("left half") instead of a band ("on the left")."""
+
+    sides: tuple[Side, ...]
+    half: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Has:
+    """A test for what something has ("with a yellow helmet", "wearing orange vests"). ``worn``: only a person can be meant."""
+
+    what: Description
+    worn: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Says:
+    """Bears a text: these words, or any text when there are none."""
+
+    words: Words
+
+
+@dataclass(frozen=True, slots=True)
+class Is:
+    """Loose words: "parked", "lit", "in use"."""
+
+    words: Words
+
+
+@dataclass(frozen=True, slots=True)
+class Faces:
+    """Points to one side: "facing left"."""
+
+    side: Side
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """A comparison of size or distance ("closer than the van", "bigger than the car")."""
+
+    key: OrderKey
+    other: Description
+
+
+@dataclass(frozen=True, slots=True)
+class Within:
+    """Within some metres of the camera or of ``other``; with ``beyond``, further away than that."""
+
+    metres: float
+    other: Description | None = None
+    beyond: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Not:
+    """The opposite of a test."""
+
+    test: Test
+
+
+@dataclass(frozen=True, slots=True)
+class Any:
+    """At least one of the tests holds ("red or blue")."""
+
+    tests: tuple[Test, ...]
+
+
+Test = Relation | Between | Region | Has | Says | Is | Faces | Measured | Within | Not | Any | Order
+
+
+# Questions
+
+
+@dataclass(frozen=True, slots=True)
+class Exists:
+    """Ask whether there is something.
+
+    Attributes:
+        negated: Whether the question is "is there no ...".
+        least: How many there must be at least.
+        most: How many there may be at most.
+    """
+
+    what: Description
+    negated: bool = False
+    least: int = 1
+    most: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Count:
+    """Ask how many there are, or for how many the tests hold."""
+
+    what: Description
+    tests: tuple[Test, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class CountKinds:
+    """Ask how many colours or kinds of a thing there are."""
+
+    attribute: Words
+    what: Description
+
+
+@dataclass(frozen=True, slots=True)
+class YesNo:
+    """Ask whether tests hold for a subject. Without tests, the predicate is within the words of the subject."""
+
+    subject: Description
+    tests: tuple[Test, ...]
+    scope: Literal["the", "all", "any", "none"] = "the"
+
+
+@dataclass(frozen=True, slots=True)
+class IsA:
+    """Ask whether something is of a kind ("is the red vehicle a bus?")."""
+
+    subject: Description
+    what: Description
+
+
+@dataclass(frozen=True, slots=True)
+class Ask:
+    """Ask for the value of an attribute ("what colour is the van?", "which lane is closed?"). ``what`` None means any thing."""
+
+    attribute: Words
+    what: Description | None
+
+
+@dataclass(frozen=True, slots=True)
+class Read:
+    """Ask for the text on something, or for all text when ``what`` is None. ``plate``: only the number plate."""
+
+    what: Description | None
+    plate: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class TextExists:
+    """Ask whether there is any text, or whether it can be read."""
+
+    what: Description | None
+
+
+@dataclass(frozen=True, slots=True)
+class Where:
+    """Ask where something is."""
+
+    what: Description
+
+
+@dataclass(frozen=True, slots=True)
+class What:
+    """Ask for the names of all things that fit ("what is behind the barrier?", "which cars are parked?")."""
+
+    what: Description
+    tests: tuple[Test, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Identify:
+    """Ask what something is ("what is the thing on the left?", "what kind of vehicle is behind the fence?")."""
+
+    what: Description
+
+
+@dataclass(frozen=True, slots=True)
+class Which:
+    """Ask which of several things comes first ("which is closer, the van or the lorry?")."""
+
+    key: OrderKey
+    options: Description
+
+
+@dataclass(frozen=True, slots=True)
+class HowFar:
+    """Ask how far away something is, from the camera or from ``other``."""
+
+    what: Description
+    other: Description | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Compare:
+    """Ask whether one thing exceeds another ("is the van bigger than the lorry?")."""
+
+    key: OrderKey
+    first: Description
+    second: Description
+
+
+@dataclass(frozen=True, slots=True)
+class CompareCount:
+    """Ask whether there are more, fewer or as many of one kind as of another. ``which``: ask which there are more of."""
+
+    sense: Literal["more", "fewer", "same"]
+    first: Description
+    second: Description
+    which: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class MostCommon:
+    """Ask for the most or least common colour or kind."""
+
+    attribute: Words
+    what: Description
+    least: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Describe:
+    """Ask for a description of the view, of a part of it, or of a thing."""
+
+    tests: tuple[Test, ...] = ()
+    what: Description | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Happening:
+    """Ask what is happening."""
+
+
+Question = (
+    Exists | Count | CountKinds | YesNo | IsA | Ask | Read | TextExists | Where | What | Identify | Which | HowFar | Compare
+    | CompareCount | MostCommon | Describe | Happening
+)  # fmt: skip

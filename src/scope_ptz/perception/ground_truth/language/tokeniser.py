@@ -1,0 +1,202 @@
+"""From text to typed tokens: the closed-class phrases of the vocabulary, numbers, ordinals, quoted text, and ``W`` for other
+words.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+from lark import Token
+from lark.lexer import Lexer
+
+from scope_ptz import english
+from scope_ptz.perception.ground_truth.language.concepts import lexicon
+from scope_ptz.perception.ground_truth.language.word_splitting import split
+
+_FRAME_WORDS = frozenset(
+    [
+        "frame",
+        "picture",
+        "image",
+        "view",
+        "screen",
+        "shot",
+        "photo",
+        "photograph",
+        "scene",
+        "panorama",
+        "footage",
+        "video",
+        "camera",
+        "surroundings",
+        "sight",
+    ]
+)
+_FRAME_FILLERS = frozenset(
+    [
+        "the",
+        "this",
+        "that",
+        "your",
+        "our",
+        "current",
+        "entire",
+        "whole",
+        "full",
+        "present",
+        "camera",
+        "visible",
+        "given",
+        "overall",
+        "same",
+    ]
+)
+_PLACE_WORDS = frozenset(["site", "area", "place", "premises", "property", "worksite"])
+_FRAME_PREPOSITIONS = frozenset(["in", "of", "from", "on", "across", "within", "throughout", "inside", "around", "for"])
+_TEXT_ENDS = frozenset({"visible", "there", "?"})
+_PARTICLES = frozenset(["on", "off", "up", "down", "in", "out"])
+
+
+class Passed(Lexer):
+    """A lexer that gives Lark the tokens made in this module."""
+
+    __future_interface__ = 1
+
+    def __init__(self, lexer_conf: Any) -> None:
+        pass
+
+    def lex(self, lexer_state: Any, _parser_state: Any) -> Iterator[Token]:
+        yield from lexer_state.text
+
+
+@cache
+def _phrases() -> tuple[dict[tuple[str, ...], tuple[str, str]], int]:
+    """Return every closed-class phrase with its type and value, and the length of the longest."""
+    table: dict[tuple[str, ...], tuple[str, str]] = {}
+    for line in files(__package__).joinpath("vocabulary.txt").read_text("utf-8").splitlines():
+        if not line.strip() or line.startswith("#"):
+            continue
+        kind, _, phrases = line.partition(" : ")
+        name, _, value = kind.strip().partition("=")
+        listed = [",", ";"] if name == "COMMA" else [p.strip().strip('"') for p in phrases.split(",")]
+        for phrase in listed:
+            table.setdefault(tuple(phrase.split()), (name, value or phrase))
+    for word, name in (("which", "WHICH"), ("who", "WHO")):
+        table[(word,)] = (name, word)
+    return table, max(map(len, table))
+
+
+def tokenise(text: str) -> list[Token]:
+    """Return the typed tokens of a description or question."""
+    words = _without_frame(split(text))
+    table, _ = _phrases()
+    tokens: list[Token] = []
+    i = 0
+    while i < len(words):
+        if size := _noun(words, i, table):
+            tokens += [Token("W", word) for word in words[i : i + size]]
+            i += size
+        elif size := _closed_class_length(words, i, starts=not tokens):
+            i = _add_closed_class(tokens, words, i, size)
+        else:
+            counts = words[i] == "one" and i + 1 < len(words) and (words[i + 1],) not in table
+            tokens.append(Token("NUM", "1") if counts else _open(words[i]))
+            i += 1
+    while tokens and tokens[0].type == "COMMA":
+        tokens.pop(0)
+    return tokens
+
+
+def _closed_class_length(words: list[str], start: int, *, starts: bool) -> int:
+    """Return how many words from here on are a closed-class phrase, 0 for none. ``starts``: no token came before."""
+    table, longest = _phrases()
+    for size in range(min(longest, len(words) - start), 0, -1):
+        found = table.get(tuple(words[start : start + size]))
+        if found and not (starts and found[0] == "THAT"):
+            return size
+    return 0
+
+
+def _add_closed_class(tokens: list[Token], words: list[str], i: int, size: int) -> int:
+    """Append the token of a closed-class phrase. Return the index of the next word."""
+    kind, value = _phrases()[0][tuple(words[i : i + size])]
+    raw = " ".join(words[i : i + size])
+    if raw in _PARTICLES and i + size == len(words):
+        if not tokens or tokens[0].type not in {"WHAT", "WHICH", "WHERE"}:
+            tokens.append(Token("W", raw))
+    elif kind != "SKIP":
+        if kind in {"WHICH", "WHAT"} and [t.type for t in tokens] == ["REL"]:
+            tokens.pop()  # "in which lane is ..."
+        tokens.append(Token(kind, f"{value}:{raw}" if kind == "REL" else raw if kind in {"SAYS", "READ"} else value))
+    i += size
+    if kind == "SAYS" and not (tokens[0].type == "WHAT" and any(t.type == "DOES" for t in tokens)):
+        literal, i = _literal(words, i)
+        if literal:
+            tokens.append(Token("TEXT", literal))
+    return i
+
+
+def _noun(words: list[str], start: int, table: dict[tuple[str, ...], tuple[str, str]]) -> int:
+    """Return how many words from here on are a known noun that contains a closed-class word ("charging points"), 0 for none."""
+    for size in range(min(_LONGEST_NOUN, len(words) - start), 1, -1):
+        phrase = words[start : start + size]
+        if any((word,) in table for word in phrase[1:]) and (phrase[0],) not in table and lexicon().concept(" ".join(phrase)):
+            return size
+    return 0
+
+
+_LONGEST_NOUN = 4
+
+
+def _open(word: str) -> Token:
+    if word[0] in "\"'" and len(word) > 2:
+        return Token("TEXT", word[1:-1])
+    if english.ordinal(word) is not None:
+        return Token("ORD", str(english.ordinal(word)))
+    if english.cardinal(word) is not None and word != "one":
+        return Token("NUM", word)
+    return Token("W", word)
+
+
+def _literal(words: list[str], start: int) -> tuple[str, int]:
+    """Return the text after "says": the quoted string, or everything up to the end."""
+    if start < len(words) and words[start][0] in "\"'":
+        return words[start].strip("\"'"), start + 1
+    end = start
+    while end < len(words) and words[end] not in _TEXT_ENDS:
+        end += 1
+    while end > start + 1 and tuple(words[end - 2 : end]) in {("on", "it"), ("on", "them")}:
+        end -= 2
+    return " ".join(words[start:end]), end + (2 if words[end : end + 2] in (["on", "it"], ["on", "them"]) else 0)
+
+
+def _without_frame(words: list[str]) -> list[str]:
+    """Drop "in the picture", "of the whole scene" and the like, because every question is about the picture."""
+    kept: list[str] = []
+    i = 0
+    while i < len(words):
+        end = i + 1
+        if words[i] in _FRAME_PREPOSITIONS and i > 0:
+            while end < len(words) and words[end] in _FRAME_FILLERS and not (words[end] in _FRAME_WORDS and _closes(words, end)):
+                end += 1
+            if _ends_in_place(words, end) or (
+                end < len(words) and words[end] in _FRAME_WORDS and _closes(words, end) and end > i + 1
+            ):
+                i = end + 1
+                continue
+        kept.append(words[i])
+        i += 1
+    return kept
+
+
+def _ends_in_place(words: list[str], at: int) -> bool:
+    """Return whether the words end in "site" or the like here ("on site", but not "on the site office")."""
+    return at < len(words) and words[at] in _PLACE_WORDS and words[at + 1 :] in ([], ["?"])
+
+
+def _closes(words: list[str], at: int) -> bool:
+    """Return whether the frame word ends its phrase ("the camera" but not "the camera van")."""
+    return at + 1 >= len(words) or words[at + 1] not in _FRAME_WORDS

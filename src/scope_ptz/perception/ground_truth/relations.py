@@ -1,0 +1,140 @@
+"""Spatial relations between things, in the picture and in the world.
+
+- *left / right of*: the centre of the box lies further left / right. *Above / below*: the centre lies higher / lower, and the boxes
+overlap sideways or come within a tenth of the frame of it.
+- *behind / in front of*: further from / nearer to the camera by half a metre or more, and the boxes overlap sideways, with a
+tolerance of a twentieth of the frame.
+- *near, next to*: at most 4 m apart in the world.
+- *on, in, at, of*: a part of it, or standing on its ground plan without reaching below it.
+- *on the left*: the centre lies in the left 40% of the frame; *half*: in that half; *corner*: in both 40% bands; *middle*: in the
+middle 40% across, without the top and bottom tenth. *In the foreground*, *in the distance*: the nearest and furthest third of the
+depth in view, on a logarithmic scale.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from scope_ptz import english
+from scope_ptz.perception.ground_truth.language import question_tree as s
+from scope_ptz.perception.ground_truth.thing_facts import facts, key_words
+from scope_ptz.perception.ground_truth.view import Thing, View
+
+BACKDROP = frozenset({"surface", "sky"})
+"""Concepts that are the background of things rather than things."""
+
+NEAR_M = 4.0
+ON_SLACK_M = 0.3
+FLAT_M = 0.5
+DEPTH_STEP_M = 0.5
+SIDE_BAND = 0.4
+SIDE_SLACK = 0.05
+
+
+def in_region(view: View, thing: Thing, region: s.Region) -> bool:
+    """Return whether a thing lies in a part of the frame."""
+    x, y = thing.box.centre
+    band = 0.5 if region.half else SIDE_BAND
+    checks: dict[str, Callable[[], bool]] = {
+        "left": lambda: x < band,
+        "right": lambda: x > 1 - band,
+        "top": lambda: y < band,
+        "bottom": lambda: y > 1 - band,
+        "middle": lambda: abs(x - 0.5) <= SIDE_BAND / 2 and (len(region.sides) > 1 or abs(y - 0.5) <= SIDE_BAND),
+        "near": lambda: thing.distance_m <= _depth(view, 1 / 3),
+        "far": lambda: thing.distance_m >= _depth(view, 2 / 3),
+    }
+    return all(checks[side]() for side in region.sides)
+
+
+def _depth(view: View, share: float) -> float:
+    """Return the distance at a share of the way from the nearest to the furthest thing in view, on a logarithmic scale."""
+    distances = [t.distance_m for t in view.top_level() if not t.concepts & BACKDROP]
+    near, far = min(distances), max(distances)
+    return float(near * (far / near) ** share)
+
+
+def relation_holds(view: View, a: Thing, kind: s.RelationKind, b: Thing) -> bool:
+    """Return whether two things stand in a relation in the picture."""
+    (ax, ay), (bx, by) = a.box.centre, b.box.centre
+    part = view.belongs(a.id, b.id) or view.belongs(b.id, a.id)
+    match kind:
+        case "left":
+            return ax < bx and not part
+        case "right":
+            return ax > bx and not part
+        case "above":
+            return ay < by and _sideways(a, b, 0.1)
+        case "below":
+            return ay > by and _sideways(a, b, 0.1)
+        case "front":
+            return not part and a.distance_m <= b.distance_m - DEPTH_STEP_M and _sideways(a, b, SIDE_SLACK)
+        case "behind":
+            return not part and a.distance_m >= b.distance_m + DEPTH_STEP_M and _sideways(a, b, SIDE_SLACK)
+        case "near" | "facing":
+            return not part and a.gap_m(b) <= NEAR_M
+        case "on":
+            return view.belongs(a.id, b.id) or _rests_on(a, b)
+
+
+def _sideways(a: Thing, b: Thing, slack: float) -> bool:
+    return a.box.x_min <= b.box.x_max + slack and b.box.x_min <= a.box.x_max + slack
+
+
+def _rests_on(a: Thing, b: Thing) -> bool:
+    """Return whether a thing stands on another: its centre over the other's ground plan, and its foot above the other's foot
+    unless that is flat like a road.
+    """
+    middle = (a.low_m + a.high_m)[:2] / 2
+    over = bool(np.all(middle >= b.low_m[:2] - ON_SLACK_M) and np.all(middle <= b.high_m[:2] + ON_SLACK_M))
+    foot, top = b.low_m[2] if b.high_m[2] - b.low_m[2] < FLAT_M else b.low_m[2] + ON_SLACK_M, b.high_m[2] + ON_SLACK_M
+    return over and bool(foot - ON_SLACK_M / 2 <= a.low_m[2] <= top) and _extent(a) < _extent(b)
+
+
+def _extent(thing: Thing) -> float:
+    return float(np.prod(np.maximum(thing.high_m - thing.low_m, 0.1)))
+
+
+def from_corner(thing: Thing, sides: Sequence[str]) -> float:
+    """Return the distance to a corner or to the centre of the frame, in frames."""
+    x, y = thing.box.centre
+    to_x = 0.0 if "left" in sides else 1.0 if "right" in sides else 0.5
+    to_y = 0.0 if "top" in sides else 1.0 if "bottom" in sides else 0.5
+    return float(np.hypot(x - to_x, y - to_y))
+
+
+def faces(thing: Thing, side: str) -> bool | None:
+    """Return whether a thing points to a side, None where the scene does not say."""
+    for key, value in facts(thing):
+        if set(key_words(key)) & {"direction", "facing", "heading", "pointing", "orientation", "arrow"}:
+            return side in english.letters(str(value)).split()
+    return None
+
+
+def pixels(thing: Thing) -> int:
+    """Return how many pixels of a thing are visible."""
+    return thing.sighting.pixels
+
+
+def rank_key(key: s.OrderKey) -> Callable[[Thing], float]:
+    """Return the sort key of a superlative, best first."""
+    keys: dict[str, Callable[[Thing], float]] = {
+        "left": lambda t: t.box.centre[0],
+        "right": lambda t: -t.box.centre[0],
+        "top": lambda t: t.box.centre[1],
+        "bottom": lambda t: -t.box.centre[1],
+        "nearest": lambda t: t.distance_m,
+        "furthest": lambda t: -t.distance_m,
+        "biggest": lambda t: -_volume(t),
+        "smallest": _volume,
+        "tallest": lambda t: -float(t.high_m[2] - t.low_m[2]),
+        "widest": lambda t: -float(max(t.high_m[:2] - t.low_m[:2])),
+    }
+    return keys[key]
+
+
+def _volume(thing: Thing) -> float:
+    """Return the size in the world: the diagonal of the box, which also orders flat things."""
+    return float(((thing.high_m - thing.low_m) ** 2).sum() ** 0.5)

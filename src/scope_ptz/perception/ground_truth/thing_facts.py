@@ -1,0 +1,338 @@
+"""Whether a word, an outfit or a text fits a thing. The answer is yes, no, or None when the scene does not say."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from scope_ptz import english
+from scope_ptz.perception.ground_truth.language.concepts import lexicon, nouns_in, singular_phrase
+from scope_ptz.perception.ground_truth.view import Thing, View, head_of
+from scope_ptz.simulator.models import Attribute
+
+_STATES = [
+    "",
+    "open: opened ajar",
+    "closed: shut locked",
+    "lit: illuminated glowing flashing alight",
+    "unlit: dark",
+    "moving: driving travelling traveling",
+    "stationary: parked stopped waiting still standstill idle",
+    "empty: unloaded unoccupied vacant",
+    "full: loaded occupied laden",
+    "raised: up lifted",
+    "lowered: down",
+    "walking: strolling",
+    "sitting: seated",
+    "upright: standing",
+    "fallen: toppled overturned lying knocked",
+    "working: operating operational active running",
+    "",
+]
+_CANONICAL = {word: line.partition(":")[0] for line in _STATES if line for word in line.replace(":", "").split()} | {
+    "gray": "grey", "amber": "orange", "violet": "purple", "golden": "gold", "metallic": "metal", "steel": "metal",
+    "standing": "upright", "stand": "upright", "wood": "wooden", "timber": "wooden", "male": "man", "female": "woman",
+}  # fmt: skip
+_OPPOSITES = [
+    ("open", "closed"), ("lit", "unlit"), ("lit", "off"), ("on", "off"), ("moving", "stationary"), ("empty", "full"),
+    ("raised", "lowered"),
+    ("sitting", "upright"), ("upright", "fallen"), ("walking", "upright"), ("walking", "stationary"), ("walking", "sitting"),
+    ("working", "off"),
+]  # fmt: skip
+SOFT = frozenset(
+    [
+        "big",
+        "large",
+        "small",
+        "little",
+        "huge",
+        "tiny",
+        "tall",
+        "short",
+        "long",
+        "wide",
+        "narrow",
+        "whole",
+        "entire",
+        "main",
+        "other",
+        "visible",
+        "nearby",
+        "actual",
+        "particular",
+        "present",
+        "current",
+        "certain",
+        "same",
+        "real",
+        "single",
+        "lone",
+        "only",
+        "different",
+        "various",
+        "individual",
+        "standing",
+        "sitting",
+        "waiting",
+        "hanging",
+        "lying",
+        "placed",
+        "full-size",
+        "mounted",
+        "shown",
+        "displayed",
+        "there",
+        "located",
+        "parked",
+        "stationary",
+        "moving",
+    ]
+)
+"""Words that do not restrict a description when the scene has no fact about them."""
+FILLERS = frozenset(
+    [
+        "the",
+        "a",
+        "an",
+        "is",
+        "are",
+        "it",
+        "its",
+        "of",
+        "in",
+        "on",
+        "at",
+        "and",
+        "be",
+        "being",
+        "with",
+        "very",
+        "quite",
+        "really",
+        "currently",
+        "colour",
+        "color",
+        "coloured",
+        "colored",
+        "one",
+        "ones",
+        "parts",
+    ]
+)
+TEXT_KEYS = frozenset(["reads", "text", "plate", "lettering", "number", "signal", "sign", "label", "readable_by", "inscription"])
+"""Attributes that repeat the text on a thing. They are never used, because only legible texts are read."""
+COLOUR_KEYS = ("colour", "color")
+NOTHING = frozenset({"", "none", "no", "false", "nothing", "without"})
+
+
+def canonical(word: str) -> str:
+    """Return the word that stands for a word and its synonyms."""
+    return _CANONICAL.get(word, word)
+
+
+def opposite(a: str, b: str) -> bool:
+    """Return whether two words exclude each other."""
+    return (a, b) in _OPPOSITES or (b, a) in _OPPOSITES
+
+
+def key_words(key: str) -> list[str]:
+    """Return the words of an attribute key such as "helmet_colour"."""
+    return english.letters(key.replace("_", " ").replace("-", " ")).split()
+
+
+def value_words(value: object) -> list[str]:
+    """Return the canonical words of an attribute value."""
+    return [canonical(x) for x in english.letters(str(value)).split()]
+
+
+def fact_words(thing: Thing) -> set[str]:
+    """Return every word that describes a thing: names, values, true flags, what it does. The clothes of people are excluded."""
+    found = {canonical(x) for x in english.letters(f"{thing.name} {thing.category}").split()}
+    for key, value in facts(thing):
+        words = key_words(key)
+        if value is True:
+            found |= {canonical(x) for x in words}
+            found |= {"on"} if "lit" in words else set()
+        elif value is False:
+            found |= {b for pair in _OPPOSITES for a, b in (pair, pair[::-1]) if a in {canonical(x) for x in words}}
+        elif not (is_colour(value) and words[-1] not in COLOUR_KEYS and any(k in thing.attributes for k in COLOUR_KEYS)) and not (
+            is_worn(key) and "person" in thing.concepts
+        ):
+            found |= set(value_words(value))
+        if words[-1] in {"load", "cargo"} and str(value).lower() not in NOTHING:
+            found.add("full")
+    if "lit" in found:
+        found.add("on")
+    if "unlit" in found:
+        found.add("off")
+    if thing.motion and not found & {"moving", "stationary"}:
+        found.add(thing.motion)
+    return found
+
+
+def facts(thing: Thing) -> list[tuple[str, Attribute]]:
+    """Return the attributes that may be reported: all except the texts on the thing."""
+    return [(k, v) for k, v in thing.attributes.items() if k not in TEXT_KEYS]
+
+
+def is_colour(value: object) -> bool:
+    """Return whether an attribute value is a colour."""
+    words = english.letters(str(value)).split()
+    return bool(words) and words[-1] in english.COLOURS
+
+
+def is_worn(key: str) -> bool:
+    """Return whether an attribute is about clothes, so that its colour is not the person's."""
+    return any(
+        lexicon().concept(x) in {"hard hat", "hi-vis vest", "jacket", "trouser", "boot", "glove", "hat"} for x in key_words(key)
+    )
+
+
+def colour_of(thing: Thing) -> str | None:
+    """Return the colour as the scene states it."""
+    for key in COLOUR_KEYS:
+        if key in thing.attributes:
+            return str(thing.attributes[key])
+    if "person" in thing.concepts:
+        return None
+    for key, value in thing.attributes.items():
+        if is_colour(value) and not is_worn(key):
+            return str(value)
+    named = [x for x in english.letters(thing.name).split() if x in english.COLOURS]
+    return named[0] if named else None
+
+
+def fits_noun(view: View, thing: Thing, noun: str) -> bool:
+    """Return whether a noun (singular or plural) names the thing.
+
+    A word that the scene itself uses means that thing ("pylon" for an electricity pylon), whatever else it may mean.
+    """
+    one = english.letters(singular_phrase(noun))
+    name, category = english.letters(head_of(thing.name)), english.letters(thing.category)
+    if one in (category, name) or name.endswith(f" {one}"):
+        return True
+    concept = lexicon().concept(noun)
+    return concept is not None and concept in thing.concepts and (concept == one or one not in view.nouns)
+
+
+def fits_words(view: View, thing: Thing, words: Sequence[str]) -> bool | None:
+    """Return whether loose words ("parked", "dark blue", "a van") hold for a thing."""
+    rest = [x for x in words if x not in FILLERS] or [x for x in words if x in {"on", "in"}]
+    if not rest:
+        return True
+    spans = nouns_in(rest, view.nouns)
+    if spans and spans[0][1] == len(rest):
+        answers = [_all([fits_noun(view, thing, " ".join(rest[i:])), *(_fits(view, thing, x) for x in rest[:i])]) for i, _ in spans]
+        if any(answers):
+            return True
+    return _all([_fits(view, thing, x) for x in rest])
+
+
+def _all(answers: Iterable[bool | None]) -> bool | None:
+    found = list(answers)
+    return False if False in found else None if None in found else True
+
+
+def _fits(view: View, thing: Thing, word: str) -> bool | None:
+    """Return whether one word holds for a thing."""
+    if word.startswith("non-"):
+        answer = _fits(view, thing, word.removeprefix("non-"))
+        return None if answer is None else not answer
+    known = fact_words(thing)
+    meant = canonical(word)
+    if _forms(word) & {f for x in known for f in _forms(x)} or fits_noun(view, thing, word):
+        return True
+    if lexicon().concept(word) is not None and "person" in thing.concepts and wears(view, thing, [word]):
+        return True
+    if _in_context(view, thing, word) or any(english.letters(word) in english.letters(text).split() for text in thing.texts):
+        return True
+    if any(opposite(meant, other) for other in known):
+        return False
+    if meant in english.COLOURS and colour_of(thing) is not None:
+        return False
+    if any(_forms(word) & domain and key in thing.attributes for key, domain in view.values.items() if key not in TEXT_KEYS):
+        return False
+    return False if lexicon().concept(word) else None
+
+
+def _forms(word: str) -> frozenset[str]:
+    """Return a word with its other forms, so that "kneeling" fits "kneel"."""
+    stems = {word, english.singular(word)}
+    for ending in ("ing", "ed"):
+        if word.endswith(ending) and len(word) > len(ending) + 2:
+            base = word.removesuffix(ending)
+            stems |= {base, f"{base}e"} | ({base[:-1]} if base[-1] == base[-2] else set())
+    return frozenset(canonical(x) for x in stems) | {word}
+
+
+def _in_context(view: View, thing: Thing, word: str) -> bool:
+    """Return whether the word names what the thing belongs to ("the gantry sign", "the cabin door")."""
+    holder = thing.parent
+    while holder is not None:
+        words = english.letters(view.instances[holder].name).split()
+        carrier = view.by_id.get(holder)
+        if english.singular(word) in words or (carrier is not None and fits_noun(view, carrier, word)):
+            return True
+        holder = view.parents.get(holder)
+    return False
+
+
+def wears(view: View, thing: Thing, words: Sequence[str], amount: int | None = None) -> bool:
+    """Return whether a thing has what the words name: an attribute, a part or a text. What the scene does not state is absent."""
+    rest = [x for x in words if x not in FILLERS]
+    spans = nouns_in(rest, view.nouns)
+    start, end = spans[0] if spans else (len(rest) - 1, len(rest))
+    noun, others = " ".join(rest[start:end]), [canonical(x) for x in (*rest[:start], *rest[end:])]
+    if lexicon().concept(noun) == "thing":  # "carrying something"
+        held = [v for k, v in facts(thing) if set(key_words(k)) & {"carrying", "load", "holding"}]
+        return any(str(v).lower() not in NOTHING for v in held)
+    if any(_attribute_has(key, value, names_of(noun), others, amount) for key, value in facts(thing)):
+        return True
+    parts = [t for t in view.things if t.id != thing.id and view.belongs(t.id, thing.id)]
+    if any(fits_noun(view, part, noun) and all(_fits(view, part, x) for x in others) for part in parts):
+        return True
+    wanted = english.letters(" ".join(rest))
+    return any(wanted in english.letters(text) for text in thing.texts)
+
+
+def _attribute_has(key: str, value: Attribute, names: frozenset[str], others: Sequence[str], amount: int | None) -> bool:
+    """Return whether an attribute states one of the names, by its key or within its value, together with all other words."""
+    if _key_is(key, names):
+        stated = value_words(value)
+        if str(value).lower() not in NOTHING and value is not False and all(x in stated for x in others):
+            return amount is None or not isinstance(value, int) or isinstance(value, bool) or value == amount
+    return any(
+        any(name in chunk for name in names) and all(x in value_words(chunk) for x in others) and "no" not in chunk.split()
+        for chunk in _chunks(value)
+    )
+
+
+def _key_is(key: str, names: frozenset[str]) -> bool:
+    words = [x for x in key_words(key) if x not in COLOUR_KEYS]
+    return " ".join(words) in names or (bool(words) and singular_phrase(" ".join(words)) in names)
+
+
+def names_of(noun: str) -> frozenset[str]:
+    """Return all names, in the singular, of what a noun means."""
+    table = lexicon()
+    concept = table.concept(noun)
+    return frozenset({singular_phrase(noun)}) | (table.all_names(concept) if concept else frozenset())
+
+
+def _chunks(value: object) -> list[str]:
+    """Split "orange vest and white helmet" into its parts, so that the vest is not white."""
+    if not isinstance(value, str):
+        return []
+    text = value.lower().replace(" and ", ",").replace(" with ", ",").replace(";", ",")
+    return [english.letters(" ".join([*(c.split()[:-1]), english.singular(c.split()[-1])])) for c in text.split(",") if c.strip()]
+
+
+def bears(thing: Thing, words: Sequence[str]) -> bool:
+    """Return whether legible text on a thing contains these words in this order. Without words, any legible text counts."""
+    wanted = f" {' '.join(words)} "
+    return any(wanted in f" {english.letters(text)} " or not words for text in thing.texts) or _plate_is(thing, words)
+
+
+def _plate_is(thing: Thing, words: Sequence[str]) -> bool:
+    """Compare number plates without spaces, and without the words "number plate"."""
+    plain = "".join(x for x in words if x not in {"number", "plate", "registration", "licence", "license"})
+    return len(plain) >= 4 and any(plain == english.letters(text).replace(" ", "") for text in thing.texts)

@@ -1,0 +1,264 @@
+"""Finding the things in a view that a description means.
+
+- A fact of the scene comes first ("in the left lane", "in an orange vest"), then the relations of ``relations``.
+- *between*: the centre lies sideways between the centres of the two, and not clearly in front of or behind both.
+- Of several matches the one with most pixels comes first, unless a superlative or ordinal orders them. Ordinals without a side
+count from the left. Superlatives keep only the best ("the two nearest" keeps two).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from typing import cast
+
+from scope_ptz import english
+from scope_ptz.perception.ground_truth.full_names import named_in_full
+from scope_ptz.perception.ground_truth.language import question_tree as s
+from scope_ptz.perception.ground_truth.language.concepts import lexicon, nouns_in
+from scope_ptz.perception.ground_truth.relations import (
+    BACKDROP,
+    NEAR_M,
+    faces,
+    from_corner,
+    in_region,
+    pixels,
+    rank_key,
+    relation_holds,
+)
+from scope_ptz.perception.ground_truth.thing_facts import FILLERS, SOFT, bears, colour_of, facts, fits_noun, fits_words, wears
+from scope_ptz.perception.ground_truth.view import Thing, View
+
+_SIDES: dict[str, s.OrderKey] = {"left": "left", "right": "right", "top": "top", "bottom": "bottom"}
+
+
+def find(view: View, description: s.Description) -> list[Thing]:
+    """Return everything that the description means, best first."""
+    found = things_named(view, description)
+    if found or len(description.phrases) != 1:
+        return found
+    return named_in_full(view, description.phrases[0]) or _worn(view, description.phrases[0])
+
+
+def things_named(view: View, description: s.Description) -> list[Thing]:
+    """Return only things of their own, not what people wear."""
+    found = _two_coloured(view, description)
+    if found:
+        return found
+    for phrase in description.phrases:
+        found += [t for t in find_phrase(view, phrase) if t not in found]
+    return found if len(description.phrases) == 1 else sorted(found, key=pixels, reverse=True)
+
+
+def _worn(view: View, phrase: s.Phrase) -> list[Thing]:
+    """Find "hard hats", which are no things of their own, on the people who wear them."""
+    if phrase.tests or phrase.order or phrase.ordinal or not nouns_in(phrase.words):
+        return []
+    return sorted((t for t in view.things if "person" in t.concepts and wears(view, t, phrase.words)), key=pixels, reverse=True)
+
+
+def _two_coloured(view: View, description: s.Description) -> list[Thing]:
+    """Find "red and white barriers": those of both colours if there are any, else the red ones and the white ones."""
+    phrases = description.phrases
+    if len(phrases) != 2 or any(len(p.words) < 2 or p.words[0] not in english.COLOURS for p in phrases):
+        return []
+    first, second = phrases
+    if (first.words[1:], first.tests, first.order) != (second.words[1:], second.tests, second.order):
+        return []
+    wanted = {p.words[0] for p in phrases}
+    both = replace(first, words=first.words[1:])
+    return [t for t in find_phrase(view, both) if wanted <= set(english.letters(colour_of(t) or "").split())]
+
+
+def find_phrase(view: View, phrase: s.Phrase) -> list[Thing]:
+    """Return everything that one noun phrase means, best first."""
+    core, extra, order = _core(view, phrase)
+    matches = [t for t in core if all(holds(view, t, test) is True for test in (*phrase.tests, *extra))]
+    return _ordered(view, sorted(matches, key=pixels, reverse=True), order, phrase)
+
+
+def noun_of(view: View, words: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Split words into those up to the noun, and those after it (a predicate: "gate open")."""
+    spans = nouns_in(words, view.nouns)
+    if not spans:
+        return (tuple(words[:-1]), tuple(words[-1:])) if len(words) > 1 else (tuple(words), ())
+    end = spans[0][1]
+    return tuple(words[:end]), tuple(words[end:])
+
+
+def _core(view: View, phrase: s.Phrase) -> tuple[list[Thing], tuple[s.Test, ...], s.Order | None]:
+    """Return the things that the core words fit, further tests, and the order if the words imply one ("the left sign")."""
+    words = list(phrase.words)
+    if phrase.amount is not None and phrase.order is None and words and not english.is_plural(words[-1]) and phrase.amount > 1:
+        words.insert(0, str(phrase.amount))
+    spans = nouns_in(words, view.nouns)
+    carried = any(isinstance(t, s.Relation) and t.kind == "on" for t in phrase.tests)
+    for start, end in reversed(spans):
+        others = [*words[:start], *words[end:]]
+        candidates = _named(view, " ".join(words[start:end]), others, carried)
+        literal = [t for t in candidates if _modified(view, t, others)]
+        if literal:
+            return literal, (), phrase.order
+    for start, end in spans:
+        sides = [x for x in (*words[:start], *words[end:]) if x in _SIDES or x == "middle"]
+        plain = [x for x in (*words[:start], *words[end:]) if x not in sides]
+        matches = [t for t in _named(view, " ".join(words[start:end]), plain, carried) if _modified(view, t, plain)]
+        if sides and matches:
+            return _sided(matches, sides, english.is_plural(words[end - 1]), phrase)
+    return [] if spans else [t for t in view.things if _all_words(view, t, words)], (), phrase.order
+
+
+def _named(view: View, noun: str, others: Sequence[str], carried: bool) -> list[Thing]:
+    """Return the things that a noun names. "The yellow vehicle" may be a machine when no road vehicle is yellow."""
+    if lexicon().concept(noun) == "thing":
+        return [t for t in view.things if _worth_naming(view, t) or (carried and not t.concepts & BACKDROP)]
+    named = [t for t in view.things if fits_noun(view, t, noun)]
+    if lexicon().concept(noun) == "vehicle" and others and not any(_modified(view, t, others) for t in named):
+        return [t for t in view.things if "machine" in t.concepts]
+    return named
+
+
+def _sided(
+    matches: list[Thing], sides: list[str], many: bool, phrase: s.Phrase
+) -> tuple[list[Thing], tuple[s.Test, ...], s.Order | None]:
+    """Apply sides: "the left sign" is the left-most, "the left signs" are on the left, "the top right sign" is nearest that
+    corner.
+    """
+    if many:
+        return matches, (s.Region(cast("tuple[s.Side, ...]", tuple(sides))),), phrase.order
+    if len(sides) == 1 and sides[0] in _SIDES and phrase.order is None:
+        return matches, (), s.Order(_SIDES[sides[0]])
+    return sorted(matches, key=lambda t: from_corner(t, sides))[:1], (), phrase.order
+
+
+def _worth_naming(view: View, thing: Thing) -> bool:
+    """Return whether a thing counts as an object: not road, grass or sky, and not a part of something else in view."""
+    return not thing.concepts & BACKDROP and (thing.parent is None or thing.parent not in view.by_id)
+
+
+def _modified(view: View, thing: Thing, others: Sequence[str]) -> bool:
+    if not others:
+        return True
+    return (
+        all(fits_words(view, thing, [x]) is True or _soft(view, thing, x) for x in others)
+        or fits_words(view, thing, others) is True
+    )
+
+
+def _soft(view: View, thing: Thing, word: str) -> bool:
+    """Return whether a word like "big" can be ignored, because the scene has no fact about it."""
+    return word in SOFT and fits_words(view, thing, [word]) is None and not any(word in values for values in view.values.values())
+
+
+def _all_words(view: View, thing: Thing, words: Sequence[str]) -> bool:
+    """Match an unknown noun: every word must occur in the thing's own words."""
+    return not set(words) <= FILLERS and all(fits_words(view, thing, [x]) is True for x in words)
+
+
+def holds(view: View, thing: Thing, test: s.Test) -> bool | None:
+    """Return whether a test holds for a thing; None where the scene does not say."""
+    match test:
+        case s.Not(test=inner):
+            answer = holds(view, thing, inner)
+            return None if answer is None else not answer
+        case s.Any(tests=tests):
+            answers = [holds(view, thing, t) for t in tests]
+            return True if True in answers else None if None in answers else False
+        case s.Is(words=words):
+            answer = fits_words(view, thing, words)
+            return True if answer is None and all(_soft(view, thing, x) for x in words) else answer
+        case s.Says(words=words):
+            return bears(thing, words) or (len(words) == 1 and faces(thing, words[0]) is True)
+        case s.Has(what=what):
+            return _has(view, thing, what)
+        case s.Faces(side=side):
+            return faces(thing, side)
+        case s.Order():
+            return None
+        case _:
+            return _stands(view, thing, test)
+
+
+def _stands(view: View, thing: Thing, test: s.Region | s.Between | s.Relation | s.Measured | s.Within) -> bool:
+    """Return whether a test about place, distance or size holds for a thing."""
+    match test:
+        case s.Region():
+            return in_region(view, thing, test)
+        case s.Between(first=first, second=second):
+            return _between(view, thing, first, second)
+        case s.Relation(kind=kind, other=other):
+            return related(view, thing, kind, other)
+        case s.Measured(key=key, other=other):
+            rank = rank_key(key)
+            return any(rank(thing) < rank(o) for o in find(view, other)[:1] if o is not thing)
+        case s.Within(metres=metres, other=other, beyond=beyond):
+            gaps = [thing.distance_m] if other is None else [thing.gap_m(o) for o in find(view, other) if o is not thing]
+            return bool(gaps) and (min(gaps) <= metres) is not beyond
+
+
+def _has(view: View, thing: Thing, what: s.Description) -> bool:
+    """Return whether a thing has everything in a list ("with a vest and a helmet")."""
+    return all(
+        wears(view, thing, phrase.words, phrase.amount)
+        and all(not isinstance(t, s.Is | s.Says) or wears(view, thing, (*phrase.words, *t.words)) for t in phrase.tests)
+        for phrase in what.phrases
+    )
+
+
+def related(view: View, thing: Thing, kind: s.RelationKind, other: s.Description) -> bool:
+    """Return whether a thing stands in a relation to any thing that fits ``other``."""
+    others = things_named(view, other)
+    if kind == "on" and thing not in others and _stated(view, thing, other):
+        return True
+    return any(relation_holds(view, thing, kind, o) for o in others if o is not thing)
+
+
+def _stated(view: View, thing: Thing, other: s.Description) -> bool:
+    """Return whether a fact or an outfit states the relation: "in the left lane", "in an orange vest"."""
+    words = [x for p in other.phrases for x in p.words]
+    if any(set(words) <= set(stated) for stated in (english.letters(thing.name).split(), *_values(thing))):
+        return True
+    return wears(view, thing, words)
+
+
+_LANES = {1: "left inside slow nearside first", 2: "middle centre second", 3: "right outside fast third overtaking"}
+
+
+def _values(thing: Thing) -> Iterable[list[str]]:
+    for key, value in facts(thing):
+        yield english.letters(f"{key.replace('_', ' ')} {value}").split()
+        if key == "lane" and isinstance(value, int):
+            yield ["lane", *_LANES.get(value, "").split()]
+
+
+def _between(view: View, thing: Thing, first: s.Description, second: s.Description) -> bool:
+    ones, others = find(view, first), find(view, second)
+    x = thing.box.centre[0]
+    for a in ones:
+        for b in others:
+            if a is b or thing in (a, b):
+                continue
+            low, high = sorted((a.box.centre[0], b.box.centre[0]))
+            near, far = sorted((a.distance_m, b.distance_m))
+            if low < x < high and near - NEAR_M <= thing.distance_m <= far + NEAR_M:
+                return True
+    return False
+
+
+def _ordered(view: View, matches: list[Thing], order: s.Order | None, phrase: s.Phrase) -> list[Thing]:
+    if order is None and phrase.ordinal is None:
+        return matches
+    key = order.key if order else "left"
+    if order is not None and order.reference is not None:
+        anchors = find(view, order.reference)
+        matches = [t for t in matches if t not in anchors]
+        if not anchors:
+            return []
+        sign = 1 if key == "nearest" else -1
+        matches.sort(key=lambda t: sign * min(t.gap_m(a) for a in anchors))
+    else:
+        matches.sort(key=rank_key(key))
+    if phrase.ordinal is None:
+        return matches[: phrase.amount or 1]
+    place = phrase.ordinal - 1 if phrase.ordinal > 0 else phrase.ordinal
+    return [matches[place]] if -len(matches) <= place < len(matches) else []

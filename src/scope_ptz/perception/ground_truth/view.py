@@ -1,0 +1,210 @@
+"""What a frame shows, prepared for questions: visible things with their facts, and the texts on them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scope_ptz import english
+from scope_ptz.perception.base import Box
+from scope_ptz.perception.ground_truth.language.concepts import lexicon, singular_phrase
+from scope_ptz.simulator.actors import path_position
+from scope_ptz.simulator.models import Attribute, SceneActor, SceneFile, SceneInstance
+from scope_ptz.simulator.truth import Sighting, TextSighting, ViewTruth
+
+Floats = NDArray[np.float64]
+
+PART_WORDS = (" with ", " of ", " on ", " in ", " at ", " for ", " by ", " from ", " near ")
+"""Words that end the head of a name: "lorry with crane" is a lorry."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Thing:
+    """A visible instance.
+
+    Attributes:
+        low_m: Lowest corner of its box in the world.
+        high_m: Highest corner.
+        motion: "moving", "stationary", or empty when unknown.
+    """
+
+    sighting: Sighting
+    low_m: Floats
+    high_m: Floats
+    concepts: frozenset[str]
+    motion: str
+    texts: tuple[str, ...] = ()
+
+    @property
+    def id(self) -> str:
+        return self.sighting.instance.id
+
+    @property
+    def name(self) -> str:
+        return self.sighting.instance.name or self.sighting.instance.category
+
+    @property
+    def category(self) -> str:
+        return self.sighting.instance.category
+
+    @property
+    def attributes(self) -> Mapping[str, Attribute]:
+        return self.sighting.instance.attributes
+
+    @property
+    def parent(self) -> str | None:
+        instance = self.sighting.instance
+        return instance.parent if isinstance(instance, SceneInstance) else None
+
+    @property
+    def box(self) -> Box:
+        x0, y0, x1, y1 = self.sighting.box
+        return Box(x_min=max(x0, 0.0), y_min=max(y0, 0.0), x_max=min(x1, 1.0), y_max=min(y1, 1.0), label=self.name)
+
+    @property
+    def distance_m(self) -> float:
+        return self.sighting.distance_m
+
+    def gap_m(self, other: Thing) -> float:
+        """Return the distance in metres between the world boxes of two things."""
+        apart = np.maximum(0.0, np.maximum(self.low_m - other.high_m, other.low_m - self.high_m))
+        return float(np.linalg.norm(apart))
+
+
+@dataclass(frozen=True)
+class View:
+    """Everything visible in a frame, nearest first."""
+
+    things: tuple[Thing, ...]
+    texts: tuple[TextSighting, ...]
+    parents: Mapping[str, str]
+    """The parent's id of each instance id, for the whole scene."""
+    instances: Mapping[str, SceneInstance | SceneActor]
+    """Instances by id, for the whole scene."""
+    values: Mapping[str, frozenset[str]]
+    """Every word that each attribute key takes anywhere in the scene."""
+    nouns: frozenset[str] = field(default=frozenset())
+    """Nouns of the scene in addition to those of the lexicon."""
+    hosts: tuple[Thing, ...] = ()
+    """Things with a legible text that are too cut off to count as visible, such as a sign larger than the frame."""
+
+    @cached_property
+    def by_id(self) -> dict[str, Thing]:
+        return {thing.id: thing for thing in self.things}
+
+    def belongs(self, part: str, whole: str) -> bool:
+        """Return whether ``part`` is the instance ``whole`` or belongs to it, directly or not."""
+        current: str | None = part
+        while current is not None:
+            if current == whole:
+                return True
+            current = self.parents.get(current)
+        return False
+
+    @cached_property
+    def concepts(self) -> frozenset[str]:
+        """Concepts of all nouns that the scene uses, in view or not."""
+        table = lexicon()
+        return frozenset(k for n in self.nouns if (c := table.concept(n)) for k in table.kinds(c))
+
+    def texts_on(self, thing: Thing) -> tuple[TextSighting, ...]:
+        """Return the texts on a thing and its parts, top to bottom and left to right."""
+        return tuple(t for t in self.texts if self.belongs(t.text.parent, thing.id))
+
+    def for_reading(self) -> View:
+        """Return the view with the hosts of legible texts among its things."""
+        return replace(self, things=(*self.things, *self.hosts))
+
+    def top_level(self) -> tuple[Thing, ...]:
+        """Return the things that are no part of another visible thing."""
+        return tuple(t for t in self.things if t.parent is None or t.parent not in self.by_id)
+
+
+def read_view(truth: ViewTruth, scene: SceneFile, time_s: float) -> View:
+    """Return the view of a frame from its ground truth."""
+    everything: list[SceneInstance | SceneActor] = [*scene.instances, *scene.actors]
+    parents = {i.id: i.parent for i in scene.instances if i.parent}
+    values: dict[str, set[str]] = {}
+    nouns: set[str] = set()
+    for instance in everything:
+        nouns |= {singular_phrase(n.lower()) for n in (instance.category, head_of(instance.name)) if n.strip()}
+        for key, value in instance.attributes.items():
+            values.setdefault(key, set()).update(english.letters(str(value)).split())
+    texts = tuple(sorted(truth.texts, key=lambda t: (round(t.box[1], 2), t.box[0])))
+    legible: dict[str, list[str]] = {}
+    for text in (t for t in texts if t.legible):
+        holder: str | None = text.text.parent
+        while holder is not None:
+            legible.setdefault(holder, []).append(text.text.text)
+            holder = parents.get(holder)
+
+    def thing(sighting: Sighting) -> Thing:
+        instance = sighting.instance
+        low, high = _world_box(instance, time_s)
+        return Thing(sighting, low, high, concepts_of(instance), _motion(instance, time_s), tuple(legible.get(instance.id, ())))
+
+    return View(
+        things=tuple(thing(x) for x in truth.visible),
+        texts=texts,
+        parents=parents,
+        instances={i.id: i for i in everything},
+        values={k: frozenset(v) for k, v in values.items()},
+        nouns=frozenset(nouns),
+        hosts=tuple(thing(x) for x in truth.sightings if not x.visible and x.instance.id in legible),
+    )
+
+
+def head_of(name: str) -> str:
+    """Return the part of a name that says what the thing is."""
+    head = name.lower()
+    for mark in PART_WORDS:
+        head = head.partition(mark)[0]
+    return head
+
+
+def concepts_of(instance: SceneInstance | SceneActor) -> frozenset[str]:
+    """Return every concept of an instance: by its category, by a more specific kind, and by the noun at the end of its name."""
+    table = lexicon()
+    found: set[str] = set()
+    if instance.category and (concept := table.concept(instance.category.lower())):
+        found |= table.kinds(concept)
+    for key in ("kind", "type"):
+        kind = str(instance.attributes.get(key, "")).lower()
+        concept = table.concept(kind) if kind else None
+        # A barrier of the kind "pedestrian" is for pedestrians and is not a pedestrian.
+        if concept and (not found or (table.kinds(concept) & found) - {"thing"}):
+            found |= table.kinds(concept)
+    name = head_of(instance.name).split()
+    for start in range(len(name)):
+        noun = " ".join(name[start:])
+        if found and instance.category.lower().endswith(f" {noun}"):
+            break  # "lamp" is short for the category, a table lamp, and does not mean a lamp post
+        if concept := table.concept(noun):
+            found |= table.kinds(concept)
+            break
+    return frozenset(found or {"thing"})
+
+
+def _world_box(instance: SceneInstance | SceneActor, time_s: float) -> tuple[Floats, Floats]:
+    """Return the lowest and highest corner in the world. An actor's box stands on its path and is not rotated."""
+    if isinstance(instance, SceneInstance):
+        return np.array(instance.box_min_m), np.array(instance.box_max_m)
+    here = path_position(instance, time_s)
+    foot = np.zeros(3) if here is None else here.position_m
+    width, depth, height = instance.size_m
+    return foot - np.array([width / 2, depth / 2, 0.0]), foot + np.array([width / 2, depth / 2, height])
+
+
+def _motion(instance: SceneInstance | SceneActor, time_s: float) -> str:
+    """Return whether an instance moves. Actors move while their path does; baked things stand still."""
+    if isinstance(instance, SceneInstance):
+        return "stationary"
+    now, soon = path_position(instance, time_s), path_position(instance, time_s + _STEP_S)
+    return "moving" if now and soon and abs(soon.walked_m - now.walked_m) > _STEP_M else "stationary"
+
+
+_STEP_S, _STEP_M = 0.1, 0.005

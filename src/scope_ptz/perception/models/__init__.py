@@ -1,0 +1,1 @@
+"""Parts that backends with a real model share: pictures, prompts, replies, coordinates and panoramas."""

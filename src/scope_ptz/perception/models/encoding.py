@@ -1,0 +1,81 @@
+"""Encoding of frames for models. Each frame is encoded once per size, however many backends use it."""
+
+from __future__ import annotations
+
+import base64
+from dataclasses import dataclass
+from functools import cached_property
+
+import cv2
+import numpy as np
+
+from scope_ptz.camera.base import Frame
+from scope_ptz.errors import PerceptionError
+from scope_ptz.perception.models.frame_memo import FrameMemo, Image
+
+JPEG_QUALITY = 90
+
+Size = tuple[int, int]
+
+
+@dataclass(frozen=True)
+class EncodedPicture:
+    """A frame as it is sent to a model: a JPEG of ``width`` x ``height`` pixels."""
+
+    jpeg: bytes
+    width: int
+    height: int
+
+    @property
+    def size(self) -> Size:
+        return self.width, self.height
+
+    @cached_property
+    def data_url(self) -> str:
+        return "data:image/jpeg;base64," + base64.b64encode(self.jpeg).decode("ascii")
+
+
+def resized(image: Image, size: Size | None) -> Image:
+    """Return an image (H, W, 3) resized to (width, height), or the same array when it has that size."""
+    if size is None or size == (image.shape[1], image.shape[0]):
+        return image
+    return np.asarray(cv2.resize(image, size, interpolation=_interpolation((image.shape[1], image.shape[0]), size)), dtype=np.uint8)
+
+
+def _interpolation(old: Size, new: Size) -> int:
+    """Return the cheapest interpolation that does no harm.
+
+    Averaging pays only where many pixels become one. When the size changes by less than 2%, a few repeated or missing rows and
+    columns are invisible, and nothing is blurred.
+    """
+    if new[0] * new[1] < 0.6 * old[0] * old[1]:
+        return cv2.INTER_AREA
+    slight = all(abs(after / before - 1) < 0.02 for before, after in zip(old, new, strict=True))
+    return cv2.INTER_NEAREST_EXACT if slight else cv2.INTER_LINEAR
+
+
+def encode(image: Image, size: Size | None = None) -> EncodedPicture:
+    """Encode an RGB image (H, W, 3) as JPEG, at another size (width, height) if one is given."""
+    picture = resized(image, size)
+    own = picture if picture is not image else None  # in-place conversion, because allocation costs more than the work
+    try:
+        swapped = cv2.cvtColor(picture, cv2.COLOR_RGB2BGR, dst=own)
+        worked, jpeg = cv2.imencode(".jpg", swapped, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
+    except cv2.error:
+        worked = False
+    if not worked:
+        raise PerceptionError(f"A frame of {picture.shape[1]}x{picture.shape[0]} pixels cannot be written as JPEG.")
+    made = EncodedPicture(jpeg.tobytes(), int(picture.shape[1]), int(picture.shape[0]))
+    _ = made.data_url  # computed here, in the worker thread
+    return made
+
+
+_SHARED: FrameMemo[Size | None, EncodedPicture] = FrameMemo(encode)
+"""A cache, not state: its values depend on the pixels only. All backends share it, so that each frame is encoded once."""
+
+
+async def picture_of(
+    frame: Frame, size: Size | None = None, memo: FrameMemo[Size | None, EncodedPicture] = _SHARED
+) -> EncodedPicture:
+    """Return the JPEG of a frame at a size (width, height), encoded in a worker thread on first use."""
+    return await memo.get_async(frame.image, None if size == (frame.width, frame.height) else size)

@@ -1,0 +1,72 @@
+"""A cache of results computed from pictures, kept as long as the picture exists."""
+
+from __future__ import annotations
+
+import threading
+import weakref
+from collections import OrderedDict
+from collections.abc import Callable, Hashable
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+from anyio import to_thread
+from numpy.typing import NDArray
+
+Image = NDArray[np.uint8]
+K = TypeVar("K", bound=Hashable)
+T = TypeVar("T")
+
+
+class FrameMemo(Generic[K, T]):
+    """Results of ``make(image, key)`` by identity of the image. Frames are read-only, so a result stays valid until its image is
+    deleted.
+
+    Callers that want the same result at the same time, in any thread, share one computation.
+    """
+
+    def __init__(self, make: Callable[[Image, K], T], size: int = 8) -> None:
+        self._make, self._size = make, size
+        self._lock = threading.Lock()
+        self._entries: OrderedDict[tuple[int, K], _Entry[T]] = OrderedDict()
+
+    def __len__(self) -> int:
+        return len(self._entries)
+
+    def get(self, image: Image, key: K) -> T:
+        """Return the result, computing it in this thread if it is new."""
+        entry = self._entry(image, key)
+        with entry.lock:
+            if not entry.made:
+                entry.made = (self._make(image, key),)
+            return entry.made[0]
+
+    async def get_async(self, image: Image, key: K) -> T:
+        """Return the result, computing it in a worker thread if it is new."""
+        entry = self._entries.get((id(image), key))
+        if entry is not None and entry.image() is image and entry.made:
+            return entry.made[0]
+        return await to_thread.run_sync(self.get, image, key)
+
+    def _entry(self, image: Image, key: K) -> _Entry[T]:
+        place = (id(image), key)
+        with self._lock:
+            entry = self._entries.get(place)
+            if entry is None or entry.image() is not image:
+                entry = self._entries[place] = _Entry(weakref.ref(image, lambda gone: self._forget(place, gone)))
+            self._entries.move_to_end(place)
+            while len(self._entries) > self._size:
+                self._entries.popitem(last=False)
+            return entry
+
+    def _forget(self, place: tuple[int, K], gone: weakref.ref[Any]) -> None:
+        # No lock: this runs wherever the last reference is dropped, possibly in a thread that holds the lock.
+        entry = self._entries.get(place)
+        if entry is not None and entry.image is gone:
+            self._entries.pop(place, None)
+
+
+class _Entry(Generic[T]):
+    def __init__(self, image: weakref.ref[Any]) -> None:
+        self.image = image
+        self.made: tuple[()] | tuple[T] = ()
+        self.lock = threading.Lock()

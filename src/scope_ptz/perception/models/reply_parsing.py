@@ -1,0 +1,279 @@
+"""Parsing what a model wrote: places from JSON in any wrapping, complete or cut off, and plain answers.
+
+"Nothing found" counts only where the reply says so, with an empty list or a short sentence. Everything else that cannot be parsed
+raises ``PerceptionError`` of kind "malformed"; it is never a zero.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from scope_ptz.endpoints.bodies import safe_text
+from scope_ptz.errors import PerceptionError
+from scope_ptz.perception.models.coordinates import RawThing
+
+MAX_REPLY_CHARS = 200_000
+"""The rest of a longer reply is ignored; no list of places is that long."""
+
+MAX_ANSWER_CHARS = 2_000
+"""Longer answers are truncated to protect the planner's context."""
+
+
+@dataclass(frozen=True, slots=True)
+class ParsedPlaces:
+    """The things that a reply names, in order. ``complete`` is False when the reply was cut off and there may be more."""
+
+    things: tuple[RawThing, ...]
+    complete: bool = True
+
+
+def read_places(text: str) -> ParsedPlaces:
+    """Return the boxes and points in a model's text.
+
+    Understands bare and fenced JSON (also several documents), lists cut off at the token limit, point and box tags, and corner
+    pairs in prose. A reply that says that there is nothing gives no things.
+    """
+    visible = without_reasoning(text)
+    body, whole = visible[:MAX_REPLY_CHARS], len(visible) <= MAX_REPLY_CHARS
+    documents, uncut = _documents(body)
+    things = tuple(thing for document in documents for thing in _collect(document)) or tuple(_tagged(body))
+    if things:
+        return ParsedPlaces(things, whole and uncut)
+    if whole and uncut and (any(_is_empty(d) for d in documents) or _says_none(body)):
+        return ParsedPlaces(())
+    cut = "" if uncut else " (cut off before the first place was complete)"
+    raise PerceptionError(f"The reply names no places that can be read{cut}: {excerpt(text)}", kind="malformed")
+
+
+def read_answer(text: str) -> str:
+    """Return the answer in a reply, without reasoning, control characters and outer quotes, and truncated if it is too long."""
+    answer = "".join(c for c in without_reasoning(text) if c.isprintable() or c in "\n\t").strip()
+    if len(answer) > 1 and answer[0] == answer[-1] == '"' and answer.count('"') == 2:
+        answer = answer[1:-1].strip()
+    if not answer:
+        raise PerceptionError("The reply holds no answer.", kind="empty")
+    return answer if len(answer) <= MAX_ANSWER_CHARS else answer[:MAX_ANSWER_CHARS].rstrip() + " …"
+
+
+def without_reasoning(text: str) -> str:
+    """Return the reply without ``<think>`` blocks, also when only the closing tag is there or the block is never closed."""
+    rest = re.sub(r"<think(?:ing)?>.*?</think(?:ing)?>", "", text, flags=re.DOTALL | re.IGNORECASE)
+    _, closing, after = rest.rpartition("</think>")
+    rest = after if closing else rest
+    return re.split(r"<think(?:ing)?>", rest, maxsplit=1, flags=re.IGNORECASE)[0].strip()
+
+
+def excerpt(text: str, limit: int = 160) -> str:
+    """Return the beginning of a reply for an error message."""
+    flat = " ".join(text[: 4 * limit].split())
+    return repr(flat if len(flat) <= limit else flat[:limit] + "…")
+
+
+_UNKNOWN = re.compile(
+    r"^\W*(unknown|n/a|not (visible|legible|readable|clear|sure|possible to (tell|say))\b"
+    r"|((i am |i['’]m )?(sorry|unfortunately),? (but )?)?(i|we)( am|'m|’m)? (can(not|'t|’t)|unable to|not able to) "
+    r"(tell|say|determine|answer|know|read|help|assist|provide|identify|make out|see (it|that|enough|clearly|the answer))\b"
+    r"|(i|we) do(n't|n’t| not) (know|see enough)"
+    r"|it('s| is)? (is )?(not possible|impossible|unclear|hard to (tell|say))"
+    r"|(this|that|it|the answer) (can(not|'t|’t) be|is not) (determined|told|seen|read|visible|legible)"
+    r"|there is (not enough|no) (information|text|writing)\b)",
+    re.IGNORECASE,
+)
+
+
+def cannot_tell(answer: str) -> bool:
+    """Return whether an answer only says that the picture does not tell."""
+    return bool(_UNKNOWN.match(answer))
+
+
+_NONE = re.compile(
+    r"^\W*((none|nothing)( (is|are|of (the|these|them)|in|on|here|there|that|fits?|found|visible|detected)\b[^.{}\[\]]{0,80})?"
+    r"|(there (are|is)|i (can )?(see|find|detect)|i found) (no|none|nothing|not any)\b[^{}\[\]]{0,120}"
+    r"|no [^{}\[\]]{1,80}? (found|visible|present|detected|seen|in (the|this) (image|picture|frame|view|photo))"
+    r"[^{}\[\]]{0,60})[\s.`]*$",
+    re.IGNORECASE,
+)
+
+
+def _says_none(body: str) -> bool:
+    return len(body) < 240 and not any(c.isdigit() for c in body) and bool(_NONE.match(body))
+
+
+_START = re.compile(r"[\[{](?=\s*(?:[\[{\]}\"'\-\d]|NaN|Infinity))")
+
+
+def _documents(body: str) -> tuple[list[Any], bool]:
+    """Return every JSON document in a text, repaired where needed, and whether the last one was closed."""
+    decoder, found, at = json.JSONDecoder(), list[Any](), 0
+    while start := _START.search(body, at):
+        try:
+            document, at = decoder.raw_decode(body, start.start())
+        except (ValueError, RecursionError):
+            repaired, closed, length = _repair(body[start.start() :])
+            found.append(repaired)
+            if not closed:
+                return found, False
+            at = start.start() + length
+        else:
+            found.append(document)
+    return found, True
+
+
+_DEEPEST = 64
+"""Maximum nesting; no list of places is deeper, and a model that only opens brackets has no places to give."""
+
+
+def _repair(text: str) -> tuple[Any, bool, int]:
+    """Repair a broken document. Returns the document, whether it was closed, and its length.
+
+    Of a document that was cut off only complete values are kept, because half a number is another number.
+    """
+    end, stack, last = 0, list[str](), (0, "")
+    quote = ""
+    previous = ""
+    skip = False
+    for end, char in enumerate(text):
+        if skip:
+            skip = False
+        elif quote:
+            skip = char == "\\"
+            quote = "" if char == quote else quote
+        elif char == '"' or (char == "'" and previous in "[{,:"):
+            quote = char
+        elif char in "[{":
+            stack.append("]" if char == "[" else "}")
+            if len(stack) > _DEEPEST:
+                return None, False, end + 1
+        elif char in "]}" and stack:
+            stack.pop()
+            last = (end + 1, "".join(reversed(stack)))
+            if not stack:
+                return _lenient(text[: end + 1]), True, end + 1
+        previous = char if not char.isspace() else previous
+    kept, closing = last
+    return (_lenient(text[:kept] + closing) if kept else None), False, end + 1
+
+
+def _lenient(text: str) -> Any:
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError):
+        from json_repair import repair_json  # imported late, because only broken replies need it
+
+        try:
+            return repair_json(text, return_objects=True, skip_json_loads=True)
+        except Exception:  # the library raises exceptions of any kind, even assertions, for text beyond repair
+            return None
+
+
+_BOX_KEYS = ("bbox_2d", "box_2d", "bbox", "box", "bounding_box", "boundingbox", "rect")
+_POINT_KEYS = ("point_2d", "point", "coordinates", "coordinate", "center", "centre", "location", "position")
+_LABEL_KEYS = ("label", "name", "class", "category", "object", "description")
+_SCORE_KEYS = ("score", "confidence", "conf", "probability")
+_CORNERS = (("x_min", "y_min", "x_max", "y_max"), ("xmin", "ymin", "xmax", "ymax"), ("x1", "y1", "x2", "y2"),
+            ("left", "top", "right", "bottom"))  # fmt: skip
+_SIZES = (("x", "y", "width", "height"), ("x", "y", "w", "h"))
+
+
+def _collect(value: Any, depth: int = 0) -> Iterator[RawThing]:
+    """Yield the things anywhere in a JSON value."""
+    if depth > 8:
+        return
+    if isinstance(value, dict):
+        fields = {str(k).lower(): v for k, v in value.items()}
+        things = _named(fields)
+        if things:
+            yield from things
+            return
+        for inner in fields.values():
+            if isinstance(inner, dict | list):
+                yield from _collect(inner, depth + 1)
+    elif isinstance(value, list):
+        if len(value) > 1 and all(_is_number(v) for v in value):
+            yield RawThing(tuple(map(_number, value)))
+            return
+        found = [list(_collect(inner, depth + 1)) for inner in value]
+        for inner, things in zip(value, found, strict=True):
+            # An object without a place among places is a malformed place; it is counted where places are checked.
+            lost = [RawThing(())] if not things and isinstance(inner, dict) and any(found) else []
+            yield from things or lost
+
+
+def _named(fields: dict[str, Any]) -> list[RawThing]:
+    """Return the place in one JSON object, as a box, a point or both."""
+    label = next((safe_text(fields[k][:200]) for k in _LABEL_KEYS if isinstance(fields.get(k), str)), None)
+    score = next((_number(fields[k]) for k in _SCORE_KEYS if _is_number(fields.get(k))), None)
+    found = []
+    for keys in (_BOX_KEYS, _POINT_KEYS):
+        value = next((fields[k] for k in keys if fields.get(k) is not None), None)
+        if isinstance(value, dict):
+            found += [
+                RawThing(t.numbers, label or t.label, score, named=True) for t in _named({k.lower(): v for k, v in value.items()})
+            ]
+        elif flat := _flat(_parsed(value)):
+            found.append(RawThing(tuple(flat), label, score))
+    if found:
+        return found
+    for names in _CORNERS:
+        if all(n in fields for n in names):
+            return [RawThing(tuple(_number(fields[n]) for n in names), label, score, named=True)]
+    for names in _SIZES:
+        if all(n in fields for n in names):
+            x, y, width, height = (_number(fields[n]) for n in names)
+            return [RawThing((x, y, x + width, y + height), label, score, named=True)]
+    if "x" in fields and "y" in fields:
+        return [RawThing((_number(fields["x"]), _number(fields["y"])), label, score, named=True)]
+    return []
+
+
+def _parsed(value: Any) -> Any:
+    """Parse a list that was written as a string: "[1, 2, 3, 4]"."""
+    if isinstance(value, str) and len(value) < 200 and re.fullmatch(r"[\s\[\](),.\d+-]+", value):
+        return re.findall(r"[-+]?\d+\.?\d*|[-+]?\.\d+", value)
+    return value
+
+
+def _flat(value: Any) -> list[float]:
+    """Return the numbers of a list that may be nested once (two corners), empty when it contains anything else."""
+    if not isinstance(value, list):
+        return []
+    inner = [v for part in value for v in (part if isinstance(part, list) else [part])]
+    return [_number(v) for v in inner] if all(_is_number(v) for v in inner) else []
+
+
+def _is_number(value: Any) -> bool:
+    if isinstance(value, str):
+        return bool(re.fullmatch(r"\s*[-+]?(\d+\.?\d*|\.\d+|nan|inf(inity)?)\s*", value, re.IGNORECASE))
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _number(value: Any) -> float:
+    """Return a value as a float. Anything but a number is NaN, which is counted where places are checked."""
+    try:
+        return float(value) if _is_number(value) else math.nan
+    except OverflowError:
+        return math.inf
+
+
+_TAG_NUMBERS = re.compile(r"\bx\d*\s*=\s*[\"']?\s*(-?[\d.]+)[\"']?\s+y\d*\s*=\s*[\"']?\s*(-?[\d.]+)")
+_CORNER_PAIR = re.compile(r"\(\s*(-?[\d.]+)\s*,\s*(-?[\d.]+)\s*\)\s*,?\s*\(\s*(-?[\d.]+)\s*,\s*(-?[\d.]+)\s*\)")
+
+
+def _tagged(body: str) -> Iterator[RawThing]:
+    """Yield places outside JSON: ``<point x="63.5" y="44.5">`` and ``(x1,y1),(x2,y2)``."""
+    for match in _TAG_NUMBERS.finditer(body) if "<point" in body else ():
+        yield RawThing(tuple(_number(v) for v in match.groups()), named=True)
+    for match in _CORNER_PAIR.finditer(body):
+        yield RawThing(tuple(_number(v) for v in match.groups()))
+
+
+def _is_empty(document: Any) -> bool:
+    """Return whether a document says that nothing was found: an empty list, alone or in an object without an error."""
+    if isinstance(document, dict):
+        return "error" not in document and any(v == [] for v in document.values())
+    return bool(document == [])

@@ -1,0 +1,233 @@
+"""Several perception backends as one: a reader for text, a detector for places, an answerer for questions.
+
+Each question has an order in which the backends are asked, and the first usable result counts. With ``compare`` the first two are
+asked at once, and their agreement is recorded. Without it, the next one is asked only after a failure.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Awaitable, Callable, Sequence
+from dataclasses import dataclass
+from time import perf_counter
+from typing import Any, Generic, TypeVar
+
+import anyio
+
+from scope_ptz.camera.base import Frame
+from scope_ptz.errors import PerceptionError
+from scope_ptz.perception.base import Agreement, Answer, Box, Caption, Detections, Perception, Points, Skill
+from scope_ptz.perception.models.text_requests import is_reading, reading_target, wanted_texts
+from scope_ptz.perception.models.tile_geometry import iou
+
+ANY_TEXT = "text"
+"""The description under which a reader returns every text in view, as boxes labelled with the text."""
+
+SAME_PLACE_IOU = 0.4
+SAME_PLACE = 0.05
+"""Points this close together, in frames, count as the same place."""
+
+R = TypeVar("R", Caption, Answer, Detections, Points)
+PerceptionCall = Callable[[Perception], Awaitable[R]]
+Share = Callable[[R, R], float]
+
+
+@dataclass
+class _Opinion(Generic[R]):
+    """What one backend returned; result and error are None when it was not asked."""
+
+    backend: Perception
+    result: R | None = None
+    error: PerceptionError | None = None
+
+    @property
+    def usable(self) -> bool:
+        """Whether the result answers the question. "I cannot tell" passes the question on to the next backend."""
+        return self.result is not None and (not isinstance(self.result, Answer) or self.result.known)
+
+
+class RouterPerception(Perception):
+    """A backend made of others. Each of them is optional, but at least one is needed."""
+
+    handles_panoramas = True
+
+    def __init__(
+        self,
+        *,
+        reader: Perception | None = None,
+        detector: Perception | None = None,
+        answerer: Perception | None = None,
+        compare: bool = True,
+        name: str = "router",
+    ) -> None:
+        self.name, self._compare = name, compare
+        self._reader, self._detector, self._answerer = reader, detector, answerer
+        parts = self._available(reader, detector, answerer)
+        self.skills = frozenset[Skill](skill for part in parts for skill in part.skills)
+
+    async def caption(self, frame: Frame) -> Caption:
+        order = self._available(self._answerer, self._reader, skill="caption")
+        return await self._first_usable(order, lambda backend: backend.caption(frame), _shared_words, compare=False)
+
+    async def query(self, frame: Frame, question: str) -> Answer:
+        if not is_reading(question) or self._reader is None:
+            order = self._available(self._answerer, skill="query")
+            return await self._first_usable(order, lambda backend: backend.query(frame, question), _shared_words)
+
+        async def call(backend: Perception) -> Answer:
+            return await (self._read(frame, question) if backend is self._reader else backend.query(frame, question))
+
+        order = self._available(self._reader, self._answerer, skill="query")
+        return await self._first_usable(order, call, _shared_words)
+
+    async def detect(self, frame: Frame, description: str) -> Detections:
+        order = self._finders(description, "detect")
+        return await self._first_usable(order, lambda backend: backend.detect(frame, description), _same_boxes)
+
+    async def point(self, frame: Frame, description: str) -> Points:
+        order = self._finders(description, "point")
+        return await self._first_usable(order, lambda backend: backend.point(frame, description), _same_points)
+
+    async def close(self) -> None:
+        for part in self._available(self._reader, self._detector, self._answerer):
+            await part.close()
+
+    def _available(self, *parts: Perception | None, skill: Skill | None = None) -> list[Perception]:
+        """Return the backends that exist and have a skill, each once."""
+        there = [p for p in parts if p is not None and (skill is None or skill in p.skills)]
+        return list(dict.fromkeys(there))
+
+    def _finders(self, description: str, skill: Skill) -> list[Perception]:
+        is_text = wanted_texts(description) is not None
+        return self._available(self._reader if is_text else None, self._detector, self._answerer, skill=skill)
+
+    async def _read(self, frame: Frame, question: str) -> Answer:
+        """Return what the reader reads on the thing that the question names, if another backend finds that thing."""
+        assert self._reader is not None  # noqa: S101
+        target = reading_target(question)
+        finders = self._available(self._detector, self._answerer, skill="detect")
+        if target is None or not finders:
+            return await self._reader.query(frame, question)
+        began = perf_counter()
+        everything, bearers = await _both(self._reader.query(frame, question), finders[0].detect(frame, target))
+        if isinstance(everything, PerceptionError):
+            raise everything
+        if isinstance(bearers, PerceptionError) or not bearers.boxes:
+            why = f"{finders[0].name} did not find '{target}'; all text in view is given."
+            return everything.model_copy(update={"notes": (*everything.notes, why)})
+        lines = (await self._reader.detect(frame, ANY_TEXT)).boxes
+        texts = [line.label or "" for line in lines if any(_holds(box, line) for box in bearers.boxes)]
+        if not texts:
+            why = f"No readable text is on '{target}'; all text in view is given."
+            return everything.model_copy(update={"notes": (*everything.notes, why)})
+        text = "It reads: " + ", ".join(f'"{t}"' for t in texts) + "."
+        attempts = everything.attempts + bearers.attempts
+        return everything.model_copy(update={"text": text, "attempts": attempts, "latency_s": perf_counter() - began})
+
+    async def _first_usable(
+        self, order: Sequence[Perception], call: PerceptionCall[R], share: Share[R], *, compare: bool = True
+    ) -> R:
+        if not order:
+            raise PerceptionError(f"No part of {self.name} can do this.")
+        began = perf_counter()
+        opinions = [_Opinion[R](backend) for backend in order]
+        first = opinions[: 2 if self._compare and compare else 1]
+        async with anyio.create_task_group() as group:
+            for opinion in first:
+                group.start_soon(_ask, opinion, call)
+        for opinion in opinions[len(first) :]:
+            if any(o.usable for o in opinions):
+                break
+            await _ask(opinion, call)
+        return self._concluded(opinions, share, perf_counter() - began)
+
+    def _concluded(self, opinions: Sequence[_Opinion[R]], share: Share[R], latency_s: float) -> R:
+        """Return the first usable result with a comparison to the others; without one, raise an error with all reasons."""
+        attempts = tuple(a for o in opinions for a in _attempts(o))
+        failed = [(o.backend.name, o.error) for o in opinions if o.error is not None]
+        gave = [o.result for o in opinions if o.result is not None]
+        ranked = [o.result for o in opinions if o.usable and o.result is not None] or gave
+        if not ranked:
+            why = " ".join(dict.fromkeys(str(error) for _, error in failed))
+            raise PerceptionError(why, kind=failed[0][1].kind, attempts=attempts)
+        best = ranked[0]
+        failures = tuple(f"{name} failed: {error}" for name, error in failed)
+        update: dict[str, Any] = {"notes": best.notes + failures, "attempts": attempts, "latency_s": latency_s}
+        if other := next((r for r in gave if r is not best), None):
+            update["agreement"] = Agreement(other=other.source, said=_in_short(other), share=share(best, other))
+        return best.model_copy(update=update)
+
+
+async def _ask(opinion: _Opinion[R], call: PerceptionCall[R]) -> None:
+    try:
+        opinion.result = await call(opinion.backend)
+    except PerceptionError as error:
+        opinion.error = error
+
+
+async def _both(
+    one: Awaitable[Answer], other: Awaitable[Detections]
+) -> tuple[Answer | PerceptionError, Detections | PerceptionError]:
+    """Run two perception calls at once and return their errors as values."""
+    results: dict[int, Any] = {}
+
+    async def run(index: int, call: Awaitable[Any]) -> None:
+        try:
+            results[index] = await call
+        except PerceptionError as error:
+            results[index] = error
+
+    async with anyio.create_task_group() as group:
+        group.start_soon(run, 0, one)
+        group.start_soon(run, 1, other)
+    return results[0], results[1]
+
+
+def _attempts(opinion: _Opinion[Any]) -> tuple[Any, ...]:
+    if opinion.error is not None:
+        return tuple(opinion.error.attempts)
+    return opinion.result.attempts if opinion.result is not None else ()
+
+
+def _in_short(result: Caption | Answer | Detections | Points) -> str:
+    if isinstance(result, Detections):
+        return f"{len(result.boxes)} found"
+    return f"{len(result.points)} found" if isinstance(result, Points) else result.text[:300]
+
+
+def _holds(box: Box, line: Box) -> bool:
+    x, y = line.centre
+    return box.x_min <= x <= box.x_max and box.y_min <= y <= box.y_max
+
+
+def _shared_words(a: Caption | Answer, b: Caption | Answer) -> float:
+    """Return the share of the words of the shorter text that the other text has, too."""
+    one, other = (set(re.findall(r"\w+", x.text.casefold())) - _SMALL_WORDS for x in (a, b))
+    if not one or not other:
+        return float(one == other)
+    return len(one & other) / min(len(one), len(other))
+
+
+_SMALL_WORDS = {"a", "an", "the", "it", "is", "are", "says", "reads", "sign", "text", "of", "on", "in", "and", "to", "there"}
+
+
+def _same_boxes(a: Detections, b: Detections) -> float:
+    return _paired(a.boxes, b.boxes, lambda x, y: iou(x, y) >= SAME_PLACE_IOU)
+
+
+def _same_points(a: Points, b: Points) -> float:
+    return _paired(a.points, b.points, lambda p, q: abs(p.x - q.x) <= SAME_PLACE and abs(p.y - q.y) <= SAME_PLACE)
+
+
+_Place = TypeVar("_Place")
+
+
+def _paired(ones: Sequence[_Place], others: Sequence[_Place], same: Callable[[_Place, _Place], bool]) -> float:
+    """Return the share of all places that have a partner, each used once. Two empty results agree fully."""
+    left, pairs = list(others), 0
+    for one in ones:
+        partner = next((i for i, other in enumerate(left) if same(one, other)), None)
+        if partner is not None:
+            left.pop(partner)
+            pairs += 1
+    return 2 * pairs / (len(ones) + len(others)) if ones or others else 1.0

@@ -1,0 +1,154 @@
+"""Overlapping tiles of wide pictures. Models and detectors shrink a whole panorama until nothing small is left."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from scope_ptz.perception.base import Box, Point
+from scope_ptz.perception.models.frame_memo import Image
+
+WIDEST = 2.4
+"""Pictures up to this ratio of width to height are processed whole; ordinary frames are 16:9."""
+
+TILE_ASPECT = 1.6
+OVERLAP = 0.15
+"""Share of a tile that its neighbour covers, too, so that nothing narrower is cut in both."""
+
+SAME_BOX = 0.5
+"""Overlap from which boxes of neighbouring tiles are the same thing: intersection over the smaller box, or overlap of the
+heights where both boxes are cut by the borders of their tiles.
+"""
+
+SEAM = 0.002
+"""A box this close to the end of a 360-degree panorama, in panoramas, may continue at the other end."""
+
+CUT = 0.01
+"""A box this close to the border of its tile, in tiles, may continue beyond it."""
+
+
+@dataclass(frozen=True, slots=True)
+class PanoramaTile:
+    """A part of a picture over its full height, in pixels."""
+
+    left: int
+    right: int
+
+    def crop(self, image: Image) -> Image:
+        """Return the tile's part of an image."""
+        return image[:, self.left : self.right]
+
+    def place(self, box: Box, width: int) -> Box:
+        """Return a box of the tile as a box of the whole picture, which is ``width`` pixels wide."""
+        share, start = (self.right - self.left) / width, self.left / width
+        return box.model_copy(update={"x_min": start + box.x_min * share, "x_max": min(1.0, start + box.x_max * share)})
+
+    def place_point(self, point: Point, width: int) -> Point:
+        """Return a point of the tile as a point of the whole picture."""
+        return point.model_copy(update={"x": min(1.0, (self.left + point.x * (self.right - self.left)) / width)})
+
+
+def tiles(width: int, height: int) -> tuple[PanoramaTile, ...]:
+    """Return overlapping tiles that cover a picture, just one for a picture no wider than ordinary frames."""
+    if width <= WIDEST * height:
+        return (PanoramaTile(0, width),)
+    wide = TILE_ASPECT * height
+    count = math.ceil((width - wide) / (wide * (1 - OVERLAP))) + 1
+    step = (width - wide) / (count - 1)
+    return tuple(PanoramaTile(round(i * step), min(width, round(i * step + wide))) for i in range(count))
+
+
+def iou(a: Box, b: Box) -> float:
+    """Return intersection over union."""
+    shared = _shared(a, b)
+    union = a.width * a.height + b.width * b.height - shared
+    return shared / union if union > 0 else 0.0
+
+
+def suppressed(boxes: Iterable[Box], threshold: float) -> list[Box]:
+    """Return boxes best first, without those that overlap a better one by more than ``threshold`` (intersection over union)."""
+    kept: list[Box] = []
+    for box in sorted(boxes, key=lambda b: -(b.score or 0.0)):
+        if all(iou(box, other) <= threshold for other in kept):
+            kept.append(box)
+    return kept
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """A box in the whole picture, its tile, and whether the tile's borders cut it."""
+
+    tile: PanoramaTile
+    box: Box
+    cut_left: bool
+    cut_right: bool
+
+
+def merged(parts: Iterable[tuple[PanoramaTile, Iterable[Box]]], width: int) -> list[Box]:
+    """Merge the boxes of all tiles. A thing that several tiles saw becomes one box."""
+    kept: list[_Part] = []
+    for tile, boxes in parts:
+        for box in boxes:
+            cut_left, cut_right = tile.left > 0 and box.x_min < CUT, tile.right < width and box.x_max > 1 - CUT
+            part = _Part(tile, tile.place(box, width), cut_left, cut_right)
+            twin = next((i for i, other in enumerate(kept) if other.tile != tile and _is_same(other, part)), None)
+            if twin is None:
+                kept.append(part)
+            else:
+                kept[twin] = _Part(tile, _around(kept[twin].box, part.box), kept[twin].cut_left, part.cut_right)
+    return [part.box for part in kept]
+
+
+def merged_points(parts: Iterable[tuple[PanoramaTile, Iterable[Point]]], width: int, near: float) -> list[Point]:
+    """Merge the points of all tiles. Two points of different tiles within ``near`` of the width are one."""
+    kept: list[tuple[PanoramaTile, Point]] = []
+    for tile, points in parts:
+        for point in (tile.place_point(p, width) for p in points):
+            twins = (p for other, p in kept if other != tile)
+            if all(abs(p.x - point.x) > near or abs(p.y - point.y) > 5 * near for p in twins):
+                kept.append((tile, point))
+    return [point for _, point in kept]
+
+
+def without_seam_twins(boxes: list[Box]) -> list[Box]:
+    """Drop the narrower half of things that show at both ends of a 360-degree panorama."""
+    twins = {
+        (i, j)
+        for i, left in enumerate(boxes)
+        for j, right in enumerate(boxes)
+        if i != j and left.x_min < SEAM and right.x_max > 1 - SEAM and _same_heights(left, right)
+    }
+    lost = {i if boxes[i].width < boxes[j].width else j for i, j in twins}
+    return [box for i, box in enumerate(boxes) if i not in lost]
+
+
+def _same_heights(a: Box, b: Box) -> bool:
+    return min(a.y_max, b.y_max) - max(a.y_min, b.y_min) >= SAME_BOX * max(a.height, b.height)
+
+
+def _shared(a: Box, b: Box) -> float:
+    wide, high = min(a.x_max, b.x_max) - max(a.x_min, b.x_min), min(a.y_max, b.y_max) - max(a.y_min, b.y_min)
+    return wide * high if wide > 0 and high > 0 else 0.0
+
+
+def _is_same(left: _Part, right: _Part) -> bool:
+    """Return whether a box in a tile further right continues or repeats a box seen before."""
+    a, b = left.box, right.box
+    smaller = min(a.width * a.height, b.width * b.height)
+    if smaller > 0 and _shared(a, b) / smaller >= SAME_BOX:
+        return True
+    if not (left.cut_right and right.cut_left) or a.x_max < b.x_min:
+        return False
+    return _same_heights(a, b)
+
+
+def _around(a: Box, b: Box) -> Box:
+    better = a if (a.score or 0.0) >= (b.score or 0.0) else b
+    corners = {
+        "x_min": min(a.x_min, b.x_min),
+        "y_min": min(a.y_min, b.y_min),
+        "x_max": max(a.x_max, b.x_max),
+        "y_max": max(a.y_max, b.y_max),
+    }
+    return better.model_copy(update=corners)

@@ -1,0 +1,66 @@
+"""Checks of a perception backend and its server, on a frame of the user's choice."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+
+from scope_ptz.camera.base import Frame
+from scope_ptz.endpoints.chat_server_checks import Finding, ServerCheck, checked
+from scope_ptz.perception.base import Perception
+
+_QUESTION = "What is the main thing in this picture? Answer in a few words."
+_MOST_WORDS = 120
+_MANY = 100
+
+
+async def check_perception(
+    perception: Perception, frame: Frame, *, thing: str, absent: str = "purple elephant"
+) -> AsyncIterator[ServerCheck]:
+    """Check each skill of a backend.
+
+    A reply that becomes a result was parsed, and its boxes lie in the frame.
+
+    Args:
+        perception: The backend.
+        frame: The frame to look at.
+        thing: Something that is in the frame.
+        absent: Something that is not in the frame.
+    """
+    if "caption" in perception.skills:
+        yield await checked("a caption", lambda: _caption(perception, frame))
+    if "query" in perception.skills:
+        yield await checked("a question", lambda: _query(perception, frame))
+    if "detect" in perception.skills:
+        yield await checked(f"boxes of '{thing}'", lambda: _detect(perception, frame, thing, expected=True))
+        yield await checked(f"boxes of '{absent}'", lambda: _detect(perception, frame, absent, expected=False))
+    if "point" in perception.skills:
+        yield await checked(f"points on '{thing}'", lambda: _point(perception, frame, thing))
+
+
+async def _caption(perception: Perception, frame: Frame) -> Finding:
+    return _stated((await perception.caption(frame)).text)
+
+
+async def _query(perception: Perception, frame: Frame) -> Finding:
+    return _stated((await perception.query(frame, _QUESTION)).text)
+
+
+def _stated(text: str) -> Finding:
+    words = " ".join(text.split())
+    return ("ok", f"'{words[:_MOST_WORDS]}'") if words else ("failed", "the answer is empty")
+
+
+async def _detect(perception: Perception, frame: Frame, thing: str, *, expected: bool) -> Finding:
+    return _found(len((await perception.detect(frame, thing)).boxes), expected=expected)
+
+
+async def _point(perception: Perception, frame: Frame, thing: str) -> Finding:
+    return _found(len((await perception.point(frame, thing)).points), expected=True)
+
+
+def _found(count: int, *, expected: bool) -> Finding:
+    if count > _MANY:
+        return "partly", f"{count}: it repeats itself"
+    if expected:
+        return ("ok", f"{count} found") if count else ("partly", "none found, although there are some")
+    return ("ok", "none, as expected") if not count else ("partly", f"{count} found, although there are none")

@@ -1,0 +1,114 @@
+"""From the reply of a vision-language model to a perception result. Shared by served and local models."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from time import perf_counter
+from typing import Any
+
+from scope_ptz.endpoints.failures import Attempt, FailureKind, ServerFailure
+from scope_ptz.errors import PerceptionError
+from scope_ptz.perception.base import Answer, Caption, Detections, Point, Points
+from scope_ptz.perception.models.coordinates import Convention, Located, located
+from scope_ptz.perception.models.encoding import Size
+from scope_ptz.perception.models.reply_parsing import cannot_tell, excerpt, read_answer, read_places
+
+MAX_RAW_CHARS = 20_000
+"""Longer replies are truncated in the trace."""
+
+
+class VisionReply:
+    """A model's reply about one frame, which can be read as any kind of result.
+
+    Results and errors include the ``attempts`` of the call. A reply that was delivered but cannot be read counts against its last
+    attempt.
+    """
+
+    def __init__(self, source: str, text: str, began: float, attempts: tuple[Attempt, ...] = (), *, cut: bool = False) -> None:
+        """Set up the reply.
+
+        Args:
+            source: Who replied.
+            text: The text of the reply.
+            began: When the call began, by ``perf_counter``.
+            attempts: The requests of the call.
+            cut: Whether the reply stopped at the token limit.
+        """
+        self.source, self.text, self.attempts, self.cut, self._began = source, text, attempts, cut, began
+
+    def preceded(self, error: PerceptionError) -> VisionReply:
+        """Return the same reply, with the attempts of an earlier failure before its own."""
+        earlier = tuple(a for a in error.attempts if isinstance(a, Attempt))
+        return VisionReply(self.source, self.text, self._began, (*earlier, *self.attempts), cut=self.cut)
+
+    def caption(self) -> Caption:
+        """Return the reply as a caption."""
+        with blamed(self.source, self.attempts):
+            return Caption(text=read_answer(self.text), **self._common(self._cut_answer()))
+
+    def answer(self) -> Answer:
+        """Return the reply as an answer."""
+        with blamed(self.source, self.attempts):
+            text = read_answer(self.text)
+        return Answer(text=text, known=not cannot_tell(text), **self._common(self._cut_answer()))
+
+    def _cut_answer(self) -> tuple[str, ...]:
+        return ("The answer was cut off at the token limit.",) if self.cut else ()
+
+    def detections(self, convention: Convention, sent: Size) -> Detections:
+        """Return the boxes in the reply."""
+        found, complete, notes = self._located(convention, sent)
+        if found.points and not found.boxes:
+            raise self.unreadable("points instead of boxes")
+        return Detections(boxes=found.boxes, complete=complete, **self._common(notes))
+
+    def points(self, convention: Convention, sent: Size) -> Points:
+        """Return the points in the reply, or the centres of its boxes."""
+        found, complete, notes = self._located(convention, sent)
+        points = found.points or tuple(Point(x=b.centre[0], y=b.centre[1], label=b.label) for b in found.boxes)
+        return Points(points=points, complete=complete, **self._common(notes))
+
+    def _located(self, convention: Convention, sent: Size) -> tuple[Located, bool, tuple[str, ...]]:
+        with blamed(self.source, self.attempts):
+            read = read_places(self.text)
+            found = located(read.things, convention, sent)
+        whole = read.complete and not (self.cut and found.boxes + found.points)
+        notes = () if whole else ("The reply was cut off: there may be more.",)
+        return found, found.complete and whole, found.notes + notes
+
+    def unreadable(self, what: str) -> PerceptionError:
+        """Return the error of a reply that cannot be read."""
+        kind = FailureKind.MALFORMED
+        return PerceptionError(
+            f"{self.source} gave {what}: {excerpt(self.text)}", kind=kind.value, attempts=_with_kind(self.attempts, kind)
+        )
+
+    def _common(self, notes: tuple[str, ...] = ()) -> dict[str, Any]:
+        raw = self.text if len(self.text) <= MAX_RAW_CHARS else self.text[:MAX_RAW_CHARS] + "…"
+        latency_s = perf_counter() - self._began
+        return {"source": self.source, "raw": raw, "latency_s": latency_s, "notes": notes, "attempts": self.attempts}
+
+
+@contextmanager
+def blamed(source: str, attempts: tuple[Attempt, ...]) -> Iterator[None]:
+    """Name the source in errors about its reply, and count them against the attempt that brought the reply."""
+    try:
+        yield
+    except PerceptionError as error:
+        kind = FailureKind(error.kind) if error.kind is not None else None
+        tried = _with_kind(attempts, kind) if kind is not None else attempts
+        raise PerceptionError(f"{source}: {error}", kind=error.kind, attempts=tried) from error
+
+
+def _with_kind(attempts: tuple[Attempt, ...], kind: FailureKind) -> tuple[Attempt, ...]:
+    return (*attempts[:-1], attempts[-1].model_copy(update={"kind": kind})) if attempts else ()
+
+
+@contextmanager
+def served(source: str) -> Iterator[None]:
+    """Turn a server's failure into a ``PerceptionError`` with its kind and all attempts."""
+    try:
+        yield
+    except ServerFailure as failure:
+        raise PerceptionError(f"{source} could not look: {failure}", kind=failure.kind.value, attempts=failure.history) from failure

@@ -1,0 +1,159 @@
+"""The state S_t as chat messages.
+
+The messages are append-only: those of a step begin with the messages of the step before, byte for byte, so that the server's prefix
+cache works. The only exception comes last: for planners that take images, the newest view replaces the older one.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Sequence
+from typing import Any, Literal
+
+from scope_ptz.geometry import Pose
+from scope_ptz.planner.base import Exchange, Picture, State, ToolCall, ToolOutcome
+from scope_ptz.planner.chat.observations import observation
+from scope_ptz.planner.chat.prompts import Prompt
+from scope_ptz.planner.chat.schemas import plain_schemas
+
+Message = dict[str, Any]
+Notation = Literal["native", "text"]
+
+_TEXT_TOOLS = """
+
+# Tools
+You call a tool by writing, for each call:
+<tool_call>
+{"name": <name of the tool>, "arguments": <JSON object>}
+</tool_call>
+The results come back in <tool_response> elements. These are the tools, as JSON schemas:
+"""
+
+
+def build_messages(
+    state: State, prompt: Prompt, *, notation: Notation = "native", sees: bool = False, switch: str = "", brief_before: int = 0
+) -> list[Message]:
+    """Return the messages for a state.
+
+    Args:
+        state: The state of the run.
+        prompt: The system prompt.
+        notation: Whether tools use the server's own interface or the text.
+        sees: Whether the model takes images.
+        switch: Words at the end of the user messages that switch the model's reasoning.
+        brief_before: How many of the oldest exchanges are shortened to what later steps need.
+    """
+    writer = _Writer(notation, brief_before, in_parts=sees)
+    briefing = state.briefing
+    starts = [turn.start for turn in state.conversation] + [briefing.pose]
+    first = starts[0] or briefing.pose
+    system = prompt.fill(briefing.presets, briefing.limits, first, sees=sees)
+    if notation == "text":
+        system += _TEXT_TOOLS + "\n".join(json.dumps(tool["function"], ensure_ascii=False) for tool in plain_schemas(state.tools))
+    writer.add({"role": "system", "content": system})
+    for turn, start in zip(state.conversation, starts[:-1], strict=True):
+        writer.user(_instruction(turn.instruction, None if start == first else start, switch))
+        for exchange in turn.exchanges:
+            writer.exchange(exchange)
+        writer.add({"role": "assistant", "content": turn.reply})
+    writer.user(_instruction(state.instruction, starts[-1] if state.conversation else None, switch))
+    for exchange in state.history:
+        writer.exchange(exchange)
+    if sees and state.view is not None:
+        writer.pictures([state.view])
+    return writer.messages
+
+
+def _instruction(text: str, start: Pose | None, switch: str) -> str:
+    where = ""
+    if start is not None:
+        pose = start.as_dict()
+        where = f"(The camera is now at pan {pose['pan_deg']:g}, tilt {pose['tilt_deg']:g}, zoom {pose['zoom']:g}.)\n"
+    return f"{where}{text}{' ' + switch if switch else ''}"
+
+
+class _Writer:
+    """Appends messages. Consecutive user messages become one, because chat templates require alternating turns."""
+
+    def __init__(self, notation: Notation, brief_before: int, *, in_parts: bool) -> None:
+        """Set up the writer. ``in_parts``: user messages are lists of parts from the start, because pictures may follow."""
+        self.messages: list[Message] = []
+        self._in_parts = in_parts
+        self._notation, self._brief_before, self._exchanges = notation, brief_before, 0
+        self._used: set[str] = set()
+
+    def add(self, message: Message) -> None:
+        self.messages.append(message)
+
+    def user(self, content: str | list[Message]) -> None:
+        last = self.messages[-1]
+        if last["role"] == "user":
+            # A new object, because a caller may still hold the old one.
+            self.messages[-1] = {"role": "user", "content": [*_parts(last["content"]), *_parts(content)]}
+        else:
+            self.add({"role": "user", "content": _parts(content) if self._in_parts else content})
+
+    def pictures(self, pictures: Sequence[Picture]) -> None:
+        self.user([part for picture in pictures for part in _picture_parts(picture)])
+
+    def exchange(self, exchange: Exchange) -> None:
+        brief = self._exchanges < self._brief_before
+        self._exchanges += 1
+        if self._notation == "native":
+            self._native(exchange, brief)
+        else:
+            self._written(exchange, brief)
+        pictures = [o.picture for o in exchange.outcomes if o.picture is not None]
+        if pictures and self._in_parts and not brief:
+            self.pictures(pictures)
+
+    def _native(self, exchange: Exchange, brief: bool) -> None:
+        ids = [self._unique(outcome.call.id) for outcome in exchange.outcomes]
+        calls = [
+            {"id": i, "type": "function", "function": {"name": callable_name(o.call.name), "arguments": _arguments(o.call)}}
+            for i, o in zip(ids, exchange.outcomes, strict=True)
+        ]
+        self.add({"role": "assistant", "content": exchange.thought, "tool_calls": calls})
+        for call_id, outcome in zip(ids, exchange.outcomes, strict=True):
+            self.add({"role": "tool", "tool_call_id": call_id, "content": observation(outcome, brief=brief)})
+
+    def _written(self, exchange: Exchange, brief: bool) -> None:
+        calls = "\n".join(_as_text(outcome) for outcome in exchange.outcomes)
+        self.add({"role": "assistant", "content": f"{exchange.thought}\n{calls}".strip()})
+        results = (f"<tool_response>\n{observation(o, brief=brief)}\n</tool_response>" for o in exchange.outcomes)
+        self.user("\n".join(results))
+
+    def _unique(self, call_id: str) -> str:
+        """Return the server's own id where possible; some servers give every call the same one."""
+        if not call_id or call_id in self._used:
+            call_id = f"call{len(self._used) + 1:05d}"  # nine letters and digits, as Mistral's templates require
+        self._used.add(call_id)
+        return call_id
+
+
+def callable_name(name: str) -> str:
+    """Return a tool name with only the characters that the interface allows. Models may make up any name."""
+    return re.sub(r"[^\w-]", "_", name, flags=re.ASCII)[:64] or "unreadable"
+
+
+def _arguments(call: ToolCall) -> str:
+    """Return the arguments as a JSON object.
+
+    Servers put them through their chat templates, which fail on anything else. The error message of a malformed call quotes the
+    original.
+    """
+    return json.dumps(call.arguments, ensure_ascii=False)
+
+
+def _as_text(outcome: ToolOutcome) -> str:
+    data = {"name": outcome.call.name, "arguments": outcome.call.arguments}
+    return f"<tool_call>\n{json.dumps(data, ensure_ascii=False)}\n</tool_call>"
+
+
+def _parts(content: str | list[Message]) -> list[Message]:
+    return [{"type": "text", "text": content}] if isinstance(content, str) else content
+
+
+def _picture_parts(picture: Picture) -> list[Message]:
+    return [{"type": "text", "text": picture.caption}, {"type": "image_url", "image_url": {"url": picture.data_url}}]

@@ -1,0 +1,92 @@
+"""Checks of a server's use as a planner: tool calls and answers from their results, streamed and whole."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator, Sequence
+from typing import Any
+
+from scope_ptz.endpoints.chat_server_checks import Finding, ServerCheck, checked
+from scope_ptz.endpoints.endpoint import Endpoint
+from scope_ptz.geometry import Limits, Pose
+from scope_ptz.planner.base import Briefing, CallTools, Decision, Exchange, Finish, State, ToolCall, ToolOutcome
+from scope_ptz.planner.chat.planner import ChatOptions, ChatPlanner
+
+PICTURE, TURN = "Take a picture.", "Pan right by 20 degrees."
+_TAKEN = {"message": "The picture is saved.", "pose": {"pan_deg": 0.0, "tilt_deg": 0.0, "zoom": 1.0}, "file": "frame-0001.jpg"}
+_MOST_WORDS = 160
+
+
+async def check_planning(
+    endpoint: Endpoint, tools: Sequence[dict[str, Any]], options: ChatOptions | None = None
+) -> AsyncIterator[ServerCheck]:
+    """Check whether a server's model can plan.
+
+    Args:
+        endpoint: The server.
+        tools: The schemas of the nine tools.
+        options: How to ask the model.
+    """
+    options = options or ChatOptions()
+    for stream in (False, True):
+        how = ", streamed" if stream else ""
+        planner = ChatPlanner(
+            endpoint.model_copy(update={"retries": 1}), options.model_copy(update={"stream": stream, "sees": False})
+        )
+        try:
+            yield await checked(f"a tool call{how}", lambda p=planner: _calls(p, tools))  # type: ignore[misc]
+            yield await checked(f"arguments of the right type{how}", lambda p=planner: _turns(p, tools))  # type: ignore[misc]
+            yield await checked(f"an answer from a tool's result{how}", lambda p=planner: _concludes(p, tools))  # type: ignore[misc]
+        finally:
+            await planner.close()
+
+
+def probe(instruction: str, tools: Sequence[dict[str, Any]], *history: Exchange) -> State:
+    """Return a state in which the right decision is obvious."""
+    briefing = Briefing(presets=("gate", "highway"), pose=Pose(), limits=Limits())
+    return State(instruction=instruction, briefing=briefing, history=history, tools=tuple(tools))
+
+
+def picture_taken() -> Exchange:
+    """Return the step after which a picture has been taken."""
+    return Exchange(outcomes=(ToolOutcome(call=ToolCall(id="call-1", name="take_image"), result=_TAKEN),))
+
+
+async def _calls(planner: ChatPlanner, tools: Sequence[dict[str, Any]]) -> Finding:
+    decision = await planner.step(probe(PICTURE, tools))
+    if not isinstance(decision, CallTools):
+        return "failed", f"no call; it answered: {_brief(decision)}"
+    if "take_image" not in [call.name for call in decision.calls]:
+        return "partly", f"another call than the obvious one: {_brief(decision)}"
+    source = decision.served.calls_from if decision.served else ""
+    if source != "native":
+        return "partly", f"read from the text ({source}): the server does not parse this model's calls"
+    return "ok", _brief(decision)
+
+
+async def _turns(planner: ChatPlanner, tools: Sequence[dict[str, Any]]) -> Finding:
+    decision = await planner.step(probe(TURN, tools))
+    if not isinstance(decision, CallTools):
+        return "partly", f"no call; it answered: {_brief(decision)}"
+    call = decision.calls[0]
+    if call.name != "adjust_ptz" or call.arguments.get("pan_deg") != 20:
+        return "partly", f"adjust_ptz(pan_deg=20) was expected; it called {_brief(decision)}"
+    return "ok", _brief(decision)
+
+
+async def _concludes(planner: ChatPlanner, tools: Sequence[dict[str, Any]]) -> Finding:
+    decision = await planner.step(probe(PICTURE, tools, picture_taken()))
+    if not isinstance(decision, Finish):
+        return "partly", f"it continues although the task is done: {_brief(decision)}"
+    if "<think" in decision.text:
+        return "failed", f"its reasoning is in the answer: {_brief(decision)}"
+    if not (decision.usage.input_tokens and decision.usage.output_tokens):
+        return "partly", f"it does not report token counts; it answered: {_brief(decision)}"
+    return "ok", _brief(decision)
+
+
+def _brief(decision: Decision) -> str:
+    if isinstance(decision, Finish):
+        words = " ".join(decision.text.split())
+        return f"'{words[:_MOST_WORDS]}{'…' if len(words) > _MOST_WORDS else ''}'"
+    calls = (f"{call.name}({', '.join(f'{k}={v!r}' for k, v in call.arguments.items())})" for call in decision.calls)
+    return "; ".join(calls)[:_MOST_WORDS]

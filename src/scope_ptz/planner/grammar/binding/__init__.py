@@ -1,0 +1,1 @@
+"""From steps as written to steps that can run: names resolved to presets and things, questions made direct."""

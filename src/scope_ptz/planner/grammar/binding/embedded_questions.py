@@ -1,0 +1,94 @@
+"""Embedded questions made direct.
+
+"Tell me if it's open" asks "Is it open?", and "tell me its colour" asks "What is its colour?".
+"""
+
+from __future__ import annotations
+
+import re
+
+from scope_ptz.planner.grammar.execution.answer_sentences import head_and_rest
+
+_BE = r"is|are|was|were|isn't|aren't"
+_AUXILIARY = rf"{_BE}|has|have|can|could|will|should"
+_BASE_FORMS = {
+    "says": "say", "say": "say", "reads": "say", "read": "say", "shows": "show", "show": "show", "has": "have", "have": "have",
+    "means": "mean", "looks": "look", "look": "look", "wears": "wear", "carries": "carry", "holds": "hold", "does": "do",
+    "contains": "contain", "weighs": "weigh", "costs": "cost", "lists": "list", "displays": "display",
+}  # fmt: skip
+_HEAVY = re.compile(rf"(.+?) ({_AUXILIARY}) (.+)", re.IGNORECASE)
+_YES_NO = re.compile(
+    r"(?:if|whether|that (?=(?:the|an?|all|every|no|any|there|it|they)\b))(?: or not)? ?(.+?)(?:,? or not)?", re.IGNORECASE
+)
+_WH = re.compile(
+    r"((?:what|which)(?: (?!(?:the|an?|that|this|its|it|they|you|is|are|does|do|of)\b)\w+){0,2}|where(?:abouts)?|who|why"
+    r"|how(?: (?:far|big|tall|high|wide|long|fast|close|busy|full|wet|bright|dark|many \w+))?(?: away)?)"
+    r" ((?:the|an?|that|this|these|those|its|their|his|her|it|they|he|she|each|every|all|both|any)\b.*?)",
+    re.IGNORECASE,
+)
+_PLURAL = re.compile(r"(?:[^s]s|\b(?:people|men|women|children|feet))$", re.IGNORECASE)
+"""Whatever looks like a plural. Recorded plans depend on this test, so it stays coarse: "this" counts as a plural."""
+
+_ASKED = re.compile(
+    r"(what|which|who|whom|whose|where|when|why|how|is|are|was|were|do|does|did|can|could|has|have|any)\b", re.IGNORECASE
+)
+
+
+def embedded(text: str) -> str:
+    """Return the direct question in the words after "tell me". A text that is a direct question is returned unchanged."""
+    phrase = text.strip().rstrip("?!. ").replace("’", "'")
+    made = _yes_no(phrase) or _about_you(phrase) or _wh(phrase) or _named(phrase)
+    return f"{made[0].upper()}{made[1:]}?" if made else text.strip()
+
+
+def _yes_no(phrase: str) -> str | None:
+    found = _YES_NO.fullmatch(phrase)
+    if not found:
+        return None
+    clause = re.sub(r"\b(there|it|they|that|anyone|anybody|someone|everyone)'(s|re)\b", _is_spelled, found[1])
+    if see := re.fullmatch(r"you (?:can )?(see|spot|make out|read) (.+)", clause, re.IGNORECASE):
+        return f"can you {see[1]} {see[2]}"
+    if inverted := _HEAVY.fullmatch(clause):
+        return f"{inverted[2]} {inverted[1]} {inverted[3]}"
+    if short := re.fullmatch(r"(.+?)'s (.+)", clause):
+        return f"is {short[1]} {short[2]}"
+    return f"is it true that {clause}"
+
+
+def _is_spelled(short: re.Match[str]) -> str:
+    return f"{short[1]} {'are' if short[2] == 're' else 'is'}"
+
+
+def _about_you(phrase: str) -> str | None:
+    """Return the question in "what you see" or "what you can see there"."""
+    found = re.fullmatch(
+        r"(what(?: else)?|which \w+|how many \w+|who(?:m)?) you (can )?(see|find|notice|spot|observe)( .+)?", phrase, re.IGNORECASE
+    )
+    return f"{found[1]} {'can' if found[2] else 'do'} you {found[3]}{found[4] or ''}" if found else None
+
+
+def _wh(phrase: str) -> str | None:
+    """Return the question in "what colour the door is", "where the truck is parked" or "what the sign says"."""
+    if found := re.fullmatch(rf"{_WH.pattern} ({_AUXILIARY})( .+)?", phrase, re.IGNORECASE):
+        return f"{found[1]} {found[3]} {found[2]}{found[4] or ''}"
+    if found := re.fullmatch(rf"{_WH.pattern} ({'|'.join(_BASE_FORMS)})( .+)?", phrase, re.IGNORECASE):
+        many = re.match(r"they|these|those", found[2], re.IGNORECASE)
+        return f"{found[1]} {'do' if many else 'does'} {found[2]} {_BASE_FORMS[found[3].lower()]}{found[4] or ''}"
+    if found := re.fullmatch(r"what(?:'s| is) happening(.*)", phrase, re.IGNORECASE):
+        return f"what is happening{found[1]}"
+    return None
+
+
+def _named(phrase: str) -> str | None:
+    """Return the question about a named thing: "its number plate", "the colour of the door"."""
+    if about := re.fullmatch(r"(?:something |more )?about (.+)", phrase, re.IGNORECASE):
+        return f"what can you say about {about[1]}"
+    if _ASKED.match(phrase):
+        return None
+    head = re.split(r" (?:of|on|in|at|for|to|with|near|behind|from|by|that|which|who) ", phrase)[0]
+    many = _PLURAL.search(head_and_rest(head)[0]) and not re.search(r"\bbus$|ss$|'s$", head)
+    return (
+        f"what {'are' if many else 'is'} {phrase}"
+        if re.match(r"(the|its|their|his|her|an?|this|that|these|those)\b", phrase, re.IGNORECASE)
+        else None
+    )

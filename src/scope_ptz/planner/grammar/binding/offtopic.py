@@ -1,0 +1,26 @@
+"""Which questions a camera can answer, and which instructions it must refuse."""
+
+from __future__ import annotations
+
+import re
+
+from scope_ptz.planner.grammar.lexing.vocabulary import word_list
+
+_SUM = re.compile(r"\d\s*[-+*/×]\s*\d|\bwhat(?:'s| is) \d+\b")
+_HARM = re.compile(
+    r"\b(spy(?:ing)? on|stalk|peep|undress|naked|kill|shoot at|attack|murder|assassinate|rob the|break into|burgle"
+    r"|aim (?:the|a) (?:gun|weapon|rifle)|harass|blackmail|bomb the)\b|\b(bedroom|bathroom|changing room) window",
+    re.IGNORECASE,
+)
+REFUSAL = "I will not help with that: this camera is not for harming or spying on people."
+
+
+def is_about_the_scene(question: str) -> bool:
+    """Return False for questions that no picture can answer."""
+    text = " ".join(question.lower().replace("’", "'").split())
+    return not (any(re.search(rf"\b{re.escape(phrase)}\b", text) for phrase in word_list("elsewhere")) or _SUM.search(text))
+
+
+def is_harmful(instruction: str) -> bool:
+    """Return whether an instruction asks to harm or spy on people."""
+    return bool(_HARM.search(instruction))

@@ -1,0 +1,402 @@
+"""Resolving names: presets to the camera's list, pronouns to the last named thing, and the scope that a sweep sets."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from difflib import SequenceMatcher
+
+from scope_ptz.planner.base import PastTurn
+from scope_ptz.planner.grammar import instruction_tree as ast
+from scope_ptz.planner.grammar.binding.embedded_questions import embedded
+from scope_ptz.planner.grammar.binding.offtopic import is_about_the_scene
+from scope_ptz.planner.grammar.execution.answer_sentences import noun
+from scope_ptz.planner.grammar.lexing.lexer import distance_one, preset_key
+from scope_ptz.planner.grammar.lexing.vocabulary import phrase_table
+from scope_ptz.tools.arguments import View
+
+_CLOSE_ENOUGH = 0.8
+_LONGEST_NAME = 4
+_NOWHERE = frozenset({"nothing", "around", "everywhere", "there", "here", "away", "about"})
+_NO_PLACE = frozenset({"mode", "sleep", "hell", "bed", "town", "pieces", "waste"})
+_SHORTEST_ABBREVIATION = 3
+_NO_THING = re.compile(r"(?:who|what)(?:['’]s| is| are)\?*", re.IGNORECASE)
+_WAITING = re.compile(r"(when|once|as soon as|whenever)\b", re.IGNORECASE)
+_EXISTENCE = re.compile(
+    r"(?:(?:is|are) there|(?:can|do) you see) (?:an? |any |the |some )?(.+?)"
+    r"(?: anywhere| in view| visible| right now| here)?\s*\?*$",
+    re.IGNORECASE,
+)
+_WINNER = re.compile(
+    r"which (?:one |preset |view |of them |place )?(?:has|have|shows|had) (?:the )?(?:most|fewest|more|fewer|least)\W*",
+    re.IGNORECASE,
+)
+_DESCRIBE = re.compile(r"describe(?: each(?: one| view| of them)?)?\W*", re.IGNORECASE)
+_ONES = re.compile(r"\bones?\b", re.IGNORECASE)
+_POSSESSIVE = re.compile(r"\b(its|their)\b", re.IGNORECASE)
+_PRONOUN = re.compile(r"\b(it|they|them|that one|this one)\b", re.IGNORECASE)
+_IMPERSONAL = re.compile(
+    r"\bit\s+(raining|dark|light|day|night|sunny|foggy|cloudy|snowing|busy|daytime|wet|bright|safe|windy|snowy|like)\b"
+    r"|\bwhat('s| is) it\b|\bit is\b",
+    re.IGNORECASE,
+)
+
+
+_BESIDE = re.compile(
+    r"(?:(?:just|only|slightly|a (?:bit|little|touch|tad)|right|directly) )*"
+    r"((?:to the )?(?:left|right) of|above|below|under|underneath|beneath|over|beyond|past|behind|beside|next to|in front of) \w",
+    re.IGNORECASE,
+)
+
+
+class UnresolvedError(Exception):
+    """A name cannot be resolved. The message is the question to ask the user."""
+
+
+def match_exactly(name: str, presets: Sequence[str]) -> str | None:
+    """Return the preset of that name, ignoring case, spaces and hyphens."""
+    wanted = "".join(preset_key(name))
+    return next((preset for preset in presets if "".join(preset_key(preset)) == wanted), None)
+
+
+def match_preset(name: str, presets: Sequence[str]) -> str | None:
+    """Return the preset that a name means: an exact match, or else the one that is clearly closest; None when there is none."""
+    wanted = "".join(preset_key(name))
+    keys = {preset: "".join(preset_key(preset)) for preset in presets}
+    exact = match_exactly(name, presets)
+    if exact or not wanted:
+        return exact
+    inside = [p for p in presets if len(wanted) >= 3 and set(preset_key(name)) < set(preset_key(p))]
+    if len(inside) == 1:
+        return inside[0]
+    near = [preset for preset, key in keys.items() if len(key) >= 4 and distance_one(wanted, key)]
+    if len(near) == 1:
+        return near[0]
+    short = [preset for preset, key in keys.items() if abbreviates(wanted, key)]
+    if len(short) == 1:
+        return short[0]
+    scored = sorted(((SequenceMatcher(None, wanted, key).ratio(), preset) for preset, key in keys.items()), reverse=True)
+    clear = scored and scored[0][0] >= _CLOSE_ENOUGH and (len(scored) < 2 or scored[1][0] < scored[0][0] - 0.05)
+    return scored[0][1] if clear else None
+
+
+def abbreviates(short: str, long: str) -> bool:
+    """Return whether a word is another with vowels left out: "hwy" for "highway"."""
+    letters = iter(long)
+    return (
+        len(short) >= _SHORTEST_ABBREVIATION
+        and short[0] == long[:1]
+        and not set(short[1:]) & set("aeiou")
+        and all(c in letters for c in short)
+    )
+
+
+def plausible_name(text: str) -> bool:
+    """Return whether words may be a preset's name when no presets are known: few words, none of them about camera motion."""
+    words = [(word,) for word in preset_key(text)]
+    telling = {
+        "DEG", "PRON", "NUM", "LEFT", "RIGHT", "UP", "DOWN", "ZOOM", "PAN",
+        "TILT", "TELL", "MOVE", "LIMIT", "CAMERA", "PREVIOUS", "HOWMANY", "BE",
+    }  # fmt: skip
+    if not 0 < len(words) <= _LONGEST_NAME or any(word in _NO_PLACE for (word,) in words):
+        return False
+    return not any(phrase_table().get(word, frozenset()) & telling for word in words)
+
+
+@dataclass(slots=True)
+class Resolver:
+    """Binds the steps of one instruction.
+
+    Attributes:
+        presets: The camera's presets; None when they are unknown, so that names are accepted as written.
+        antecedent: The thing that a pronoun refers to.
+        preset: The preset that "there" refers to.
+        compared: Whether presets were compared.
+        counted: Whether something was counted.
+        sweeping: Whether questions are about the whole scene.
+    """
+
+    presets: tuple[str, ...] | None
+    conversation: tuple[PastTurn, ...] = ()
+    antecedent: str = ""
+    preset: str = ""
+    compared: bool = False
+    counted: bool = False
+    sweeping: bool = False
+
+    def __post_init__(self) -> None:
+        for turn in self.conversation:
+            for exchange in turn.exchanges:
+                for outcome in exchange.outcomes:
+                    arguments = outcome.call.arguments
+                    self.antecedent = str(arguments.get("description", self.antecedent))
+                    if outcome.call.name == "go_to_preset" and outcome.error is None:
+                        self.preset = str(arguments.get("name", ""))
+
+    def bind(self, steps: Sequence[ast.Step]) -> tuple[ast.Step, ...]:
+        """Return the steps with all names resolved.
+
+        Raises:
+            UnresolvedError: A name needs a question to the user.
+        """
+        out: list[ast.Step] = []
+        for step in steps:
+            bound = self._bind(self._completed(step, out))
+            again = bool(out) and isinstance(out[-1], ast.ZoomTo) and list(bound) == out[-1:]
+            out.extend([] if again else bound)  # "find it, zoom in on it" is one request
+        return tuple(out)
+
+    def _completed(self, step: ast.Step, before: Sequence[ast.Step]) -> ast.Step:
+        """Give a bare thing the verb of the step before it, as in "read the left sign and then the right one"."""
+        last = before[-1] if before else None
+        bare = isinstance(step, ast.GoPreset) and step.how == "bare" and step.ref.determined
+        if not bare or not isinstance(step, ast.GoPreset) or (self.presets and self.find_place(step.ref)):
+            return step
+        thing = ast.Thing(re.sub(r"^(the|an?) ", "", step.ref.name), definite=True)
+        if isinstance(last, ast.Read):
+            return ast.Read(thing)
+        if isinstance(last, ast.ZoomTo):
+            return ast.ZoomTo(thing)
+        return ast.Count((thing,)) if isinstance(last, ast.Count) else step
+
+    # Names -------------------------------------------------------------------------------------------------------------
+    def thing(self, thing: ast.Thing) -> ast.Thing:
+        if thing.text.lower() in _NOWHERE:
+            raise UnresolvedError(f"What shall I look for {thing.text}?")
+        if thing.odd and not (_ONES.search(thing.text) and self.antecedent):
+            raise UnresolvedError(f"I did not understand '{thing.text}'. Which thing do you mean?")
+        if thing.text.endswith((" one", " ones")) and not self.antecedent:
+            raise UnresolvedError(f"Which things do you mean by '{thing.text}'?")
+        if thing.text:
+            text = self._with_noun(thing.text)
+            self.antecedent = text
+            return replace(thing, text=text)
+        if not self.antecedent:
+            raise UnresolvedError("What do you mean by 'it'? Please name the thing.")
+        return ast.Thing(self.antecedent, definite=True)
+
+    def _with_noun(self, text: str) -> str:
+        """Replace "one" by the last noun: "the nearest one" after cars is the nearest car."""
+        head = re.split(r" (?:on|in|at|by|with|near|behind) ", self.antecedent)[0].split(" ")[-1]
+        return _ONES.sub(lambda match: noun(head, 2 if match[0].lower() == "ones" else 1), text) if head else text
+
+    def place(self, ref: ast.PresetRef) -> ast.PresetRef:
+        found = self.find_place(ref)
+        if found is None:
+            if self.presets is None:
+                raise UnresolvedError(f"I did not understand '{ref.name}' as the name of a preset. Which one do you mean?")
+            listing = ", ".join(self.presets) or "none"
+            raise UnresolvedError(f"There is no preset '{ref.name}'. Presets: {listing}. Which one do you mean?")
+        self.preset = found
+        return ast.PresetRef(found, sure=True)
+
+    def find_place(self, ref: ast.PresetRef) -> str | None:
+        if self.presets is None:
+            if not ref.sure and not plausible_name(ref.name):
+                return None
+            return ref.name if ref.number is None else ref.name.replace(" ", "-")
+        named = match_preset(ref.name, self.presets)
+        if named or ref.number is None:
+            return named
+        index = ref.number - 1 if ref.number > 0 else len(self.presets) + ref.number
+        return self.presets[index] if 0 <= index < len(self.presets) else None
+
+    def _places(self, refs: tuple[ast.PresetRef, ...]) -> tuple[ast.PresetRef, ...]:
+        if not refs:
+            if not self.presets:
+                raise UnresolvedError("Which presets do you mean? I know of none.")
+            return tuple(ast.PresetRef(name, sure=True) for name in self.presets)
+        return tuple(self.place(ref) for ref in refs)
+
+    def _view(self, view: View | None) -> View:
+        return view or ("full" if self.sweeping else "current")
+
+    # Steps -------------------------------------------------------------------------------------------------------------
+    def _bind(self, step: ast.Step) -> Sequence[ast.Step]:
+        if isinstance(step, ast.Unclear):
+            raise UnresolvedError(step.question)
+        if isinstance(step, ast.Sweep):
+            self.sweeping = True
+            return [step]
+        if isinstance(step, ast.Move | ast.Home | ast.GoPreset | ast.GoThere | ast.Back | ast.AtPlaces | ast.WhichPreset):
+            self.sweeping = False
+        method = getattr(self, f"_{type(step).__name__.lower()}", None)
+        return method(step) if method else [step]
+
+    def _gopreset(self, step: ast.GoPreset) -> Sequence[ast.Step]:
+        ref = step.ref
+        found = self.find_place(ref) if self.presets is not None or step.how == "go" or ref.sure else None
+        if step.how == "look" and not ref.sure:
+            return [ast.ZoomTo(self.thing(ast.Thing(ref.name, definite=True)))]
+        if step.how == "show" and not ref.sure and found is None:
+            return [ast.ZoomTo(self.thing(ast.Thing(ref.name)))]
+        if step.how == "bare" and found is None and ref.determined and self.conversation:
+            return self._whatabout(ast.WhatAbout(ast.Thing(re.sub(r"^(the|an?) ", "", ref.name))))
+        if step.how == "bare" and found is None and not ref.sure:
+            raise UnresolvedError(f"I did not understand '{ref.name}'. Please say it another way, or name one of the presets.")
+        return [ast.GoPreset(self.place(ref))]
+
+    def _gothere(self, step: ast.GoThere) -> Sequence[ast.Step]:
+        if self.compared:
+            return [step]
+        if not self.preset:
+            raise UnresolvedError("Where is 'there'? Please name a preset.")
+        return [ast.GoPreset(ast.PresetRef(self.preset, sure=True))]
+
+    def _snap(self, step: ast.Snap) -> Sequence[ast.Step]:
+        if step.of is None:
+            return [step]
+        if step.of.text and self.presets and match_preset(step.of.text, self.presets):
+            return [ast.GoPreset(self.place(ast.PresetRef(step.of.text))), replace(step, of=None)]
+        return [replace(step, of=self.thing(step.of))]
+
+    def _count(self, step: ast.Count) -> Sequence[ast.Step]:
+        self.counted = True
+        return [replace(step, things=tuple(self.thing(t) for t in step.things), view=self._view(step.view))]
+
+    def _ask(self, step: ast.Ask) -> Sequence[ast.Step]:
+        if self.counted and _WINNER.fullmatch(step.question.strip()):
+            return []  # the answer states the counts
+        if _DESCRIBE.fullmatch(step.question.strip()):
+            return [ast.Ask("Describe the scene.", self._view(step.view))]
+        if not is_about_the_scene(step.question):
+            raise UnresolvedError("I can only move the camera and answer questions about what it sees. What shall I look at?")
+        if _WAITING.match(step.question):
+            raise UnresolvedError("I cannot wait for something to happen. Shall I look for it now?")
+        question, place = self._asked_at(embedded(step.question) if step.embedded else step.question)
+        if _NO_THING.fullmatch(question.strip()):
+            question = f"{question.strip(' ?')} there?"
+        if self.antecedent and not _IMPERSONAL.search(question) and not re.search(r"\bthe \w+.*\b(it|they|them)\b", question):
+            question = _POSSESSIVE.sub(
+                f"the {self.antecedent}'s", _PRONOUN.sub(f"the {self.antecedent}", question, count=1), count=1
+            )
+        if named := _EXISTENCE.match(question):
+            self.antecedent = named[1]
+        return [*place, ast.Ask(question, self._view(step.view))]
+
+    def _asked_at(self, question: str) -> tuple[str, list[ast.Step]]:
+        """Take the preset out of a question that ends in one ("... at gate?")."""
+        match = re.fullmatch(r"(.+?) (?:at|from) (the )?([\w -]+?)( preset| view| position)?\?*", question.strip(), re.IGNORECASE)
+        name = match_exactly(match[3], self.presets or ()) if match and (match[4] or not match[2]) else None
+        if not match or not name:
+            return question, []
+        self.preset, self.sweeping = name, False
+        return f"{match[1]}?", [ast.GoPreset(ast.PresetRef(name, sure=True))]
+
+    def _mention(self, step: ast.Mention) -> Sequence[ast.Step]:
+        self.thing(step.thing)
+        return []
+
+    def _read(self, step: ast.Read) -> Sequence[ast.Step]:
+        return [ast.Read(self.thing(step.thing), self._view(step.view))]
+
+    def _zoomto(self, step: ast.ZoomTo) -> Sequence[ast.Step]:
+        if re.search(r"\b\d[\d.]* ?(?:x|times|%|percent)$", step.thing.text):
+            raise UnresolvedError("A thing I zoom in on fills the view. Shall I do that, or zoom where I look now?")
+        if beside := _BESIDE.match(step.thing.text):
+            raise UnresolvedError(f"I can centre on a thing, not on what is {beside[1]} it. By how many degrees shall I move?")
+        return [ast.ZoomTo(self.thing(step.thing))]
+
+    def _track(self, step: ast.Track) -> Sequence[ast.Step]:
+        return [replace(step, thing=self.thing(step.thing))]
+
+    def _whatabout(self, step: ast.WhatAbout) -> Sequence[ast.Step]:
+        thing = self.thing(step.thing)
+        if self.presets and (name := match_preset(thing.text, self.presets)):
+            return [ast.GoPreset(ast.PresetRef(name, sure=True)), *self._last_look()]
+        if not self.conversation:
+            return self._count(ast.Count((thing,)))
+        return [ast.Count((thing,), self._view(None))]
+
+    def _last_look(self) -> list[ast.Step]:
+        for turn in reversed(self.conversation):
+            for exchange in reversed(turn.exchanges):
+                for outcome in reversed(exchange.outcomes):
+                    if outcome.call.name == "count_objects":
+                        return [ast.Count((ast.Thing(str(outcome.call.arguments["description"])),), "current")]
+                    if outcome.call.name == "query_answer":
+                        return [ast.Ask(str(outcome.call.arguments["question"]), "current")]
+        return []
+
+    def _doagain(self, step: ast.DoAgain) -> Sequence[ast.Step]:
+        from scope_ptz.planner.grammar.parsing.instruction_parser import parse
+
+        for turn in reversed(self.conversation):
+            steps = parse(turn.instruction, self.presets or ()).steps
+            if steps and not any(isinstance(s, ast.DoAgain) for s in steps):
+                return self.bind(steps * (step.times or 1))
+        raise UnresolvedError("What shall I do again?")
+
+    # Steps with steps inside -------------------------------------------------------------------------------------------
+    def _repeat(self, step: ast.Repeat) -> Sequence[ast.Step]:
+        return [replace(step, body=self.bind(step.body))]
+
+    def _eachtime(self, step: ast.EachTime) -> Sequence[ast.Step]:
+        return self.bind(step.body)
+
+    def _loop(self, step: ast.Loop) -> Sequence[ast.Step]:
+        if any(isinstance(inner, ast.Track) for inner in step.body):
+            raise UnresolvedError("I follow things for a time that you give me. For how many seconds shall I follow it?")
+        for inner in step.body:
+            named = (
+                inner.things[0] if isinstance(inner, ast.Count) else inner.thing if isinstance(inner, ast.ZoomTo) else ast.Thing()
+            )
+            self.antecedent = named.text or self.antecedent
+        until = self.condition(step.until)
+        return [replace(step, until=until, body=self.bind(step.body), otherwise=self.bind(step.otherwise))]
+
+    def _if(self, step: ast.If) -> Sequence[ast.Step]:
+        for inner in step.then:
+            if isinstance(inner, ast.ZoomTo | ast.Track | ast.Read) and inner.thing.text:
+                self.antecedent = inner.thing.text
+                break
+        condition = self.condition(step.condition)
+        return [ast.If(condition, self.bind(step.then), self.bind(step.otherwise))]
+
+    def _atplaces(self, step: ast.AtPlaces) -> Sequence[ast.Step]:
+        if isinstance(step.body[0] if step.body else None, ast.WhichPreset):
+            return self.bind(
+                [replace(s, places=s.places or step.places) if isinstance(s, ast.WhichPreset) else s for s in step.body]
+            )
+        places = self._places(step.places)
+        out: list[ast.Step] = []
+        for place in places:
+            self.preset = place.name
+            out += [ast.GoPreset(place), *self.bind(step.body)]
+        return out
+
+    def _whichpreset(self, step: ast.WhichPreset) -> Sequence[ast.Step]:
+        self.compared = True
+        return [replace(step, thing=self.thing(step.thing), places=self._places(step.places))]
+
+    def _compare(self, step: ast.Compare) -> Sequence[ast.Step]:
+        first, second = self.thing(step.first), self.thing(step.second)
+        places = [match_preset(t.text, self.presets) if self.presets else None for t in (first, second)]
+        if all(places):
+            return self._whichpreset(ast.WhichPreset(ast.Thing(), step.sense, tuple(ast.PresetRef(p or "") for p in places)))
+        return [replace(step, first=first, second=second, view=self._view(step.view))]
+
+    def _beforeafter(self, step: ast.BeforeAfter) -> Sequence[ast.Step]:
+        return [replace(step, thing=self.thing(step.thing), moves=self.bind(step.moves))]
+
+    def condition(self, condition: ast.Condition) -> ast.Condition:
+        """Return a condition with its things resolved."""
+        if isinstance(condition, ast.Seen):
+            return replace(condition, thing=self.thing(condition.thing), view=self._view(condition.view))
+        if isinstance(condition, ast.Readable):
+            return ast.Readable(self.thing(condition.thing))
+        if isinstance(condition, ast.Holds) and not condition.subject.text and _IMPERSONAL.search(f"it {condition.predicate}"):
+            return replace(condition, subject=ast.Thing("it"))
+        if isinstance(condition, ast.Holds):
+            return replace(condition, subject=self.thing(condition.subject))
+        if isinstance(condition, ast.Outnumbers):
+            return replace(condition, first=self.thing(condition.first), second=self.thing(condition.second))
+        if isinstance(condition, ast.Answered):
+            return condition
+        if isinstance(condition, ast.PresetWins):
+            places = self.place(condition.first), self.place(condition.second)
+            return replace(condition, thing=self.thing(condition.thing), first=places[0], second=places[1])
+        if isinstance(condition, ast.Negated):
+            return ast.Negated(self.condition(condition.part))
+        return replace(condition, parts=tuple(self.condition(part) for part in condition.parts))

@@ -1,0 +1,59 @@
+"""The meaning of an instruction, or the question to ask."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from scope_ptz.planner.base import PastTurn
+from scope_ptz.planner.grammar import instruction_tree as ast
+from scope_ptz.planner.grammar.binding.offtopic import REFUSAL, is_about_the_scene, is_harmful
+from scope_ptz.planner.grammar.binding.resolver import Resolver, UnresolvedError
+from scope_ptz.planner.grammar.parsing.instruction_parser import parse
+
+_EXAMPLES = "'pan right 20 degrees', 'how many cars are there?', or 'zoom in on the sign and read it'"
+
+
+@dataclass(frozen=True, slots=True)
+class Understanding:
+    """Bound steps, a question or a refusal."""
+
+    steps: tuple[ast.Step, ...] = ()
+    clarification: str | None = None
+    refusal: str | None = None
+
+
+def understand(instruction: str, presets: Sequence[str] | None, conversation: Sequence[PastTurn] = ()) -> Understanding:
+    """Return the meaning of an instruction. Never raises, whatever the text.
+
+    Args:
+        instruction: What the user typed.
+        presets: The camera's presets; None accepts preset names as written.
+        conversation: The earlier turns.
+    """
+    if not instruction.strip():
+        return Understanding(clarification=f"What shall I do? For example: {_EXAMPLES}.")
+    if is_harmful(instruction):
+        return Understanding(refusal=REFUSAL)
+    known = None if presets is None else tuple(presets)
+    resolver = Resolver(known, tuple(conversation))
+    steps = parse(instruction, known or ()).steps
+    try:
+        bound = resolver.bind(steps) if steps is not None else _as_question(resolver, instruction)
+    except UnresolvedError as question:
+        return Understanding(clarification=str(question))
+    if all(isinstance(step, ast.Forbid | ast.Report) for step in bound):
+        return Understanding(clarification="Then I do nothing. What shall I do instead?")
+    if all(isinstance(step, ast.Sweep) and step.turn for step in bound):
+        bound = (ast.Move((ast.Turn("pan", 1, ast.Amount("degrees", 360.0)),)),)
+    if all(isinstance(step, ast.Sweep | ast.Forbid) for step in bound):
+        return Understanding(clarification="What shall I look for when I look all around?")
+    return Understanding(bound)
+
+
+def _as_question(resolver: Resolver, instruction: str) -> tuple[ast.Step, ...]:
+    """Return a question to perception for a question that no rule covers."""
+    text = instruction.strip()
+    if text.endswith("?") and len(text.split()) > 1 and text.count("?") == 1 and is_about_the_scene(text):
+        return resolver.bind([ast.Ask(text)])
+    raise UnresolvedError(f"I did not understand that. Please say it another way, for example: {_EXAMPLES}.")

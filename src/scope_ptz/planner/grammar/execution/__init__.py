@@ -1,0 +1,1 @@
+"""Running the steps: tool calls, tests of conditions, and the answer in words."""

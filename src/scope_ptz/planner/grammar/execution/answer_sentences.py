@@ -1,0 +1,159 @@
+"""Sentences of the grammar planner's answers. They state what the tool results state and nothing else."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from scope_ptz import english
+from scope_ptz.builtin_names import GROUND_TRUTH
+from scope_ptz.english.nouns import plural_noun
+from scope_ptz.planner.grammar.instruction_tree import (
+    Condition,
+    Holds,
+    Joined,
+    Negated,
+    Outnumbers,
+    PresetWins,
+    Quantity,
+    Readable,
+    Seen,
+)
+
+_SPELLED_UP_TO = 12
+_AFTER_HEAD = re.compile(
+    r"\s(?:in|on|at|of|with|by|near|behind|beside|under|above|between|from|inside|outside|to|that|which|who|next|wearing|holding|carrying|parked|standing|"
+    r"facing|driving|walking|visible|along|across|over|below|against|without|not)\b"
+)
+_OPERATORS = {">=": "at least ", "<=": "at most ", ">": "more than ", "<": "fewer than ", "==": "exactly "}
+
+
+def number(value: float) -> str:
+    """Return a number without trailing zeros, with at most two decimals."""
+    return str(int(value)) if float(value).is_integer() else f"{value:.2f}".rstrip("0").rstrip(".")
+
+
+def spelled(count: int) -> str:
+    """Return a count from 1 to 12 as a word. It counts repetitions; counts of visible things stay in digits."""
+    return english.number_word(count) if 0 < count <= _SPELLED_UP_TO else str(count)
+
+
+def head_and_rest(description: str) -> tuple[str, str]:
+    """Split a description after its head noun: "red cars" and " behind the gate"."""
+    cut = _AFTER_HEAD.search(description)
+    return (description[: cut.start()], description[cut.start() :]) if cut else (description, "")
+
+
+def noun(description: str, count: float) -> str:
+    """Return the description with its head noun in the singular or plural."""
+    head, rest = head_and_rest(description)
+    *front, last = head.split(" ")
+    return " ".join([*front, _inflected(last, english.singular if count == 1 else plural_noun)]) + rest
+
+
+def _inflected(word: str, inflect: Callable[[str], str]) -> str:
+    """Return a form of a word, with the capitals of the word as it was given."""
+    plain = word.lower()
+    made = inflect(plain)
+    kept = next((i for i, (a, b) in enumerate(zip(plain, made, strict=False)) if a != b), min(len(plain), len(made)))
+    return word[:kept] + made[kept:]
+
+
+def counted(description: str, count: int, *, complete: bool = True) -> str:
+    """Return a count with its noun: "3 cones", "no cones", or "at least 3 cones" when there may be more."""
+    number = ("no" if count == 0 else str(count)) if complete else f"at least {count}"
+    return f"{number} {noun(description, count)}"
+
+
+def where(view: str) -> str:
+    """Return the words for the scope of a question."""
+    return "in the whole scene" if view == "full" else "in this view"
+
+
+def pose_text(pose: Mapping[str, float]) -> str:
+    """Return a pose in words."""
+    return f"pan {pose['pan_deg']:.1f}, tilt {pose['tilt_deg']:.1f}, zoom {pose['zoom']:.1f}x"
+
+
+def move_text(arguments: Mapping[str, Any]) -> str:
+    """Return what a relative move did, in the past tense: "panned right 20 degrees and tilted down 10 degrees"."""
+    parts = []
+    if pan := arguments.get("pan_deg"):
+        parts.append(f"panned {'right' if pan > 0 else 'left'} {degrees(pan)}")
+    if tilt := arguments.get("tilt_deg"):
+        parts.append(f"tilted {'up' if tilt > 0 else 'down'} {degrees(tilt)}")
+    if factor := arguments.get("zoom_factor"):
+        parts.append(f"zoomed {'in' if factor >= 1 else 'out'} {number(round(factor if factor >= 1 else 1 / factor, 2))} times")
+    if percent := arguments.get("zoom_percent"):
+        parts.append(f"zoomed {'in' if percent > 0 else 'out'} by {number(abs(percent))}%")
+    if limit := arguments.get("zoom_limit"):
+        parts.append(f"zoomed all the way {limit}")
+    return english.listing(parts) or "did not move"
+
+
+def degrees(value: float) -> str:
+    """Return an angle without its sign, with the word "degree" or "degrees"."""
+    return f"{number(round(abs(value), 2))} {'degree' if abs(value) == 1 else 'degrees'}"
+
+
+def moves_text(arguments: Mapping[str, Any], times: int) -> str:
+    """Return how a loop moved: "two pans of 15 degrees to the right"."""
+    plural = "" if times == 1 else "s"
+    pan, tilt = arguments.get("pan_deg"), arguments.get("tilt_deg")
+    if pan and not tilt and len(arguments) == 1:
+        return f"{spelled(times)} pan{plural} of {degrees(pan)} to the {'right' if pan > 0 else 'left'}"
+    if tilt and not pan and len(arguments) == 1:
+        return f"{spelled(times)} tilt{plural} of {degrees(tilt)} {'up' if tilt > 0 else 'down'}"
+    return f"{spelled(times)} move{plural}"
+
+
+def clamped_text(clamped: Sequence[str]) -> str:
+    """Return the sentence that names the limits that cut a move short, empty for none."""
+    if not clamped:
+        return ""
+    return f" The {english.listing(list(clamped))} {'limit' if len(clamped) == 1 else 'limits'} cut the move short."
+
+
+def sentence(text: str) -> str:
+    """Return the text with a capital letter and a full stop, keeping a question or exclamation mark."""
+    text = text.strip()
+    if not text:
+        return ""
+    return text[0].upper() + text[1:] + ("" if text[-1] in ".!?" else ".")
+
+
+def quantity_text(quantity: Quantity, description: str) -> str:
+    """Return a condition on a count in words: "at least 6 cones"."""
+    if quantity == Quantity("==", 0):
+        return f"no {noun(description, 2)}"
+    if quantity == Quantity():
+        return f"any {noun(description, 2)}"
+    return f"{_OPERATORS[quantity.operator]}{number(quantity.number)} {noun(description, quantity.number)}"
+
+
+def condition_text(condition: Condition) -> str:
+    """Return a condition so that it can follow "I never": "saw at least 6 cones"."""
+    if isinstance(condition, Seen):
+        return f"saw {quantity_text(condition.quantity, condition.thing.text)}"
+    if isinstance(condition, Readable):
+        return f"could read the {condition.thing.text}"
+    if isinstance(condition, Holds):
+        return f"saw that the {condition.subject.text} is {'' if condition.wanted else 'not '}{condition.predicate}"
+    if isinstance(condition, PresetWins):
+        return f"saw {condition.sense} {condition.thing.text} at {condition.first.name} than at {condition.second.name}"
+    if isinstance(condition, Outnumbers):
+        return f"saw {condition.sense} {condition.first.text} than {condition.second.text}"
+    if isinstance(condition, Negated):
+        return f"reached a view where it does not hold that I {condition_text(condition.part)}"
+    if isinstance(condition, Joined):
+        return english.listing([condition_text(part) for part in condition.parts], "and" if condition.mode == "all" else "or")
+    return "met the condition"
+
+
+def source_text(sources: Sequence[str]) -> str:
+    """Return the note about who answered, empty for no sources."""
+    if not sources:
+        return ""
+    named = ["the simulator's ground truth" if source == GROUND_TRUTH else source for source in sources]
+    return f" (Source: {english.listing(named)}.)"

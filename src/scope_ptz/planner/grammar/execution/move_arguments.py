@@ -1,0 +1,82 @@
+"""From requested motion to the arguments of ``adjust_ptz``, given the camera's pose."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from scope_ptz.geometry import Limits, Pose, wrap_pan_deg
+from scope_ptz.planner.grammar.instruction_tree import Aim, Amount, Move, Turn, Zoom
+
+_DEFAULT_DEG, _LITTLE_DEG = 10.0, 5.0
+_LOT_DEG = {"pan": 45.0, "tilt": 20.0}
+_LIMIT_DEG = {"pan": 360.0, "tilt": 90.0}
+_LOOP_PAN_DEG = 15.0  # a loop makes 24 steps unless told otherwise, which is one full turn
+_LOOP_ZOOM_FACTOR = 1.5
+_SAME = 1e-6
+
+
+def arguments_of(move: Move, pose: Pose, limits: Limits, in_loop: bool = False) -> dict[str, Any]:
+    """Return the arguments of the call that makes a move, empty when the camera is already there. Whole numbers are integers."""
+    arguments: dict[str, Any] = {}
+    for part in move.parts:
+        if isinstance(part, Turn):
+            key = f"{part.axis}_deg"
+            arguments[key] = arguments.get(key, 0.0) + part.sign * _degrees(part, in_loop)
+        elif isinstance(part, Zoom):
+            arguments.update(_zoom(part, in_loop))
+        else:
+            arguments.update(_aim(part, pose, limits))
+    return {key: tidy(value) for key, value in arguments.items() if isinstance(value, str) or not _idle(key, value)}
+
+
+def returning(to: Pose, pose: Pose, limits: Limits) -> dict[str, Any]:
+    """Return the arguments of the relative move from ``pose`` back to ``to``."""
+    pan = to.pan_deg - pose.pan_deg
+    arguments = {
+        "pan_deg": wrap_pan_deg(pan) if limits.pan_endless else pan,
+        "tilt_deg": to.tilt_deg - pose.tilt_deg,
+        "zoom_factor": to.zoom / pose.zoom,
+    }
+    return {key: tidy(value) for key, value in arguments.items() if not _idle(key, value)}
+
+
+def _idle(key: str, value: float) -> bool:
+    """Return whether a value means no motion."""
+    return abs(value - (1.0 if key == "zoom_factor" else 0.0)) < _SAME
+
+
+def tidy(value: Any) -> Any:
+    """Return a number without rounding noise and without a trailing ".0"."""
+    if not isinstance(value, float):
+        return value
+    rounded = round(value, 6)
+    return int(rounded) if rounded.is_integer() else rounded
+
+
+def _degrees(turn: Turn, in_loop: bool) -> float:
+    amount = turn.amount or Amount()
+    if amount.kind == "degrees":
+        return amount.degrees
+    if amount.kind == "unsaid":
+        return _LOOP_PAN_DEG if in_loop and turn.axis == "pan" else _DEFAULT_DEG
+    if amount.kind == "little":
+        return _LITTLE_DEG
+    return (_LOT_DEG if amount.kind == "lot" else _LIMIT_DEG)[turn.axis]
+
+
+def _zoom(zoom: Zoom, in_loop: bool) -> dict[str, Any]:
+    if zoom.kind in {"in", "out"}:
+        return {"zoom_limit": zoom.kind}
+    if zoom.kind == "percent":
+        return {"zoom_percent": max(zoom.value, -99.0)}
+    plain = in_loop and zoom.value in {2.0, 0.5}
+    return {"zoom_factor": (_LOOP_ZOOM_FACTOR if zoom.value > 1 else 1 / _LOOP_ZOOM_FACTOR) if plain else zoom.value}
+
+
+def _aim(aim: Aim, pose: Pose, limits: Limits) -> dict[str, Any]:
+    if aim.axis == "zoom":
+        return {"zoom_factor": max(aim.value, 0.01) / pose.zoom}
+    if aim.axis == "tilt":
+        return {"tilt_deg": aim.value - pose.tilt_deg}
+    turn = limits.aim_pan_deg(aim.value) - pose.pan_deg
+    return {"pan_deg": wrap_pan_deg(turn) if limits.pan_endless else turn}

@@ -1,0 +1,1 @@
+"""From text to lexemes: known phrases, numbers and free words."""

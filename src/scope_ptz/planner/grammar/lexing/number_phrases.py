@@ -1,0 +1,152 @@
+"""Numbers in digits and words: "20", "-15", "twenty-five", "two and a half", "a hundred and twenty", "a quarter"."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from itertools import takewhile
+
+from scope_ptz.english.number_words import FRACTIONS
+from scope_ptz.planner.grammar.lexing.vocabulary import NUMBER_WORDS, ORDINAL_WORDS
+
+_DIGITS = re.compile(r"[-+−]?\d*\.?\d+")
+
+
+@dataclass(frozen=True, slots=True)
+class SpokenNumber:
+    """A number at the start of a list of words.
+
+    Attributes:
+        used: How many words it takes; 0 when there is no number.
+        kind: NUM, FRACTION ("half", "quarter") or ORDINAL ("second").
+    """
+
+    value: float = 0.0
+    used: int = 0
+    kind: str = "NUM"
+
+    @property
+    def kinds(self) -> frozenset[str]:
+        """The terminals that the number may be: "third" is the third one or a third of something."""
+        return frozenset({self.kind, "FRACTION"} if self.kind == "ORDINAL" and self.value > 2 else {self.kind})
+
+
+def read_number(words: list[str], spans: list[tuple[int, int]] | None = None) -> SpokenNumber:
+    """Return the number that the words begin with.
+
+    Args:
+        words: Words in lower case.
+        spans: Their positions in the text, which tell "1st" from "1 st".
+    """
+    if not words:
+        return SpokenNumber()
+    if "/" in words[0]:
+        above, below = words[0].split("/")
+        return SpokenNumber(int(above) / int(below), 1, "FRACTION") if int(below) else SpokenNumber()
+    if _DIGITS.fullmatch(words[0]):
+        return _digits(words, spans)
+    sign, start = (-1, 1) if words[0] in {"minus", "negative"} else (1, 0)
+    if start and (len(words) == 1 or not (_DIGITS.fullmatch(words[1]) or words[1] in NUMBER_WORDS)):
+        return SpokenNumber()
+    if start and _DIGITS.fullmatch(words[1]):
+        inner = _digits(words[1:], spans[1:] if spans else None)
+        return SpokenNumber(-inner.value, inner.used + 1)
+    value, used = _cardinal(words[start:])
+    if used:
+        extra, more = _fraction_after(words[start + used :])
+        return SpokenNumber(sign * (value + extra), start + used + more)
+    if words[0] in FRACTIONS and words[0] not in ORDINAL_WORDS:
+        if words[:3] == ["half", "a", "dozen"]:
+            return SpokenNumber(6, 3)
+        return SpokenNumber(FRACTIONS[words[0]], 1, "FRACTION")
+    if words[0] in ORDINAL_WORDS:
+        return SpokenNumber(ORDINAL_WORDS[words[0]], 1, "ORDINAL")
+    return SpokenNumber()
+
+
+def _digits(words: list[str], spans: list[tuple[int, int]] | None) -> SpokenNumber:
+    value = float(words[0].replace("−", "-"))
+    glued = len(words) > 1 and spans is not None and spans[0][1] == spans[1][0]
+    if glued and words[1] in {"st", "nd", "rd", "th"}:
+        return SpokenNumber(value, 2, "ORDINAL")
+    extra, more = _fraction_after(words[1:])
+    return SpokenNumber(value + (extra if value >= 0 else -extra), 1 + more)
+
+
+def _cardinal(words: list[str]) -> tuple[float, int]:
+    """Return value and length of a whole number in words: "a hundred", "a dozen", "one hundred and twenty", "point five"."""
+    total, current, used = 0.0, 0.0, 0
+    if words[0] in {"a", "an"}:
+        if not _counts_one(words):
+            return 0.0, 0
+        current, used = 1.0, 1
+    spoken = next((i for i, w in enumerate(words) if NUMBER_WORDS.get(w, 10) > 9), len(words))
+    if spoken > 1 and not used:  # "three zero" on the radio
+        return float(_spoken_digits(words[:spoken])), spoken
+    if not used and _hundreds(words):  # "one eighty", "two seventy"
+        current, used = 100 * NUMBER_WORDS[words[0]], 1
+    while used < len(words):
+        word = words[used]
+        if used and _joins(words, used):
+            used += 1
+            continue
+        if word not in NUMBER_WORDS:
+            break
+        value = NUMBER_WORDS[word]
+        if word in {"hundred", "dozen", "couple"}:
+            current = (current or 1) * value
+        elif value == 1000:
+            total, current = total + (current or 1) * 1000, 0.0
+        elif used and not _continues(current, value):
+            break
+        else:
+            current += value
+        used += 1
+    if used and words[used : used + 1] == ["of"] and words[used - 1] in {"couple", "dozen"}:
+        used += 1
+    decimals, more = _decimals(words[used:]) if used else (0.0, 0)
+    return total + current + decimals, used + more
+
+
+def _counts_one(words: list[str]) -> bool:
+    """Return whether the article at the start is part of a number, as in "a hundred"; "a couple of times" is none."""
+    if len(words) < 2 or words[1] not in {"hundred", "thousand", "dozen", "couple"}:
+        return False
+    return not (words[1] == "couple" and words[2:3] == ["of"] and words[3:4] in (["times"], ["degrees"]))
+
+
+def _joins(words: list[str], at: int) -> bool:
+    """Return whether the word is the "and" of "one hundred and twenty"."""
+    after = NUMBER_WORDS.get(" ".join(words[at + 1 : at + 2]), 100)
+    return words[at] == "and" and words[at - 1] in {"hundred", "thousand"} and after < 100
+
+
+def _decimals(words: list[str]) -> tuple[float, int]:
+    """Return value and length of a decimal part at the start of the words: "point two five"."""
+    if words[:1] != ["point"]:
+        return 0.0, 0
+    digits = list(takewhile(lambda word: NUMBER_WORDS.get(word, 10) < 10, words[1:]))
+    return (float("0." + _spoken_digits(digits)), 1 + len(digits)) if digits else (0.0, 0)
+
+
+def _spoken_digits(words: list[str]) -> str:
+    """Return number words below ten as digits."""
+    return "".join(str(int(NUMBER_WORDS[word])) for word in words)
+
+
+def _hundreds(words: list[str]) -> bool:
+    """Return whether a digit before a multiple of ten counts hundreds, as in "one eighty"."""
+    return len(words) > 1 and words[0] in {"one", "two", "three"} and 20 <= NUMBER_WORDS.get(words[1], 0) <= 90
+
+
+def _continues(current: float, value: float) -> bool:
+    """Return whether a number word may follow what was read: "twenty five", "hundred twenty", never "twenty thirty"."""
+    last_two = current % 100
+    return (last_two == 0 and current >= 100 and value < 100) or (last_two >= 20 and last_two % 10 == 0 and 0 < value < 10)
+
+
+def _fraction_after(words: list[str]) -> tuple[float, int]:
+    """Return value and length of an "and a half" at the start of the words."""
+    if words[:2] in (["and", "a"], ["and", "one"]) and words[2:3] and words[2] in {"half", "quarter", "third"}:
+        return FRACTIONS[words[2]], 3
+    return 0.0, 0

@@ -1,0 +1,84 @@
+"""The words of camera operation: which phrases form which terminal of ``language.lark``, number words and misspellings."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from functools import cache
+from importlib.resources import files
+
+from scope_ptz.english.number_words import CARDINALS, ORDINALS, SCALES
+
+NUMBER_WORDS: Mapping[str, float] = {**CARDINALS, **SCALES, "fourty": 40, "dozen": 12, "couple": 2}
+ORDINAL_WORDS: Mapping[str, int] = {**ORDINALS, "last": -1, "final": -1}
+
+_NOT_DOUBLED = frozenset({"open", "visit", "orient", "monitor", "widen", "tighten", "broaden", "enter"})
+
+
+def _forms(verb_phrase: str) -> list[str]:
+    """Return the base, third-person and -ing forms of a phrase that starts with a verb."""
+    verb, _, rest = verb_phrase.partition(" ")
+    stem = verb[:-1] if verb.endswith("e") and not verb.endswith("ee") else verb
+    doubled = re.fullmatch(r"[a-z]*[bcdfghjklmnprstvz][aeiou][bdgmnpt]", verb) and verb not in _NOT_DOUBLED
+    gerund = (verb + verb[-1] if doubled else stem) + "ing"
+    third = verb + ("es" if verb.endswith(("s", "x", "ch", "sh", "o")) else "s")
+    return [f"{form} {rest}".strip() for form in (verb, third, gerund)]
+
+
+def expand(pattern: str) -> list[tuple[str, ...]]:
+    """Return every word sequence that a phrase pattern stands for."""
+    option = re.search(r"[(\[]([^()\[\]]*)[)\]]", pattern)
+    if option:
+        choices = option.group(1).split("|") + ([""] if option.group(0)[0] == "[" else [])
+        return [words for choice in choices for words in expand(pattern[: option.start()] + choice + pattern[option.end() :])]
+    text = " ".join(pattern.split())
+    if text.startswith("~"):
+        return [tuple(form.split()) for form in _forms(text[1:].strip())]
+    return [tuple(text.split())] if text else []
+
+
+def _sections(file: str) -> dict[str, list[str]]:
+    """Return the comma-separated lists of a data file by heading, and the "@name pattern" lines under "@"."""
+    sections: dict[str, list[str]] = {"@": []}
+    current: list[str] = []
+    for line in files(__package__).joinpath(file).read_text(encoding="utf-8").splitlines():
+        if line.startswith("@"):
+            sections["@"].append(line[1:])
+        elif line.endswith(":") and not line.startswith(("#", " ")):
+            current = sections.setdefault(line[:-1], [])
+        elif line.startswith(" "):
+            current.extend(phrase for part in line.split(",") if (phrase := part.strip()))
+    return sections
+
+
+@cache
+def word_list(name: str) -> frozenset[str]:
+    """Return a list of ``words.txt`` by its heading."""
+    return frozenset(_sections("words.txt")[name])
+
+
+@cache
+def spelling() -> dict[str, str]:
+    """Return common misspellings with their corrections."""
+    pairs = (entry.partition("=") for entry in word_list("spelling"))
+    return {wrong: right for wrong, _, right in pairs}
+
+
+@cache
+def vocabulary() -> dict[str, tuple[str, ...]]:
+    """Return the phrase patterns of each terminal in ``vocabulary.txt``."""
+    patterns = _sections("vocabulary.txt")
+    macros = {f"${name}": pattern for name, _, pattern in (line.partition(" ") for line in patterns.pop("@"))}
+    replace = re.compile("|".join(re.escape(name) + r"\b" for name in macros))
+    return {terminal: tuple(replace.sub(lambda match: macros[match[0]], p) for p in found) for terminal, found in patterns.items()}
+
+
+@cache
+def phrase_table() -> dict[tuple[str, ...], frozenset[str]]:
+    """Return the possible terminals of each word sequence; ``FILLER`` marks words without meaning."""
+    table: dict[tuple[str, ...], set[str]] = {}
+    for terminal, patterns in vocabulary().items():
+        for pattern in patterns:
+            for words in expand(pattern):
+                table.setdefault(words, set()).add(terminal)
+    return {words: frozenset(kinds) for words, kinds in table.items()}

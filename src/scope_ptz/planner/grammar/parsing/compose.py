@@ -1,0 +1,289 @@
+"""How neighbouring steps of a sentence combine: moves joined by "and", "each time", "do that again"."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+from scope_ptz.planner.grammar.instruction_tree import (
+    Aim,
+    Amount,
+    Ask,
+    AtIntervals,
+    AtPlaces,
+    BeforeAfter,
+    Between,
+    Bound,
+    Count,
+    DoAgain,
+    EachTime,
+    Further,
+    GoPreset,
+    Home,
+    If,
+    Linked,
+    Loop,
+    Move,
+    Part,
+    Repeat,
+    Rescope,
+    SameAt,
+    Snap,
+    Step,
+    ThanBefore,
+    Turn,
+    Unclear,
+)
+
+_CONTRADICTION = "Those two directions contradict each other. Which way shall I turn?"
+
+
+def compose(linked: Sequence[Linked], before: Sequence[Step]) -> list[Step]:
+    """Return the steps so far together with the steps of one sentence."""
+    out = list(before)
+    for item in linked:
+        _add(out, item.link, item.step)
+    return out
+
+
+def _add(out: list[Step], link: str, step: Step) -> None:
+    """Append a step to the steps so far, or let it change them."""
+    if isinstance(step, Move):
+        step = _with_same_amounts(step, out)
+    if _add_modifier(out, step):
+        return
+    last = out[-1] if out else None
+    if last is not None and (joined := _joined_to_last(last, link, step)) is not None:
+        out[-1:] = joined
+    elif isinstance(step, Loop | Repeat):
+        out.append(_stepped_loop(step))
+    elif isinstance(step, GoPreset) and step.how == "bare" and link == "and" and isinstance(last, Ask):
+        out.append(Unclear("I can look at one place after the other, but not answer that about both. What shall I look for?"))
+    else:
+        out.append(_stepped(step))
+
+
+def _add_modifier(out: list[Step], step: Step) -> bool:
+    """Apply a step that only has a meaning together with the steps before it. Return whether it is such a step."""
+    last = out[-1] if out else None
+    match step:
+        case EachTime():
+            _add_each_time(out, step)
+        case Between():
+            out[-1:] = _interleaved(last, step.body)
+        case AtIntervals():
+            _add_at_intervals(out, step)
+        case Rescope():
+            out.append(replace(last, view=step.view) if isinstance(last, Count | Ask) else Unclear("What shall I look for there?"))
+        case ThanBefore():
+            _add_than_before(out, step)
+        case DoAgain() if out:
+            _add_again(out, step)
+        case Further():
+            _add_further(out, step)
+        case SameAt():
+            out.append(AtPlaces(step.places, _done_at_place(out)))
+        case _:
+            return False
+    return True
+
+
+def _add_further(out: list[Step], step: Further) -> None:
+    """Repeat the last turn by another amount."""
+    last = out[-1] if out else None
+    turn = next((p for p in reversed(last.parts) if isinstance(p, Turn)), None) if isinstance(last, Move) else None
+    out.append(Move((replace(turn, amount=step.amount),)) if turn else Unclear("Which way shall I turn, and how far?"))
+
+
+def _joined_to_last(last: Step, link: str, step: Step) -> list[Step] | None:
+    """Return what replaces the last step when the new step belongs to it, None when the new step stands alone."""
+    if isinstance(step, Repeat) and link in {"and", ","} and _covers_before(step, last):
+        return [Repeat(tuple(compose([Linked(link, s) for s in step.body], [last])), step.times)]
+    if isinstance(last, Move):
+        return _joined_to_move(last, step) if link == "and" else None
+    return _joined_to_places(last, link, step) if isinstance(last, AtPlaces) else None
+
+
+def _joined_to_move(last: Move, step: Step) -> list[Step] | None:
+    """Join a step to a move with "and" between them: another move, or a loop that includes the move."""
+    if isinstance(step, Loop) and isinstance(step.body[0], Count | Snap | Ask):
+        return [_stepped_loop(replace(step, body=(last, *step.body)))]
+    if isinstance(step, Loop | Repeat) and (leaning := _leaning(step.body[0])):
+        joined = _joined(last, leaning)
+        return [replace(step, body=(joined[0], *step.body[1:]))] if len(joined) == 1 else [*joined[:-1], step]
+    return _joined(last, step) if isinstance(step, Move) else None
+
+
+def _joined_to_places(last: AtPlaces, link: str, step: Step) -> list[Step] | None:
+    """Add a step to what is done at each of several places."""
+    if not last.body and (link == "and" or not last.places):
+        return [replace(last, body=(step,))]
+    if last.body and link == "and" and not isinstance(step, GoPreset | Home | AtPlaces):
+        return [replace(last, body=tuple(compose([Linked("and", step)], last.body)))]
+    return None
+
+
+def _covers_before(step: Repeat, last: Step) -> bool:
+    """Return whether "three times" also covers the step before: when it is set off by a comma, or is a picture after a move."""
+    pictured = isinstance(step.body[-1], Snap) and isinstance(last, Move)
+    return (step.group or pictured) and not isinstance(last, GoPreset | Home | Repeat | Loop)
+
+
+def _leaning(step: Step) -> Move | None:
+    """Return the step if it is a move without a verb of its own, which depends on the move before it; else None."""
+    return step if isinstance(step, Move) and not step.verb else None
+
+
+def _joined(first: Move, second: Move) -> list[Step]:
+    """Join two moves with "and" between them: one move when their axes differ."""
+    axes = [_axis(p) for p in (*first.parts, *second.parts)]
+    if len(set(axes)) == len(axes):
+        parts = first.parts if second.verb else tuple(_shared(p, second.parts) for p in first.parts)
+        return [_stepped(Move((*parts, *second.parts), first.verb))]
+    one, other = first.parts[-1], second.parts[0]
+    unsaid = isinstance(one, Turn) and one.amount is None and not second.verb
+    if unsaid and isinstance(one, Turn) and isinstance(other, Turn) and one.axis == other.axis and one.sign != other.sign:
+        return [Unclear(_CONTRADICTION)]
+    return [_stepped(first), _stepped(second)]
+
+
+def _axis(part: Part) -> str:
+    return part.axis if isinstance(part, Turn | Aim) else "zoom"
+
+
+def _shared(part: Part, others: tuple[Part, ...]) -> Part:
+    """Return a part with the amount that was given last: in "up and left 20" it holds for both."""
+    last = others[-1]
+    if isinstance(part, Turn) and part.amount is None and part.step is None and isinstance(last, Turn):
+        return replace(part, amount=last.amount, step=last.step, steps=last.steps)
+    return part
+
+
+def _step_size(step: Step) -> Turn | None:
+    """Return the turn of a move that is made in steps, None when there is none."""
+    if isinstance(step, Move):
+        return next((p for p in step.parts if isinstance(p, Turn) and p.step), None)
+    return None
+
+
+def _stepped(step: Step) -> Step:
+    """Expand a move in steps: "90 degrees in 30 degree steps" is three moves, "in 30 degree steps" alone is one."""
+    turn = _step_size(step)
+    if turn is None or turn.step is None or not isinstance(step, Move):
+        return step
+    single = Move(
+        tuple(replace(p, amount=p.step, step=None, steps=None) if isinstance(p, Turn) and p.step else p for p in step.parts),
+        step.verb,
+    )
+    total = 0.0
+    if turn.amount and turn.amount.kind == "degrees":
+        total = abs(turn.amount.degrees)
+    elif turn.amount and turn.amount.kind == "limit":
+        total = 358.0 if turn.axis == "pan" else 90.0
+    times = turn.steps or math.ceil(round(total / turn.step.degrees, 6)) if turn.step.degrees else 0
+    return Repeat((single,), min(times, 24)) if times > 1 else single
+
+
+def _stepped_loop(step: Loop | Repeat) -> Step:
+    """Expand a loop over a move in steps: each iteration makes one step, and the total bounds the loop."""
+    turn = _step_size(step.body[0])
+    if turn is None or not isinstance(step.body[0], Move):
+        return step
+    inner = _stepped(step.body[0])
+    single = inner.body[0] if isinstance(inner, Repeat) else inner
+    body = (single, *step.body[1:])
+    if isinstance(step, Loop) and isinstance(inner, Repeat) and step.bound is None:
+        return Loop(body, step.until, Bound(moves=inner.times), step.otherwise)
+    return replace(step, body=body) if isinstance(step, Loop) else Repeat(body, step.times)
+
+
+def _add_each_time(out: list[Step], step: EachTime) -> None:
+    """Add something to do after every move of the steps before."""
+    for i in range(len(out) - 1, -1, -1):
+        target = out[i]
+        if isinstance(target, Repeat | Loop | AtPlaces):
+            out[i] = replace(target, body=(*target.body, *step.body))
+            return
+        if isinstance(target, GoPreset):
+            first = i
+            while first and isinstance(out[first - 1], GoPreset):
+                first -= 1
+            out[first:] = [s for place in out[first:] for s in (place, *step.body)]
+            return
+    out.extend(step.body)
+
+
+def _done_at_place(out: list[Step]) -> tuple[Step, ...]:
+    """Return the steps that were done at the last place."""
+    if out and isinstance(out[-1], AtPlaces):
+        return out[-1].body
+    return tuple(out[max((i + 1 for i, s in enumerate(out) if isinstance(s, GoPreset | Home)), default=0) :])
+
+
+def _add_again(out: list[Step], step: DoAgain) -> None:
+    """Repeat the steps since the last one that goes to a place."""
+    if isinstance(out[-1], GoPreset) and len(out) > 1:
+        out.extend(_done_at_place(out[:-1]))
+        return
+    first = max((i + 1 for i, s in enumerate(out) if isinstance(s, GoPreset | Home)), default=0)
+    first = first if first < len(out) else 0
+    body = tuple(out[first:])
+    if any(isinstance(s, If | Unclear) for s in body) and step.times is None:
+        body = body[-1:]
+    times = (step.times or 1) + (1 if step.more or step.times is None else 0)
+    out[first:] = [Repeat(body, times)]
+
+
+def _interleaved(step: Step | None, between: tuple[Step, ...]) -> list[Step]:
+    """Return repeated steps with other steps between the repetitions."""
+    times = step.times if isinstance(step, Snap | Repeat) else 1
+    if step is None or times < 2:
+        return [*([step] if step else []), Unclear("How many times shall I do that?")]
+    single = step.body if isinstance(step, Repeat) else (replace(step, times=1),) if isinstance(step, Snap) else (step,)
+    return [*single, Repeat((*between, *single), times - 1)]
+
+
+def _add_at_intervals(out: list[Step], step: AtIntervals) -> None:
+    """Add something to do at regular intervals of a turn."""
+    move = step.move
+    if move is None and out and isinstance(last := out[-1], Move) and any(isinstance(p, Turn) for p in last.parts):
+        move = last
+        out.pop()
+    turn = next((p for p in move.parts if isinstance(p, Turn)), None) if move else None
+    body = step.body[0]
+    every = Turn(turn.axis if turn else "pan", turn.sign if turn else 1, Amount("degrees", step.degrees))
+    if turn is None or turn.amount is None:
+        fixed = isinstance(body, Snap) and body.times > 1
+        out.extend(
+            _interleaved(body, (Move((every,)),)) if fixed else [Unclear("Over how many degrees shall I turn, and which way?")]
+        )
+        return
+    total = turn.amount.degrees if turn.amount.kind == "degrees" else 360.0
+    times = math.ceil(round(total / step.degrees, 6)) if step.degrees else 1
+    single = replace(body, times=1) if isinstance(body, Snap) else body
+    out.append(Repeat((Move((every,)), single, *step.body[1:]), max(1, min(times, 24))))
+
+
+def _add_than_before(out: list[Step], step: ThanBefore) -> None:
+    """Compare with the last count by counting again, or else compare before and after the moves just made."""
+    counts = [s for s in out if isinstance(s, Count)]
+    first = next((i + 1 for i in range(len(out) - 1, -1, -1) if not isinstance(out[i], Move | Repeat)), 0)
+    moves = tuple(out[first:])
+    if counts:
+        out.append(replace(counts[-1], things=(step.thing,)) if step.thing.text else counts[-1])
+    elif moves and step.thing.text:
+        out[first:] = [BeforeAfter(step.thing, moves, step.sense)]
+    else:
+        out.append(Unclear("More of what, and than when?"))
+
+
+def _with_same_amounts(move: Move, before: Sequence[Step]) -> Step:
+    """Resolve "by the same amount" to the amount of the last turn."""
+    turns = [p for s in before if isinstance(s, Move) for p in s.parts if isinstance(p, Turn)]
+    if not any(isinstance(p, Turn) and p.amount and p.amount.kind == "same" for p in move.parts):
+        return move
+    if not turns:
+        return Unclear("The same as what? How far shall I turn?")
+    same = turns[-1].amount
+    return replace(move, parts=tuple(replace(p, amount=same) if isinstance(p, Turn) and p.amount else p for p in move.parts))

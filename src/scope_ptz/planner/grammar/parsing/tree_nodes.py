@@ -1,0 +1,95 @@
+"""Parse tree nodes together with the text that they came from."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from scope_ptz.planner.grammar.lexing.lexer import Lexeme
+from scope_ptz.planner.grammar.parsing.chart import Branch, Leaf
+
+
+class Node:
+    """A branch of the parse tree, with the queries that builders need."""
+
+    __slots__ = ("branch",)
+
+    def __init__(self, branch: Branch) -> None:
+        self.branch = branch
+
+    @property
+    def name(self) -> str:
+        return self.branch.name
+
+    def branches(self, *names: str) -> list[Node]:
+        """Return the children that are rules, only those of the given names if there are any."""
+        return [Node(c) for c in self.branch.children if isinstance(c, Branch) and (not names or c.name in names)]
+
+    def leaves(self, kind: str | None = None) -> list[Leaf]:
+        """Return the children that are terminals, only those of a kind if one is given."""
+        return [c for c in self.branch.children if isinstance(c, Leaf) and kind in (None, c.kind)]
+
+    def leaf_kinds(self) -> list[str]:
+        """Return the kinds of the child terminals."""
+        return [leaf.kind for leaf in self.leaves()]
+
+    def has(self, *kinds: str) -> bool:
+        """Return whether a child terminal is of one of the kinds."""
+        return any(leaf.kind in kinds for leaf in self.leaves())
+
+    def all_leaves(self) -> list[Leaf]:
+        """Return every terminal below the node, in order."""
+        out: list[Leaf] = []
+        for child in self.branch.children:
+            out.extend([child] if isinstance(child, Leaf) else Node(child).all_leaves())
+        return out
+
+    def position(self, name: str) -> int:
+        """Return the index of the first child of that name among all children, -1 for none."""
+        for i, child in enumerate(self.branch.children):
+            if (child.name if isinstance(child, Branch) else child.kind) == name:
+                return i
+        return -1
+
+
+class Rules:
+    """Calls the method named after each rule."""
+
+    def __init__(self, text: str, lexemes: Sequence[Lexeme]) -> None:
+        self.source = text
+        self.lexemes = lexemes
+        self.shouting = text.isupper()
+
+    def visit(self, node: Node) -> Any:
+        """Return what the method of the node's rule builds."""
+        name = {"visit": "visit_places", "raise": "raise_it", "if": "if_"}.get(node.name, node.name)
+        return getattr(self, name)(node)
+
+    def number(self, node: Node) -> float:
+        """Return the value of the node's number."""
+        leaf = next(leaf for leaf in node.leaves() if leaf.kind in {"NUM", "ORDINAL"})
+        return self.lexemes[leaf.index].value
+
+    def fraction(self, node: Node) -> float:
+        """Return the node's fraction; an ordinal such as "third" is one over three."""
+        lexeme = self.lexemes[node.leaves("FRACTION")[0].index]
+        return 1 / lexeme.value if "ORDINAL" in lexeme.kinds else lexeme.value
+
+    def words_of(self, leaf: Leaf) -> str:
+        """Return the text of a leaf in lower case."""
+        lexeme = self.lexemes[leaf.index]
+        return self.source[lexeme.start : lexeme.end].lower()
+
+    def how_often(self, node: Node) -> int:
+        """Return 3 for "thrice" or "a few times", 2 for "twice"."""
+        words = " ".join(self.words_of(leaf) for leaf in node.leaves("TWICE"))
+        return 3 if "thrice" in words or "few" in words else 2
+
+    def text(self, leaves: Sequence[Leaf]) -> str:
+        """Return the original words from the first to the last of the leaves."""
+        if not leaves:
+            return ""
+        start = self.lexemes[leaves[0].index].start
+        end = self.lexemes[leaves[-1].index].end
+        words = " ".join(self.source[start:end].split())
+        return words.lower() if self.shouting else words

@@ -1,0 +1,220 @@
+"""Put one instruction to a planner without a camera, and check its first calls.
+
+A call can be valid, be the expected one, or be inverted: a move in the opposite direction.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Sequence
+from importlib.resources import files
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from scope_ptz.errors import InputError, PlannerError, ToolCallError
+from scope_ptz.geometry import Limits, Pose
+from scope_ptz.planner.base import Briefing, CallTools, Planner, State, Usage
+from scope_ptz.tools.adjust_ptz import AdjustPtz
+from scope_ptz.tools.registry import parse_call, schemas
+
+PRESETS = ("gate", "highway")
+_TOLERANCE = 0.01
+
+
+class _Model(BaseModel):
+    model_config = ConfigDict(frozen=True)
+
+
+class FirstCall(_Model):
+    name: str
+    arguments: dict[str, Any] = {}
+
+
+class InstructionRow(_Model):
+    """An instruction with the calls that carry it out. ``alternatives`` are other tools that are as good for the first call."""
+
+    instruction: str
+    kind: str
+    calls: tuple[FirstCall, ...]
+    alternatives: tuple[str, ...] = ()
+
+
+class PlannerTrial(_Model):
+    """What a planner did in its first step.
+
+    Attributes:
+        calls: The valid calls.
+        invalid: The number of invalid calls.
+        failure: How the planner failed, None when it did not.
+        right: Whether the first call is the expected one.
+        inverted: Whether it turns or zooms in the opposite direction.
+    """
+
+    row: InstructionRow
+    edit: str
+    asked: str
+    calls: tuple[FirstCall, ...] = ()
+    invalid: int = 0
+    text: str = ""
+    failure: str | None = None
+    right: bool = False
+    inverted: bool = False
+    seconds: float = 0.0
+    first_token_s: float | None = None
+    usage: Usage = Usage()
+
+
+def load_rows() -> tuple[InstructionRow, ...]:
+    """Return the packaged instructions."""
+    lines = (files("scope_ptz") / "data" / "profile_instructions.jsonl").read_text(encoding="utf-8").splitlines()
+    return tuple(InstructionRow.model_validate(json.loads(line)) for line in lines)
+
+
+def read_rows(source: Path) -> tuple[InstructionRow, ...]:
+    """Read instructions with expected calls from a file of JSON lines.
+
+    Lines without calls are left out: they expect a question back, and say nothing about calls.
+
+    Raises:
+        InputError: The file cannot be read, a line is malformed, or there is no line with calls.
+    """
+    try:
+        lines = source.read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{source} cannot be read: {error}.") from error
+    rows: list[InstructionRow] = []
+    for number, line in enumerate(lines, 1):
+        if not line.strip():
+            continue
+        try:
+            given = _Line.model_validate_json(line)
+            if given.calls:
+                rows.append(InstructionRow.model_validate(given.model_dump()))
+        except ValidationError as error:
+            first = error.errors(include_url=False)[0]
+            where = ".".join(str(part) for part in first["loc"])
+            raise InputError(f"{source}, line {number}: {f'{where}: ' if where else ''}{first['msg']}.") from error
+    if not rows:
+        raise InputError(f"{source} contains no instruction with expected calls.")
+    return tuple(rows)
+
+
+class _Line(BaseModel):
+    instruction: str
+    kind: str = ""
+    calls: list[dict[str, Any]] = []
+    alternatives: tuple[str, ...] = ()
+
+
+async def ask_once(planner: Planner, row: InstructionRow, *, asked: str | None = None, edit: str = "") -> PlannerTrial:
+    """Put an instruction to a planner. ``asked`` is the edited wording, if any."""
+    words = row.instruction if asked is None else asked
+    state = State(
+        instruction=words, briefing=Briefing(presets=PRESETS, pose=Pose(), limits=Limits()), tools=tuple(schemas())
+    )  # fmt: skip
+    began = perf_counter()
+    try:
+        decision = await planner.step(state)
+    except PlannerError as error:
+        failure = error.kind or "planner-error"
+        return PlannerTrial(row=row, edit=edit, asked=words, failure=failure, text=str(error), seconds=perf_counter() - began)
+    seconds = perf_counter() - began
+    wanted = decision.calls if isinstance(decision, CallTools) else ()
+    calls = tuple(
+        FirstCall(name=c.name, arguments=c.arguments) for c in wanted if c.problem is None and _valid(c.name, c.arguments)
+    )
+    return PlannerTrial(
+        row=row,
+        edit=edit,
+        asked=words,
+        calls=calls,
+        invalid=len(wanted) - len(calls),
+        text=decision.thought if isinstance(decision, CallTools) else decision.text,
+        right=bool(calls) and is_right(row, calls[0]),
+        inverted=is_inverted(row, calls),
+        seconds=seconds,
+        first_token_s=decision.served.first_token_s if decision.served else None,
+        usage=decision.usage,
+    )
+
+
+def _valid(name: str, arguments: dict[str, Any]) -> bool:
+    try:
+        parse_call(name, arguments)
+    except ToolCallError:
+        return False
+    return True
+
+
+def is_right(row: InstructionRow, call: FirstCall) -> bool:
+    """Return whether a call is the expected first one. Descriptions are compared by their words, questions not at all."""
+    expected = row.calls[0]
+    if call.name in row.alternatives:
+        return True
+    return call.name == expected.name and same_arguments(expected, call)
+
+
+def same_arguments(one: FirstCall, other: FirstCall) -> bool:
+    """Return whether two calls of a tool are equivalent: equal numbers, descriptions of the same words, and questions about the
+    same view.
+
+    In a file of expected calls, ``{"contains": [words, ...]}`` may replace a text; the words may come in any order.
+    """
+    wanted = {key: value["contains"] for key, value in one.arguments.items() if isinstance(value, dict) and "contains" in value}
+    plain = FirstCall(name=one.name, arguments=one.arguments | {key: " ".join(words) for key, words in wanted.items()})
+    try:
+        a, b = (parse_call(call.name, call.arguments)[1].model_dump(exclude={"question"}) for call in (plain, other))
+    except ToolCallError:
+        return False
+    return all(set(_words(a[key])) <= set(_words(b[key])) if key in wanted else _same(a[key], b[key]) for key in a)
+
+
+def _same(one: Any, other: Any) -> bool:
+    if isinstance(one, str) and isinstance(other, str):
+        return _words(one) == _words(other)
+    if isinstance(one, int | float) and isinstance(other, int | float):
+        return abs(one - other) <= _TOLERANCE
+    return bool(one == other)
+
+
+def _words(text: str) -> list[str]:
+    return [w.removesuffix("s") for w in re.findall(r"\w+", text.lower()) if w not in ("the", "a", "an", "all", "any")]
+
+
+def same_choice(one: Sequence[FirstCall], other: Sequence[FirstCall]) -> bool:
+    """Return whether two planners began with the same tools, as far as both went."""
+    if not one or not other:
+        return not one and not other
+    return all(a.name == b.name for a, b in zip(one, other, strict=False))
+
+
+def same_calls(one: Sequence[FirstCall], other: Sequence[FirstCall]) -> bool:
+    """Return whether two planners began with the same tools and arguments."""
+    return same_choice(one, other) and all(same_arguments(a, b) for a, b in zip(one, other, strict=False))
+
+
+def is_inverted(row: InstructionRow, calls: Sequence[FirstCall]) -> bool:
+    """Return whether the first move goes right instead of left, up instead of down, or in instead of out."""
+    wanted = next((_directions(c) for c in row.calls if c.name == "adjust_ptz"), None)
+    made = next((_directions(c) for c in calls if c.name == "adjust_ptz"), None)
+    return wanted is not None and made is not None and any(w * m < 0 for w, m in zip(wanted, made, strict=True))
+
+
+def _directions(call: FirstCall) -> tuple[float, float, float]:
+    """Return the signs of pan, tilt and zoom of a move, all zero for an invalid call."""
+    try:
+        move = AdjustPtz.model_validate(call.arguments)
+    except ValidationError:
+        return 0.0, 0.0, 0.0
+    zoom = 0.0
+    if move.zoom_factor is not None:
+        zoom = move.zoom_factor - 1.0
+    elif move.zoom_percent is not None:
+        zoom = move.zoom_percent
+    elif move.zoom_limit is not None:
+        zoom = 1.0 if move.zoom_limit == "in" else -1.0
+    return move.pan_deg, move.tilt_deg, zoom

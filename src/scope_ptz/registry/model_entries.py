@@ -1,0 +1,137 @@
+"""The registry's entries: models, servers and pairs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import AnyHttpUrl, BaseModel, ConfigDict, Field, model_validator
+
+Name = Annotated[str, Field(min_length=1, max_length=80, pattern=r"^[a-z0-9][a-z0-9._-]*$")]
+Role = Literal["planner", "perception"]
+Precision = Literal["fp16", "bf16", "fp8", "mxfp4", "int4", "q4", "fp32"]
+Thinking = Literal["none", "optional", "default", "always"]
+"""Whether a model reasons: never ("none"), on request ("optional"), unless switched off ("default"), or always, in which case
+only the length can be set ("always").
+"""
+BYTES_PER_PARAMETER: dict[Precision, float] = {
+    "fp32": 4.0, "fp16": 2.0, "bf16": 2.0, "fp8": 1.05, "int4": 0.6, "q4": 0.61, "mxfp4": 0.61,
+}  # fmt: skip
+"""Weights in memory. Four-bit formats store scales and some layers in more bits (Q4_K_M: 4.85 bits per weight)."""
+RUNTIME_GB = 1.5
+"""Memory of a serving process in addition to weights and cache: kernels, activations, workspace of the vision tower."""
+WINDOW = 16_384
+"""Tokens of context assumed in memory figures and serve commands. A long run of the agent needs about half of it."""
+
+
+class _Entry(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Server(_Entry):
+    """A program that serves models.
+
+    Attributes:
+        command: One command per line, with the placeholders ``{source}``, ``{window}`` and ``{flags}``.
+    """
+
+    title: str
+    command: tuple[str, ...]
+    url: str = Field(description="Its default address; empty for models that run inside SCOPE.")
+    install: str = ""
+    notes: str = ""
+
+
+class Serving(_Entry):
+    """How one server runs one model. ``command`` replaces the server's own."""
+
+    source: str = Field(default="", description="The model's name on the server; empty means the model's repository.")
+    precision: Precision | None = None
+    flags: str = ""
+    command: tuple[str, ...] = ()
+    notes: str = ""
+
+
+class Model(_Entry):
+    """A model for planning, for perception, or for both.
+
+    Attributes:
+        size_b: Billions of parameters, as the model's makers state them.
+        active_b: Billions of active parameters, as the model's makers state them.
+        parameters_b: Billions of parameters in memory, including vision tower and embeddings, where that differs.
+        kv_kib: Cache per token of context, in KiB.
+    """
+
+    name: Name
+    title: str
+    repo: str
+    revision: str | None = None
+    roles: tuple[Role, ...] = Field(min_length=1)
+    origin: Literal["paper", "current", "yours"] = "yours"
+    family: str = ""
+    backend: str = Field(default="", description="The perception backend, for models that can be used for perception.")
+    size_b: float = Field(gt=0)
+    active_b: float = Field(gt=0)
+    parameters_b: float | None = Field(default=None, gt=0)
+    precision: Precision
+    context: int = Field(ge=0, description="Tokens; 0 where the notion does not apply.")
+    thinking: Thinking = "none"
+    sees: bool = Field(default=False, description="Takes images in the chat, so it can plan and perceive at once.")
+    coordinates: str = Field(default="none", description="How it writes boxes and points: a convention of perception.coordinates.")
+    licence: str
+    kv_kib: float = Field(default=128.0, ge=0)
+    memory_gb: float | None = Field(default=None, gt=0, description="A measured figure that replaces the computed one.")
+    url: str = ""
+    key_file: Path | None = None
+    serve: dict[str, Serving] = Field(default_factory=dict)
+    notes: str = ""
+    source: str = Field(default="", description="Source of these facts.")
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Model:
+        if "perception" in self.roles and not self.backend:
+            raise ValueError("a perception model needs a backend, for example 'moondream' or 'openai_vision'")
+        if self.active_b > self.size_b:
+            raise ValueError("active_b cannot exceed size_b")
+        if self.url:
+            AnyHttpUrl(self.url)
+        return self
+
+    def memory_for(self, server: str | None = None) -> float:
+        """Return the GB (10^9 bytes) needed to serve the model with a window of ``WINDOW`` tokens.
+
+        This is parameters x bytes + cache + ``RUNTIME_GB``. It is computed, not measured, unless ``memory_gb`` is given.
+        """
+        serving = self.serve.get(server) if server else None
+        precision = (serving.precision if serving else None) or self.precision
+        if self.memory_gb is not None and precision == self.precision:
+            return self.memory_gb
+        weights = (self.parameters_b or self.size_b) * BYTES_PER_PARAMETER[precision]
+        cache = self.kv_kib * 1024 * self.window / 1e9
+        return round(weights + cache + RUNTIME_GB, 1)
+
+    @property
+    def window(self) -> int:
+        """Tokens of context to serve the model with."""
+        return min(self.context, WINDOW)
+
+    def smallest(self) -> tuple[str | None, float]:
+        """Return the server that needs least memory, and how much; the first of equals."""
+        if not self.serve:
+            return None, self.memory_for()
+        server = min(self.serve, key=self.memory_for)
+        return server, self.memory_for(server)
+
+    def served_names(self) -> tuple[str, ...]:
+        """Return the names that a server may use for the model, the likeliest first."""
+        return tuple(dict.fromkeys([self.repo, *(s.source for s in self.serve.values() if s.source), self.title, self.name]))
+
+
+class Pair(_Entry):
+    """A planner and a perception model, by name. ``paper_average`` is the paper's macro accuracy in percent."""
+
+    name: str
+    planner: str
+    perception: str
+    origin: Literal["paper", "current", "yours"] = "yours"
+    paper_average: float | None = None
