@@ -9,7 +9,7 @@ from lark import Token
 
 from scope_ptz.perception.ground_truth.language import question_tree as s
 from scope_ptz.perception.ground_truth.language.concepts import nouns_in
-from scope_ptz.perception.ground_truth.language.noun_phrases import (
+from scope_ptz.perception.ground_truth.language.phrase_builder import (
     Children,
     Core,
     NounPhrases,
