@@ -14,7 +14,7 @@ from scope_ptz.cli.endings import FAILED, complain, ending, put, put_json
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from scope_ptz.bench.engine.gate import Comparison, Gate
+    from scope_ptz.bench.engine.regression_gate import Comparison, Gate
     from scope_ptz.bench.scoring.trials import Evaluation
 
 MOST_TOLD = 40
@@ -28,8 +28,8 @@ def gate(
 ) -> None:
     """Compare two logs task by task. Exit code 1 on a significant loss, over all or in a category; 2 if they are not comparable."""
     with ending(as_json=as_json):
-        from scope_ptz.bench.engine.gate import gate as hold
         from scope_ptz.bench.engine.logs import read_evaluation
+        from scope_ptz.bench.engine.regression_gate import gate as hold
         from scope_ptz.cli.bench_evaluate import need_engine
 
         need_engine()

@@ -60,7 +60,7 @@ def planner_for(resolved: ResolvedPlanner) -> Planner:
         from scope_ptz.planner.grammar import decide
 
         return ThreadedPlanner(decide, make_planner(resolved).name)
-    from scope_ptz.bench.engine.wire import LoggedChat
+    from scope_ptz.bench.engine.recorded_chat import LoggedChat
     from scope_ptz.planner.chat import ChatPlanner
 
     return ChatPlanner(resolved.endpoint, resolved.options, client=LoggedChat(resolved.endpoint))

@@ -10,10 +10,10 @@ from typing import Any
 from inspect_ai import Task, task
 from inspect_ai.model import ModelAPI, modelapi
 
+from scope_ptz.bench.engine.benchmark_task import bench_task
 from scope_ptz.bench.engine.context import EQUIPMENT
 from scope_ptz.bench.engine.entries import chosen
-from scope_ptz.bench.engine.models import ScopeModel
-from scope_ptz.bench.engine.tasks import bench_task
+from scope_ptz.bench.engine.scope_model import ScopeModel
 from scope_ptz.factory.evaluation import eval_context
 
 __all__ = ["bench", "scope_ptz"]

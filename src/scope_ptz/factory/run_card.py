@@ -9,7 +9,7 @@ from typing import Any
 
 import anyio
 
-from scope_ptz.bench.engine.cards import AGENT_SOURCE, DETERMINISTIC, PRICE, engine_version
+from scope_ptz.bench.engine.run_cards import AGENT_SOURCE, DETERMINISTIC, PRICE, engine_version
 from scope_ptz.bench.engine.entries import Entry, datasets, digest
 from scope_ptz.bench.engine.estimate import Price
 from scope_ptz.bench.scoring.trials import ModelCard, RunCard

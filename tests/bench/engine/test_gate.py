@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from scope_ptz.bench.engine.gate import gate
 from scope_ptz.bench.engine.logs import read_evaluation
+from scope_ptz.bench.engine.regression_gate import gate
 from scope_ptz.bench.scoring.trials import Evaluation, Judgement, Trial
 from scope_ptz.cli.bench_gate import lines, other_judges
 from scope_ptz.errors import InputError

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from scope_ptz.bench.engine.annotations import check_beside
-from scope_ptz.bench.engine.journal import Journal, journal_file
+from scope_ptz.bench.engine.judgement_journal import Journal, journal_file
 from scope_ptz.bench.engine.logs import open_sample, read_evaluation
 from scope_ptz.bench.engine.runs import alone
 from scope_ptz.bench.judging.labels import add_label, labels_file, read_labels

@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from scope_ptz.bench.engine.gate import gate
 from scope_ptz.bench.engine.logs import read_evaluation
+from scope_ptz.bench.engine.regression_gate import gate
 from scope_ptz.bench.judging.deciding import beside, decided, decider_of
 from scope_ptz.bench.judging.tally import not_judged
 from scope_ptz.bench.reports.judged import judge_name, verdicts

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from scope_ptz.bench.engine.journal import Journal
+from scope_ptz.bench.engine.judgement_journal import Journal
 from scope_ptz.bench.engine.logs import read_evaluation, uuids_in
 from scope_ptz.bench.judging.rubrics import prompt_version
 from scope_ptz.bench.judging.tally import Tally, judged_by

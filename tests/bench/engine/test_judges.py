@@ -9,7 +9,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from scope_ptz.bench.engine.journal import Journal
+from scope_ptz.bench.engine.judgement_journal import Journal
 from scope_ptz.bench.engine.logs import read_evaluation
 from scope_ptz.bench.scoring.trials import ModelCard
 from scope_ptz.bench.tasks.files import dump_tasks

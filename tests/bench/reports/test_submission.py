@@ -15,7 +15,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 import scope_ptz
-from scope_ptz.bench.engine.cards import DETERMINISTIC
+from scope_ptz.bench.engine.run_cards import DETERMINISTIC
 from scope_ptz.bench.reports.submission import secrets_in, submission_lines, submission_schema, write_submission
 from scope_ptz.bench.reports.submission_checks import BUILT_IN, check_submission
 from scope_ptz.bench.reports.submission_trials import checks_of

@@ -7,9 +7,9 @@ import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from scope_ptz.bench.engine.journal import journal_file
+from scope_ptz.bench.engine.judgement_journal import journal_file
 from scope_ptz.bench.engine.logs import uuids_in
-from scope_ptz.bench.engine.sampling import sample_name
+from scope_ptz.bench.engine.samples import sample_name
 from scope_ptz.bench.judging.labels import LabelRow, labels_file, read_labels
 from scope_ptz.bench.judging.lines import append_line, whole_lines
 

@@ -18,7 +18,7 @@ from scope_ptz.errors import ConfigError
 from scope_ptz.planner.base import Planner
 
 if TYPE_CHECKING:
-    from scope_ptz.bench.engine.perception import Eyes
+    from scope_ptz.bench.engine.logged_perception import Eyes
 
 
 @dataclass(frozen=True, slots=True)

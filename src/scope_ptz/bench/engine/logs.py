@@ -16,13 +16,13 @@ from pydantic import ValidationError
 from pydantic_core import from_json
 
 from scope_ptz.agent.trace import Trace
-from scope_ptz.bench.engine.cards import card_of, cost_usd
+from scope_ptz.bench.engine.checks_scorer import TRIAL
 from scope_ptz.bench.engine.entries import Entry
-from scope_ptz.bench.engine.judgements import judgements_in
-from scope_ptz.bench.engine.pictures import jpeg_of
-from scope_ptz.bench.engine.sampling import STORE, Kept, sample_name, trace_of
-from scope_ptz.bench.engine.scorers import TRIAL
-from scope_ptz.bench.engine.scoring import trial_of
+from scope_ptz.bench.engine.judgement_scores import judgements_in
+from scope_ptz.bench.engine.picture_store import jpeg_of
+from scope_ptz.bench.engine.run_cards import card_of, cost_usd
+from scope_ptz.bench.engine.samples import STORE, Kept, sample_name, trace_of
+from scope_ptz.bench.engine.trial_records import trial_of
 from scope_ptz.bench.judging.deciding import decided
 from scope_ptz.bench.scoring.episode import Places
 from scope_ptz.bench.scoring.trials import Evaluation, Trial

@@ -16,11 +16,11 @@ from inspect_ai.model import Model
 from inspect_ai.scorer import Scorer
 from inspect_ai.util._display import init_display_type
 
-from scope_ptz.bench.engine.journal import JOURNAL, Journal
-from scope_ptz.bench.engine.judging import judge
+from scope_ptz.bench.engine.checks_scorer import checks
+from scope_ptz.bench.engine.judge_scorer import judge
+from scope_ptz.bench.engine.judgement_journal import JOURNAL, Journal
 from scope_ptz.bench.engine.logs import DECIDES, HEADER, kept_in, read_evaluation, read_header, reading, trials_by_sample
-from scope_ptz.bench.engine.sampling import STORE
-from scope_ptz.bench.engine.scorers import checks
+from scope_ptz.bench.engine.samples import STORE
 from scope_ptz.bench.judging.deciding import check_decides
 from scope_ptz.bench.judging.rubrics import prompt_version
 from scope_ptz.bench.judging.tally import Tally

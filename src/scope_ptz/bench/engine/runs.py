@@ -23,10 +23,10 @@ from inspect_ai.model import Model
 from inspect_ai.util._display import init_display_type
 
 from scope_ptz.bench.engine.annotations import check_beside, put_away
-from scope_ptz.bench.engine.cards import AGENT_SOURCE, CARD, card_of
+from scope_ptz.bench.engine.run_cards import AGENT_SOURCE, CARD, card_of
 from scope_ptz.bench.engine.file_lock import lock_file
 from scope_ptz.bench.engine.logs import DECIDES, read_evaluation, read_header, runs_in, uuids_in
-from scope_ptz.bench.engine.sampling import sample_name
+from scope_ptz.bench.engine.samples import sample_name
 from scope_ptz.bench.scoring.trials import Evaluation, RunCard
 from scope_ptz.errors import InputError, OutputError, TraceError
 

@@ -10,7 +10,7 @@ from typing import Any
 from scope_ptz.agent.records import Ended
 from scope_ptz.agent.trace import Trace
 from scope_ptz.bench.engine.entries import Entry
-from scope_ptz.bench.engine.sampling import Kept, sample_name, trace_of
+from scope_ptz.bench.engine.samples import Kept, sample_name, trace_of
 from scope_ptz.bench.judging.deciding import verdict_by
 from scope_ptz.bench.scoring.episode import Episode, Look
 from scope_ptz.bench.scoring.error_modes import error_mode

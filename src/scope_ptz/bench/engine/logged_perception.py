@@ -7,8 +7,8 @@ from typing import TypeVar
 
 from inspect_ai.model import ChatMessage, ChatMessageUser, Content, ContentImage, ContentText, Model
 
-from scope_ptz.bench.engine.models import LOOK, Asked
-from scope_ptz.bench.engine.pictures import data_url
+from scope_ptz.bench.engine.picture_store import data_url
+from scope_ptz.bench.engine.scope_model import LOOK, Asked
 from scope_ptz.camera.base import Frame
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points
 

@@ -11,13 +11,13 @@ from scope_ptz.agent.store import NoImages
 from scope_ptz.bench.engine.context import EvalContext, equipment
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.external_agents import ExternalPlanner, load_external_agent
-from scope_ptz.bench.engine.messages import Record, conversation_of
-from scope_ptz.bench.engine.models import ScopeModel
-from scope_ptz.bench.engine.perception import LoggedPerception
-from scope_ptz.bench.engine.pictures import KeptPictures, reference
-from scope_ptz.bench.engine.ports import LoggedPlanner, ToolLog
-from scope_ptz.bench.engine.sampling import STORE, Kept, sample_name
-from scope_ptz.bench.engine.scoring import broken_by
+from scope_ptz.bench.engine.logged_perception import LoggedPerception
+from scope_ptz.bench.engine.logged_planner import LoggedPlanner, ToolLog
+from scope_ptz.bench.engine.picture_store import KeptPictures, reference
+from scope_ptz.bench.engine.samples import STORE, Kept, sample_name
+from scope_ptz.bench.engine.scope_model import ScopeModel
+from scope_ptz.bench.engine.transcript import Record, conversation_of
+from scope_ptz.bench.engine.trial_records import broken_by
 from scope_ptz.bench.programs import BlankCamera
 from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.errors import ConfigError

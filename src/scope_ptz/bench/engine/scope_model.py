@@ -25,14 +25,14 @@ from inspect_ai.model import (
 from inspect_ai.tool import ToolCall, ToolChoice, ToolInfo
 
 from scope_ptz.bench.engine.context import ModelRequest, equipment
-from scope_ptz.bench.engine.messages import call_id, state_of
-from scope_ptz.bench.engine.wire import WIRE
+from scope_ptz.bench.engine.recorded_chat import WIRE
+from scope_ptz.bench.engine.transcript import call_id, state_of
 from scope_ptz.bench.judging.judge import Complete
 from scope_ptz.planner.base import CallTools, Decision, Planner
 from scope_ptz.planner.chat.messages import callable_name
 
 if TYPE_CHECKING:
-    from scope_ptz.bench.engine.perception import Eyes
+    from scope_ptz.bench.engine.logged_perception import Eyes
 
 
 @dataclass

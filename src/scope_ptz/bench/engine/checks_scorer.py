@@ -25,8 +25,8 @@ from inspect_ai.solver import TaskState
 
 from scope_ptz.bench.engine.context import EQUIPMENT
 from scope_ptz.bench.engine.entries import Entry
-from scope_ptz.bench.engine.sampling import STORE, Kept, sample_name, trace_of
-from scope_ptz.bench.engine.scoring import trial_of
+from scope_ptz.bench.engine.samples import STORE, Kept, sample_name, trace_of
+from scope_ptz.bench.engine.trial_records import trial_of
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.bench.scoring.verdict import Headline

@@ -8,13 +8,13 @@ from typing import Any
 
 from inspect_ai import Epochs, Task
 
-from scope_ptz.bench.engine.cards import AGENT_SOURCE
+from scope_ptz.bench.engine.run_cards import AGENT_SOURCE
 from scope_ptz.bench.engine.entries import Entry, datasets, digest
 from scope_ptz.bench.engine.external_agents import source_digest
-from scope_ptz.bench.engine.judging import judge
-from scope_ptz.bench.engine.sampling import dataset_of
-from scope_ptz.bench.engine.scorers import checks
-from scope_ptz.bench.engine.solver import OWN_AGENT, scope_agent
+from scope_ptz.bench.engine.judge_scorer import judge
+from scope_ptz.bench.engine.samples import dataset_of
+from scope_ptz.bench.engine.checks_scorer import checks
+from scope_ptz.bench.engine.agent_solver import OWN_AGENT, scope_agent
 from scope_ptz.version import __version__
 
 MOST_BROKEN = 0.1

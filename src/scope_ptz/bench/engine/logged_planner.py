@@ -10,9 +10,9 @@ from inspect_ai.model import ChatMessageAssistant, Content, ContentImage, Conten
 from inspect_ai.tool import ToolCall, ToolDef, ToolError, ToolParams
 from pydantic import TypeAdapter
 
-from scope_ptz.bench.engine.messages import messages_of, tool_infos
-from scope_ptz.bench.engine.models import ScopeModel
-from scope_ptz.bench.engine.pictures import KeptPictures
+from scope_ptz.bench.engine.picture_store import KeptPictures
+from scope_ptz.bench.engine.scope_model import ScopeModel
+from scope_ptz.bench.engine.transcript import messages_of, tool_infos
 from scope_ptz.endpoints.replies import ChatReply, RawToolCall
 from scope_ptz.errors import CameraError, PerceptionError, PlannerError, ScopeError, ToolCallError, UnknownNameError
 from scope_ptz.planner.base import Decision, Planner, State

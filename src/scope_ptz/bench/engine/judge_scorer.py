@@ -20,13 +20,13 @@ from inspect_ai.scorer import Score, Scorer, Target, scorer
 from inspect_ai.solver import TaskState
 from inspect_ai.util import JSONSchema
 
+from scope_ptz.bench.engine.checks_scorer import METRICS
 from scope_ptz.bench.engine.entries import Entry
-from scope_ptz.bench.engine.journal import JOURNAL, Journal
-from scope_ptz.bench.engine.judgements import JUDGE, score_of_judgement
-from scope_ptz.bench.engine.models import LOOK, Asked, ScopeModel
-from scope_ptz.bench.engine.sampling import STORE, Kept, sample_name, trace_of
-from scope_ptz.bench.engine.scorers import METRICS
-from scope_ptz.bench.engine.scoring import broken_by
+from scope_ptz.bench.engine.judgement_journal import JOURNAL, Journal
+from scope_ptz.bench.engine.judgement_scores import JUDGE, score_of_judgement
+from scope_ptz.bench.engine.samples import STORE, Kept, sample_name, trace_of
+from scope_ptz.bench.engine.scope_model import LOOK, Asked, ScopeModel
+from scope_ptz.bench.engine.trial_records import broken_by
 from scope_ptz.bench.judging.judge import Judge, Message, NoReplyError, Reply
 
 FIRST_SEED = 1
