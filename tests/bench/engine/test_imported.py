@@ -7,6 +7,7 @@ from pathlib import Path
 
 from scope_ptz.bench.engine.logs import read_evaluation
 from scope_ptz.bench.engine.regression_gate import gate
+from scope_ptz.bench.engine.run_totals import accuracy
 from scope_ptz.bench.judging.deciding import beside, decided, decider_of
 from scope_ptz.bench.judging.tally import not_judged
 from scope_ptz.bench.reports.judged import judge_name, verdicts
@@ -15,7 +16,7 @@ from scope_ptz.bench.scoring.trials import Evaluation, Judgement, Trial
 from scope_ptz.bench.tasks.facts import TaskFacts
 from scope_ptz.bench.tasks.imported import ImportedTask
 from scope_ptz.bench.tasks.task import RequiredCall
-from scope_ptz.cli.bench_live import accuracy, waiting
+from scope_ptz.cli.bench.progress import unscored_lines
 from tests.bench.engine.making import SCENE
 from tests.bench.reports.making import card, facts
 from tests.bench.reports.making import trial as report_trial
@@ -132,6 +133,6 @@ def test_replies_without_a_verdict_are_in_no_share_and_in_no_gate(scope: Scope, 
     mute = evaluation.trials[0].model_copy(update={"scored_by": "judge", "headline": "unscored", "judgements": (said,)})
     trials = (mute, *evaluation.trials[1:])
     assert accuracy(trials) == 2 / 3
-    assert waiting(trials) == ["not scored 1 without a verdict: the judge's replies were unparseable"]
+    assert unscored_lines(trials) == ["not scored 1 without a verdict: the judge's replies were unparseable"]
     found = gate(evaluation.model_copy(update={"trials": trials}), evaluation)
     assert (found.left_out, found.overall.tasks, found.overall.worse) == ((mute.task.id,), 3, ())

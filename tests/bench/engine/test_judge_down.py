@@ -28,7 +28,7 @@ def test_rescoring_by_a_judge_that_is_away_fails_and_the_same_command_mends_it(s
     assert "4 judgements by j: 0 with a verdict, 0 unparseable, 4 failed" in down.out
     assert "4 of 4 judgements failed because the judge's server gave no usable reply" in down.err
     assert "127.0.0.1:1" in down.err and "Start it, or check the address." in down.err
-    assert "the same command asks for them again" in down.err
+    assert "running the same command again retries them" in down.err
     with Misbehaving(then=good(verdict)) as server:
         up = scope("bench", "rescore", str(evaluated), "--judge-url", server.url, "--judge-model", "j")
     assert up.code == 0, up.err

@@ -1,8 +1,9 @@
-"""Scorers of the engine: the executable checks. They need nothing but what a run left, so that they can be repeated offline."""
+"""The executable checks as a scorer of the engine. They read only what a run stored, so they can be repeated offline."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +24,7 @@ from inspect_ai.scorer import (
 )
 from inspect_ai.solver import TaskState
 
-from scope_ptz.bench.engine.context import EQUIPMENT
+from scope_ptz.bench.engine.context import EvalContext, TrueCount
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.samples import STORE, Kept, sample_name, trace_of
 from scope_ptz.bench.engine.trial_records import trial_of
@@ -38,7 +39,7 @@ _VALUES: Mapping[Headline, str] = {"correct": CORRECT, "incorrect": INCORRECT, "
 
 @metric(scores="unreduced")
 def error_modes() -> Metric:
-    """How many runs failed in each of the eight ways."""
+    """Count the failed runs by error mode."""
 
     def count(scores: list[SampleScore]) -> Any:
         modes = [(score.score.metadata or {}).get("error_mode") for score in scores]
@@ -55,41 +56,57 @@ METRICS = (
 )
 
 
-@scorer(metrics=list(METRICS), name=CHECKS)
-def checks() -> Scorer:
-    """The executable checks of a run. A run that infrastructure broke has a score without a value, which no metric counts."""
+def checks_scorer(context: EvalContext | None = None) -> Scorer:
+    """Return the scorer that applies the executable checks of a task.
 
-    async def score(state: TaskState, target: Target) -> Score:  # noqa: ARG001 - the engine's signature
-        entry, lent = Entry.of_metadata(state.metadata), EQUIPMENT.get()
-        left = state.store.get(STORE)
-        kept = Kept.of_store(left) if left else Kept("", {}, "")
-        trial = trial_of(entry, kept, state.epoch, Path(entry.facts.scene))
-        if trial.headline == "incorrect" and lent is not None and lent.truth is not None and not kept.truths:
-            kept = await _with_truths(entry, kept)
-            state.store.set(STORE, kept.as_store())
-            trial = trial_of(entry, kept, state.epoch, Path(entry.facts.scene))
-        if lent is not None:
-            lent.watcher.ended(sample_name(entry.facts.id, state.epoch), trial)
-        return score_of(trial)
+    A run that infrastructure broke has a score without a value, which no metric counts.
 
-    return score
+    Args:
+        context: Its watcher receives the trial, and its ground truth tells miscounts from wrong conclusions. None to apply the
+            checks to what the log holds, and nothing else.
+    """
+
+    @scorer(metrics=list(METRICS), name=CHECKS)
+    def checks() -> Scorer:
+        async def score(state: TaskState, target: Target) -> Score:  # noqa: ARG001 - the engine's signature
+            return score_of(await _trial(state, context))
+
+        return score
+
+    return checks()
 
 
-async def _with_truths(entry: Entry, kept: Kept) -> Kept:
-    """The run with the true number beside every count, which tells a miscount from a wrong conclusion."""
-    lent, trace = EQUIPMENT.get(), trace_of(kept.trace, Path(entry.facts.scene))
-    if lent is None or lent.truth is None or trace is None:
+async def _trial(state: TaskState, context: EvalContext | None) -> Trial:
+    """Return the judged run of a sample. The true counts of an incorrect run are looked up once, and stay in its store."""
+    entry = Entry.of_metadata(state.metadata)
+    where = Path(entry.facts.scene)
+    stored = state.store.get(STORE)
+    kept = Kept.of_store(stored) if stored else Kept("", {}, "")
+    trial = trial_of(entry, kept, state.epoch, where)
+    if trial.headline == "incorrect" and context is not None and context.true_count is not None and not kept.truths:
+        kept = await _with_truths(entry, kept, context.true_count)
+        state.store.set(STORE, kept.as_store())
+        trial = trial_of(entry, kept, state.epoch, where)
+    if context is not None:
+        context.watcher.ended(sample_name(entry.facts.id, state.epoch), trial)
+    return trial
+
+
+async def _with_truths(entry: Entry, kept: Kept, true_count: TrueCount) -> Kept:
+    """Return a run with the true number beside every count."""
+    trace = trace_of(kept.trace, Path(entry.facts.scene))
+    if trace is None:
         return kept
     truths = dict[str, int | None]()
     for number, call in enumerate(kept.episode(trace).calls):
         for look in call.looks:
             if look.how == "count":
-                truths[str(number)] = await lent.truth(entry.world, look)
-    return Kept(kept.trace, kept.presets, kept.home, kept.sees, kept.pictures, truths)
+                truths[str(number)] = await true_count(entry.world, look)
+    return replace(kept, truths=truths)
 
 
 def score_of(trial: Trial) -> Score:
-    """A judged run as a score of the engine; the run's record goes with it."""
+    """Return a judged run as a score of the engine. The whole trial is in its metadata."""
     metadata = {
         "headline": trial.headline,
         "error_mode": trial.error_mode.value if trial.error_mode else None,

@@ -1,9 +1,8 @@
-"""Judgements as they are made, so that a rescoring that is killed loses none: a file beside the log, gone when the log has them."""
+"""A file beside a log that holds new judgements until the log has them, so that an interrupted rescoring loses none."""
 
 from __future__ import annotations
 
 import json
-from contextvars import ContextVar
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -15,12 +14,12 @@ from scope_ptz.errors import TraceError
 
 
 def journal_file(log: Path) -> Path:
-    """Where the judgements of a rescoring of a log stand while it goes on."""
+    """Return the path of a log's journal."""
     return log.with_suffix(".judgements.jsonl")
 
 
 class Journal:
-    """Judgements by run, judge and number; ``made``: those that were added. Without a path none are known before."""
+    """Judgements by run, judge and number. ``made`` are those that were added. Without a path, the journal is in memory."""
 
     def __init__(self, path: Path | None = None) -> None:
         self.path = path
@@ -34,15 +33,15 @@ class Journal:
                 self._known[(row["sample"], made.judge, made.repeat)] = made
                 self._waiting[(row["sample"], made.judge, made.repeat)] = made
             except (ValueError, KeyError, TypeError, ValidationError) as error:
-                raise TraceError(f"{path}, line {number} is no judgement: remove the line, or the file. ({error})") from error
+                raise TraceError(f"{path}, line {number} is not a judgement: remove the line, or the file. ({error})") from error
 
     @classmethod
     def beside(cls, log: Path) -> Journal:
-        """The journal of a log."""
+        """Return the journal of a log."""
         return cls(journal_file(log))
 
     def find(self, sample: str, judge: str, repeat: int) -> Judgement | None:
-        """A judgement by today's prompt that reached a verdict; one that failed is to be made again."""
+        """Return a judgement by the current prompt, or None where it is missing or failed."""
         made = self._known.get((sample, judge, repeat))
         if made is None or made.prompt != prompt_version() or made.verdict == "failed":
             return None
@@ -50,14 +49,14 @@ class Journal:
         return made
 
     def know(self, sample: str, judgement: Judgement) -> None:
-        """A judgement that the log has already."""
+        """Add a judgement that the log has already."""
         key = (sample, judgement.judge, judgement.repeat)
         self._known.setdefault(key, judgement)
         if self._waiting.get(key) == judgement:
             del self._waiting[key]
 
     def add(self, sample: str, judgement: Judgement) -> None:
-        """Keep a judgement."""
+        """Add a new judgement, and write it to the file."""
         key = (sample, judgement.judge, judgement.repeat)
         self._known[key] = judgement
         self._waiting.pop(key, None)
@@ -66,7 +65,7 @@ class Journal:
             append_line(self.path, _line(sample, judgement))
 
     def done(self) -> None:
-        """The log has all that was asked for now. What a rescoring by another judge left here when it was killed stays."""
+        """Remove the judgements that the log has now. Those of an interrupted rescoring by another judge stay."""
         if self.path is None:
             return
         left = [_line(sample, made) for (sample, _, _), made in self._waiting.items() if made.verdict != "failed"]
@@ -80,6 +79,3 @@ class Journal:
 
 def _line(sample: str, judgement: Judgement) -> str:
     return json.dumps({"sample": sample, "judgement": judgement.model_dump(mode="json")}, ensure_ascii=False)
-
-
-JOURNAL: ContextVar[Journal | None] = ContextVar("scope_journal", default=None)

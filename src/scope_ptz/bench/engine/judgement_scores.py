@@ -1,4 +1,4 @@
-"""Where judgements stand in a log: each a score of its own, named after the judge and the number of its judgement."""
+"""Judgements in a log: each is a score of its own, named after the judge and the number of the judgement."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ JUDGEMENT = "judgement"
 
 
 def score_of_judgement(judgement: Judgement) -> Score:
-    """A judgement as a score of the engine. One without a verdict has no value, and no metric counts it."""
+    """Return a judgement as a score of the engine. Without a verdict it has no value, and no metric counts it."""
     metadata = {"error_mode": judgement.error_mode, JUDGEMENT: judgement.model_dump(mode="json")}
     if judgement.verdict in ("correct", "incorrect"):
         value = CORRECT if judgement.verdict == "correct" else INCORRECT
@@ -25,11 +25,13 @@ def score_of_judgement(judgement: Judgement) -> Score:
 
 
 def judgements_in(scores: Mapping[str, Any]) -> tuple[Judgement, ...]:
-    """The judgements among the scores of a sample, in the order in which they were made; of two with one number, which a failed
-    one has that was asked for again, the newer. Raises ``TraceError``."""
-    told = (score["metadata"][JUDGEMENT] for score in scores.values() if JUDGEMENT in (score.get("metadata") or {}))
+    """Return the judgements among the scores of a sample, in the order in which they were made.
+
+    A failed judgement that was requested again has the same number as the new one; the newer counts. Raises ``TraceError``.
+    """
+    stored = (score["metadata"][JUDGEMENT] for score in scores.values() if JUDGEMENT in (score.get("metadata") or {}))
     try:
-        made = [Judgement.model_validate(row) for row in told]
+        made = [Judgement.model_validate(row) for row in stored]
         return tuple({(j.judge, j.prompt, j.repeat): j for j in made}.values())
     except ValidationError as error:
         raise TraceError(f"A judgement in the log is damaged: {error.errors(include_url=False)[0]['msg']}.") from error

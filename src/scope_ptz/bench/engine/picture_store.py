@@ -7,21 +7,19 @@ import base64
 import anyio
 import cv2
 from anyio import to_thread
-from inspect_ai._util.hash import mm3_hash
-from inspect_ai.log._condense import ATTACHMENT_PROTOCOL
 
 from scope_ptz.agent.planner_views import LONGEST_SIDE, picture
 from scope_ptz.agent.store import Numbering
 from scope_ptz.camera.base import Frame
 
 WIDEST = 2560
-"""Pixels of a panorama's longer side. It is for people and judges to look at; perception had all of it."""
+"""Longest side of a logged panorama in pixels. Perception received it in full size."""
 QUALITY = 85
 _HEAD = "data:image/jpeg;base64,"
 
 
 async def data_url(frame: Frame) -> str:
-    """A frame as a JPEG, coded in a worker thread. One that a model was shown is the very same bytes."""
+    """Return a frame as a JPEG data URL, encoded in a worker thread. A model that was shown it got the same bytes."""
     if max(frame.width, frame.height) <= LONGEST_SIDE:
         return (await picture(frame, "")).data_url
     return await to_thread.run_sync(_coded, frame)
@@ -34,18 +32,13 @@ def _coded(frame: Frame) -> str:
     return _HEAD + base64.b64encode(jpeg.tobytes()).decode("ascii")
 
 
-def reference(url: str) -> str:
-    """How a log refers to a picture that one of its messages shows: the engine keeps each only once, under this name."""
-    return ATTACHMENT_PROTOCOL + mm3_hash(url)
-
-
 def jpeg_of(url: str) -> bytes:
-    """The bytes of a picture."""
+    """Return the bytes of a picture."""
     return base64.b64decode(url.removeprefix(_HEAD))
 
 
-class KeptPictures:
-    """An image store that keeps pictures in memory. A frame waits to be coded until somebody has time for it: ``settle``."""
+class PictureStore:
+    """An image store that keeps pictures in memory. Frames are encoded in ``settle``, outside the timed parts of a run."""
 
     def __init__(self) -> None:
         self._names, self._waiting = Numbering(), dict[str, Frame]()
@@ -64,7 +57,7 @@ class KeptPictures:
         return name
 
     async def settle(self) -> None:
-        """Code what waits."""
+        """Encode the frames that wait."""
         async with self._lock:
             for name in list(self._waiting):
                 self.kept[name] = await data_url(self._waiting[name])

@@ -1,4 +1,4 @@
-"""Whether an evaluation is worse than an earlier one, task by task, by more than chance: for continuous integration."""
+"""A gate for continuous integration: is an evaluation significantly worse than an earlier one, task by task?"""
 
 from __future__ import annotations
 
@@ -16,8 +16,11 @@ ALL = "all"
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """Paired outcomes of a group of tasks. ``worse`` and ``better``: tasks right less or more often than before; ``p``: McNemar's
-    exact two-sided value (with repeats the sign test), by category adjusted for many tests after Holm."""
+    """Paired outcomes of a group of tasks.
+
+    ``worse`` and ``better`` are tasks that are correct less or more often than before. ``p`` is the two-sided p value of McNemar's
+    exact test (with repeats, the sign test); categories are adjusted for multiple tests by Holm's method.
+    """
 
     group: str
     tasks: int
@@ -33,7 +36,7 @@ class Comparison:
 
 @dataclass(frozen=True, slots=True)
 class Gate:
-    """``left_out``: tasks that infrastructure broke, or no judge gave a verdict on, on either side: they say nothing."""
+    """The comparison as a whole. ``left_out`` are tasks that were broken or not judged in either evaluation."""
 
     overall: Comparison
     categories: tuple[Comparison, ...]
@@ -50,7 +53,7 @@ class Gate:
 
 
 def gate(evaluation: Evaluation, baseline: Evaluation, alpha: float = 0.05) -> Gate:
-    """Compare over the same tasks. Raises ``InputError`` when the two cannot be compared."""
+    """Compare two evaluations over the same tasks. Raises ``InputError`` when they cannot be compared."""
     for name, log in (("log", evaluation), ("baseline", baseline)):
         if not log.finished:
             raise InputError(f"The {name} {log.log} holds {len(log.trials)} of {log.wanted} runs: finish it first.")
@@ -83,7 +86,7 @@ def _tasks(evaluation: Evaluation) -> str:
 
 
 def _shares(trials: Sequence[Trial]) -> dict[str, float]:
-    """Of each task the share of its runs that were right, those left out that infrastructure broke or that wait for a judge."""
+    """Return each task's share of correct runs, without runs that were broken or that wait for a judge."""
     runs: dict[str, list[bool]] = {}
     for trial in trials:
         if trial.headline != "infrastructure" and not without_verdict(trial):

@@ -1,4 +1,4 @@
-"""The run card of a log: under what conditions it ran, as models and servers report themselves."""
+"""The run card of a log: the conditions of its runs, as models and servers report themselves."""
 
 from __future__ import annotations
 
@@ -18,36 +18,41 @@ CARD = "card"
 SCOPE = "scope"
 PRICE = "price_usd_per_million_tokens"
 AGENT_SOURCE = "agent_source"
-"""Of another agent: the digest of its code, among the settings of a run."""
+"""Key, among the settings of a run, for the digest of an external agent's source."""
 DETERMINISTIC = ("grammar", "ground-truth", "noisy")
 
 
 def engine_version() -> str:
-    """The engine that is installed, as logs tell it."""
+    """Return name and version of the installed engine, as logs record them."""
     return f"{ENGINE} {version(ENGINE.replace('-', '_'))}"
 
 
 def card_of(header: EvalLog, trace: Trace | None) -> RunCard:
-    """The card that the front end wrote; of a log that the engine's own command line made, what can be told from it.
+    """Return the card that this program wrote, or one derived from a log of the engine's own command line.
 
-    ``trace``: of any run of the log, for what it says of the planner. Raises ``TraceError``.
+    Args:
+        header: The log.
+        trace: Trace of any run of the log; it describes the planner.
+
+    Raises:
+        TraceError: The card is damaged.
     """
     metadata = header.eval.metadata or {}
     try:
         if CARD in metadata:
             return RunCard.model_validate(metadata[CARD])
-        return _told(header, metadata[SCOPE], trace.started.planner_details if trace is not None else {})
+        return _derived_card(header, metadata[SCOPE], trace.started.planner_details if trace is not None else {})
     except (ValidationError, KeyError) as error:
         raise TraceError(f"The run card of {header.location} is damaged: {error}.") from error
 
 
 def cost_usd(card: RunCard, input_tokens: int, output_tokens: int) -> float | None:
-    """What the planner's tokens of a run cost, where prices were given."""
+    """Return the cost of a run's planner tokens; None where no prices were given."""
     price = card.sampling.get(PRICE)
     return (input_tokens * price["input"] + output_tokens * price["output"]) / 1e6 if price else None
 
 
-def _told(header: EvalLog, facts: Mapping[str, Any], planner: Mapping[str, str]) -> RunCard:
+def _derived_card(header: EvalLog, facts: Mapping[str, Any], planner: Mapping[str, str]) -> RunCard:
     config = header.eval.config
     known = {name: value for name, value in facts.items() if name != AGENT_SOURCE}
     source = {AGENT_SOURCE: facts[AGENT_SOURCE]} if AGENT_SOURCE in facts else {}

@@ -1,4 +1,4 @@
-"""Entries as samples of the engine and back, and what a run leaves in its sample: enough to check and judge it again."""
+"""Entries as samples of the engine, and what a run stores in its sample to be checked and judged again."""
 
 from __future__ import annotations
 
@@ -17,25 +17,33 @@ from scope_ptz.bench.scoring.episode import Episode, Places, episode_of
 from scope_ptz.errors import TraceError
 
 STORE = "scope"
-"""The one key of a sample's store that is ours."""
+"""The key in a sample's store that belongs to this project."""
 
 
 def dataset_of(entries: Iterable[Entry], name: str) -> MemoryDataset:
-    """The entries as a dataset of the engine, those of one viewpoint one after the other: its layers are read once."""
+    """Return the entries as a dataset of the engine, grouped by viewpoint so that its layers are read once."""
     entries = sorted(entries, key=lambda e: (e.facts.scene, e.facts.viewpoint))
     samples = [Sample(id=e.facts.id, input=e.facts.instruction, target=e.facts.expected, metadata=e.metadata()) for e in entries]
     return MemoryDataset(samples, name=name)
 
 
 def sample_name(task: str, epoch: int) -> str:
-    """How a run is called in one log."""
+    """Return the name of a run in its log."""
     return f"{task}#{epoch}"
 
 
 @dataclass(frozen=True, slots=True)
 class Kept:
-    """What a run left. ``trace`` is JSONL, empty when the run never began; ``pictures`` are the log's references by name;
-    ``truths``: how many really showed, by number of the call, where that was looked up."""
+    """What a run stored.
+
+    Attributes:
+        trace: Trace as JSON lines; empty when the run never began.
+        presets: Viewpoint of each preset.
+        home: Viewpoint of the home preset.
+        sees: Whether the planner was shown frames.
+        pictures: References to pictures in the log, by their names in the trace.
+        truths: True counts by number of the call, where they were looked up.
+    """
 
     trace: str
     presets: Mapping[str, str]
@@ -52,7 +60,7 @@ class Kept:
 
     @classmethod
     def of_store(cls, store: Any) -> Kept:
-        """Raises ``TraceError`` when this is not what a run leaves."""
+        """Return the run in a sample's store. Raises ``TraceError`` when there is none."""
         try:
             return cls(**{name: store[name] for name in ("trace", "presets", "home", "sees", "pictures", "truths")})
         except (KeyError, TypeError) as error:
@@ -60,16 +68,16 @@ class Kept:
 
     @property
     def places(self) -> Places:
-        """Which viewpoint each preset and home have."""
+        """The viewpoints of the presets and of home."""
         return Places(self.presets, self.home)
 
     def episode(self, trace: Trace) -> Episode:
-        """The run as checks see it."""
+        """Return the run as the checks see it."""
         return episode_of(trace, self.places, planner_sees=self.sees, keeps_files=False)
 
 
 def trace_of(text: str, where: Path) -> Trace | None:
-    """The trace in a text of JSON lines; None when the run never began. Raises ``TraceError``."""
+    """Parse a trace from JSON lines; None when the run never began. Raises ``TraceError``."""
     try:
         records = [RECORD.validate_json(line) for line in text.splitlines() if line]
     except ValidationError as error:

@@ -1,7 +1,6 @@
 """A planner's state as chat messages and back: what the log shows, and what any chat model can plan from.
 
-The words are those of the chat planner. Exact values (poses, results) travel beside them as metadata, so that a planner that
-reads no words gets the state that the loop made.
+The texts are those of the chat planner. Exact values (poses, results) are in the metadata, for planners that do not read text.
 """
 
 from __future__ import annotations
@@ -42,7 +41,7 @@ _BRIEFING: TypeAdapter[Briefing] = TypeAdapter(Briefing)
 
 
 def messages_of(state: State, prompt: Prompt, *, sees: bool = False) -> list[ChatMessage]:
-    """The messages of a state. Those of a step are those of the step before and more behind them, but for the newest view."""
+    """Return the messages of a state. Each step appends to those of the step before; only the newest view is replaced."""
     briefing = state.briefing
     system = ChatMessageSystem(
         id="briefing",
@@ -67,12 +66,12 @@ def _exchange(exchange: Exchange, step: int) -> list[ChatMessage]:
 
 
 def call_id(step: int, index: int) -> str:
-    """The name of a call in messages: nine characters, because some templates take nothing else."""
+    """Return the id of a call in messages. It has nine characters, because some chat templates accept nothing else."""
     return f"s{step:04d}c{index:03d}"
 
 
 def tool_message(outcome: ToolOutcome, step: int, index: int) -> ChatMessageTool:
-    """What a call brought back, as the planner reads it, the whole outcome beside it."""
+    """Return the result of a call as the planner reads it, with the whole outcome in the metadata."""
     told: list[Content] = [ContentText(text=observation(outcome))]
     if outcome.picture is not None:
         told += _pictured(outcome.picture)
@@ -91,7 +90,7 @@ def _pictured(picture: Picture) -> list[Content]:
 
 
 def conversation_of(records: Sequence[Record], pictures: Mapping[str, str]) -> list[ChatMessage]:
-    """A run as a conversation for people to read, every picture where it was taken. ``pictures``: data URLs by name."""
+    """Return a run as a conversation for human readers. ``pictures`` are data URLs by name, shown where they were taken."""
     messages: list[ChatMessage] = []
     for record in records:
         match record:
@@ -125,7 +124,7 @@ def _shown(names: Iterable[str | None], pictures: Mapping[str, str]) -> list[Con
 
 @cache
 def _schemas() -> tuple[dict[str, Any], ...]:
-    """They are the same for every camera, and making them takes as long as a run of a small program."""
+    """Return the schemas of the tools, made once: they are the same for every camera."""
     return tuple(schemas())
 
 
@@ -139,14 +138,14 @@ def _tool_infos() -> tuple[ToolInfo, ...]:
 
 
 def tool_infos() -> list[ToolInfo]:
-    """The nine tools as the engine hands them to a model."""
+    """Return the tools as the engine passes them to a model."""
     return list(_tool_infos())
 
 
 def state_of(messages: Sequence[ChatMessage]) -> State:
-    """The state that messages tell of; what they leave out is taken as a camera that looks straight ahead and has no presets.
+    """Return the state that messages describe. Without a briefing, the camera looks straight ahead and has no presets.
 
-    Raises ``PlannerError`` when nobody says what to do.
+    Raises ``PlannerError`` when the messages hold no instruction.
     """
     system = next((m for m in messages if isinstance(m, ChatMessageSystem) and m.metadata and "briefing" in m.metadata), None)
     told = system.metadata["briefing"] if system is not None and system.metadata else None

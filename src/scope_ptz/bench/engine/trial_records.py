@@ -1,4 +1,4 @@
-"""From what a run left to a judged run."""
+"""Trials made from what runs stored."""
 
 from __future__ import annotations
 
@@ -18,12 +18,14 @@ from scope_ptz.bench.scoring.imported import check_calls_of
 from scope_ptz.bench.scoring.trials import Check, Judgement, LookTime, Trial
 from scope_ptz.bench.scoring.verdict import AGENTS_OWN_FAILURES, judge
 
-_LOOKERS = ("count_objects", "query_answer")
+_TIMED_TOOLS = ("count_objects", "query_answer")
 
 
 def trial_of(entry: Entry, kept: Kept, epoch: int, where: Path, judgements: tuple[Judgement, ...] = ()) -> Trial:
-    """The judged run: by its task's checks; where there are none by the first verdict of a judge (a log with several judges says
-    which of them decides: ``judging.deciding``)."""
+    """Return the trial of a run: scored by its task's checks, or without checks by the first verdict of a judge.
+
+    Where a log has several judges, ``judging.deciding`` says which of them decides.
+    """
     name = sample_name(entry.facts.id, epoch)
     trace = trace_of(kept.trace, where)
     if trace is None:
@@ -41,7 +43,7 @@ def trial_of(entry: Entry, kept: Kept, epoch: int, where: Path, judgements: tupl
 
 
 def _by_checks(entry: Entry, kept: Kept, trace: Trace) -> dict[str, Any]:
-    assert entry.task is not None  # noqa: S101 - the caller has looked
+    assert entry.task is not None  # noqa: S101 - the caller has checked
     episode = kept.episode(trace)
     verdict = judge(entry.task, episode)
     truth = _Truths(episode, kept.truths)
@@ -56,7 +58,7 @@ def _by_checks(entry: Entry, kept: Kept, trace: Trace) -> dict[str, Any]:
 
 
 class _Truths:
-    """The truth of the looks of a run, as it was looked up when the run was over."""
+    """The true counts of a run's perception calls, looked up when the run had ended."""
 
     def __init__(self, episode: Episode, truths: Mapping[str, int | None]) -> None:
         looks = [(look, truths.get(str(number))) for number, call in enumerate(episode.calls) for look in call.looks]
@@ -75,7 +77,7 @@ def _by_judge(trace: Trace, judgements: tuple[Judgement, ...]) -> dict[str, Any]
 
 
 def broken_by(ended: Ended | None) -> str | None:
-    """Why a run says nothing about the agent, as far as its end alone can tell; None when it does."""
+    """Return why infrastructure broke a run, as far as its end shows it; None when it did not."""
     if ended is None:
         return "the run was cut off"
     if ended.outcome in ("camera_error", "cancelled"):
@@ -86,8 +88,8 @@ def broken_by(ended: Ended | None) -> str | None:
 
 
 def _look_times(trace: Trace) -> tuple[LookTime, ...]:
-    """Where the time of each look went."""
-    looked = [c for c in trace.calls if c.outcome.call.name in _LOOKERS and c.outcome.error is None]
+    """Return where the time of each perception call went."""
+    looked = [c for c in trace.calls if c.outcome.call.name in _TIMED_TOOLS and c.outcome.error is None]
     return tuple(
         LookTime(
             view="full" if called.outcome.call.arguments.get("view") == "full" else "current",
@@ -100,7 +102,7 @@ def _look_times(trace: Trace) -> tuple[LookTime, ...]:
 
 
 def _run(trace: Trace) -> dict[str, Any]:
-    """What the trace tells of how it went."""
+    """Return the facts of a trial that come from its trace."""
     ended = trace.ended
     return {
         "outcome": ended.outcome if ended else None,
