@@ -140,7 +140,7 @@ def test_a_sweep_keeps_exact_planners_and_eyes_off_the_ranking(evaluated: Path) 
         return next(number for number, line in enumerate(narrow) if words in line)
 
     places = [
-        next(n for n, line in enumerate(narrow) if words in line) for words in ("best first", "small+", "not results of models")
+        next(n for n, line in enumerate(narrow) if words in line) for words in ("best first", "small+", "baselines")
     ]
     places += [
         next(n for n, line in enumerate(narrow) if words in line) for words in ("grammar+ground-truth", "Not run", "No server.")
