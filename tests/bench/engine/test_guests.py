@@ -111,7 +111,7 @@ def test_other_source_is_another_evaluation(
     changed = run_as("a longer answer")
     assert "is complete" not in changed.err
     assert re.search(r"The source of quick_loop:Agent differs from that in logs/\S+\.eval: this is a new evaluation\.", changed.out)
-    assert "by 2 earlier runs of this agent" in changed.out
+    assert "measured on 2 earlier runs of this agent" in changed.out
     # Names of logs begun in the same second do not tell which was the first.
     evaluations = sorted(map(read_evaluation, Path("logs").glob("*.eval")), key=lambda e: len(e.trials[0].answer))
     assert [{t.answer for t in e.trials} for e in evaluations] == [{"x"}, {"a longer answer"}]

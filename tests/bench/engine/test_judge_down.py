@@ -66,7 +66,7 @@ def test_a_run_whose_judge_is_away_is_not_done(scope: Scope, tasks_file: Path, t
         code, out, err = run(scope, tasks_file, tmp_path, "--judge-url", server.url, "--judge-model", "j")
         assert code == 0, err
         assert len([r for r in server.requests if r.chat]) == 2
-    assert "this evaluation is done" in err
+    assert "this evaluation is complete" in err
     assert "judge      j: 4 with a verdict, 0 unparseable, 0 failed" in out
     # The agent was not run again, and a judge that has said everything is not asked, wherever it is.
     assert list(tmp_path.glob("*.eval")) == [log] and uuids_in(log) == runs
