@@ -31,8 +31,8 @@ from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.splits import load_split
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.camera.simulated import SimulatedCamera
-from scope_ptz.cli.bench_inputs import worlds_of
 from scope_ptz.factory.validation_perception import KnownViews
+from scope_ptz.factory.worlds import worlds_of
 from scope_ptz.perception.base import Perception
 from scope_ptz.perception.ground_truth import GroundTruthPerception
 from scope_ptz.perception.ground_truth.noisy import NoisyPerception

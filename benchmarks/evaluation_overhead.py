@@ -14,7 +14,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import anyio
-from rich.console import Console
 
 from scope_ptz.agent.loop import Agent
 from scope_ptz.agent.store import NoImages, RunFolder
@@ -22,9 +21,9 @@ from scope_ptz.bench.engine.context import EvalContext, ModelRequest
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.program_runner import BlankCamera
 from scope_ptz.camera.simulated import SimulatedCamera
-from scope_ptz.cli.bench_evaluate import RunOptions, evaluate
+from scope_ptz.factory.evaluate import EvaluationOptions, evaluate
 from scope_ptz.factory.evaluation import eval_context, planner_for
-from scope_ptz.factory.models import ModelOptions, ResolvedPerception, ResolvedPlanner
+from scope_ptz.factory.models import ResolvedPerception, ResolvedPlanner
 from scope_ptz.simulator.clock import SceneClock
 
 
@@ -49,11 +48,10 @@ async def main(tasks: Path, *, pictures: bool) -> None:
         folder = Path(scratch)
         await bare(entries[:3], lent, folder, pictures=pictures)  # scenes read, grammar compiled
         alone = await bare(entries, lent, folder, pictures=pictures)
-        options = RunOptions(wishes=ModelOptions(), out=folder / "logs", tasks=str(tasks), pictures=pictures, concurrency=1)
-        console = Console(quiet=True)
-        await evaluate(replace(options, limit=3), console)  # the engine imported
+        options = EvaluationOptions(out=folder / "logs", tasks=str(tasks), pictures=pictures, concurrency=1)
+        await evaluate(replace(options, limit=3))  # the engine imported
         began = time.process_time()
-        made = (await evaluate(options, console)).evaluation
+        made = (await evaluate(options)).evaluation
         engine = time.process_time() - began
         size = (await anyio.Path(made.log).stat()).st_size / 1e6
     number = len(entries)

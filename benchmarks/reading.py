@@ -27,7 +27,7 @@ from rapidocr import RapidOCR
 from scope_ptz.bench.answers import agrees, parse_answer
 from scope_ptz.bench.tasks.splits import load_split
 from scope_ptz.bench.tasks.task import Task
-from scope_ptz.cli.bench_inputs import worlds_of
+from scope_ptz.factory.worlds import worlds_of
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose, pan_tilt_deg
 from scope_ptz.simulator.pack import Scene, find_scenes
 from scope_ptz.simulator.truth import MIN_CAP_HEIGHT_PX, TextSighting, view_truth

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from scope_ptz.bench.tasks.splits import load_split, read_manifest
-from scope_ptz.cli.bench_build import _numbers
+from scope_ptz.cli.bench.build import variation_numbers
 from scope_ptz.errors import InputError
 from tests.cli.conftest import Scope, scenes, scope
 
@@ -45,10 +45,10 @@ def test_one_command_makes_everything(scope: Scope, tmp_path: Path) -> None:
 
 
 def test_numbers_of_worlds_may_follow_one_another() -> None:
-    assert _numbers([7], [8, 9, 8]) == (7, 8, 9)
-    assert _numbers(None, None) == ()
+    assert variation_numbers([7], [8, 9, 8]) == (7, 8, 9)
+    assert variation_numbers(None, None) == ()
     with pytest.raises(InputError, match="belongs to no option"):
-        _numbers(None, [8])
+        variation_numbers(None, [8])
 
 
 def test_what_does_not_go_together_is_told(scope: Scope, tmp_path: Path) -> None:
@@ -69,8 +69,8 @@ def test_an_audit_gives_readers_pictures_and_no_truth(scope: Scope, tmp_path: Pa
     written = "".join(path.read_text() for path in folder.iterdir() if path.suffix != ".jpg")
     assert not [task.id for task in load_split(tasks) if task.id in written]
     assert "expected" not in written and len(list(folder.glob("q00*.jpg"))) >= 3
-    assert "there already" in scope("bench", "audit", "make", "--tasks", str(tasks), "--out", str(folder)).err
+    assert "exists already" in scope("bench", "audit", "make", "--tasks", str(tasks), "--out", str(folder)).err
     (folder / "answers.jsonl").write_text('{"q": "q001", "answer": "I cannot tell."}\n')
     scored = scope("bench", "audit", "score", str(folder), "--tasks", str(tasks), "--out", str(tmp_path / "audit.json"))
-    assert scored.code == 0 and "0 of 1 answers agree" in scored.out and "nobody said" in scored.out
+    assert scored.code == 0 and "0 of 1 answers agree" in scored.out and "nobody answered" in scored.out
     assert (tmp_path / "audit.json").is_file()

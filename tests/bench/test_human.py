@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 
 from scope_ptz.agent.trace import read_trace
+from scope_ptz.bench.human_agent import TaskLeftError, parse
 from scope_ptz.bench.human_runs import open_run, read_result
+from scope_ptz.bench.human_viewer import Viewer, escape
 from scope_ptz.bench.tasks.expected import ActionOnly, Number
 from scope_ptz.bench.tasks.files import dump_tasks
 from scope_ptz.bench.tasks.task import Aim, Behaviour, EvidenceView, FinalPose, Task
 from scope_ptz.camera.base import Frame
-from scope_ptz.cli.human_agent import Left, parse
-from scope_ptz.cli.human_pictures import Viewer, escape
 from scope_ptz.errors import InputError, TraceError
 from scope_ptz.geometry import AXIS_M5075_G, Perspective, Pose
 from scope_ptz.planner.base import Finish, ToolCall
@@ -154,7 +154,7 @@ def test_the_end_can_be_typed() -> None:
     assert parse("refuse I may not.") == Finish(kind="refused", text="I may not.")
     assert parse("question Which one?") == Finish(kind="clarification", text="Which one?")
     assert parse("help") is None
-    with pytest.raises(Left) as left:
+    with pytest.raises(TaskLeftError) as left:
         parse("quit")
     assert left.value.for_good
 

@@ -10,7 +10,7 @@ import pytest
 
 from scope_ptz.bench.tasks.expected import NoneThere
 from scope_ptz.bench.tasks.splits import load_split, published_folder, read_manifest
-from scope_ptz.cli.bench_inputs import scenes_named
+from scope_ptz.factory.worlds import scenes_named
 from scope_ptz.taskgen.authoring.assembly import QUOTAS
 from tests.cli.conftest import Scope, scenes, scope
 

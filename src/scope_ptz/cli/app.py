@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from scope_ptz.cli.bench import bench_app
+from scope_ptz.cli.bench.app import bench_app
 from scope_ptz.cli.exit import EXIT_CODES
 from scope_ptz.cli.options import JsonOption, ModelFlags, OutputFile, PairFlags, SeedOption, SessionFlags, StartFlags, command
 

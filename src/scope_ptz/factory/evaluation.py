@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -33,6 +33,7 @@ from scope_ptz.simulator.pack import Scene
 if TYPE_CHECKING:
     from scope_ptz.bench.judging.judge import Complete
     from scope_ptz.bench.judging.server import JudgeServer
+    from scope_ptz.factory.validation_perception import KnownViews
     from scope_ptz.perception.base import Perception
     from scope_ptz.perception.ground_truth import GroundTruthPerception
 
@@ -60,19 +61,12 @@ def planner_for(resolved: ResolvedPlanner) -> Planner:
         from scope_ptz.planner.grammar import decide
 
         return ThreadedPlanner(decide, make_planner(resolved).name)
-    from scope_ptz.bench.engine.wire import LoggedChat
-    from scope_ptz.planner.chat import ChatPlanner
-
-    return ChatPlanner(resolved.endpoint, resolved.options, client=LoggedChat(resolved.endpoint))
+    return make_planner(resolved)
 
 
-def perception_for(resolved: ResolvedPerception, scenes: Callable[[str], Scene], seed: int) -> Perception:
-    """Make perception for an evaluation: the ground truth of each view is read once."""
-    if resolved.spec is not None:
-        return make_perception(resolved, scenes, seed)
-    from scope_ptz.factory.validation_perception import KnownViews
-
-    return make_perception(resolved, scenes, seed, KnownViews().look)
+def perception_for(resolved: ResolvedPerception, scenes: Callable[[str], Scene], seed: int, views: KnownViews) -> Perception:
+    """Make perception for an evaluation. ``views`` reads the ground truth of each view once."""
+    return make_perception(resolved, scenes, seed, views.look)
 
 
 def eval_context(
@@ -80,7 +74,6 @@ def eval_context(
     seed: int,
     planner: Planner | None = None,
     perception: ResolvedPerception | None = None,
-    judge: JudgeServer | None = None,
 ) -> EvalContext:
     """Build the context of an evaluation.
 
@@ -88,21 +81,22 @@ def eval_context(
         seed: Seed for every random choice.
         planner: The planner; None makes the one that the engine names.
         perception: The perception, made at once so that errors show early; None makes the one that the engine names.
-        judge: The judge's server; None opens the one that the engine names.
     """
-    scenes = Library(scene_search(load_settings()))
-    made = perception_for(perception, scenes, seed) if perception is not None else None
+    from scope_ptz.factory.validation_perception import KnownViews
+
+    scenes, views = Library(scene_search(load_settings())), KnownViews()
+    made = perception_for(perception, scenes, seed, views) if perception is not None else None
 
     async def requested_planner(request: ModelRequest) -> Planner:
         return planner or planner_for((await resolve_models(_model_options(request, "planner"))).planner)
 
     async def requested_perception(request: ModelRequest) -> Perception:
-        return made or perception_for((await resolve_models(_model_options(request, "perception"))).perception, scenes, seed)
+        return made or perception_for((await resolve_models(_model_options(request, "perception"))).perception, scenes, seed, views)
 
     async def requested_judge(request: ModelRequest, repeat: int) -> Complete:
         return (await _open_judge(request)).repeated(repeat)
 
-    truth = _ground_truth(scenes)
+    truth = _ground_truth(scenes, views)
 
     async def true_count(scene: str, look: Observation) -> int | None:
         return await _count(truth, scene, look)
@@ -111,21 +105,12 @@ def eval_context(
         open_scene=scenes,
         make_planner=requested_planner,
         make_perception=requested_perception,
-        make_judge=judge_maker(judge) if judge is not None else requested_judge,
+        make_judge=requested_judge,
         load_tasks=lambda split: tasks_of(split, scenes),
-        truth=true_count,
-        eyes=made,
+        true_count=true_count,
+        perception=made,
         perception_note=perception_note(perception) if perception else "",
     )
-
-
-def judge_maker(port: JudgeServer) -> Callable[[ModelRequest, int], Awaitable[Complete]]:
-    """Return a maker of judges that uses one server for every request."""
-
-    async def make(request: ModelRequest, repeat: int) -> Complete:  # noqa: ARG001 - the engine asks by name
-        return port.repeated(repeat)
-
-    return make
 
 
 def tasks_of(split: str, scenes: Callable[[str], Scene]) -> tuple[Entry, ...]:
@@ -138,11 +123,10 @@ def tasks_of(split: str, scenes: Callable[[str], Scene]) -> tuple[Entry, ...]:
     return entries_of(load_split(split), scenes)
 
 
-def _ground_truth(scenes: Callable[[str], Scene]) -> GroundTruthPerception:
-    from scope_ptz.factory.validation_perception import KnownViews
+def _ground_truth(scenes: Callable[[str], Scene], views: KnownViews) -> GroundTruthPerception:
     from scope_ptz.perception.ground_truth import GroundTruthPerception
 
-    return GroundTruthPerception(scenes, KnownViews().look)
+    return GroundTruthPerception(scenes, views.look)
 
 
 def _model_options(request: ModelRequest, role: str) -> ModelOptions:

@@ -1,58 +1,43 @@
-"""What Inspect AI finds of this package: the task ``scope_ptz/bench`` and the models ``scope_ptz/...``.
+"""The entry point of Inspect AI into this package: the task ``scope_ptz/bench``, its scorers, and the models ``scope_ptz/...``.
 
 inspect eval scope_ptz/bench --model-role planner=scope_ptz/grammar --model-role eyes=scope_ptz/ground-truth -T limit=5
 """
 
 from __future__ import annotations
 
-from typing import Any
+from inspect_ai.scorer import Scorer, scorer
+from inspect_ai.solver import Solver, solver
 
-from inspect_ai import Task, task
-from inspect_ai.model import ModelAPI, modelapi
-
-from scope_ptz.bench.engine.context import EQUIPMENT
-from scope_ptz.bench.engine.entries import chosen
-from scope_ptz.bench.engine.models import ScopeModel
-from scope_ptz.bench.engine.tasks import bench_task
+from scope_ptz.bench.engine.agent_solver import OWN_AGENT, agent_solver
+from scope_ptz.bench.engine.benchmark_task import benchmark_task
+from scope_ptz.bench.engine.checks_scorer import CHECKS, METRICS, checks_scorer
+from scope_ptz.bench.engine.judge_scorer import judge_scorer
+from scope_ptz.bench.engine.judgement_scores import JUDGE
+from scope_ptz.bench.engine.scope_model import scope_ptz
 from scope_ptz.factory.evaluation import eval_context
 
-__all__ = ["bench", "scope_ptz"]
+__all__ = ["bench", "checks", "judge", "scope_agent", "scope_ptz"]
+
+bench = benchmark_task(lambda seed: eval_context(seed=seed))
+"""The benchmark, in a context made from the settings."""
 
 
-@modelapi(name="scope_ptz")
-def scope_ptz() -> type[ModelAPI]:
-    """Planners and eyes of ``scope models``, and the built-in ones."""
-    return ScopeModel
+@solver
+def scope_agent(
+    agent: str = OWN_AGENT, pictures: bool = True, max_steps: int = 60, time_s: float | None = None, seed: int = 1
+) -> Solver:
+    """The agent as a solver that logs name. The parameters are those of ``bench``."""
+    context = eval_context(seed=seed)
+    return agent_solver(context, agent=agent, pictures=pictures, max_steps=max_steps, time_s=time_s, seed=seed)
 
 
-@task
-def bench(
-    split: str = "core",
-    category: str | list[str] | None = None,
-    scene: str | list[str] | None = None,
-    limit: int | None = None,
-    agent: str = "scope",
-    pictures: bool = True,
-    max_steps: int = 60,
-    time_s: float | None = None,
-    seed: int = 1,
-    epochs: int = 1,
-    judgements: int = 0,
-) -> Task:
-    """SCOPE: a camera that is told what to do in plain language.
-
-    ``split``: core, another split of the dataset, or a file of tasks; ``category`` and ``scene``: only these, separated by
-    commas; ``agent``: module:Class of another agent; ``pictures``: draw and keep what the camera shows;
-    ``judgements``: how often the model that plays the role "judge" judges each run.
-    """
-    lent = EQUIPMENT.get()
-    if lent is None:
-        lent = eval_context(seed=seed)
-        EQUIPMENT.set(lent)
-    entries = chosen(lent.load_tasks(split), _names(category), _names(scene), limit)
-    options: dict[str, Any] = {"agent": agent, "pictures": pictures, "max_steps": max_steps, "time_s": time_s, "seed": seed}
-    return bench_task(entries, split, **options, epochs=epochs, judgements=judgements)
+@scorer(metrics=list(METRICS), name=CHECKS)
+def checks() -> Scorer:
+    """The executable checks, for ``inspect score``."""
+    return checks_scorer()
 
 
-def _names(given: str | list[str] | None) -> list[str]:
-    return [given] if isinstance(given, str) and "," not in given else given.split(",") if isinstance(given, str) else given or []
+@scorer(metrics=list(METRICS), name=JUDGE)
+def judge(repeat: int = 0) -> Scorer:
+    """The judge, for ``inspect score --model-role judge=...``. ``repeat`` is the number of the judgement."""
+    return judge_scorer(eval_context(seed=1), repeat)

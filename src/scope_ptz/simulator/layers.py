@@ -63,10 +63,10 @@ def _read_pairs(path: Path) -> NDArray[np.uint16]:
     channels = cv2.imdecode(content, cv2.IMREAD_COLOR_RGB) if content.size else None
     if channels is None:
         raise _undecodable(path, "it is no WebP picture, or is cut short")
-    numbers: NDArray[np.uint16] = channels[..., 0].astype(np.uint16)
-    numbers <<= 8
-    numbers |= channels[..., 1]
-    return numbers
+    # High byte in red, low byte in green: swapped, the two are little-endian numbers already.
+    pairs = np.empty((*channels.shape[:2], 2), np.uint8)
+    cv2.mixChannels([channels], [pairs], [0, 1, 1, 0])
+    return pairs.view("<u2")[..., 0]
 
 
 def write_ids(path: Path, numbers: NDArray[np.uint16]) -> None:

@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable
+from copy import deepcopy
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 from scope_ptz.tools.arguments import Arguments
 from scope_ptz.tools.context import ToolContext
 from scope_ptz.tools.results import Result
+
+
+@cache
+def _json_schema(arguments: type[Arguments]) -> dict[str, Any]:
+    """Return the schema of a tool's arguments, which is the same for every run."""
+    return arguments.model_json_schema()
 
 
 def _never(arguments: Any) -> bool:  # noqa: ARG001 - the default of a predicate
@@ -38,7 +46,7 @@ class Tool:
 
     def schema(self) -> dict[str, Any]:
         """Return the tool in the OpenAI function format."""
-        parameters = self.arguments.model_json_schema()
+        parameters = deepcopy(_json_schema(self.arguments))
         for prop in parameters.get("properties", {}).values():
             prop.pop("title", None)
         parameters.pop("title", None)

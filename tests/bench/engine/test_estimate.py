@@ -1,27 +1,27 @@
-"""What is foretold before an evaluation: guessed, or measured on earlier runs, and said to be which."""
+"""The estimate before an evaluation: guessed, or measured on earlier runs, and labelled accordingly."""
 
 from __future__ import annotations
 
 import shutil
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.estimate import Price, estimate
+from scope_ptz.bench.engine.estimate_text import estimate_lines, tokens_text
 from scope_ptz.bench.engine.logs import read_evaluation
-from scope_ptz.bench.engine.runs import earlier
+from scope_ptz.bench.engine.runs import earlier_evaluations
 from scope_ptz.bench.tasks.task_wording import facts_of
-from scope_ptz.cli.bench_evaluate import opening_chars
-from scope_ptz.cli.bench_foretelling import amount, lines
 from scope_ptz.endpoints.endpoint import Endpoint
-from scope_ptz.factory.models import ResolvedPair, ResolvedPerception, ResolvedPlanner
+from scope_ptz.factory.evaluation_session import prompt_chars
 from scope_ptz.planner.chat import ChatPlanner
 from tests.bench.engine.making import TASKS
 
 ENTRIES = tuple(Entry(facts=facts_of(task, "mast"), world=task.world, task=task) for task in TASKS)
 ENDPOINT = Endpoint(url="http://127.0.0.1:1/v1", model="m")
-CHOICE = ResolvedPair(ResolvedPlanner("m", ENDPOINT), ResolvedPerception("moondream2"))
+PAIR: dict[str, Any] = {"planner": "m", "perception": "moondream2", "planner_is_free": False}
 
 
 def test_what_was_never_run_is_guessed_and_says_so() -> None:
@@ -30,17 +30,17 @@ def test_what_was_never_run_is_guessed_and_says_so() -> None:
     assert (told.runs, told.decisions, told.looks, told.seconds) == (8, 16, 4, None)
     assert (told.input_tokens, told.output_tokens) == (16 * 1000 + 8 * 100, 16 * 40)
     assert told.cost_usd == pytest.approx((16_800 + 2 * 640) / 1e6)
-    text = "\n".join(lines(told, CHOICE, 4))
+    text = "\n".join(estimate_lines(told, **PAIR, concurrency=4))
     assert "about 17 thousand tokens in and 640 out for the planner (guessed from the length of the prompt), 0.02 US" in text
     assert "time    unknown" in text
 
 
 async def test_only_a_prompt_can_be_guessed_from() -> None:
     planner = ChatPlanner(ENDPOINT)
-    assert 4_000 < (opening_chars(planner) or 0) < 20_000
+    assert 4_000 < (prompt_chars(planner) or 0) < 20_000
     await planner.close()
-    assert opening_chars(None) is None
-    assert "cost    unknown" in "\n".join(lines(estimate(ENTRIES, 1, 1, ()), CHOICE, 1))
+    assert prompt_chars(None) is None
+    assert "cost    unknown" in "\n".join(estimate_lines(estimate(ENTRIES, 1, 1, ()), **PAIR, concurrency=1))
 
 
 def test_what_was_run_before_is_measured(a_log: Path) -> None:
@@ -50,19 +50,19 @@ def test_what_was_run_before_is_measured(a_log: Path) -> None:
     assert (told.measured_on, told.guessed) == (4, False)
     share = told.decisions / sum(t.steps for t in trials)
     assert told.input_tokens == round(4000 * share)
-    assert "by 4 earlier runs of this pair" in "\n".join(lines(told, CHOICE, 1))
+    assert "measured on 4 earlier runs of this pair" in "\n".join(estimate_lines(told, **PAIR, concurrency=1))
 
 
 def test_a_run_that_stands_in_several_logs_counts_once(evaluated: Path) -> None:
     shutil.copy2(evaluated, evaluated.with_name(f"{evaluated.stem}-recovered.eval"))
-    known = earlier(evaluated.parent, "grammar", "ground-truth")
+    known = earlier_evaluations(evaluated.parent, "grammar", "ground-truth")
     assert estimate(ENTRIES, 1, 1, known).measured_on == 4
-    assert not earlier(evaluated.parent, "their:Agent", "ground-truth")
+    assert not earlier_evaluations(evaluated.parent, "their:Agent", "ground-truth")
 
 
 @pytest.mark.parametrize(("tokens", "words"), [(340, "340"), (16_800, "17 thousand"), (3_400_000, "3.4 million")])
 def test_amounts(tokens: int, words: str) -> None:
-    assert amount(tokens) == words
+    assert tokens_text(tokens) == words
 
 
 pytestmark = pytest.mark.anyio

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from scope_ptz.bench.engine.gate import gate
 from scope_ptz.bench.engine.logs import read_evaluation
+from scope_ptz.bench.engine.regression_gate import gate
+from scope_ptz.bench.engine.regression_text import comparison_lines, judge_change_note
 from scope_ptz.bench.scoring.trials import Evaluation, Judgement, Trial
-from scope_ptz.cli.bench_gate import lines, other_judges
 from scope_ptz.errors import InputError
 from tests.cli.conftest import Scope
 
@@ -68,11 +68,13 @@ def test_one_task_is_one_and_other_judges_are_told(a_log: Path) -> None:
     first, *rest = like.trials
     broken = first.model_copy(update={"headline": "infrastructure"})
     now = like.model_copy(update={"trials": (broken, *rest)})
-    assert any(line.startswith("1 task is left out, because infrastructure broke it") for line in lines(gate(now, like), now))
-    assert other_judges(like, like) == other_judges(judged_by(like, "a"), judged_by(like, "a")) == ""
-    assert other_judges(judged_by(like, "a"), like) == ""
-    told = other_judges(judged_by(like, "b"), judged_by(like, "a"))
-    assert told.startswith("note: a (p) decided in the baseline and b (p) does now")
+    assert any(
+        line.startswith("1 task is left out, because infrastructure broke it") for line in comparison_lines(gate(now, like), now)
+    )
+    assert judge_change_note(like, like) == judge_change_note(judged_by(like, "a"), judged_by(like, "a")) == ""
+    assert judge_change_note(judged_by(like, "a"), like) == ""
+    told = judge_change_note(judged_by(like, "b"), judged_by(like, "a"))
+    assert told.startswith("note: a (p) decided in the baseline and b (p) decides now")
 
 
 def test_the_command(scope: Scope, evaluated: Path) -> None:

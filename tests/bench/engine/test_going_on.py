@@ -13,14 +13,14 @@ from pathlib import Path
 import pytest
 
 from scope_ptz.bench.engine.annotations import check_beside
-from scope_ptz.bench.engine.journal import Journal, journal_file
+from scope_ptz.bench.engine.judgement_journal import Journal, journal_file
 from scope_ptz.bench.engine.logs import open_sample, read_evaluation
-from scope_ptz.bench.engine.runs import alone
+from scope_ptz.bench.engine.runs import exclusive
 from scope_ptz.bench.judging.human_labels import add_label, labels_file, read_labels
 from scope_ptz.bench.judging.rubrics import prompt_version
 from scope_ptz.bench.scoring.trials import Judgement, Label
 from scope_ptz.bench.tasks.files import dump_tasks
-from scope_ptz.cli.bench_label import drawn
+from scope_ptz.cli.bench.label import sampled
 from scope_ptz.errors import InputError
 from tests.bench.engine.making import many
 from tests.cli.conftest import Scope
@@ -95,7 +95,7 @@ def test_killed_twice_and_nothing_lost_or_done_twice(
         last = scope(*command)
         begun_times = first_steps(server)
     assert last.code == 0, last.err
-    assert "Going on with" in last.out
+    assert "Resuming" in last.out
     (log,) = logs.glob("*.eval")
     evaluation = read_evaluation(log)
     assert [trial.task.id for trial in evaluation.trials] == [task.id for task in tasks]
@@ -108,12 +108,12 @@ def test_killed_twice_and_nothing_lost_or_done_twice(
 
 
 def test_the_same_evaluation_does_not_run_twice_at_a_time(tmp_path: Path) -> None:
-    with alone(tmp_path, "one"):
-        with pytest.raises(InputError, match="running already"), alone(tmp_path, "one"):
+    with exclusive(tmp_path, "one"):
+        with pytest.raises(InputError, match="running already"), exclusive(tmp_path, "one"):
             pass
-        with alone(tmp_path, "another"):
+        with exclusive(tmp_path, "another"):
             pass
-    with alone(tmp_path, "one"):
+    with exclusive(tmp_path, "one"):
         pass
 
 
@@ -166,7 +166,7 @@ def test_a_dead_server_stops_the_evaluation(scope: Scope, tmp_path: Path) -> Non
         )  # fmt: skip
         assert len([r for r in server.requests if r.chat]) < 20
     assert done.code == 1
-    assert "Too many runs in a row" in done.err
+    assert "12 consecutive runs were broken" in done.err
     assert f"The model server at {server.url} refused the key. Set the key of this server" in done.err
     (log,) = (tmp_path / "logs").glob("*.eval")
     assert {trial.headline for trial in read_evaluation(log).trials} == {"infrastructure"}
@@ -194,7 +194,7 @@ def test_labels_go_along_with_the_runs_that_are_taken_over(scope: Scope, tmp_pat
         broken = next(trial for trial in first.trials if trial.headline == "infrastructure")
         kept = next(trial for trial in first.trials if trial.headline == "correct")
         # What infrastructure broke is made again: it is shown to nobody, and a label of it is of another run.
-        assert broken.sample not in {trial.sample for trial in drawn(first, None, 1)} and len(drawn(first, None, 1)) == 10
+        assert broken.sample not in {trial.sample for trial in sampled(first, None, 1)} and len(sampled(first, None, 1)) == 10
         for sample, verdict in ((kept.sample, "correct"), (kept.sample, "unclear"), (broken.sample, "incorrect")):
             mode = "scope" if verdict == "incorrect" else None
             add_label(labels_file(old), Label.model_validate({"by": "ann", "verdict": verdict, "error_mode": mode}), sample)

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from scope_ptz.bench.engine.external_agents import ExternalPlanner, Reply, SceneDrafts, source_digest
+from scope_ptz.bench.engine.external_agents import AgentReply, AgentSession, ExternalPlanner, source_digest
 from scope_ptz.bench.engine.logs import open_sample, read_evaluation
 from scope_ptz.errors import PlannerError
 from scope_ptz.geometry import Limits, Pose
@@ -25,16 +25,16 @@ import re
 class Agent:
     sees = True
 
-    async def run(self, desk):
-        assert "adjust_ptz" in [tool["function"]["name"] for tool in desk.tools]
-        assert desk.presets == ("yard", "board", "from-the-roof") and desk.limits.max_zoom == 5.0
-        assert desk.view()[:2] == b"\\xff\\xd8"
-        if turn := re.search(r"right (\\d+)", desk.instruction):
-            wrong = await desk.call("adjust_ptz", {"sideways": 1})
+    async def run(self, session):
+        assert "adjust_ptz" in [tool["function"]["name"] for tool in session.tools]
+        assert session.presets == ("yard", "board", "from-the-roof") and session.limits.max_zoom == 5.0
+        assert session.view()[:2] == b"\\xff\\xd8"
+        if turn := re.search(r"right (\\d+)", session.instruction):
+            wrong = await session.call("adjust_ptz", {"sideways": 1})
             assert "sideways" in wrong["error"], wrong
-            done = await desk.call("adjust_ptz", {"pan_deg": float(turn[1])})
+            done = await session.call("adjust_ptz", {"pan_deg": float(turn[1])})
             return f"The camera is at {done['pose']['pan_deg']:g} degrees."
-        seen = await desk.call("count_objects", {"description": "balls"})
+        seen = await session.call("count_objects", {"description": "balls"})
         return f"There are {seen['count']} balls."
 """
 
@@ -60,13 +60,13 @@ SEEING = """
 class Agent:
     sees = True
 
-    async def run(self, desk):
+    async def run(self, session):
         {looks}
         return "There are 3 balls."
 """
 
 
-@pytest.mark.parametrize(("looks", "headline"), [("desk.view()", "correct"), ("pass", "incorrect")])
+@pytest.mark.parametrize(("looks", "headline"), [("session.view()", "correct"), ("pass", "incorrect")])
 def test_only_a_picture_that_was_opened_was_looked_at(
     looks: str, headline: str, scope: Scope, tasks_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -83,7 +83,7 @@ def test_only_a_picture_that_was_opened_was_looked_at(
 
 QUICK = """
 class Agent:
-    async def run(self, desk):
+    async def run(self, session):
         return {answer!r}
 """
 
@@ -106,12 +106,12 @@ def test_other_source_is_another_evaluation(
     assert "2 runs of quick_loop:Agent + ground-truth" in first.out
     # Somebody else's loop plans: nothing is said of a planner of ours, and nothing is promised of costs.
     assert "grammar" not in first.out and "of the planner" not in first.out and "paid server" not in first.out
-    assert "cost    unknown: what the agent asks of models of its own is not known here" in first.out
-    assert "is done" in run_as("x").err
+    assert "cost    unknown: the agent's own model calls are not measured" in first.out
+    assert "is complete" in run_as("x").err
     changed = run_as("a longer answer")
-    assert "is done" not in changed.err
-    assert re.search(r"The source of quick_loop:Agent is not that of logs/\S+\.eval: this is a new evaluation\.", changed.out)
-    assert "by 2 earlier runs of this agent" in changed.out
+    assert "is complete" not in changed.err
+    assert re.search(r"The source of quick_loop:Agent differs from that in logs/\S+\.eval: this is a new evaluation\.", changed.out)
+    assert "measured on 2 earlier runs of this agent" in changed.out
     # Names of logs begun in the same second do not tell which was the first.
     evaluations = sorted(map(read_evaluation, Path("logs").glob("*.eval")), key=lambda e: len(e.trials[0].answer))
     assert [{t.answer for t in e.trials} for e in evaluations] == [{"x"}, {"a longer answer"}]
@@ -142,14 +142,14 @@ def told(state: State, decision: CallTools, *results: dict[str, Any]) -> State:
     return state.model_copy(update={"history": (*state.history, Exchange(outcomes=outcomes))})
 
 
-def guest(run: Callable[[Any, SceneDrafts], Any]) -> ExternalPlanner:
+def guest(run: Callable[[Any, AgentSession], Any]) -> ExternalPlanner:
     return ExternalPlanner(type("Agent", (), {"run": run}), "guest")
 
 
 async def test_calls_that_are_awaited_together_are_one_step() -> None:
-    async def run(self: Any, desk: SceneDrafts) -> Reply:
-        one, two = await asyncio.gather(desk.call("count_objects", {"description": "a"}), desk.call("take_image"))
-        return Reply(f"{one['count']} {two['file']}", "clarification")
+    async def run(self: Any, session: AgentSession) -> AgentReply:
+        one, two = await asyncio.gather(session.call("count_objects", {"description": "a"}), session.call("take_image"))
+        return AgentReply(f"{one['count']} {two['file']}", "clarification")
 
     planner = guest(run)
     decision = await planner.step(STATE)
@@ -161,7 +161,7 @@ async def test_calls_that_are_awaited_together_are_one_step() -> None:
 
 
 async def test_an_agent_that_fails_is_the_agents_own_failure() -> None:
-    async def run(self: Any, desk: SceneDrafts) -> str:
+    async def run(self: Any, session: AgentSession) -> str:
         raise ZeroDivisionError("oops")
 
     with pytest.raises(PlannerError, match="ZeroDivisionError: oops") as failed:
@@ -170,19 +170,19 @@ async def test_an_agent_that_fails_is_the_agents_own_failure() -> None:
 
 
 async def test_an_agent_without_a_word() -> None:
-    async def run(self: Any, desk: SceneDrafts) -> str:
+    async def run(self: Any, session: AgentSession) -> str:
         return " "
 
-    with pytest.raises(PlannerError, match="without a word"):
+    with pytest.raises(PlannerError, match="without an answer"):
         await guest(run).step(STATE)
 
 
 async def test_an_agent_that_is_stopped_ends() -> None:
     ended = asyncio.Event()
 
-    async def run(self: Any, desk: SceneDrafts) -> str:
+    async def run(self: Any, session: AgentSession) -> str:
         try:
-            await desk.call("take_image")
+            await session.call("take_image")
         finally:
             ended.set()
         return "never"

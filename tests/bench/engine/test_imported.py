@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from scope_ptz.bench.engine.gate import gate
 from scope_ptz.bench.engine.logs import read_evaluation
+from scope_ptz.bench.engine.regression_gate import gate
+from scope_ptz.bench.engine.run_totals import accuracy
 from scope_ptz.bench.judging.deciding_judge import decided_by_one_judge, decider_of, other_judges_note
 from scope_ptz.bench.judging.judgement_tally import not_judged
 from scope_ptz.bench.reports.report_judge import judge_name, verdicts
@@ -15,7 +16,7 @@ from scope_ptz.bench.scoring.trials import Evaluation, Judgement, Trial
 from scope_ptz.bench.tasks.imported import ImportedTask
 from scope_ptz.bench.tasks.task import RequiredCall
 from scope_ptz.bench.tasks.task_facts import TaskFacts
-from scope_ptz.cli.bench_live import accuracy, waiting
+from scope_ptz.cli.bench.progress import unscored_lines
 from tests.bench.engine.making import SCENE
 from tests.bench.reports.making import card, facts
 from tests.bench.reports.making import trial as report_trial
@@ -56,7 +57,7 @@ def test_imported_tasks_run_and_are_judged(scope: Scope, tmp_path: Path) -> None
     other = {"reason": "It did not.", "verdict": "incorrect", "error_mode": "scope"}
     with Misbehaving(then=good(Say(json.dumps(other)))) as server:
         second = scope("bench", "rescore", str(log), "--judge-url", server.url, "--judge-model", "b")
-    assert second.code == 0 and "decides on the run that only a judge can score; the verdicts of b (judge-1:" in second.out
+    assert second.code == 0 and "decides on the run that only a judge can score; what b (judge-1:" in second.out
     (trial,) = read_evaluation(log).trials
     assert (trial.headline, trial.reason, [j.judge for j in trial.judgements]) == ("correct", "It turned.", ["j", "b"])
     assert "judged     j (judge-1:" in scope(*run[:-1]).out
@@ -132,6 +133,6 @@ def test_replies_without_a_verdict_are_in_no_share_and_in_no_gate(scope: Scope, 
     mute = evaluation.trials[0].model_copy(update={"scored_by": "judge", "headline": "unscored", "judgements": (said,)})
     trials = (mute, *evaluation.trials[1:])
     assert accuracy(trials) == 2 / 3
-    assert waiting(trials) == ["not scored 1 without a verdict: the judge's replies were unparseable"]
+    assert unscored_lines(trials) == ["not scored 1 without a verdict: the judge's replies were unparseable"]
     found = gate(evaluation.model_copy(update={"trials": trials}), evaluation)
     assert (found.left_out, found.overall.tasks, found.overall.worse) == ((mute.task.id,), 3, ())

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from scope_ptz.bench.engine.journal import Journal
+from scope_ptz.bench.engine.judgement_journal import Journal
 from scope_ptz.bench.engine.logs import read_evaluation, uuids_in
 from scope_ptz.bench.judging.judgement_tally import JudgementTally, judged_by
 from scope_ptz.bench.judging.rubrics import prompt_version
@@ -28,7 +28,7 @@ def test_rescoring_by_a_judge_that_is_away_fails_and_the_same_command_mends_it(s
     assert "4 judgements by j: 0 with a verdict, 0 unparseable, 4 failed" in down.out
     assert "4 of 4 judgements failed because the judge's server gave no usable reply" in down.err
     assert "127.0.0.1:1" in down.err and "Start it, or check the address." in down.err
-    assert "the same command asks for them again" in down.err
+    assert "running the same command again retries them" in down.err
     with Misbehaving(then=good(verdict)) as server:
         up = scope("bench", "rescore", str(evaluated), "--judge-url", server.url, "--judge-model", "j")
     assert up.code == 0, up.err
@@ -66,7 +66,7 @@ def test_a_run_whose_judge_is_away_is_not_done(scope: Scope, tasks_file: Path, t
         code, out, err = run(scope, tasks_file, tmp_path, "--judge-url", server.url, "--judge-model", "j")
         assert code == 0, err
         assert len([r for r in server.requests if r.chat]) == 2
-    assert "this evaluation is done" in err
+    assert "this evaluation is complete" in err
     assert "judge      j: 4 with a verdict, 0 unparseable, 0 failed" in out
     # The agent was not run again, and a judge that has said everything is not asked, wherever it is.
     assert list(tmp_path.glob("*.eval")) == [log] and uuids_in(log) == runs

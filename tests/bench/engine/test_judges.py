@@ -9,11 +9,11 @@ from pathlib import Path
 
 from rich.console import Console
 
-from scope_ptz.bench.engine.journal import Journal
+from scope_ptz.bench.engine.judgement_journal import Journal
 from scope_ptz.bench.engine.logs import read_evaluation
 from scope_ptz.bench.scoring.trials import ModelCard
 from scope_ptz.bench.tasks.files import dump_tasks
-from scope_ptz.cli.bench_sweep import tables_of
+from scope_ptz.cli.bench.sweep import sweep_tables
 from tests.bench.engine.making import TASKS
 from tests.cli.conftest import Scope
 from tests.support.misbehaving import Exchange, Misbehaving, Say, good, status
@@ -95,7 +95,7 @@ def test_a_sweep_of_pairs_goes_on_and_judges(scope: Scope, tmp_path: Path) -> No
     assert set(logs) == {"grammar + ground-truth", "grammar + noisy"}
     again = scope("bench", "sweep", "--pairs", "grammar+ground-truth,grammar+noisy", *options, "--json")
     assert again.code == 0
-    assert again.err.count("this evaluation is done") == 2
+    assert again.err.count("this evaluation is complete") == 2
     assert {name: row["micro"] for name, row in again.json.items()} == {"grammar+ground-truth": 1.0, "grammar+noisy": 1.0}
 
 
@@ -125,7 +125,9 @@ def test_a_sweep_wants_known_pairs(scope: Scope) -> None:
 def test_a_sweep_keeps_exact_planners_and_eyes_off_the_ranking(evaluated: Path) -> None:
     def drawn(width: int) -> list[str]:
         console = Console(width=width, file=io.StringIO(), record=True)
-        for table in tables_of({"small+moondream2": small, "grammar+ground-truth": exact, "big+moondream2": "No server."}, width):
+        for table in sweep_tables(
+            {"small+moondream2": small, "grammar+ground-truth": exact, "big+moondream2": "No server."}, width
+        ):
             console.print(table)
         return console.export_text().splitlines()
 
@@ -137,9 +139,7 @@ def test_a_sweep_keeps_exact_planners_and_eyes_off_the_ranking(evaluated: Path) 
     def first(words: str) -> int:
         return next(number for number, line in enumerate(narrow) if words in line)
 
-    places = [
-        next(n for n, line in enumerate(narrow) if words in line) for words in ("best first", "small+", "no result of a model")
-    ]
+    places = [next(n for n, line in enumerate(narrow) if words in line) for words in ("best first", "small+", "baselines")]
     places += [
         next(n for n, line in enumerate(narrow) if words in line) for words in ("grammar+ground-truth", "Not run", "No server.")
     ]
@@ -149,8 +149,8 @@ def test_a_sweep_keeps_exact_planners_and_eyes_off_the_ranking(evaluated: Path) 
 
 
 def test_the_paper_by_one_word() -> None:
-    from scope_ptz.cli.bench_sweep import named_pairs
+    from scope_ptz.cli.bench.sweep import pair_names
 
-    names = named_pairs(None, paper=True)
+    names = pair_names(None, paper=True)
     assert len(names) == 19
     assert "qwen3-next-80b-a3b+qwen2.5-vl-7b" in names

@@ -9,7 +9,6 @@ import pytest
 from inspect_ai import eval_async
 from inspect_ai.model import Model, get_model
 
-from scope_ptz.bench.engine.context import EQUIPMENT
 from scope_ptz.bench.engine.logs import read_evaluation
 from scope_ptz.bench.judging.judge import ATTEMPTS
 from scope_ptz.bench.tasks.files import dump_tasks
@@ -42,7 +41,6 @@ def model(server: Misbehaving, name: str) -> Model:
 
 
 async def run(tasks: Path, plans: Misbehaving, judges: Misbehaving) -> Path:
-    EQUIPMENT.set(None)
     planner_model, judge_model = model(plans, "p"), model(judges, "j")
     (log,) = await eval_async(
         bench(split=str(tasks), judgements=2, pictures=False),

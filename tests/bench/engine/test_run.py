@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from inspect_ai.log import read_eval_log
 
-from scope_ptz.bench.engine.entries import Entry, chosen
+from scope_ptz.bench.engine.entries import Entry, select
 from scope_ptz.bench.engine.logs import open_sample, read_evaluation
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.tasks.task_wording import facts_of
@@ -82,7 +82,7 @@ def test_what_is_done_is_not_done_again(scope: Scope, evaluated: Path, tasks_fil
     before = evaluated.read_bytes()
     done = scope("bench", "run", "--tasks", str(tasks_file), "--out", str(evaluated.parent), "--json")
     assert done.code == 0
-    assert "is done" in done.err
+    assert "is complete" in done.err
     assert done.json["headlines"] == {"correct": 3, "incorrect": 1, "unscored": 0, "infrastructure": 0}
     assert done.json["by_category"] == {"counting": 0.5, "single_call": 1.0}
     assert (done.json["macro"], done.json["micro"]) == (0.75, 0.75)
@@ -118,9 +118,9 @@ def test_a_limit_spreads_over_categories_scenes_and_scopes() -> None:
         for category, scene, scope, n in rows
     )
     for limit in (3, 8, 30, 89):
-        some = chosen(entries, limit=limit)
+        some = select(entries, limit=limit)
         assert len({e.facts.id for e in some}) == limit
-        assert some == chosen(entries, limit=limit), "the same ones each time"
+        assert some == select(entries, limit=limit), "the same ones each time"
         assert [e for e in entries if e in some] == list(some), "in their order"
         for name in ("category", "scene"):
             counts = Counter(getattr(e.facts, name) for e in some)
@@ -128,7 +128,7 @@ def test_a_limit_spreads_over_categories_scenes_and_scopes() -> None:
         # Three of ninety tasks ask for the whole scene: one is among a few, and not all are.
         full = sum(e.facts.scope == "full" for e in some)
         assert 1 <= full <= max(1, round(limit / 30) + 1)
-    assert chosen(entries, limit=90) == chosen(entries) == entries
+    assert select(entries, limit=90) == select(entries) == entries
 
 
 def test_built_in_ones_may_be_in_a_pair(scope: Scope, tasks_file: Path, tmp_path: Path) -> None:
@@ -151,10 +151,10 @@ def test_built_in_ones_may_be_in_a_pair(scope: Scope, tasks_file: Path, tmp_path
         (["--pair", "ground-truth+grammar"], "There is no planner 'ground-truth'"),
         (["--agent", "nonsense"], "module:Class"),
         (["--agent", "json:nothing"], "cannot be imported"),
-        (["--agent", "json:JSONDecoder"], "is no agent"),
+        (["--agent", "json:JSONDecoder"], "is not an agent"),
         (["--price", "cheap"], "--price wants two amounts"),
         (["--resume", "missing.eval"], "There is no log"),
-        (["--perception", "rapidocr", "--no-pictures"], "look at pictures"),
+        (["--perception", "rapidocr", "--no-pictures"], "looks at pictures"),
     ],
 )
 def test_wrong_options_end_in_a_message(scope: Scope, tasks_file: Path, tmp_path: Path, options: list[str], words: str) -> None:

@@ -6,10 +6,10 @@ from pathlib import Path
 
 from rich.console import Console
 
+from scope_ptz.bench.engine.failure_summary import failure_summary
 from scope_ptz.bench.scoring.trials import Evaluation
 from scope_ptz.bench.tasks.files import dump_tasks
-from scope_ptz.cli.bench_sweep import tables_of
-from scope_ptz.cli.bench_troubles import troubles
+from scope_ptz.cli.bench.sweep import sweep_tables
 from tests.bench.engine.making import TASKS, many
 from tests.bench.reports.making import card, facts, trial
 from tests.cli.conftest import Scope
@@ -39,21 +39,21 @@ def made() -> Evaluation:
 
 def test_what_servers_did_is_told_with_the_address_and_what_to_do() -> None:
     evaluation = made()
-    planner, eyes = troubles(evaluation.trials, evaluation.card)
+    planner, eyes = failure_summary(evaluation.trials, evaluation.card)
     assert planner == (
         "3 of 6 runs broken: the planner's server failed (circuit-open 2, refused 1). The model server at http://10.0.0.7/v1 "
         "cannot be reached. Start it, or check the address."
     )
     assert eyes == (
-        "the eyes failed 4 times in 2 of 6 runs, which count as they ended (circuit-open 6, refused 2). The model server at "
+        "4 perception calls failed in 2 of 6 runs, which still count (circuit-open 6, refused 2). The model server at "
         "http://10.0.0.8/v1 cannot be reached. Start it, or check the address."
     )
-    assert troubles(evaluation.trials[5:], evaluation.card) == []
+    assert failure_summary(evaluation.trials[5:], evaluation.card) == []
     console = Console(width=400)
     with console.capture() as told:
-        for table in tables_of({"qwen3-4b+moondream2": evaluation}, 400):
+        for table in sweep_tables({"qwen3-4b+moondream2": evaluation}, 400):
             console.print(table)
-    assert "What servers did to runs" in told.get() and planner in told.get() and eyes in told.get()
+    assert "Server failures" in told.get() and planner in told.get() and eyes in told.get()
 
 
 def test_dead_eyes_are_named_by_the_command(scope: Scope, tmp_path: Path) -> None:
@@ -63,7 +63,7 @@ def test_dead_eyes_are_named_by_the_command(scope: Scope, tmp_path: Path) -> Non
     assert f"The model server at {AWAY} cannot be reached. Start it, or check the address." in done.err
     assert "servers    failed:" in done.out and "refused" in done.out
     again = scope(*run, "--out", str(tmp_path / "logs"), "--json").json
-    assert again["server_events"]["refused"] and any(AWAY in line for line in again["troubles"])
+    assert again["server_events"]["refused"] and any(AWAY in line for line in again["failure_summary"])
 
 
 def test_a_sweep_whose_servers_are_away_says_so(scope: Scope, tmp_path: Path) -> None:
@@ -79,8 +79,8 @@ def test_a_sweep_whose_servers_are_away_says_so(scope: Scope, tmp_path: Path) ->
         AWAY,
     )
     single = scope("bench", "run", "--pair", "qwen3-4b+moondream2", *where)
-    assert single.code == 1 and "1 run was broken by infrastructure; the same command runs it again." in single.err
+    assert single.code == 1 and "1 run was broken by infrastructure; running the same command again repeats it." in single.err
     done = scope("bench", "sweep", "--pairs", "qwen3-4b+moondream2", *where)
     assert done.code == 1
     assert "1 of 1 run broken: the planner's server failed" in done.err and AWAY in done.err
-    assert "What servers did to runs" in done.out
+    assert "Server failures" in done.out

@@ -11,15 +11,15 @@ import anyio
 import pytest
 
 from scope_ptz.bench.judging.agreement import measure_agreement, raters_of
+from scope_ptz.bench.judging.agreement_text import agreement_lines, figures
 from scope_ptz.bench.judging.json_lines import append_line
 from scope_ptz.bench.judging.judge import Completion, Judge, NoReplyError
 from scope_ptz.bench.judging.kappa import cohen
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Evaluation, Judgement, Label, ModelCard, RunCard, Trial
 from scope_ptz.bench.tasks.task_wording import facts_of
-from scope_ptz.cli.bench_agree import agreement_lines, figures
-from scope_ptz.cli.bench_judge_gold import gold_lines
 from scope_ptz.errors import InputError
+from scope_ptz.taskgen.gold.judge_cases import result_lines
 from scope_ptz.taskgen.gold.judge_results import (
     GoldCase,
     GoldVerdict,
@@ -125,8 +125,8 @@ def test_the_report_as_text_and_as_json() -> None:
     content = json.loads(json.dumps(report.as_dict()))
     assert content["pairs"][0]["verdicts"]["kappa"] == pytest.approx(0.0)
     assert figures(cohen(["correct"], ["correct"], ["t"], 1)).startswith("1 run, agree on 100.0%")
-    assert figures(cohen([], [], [], 1)) == "no run that both have rated"
-    assert "Nobody rated" in next(iter(agreement_lines(measure_agreement([]))))
+    assert figures(cohen([], [], [], 1)) == "no run was rated by both"
+    assert "hold no ratings" in next(iter(agreement_lines(measure_agreement([]))))
 
 
 # Gold runs
@@ -154,9 +154,9 @@ class Oracle:
         self.known = {judge_messages(case.facts, case.case)[1]["content"]: case for case in cases}
         self.accepts, self.fails, self.asked = accepts, fails, 0
 
-    async def __call__(self, messages: list[dict[str, Any]], schema: dict[str, Any]) -> Completion:
+    async def __call__(self, judge_messages: list[dict[str, Any]], schema: dict[str, Any]) -> Completion:
         self.asked += 1
-        case = self.known[messages[1]["content"]]
+        case = self.known[judge_messages[1]["content"]]
         if self.fails and case.fault == self.fails:
             raise NoReplyError("gone")
         wrong = case.fault is not None and case.fault != self.accepts
@@ -202,7 +202,7 @@ def test_a_judge_that_lets_something_through_and_one_that_fails() -> None:
     assert made.false_accept_rate == pytest.approx(scopes / faulty)
     assert made.as_dict()["apart"] == {"unparseable": 0, "failed": looks}
     assert made.cells["scope", "correct"] == scopes
-    text = "\n".join(gold_lines(made))
+    text = "\n".join(result_lines(made))
     assert f"false accepts: {scopes / faulty:.1%}" in text
     assert "false rejects: 0.0%" in text
     assert made.verdicts.kappa is not None

@@ -103,7 +103,7 @@ def test_what_failed_is_asked_again_and_counts_once(gold: Path, tmp_path: Path) 
     assert "6 of 6 judgements failed because the judge's server gave no usable reply" in failed.stderr
     with m.Misbehaving(then=m.status(401)) as server:
         plain = judge_gold(gold, out, server.url)
-    assert "correct or not: no run that both have rated" in plain.output and "all ratings are the same" not in plain.output
+    assert "correct or not: no run was rated by both" in plain.output and "all ratings are the same" not in plain.output
     (content,) = json.loads(failed.stdout)
     assert content["apart"] == {"unparseable": 0, "failed": 6}
     assert content["false_accept_rate"] is None

@@ -18,7 +18,7 @@ from scope_ptz.bench.tasks.expected import ActionOnly
 from scope_ptz.bench.tasks.files import dump_tasks
 from scope_ptz.bench.tasks.task import Behaviour, FinalPose, Forbidden, ProgramCall, Task
 from scope_ptz.cli.app import app
-from scope_ptz.cli.bench_label import folder_name, kept_pictures
+from scope_ptz.cli.bench.label import folder_name, kept_pictures
 from scope_ptz.errors import InputError, OutputError
 from tests.bench.judging.test_agreement import evaluation, trial
 
@@ -152,7 +152,7 @@ def test_one_person_does_not_see_anothers_progress(fresh: Path) -> None:
 def test_labels_are_compared_with_the_checks(fresh: Path) -> None:
     none = label(fresh, "", "--compare")
     assert none.exit_code == 2
-    assert "Nobody has labelled" in none.output
+    assert "has no labels yet" in none.output
     label(fresh, "c\ni3\n", "--by", "ann")
     done = label(fresh, "", "--compare")
     assert "the checks  against  ann" in done.output
@@ -162,7 +162,7 @@ def test_labels_are_compared_with_the_checks(fresh: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "told"), [((), "--by"), (("--by", "  "), "--by"), (("--compare", "--json"), "Nobody has labelled")]
+    ("options", "told"), [((), "--by"), (("--by", "  "), "--by"), (("--compare", "--json"), "has no labels yet")]
 )
 def test_wrong_ways_to_label_are_told(fresh: Path, options: tuple[str, ...], told: str) -> None:
     done = label(fresh, "", *options)

@@ -10,10 +10,10 @@ import pytest
 
 from scope_ptz.bench.tasks.expected import NoneThere
 from scope_ptz.bench.tasks.task import Category
-from scope_ptz.cli.bench_report import report_lines
 from scope_ptz.factory.validation_perception import KnownViews, equip_with_truth
 from scope_ptz.simulator.pack import Scene, load_scene
 from scope_ptz.taskgen.authoring.assembly import QUOTAS, BuiltTasks, build
+from scope_ptz.taskgen.validation.report_text import report_lines
 from scope_ptz.taskgen.validation.validate import validate
 
 FEW: dict[Category, int] = {**dict.fromkeys(QUOTAS, 2), "counting": 6, "descriptor": 4, "ocr": 1}

@@ -16,7 +16,6 @@ import pytest
 from scope_ptz.bench.tasks.expected import Choice, NoneThere, Number, YesNo
 from scope_ptz.bench.tasks.files import dump_tasks, load_tasks
 from scope_ptz.bench.tasks.task import Task
-from scope_ptz.cli.bench_report import report_lines
 from scope_ptz.factory.validation_perception import equip_with_truth
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.taskgen.authoring.assembly import QUOTAS as PUBLISHED
@@ -25,6 +24,7 @@ from scope_ptz.taskgen.authoring.reactions import reactions
 from scope_ptz.taskgen.facts.answer_phrasing import offered
 from scope_ptz.taskgen.validation.adversarial import common_answers
 from scope_ptz.taskgen.validation.dataset_checks import structure
+from scope_ptz.taskgen.validation.report_text import report_lines
 from scope_ptz.taskgen.validation.validate import validate
 from scope_ptz.taskgen.validation.validation_report import ValidationReport
 from tests.taskgen.authoring.conftest import QUOTAS

@@ -1,1 +1,1 @@
-"""The evaluation engine: Inspect AI around the agent loop. Only modules in here import ``inspect_ai``; the loop never does."""
+"""The evaluation engine: Inspect AI around the agent loop. Besides the plug-in, only modules in here import ``inspect_ai``."""

@@ -1,5 +1,4 @@
-"""What people and judges have said about the runs of a log, and stands beside it: it goes along when another log takes the runs
-over."""
+"""Human labels and judgements in files beside a log. They move along when another log takes over the runs."""
 
 from __future__ import annotations
 
@@ -7,29 +6,35 @@ import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from scope_ptz.bench.engine.journal import journal_file
+from scope_ptz.bench.engine.judgement_journal import journal_file
 from scope_ptz.bench.engine.logs import uuids_in
-from scope_ptz.bench.engine.sampling import sample_name
+from scope_ptz.bench.engine.samples import sample_name
 from scope_ptz.bench.judging.human_labels import LabelRow, labels_file, read_labels
 from scope_ptz.bench.judging.json_lines import append_line, whole_lines
 
 
 def check_beside(logs: Sequence[Path]) -> None:
-    """Whether what stands beside logs can go along later. Raises ``InputError``: better before the runs than after them."""
+    """Check, before anything is run, that the labels beside logs can be read. Raises ``InputError``."""
     for log in logs:
         read_labels(labels_file(log))
 
 
 def put_away(logs: Sequence[Path], new: Path, folder: Path) -> None:
-    """Move logs into a folder whose runs are all in ``new``, with what stands beside them: nothing is deleted, and no report counts
-    a run twice. Labels and judgements of the runs that were taken over stand beside ``new`` then; those of runs that were made
-    again are about other runs, and stay with the old log."""
+    """Move logs whose runs are all in ``new`` into a folder, with the files beside them.
+
+    Nothing is deleted, and no report counts a run twice. Labels and judgements of runs that were taken over are copied to ``new``.
+    Those of runs that were repeated stay with the old log.
+    """
     logs = [log for log in logs if log.is_file()]
     _carry_labels(logs, new)
     _carry_journals(logs, new)
     for log in logs:
         folder.mkdir(exist_ok=True)
-        for path in (labels_file(log), journal_file(log), log):  # The log last: a break before it leaves all to be done again.
+        for path in (
+            labels_file(log),
+            journal_file(log),
+            log,
+        ):  # The log last, so that an interrupted move is repeated
             if path.is_file():
                 path.replace(folder / path.name)
 
@@ -39,7 +44,7 @@ def _names(log: Path) -> Mapping[str, str | None]:
 
 
 def _taken_over(log: Path, now: Mapping[str, str | None]) -> set[str]:
-    """The runs of a log that are the very same ones in another, by name."""
+    """Return the names of runs of a log that were taken over unchanged into another."""
     return {name for name, uuid in _names(log).items() if uuid is not None and now.get(name) == uuid}
 
 
@@ -61,7 +66,7 @@ def _carry_labels(logs: Sequence[Path], new: Path) -> None:
 
 
 def _carry_journals(logs: Sequence[Path], new: Path) -> None:
-    """What a rescoring that was killed had from its judge, and had not put into the log yet."""
+    """Carry judgements of an interrupted rescoring that are not in the log yet."""
     if not any(journal_file(log).is_file() for log in logs):
         return
     now, target = _names(new), journal_file(new)
@@ -77,4 +82,4 @@ def _sample_of(line: str) -> str:
     try:
         return str(json.loads(line)["sample"])
     except (ValueError, KeyError, TypeError):
-        return ""  # Damaged: it stays with the old log.
+        return ""  # A damaged line stays with the old log.

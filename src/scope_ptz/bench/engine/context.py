@@ -1,12 +1,11 @@
-"""What whoever starts an evaluation lends to it: scenes, planners, eyes, the truth of a look, and someone who watches.
+"""The context that whoever starts an evaluation provides to the engine: scenes, planners, perception, true counts, a watcher.
 
-The engine's own objects are made by the engine, from names; what they need that a name cannot carry they find here.
+The engine makes its own objects from names. What a name cannot carry reaches solvers and scorers through this context.
 """
 
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable, Mapping
-from contextvars import ContextVar
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -14,60 +13,59 @@ from scope_ptz.bench.engine.entries import Entry, OpenScene
 from scope_ptz.bench.judging.judge import Complete
 from scope_ptz.bench.scoring.episode import Observation
 from scope_ptz.bench.scoring.trials import Trial
-from scope_ptz.errors import ConfigError
 from scope_ptz.planner.base import Planner
 
 if TYPE_CHECKING:
-    from scope_ptz.bench.engine.perception import Eyes
+    from scope_ptz.perception.base import Perception
 
 
 @dataclass(frozen=True, slots=True)
 class ModelRequest:
-    """A model by name, as it was asked for: ``url`` of its server, ``options`` as the command line gives them."""
+    """A model requested by name. ``url`` is the address of its server; ``options`` are those of the engine's command line."""
 
     name: str
     url: str | None = None
     options: Mapping[str, Any] = field(default_factory=dict)
 
 
-TruthOf = Callable[[str, Observation], Awaitable[int | None]]
-"""How many of what was asked really show in the picture of a look into a scene."""
+TrueCount = Callable[[str, Observation], Awaitable[int | None]]
+"""Returns how many of the things that a perception call asked for are visible; None where this cannot be known."""
 LoadTasks = Callable[[str], tuple[Entry, ...]]
-"""The tasks of a split by its name, or of a file."""
+"""Returns the tasks of a split by its name, or of a file."""
 
 
 class Watcher:
-    """Told of every run that begins and ends. The default watches nothing."""
+    """Receives every run that begins and ends. The default ignores them."""
 
     def began(self, sample: str, entry: Entry) -> None:
         """A run began."""
 
     def ended(self, sample: str, trial: Trial) -> None:
-        """A run was judged by its checks."""
+        """A run ended, and its checks were applied."""
 
 
 @dataclass(frozen=True, slots=True)
 class EvalContext:
-    """``make_judge``: a judge's port for its n-th judgement of a run; ``truth``: None where no ground truth can be had;
-    ``eyes``: those that are made already."""
+    """What solvers and scorers of an evaluation use.
+
+    Attributes:
+        open_scene: Opens a scene, or a variation of one, by name.
+        make_planner: Makes the planner of a name.
+        make_perception: Makes the perception of a name.
+        make_judge: Makes a judge's port for its n-th judgement of a run.
+        load_tasks: Loads tasks by split or file.
+        true_count: Ground truth for perception calls; None where there is none.
+        watcher: Receives runs as they begin and end.
+        perception_note: Note for the trace about the origin of the perception.
+        perception: The perception, where it was made in advance; whoever made it closes it.
+    """
 
     open_scene: OpenScene
     make_planner: Callable[[ModelRequest], Awaitable[Planner]]
-    make_perception: Callable[[ModelRequest], Awaitable[Eyes]]
+    make_perception: Callable[[ModelRequest], Awaitable[Perception]]
     make_judge: Callable[[ModelRequest, int], Awaitable[Complete]]
     load_tasks: LoadTasks
-    truth: TruthOf | None = None
+    true_count: TrueCount | None = None
     watcher: Watcher = field(default_factory=Watcher)
     perception_note: str = ""
-    eyes: Eyes | None = None
-
-
-EQUIPMENT: ContextVar[EvalContext | None] = ContextVar("scope_equipment", default=None)
-
-
-def equipment() -> EvalContext:
-    """What was lent to the evaluation that is going on."""
-    lent = EQUIPMENT.get()
-    if lent is None:
-        raise ConfigError("Run this by `scope bench run` or by `inspect eval scope_ptz/bench`.")
-    return lent
+    perception: Perception | None = None

@@ -1,7 +1,6 @@
-"""What is run: one instruction at one place in a scene, with what reports group by and, where there is one, its checked task.
+"""What is run: one instruction at one place in a scene, with the facts that reports group by.
 
-A source of tasks yields entries. One without a ``task`` (from a file of another format) runs in the same way; only a judge can
-say how it went.
+Most entries have a task with executable checks. An entry without one comes from a file of another format; only a judge scores it.
 """
 
 from __future__ import annotations
@@ -27,8 +26,15 @@ DIGEST_CHARS = 16
 
 
 class Entry(BaseModel):
-    """``world``: the name under which its scene, or the variation of it, is opened; ``time_s``: scene time at the start; ``task``:
-    None where nothing but a judge can tell right from wrong; ``imported``: what another file expects of the calls then."""
+    """One instruction to run.
+
+    Attributes:
+        facts: What reports group by.
+        world: Name under which the scene, or its variation, is opened.
+        time_s: Scene time at the start.
+        task: The task with its checks; None where only a judge can score the run.
+        imported: The calls that a file of another format expects.
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -39,7 +45,7 @@ class Entry(BaseModel):
     imported: ImportedTask | None = None
 
     def metadata(self) -> dict[str, Any]:
-        """The entry as a log keeps it: facts by name, so that metrics and the viewer can group by them."""
+        """Return the entry as a log stores it. Metrics and the log viewer group by its facts."""
         facts = self.facts.model_dump(mode="json")
         return {
             **facts,
@@ -52,7 +58,7 @@ class Entry(BaseModel):
 
     @classmethod
     def of_metadata(cls, metadata: dict[str, Any]) -> Entry:
-        """The entry that a log keeps. Raises ``TraceError`` when it is none."""
+        """Return the entry that a log stores. Raises ``TraceError`` when there is none."""
         try:
             facts = {name: metadata[name] for name in TaskFacts.model_fields if name in metadata}
             return cls.model_validate(
@@ -63,7 +69,7 @@ class Entry(BaseModel):
 
 
 def entry_of(task: Task, scene: Scene) -> Entry:
-    """A benchmark task to run. Raises ``UnknownNameError`` when its preset is not in the scene."""
+    """Return the entry of a benchmark task. Raises ``UnknownNameError`` when the scene lacks its preset."""
     presets = {preset.name: preset.viewpoint for preset in scene.file.presets}
     if task.preset not in presets:
         raise UnknownNameError(f"preset in {task.scene} (of task {task.id})", task.preset, presets)
@@ -71,20 +77,25 @@ def entry_of(task: Task, scene: Scene) -> Entry:
 
 
 def entries_of(tasks: Iterable[Task], open_scene: OpenScene) -> tuple[Entry, ...]:
-    """Benchmark tasks to run."""
+    """Return the entries of benchmark tasks."""
     return tuple(entry_of(task, open_scene(task.world)) for task in tasks)
 
 
 def imported_entries(tasks: Iterable[ImportedTask]) -> tuple[Entry, ...]:
-    """Tasks of another file's format: a judge says whether they were done, and their expected calls are the one check."""
+    """Return the entries of imported tasks. A judge scores them; their expected calls are the only check."""
     return tuple(Entry(facts=t.facts, world=t.facts.scene, time_s=t.start_s, imported=t) for t in tasks)
 
 
-def chosen(
+def select(
     entries: Sequence[Entry], categories: Sequence[str] = (), scenes: Sequence[str] = (), limit: int | None = None
 ) -> tuple[Entry, ...]:
-    """Those of some categories and scenes, no more than ``limit``, spread evenly over the categories, scenes and scopes that are
-    left: always the same ones. Raises ``InputError`` when nothing is left.
+    """Return the entries of some categories and scenes, at most ``limit`` of them.
+
+    They are sampled evenly across the categories, scenes and scopes that are selected, and always in the same way.
+
+    Raises:
+        UnknownNameError: No entry has such a category or scene.
+        InputError: The selection is empty.
     """
     for kind, names, have in (
         ("category", categories, {entry.facts.category for entry in entries}),
@@ -98,33 +109,36 @@ def chosen(
         raise InputError("No task is left to run. Ask for other categories or scenes.")
     if limit is None or limit >= len(kept):
         return tuple(kept)
-    return _spread(kept, limit)
+    return _sample_evenly(kept, limit)
 
 
-def _spread(entries: Sequence[Entry], limit: int) -> tuple[Entry, ...]:
-    """So many entries in their order. One after the other is taken of the sort whose category, scene and scope are, measured by how
-    many there are of them, taken least; of one sort they are taken evenly over it."""
-    sorts: dict[tuple[str, str, str], list[Entry]] = {}
+def _sample_evenly(entries: Sequence[Entry], limit: int) -> tuple[Entry, ...]:
+    """Sample entries evenly, keeping their order.
+
+    Each step takes one from the group (category, scene, scope) that is least represented, relative to how many entries have each of
+    the three. Within a group, entries are taken at equal distances.
+    """
+    groups: dict[tuple[str, str, str], list[Entry]] = {}
     for entry in entries:
-        sorts.setdefault((entry.facts.category, entry.facts.scene, entry.facts.scope), []).append(entry)
-    there = Counter((place, name) for sort, own in sorts.items() for place, name in enumerate(sort) for _ in own)
+        groups.setdefault((entry.facts.category, entry.facts.scene, entry.facts.scope), []).append(entry)
+    there = Counter((place, name) for group, own in groups.items() for place, name in enumerate(group) for _ in own)
     taken, used = Counter[tuple[int, str]](), Counter[tuple[str, str, str]]()
     for _ in range(limit):
-        open_ = [sort for sort, own in sorts.items() if used[sort] < len(own)]
-        # Among equals the sort with most entries left: small ones are not used up by ties alone.
-        least = min(open_, key=lambda s: (sum(Fraction(taken[f], there[f]) for f in enumerate(s)), used[s] - len(sorts[s])))
+        open_ = [group for group, own in groups.items() if used[group] < len(own)]
+        # Ties go to the group with most entries left, so that they do not use up small groups.
+        least = min(open_, key=lambda s: (sum(Fraction(taken[f], there[f]) for f in enumerate(s)), used[s] - len(groups[s])))
         used[least] += 1
         taken.update(enumerate(least))
-    chosen_ones = {id(own[at * len(own) // used[sort]]) for sort, own in sorts.items() for at in range(used[sort])}
-    return tuple(entry for entry in entries if id(entry) in chosen_ones)
+    selected = {id(own[at * len(own) // used[group]]) for group, own in groups.items() for at in range(used[group])}
+    return tuple(entry for entry in entries if id(entry) in selected)
 
 
 def digest(entries: Iterable[Entry]) -> str:
-    """Names exactly these tasks, whatever their order."""
+    """Return a digest of these tasks that does not depend on their order."""
     rows = sorted(json.dumps(entry.metadata(), sort_keys=True) for entry in entries)
     return hashlib.sha256("\n".join(rows).encode()).hexdigest()[:DIGEST_CHARS]
 
 
 def datasets(entries: Iterable[Entry]) -> str:
-    """The versions of the datasets that tasks are of, joined where there are several."""
+    """Return the versions of the tasks' datasets, joined where there are several."""
     return "+".join(sorted({entry.facts.dataset for entry in entries}))

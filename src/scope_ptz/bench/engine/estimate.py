@@ -1,4 +1,4 @@
-"""What an evaluation will take, before it begins: from the tasks, and from earlier runs of the same models where there are any."""
+"""The estimate of calls, duration and cost before an evaluation, from its tasks and from earlier runs of the same models."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.scoring.trials import Evaluation
 from scope_ptz.tools.registry import TOOLS
 
-_LOOKERS = frozenset(TOOLS.perceiving)
+_PERCEPTION_TOOLS = frozenset(TOOLS.perceiving)
 TYPICAL_CALLS = 2.0
-"""Of a task that has no reference program."""
-CHARS_A_TOKEN, STEP_TOKENS, SAID_TOKENS = 4.0, 100, 40
-"""For a guess where nothing was measured: English text and JSON; a call with its result in the history; what a planner says."""
+"""Calls assumed for a task without a reference program."""
+CHARS_PER_TOKEN, STEP_TOKENS, REPLY_TOKENS = 4.0, 100, 40
+"""Assumptions where nothing was measured: text and JSON, a call with its result in the history, a planner's reply."""
 
 
 @dataclass(frozen=True, slots=True)
 class Price:
-    """US dollars for a million tokens of the planner, in and out."""
+    """US dollars per million input and output tokens of the planner."""
 
     input_usd: float
     output_usd: float
@@ -30,9 +30,19 @@ class Price:
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """``decisions`` and ``looks``: calls of planner and eyes in all, as the reference programs need them. What nobody has measured
-    is None: ``seconds`` (with the concurrency asked for), tokens, ``cost_usd``. ``guessed``: tokens are, by the length of the
-    prompt."""
+    """The estimate of an evaluation. Unmeasured quantities are None.
+
+    Attributes:
+        runs: Number of runs.
+        decisions: Planner calls of the reference programs.
+        looks: Perception calls of the reference programs.
+        seconds: Duration at the requested concurrency.
+        input_tokens: Tokens that the planner reads.
+        output_tokens: Tokens that the planner writes.
+        cost_usd: Cost of these tokens.
+        measured_on: Number of earlier runs that the estimate rests on.
+        guessed: Whether tokens are guessed from the length of the prompt.
+    """
 
     runs: int
     decisions: int
@@ -53,9 +63,15 @@ def estimate(
     price: Price | None = None,
     opening_chars: int | None = None,
 ) -> Estimate:
-    """Calls by the reference programs; time and tokens by runs of the same pair, scaled by how many calls tasks need.
+    """Estimate calls from the reference programs, and duration and tokens from earlier runs, scaled by the number of calls.
 
-    ``opening_chars``: what each request to the planner begins with, prompt and tools; None where tokens cannot be guessed from it.
+    Args:
+        entries: What is run.
+        epochs: Number of runs of each entry.
+        concurrency: Runs at a time.
+        earlier: Evaluations of the same pair.
+        price: Price of the planner's tokens.
+        opening_chars: Length of prompt and tools, which begin every request; None where tokens cannot be guessed from it.
     """
     calls = [_calls(entry) for entry in entries]
     runs, decisions = len(entries) * epochs, round(sum(calls) + len(calls)) * epochs
@@ -64,13 +80,13 @@ def estimate(
     if not trials:
         if opening_chars is None:
             return Estimate(runs, decisions, looks)
-        read, said = _guess(calls, opening_chars)
-        tokens = round(read * epochs), round(said * epochs)
+        read, written = _guess(calls, opening_chars)
+        tokens = round(read * epochs), round(written * epochs)
         return Estimate(runs, decisions, looks, None, *tokens, price.of(*tokens) if price is not None else None, guessed=True)
     steps = sum(trial.steps for trial in trials) or 1
     each = decisions / steps
     tokens_in, tokens_out = (round(each * sum(getattr(t, n) for t in trials)) for n in ("input_tokens", "output_tokens"))
-    # A run among others takes longer than alone, by about as much as there are others: what counts is how many end in a second.
+    # Concurrent runs slow each other down about in proportion to their number; the number of runs per second stays the same.
     busy = fmean(evaluation.card.concurrency for evaluation in earlier)
     seconds = each * sum(t.timings.total_s for t in trials) / (busy if busy < concurrency else concurrency)
     return Estimate(
@@ -80,10 +96,10 @@ def estimate(
 
 
 def _guess(calls: Sequence[float], opening_chars: int) -> tuple[float, float]:
-    """Tokens in and out of runs of so many calls: each step reads the prompt, the tools and all steps before it."""
+    """Guess input and output tokens of runs. Each step reads the prompt, the tools and all earlier steps."""
     steps = [count + 1 for count in calls]
-    read = sum(s * opening_chars / CHARS_A_TOKEN + STEP_TOKENS * s * (s - 1) / 2 for s in steps)
-    return read, SAID_TOKENS * sum(steps)
+    read = sum(s * opening_chars / CHARS_PER_TOKEN + STEP_TOKENS * s * (s - 1) / 2 for s in steps)
+    return read, REPLY_TOKENS * sum(steps)
 
 
 def _calls(entry: Entry) -> float:
@@ -93,4 +109,4 @@ def _calls(entry: Entry) -> float:
 def _looks(entry: Entry) -> float:
     if entry.task is None:
         return 1.0
-    return float(sum(call.tool in _LOOKERS for call in entry.task.reference))
+    return float(sum(call.tool in _PERCEPTION_TOOLS for call in entry.task.reference))

@@ -1,5 +1,4 @@
-"""Logs read: what every report, gate and judge is made from. Logs of runs that go on or were killed can be read as far as they
-got."""
+"""Reading of logs, for reports, gates and judges. Logs of unfinished evaluations can be read, too."""
 
 from __future__ import annotations
 
@@ -10,19 +9,19 @@ from pathlib import Path
 from typing import Any
 from zipfile import BadZipFile, ZipFile
 
-from inspect_ai._util.constants import get_deserializing_context
-from inspect_ai.log import EvalLog  # teaches zipfile the compression of logs, too
+from inspect_ai.log import EvalLog  # also registers the compression of logs with zipfile
 from pydantic import ValidationError
 from pydantic_core import from_json
 
 from scope_ptz.agent.trace import Trace
-from scope_ptz.bench.engine.cards import card_of, cost_usd
+from scope_ptz.bench.engine.checks_scorer import TRIAL
 from scope_ptz.bench.engine.entries import Entry
-from scope_ptz.bench.engine.judgements import judgements_in
-from scope_ptz.bench.engine.pictures import jpeg_of
-from scope_ptz.bench.engine.sampling import STORE, Kept, sample_name, trace_of
-from scope_ptz.bench.engine.scorers import TRIAL
-from scope_ptz.bench.engine.scoring import trial_of
+from scope_ptz.bench.engine.inspect_internals import header_context
+from scope_ptz.bench.engine.judgement_scores import judgements_in
+from scope_ptz.bench.engine.picture_store import jpeg_of
+from scope_ptz.bench.engine.run_cards import card_of, cost_usd
+from scope_ptz.bench.engine.samples import STORE, Kept, sample_name, trace_of
+from scope_ptz.bench.engine.trial_records import trial_of
 from scope_ptz.bench.judging.deciding_judge import decided_by_one_judge
 from scope_ptz.bench.scoring.episode import PresetViewpoints
 from scope_ptz.bench.scoring.trials import Evaluation, Trial
@@ -30,7 +29,7 @@ from scope_ptz.errors import TraceError
 
 ATTACHMENT = "attachment://"
 DECIDES = "decides"
-"""In a log's metadata: the judge that was asked for by name, whose verdicts count where only a judge can score."""
+"""Metadata key for the judge that decides where only a judge can score."""
 HEADER, START = "header.json", "_journal/start.json"
 SUMMARIES, JOURNALED = "summaries.json", "_journal/summaries/"
 _SAMPLES = "samples/"
@@ -38,7 +37,7 @@ _SAMPLES = "samples/"
 
 @dataclass(frozen=True, slots=True)
 class SampleFiles:
-    """One run of a log: its trace, the viewpoints of presets, and its pictures by the names that the trace gives them."""
+    """One run of a log: its trace, the viewpoints of its presets, and its pictures by their names in the trace."""
 
     trace: Trace
     places: PresetViewpoints
@@ -46,16 +45,16 @@ class SampleFiles:
     attachments: Mapping[str, str]
 
     def picture(self, name: str) -> bytes | None:
-        """A picture as JPEG; None when it was not kept."""
+        """Return a picture as JPEG; None when it was not stored."""
         data = self.attachments.get(self.references.get(name, "").removeprefix(ATTACHMENT))
         return jpeg_of(data) if data is not None else None
 
 
 def read_evaluation(path: Path) -> Evaluation:
-    """A log as data. Runs come in the order of tasks and epochs; where several judges scored them, one decides on all.
+    """Read a log as data. Trials are in the order of tasks and epochs; where several judges scored them, one decides on all.
 
     Raises:
-        TraceError: there is no log, it is damaged, or no log of this benchmark.
+        TraceError: There is no log, it is damaged, or it is not a log of this benchmark.
     """
     with reading(path):
         header = read_header(path)
@@ -71,12 +70,12 @@ def read_evaluation(path: Path) -> Evaluation:
 
 
 def trials_by_sample(path: Path) -> dict[str, Trial]:
-    """The judged runs of a log by name. Raises ``TraceError``."""
+    """Return the trials of a log by the names of their samples. Raises ``TraceError``."""
     return {trial.sample: trial for trial in read_evaluation(path).trials}
 
 
 def open_sample(path: Path, sample: str) -> SampleFiles:
-    """One run of a log by its name (``Trial.sample``). Raises ``TraceError``."""
+    """Open one run of a log by its name (``Trial.sample``). Raises ``TraceError``."""
     task, _, epoch = sample.rpartition("#")
     with reading(path):
         found = next(
@@ -93,7 +92,7 @@ def open_sample(path: Path, sample: str) -> SampleFiles:
 
 @contextmanager
 def reading(path: Path) -> Iterator[None]:
-    """Turns every way in which a file can be no log of ours into one error that says so."""
+    """Turn every error in reading a log into a ``TraceError`` that names the file."""
     try:
         yield
     except TraceError:
@@ -109,13 +108,13 @@ def reading(path: Path) -> Iterator[None]:
 
 
 def read_header(path: Path) -> EvalLog:
-    """What a log says about itself; of one that was killed, what it said when it began. Raises ``TraceError``."""
+    """Return the header of a log; of an interrupted evaluation, the header written at its start. Raises ``TraceError``."""
     with reading(path):
-        # Not by the engine's own reader: called where an event loop runs, it changes asyncio for the whole program.
+        # The engine's own reader changes asyncio for the whole program when an event loop runs.
         with ZipFile(path) as archive:
             whole = HEADER in archive.namelist()
             told = from_json(archive.read(HEADER if whole else START))
-        header = EvalLog.model_validate(told if whole else {**told, "status": "started"}, context=get_deserializing_context())
+        header = EvalLog.model_validate(told if whole else {**told, "status": "started"}, context=header_context())
         header.location = str(path)
         if "scope" not in (header.eval.metadata or {}):
             raise TraceError(f"{path} is the log of another evaluation ({header.eval.task}), not of this benchmark.")
@@ -123,13 +122,15 @@ def read_header(path: Path) -> EvalLog:
 
 
 def runs_in(path: Path) -> dict[tuple[str, int], bool]:
-    """The runs that a log holds, by task and epoch, and whether each is to stay: it was not broken. Raises ``TraceError``."""
+    """Return the runs of a log by task and epoch, with False for those that were broken. Raises ``TraceError``."""
     return {run: not row.get("error") for run, row in _summaries(path).items()}
 
 
 def uuids_in(path: Path) -> dict[tuple[str, int], str | None]:
-    """The runs that a log holds, by task and epoch, and what tells each from all others in whatever log it is. Raises
-    ``TraceError``."""
+    """Return the unique ids of the runs of a log, by task and epoch. They stay the same in every log that takes a run over.
+
+    Raises ``TraceError``.
+    """
     return {run: row.get("uuid") for run, row in _summaries(path).items()}
 
 
@@ -146,7 +147,10 @@ def _number(name: str) -> int:
 
 
 def samples(path: Path, name: str | None = None) -> Iterator[dict[str, Any]]:
-    """The samples of a log as plain data, all of them or one by the name of its file. A later one of a name replaces an earlier."""
+    """Iterate over the samples of a log as plain data: all of them, or one by the name of its file.
+
+    Of several with one name the last counts.
+    """
     with ZipFile(path) as archive:
         wanted = f"{_SAMPLES}{name}.json" if name else None
         for member in dict.fromkeys(n for n in archive.namelist() if n.startswith(_SAMPLES)):
@@ -158,7 +162,7 @@ def samples(path: Path, name: str | None = None) -> Iterator[dict[str, Any]]:
 
 
 def kept_in(sample: Mapping[str, Any]) -> Kept | None:
-    """What the run of a sample left: in its store; in one that was rescued after a crash, in the last event that tells of it."""
+    """Return what the run of a sample stored; after a crash, it is in the last event that changed the store."""
     attachments = sample.get("attachments", {})
     left = (sample.get("store") or {}).get(STORE)
     if left is None:
@@ -174,7 +178,7 @@ def kept_in(sample: Mapping[str, Any]) -> Kept | None:
 
 
 def trial_in(sample: Mapping[str, Any], path: Path) -> Trial:
-    """The judged run of a sample: as its checks were scored last, with every judgement."""
+    """Return the trial of a sample, with its latest checks and every judgement."""
     entry, scores = Entry.of_metadata(sample["metadata"]), sample.get("scores") or {}
     judgements = judgements_in(scores)
     told = next((s["metadata"][TRIAL] for s in reversed(scores.values()) if TRIAL in (s.get("metadata") or {})), None)

@@ -1,4 +1,4 @@
-"""Scoring logs again without running the agent: checks from the stored traces, and judges. Earlier scores stay."""
+"""Score logs again without running the agent: checks on the stored traces, and judges. Earlier scores stay."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from pathlib import Path
 from zipfile import ZIP_DEFLATED, ZipFile
 
 import anyio
-from inspect_ai._eval.score import score_async
+from inspect_ai import score_async
 from inspect_ai.log import EvalSample
-from inspect_ai.log._recorders.create import create_recorder_for_location
 from inspect_ai.model import Model
 from inspect_ai.scorer import Scorer
-from inspect_ai.util._display import init_display_type
 
-from scope_ptz.bench.engine.journal import JOURNAL, Journal
-from scope_ptz.bench.engine.judging import judge
+from scope_ptz.bench.engine.checks_scorer import checks_scorer
+from scope_ptz.bench.engine.context import EvalContext
+from scope_ptz.bench.engine.inspect_internals import recorder, silence_display
+from scope_ptz.bench.engine.judge_scorer import judge_scorer
+from scope_ptz.bench.engine.judgement_journal import Journal
 from scope_ptz.bench.engine.logs import DECIDES, HEADER, kept_in, read_evaluation, read_header, reading, trials_by_sample
-from scope_ptz.bench.engine.sampling import STORE
-from scope_ptz.bench.engine.scorers import checks
+from scope_ptz.bench.engine.samples import STORE
 from scope_ptz.bench.judging.deciding_judge import check_decides
 from scope_ptz.bench.judging.judgement_tally import JudgementTally
 from scope_ptz.bench.judging.rubrics import prompt_version
@@ -29,44 +29,57 @@ from scope_ptz.errors import InputError, OutputError
 
 AT_A_TIME = 8
 FLUSH_EVERY = 50
-"""Samples that are held in memory. Writing them copies the whole new log."""
+"""Samples held in memory between two writes. Each write copies the whole new log."""
 
-Say = Callable[[int, int], None]
+Report = Callable[[int, int], None]
 
 
 async def rescore(
     log: Path,
+    context: EvalContext,
     *,
     judge_model: Model | None,
     repeats: int = 1,
-    more: bool = True,
+    further: bool = True,
     with_checks: bool = False,
     at_a_time: int = AT_A_TIME,
-    say: Say,
+    report: Report,
 ) -> JudgementTally:
-    """Append scores to a log; what came of the judgements that were made now. The log is replaced when all is done, and not before.
+    """Append scores to a log, and return what came of the new judgements. The log is replaced at the end, in one step.
 
-    ``more``: so many judgements beside those there are; without, what is missing of the first ``repeats``. Raises ``TraceError``
-    for what is no log, ``InputError`` for one that is still being written or cannot be.
+    Args:
+        log: Log of a finished evaluation.
+        context: Provides the judge and ground truth.
+        judge_model: Judge to ask; None for checks alone.
+        repeats: Number of judgements of each run.
+        further: Add ``repeats`` judgements to those in the log; otherwise complete the first ``repeats``.
+        with_checks: Apply the executable checks again.
+        at_a_time: Samples that are scored concurrently.
+        report: Receives the number of written samples and their total.
+
+    Raises:
+        TraceError: There is no log, or it is damaged.
+        InputError: The evaluation is not finished.
+        OutputError: The log cannot be replaced.
     """
     header = read_header(log)
     if header.status == "started":
         raise InputError(f"{log} is not finished: run it to its end first, with the command that began it.")
-    scorers: list[Scorer] = [checks()] if with_checks else []
+    scorers: list[Scorer] = [checks_scorer(context)] if with_checks else []
     journal = Journal.beside(log)
     if judge_model is not None:
         before = trials_by_sample(log)
         for sample, trial in before.items():
             for made in trial.judgements:
                 journal.know(sample, made)
-        scorers += [judge(repeat) for repeat in (_further(before, judge_model.name, repeats) if more else range(repeats))]
-    JOURNAL.set(journal)
-    init_display_type("none")
+        numbers = _further(before, judge_model.name, repeats) if further else range(repeats)
+        scorers += [judge_scorer(context, repeat, journal) for repeat in numbers]
+    silence_display()
     scratch = log.with_name(f".{log.stem}.rescored.eval")
     scratch.unlink(missing_ok=True)
     try:
         with reading(log):
-            await _append(log, scratch, scorers, judge_model, at_a_time, say)
+            await _append(log, scratch, scorers, judge_model, at_a_time, report)
         scratch.replace(log)
     except OSError as error:
         raise OutputError(f"The log {log} cannot be replaced: {error.strerror}.") from error
@@ -79,7 +92,7 @@ async def rescore(
 def let_decide(log: Path, judge: str) -> None:
     """Write into a log which of its judges decides on runs that only a judge can score.
 
-    Raises ``TraceError`` for what is no log, ``InputError`` when that judge has given no verdict on such a run.
+    Raises ``TraceError`` for a damaged log, and ``InputError`` when that judge has given no verdict on such a run.
     """
     check_decides(read_evaluation(log).trials, judge)
     if read_header(log).status == "started":
@@ -90,9 +103,9 @@ def let_decide(log: Path, judge: str) -> None:
             for info in old.infolist():
                 content = old.read(info)
                 if info.filename == HEADER:
-                    told = json.loads(content)
-                    told["eval"]["metadata"] = {**(told["eval"].get("metadata") or {}), DECIDES: judge}
-                    content = json.dumps(told).encode()
+                    header = json.loads(content)
+                    header["eval"]["metadata"] = {**(header["eval"].get("metadata") or {}), DECIDES: judge}
+                    content = json.dumps(header).encode()
                 new.writestr(info, content)
         scratch.replace(log)
     except OSError as error:
@@ -102,17 +115,16 @@ def let_decide(log: Path, judge: str) -> None:
 
 
 def _further(before: Mapping[str, Trial], judge_name: str, repeats: int) -> range:
-    """Numbers of the judgements to make: after those that this judge has given by today's prompt. One that failed somewhere is
-    made good first."""
+    """Return the numbers of the judgements to make: after those by this judge and prompt, beginning with the first that failed."""
     own = [j for t in before.values() for j in t.judgements if (j.judge, j.prompt) == (judge_name, prompt_version())]
     failed = [j.repeat for j in own if j.verdict == "failed"]
     first = min(failed) if failed else max((j.repeat + 1 for j in own), default=0)
     return range(first, first + repeats)
 
 
-async def _append(log: Path, scratch: Path, scorers: Sequence[Scorer], model: Model | None, at_a_time: int, say: Say) -> None:
-    header, reader = read_header(log), create_recorder_for_location(str(log), str(log.parent))
-    writer = create_recorder_for_location(str(scratch), str(log.parent))
+async def _append(log: Path, scratch: Path, scorers: Sequence[Scorer], model: Model | None, at_a_time: int, report: Report) -> None:
+    header, reader = read_header(log), recorder(log, log.parent)
+    writer = recorder(scratch, log.parent)
     names = await reader.read_log_sample_ids(str(log))
     slots, written = anyio.Semaphore(at_a_time), 0
 
@@ -129,7 +141,7 @@ async def _append(log: Path, scratch: Path, scorers: Sequence[Scorer], model: Mo
             written += 1
             if written % FLUSH_EVERY == 0:
                 await writer.flush(header.eval)
-            say(written, len(names))
+            report(written, len(names))
 
     await writer.log_init(header.eval, location=str(scratch))
     await writer.log_start(header.eval, header.plan)

@@ -1,7 +1,7 @@
-"""An evaluation from its first sample to its last, however often it is broken off in between.
+"""Run an evaluation, and resume it after interruptions.
 
-The log of an evaluation is the record of what is done. One that was killed is found again by its identity, a digest of everything
-that decides its results; what it holds is taken over, and only the rest is run.
+The log of an evaluation is the record of what is done. The log of an interrupted one is found by its identity, a digest of
+everything that decides its results. Its runs are taken over, and only the rest is run.
 """
 
 from __future__ import annotations
@@ -9,37 +9,34 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from inspect_ai import Task, eval_async
-from inspect_ai._eval.loader import resolve_task_args
-from inspect_ai._eval.task.task import PreviousTask
 from inspect_ai.log import EvalLog, EvalLogInfo, read_eval_log_sample_async
-from inspect_ai.log._recover import RecoveryNotAvailable, recover_eval_log_async
 from inspect_ai.model import Model
-from inspect_ai.util._display import init_display_type
 
 from scope_ptz.bench.engine.annotations import check_beside, put_away
-from scope_ptz.bench.engine.cards import AGENT_SOURCE, CARD, card_of
 from scope_ptz.bench.engine.file_lock import lock_file
+from scope_ptz.bench.engine.inspect_internals import PreviousTask, recover_log, resumed_task, silence_display
 from scope_ptz.bench.engine.logs import DECIDES, read_evaluation, read_header, runs_in, uuids_in
-from scope_ptz.bench.engine.sampling import sample_name
+from scope_ptz.bench.engine.run_cards import AGENT_SOURCE, CARD, card_of
+from scope_ptz.bench.engine.samples import sample_name
 from scope_ptz.bench.scoring.trials import Evaluation, RunCard
 from scope_ptz.errors import InputError, OutputError, TraceError
 
 IDENTITY = "identity"
 SUPERSEDED = "superseded"
-"""Folder of logs whose runs another log has taken over."""
+"""Folder for logs whose runs another log has taken over."""
 
 QUIET = "error"
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
-    """A log of the very evaluation that is wanted. ``runs``: by task and epoch, whether they need not be made again."""
+class StoredLog:
+    """A log of the requested evaluation. ``runs`` says by task and epoch whether a run is complete."""
 
     path: Path
     header: EvalLog
@@ -51,59 +48,72 @@ class Found:
 
     @property
     def finished(self) -> bool:
-        """Whether nothing is left to do: a few broken runs do not fail a log, and are to be made again all the same."""
+        """Whether nothing is left to run. A log with a few broken runs is successful, and still has to repeat them."""
         return self.header.status == "success" and all(self.runs.values())
 
 
 @dataclass(frozen=True, slots=True)
-class Setting:
-    """How an evaluation is run, beside its task. ``planner``: None for other people's agents; ``judge``: None for checks alone."""
+class EngineSetup:
+    """How the engine runs a task.
+
+    Attributes:
+        log_dir: Folder for the log.
+        planner: The planner's model; None for external agents.
+        perception: The perception's model.
+        judge: The judge's model; None to apply only the checks.
+        concurrency: Runs at a time.
+        identity: Digest of everything that decides the results.
+        card: Run card for the log.
+        realtime: Record events while a run is in progress, so that a killed evaluation loses no finished run. It costs time, and
+            pays where runs are expensive.
+    """
 
     log_dir: Path
     planner: Model | None
-    eyes: Model
+    perception: Model
     judge: Model | None
     concurrency: int
     identity: str
     card: RunCard
+    realtime: bool = True
 
 
 def identity_of(*parts: Any) -> str:
-    """Names an evaluation by everything that decides its results."""
+    """Return the identity of an evaluation: a digest of everything that decides its results."""
     return hashlib.sha256(json.dumps(parts, sort_keys=True, default=str).encode()).hexdigest()[:16]
 
 
-async def find(log_dir: Path, identity: str) -> list[Found]:
-    """The logs of an evaluation in a folder, the one that got furthest first. What a killed program had finished and not yet
-    written is written now, into a log beside its own."""
+async def find_logs(log_dir: Path, identity: str) -> list[StoredLog]:
+    """Return the logs of an evaluation in a folder, the one that got furthest first.
+
+    Runs that a killed program had finished but not written are first recovered into a log of their own.
+    """
     for log in _logs_of(log_dir, identity):
         if log.header.status == "started":
-            with suppress(RecoveryNotAvailable):
-                await recover_eval_log_async(str(log.path), cleanup=True)
+            await recover_log(log.path)
     return sorted(_logs_of(log_dir, identity), key=lambda log: (log.finished, log.done), reverse=True)
 
 
-def _logs_of(log_dir: Path, identity: str) -> list[Found]:
+def _logs_of(log_dir: Path, identity: str) -> list[StoredLog]:
     logs = []
     for path in sorted(log_dir.glob("*.eval")):
         try:
-            log = found(path)
+            log = stored_log(path)
         except TraceError:
-            continue  # nothing that can be gone on with
+            continue  # It cannot be resumed.
         if (log.header.eval.metadata or {}).get(IDENTITY) == identity:
             logs.append(log)
     return logs
 
 
-def found(path: Path) -> Found:
-    """A log to go on with. Raises ``TraceError``."""
-    return Found(path, read_header(path), runs_in(path))
+def stored_log(path: Path) -> StoredLog:
+    """Return a log to resume. Raises ``TraceError``."""
+    return StoredLog(path, read_header(path), runs_in(path))
 
 
-def earlier(log_dir: Path, planner: str, eyes: str) -> list[Evaluation]:
-    """Evaluations of a pair of which there are logs in a folder. A run that stands in several, because it was taken over, is in
-    the first of them only."""
-    told, seen = [], set[str]()
+def earlier_evaluations(log_dir: Path, planner: str, eyes: str) -> list[Evaluation]:
+    """Return the evaluations of a pair in a folder. A run that several logs hold is in the first of them only."""
+    found, seen = [], set[str]()
     for path in sorted(log_dir.glob("*.eval")):
         try:
             card = card_of(read_header(path), None)
@@ -112,29 +122,32 @@ def earlier(log_dir: Path, planner: str, eyes: str) -> list[Evaluation]:
             names = {sample_name(*run): uuid for run, uuid in uuids_in(path).items()}
             evaluation = read_evaluation(path)
         except TraceError:
-            continue  # what cannot be read tells nothing
+            continue  # A damaged log is skipped.
         new = tuple(t for t in evaluation.trials if names.get(t.sample) is None or names[t.sample] not in seen)
         seen |= {uuid for uuid in names.values() if uuid is not None}
         if new:
-            told.append(evaluation.model_copy(update={"trials": new}))
-    return told
+            found.append(evaluation.model_copy(update={"trials": new}))
+    return found
 
 
-def of_other_source(log_dir: Path, agent: str, source: str, tasks: str) -> Path | None:
-    """The newest log of these ``tasks`` (their digest) by an agent of this name with code of another digest; None without any."""
+def log_of_other_source(log_dir: Path, agent: str, source: str, tasks: str) -> Path | None:
+    """Return the newest log of the same tasks and agent with another version of the agent's source; None without any.
+
+    ``source`` and ``tasks`` are digests.
+    """
     for path in sorted(log_dir.glob("*.eval"), reverse=True):
         try:
             card = card_of(read_header(path), None)
         except TraceError:
-            continue  # what cannot be read tells nothing
+            continue  # A damaged log is skipped.
         if (card.agent, card.dataset_digest) == (agent, tasks) and card.sampling.get(AGENT_SOURCE) != source:
             return path
     return None
 
 
 @contextmanager
-def alone(log_dir: Path, identity: str) -> Iterator[None]:
-    """Keeps a second program from doing the same evaluation at the same time. Raises ``InputError`` or ``OutputError``."""
+def exclusive(log_dir: Path, identity: str) -> Iterator[None]:
+    """Prevent a second program from running the same evaluation. Raises ``InputError`` or ``OutputError``."""
     try:
         log_dir.mkdir(parents=True, exist_ok=True)
         lock = (log_dir / f".{identity}.lock").open("w")
@@ -146,35 +159,42 @@ def alone(log_dir: Path, identity: str) -> Iterator[None]:
         yield
 
 
-async def run(task: Task, setting: Setting, before: Sequence[Found]) -> Path:
-    """Run a task, taking over what the logs ``before`` hold; the path of the log. An evaluation that is cancelled leaves its log
-    behind.
+async def run(task: Task, setup: EngineSetup, before: Sequence[StoredLog]) -> Path:
+    """Run a task, take over the runs of earlier logs, and return the path of the log. A cancelled evaluation keeps its log.
 
-    Raises ``OutputError`` when it was stopped before there was one, ``TraceError`` when it failed as a whole.
+    Args:
+        task: The task.
+        setup: How to run it.
+        before: Logs of the same evaluation, the one that got furthest first.
+
+    Raises:
+        OutputError: The evaluation was stopped before there was a log.
+        TraceError: The evaluation failed as a whole.
     """
     check_beside([old.path for old in before])
-    init_display_type("none")
-    told = (before[0].header.eval.metadata or {}).get(CARD) if before else None
-    card = RunCard.model_validate(told) if told else setting.card
+    silence_display()
+    stored_card = (before[0].header.eval.metadata or {}).get(CARD) if before else None
+    card = RunCard.model_validate(stored_card) if stored_card else setup.card
     named = (before[0].header.eval.metadata or {}).get(DECIDES) if before else None
     logs = await eval_async(
-        await _going_on(task, before) if before else task,
-        model=setting.planner or setting.eyes,
-        model_roles=_roles(setting),
-        metadata={CARD: card.model_dump(mode="json"), IDENTITY: setting.identity, **({DECIDES: named} if named else {})},
-        log_dir=str(setting.log_dir),
+        await _resumed(task, before) if before else task,
+        model=setup.planner or setup.perception,
+        model_roles=_roles(setup),
+        metadata={CARD: card.model_dump(mode="json"), IDENTITY: setup.identity, **({DECIDES: named} if named else {})},
+        log_dir=str(setup.log_dir),
         log_format="eval",
         log_images=True,
         log_header_only=True,
+        log_realtime=setup.realtime,
         log_level=QUIET,
-        max_samples=setting.concurrency,
+        max_samples=setup.concurrency,
         score_display=False,
         ctl_server=False,
     )
-    if not logs:  # it was cancelled
-        left = _logs_of(setting.log_dir, setting.identity)
+    if not logs:  # The evaluation was cancelled.
+        left = _logs_of(setup.log_dir, setup.identity)
         if not left:
-            raise OutputError(f"The evaluation was stopped before it had written a log into {setting.log_dir}.")
+            raise OutputError(f"The evaluation was stopped before it had written a log into {setup.log_dir}.")
         return max(left, key=lambda log: log.done).path
     (log,) = logs
     if log.error is not None and not (log.results and log.results.completed_samples):
@@ -185,8 +205,8 @@ async def run(task: Task, setting: Setting, before: Sequence[Found]) -> Path:
     return written
 
 
-async def _going_on(task: Task, before: Sequence[Found]) -> PreviousTask:
-    """A task with what was done of it. Runs that only a lesser log holds are read into memory with all others."""
+async def _resumed(task: Task, before: Sequence[StoredLog]) -> PreviousTask:
+    """Return the task with the runs to take over. If several logs hold runs, all of them are read into memory."""
     best, *lesser = before
     known = {run for run, stays in best.runs.items() if stays}
     further = [(log, run) for log in lesser for run, stays in log.runs.items() if stays and run not in known]
@@ -195,14 +215,11 @@ async def _going_on(task: Task, before: Sequence[Found]) -> PreviousTask:
         places = dict([*((run, best) for run in known), *((run, log) for log, run in further)])
         whole = [await read_eval_log_sample_async(str(log.path), name, epoch) for (name, epoch), log in places.items()]
         header = header.model_copy(update={"samples": whole})
-    return PreviousTask(
-        id=header.eval.task_id, task=task, task_args=resolve_task_args(task), model=None, model_roles=None, sandbox=None,
-        log=header, log_info=None if further else info,
-    )  # fmt: skip
+    return resumed_task(task, header, None if further else info)
 
 
-def _roles(setting: Setting) -> Mapping[str, Model | list[Model] | str | list[str]]:
-    roles = {"planner": setting.planner, "eyes": setting.eyes, "judge": setting.judge}
+def _roles(setup: EngineSetup) -> Mapping[str, Model | list[Model] | str | list[str]]:
+    roles = {"planner": setup.planner, "eyes": setup.perception, "judge": setup.judge}
     return {role: model for role, model in roles.items() if model is not None}
 
 

@@ -1,0 +1,132 @@
+"""The adapter between the engine and the agent loop: it runs the loop on a sample and stores the run in the sample."""
+
+from __future__ import annotations
+
+from inspect_ai.model import ModelOutput, get_model
+from inspect_ai.solver import Generate, Solver, TaskState, solver
+
+from scope_ptz.agent.loop import Agent
+from scope_ptz.agent.records import Budgets, RunLabels, RunResult
+from scope_ptz.agent.store import NoImages
+from scope_ptz.bench.engine.context import EvalContext
+from scope_ptz.bench.engine.entries import Entry
+from scope_ptz.bench.engine.external_agents import ExternalPlanner, load_external_agent
+from scope_ptz.bench.engine.inspect_internals import attachment_reference
+from scope_ptz.bench.engine.logged_perception import LoggedPerception
+from scope_ptz.bench.engine.logged_planner import LoggedPlanner
+from scope_ptz.bench.engine.logged_tools import ToolLog
+from scope_ptz.bench.engine.picture_store import PictureStore
+from scope_ptz.bench.engine.samples import STORE, Kept, sample_name
+from scope_ptz.bench.engine.transcript import Record, conversation_of
+from scope_ptz.bench.engine.trial_records import broken_by
+from scope_ptz.bench.program_runner import BlankCamera
+from scope_ptz.camera.simulated import SimulatedCamera
+from scope_ptz.planner.base import Planner
+from scope_ptz.simulator.clock import SceneClock
+
+OWN_AGENT = "scope"
+WIDTH, HEIGHT = 1280, 720
+"""Size of a frame in pixels."""
+
+
+class BrokenRunError(Exception):
+    """A run that says nothing about the agent. The engine keeps it out of the scores, and runs it again on resuming."""
+
+
+def agent_solver(
+    context: EvalContext,
+    *,
+    agent: str = OWN_AGENT,
+    pictures: bool = True,
+    max_steps: int = 60,
+    time_s: float | None = None,
+    seed: int = 1,
+) -> Solver:
+    """Return the solver that runs an agent on each sample.
+
+    Args:
+        context: Scenes, models and watcher.
+        agent: "scope" for the built-in loop with its planner, or ``module:Class`` of an external agent.
+        pictures: Render frames and log them; without pictures, only ground-truth perception works.
+        max_steps: Planner steps after which a run ends (T_max).
+        time_s: Wall seconds after which a run ends.
+        seed: Seed for every random choice.
+    """
+
+    @solver
+    def scope_agent(
+        agent: str = OWN_AGENT, pictures: bool = True, max_steps: int = 60, time_s: float | None = None, seed: int = 1
+    ) -> Solver:
+        async def solve(state: TaskState, generate: Generate) -> TaskState:  # noqa: ARG001 - the engine's signature
+            entry = Entry.of_metadata(state.metadata)
+            context.watcher.began(sample_name(entry.facts.id, state.epoch), entry)
+            planner: Planner = (
+                await LoggedPlanner.of(get_model(role="planner", required=True), context)
+                if agent == OWN_AGENT
+                else ExternalPlanner(load_external_agent(agent), agent)
+            )
+            run = _SampleRun(context, entry, planner, pictures=pictures, seed=seed)
+            try:
+                result = await run.go(Budgets(max_steps=max_steps, time_s=time_s))
+            finally:
+                if isinstance(planner, ExternalPlanner):
+                    await planner.close()
+                await run.store(state)
+            state.output = ModelOutput.from_content(planner.name, result.ended.text)
+            state.completed = True
+            broken = broken_by(result.ended)
+            if broken is not None:
+                raise BrokenRunError(f"{broken}: {result.ended.text}")
+            return state
+
+        return solve
+
+    return scope_agent(agent, pictures, max_steps, time_s, seed)
+
+
+class _SampleRun:
+    """One run: its camera, perception, pictures and trace."""
+
+    def __init__(self, context: EvalContext, entry: Entry, planner: Planner, *, pictures: bool, seed: int) -> None:
+        self.context, self.entry, self.planner, self.seed = context, entry, planner, seed
+        self.scene = context.open_scene(entry.world)
+        self.clock = SceneClock(entry.time_s)
+        camera = SimulatedCamera if pictures else BlankCamera
+        self.camera = camera(self.scene, clock=self.clock, width=WIDTH, height=HEIGHT)
+        self.pictures = PictureStore() if pictures else None
+        self._records: list[Record] = []
+
+    async def go(self, budgets: Budgets) -> RunResult:
+        """Run the agent loop from the task's preset to its end."""
+        model = get_model(role="eyes", required=True)
+        perception = await LoggedPerception.of(model, self.context, pictures=self.pictures is not None)
+        with self.clock.hold():
+            await self.camera.go_to_preset(self.entry.facts.preset)
+        loop = Agent(
+            self.planner,
+            self.camera,
+            perception,
+            self.pictures or NoImages(),
+            budgets=budgets,
+            labels=RunLabels(seed=self.seed, perception_note=self.context.perception_note),
+            snapshots=self.pictures is not None,
+            run_tool=ToolLog(self.pictures).run,
+        )
+        return await loop.run(self.entry.facts.instruction, listener=self._records.append)
+
+    async def store(self, state: TaskState) -> None:
+        """Put into the sample what checks and judges need, also after an interrupted run."""
+        shown = dict[str, str]()
+        if self.pictures is not None:
+            await self.pictures.settle()
+            shown = self.pictures.kept
+        state.messages = conversation_of(self._records, shown) or state.messages
+        presets = {p.name: p.viewpoint for p in self.scene.file.presets}
+        kept = Kept(
+            trace="".join(record.model_dump_json() + "\n" for record in self._records),
+            presets=presets,
+            home=presets[self.scene.file.home_preset],
+            sees=self.planner.sees,
+            pictures={name: attachment_reference(url) for name, url in shown.items()},
+        )
+        state.store.set(STORE, kept.as_store())

@@ -1,0 +1,101 @@
+"""The benchmark as a task of the engine."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from inspect_ai import Epochs, Task, task
+
+from scope_ptz.bench.engine.agent_solver import OWN_AGENT, agent_solver
+from scope_ptz.bench.engine.checks_scorer import checks_scorer
+from scope_ptz.bench.engine.context import EvalContext
+from scope_ptz.bench.engine.entries import Entry, datasets, digest, select
+from scope_ptz.bench.engine.external_agents import source_digest
+from scope_ptz.bench.engine.judge_scorer import judge_scorer
+from scope_ptz.bench.engine.run_cards import AGENT_SOURCE
+from scope_ptz.bench.engine.samples import dataset_of
+from scope_ptz.version import __version__
+
+__all__ = ["Task", "benchmark_task"]
+
+MAX_BROKEN_SHARE = 0.1
+"""Share of runs that infrastructure may break before the evaluation as a whole counts as failed."""
+
+
+def benchmark_task(provide_context: Callable[[int], EvalContext]) -> Callable[..., Task]:
+    """Return the task ``bench``, which runs in a given context.
+
+    Args:
+        provide_context: Returns the context of an evaluation with a given seed.
+    """
+
+    @task
+    def bench(
+        split: str = "core",
+        category: str | list[str] | None = None,
+        scene: str | list[str] | None = None,
+        limit: int | None = None,
+        agent: str = OWN_AGENT,
+        pictures: bool = True,
+        max_steps: int = 60,
+        time_s: float | None = None,
+        seed: int = 1,
+        epochs: int = 1,
+        judgements: int = 0,
+    ) -> Task:
+        """SCOPE: a PTZ camera that is controlled in plain language.
+
+        Args:
+            split: Split of the dataset (core, lite, paraphrase, reaction, unseen, all), or a task file.
+            category: Run only tasks of these categories, separated by commas.
+            scene: Run only tasks of these scenes, separated by commas.
+            limit: Run at most this many tasks, sampled evenly across the selected categories and scenes.
+            agent: "scope" for the built-in loop, or ``module:Class`` of an external agent.
+            pictures: Render frames and log them.
+            max_steps: Planner steps after which a run ends.
+            time_s: Wall seconds after which a run ends.
+            seed: Seed for every random choice.
+            epochs: Number of runs of each task.
+            judgements: Judgements of each run by the model in the role "judge".
+        """
+        context = provide_context(seed)
+        entries = select(context.load_tasks(split), _names(category), _names(scene), limit)
+        # Place after place: the layers of a viewpoint are read once, and few viewpoints are in memory at a time.
+        by_place = sorted(entries, key=lambda entry: (entry.facts.scene, entry.facts.viewpoint))
+        return Task(
+            dataset=dataset_of(by_place, name=f"{datasets(entries)} {Path(split).name}"),
+            solver=agent_solver(context, agent=agent, pictures=pictures, max_steps=max_steps, time_s=time_s, seed=seed),
+            scorer=[checks_scorer(context), *(judge_scorer(context, repeat) for repeat in range(judgements))],
+            epochs=Epochs(epochs, "mean"),
+            fail_on_error=MAX_BROKEN_SHARE,
+            continue_on_fail=True,
+            score_on_error=True,
+            version=datasets(entries),
+            metadata=_log_metadata(entries, split, agent=agent, max_steps=max_steps, seed=seed),
+        )
+
+    return bench
+
+
+def _names(given: str | list[str] | None) -> list[str]:
+    if isinstance(given, str):
+        return given.split(",")
+    return given or []
+
+
+def _log_metadata(entries: Sequence[Entry], split: str, *, agent: str, max_steps: int, seed: int) -> dict[str, Any]:
+    """Return what a log says about its tasks and the loop, whoever started it."""
+    return {
+        "scope": {
+            "package_version": __version__,
+            "dataset": datasets(entries),
+            "dataset_digest": digest(entries),
+            "split": Path(split).name,
+            "agent": agent,
+            "max_steps": max_steps,
+            "seed": seed,
+            **({AGENT_SOURCE: source_digest(agent)} if agent != OWN_AGENT else {}),
+        }
+    }

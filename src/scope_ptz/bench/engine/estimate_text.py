@@ -1,0 +1,63 @@
+"""The estimate before an evaluation, as lines of text. Unmeasured quantities are reported as unknown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from scope_ptz.bench.engine.estimate import Estimate
+
+
+def estimate_lines(
+    estimate: Estimate, *, planner: str, perception: str, concurrency: int, agent: str | None = None, planner_is_free: bool
+) -> Iterator[str]:
+    """Return runs, calls, duration and cost, one a line.
+
+    Args:
+        estimate: The estimate.
+        planner: Name of the planner.
+        perception: Name of the perception.
+        concurrency: Runs at a time.
+        agent: External agent that plans in place of the planner.
+        planner_is_free: Whether planning needs no server.
+    """
+    runs, subject = f"{estimate.runs} run{'s' if estimate.runs != 1 else ''}", "this agent" if agent else "this pair"
+    yield f"{runs} of {agent or planner} + {perception}, {concurrency} at a time"
+    if agent:
+        yield f"calls   about {estimate.looks} to perception, from the reference programs; the agent's own model calls are unknown"
+    else:
+        yield f"calls   about {estimate.decisions} to the planner and {estimate.looks} to perception, from the reference programs"
+    if estimate.seconds is None:
+        yield f"time    unknown: there is no log of {subject} here yet; the table shows the time left after the first runs"
+    else:
+        measured = f"{estimate.measured_on} earlier run{'s' if estimate.measured_on != 1 else ''}"
+        yield f"time    about {duration_text(estimate.seconds)}, measured on {measured} of {subject}"
+    if agent:
+        yield "cost    unknown: the agent's own model calls are not measured"
+    elif planner_is_free:
+        yield "cost    no paid server is used for planning"
+    elif estimate.input_tokens is None or estimate.output_tokens is None:
+        yield "cost    unknown: a first run of this pair (--limit 10) measures tokens; give prices with --price IN,OUT"
+    else:
+        how = " (guessed from the length of the prompt)" if estimate.guessed else ""
+        tokens = f"about {tokens_text(estimate.input_tokens)} tokens in and {tokens_text(estimate.output_tokens)} out"
+        price = (
+            f", {estimate.cost_usd:.2f} US dollars"
+            if estimate.cost_usd is not None
+            else "; give prices with --price IN,OUT (dollars per million)"
+        )
+        yield f"cost    {tokens} for the planner{how}{price}; the cost of perception is unknown"
+
+
+def tokens_text(tokens: int) -> str:
+    """Return a number of tokens for reading: 340, 12 thousand, 3.4 million."""
+    if tokens < 1000:
+        return str(tokens)
+    return f"{tokens / 1e3:.0f} thousand" if tokens < 999_500 else f"{tokens / 1e6:.1f} million"
+
+
+def duration_text(seconds: float) -> str:
+    """Return a duration for reading: 40 s, 12 min, 3 h 05 min."""
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    minutes = round(seconds / 60)
+    return f"{minutes} min" if minutes < 90 else f"{minutes // 60} h {minutes % 60:02d} min"

@@ -1,0 +1,76 @@
+"""The parts of Inspect AI that have no public name, wrapped in one place.
+
+The version of Inspect AI is pinned exactly. When it is raised, check these:
+
+- ``silence_display``: ``eval_async`` has no argument for the display; the program draws its own table.
+- ``header_context``: pydantic must not give new ids to messages of a stored header. The public readers of logs replace parts of
+  asyncio for the whole program when an event loop runs.
+- ``attachment_reference``: a picture is stored once in a sample, under the hash of its data URL.
+- ``recover_log``: the public ``recover_eval_log`` starts an event loop of its own.
+- ``resumed_task``: ``eval_async`` takes over samples of an earlier log only through a ``PreviousTask``; ``eval_retry`` would make
+  task and models from their names, without our context.
+- ``recorder``: reads and writes a log sample by sample; the public functions hold a whole log in memory.
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from inspect_ai import Task
+from inspect_ai._eval.loader import resolve_task_args
+from inspect_ai._eval.task.task import PreviousTask
+from inspect_ai._util.constants import get_deserializing_context
+from inspect_ai._util.hash import mm3_hash
+from inspect_ai.log import EvalLog, EvalLogInfo, RecoveryNotAvailable
+from inspect_ai.log._condense import ATTACHMENT_PROTOCOL
+from inspect_ai.log._recorders.create import create_recorder_for_location
+from inspect_ai.log._recorders.recorder import Recorder
+from inspect_ai.log._recover import recover_eval_log_async
+from inspect_ai.util._display import init_display_type
+
+__all__ = [
+    "ATTACHMENT_PROTOCOL", "PreviousTask", "Recorder", "attachment_reference", "header_context", "recorder", "recover_log",
+    "resumed_task", "silence_display",
+]  # fmt: skip
+
+
+def silence_display() -> None:
+    """Turn the engine's own display off."""
+    init_display_type("none")
+
+
+def header_context() -> dict[str, Any]:
+    """Return the validation context with which a stored header is read."""
+    return get_deserializing_context()
+
+
+def attachment_reference(content: str) -> str:
+    """Return how a stored sample refers to a text or picture that is kept once for all its messages."""
+    return ATTACHMENT_PROTOCOL + mm3_hash(content)
+
+
+async def recover_log(path: Path) -> None:
+    """Write the finished samples of a killed evaluation into a log beside its own, where there are any."""
+    with suppress(RecoveryNotAvailable):
+        await recover_eval_log_async(str(path), cleanup=True)
+
+
+def resumed_task(task: Task, header: EvalLog, info: EvalLogInfo | None) -> PreviousTask:
+    """Return a task that takes over the samples of an earlier log.
+
+    Args:
+        task: The task to run.
+        header: The earlier log; its samples may be in memory.
+        info: Where the earlier log is, when its samples are not in memory.
+    """
+    return PreviousTask(
+        id=header.eval.task_id, task=task, task_args=resolve_task_args(task), model=None, model_roles=None, sandbox=None,
+        log=header, log_info=info,
+    )  # fmt: skip
+
+
+def recorder(log: Path, folder: Path) -> Recorder:
+    """Return what reads or writes a log sample by sample."""
+    return create_recorder_for_location(str(log), str(folder))

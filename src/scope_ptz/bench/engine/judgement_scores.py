@@ -1,0 +1,37 @@
+"""Judgements in a log: each is a score of its own, named after the judge and the number of the judgement."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from inspect_ai.scorer import CORRECT, INCORRECT, Score
+from pydantic import ValidationError
+
+from scope_ptz.bench.scoring.trials import Judgement
+from scope_ptz.errors import TraceError
+
+JUDGE = "judge"
+JUDGEMENT = "judgement"
+
+
+def score_of_judgement(judgement: Judgement) -> Score:
+    """Return a judgement as a score of the engine. Without a verdict it has no value, and no metric counts it."""
+    metadata = {"error_mode": judgement.error_mode, JUDGEMENT: judgement.model_dump(mode="json")}
+    if judgement.verdict in ("correct", "incorrect"):
+        value = CORRECT if judgement.verdict == "correct" else INCORRECT
+        return Score(value=value, explanation=judgement.reason, metadata=metadata)
+    return Score.unscored(reason=judgement.verdict, explanation=judgement.reason, metadata=metadata)
+
+
+def judgements_in(scores: Mapping[str, Any]) -> tuple[Judgement, ...]:
+    """Return the judgements among the scores of a sample, in the order in which they were made.
+
+    A failed judgement that was requested again has the same number as the new one; the newer counts. Raises ``TraceError``.
+    """
+    stored = (score["metadata"][JUDGEMENT] for score in scores.values() if JUDGEMENT in (score.get("metadata") or {}))
+    try:
+        made = [Judgement.model_validate(row) for row in stored]
+        return tuple({(j.judge, j.prompt, j.repeat): j for j in made}.values())
+    except ValidationError as error:
+        raise TraceError(f"A judgement in the log is damaged: {error.errors(include_url=False)[0]['msg']}.") from error

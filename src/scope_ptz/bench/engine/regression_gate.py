@@ -1,0 +1,103 @@
+"""A gate for continuous integration: is an evaluation significantly worse than an earlier one, task by task?"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from statistics import fmean
+
+from scope_ptz.bench.judging.judgement_tally import without_verdict
+from scope_ptz.bench.scoring.trials import Evaluation, Trial
+from scope_ptz.bench.statistics.paired import holm, mcnemar_exact
+from scope_ptz.errors import InputError
+
+ALL = "all"
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Paired outcomes of a group of tasks.
+
+    ``worse`` and ``better`` are tasks that are correct less or more often than before. ``p`` is the two-sided p value of McNemar's
+    exact test (with repeats, the sign test); categories are adjusted for multiple tests by Holm's method.
+    """
+
+    group: str
+    tasks: int
+    before: float
+    now: float
+    worse: tuple[str, ...]
+    better: tuple[str, ...]
+    p: float
+
+    def regressed(self, alpha: float) -> bool:
+        return self.now < self.before and self.p < alpha
+
+
+@dataclass(frozen=True, slots=True)
+class Gate:
+    """The comparison as a whole. ``left_out`` are tasks that were broken or not judged in either evaluation."""
+
+    overall: Comparison
+    categories: tuple[Comparison, ...]
+    left_out: tuple[str, ...]
+    alpha: float
+
+    @property
+    def regressions(self) -> tuple[Comparison, ...]:
+        return tuple(c for c in (self.overall, *self.categories) if c.regressed(self.alpha))
+
+    @property
+    def passed(self) -> bool:
+        return not self.regressions
+
+
+def gate(evaluation: Evaluation, baseline: Evaluation, alpha: float = 0.05) -> Gate:
+    """Compare two evaluations over the same tasks. Raises ``InputError`` when they cannot be compared."""
+    for name, log in (("log", evaluation), ("baseline", baseline)):
+        if not log.finished:
+            raise InputError(f"The {name} {log.log} holds {len(log.trials)} of {log.wanted} runs: finish it first.")
+    if (evaluation.card.dataset, evaluation.card.dataset_digest) != (baseline.card.dataset, baseline.card.dataset_digest):
+        raise InputError(
+            f"The logs are of different tasks ({_tasks(evaluation)}; baseline {_tasks(baseline)}), so they cannot be compared. "
+            "Run both on the same split of the same dataset."
+        )
+    before, now = _shares(baseline.trials), _shares(evaluation.trials)
+    both = sorted(before.keys() & now.keys())
+    if not both:
+        raise InputError(
+            "Infrastructure broke every task in one of the logs, or no judge gave a verdict on them: there is nothing to compare."
+        )
+    categories = {trial.task.id: trial.task.category for trial in baseline.trials}
+    groups = {name: [task for task in both if categories[task] == name] for name in dict.fromkeys(categories.values())}
+    singles = [_compare(name, tasks, before, now) for name, tasks in groups.items() if tasks]
+    adjusted = holm([single.p for single in singles])
+    by_category = tuple(
+        Comparison(s.group, s.tasks, s.before, s.now, s.worse, s.better, p if p is not None else 1.0)
+        for s, p in zip(singles, adjusted, strict=True)
+    )
+    left_out = sorted({t.task.id for t in (*baseline.trials, *evaluation.trials)} - set(both))
+    return Gate(_compare(ALL, both, before, now), by_category, tuple(left_out), alpha)
+
+
+def _tasks(evaluation: Evaluation) -> str:
+    card = evaluation.card
+    return f"{card.dataset} {card.split}, digest {card.dataset_digest}"
+
+
+def _shares(trials: Sequence[Trial]) -> dict[str, float]:
+    """Return each task's share of correct runs, without runs that were broken or that wait for a judge."""
+    runs: dict[str, list[bool]] = {}
+    for trial in trials:
+        if trial.headline != "infrastructure" and not without_verdict(trial):
+            runs.setdefault(trial.task.id, []).append(trial.headline == "correct")
+    return {task: fmean(right) for task, right in runs.items()}
+
+
+def _compare(group: str, tasks: Sequence[str], before: Mapping[str, float], now: Mapping[str, float]) -> Comparison:
+    worse = tuple(task for task in tasks if now[task] < before[task])
+    better = tuple(task for task in tasks if now[task] > before[task])
+    return Comparison(
+        group, len(tasks), fmean(before[t] for t in tasks), fmean(now[t] for t in tasks), worse, better,
+        mcnemar_exact(len(worse), len(better)),
+    )  # fmt: skip

@@ -1,0 +1,51 @@
+"""Shares of correct runs, and the summary of an evaluation as JSON data."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import get_args
+
+from scope_ptz.bench.engine.failure_summary import failure_summary, server_events
+from scope_ptz.bench.judging.judgement_tally import not_judged, without_verdict
+from scope_ptz.bench.scoring.trials import Evaluation, Trial
+from scope_ptz.bench.tasks.task import Category
+
+CATEGORIES: tuple[str, ...] = get_args(Category)
+
+
+def accuracy(trials: Sequence[Trial]) -> float | None:
+    """Return the share of correct runs; None when no run is scored.
+
+    Runs that infrastructure broke, and runs that wait for a judge, are excluded.
+    """
+    scored = [t for t in trials if t.headline != "infrastructure" and not without_verdict(t)]
+    return sum(t.headline == "correct" for t in scored) / len(scored) if scored else None
+
+
+def macro_accuracy(trials: Sequence[Trial]) -> float | None:
+    """Return the unweighted mean of the categories' accuracies; None when no run is scored."""
+    groups = [[t for t in trials if t.task.category == category] for category in CATEGORIES]
+    shares = [share for share in (accuracy(group) for group in groups if group) if share is not None]
+    return sum(shares) / len(shares) if shares else None
+
+
+def evaluation_summary(evaluation: Evaluation) -> dict[str, object]:
+    """Return what ``--json`` prints about an evaluation."""
+    trials = evaluation.trials
+    groups = {name: [t for t in trials if t.task.category == name] for name in CATEGORIES}
+    return {
+        "log": evaluation.log,
+        "pair": evaluation.card.pair,
+        "finished": evaluation.finished,
+        "runs": len(trials),
+        "wanted": evaluation.wanted,
+        "macro": macro_accuracy(trials),
+        "micro": accuracy(trials),
+        "by_category": {name: accuracy(group) for name, group in groups.items() if group},
+        "headlines": {
+            name: sum(t.headline == name for t in trials) for name in ("correct", "incorrect", "unscored", "infrastructure")
+        },
+        "not_judged": sum(not_judged(t) for t in trials),
+        "server_events": dict(server_events(trials)),
+        "failure_summary": failure_summary(trials, evaluation.card),
+    }

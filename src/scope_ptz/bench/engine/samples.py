@@ -1,0 +1,96 @@
+"""Entries as samples of the engine, and what a run stores in its sample to be checked and judged again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from inspect_ai.dataset import MemoryDataset, Sample
+from pydantic import ValidationError
+
+from scope_ptz.agent.records import RECORD, Called, Decided, Ended, Started
+from scope_ptz.agent.trace import FILE_NAME, Trace
+from scope_ptz.bench.engine.entries import Entry
+from scope_ptz.bench.scoring.episode import Episode, PresetViewpoints, episode_of
+from scope_ptz.errors import TraceError
+
+STORE = "scope"
+"""The key in a sample's store that belongs to this project."""
+
+
+def dataset_of(entries: Iterable[Entry], name: str) -> MemoryDataset:
+    """Return the entries as a dataset of the engine, grouped by viewpoint so that its layers are read once."""
+    entries = sorted(entries, key=lambda e: (e.facts.scene, e.facts.viewpoint))
+    samples = [Sample(id=e.facts.id, input=e.facts.instruction, target=e.facts.expected, metadata=e.metadata()) for e in entries]
+    return MemoryDataset(samples, name=name)
+
+
+def sample_name(task: str, epoch: int) -> str:
+    """Return the name of a run in its log."""
+    return f"{task}#{epoch}"
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """What a run stored.
+
+    Attributes:
+        trace: Trace as JSON lines; empty when the run never began.
+        presets: Viewpoint of each preset.
+        home: Viewpoint of the home preset.
+        sees: Whether the planner was shown frames.
+        pictures: References to pictures in the log, by their names in the trace.
+        truths: True counts by number of the call, where they were looked up.
+    """
+
+    trace: str
+    presets: Mapping[str, str]
+    home: str
+    sees: bool = False
+    pictures: Mapping[str, str] = field(default_factory=dict)
+    truths: Mapping[str, int | None] = field(default_factory=dict)
+
+    def as_store(self) -> dict[str, Any]:
+        return {
+            "trace": self.trace, "presets": dict(self.presets), "home": self.home, "sees": self.sees,
+            "pictures": dict(self.pictures), "truths": dict(self.truths),
+        }  # fmt: skip
+
+    @classmethod
+    def of_store(cls, store: Any) -> Kept:
+        """Return the run in a sample's store. Raises ``TraceError`` when there is none."""
+        try:
+            return cls(**{name: store[name] for name in ("trace", "presets", "home", "sees", "pictures", "truths")})
+        except (KeyError, TypeError) as error:
+            raise TraceError("A sample of this log holds no run of this benchmark.") from error
+
+    @property
+    def places(self) -> PresetViewpoints:
+        """The viewpoints of the presets and of home."""
+        return PresetViewpoints(self.presets, self.home)
+
+    def episode(self, trace: Trace) -> Episode:
+        """Return the run as the checks see it."""
+        return episode_of(trace, self.places, planner_sees=self.sees, keeps_files=False)
+
+
+def trace_of(text: str, where: Path) -> Trace | None:
+    """Parse a trace from JSON lines; None when the run never began. Raises ``TraceError``."""
+    try:
+        records = [RECORD.validate_json(line) for line in text.splitlines() if line]
+    except ValidationError as error:
+        raise TraceError(f"The trace of a run in {where} is damaged: {error.errors(include_url=False)[0]['msg']}.") from error
+    if not records:
+        return None
+    first, last = records[0], records[-1]
+    if not isinstance(first, Started):
+        raise TraceError(f"The trace of a run in {where} does not begin with a header ({FILE_NAME}).")
+    return Trace(
+        folder=where,
+        started=first,
+        decisions=tuple(r for r in records if isinstance(r, Decided)),
+        calls=tuple(r for r in records if isinstance(r, Called)),
+        ended=last if isinstance(last, Ended) else None,
+    )

@@ -1,0 +1,190 @@
+"""The planners, perception backends and judges of this project as models of the engine: ``scope_ptz/grammar``, ..."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Awaitable, Callable
+from typing import Any, TypeVar
+
+import anyio
+from inspect_ai.model import (
+    ChatCompletionChoice,
+    ChatMessage,
+    ChatMessageAssistant,
+    ContentReasoning,
+    ContentText,
+    GenerateConfig,
+    Model,
+    ModelAPI,
+    ModelCall,
+    ModelOutput,
+    ModelUsage,
+    StopReason,
+    get_model,
+    modelapi,
+)
+from inspect_ai.tool import ToolCall, ToolChoice, ToolInfo
+from pydantic import BaseModel
+
+from scope_ptz.bench.engine.context import EvalContext, ModelRequest
+from scope_ptz.bench.engine.recorded_chat import Exchanges, recorded
+from scope_ptz.bench.engine.transcript import call_id, state_of
+from scope_ptz.bench.judging.judge import Complete
+from scope_ptz.errors import ConfigError
+from scope_ptz.perception.base import Perception
+from scope_ptz.planner.base import CallTools, Decision, Planner
+from scope_ptz.planner.chat.chat_messages import callable_name
+
+__all__ = ["PROVIDER", "Model", "ScopeModel", "engine_model", "output_of", "scope_ptz"]
+
+PROVIDER = "scope_ptz"
+
+_Reply = TypeVar("_Reply", bound=BaseModel)
+
+
+class ScopeModel(ModelAPI):
+    """A model of the registry, or a built-in one. Solvers and scorers use it as planner, perception or judge."""
+
+    def __init__(
+        self,
+        model_name: str,
+        base_url: str | None = None,
+        api_key: str | None = None,
+        config: GenerateConfig | None = None,
+        **options: Any,
+    ) -> None:
+        super().__init__(model_name, base_url, api_key, [], config or GenerateConfig())
+        self.request = ModelRequest(model_name, base_url, options)
+        self._lock = anyio.Lock()
+        self._planner: Planner | None = None
+        self._perception: Perception | None = None
+        self._judges: dict[int, Complete] = {}
+        self._pending: dict[str, _PendingCall] = {}
+
+    async def planner(self, context: EvalContext) -> Planner:
+        """Return the planner of this name, made at the first call."""
+        async with self._lock:
+            if self._planner is None:
+                self._planner = await context.make_planner(self.request)
+            return self._planner
+
+    async def perception(self, context: EvalContext) -> Perception:
+        """Return the perception of this name, made at the first call."""
+        async with self._lock:
+            if self._perception is None:
+                self._perception = await context.make_perception(self.request)
+            return self._perception
+
+    async def judge(self, context: EvalContext, repeat: int) -> Complete:
+        """Return the port of the judge of this name for its ``repeat``-th judgement, made at the first call."""
+        async with self._lock:
+            if repeat not in self._judges:
+                self._judges[repeat] = await context.make_judge(self.request, repeat)
+            return self._judges[repeat]
+
+    async def logged_call(self, model: Model, messages: list[ChatMessage], call: Callable[[], Awaitable[_Reply]]) -> _Reply:
+        """Make a call inside a model event of the engine, which counts, limits and logs it.
+
+        Args:
+            model: The engine's model around this object.
+            messages: What the log shows as the input.
+            call: Makes the call.
+
+        Returns:
+            What ``call`` returned.
+        """
+        pending = _PendingCall(call)
+        key = messages[-1].id or ""
+        self._pending[key] = pending
+        try:
+            await model.generate(messages)
+        finally:
+            del self._pending[key]
+        reply: _Reply = pending.reply
+        return reply
+
+    async def generate(
+        self,
+        input: list[ChatMessage],  # noqa: A002 - the engine's signature
+        tools: list[ToolInfo],  # noqa: ARG002
+        tool_choice: ToolChoice,  # noqa: ARG002
+        config: GenerateConfig,  # noqa: ARG002
+    ) -> tuple[ModelOutput, ModelCall]:
+        pending = self._pending.get(input[-1].id or "")
+        if pending is not None:
+            pending.reply = await pending.call()
+            return self._output_of_reply(pending.reply), ModelCall.create({"model": self.model_name}, None)
+        if self._planner is None:
+            raise ConfigError("Run this by `scope bench run` or by `inspect eval scope_ptz/bench`.")
+        exchanges = Exchanges()
+        decision = await recorded(self._planner, exchanges).step(state_of(input))
+        step = 1 + sum(isinstance(m, ChatMessageAssistant) and bool(m.tool_calls) for m in input)
+        call = ModelCall.create({"requests": exchanges.requests}, {"replies": exchanges.replies})
+        return output_of(decision, self.model_name, step), call
+
+    def _output_of_reply(self, reply: BaseModel) -> ModelOutput:
+        text = json.dumps(reply.model_dump(mode="json", exclude={"attempts"}, exclude_defaults=True), ensure_ascii=False)
+        return ModelOutput.from_content(self.model_name, text)
+
+    def tool_result_images(self) -> bool:
+        """Frames stay in the results that they belong to."""
+        return True
+
+    def connection_key(self) -> str:
+        return f"{self.base_url or ''} {self.model_name}"
+
+
+class _PendingCall:
+    """A call that waits for the engine to make it, and its reply."""
+
+    def __init__(self, call: Callable[[], Awaitable[Any]]) -> None:
+        self.call = call
+        self.reply: Any = None
+
+
+@modelapi(name=PROVIDER)
+def scope_ptz() -> type[ModelAPI]:
+    """The provider under which the engine knows the models of ``scope models`` and the built-in ones."""
+    return ScopeModel
+
+
+def engine_model(name: str, max_connections: int, *, url: str | None = None, **model_args: Any) -> Model:
+    """Return the engine's model for a planner, perception or judge of this project.
+
+    Args:
+        name: Name in the registry, of a built-in, or as its server serves it.
+        max_connections: Concurrent calls that the engine admits.
+        url: Address of its server.
+        model_args: Options that the log keeps with the model.
+    """
+    config = GenerateConfig(max_connections=max_connections)
+    return get_model(f"{PROVIDER}/{name}", base_url=url, config=config, memoize=False, **model_args)
+
+
+def output_of(decision: Decision, model: str, step: int) -> ModelOutput:
+    """Return a decision as the engine logs it. The decision itself is in the metadata."""
+    text = decision.thought if isinstance(decision, CallTools) else decision.text
+    content = [ContentReasoning(reasoning=decision.reasoning)] if decision.reasoning else []
+    calls: list[ToolCall] | None = None
+    stop: StopReason = "stop"
+    if isinstance(decision, CallTools):
+        stop = "tool_calls"
+        calls = [
+            ToolCall(id=call_id(step, index), function=callable_name(c.name), arguments=c.arguments, parse_error=c.problem)
+            for index, c in enumerate(decision.calls)
+        ]
+    message = ChatMessageAssistant(
+        id=f"step-{step}", content=[*content, ContentText(text=text)] if content else text, tool_calls=calls, source="generate"
+    )
+    used, served = decision.usage, decision.served
+    return ModelOutput(
+        model=(served.model if served else "") or model,
+        choices=[ChatCompletionChoice(message=message, stop_reason=stop)],
+        usage=ModelUsage(
+            input_tokens=used.input_tokens - used.cached_tokens,
+            output_tokens=used.output_tokens,
+            total_tokens=used.input_tokens + used.output_tokens,
+            input_tokens_cache_read=used.cached_tokens or None,
+        ),
+        metadata={"decision": decision.model_dump(mode="json")},
+    )

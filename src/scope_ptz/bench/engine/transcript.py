@@ -1,0 +1,194 @@
+"""A planner's state as chat messages and back: what the log shows, and what any chat model can plan from.
+
+The texts are those of the chat planner. Exact values (poses, results) are in the metadata, for planners that do not read text.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
+from typing import Any
+
+from inspect_ai.model import (
+    ChatMessage,
+    ChatMessageAssistant,
+    ChatMessageSystem,
+    ChatMessageTool,
+    ChatMessageUser,
+    Content,
+    ContentImage,
+    ContentReasoning,
+    ContentText,
+)
+from inspect_ai.tool import ToolCall as EngineCall
+from inspect_ai.tool import ToolCallError, ToolInfo, ToolParams
+from pydantic import TypeAdapter
+
+from scope_ptz.agent.records import Called, Decided, Ended, Started
+from scope_ptz.errors import PlannerError
+from scope_ptz.geometry import Limits, Pose
+from scope_ptz.planner.base import Briefing, CallTools, Exchange, Picture, State, ToolCall, ToolOutcome
+from scope_ptz.planner.chat.chat_messages import callable_name
+from scope_ptz.planner.chat.observations import observation
+from scope_ptz.planner.chat.prompts import Prompt
+from scope_ptz.planner.chat.schemas import plain_schemas
+from scope_ptz.tools.registry import schemas
+
+Record = Started | Decided | Called | Ended
+
+_BRIEFING: TypeAdapter[Briefing] = TypeAdapter(Briefing)
+
+
+def messages_of(state: State, prompt: Prompt, *, sees: bool = False) -> list[ChatMessage]:
+    """Return the messages of a state. Each step appends to those of the step before; only the newest view is replaced."""
+    briefing = state.briefing
+    system = ChatMessageSystem(
+        id="briefing",
+        content=prompt.fill(briefing.presets, briefing.limits, briefing.pose, sees=sees),
+        metadata={"briefing": _BRIEFING.dump_python(briefing, mode="json")},
+    )
+    messages: list[ChatMessage] = [system, ChatMessageUser(id="instruction", content=state.instruction)]
+    for step, exchange in enumerate(state.history, 1):
+        messages += _exchange(exchange, step)
+    if state.view is not None:
+        messages.append(ChatMessageUser(id=f"view-{len(state.history)}", content=_pictured(state.view)))
+    return messages
+
+
+def _exchange(exchange: Exchange, step: int) -> list[ChatMessage]:
+    calls = [
+        EngineCall(id=call_id(step, index), function=callable_name(o.call.name), arguments=o.call.arguments)
+        for index, o in enumerate(exchange.outcomes)
+    ]
+    assistant = ChatMessageAssistant(id=f"step-{step}", content=exchange.thought, tool_calls=calls)
+    return [assistant, *(tool_message(outcome, step, index) for index, outcome in enumerate(exchange.outcomes))]
+
+
+def call_id(step: int, index: int) -> str:
+    """Return the id of a call in messages. It has nine characters, because some chat templates accept nothing else."""
+    return f"s{step:04d}c{index:03d}"
+
+
+def tool_message(outcome: ToolOutcome, step: int, index: int) -> ChatMessageTool:
+    """Return the result of a call as the planner reads it, with the whole outcome in the metadata."""
+    told: list[Content] = [ContentText(text=observation(outcome))]
+    if outcome.picture is not None:
+        told += _pictured(outcome.picture)
+    return ChatMessageTool(
+        id=f"result-{step}-{index}",
+        tool_call_id=call_id(step, index),
+        function=callable_name(outcome.call.name),
+        content=told if outcome.picture is not None else observation(outcome),
+        error=ToolCallError("unknown", outcome.error) if outcome.error is not None else None,
+        metadata={"outcome": outcome.model_dump(mode="json")},
+    )
+
+
+def _pictured(picture: Picture) -> list[Content]:
+    return [ContentText(text=picture.caption), ContentImage(image=picture.data_url)]
+
+
+def conversation_of(records: Sequence[Record], pictures: Mapping[str, str]) -> list[ChatMessage]:
+    """Return a run as a conversation for human readers. ``pictures`` are data URLs by name, shown where they were taken."""
+    messages: list[ChatMessage] = []
+    for record in records:
+        match record:
+            case Started():
+                messages.append(ChatMessageUser(content=[ContentText(text=record.instruction), *_shown([record.frame], pictures)]))
+            case Decided(decision=CallTools() as wanted):
+                calls = [
+                    EngineCall(id=call_id(record.step, index), function=callable_name(c.name), arguments=c.arguments)
+                    for index, c in enumerate(wanted.calls)
+                ]
+                thought = [ContentReasoning(reasoning=wanted.reasoning)] if wanted.reasoning else []
+                messages.append(
+                    ChatMessageAssistant(content=[*thought, ContentText(text=wanted.thought)], tool_calls=calls, source="generate")
+                )
+            case Called():
+                told = tool_message(record.outcome, record.step, record.index)
+                result = record.outcome.result or {}
+                names = [*result.get("frames", ()), result.get("file"), record.frame]
+                images = _shown(names, pictures)
+                if images:
+                    told = told.model_copy(update={"content": [ContentText(text=told.text), *images]})
+                messages.append(told)
+            case Ended():
+                messages.append(ChatMessageAssistant(content=record.text, source="generate"))
+    return messages
+
+
+def _shown(names: Iterable[str | None], pictures: Mapping[str, str]) -> list[Content]:
+    return [ContentImage(image=pictures[name]) for name in names if name is not None and name in pictures]
+
+
+@cache
+def _schemas() -> tuple[dict[str, Any], ...]:
+    """Return the schemas of the tools, made once: they are the same for every camera."""
+    return tuple(schemas())
+
+
+@cache
+def _tool_infos() -> tuple[ToolInfo, ...]:
+    functions = (tool["function"] for tool in plain_schemas(_schemas()))
+    return tuple(
+        ToolInfo(name=f["name"], description=f["description"], parameters=ToolParams.model_validate(f["parameters"]))
+        for f in functions
+    )
+
+
+def tool_infos() -> list[ToolInfo]:
+    """Return the tools as the engine passes them to a model."""
+    return list(_tool_infos())
+
+
+def state_of(messages: Sequence[ChatMessage]) -> State:
+    """Return the state that messages describe. Without a briefing, the camera looks straight ahead and has no presets.
+
+    Raises ``PlannerError`` when the messages hold no instruction.
+    """
+    system = next((m for m in messages if isinstance(m, ChatMessageSystem) and m.metadata and "briefing" in m.metadata), None)
+    told = system.metadata["briefing"] if system is not None and system.metadata else None
+    briefing = _BRIEFING.validate_python(told) if told else Briefing(presets=(), pose=Pose(), limits=Limits())
+    asked = next((m for m in messages if isinstance(m, ChatMessageUser)), None)
+    if asked is None or not asked.text.strip():
+        raise PlannerError("There is no instruction among the messages.")
+    newest = messages[-1]
+    view = _view(newest) if isinstance(newest, ChatMessageUser) and newest is not asked else None
+    return State(instruction=asked.text, briefing=briefing, history=tuple(_history(messages)), tools=_schemas(), view=view)
+
+
+def _history(messages: Sequence[ChatMessage]) -> list[Exchange]:
+    results = {m.tool_call_id: m for m in messages if isinstance(m, ChatMessageTool)}
+    history = []
+    for message in messages:
+        if isinstance(message, ChatMessageAssistant) and message.tool_calls:
+            outcomes = tuple(_outcome(call, results.get(call.id)) for call in message.tool_calls)
+            history.append(Exchange(outcomes=outcomes, thought=message.text))
+    return history
+
+
+def _outcome(call: EngineCall, told: ChatMessageTool | None) -> ToolOutcome:
+    if told is not None and told.metadata and "outcome" in told.metadata:
+        return ToolOutcome.model_validate(told.metadata["outcome"])
+    made = ToolCall(id=call.id, name=call.function, arguments=call.arguments)
+    if told is None:
+        return ToolOutcome(call=made, error="Nothing came back.")
+    if told.error is not None:
+        return ToolOutcome(call=made, error=told.error.message)
+    return ToolOutcome(call=made, result=_object(told.text))
+
+
+def _object(text: str) -> dict[str, Any]:
+    try:
+        content = json.loads(text)
+    except ValueError:
+        content = None
+    return content if isinstance(content, dict) else {"message": text}
+
+
+def _view(message: ChatMessageUser) -> Picture | None:
+    if isinstance(message.content, str):
+        return None
+    image = next((part for part in message.content if isinstance(part, ContentImage)), None)
+    return Picture(data_url=image.image, caption=message.text) if image is not None else None

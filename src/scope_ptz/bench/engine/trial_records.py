@@ -1,0 +1,119 @@
+"""Trials made from what runs stored."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from scope_ptz.agent.records import Ended
+from scope_ptz.agent.trace import Trace
+from scope_ptz.bench.engine.entries import Entry
+from scope_ptz.bench.engine.samples import Kept, sample_name, trace_of
+from scope_ptz.bench.judging.deciding_judge import verdict_by
+from scope_ptz.bench.scoring.episode import Episode, Observation
+from scope_ptz.bench.scoring.error_modes import error_mode
+from scope_ptz.bench.scoring.imported_check import check_imported_calls
+from scope_ptz.bench.scoring.trials import CheckRecord, Judgement, ObservationTime, Trial
+from scope_ptz.bench.scoring.verdict import AGENTS_OWN_FAILURES, score_episode
+
+_TIMED_TOOLS = ("count_objects", "query_answer")
+
+
+def trial_of(entry: Entry, kept: Kept, epoch: int, where: Path, judgements: tuple[Judgement, ...] = ()) -> Trial:
+    """Return the trial of a run: scored by its task's checks, or without checks by the first verdict of a judge.
+
+    Where a log has several judges, ``judging.deciding`` says which of them decides.
+    """
+    name = sample_name(entry.facts.id, epoch)
+    trace = trace_of(kept.trace, where)
+    if trace is None:
+        reason = "the run did not begin"
+        return Trial(
+            task=entry.facts, epoch=epoch, sample=name, headline="infrastructure", reason=reason, outcome=None, answer="",
+            judgements=judgements,
+        )  # fmt: skip
+    verdict = _by_checks(entry, kept, trace) if entry.task else _by_judge(trace, judgements)
+    if entry.imported is not None:
+        verdict["checks"] = (check_imported_calls(entry.imported, kept.episode(trace)),)
+    return Trial.model_validate(
+        {"task": entry.facts, "epoch": epoch, "sample": name, "judgements": judgements} | verdict | _run(trace)
+    )
+
+
+def _by_checks(entry: Entry, kept: Kept, trace: Trace) -> dict[str, Any]:
+    assert entry.task is not None  # noqa: S101 - the caller has checked
+    episode = kept.episode(trace)
+    verdict = score_episode(entry.task, episode)
+    truth = _Truths(episode, kept.truths)
+    return {
+        "headline": verdict.headline,
+        "scored_by": "checks",
+        "reason": verdict.reason,
+        "error_mode": error_mode(entry.task, episode, truth if kept.truths else None),
+        "checks": tuple(CheckRecord(name=c.name, passed=c.passed, reason=c.reason) for c in verdict.checks),
+        "collateral": verdict.collateral,
+    }
+
+
+class _Truths:
+    """The true counts of a run's perception calls, looked up when the run had ended."""
+
+    def __init__(self, episode: Episode, truths: Mapping[str, int | None]) -> None:
+        looks = [(look, truths.get(str(number))) for number, call in enumerate(episode.calls) for look in call.observations]
+        self._known = {id(look): really for look, really in looks}
+        self._looks = [look for look, _ in looks]
+
+    def __call__(self, look: Observation) -> int | None:
+        return next((self._known[id(own)] for own in self._looks if own == look), None)
+
+
+def _by_judge(trace: Trace, judgements: tuple[Judgement, ...]) -> dict[str, Any]:
+    broken = broken_by(trace.ended)
+    if broken is not None:
+        return {"headline": "infrastructure", "scored_by": "judge", "reason": broken, "error_mode": None}
+    return {"scored_by": "judge", **verdict_by(judgements)}
+
+
+def broken_by(ended: Ended | None) -> str | None:
+    """Return why infrastructure broke a run, as far as its end shows it; None when it did not."""
+    if ended is None:
+        return "the run was cut off"
+    if ended.outcome in ("camera_error", "cancelled"):
+        return f"the run ended {ended.outcome}"
+    if ended.outcome == "planner_error" and ended.kind is not None and ended.kind not in AGENTS_OWN_FAILURES:
+        return f"the planner's server failed: {ended.kind}"
+    return None
+
+
+def _look_times(trace: Trace) -> tuple[ObservationTime, ...]:
+    """Return where the time of each perception call went."""
+    looked = [c for c in trace.calls if c.outcome.call.name in _TIMED_TOOLS and c.outcome.error is None]
+    return tuple(
+        ObservationTime(
+            view="full" if called.outcome.call.arguments.get("view") == "full" else "current",
+            eyes_s=called.perception_s,
+            capture_s=max(called.timings.capture_s, 0.0),
+            call_s=max(called.timings.total_s, 0.0),
+        )
+        for called in looked
+    )
+
+
+def _run(trace: Trace) -> dict[str, Any]:
+    """Return the facts of a trial that come from its trace."""
+    ended = trace.ended
+    return {
+        "outcome": ended.outcome if ended else None,
+        "answer": ended.text if ended else "",
+        "steps": ended.steps if ended else len(trace.decisions),
+        "tool_calls": dict(Counter(c.outcome.call.name for c in trace.calls if c.fault != "skipped")),
+        "bad_calls": sum(c.fault == "bad_call" for c in trace.calls),
+        "perception_failures": sum(c.fault == "perception" for c in trace.calls),
+        "server_events": ended.server_events if ended else {},
+        "input_tokens": ended.usage.input_tokens if ended else 0,
+        "output_tokens": ended.usage.output_tokens if ended else 0,
+        "timings": ended.timings if ended else {},
+        "looks": _look_times(trace),
+    }

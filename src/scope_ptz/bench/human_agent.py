@@ -1,0 +1,223 @@
+"""A person in place of the models: a planner whose commands are typed, and a perception that asks what a picture shows."""
+
+from __future__ import annotations
+
+import json
+import shlex
+import time
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from anyio import to_thread
+
+from scope_ptz.bench.human_viewer import Viewer
+from scope_ptz.camera.base import Camera, Frame
+from scope_ptz.errors import InputError, PerceptionError
+from scope_ptz.perception.base import Answer, Box, Caption, Detections, Perception, Point, Points
+from scope_ptz.planner.base import CallTools, Decision, Finish, Planner, State, ToolCall
+
+HELP = """  pan 20  pan -20  tilt -5  zoom 2  zoom in  zoom out   turn and zoom; several in one line are one move
+  preset NAME   home   presets   picture                go to a preset or home, list presets, take a picture
+  count WHAT    count all WHAT                          count in this view, or all around
+  ask QUESTION  ask all QUESTION                        look closely at this view, or all around
+  zoomto WHAT   track WHAT SECONDS                      frame something, follow something
+  answer TEXT   question TEXT   refuse TEXT             end the task with an answer, a question back, or a refusal
+  call TOOL {"argument": value}                         any tool call as a program would make it
+  skip          quit                                    leave this task for later; stop for now"""
+
+Ask = Callable[[str], str]
+"""Asks the person for a line. Raises ``EOFError`` at the end of the input."""
+T = TypeVar("T")
+_ENDS = {"answer": "answered", "question": "clarification", "refuse": "refused"}
+
+
+class TaskLeftError(Exception):
+    """The person leaves the task unfinished. ``for_good`` ends the session, too."""
+
+    def __init__(self, *, for_good: bool) -> None:
+        super().__init__()
+        self.for_good = for_good
+
+
+def parse(line: str) -> ToolCall | Finish | None:
+    """Parse a typed line; None for help. Raises ``TaskLeftError``, or ``InputError`` when the line is wrong."""
+    verb, _, rest = line.strip().partition(" ")
+    verb, rest = verb.lower(), rest.strip()
+    if verb in _ENDS:
+        if not rest:
+            raise InputError(f"Say what after '{verb}'.")
+        return Finish(kind=_ENDS[verb], text=rest)  # type: ignore[arg-type]
+    if verb in ("skip", "quit"):
+        raise TaskLeftError(for_good=verb == "quit")
+    if verb in ("help", "?", ""):
+        return None
+    name, arguments = _call(verb, rest)
+    return ToolCall(id="", name=name, arguments=arguments)
+
+
+def _call(verb: str, rest: str) -> tuple[str, dict[str, Any]]:
+    simple = {"home": "go_home", "presets": "get_presets", "picture": "take_image"}
+    if verb in simple and not rest:
+        return simple[verb], {}
+    if verb in ("pan", "tilt", "zoom"):
+        return "adjust_ptz", _turn(f"{verb} {rest}".split())
+    if verb == "preset" and rest:
+        return "go_to_preset", {"name": rest}
+    if verb in ("count", "ask") and rest:
+        full = rest.lower().startswith("all ")
+        said = rest[4:].strip() if full else rest
+        key = "description" if verb == "count" else "question"
+        return ("count_objects" if verb == "count" else "query_answer"), {key: said, "view": "full" if full else "current"}
+    if verb == "zoomto" and rest:
+        return "zoom_to_object", {"description": rest}
+    if verb == "track":
+        what, _, seconds = rest.rpartition(" ")
+        return "track_object", {"description": what.strip(), "duration_s": _number(seconds)}
+    if verb == "call":
+        name, _, given = rest.partition(" ")
+        return name, _json(given or "{}")
+    raise InputError(f"'{verb}' is no command, or something is missing after it. Type help.")
+
+
+def _turn(words: list[str]) -> dict[str, Any]:
+    """Parse ``pan 20 tilt -5 zoom 2`` as arguments."""
+    if len(words) % 2:
+        raise InputError("Say how far: pan 20, tilt -5, zoom 2, zoom in.")
+    arguments: dict[str, Any] = {}
+    for axis, amount in zip(words[::2], words[1::2], strict=True):
+        if axis == "zoom" and amount in ("in", "out"):
+            arguments["zoom_limit"] = amount
+        elif axis in ("pan", "tilt", "zoom"):
+            arguments["zoom_factor" if axis == "zoom" else f"{axis}_deg"] = _number(amount)
+        else:
+            raise InputError(f"'{axis}' is neither pan nor tilt nor zoom.")
+    return arguments
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text.rstrip("°sx%"))
+    except ValueError as error:
+        raise InputError(f"'{text}' is no number.") from error
+
+
+def _json(text: str) -> dict[str, Any]:
+    try:
+        content = json.loads(text)
+    except ValueError as error:
+        raise InputError(f"{shlex.quote(text)} is no JSON: {error}.") from error
+    if not isinstance(content, dict):
+        raise InputError("The arguments of a call are a JSON object.")
+    return content
+
+
+class HumanPlanner(Planner):
+    """A planner that shows the view and the last result, and makes the calls that the person types.
+
+    ``left`` is set when the person left the task.
+    """
+
+    sees = True
+
+    def __init__(
+        self, name: str, camera: Camera, viewer: Viewer, perception: HumanPerception, ask: Ask, tell: Callable[[str], None]
+    ) -> None:
+        self.name, self._camera, self._viewer, self._perception, self._ask, self._tell = name, camera, viewer, perception, ask, tell
+        self.left: TaskLeftError | None = None
+
+    async def step(self, state: State) -> Decision:
+        for outcome in state.history[-1].outcomes if state.history else ():
+            self._tell(f"  {outcome.error or (outcome.result or {}).get('message', 'done')}")
+        frame = await self._camera.frame()
+        pose = frame.pose.as_dict()
+        where = f"pan {pose['pan_deg']:g}°, tilt {pose['tilt_deg']:g}°, zoom {pose['zoom']:g}x"
+        self._tell(f"  view ({where}): {self._viewer.show(frame)}")
+        while True:
+            try:
+                meant = parse(await to_thread.run_sync(self._ask, "› "))
+            except InputError as error:
+                self._tell(f"  {error}")
+                continue
+            except (TaskLeftError, EOFError) as left:
+                self.left = left if isinstance(left, TaskLeftError) else TaskLeftError(for_good=True)
+                return Finish(kind="refused", text="left")
+            if isinstance(meant, Finish):
+                return meant
+            if meant is None:
+                self._tell(HELP)
+                continue
+            self._perception.counts = meant.name == "count_objects"
+            return CallTools(calls=(meant.model_copy(update={"id": f"call-{len(state.history) + 1}"}),))
+
+
+class HumanPerception(Perception):
+    """A perception that asks the person. ``counts`` says that the next search needs only a number, not places."""
+
+    def __init__(self, name: str, viewer: Viewer, ask: Ask, tell: Callable[[str], None]) -> None:
+        self.name, self._viewer, self._ask, self._tell = name, viewer, ask, tell
+        self.counts = False
+        self._last = ""
+
+    async def caption(self, frame: Frame) -> Caption:
+        began = time.perf_counter()
+        text = await self._answer(frame, "What does the picture show?")
+        return Caption(text=text, source=self.name, raw=text, latency_s=time.perf_counter() - began)
+
+    async def query(self, frame: Frame, question: str) -> Answer:
+        began = time.perf_counter()
+        text = await self._answer(frame, f"{question} (? if you cannot tell)")
+        known = text != "?"
+        said = text if known else "I cannot tell."
+        return Answer(text=said, known=known, source=self.name, raw=text, latency_s=time.perf_counter() - began)
+
+    async def detect(self, frame: Frame, description: str) -> Detections:
+        began = time.perf_counter()
+        if self.counts:
+            number = await self._ask_until(frame, f"How many: {description}?", _whole)
+            boxes = (Box(x_min=0, y_min=0, x_max=1, y_max=1, label="counted, place not asked"),) * number
+        else:
+            boxes = await self._places(frame, description)
+        return Detections(boxes=boxes, source=self.name, raw=str(len(boxes)), latency_s=time.perf_counter() - began)
+
+    async def point(self, frame: Frame, description: str) -> Points:
+        boxes = (await self.detect(frame, description)).boxes
+        return Points(points=tuple(Point(x=b.centre[0], y=b.centre[1]) for b in boxes), source=self.name)
+
+    async def _places(self, frame: Frame, description: str) -> tuple[Box, ...]:
+        ask = f"Where is: {description}? left top right bottom, in % of the picture; 'none'; Enter: as before"
+        box = await self._ask_until(frame, ask, self._box, grid=True)
+        return () if box is None else (box,)
+
+    def _box(self, text: str) -> Box | None:
+        text = text or self._last
+        self._last = text
+        if text.lower() == "none":
+            return None
+        sides = [_number(part) / 100 for part in text.replace(",", " ").split()]
+        if len(sides) != 4 or not (0 <= sides[0] < sides[2] <= 1 and 0 <= sides[1] < sides[3] <= 1):
+            raise InputError("Four numbers from 0 to 100: left, top, right, bottom; or none.")
+        return Box(x_min=sides[0], y_min=sides[1], x_max=sides[2], y_max=sides[3])
+
+    async def _answer(self, frame: Frame, question: str) -> str:
+        def given(text: str) -> str:
+            if not text:
+                raise InputError("Type what you see.")
+            return text
+
+        return await self._ask_until(frame, question, given)
+
+    async def _ask_until(self, frame: Frame, question: str, read: Callable[[str], T], *, grid: bool = False) -> T:
+        self._tell(f"  picture: {self._viewer.show(frame, grid=grid)}")
+        while True:
+            try:
+                return read((await to_thread.run_sync(self._ask, f"  {question} ")).strip())
+            except InputError as error:
+                self._tell(f"  {error}")
+            except EOFError as error:
+                raise PerceptionError("The input ended before the person answered.") from error
+
+
+def _whole(text: str) -> int:
+    if not text.isdecimal() or int(text) > 999:
+        raise InputError("A whole number, in digits.")
+    return int(text)

@@ -1,0 +1,69 @@
+"""Pictures for a person at a terminal: as files, and in the terminal itself where it can show them."""
+
+from __future__ import annotations
+
+import base64
+from pathlib import Path
+from typing import IO
+
+import cv2
+from PIL import Image
+
+from scope_ptz.agent.drawing import INK, Canvas
+from scope_ptz.camera.base import Frame
+from scope_ptz.errors import OutputError
+from scope_ptz.settings import Inline
+
+JPEG_QUALITY = 92
+_KITTY_CHUNK = 4096
+_GRID = range(10, 100, 10)
+
+
+class Viewer:
+    """Writes pictures into a folder, numbered in order, and shows them inline in a terminal."""
+
+    def __init__(self, folder: Path, terminal: IO[str] | None, inline: Inline | None) -> None:
+        self._folder, self._terminal, self._inline = folder, terminal, inline
+        self._shown = 0
+
+    def show(self, frame: Frame, *, grid: bool = False) -> Path:
+        """Write a frame and return its file. ``grid`` draws lines at every tenth of its sides. Raises ``OutputError``."""
+        self._shown += 1
+        path = self._folder / f"{self._shown:03d}.jpg"
+        image = Image.fromarray(frame.image)
+        if grid:
+            image = _gridded(image)
+        try:
+            self._folder.mkdir(parents=True, exist_ok=True)
+            image.save(path, quality=JPEG_QUALITY)
+        except OSError as error:
+            raise OutputError(f"{path} cannot be written: {error.strerror}.") from error
+        if self._terminal is not None and self._inline is not None:
+            self._terminal.write(escape(frame, self._inline))
+            self._terminal.flush()
+        return path
+
+
+def _gridded(image: Image.Image) -> Image.Image:
+    canvas = Canvas(image.width, image.height)
+    canvas.picture(image, 0, 0, image.width, image.height, radius=0)
+    for part in _GRID:
+        x, y = part / 100 * image.width, part / 100 * image.height
+        canvas.panel(x, 0, 1, image.height, "#FFFFFF60", radius=0)
+        canvas.panel(0, y, image.width, 1, "#FFFFFF60", radius=0)
+        canvas.text(x + 3, 15, str(part), 14, INK, bold=True)
+        canvas.text(3, y - 3, str(part), 14, INK, bold=True)
+    return canvas.finish()
+
+
+def escape(frame: Frame, inline: Inline) -> str:
+    """Return the escape sequence that makes a terminal show a frame at half its size."""
+    small = cv2.resize(cv2.cvtColor(frame.image, cv2.COLOR_RGB2BGR), None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
+    suffix = ".png" if inline == "kitty" else ".jpg"
+    _, coded = cv2.imencode(suffix, small)
+    data = base64.b64encode(coded.tobytes()).decode()
+    if inline == "iterm":
+        return f"\x1b]1337;File=inline=1;width=100%;preserveAspectRatio=1:{data}\x07\n"
+    chunks = [data[at : at + _KITTY_CHUNK] for at in range(0, len(data), _KITTY_CHUNK)]
+    marked = (f"\x1b_G{'f=100,a=T,' if n == 0 else ''}m={int(n < len(chunks) - 1)};{chunk}\x1b\\" for n, chunk in enumerate(chunks))
+    return "".join(marked) + "\n"

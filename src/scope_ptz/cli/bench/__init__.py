@@ -1,0 +1,1 @@
+"""``scope bench``: run the benchmark, score and compare runs, and make tasks."""

@@ -1,0 +1,95 @@
+"""``scope bench audit``: questions about pictures for independent readers, and their agreement with the tasks."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from scope_ptz.cli.bench.flags import TasksOption
+from scope_ptz.cli.exit import complain, put, put_json
+from scope_ptz.cli.options import JsonOption, command
+from scope_ptz.errors import InputError, OutputError
+
+audit_app = typer.Typer(help="Check tasks with readers who see only the pictures.", no_args_is_help=True)
+
+_README = """# Questions about pictures
+
+`questions.jsonl` holds a question a line: its number `q`, what was asked of somebody who steers a camera, and the `pictures` that
+the camera then showed, in that order, each with its `caption`. Answer from the pictures alone, as you would tell a colleague.
+
+Write `answers.jsonl`, a line a question: {"q": "q001", "answer": "There are two.", "reader": "your name"}
+Answer every question; "I cannot tell" is an answer.
+"""
+
+
+@audit_app.command("make")
+@command
+def audit_make(
+    out: Annotated[Path, typer.Option("--out", help="New folder for pictures and questions.")],
+    tasks: TasksOption = "core",
+    number: Annotated[int, typer.Option("--n", min=1, help="Number of tasks to sample.")] = 100,
+    seed: Annotated[int, typer.Option(help="Seed of the sample.")] = 1,
+) -> None:
+    """Sample tasks by category, scene and difficulty, and write the frames on which their answers rest, with the questions."""
+    import anyio
+
+    from scope_ptz.bench.program_runner import ProgramRunner
+    from scope_ptz.bench.tasks.files import digest_of
+    from scope_ptz.bench.tasks.splits import load_split
+    from scope_ptz.factory.validation_perception import KnownViews, equip_with_truth
+    from scope_ptz.factory.worlds import worlds_of
+    from scope_ptz.taskgen.audit_questions import write_question
+    from scope_ptz.taskgen.picture_audit import DRAW, QUESTIONS, QuestionDraw, draw_questions
+    from scope_ptz.taskgen.task_sheet import EYES
+
+    rows = load_split(tasks)
+    chosen = draw_questions(rows, number, seed)
+    if not chosen:
+        raise InputError("None of these tasks expects an answer: there is nothing to ask.")
+    worlds = worlds_of([task for _, task in chosen])
+    equip = equip_with_truth(worlds, KnownViews())
+    stages = {name: ProgramRunner(world, equip, EYES) for name, world in worlds.items()}
+    try:
+        out.mkdir(parents=True)
+    except FileExistsError as error:
+        raise OutputError(f"{out} exists already. Name a new folder with --out.") from error
+    except OSError as error:
+        raise OutputError(f"{out} cannot be made: {error.strerror}.") from error
+    questions = [anyio.run(write_question, q, task, stages[task.world], out, complain) for q, task in chosen]
+    (out / QUESTIONS).write_text("".join(json.dumps(row, ensure_ascii=False) + "\n" for row in questions), "utf-8")
+    draw = QuestionDraw(number=number, seed=seed, tasks=digest_of(rows))
+    (out / DRAW).write_text(draw.model_dump_json() + "\n", "utf-8")
+    (out / "README.md").write_text(_README, "utf-8")
+    put(f"{len(questions)} questions and {sum(len(row['pictures']) for row in questions)} pictures in {out}")
+
+
+@audit_app.command("score")
+@command
+def audit_score(
+    folder: Annotated[Path, typer.Argument(help="Folder of 'audit make' with answers.jsonl in it.")],
+    tasks: TasksOption = "core",
+    out: Annotated[Path | None, typer.Option("--out", help="File for the result, for the dataset card (audit.json).")] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Compare the answers with the tasks, using the benchmark's own answer parser.
+
+    Write what you find out about a disagreement into findings.jsonl.
+    """
+    from scope_ptz.bench.tasks.splits import load_split
+    from scope_ptz.taskgen.picture_audit import score_answers
+
+    audit = score_answers(folder, load_split(tasks))
+    if out is not None:
+        out.write_text(json.dumps(audit.as_dict(), indent=1, ensure_ascii=False) + "\n", "utf-8")
+    if as_json:
+        put_json(audit.as_dict())
+        return
+    right, of = audit.share()
+    put(f"{right} of {of} answers agree")
+    for row in audit.rows:
+        if row.outcome != "agrees":
+            put(f"{row.q} {row.task} {row.outcome}: {row.instruction!r}")
+            put(f"     {row.reader or 'nobody'} answered {row.answer!r}, expected is {row.expected!r}. {row.finding}")

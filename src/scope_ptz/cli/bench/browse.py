@@ -1,0 +1,76 @@
+"""``scope bench browse``: list tasks, or show one with everything that it rests on."""
+
+from __future__ import annotations
+
+import random
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from scope_ptz.cli.bench.flags import category_named
+from scope_ptz.cli.exit import put
+from scope_ptz.errors import InputError
+
+if TYPE_CHECKING:
+    from scope_ptz.bench.tasks.task import Task
+
+MAX_AMBIGUOUS_LISTED = 4
+
+
+def browse(
+    task: Annotated[str, typer.Argument(help="Id of a task, or the end of one (counting-017).")] = "",
+    tasks: Annotated[str, typer.Option("--tasks", help="Split or task file (default: every split).")] = "",
+    category: Annotated[str, typer.Option(help="Show only tasks of this category.")] = "",
+    scene: Annotated[str, typer.Option("--scene", help="Show only tasks of this scene.")] = "",
+    at_random: Annotated[bool, typer.Option("--random", help="Show one of the matching tasks at random.")] = False,
+    seed: Annotated[int | None, typer.Option(help="Seed for --random.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for pictures of the start and of the evidence.")] = None,
+) -> None:
+    """List tasks, or show one: instruction, expected answer, the run of its reference program, and the frames it rests on."""
+    rows = _matching(_tasks(tasks), category_named(category), scene)
+    if task:
+        chosen = _with_id(rows, task)
+    elif at_random:
+        chosen = random.Random(seed).choice(rows)
+    else:
+        for row in rows:
+            put(f"{row.id:<52} {row.instruction}")
+        return
+    from scope_ptz.factory.validation_perception import equip_with_truth
+    from scope_ptz.factory.worlds import worlds_of
+    from scope_ptz.taskgen.task_sheet import reference_run, summary, write_frames
+
+    worlds = worlds_of([chosen])
+    (world,) = worlds.values()
+    for line in summary(chosen, [row for row in _tasks(tasks) if row.paraphrase_of == chosen.id]):
+        put(line)
+    for line in reference_run(chosen, world, equip_with_truth(worlds)):
+        put(line)
+    if out is not None:
+        for path in write_frames(chosen, world, out):
+            put(f"picture    {path}")
+
+
+def _tasks(name: str) -> tuple[Task, ...]:
+    from scope_ptz.bench.tasks.splits import load_split
+
+    return load_split(name) if name else (*load_split("all"), *load_split("unseen"))
+
+
+def _matching(tasks: tuple[Task, ...], category: str, scene: str) -> list[Task]:
+    found = [row for row in tasks if category in ("", row.category) and scene in ("", row.scene, row.world)]
+    if not found:
+        raise InputError("No task matches. Leave out --category or --scene, or name other tasks with --tasks.")
+    return found
+
+
+def _with_id(tasks: list[Task], name: str) -> Task:
+    exact = [row for row in tasks if row.id == name]
+    found = exact or [row for row in tasks if row.id.endswith(f"-{name}")]
+    if not found:
+        raise InputError(f"There is no task '{name}'. List them with 'scope bench browse --category counting'.")
+    if len(found) > 1:
+        names = ", ".join(row.id for row in found[:MAX_AMBIGUOUS_LISTED])
+        raise InputError(f"There is more than one task '{name}': {names}. Give a whole id.")
+    return found[0]

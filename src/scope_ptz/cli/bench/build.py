@@ -1,0 +1,204 @@
+"""Commands that make and prove a dataset: ``build``, ``card``, ``validate``, and gold runs (``gold``)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from scope_ptz.cli.bench.flags import SceneNames, TasksOption
+from scope_ptz.cli.exit import FAILED, complain, put, put_json
+from scope_ptz.cli.options import JsonOption, command
+from scope_ptz.errors import InputError, OutputError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from scope_ptz.bench.tasks.task import Category, Task
+    from scope_ptz.taskgen.gold.mutations import GoldRun
+
+gold_app = typer.Typer(help="Make and check gold runs: runs with one known fault each.", no_args_is_help=True)
+UNSEEN_VARIATIONS = (7, 8, 9)
+"""Variations of the scenes in the published unseen split."""
+
+
+def build(
+    out: Annotated[Path, typer.Option("--out", help="File for the tasks (JSONL); with --all, a folder.")],
+    further: Annotated[list[int] | None, typer.Argument(hidden=True, metavar="")] = None,
+    scene: SceneNames = None,
+    seed: Annotated[int, typer.Option(help="Seed; another one makes another dataset of the same scenes.")] = 1,
+    share: Annotated[float, typer.Option(min=0.02, max=1.0, help="Share of the published number of tasks to make.")] = 1.0,
+    seeds: Annotated[list[int] | None, typer.Option("--seeds", min=1, help="Numbers of scene variations: 7 8 9.")] = None,
+    whole: Annotated[bool, typer.Option("--all", help="Make the whole dataset: every split, its proof and the gold runs.")] = False,
+    card: Annotated[Path | None, typer.Option("--card", help="With --all: file for the dataset card (Markdown).")] = None,
+) -> int:
+    """Make tasks from the ground truth of scenes. Exit code 1 when the scenes do not yield the requested number."""
+    from scope_ptz.bench.tasks.files import dump_tasks
+    from scope_ptz.factory.validation_perception import answered
+    from scope_ptz.factory.worlds import scenes_named
+    from scope_ptz.taskgen.authoring.assembly import build as build_tasks
+    from scope_ptz.taskgen.dataset.build import shortfall
+    from scope_ptz.taskgen.dataset.unseen import build_unseen
+
+    numbers = variation_numbers(seeds, further)
+    quotas = _quotas(share)
+    if card is not None and not whole:
+        raise InputError("A card describes a whole dataset: give --all with --card, or use 'scope bench card'.")
+    if whole:
+        return _build_all(scene, out, card, seed, numbers or UNSEEN_VARIATIONS, quotas)
+    scenes = list(scenes_named(scene).values())
+    if numbers:
+        built = build_unseen(scenes, numbers, quotas, complain, answered)
+    else:
+        built = build_tasks(scenes, seed, quotas, complain, answered)
+    out.parent.mkdir(parents=True, exist_ok=True)
+    dump_tasks(built.tasks, out)
+    put(f"{len(built.tasks)} tasks in {out}")
+    if missing := shortfall(built):
+        complain(missing)
+        return FAILED
+    return 0
+
+
+def _build_all(
+    scene: list[str] | None, out: Path, card: Path | None, seed: int, numbers: Sequence[int], quotas: dict[Category, int] | None
+) -> int:
+    from scope_ptz.factory.proof import prove
+    from scope_ptz.factory.validation_perception import answered
+    from scope_ptz.factory.worlds import scenes_named
+    from scope_ptz.taskgen.dataset.build import build_dataset
+
+    good = build_dataset(
+        scenes_named(scene), out, seed, numbers, quotas, prove=prove, make_gold=_gold_runs, answered=answered, report=put,
+        notify=complain,
+    )  # fmt: skip
+    if card is not None:
+        write_card(out, card)
+    return 0 if good else FAILED
+
+
+def variation_numbers(seeds: list[int] | None, further: list[int] | None) -> tuple[int, ...]:
+    """Return the numbers after ``--seeds``; several may follow it without repeating the option. Raises ``InputError``."""
+    if further and not seeds:
+        raise InputError(f"'{further[0]}' belongs to no option. Numbers of scene variations follow --seeds.")
+    numbers = (*(seeds or ()), *(further or ()))
+    if any(not 1 <= number < 10**9 for number in numbers):
+        raise InputError("Numbers of scene variations are whole numbers from 1 to 999999999.")
+    return tuple(dict.fromkeys(numbers))
+
+
+def _quotas(share: float) -> dict[Category, int] | None:
+    from scope_ptz.taskgen.authoring.assembly import QUOTAS
+
+    return None if share == 1.0 else {name: max(2, round(number * share)) for name, number in QUOTAS.items()}
+
+
+def card(
+    data: Annotated[Path | None, typer.Option("--data", help="Dataset folder (default: the published dataset).")] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="File to write (Markdown; default: print it).")] = None,
+) -> None:
+    """Write the dataset card from the dataset's own files."""
+    from scope_ptz.bench.tasks.splits import published_folder
+    from scope_ptz.taskgen.dataset.card import Dataset
+    from scope_ptz.taskgen.dataset.card import card as card_text
+
+    folder = data or published_folder()
+    if out is not None:
+        write_card(folder, out)
+        put(f"card of {folder} in {out}")
+    else:
+        put(card_text(Dataset.read(folder)).rstrip())
+
+
+def write_card(folder: Path, out: Path) -> None:
+    """Write the card of a dataset folder."""
+    from scope_ptz.taskgen.dataset.card import Dataset
+    from scope_ptz.taskgen.dataset.card import card as card_text
+
+    text = card_text(Dataset.read(folder))
+    try:
+        out.parent.mkdir(parents=True, exist_ok=True)
+        out.write_text(text, "utf-8")
+    except OSError as error:
+        raise OutputError(f"The card {out} cannot be written: {error.strerror}.") from error
+
+
+def validate(
+    tasks: TasksOption = "all",
+    as_json: JsonOption = False,
+    seed: Annotated[int, typer.Option(help="Seed of the wrong answers that are tried.")] = 1,
+) -> int:
+    """Prove tasks: correct programs and answers pass, adversarial ones fail. Exit code 1 on any failure."""
+    from scope_ptz.bench.tasks.splits import load_split
+    from scope_ptz.factory.proof import prove
+    from scope_ptz.taskgen.validation.report_text import report_lines
+
+    report = prove(load_split(tasks), seed, beside=load_split("core") if tasks in ("lite", "paraphrase") else ())
+    if as_json:
+        put_json(report.as_dict())
+    else:
+        for line in report_lines(report):
+            put(line)
+    return 0 if report.sound else FAILED
+
+
+@gold_app.command("make")
+@command
+def gold_make(
+    out: Annotated[Path, typer.Option("--out", help="File for the runs (gzipped JSONL).")],
+    tasks: TasksOption = "core",
+    seed: Annotated[int, typer.Option(help="Seed; another one puts other faults into other runs.")] = 1,
+    as_json: JsonOption = False,
+) -> None:
+    """Run the reference programs through the tools, and put one known fault into each of some of them."""
+    from scope_ptz.bench.tasks.splits import load_split
+    from scope_ptz.taskgen.gold.gold_runs import confusion_matrix, write_gold
+    from scope_ptz.taskgen.gold.reference_runs import matrix_lines
+
+    gold = _gold_runs(load_split(tasks), seed)
+    out.parent.mkdir(parents=True, exist_ok=True)
+    write_gold(gold, out)
+    if as_json:
+        put_json(confusion_matrix(gold).as_dict())
+        return
+    for line in (*matrix_lines(gold), f"{len(gold)} runs in {out}"):
+        put(line)
+
+
+@gold_app.command("check")
+@command
+def gold_check(
+    gold: Annotated[Path | None, typer.Option("--gold", help="File of gold runs (default: the published one).")] = None,
+    tasks: TasksOption = "core",
+    as_json: JsonOption = False,
+) -> int:
+    """Apply the error-mode rules to gold runs again.
+
+    Exit code 1 when they name fewer faults, or accept more faulty runs, than published.
+    """
+    from scope_ptz.bench.tasks.splits import load_split, published_folder
+    from scope_ptz.taskgen.gold.gold_runs import confusion_matrix, read_gold
+    from scope_ptz.taskgen.gold.reference_runs import matrix_lines
+
+    published, runs = read_gold(gold or published_folder() / "gold.jsonl.gz", load_split(tasks))
+    result = confusion_matrix(runs)
+    worse = result.worse_than(published)
+    if as_json:
+        put_json({**result.as_dict(), "published": published, "worse": worse})
+    else:
+        for line in matrix_lines(runs):
+            put(line)
+        put(f"published: {published['named']} named, {published['accepted']} accepted; {'WORSE' if worse else 'not worse'} now")
+    return FAILED if worse else 0
+
+
+def _gold_runs(tasks: Sequence[Task], seed: int) -> list[GoldRun]:
+    import anyio
+
+    from scope_ptz.factory.validation_perception import KnownViews, equip_with_truth
+    from scope_ptz.factory.worlds import worlds_of
+    from scope_ptz.taskgen.gold.reference_runs import make_gold_runs
+
+    worlds = worlds_of(tasks)
+    return anyio.run(make_gold_runs, tasks, worlds, equip_with_truth(worlds, KnownViews()), seed)

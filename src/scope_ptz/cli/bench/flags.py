@@ -1,0 +1,182 @@
+"""Options that several benchmark commands share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from scope_ptz.cli.options import RUN_PANEL, JudgeFlags
+from scope_ptz.errors import InputError
+
+if TYPE_CHECKING:
+    from scope_ptz.bench.engine.estimate import Price
+    from scope_ptz.bench.tasks.task import Task
+    from scope_ptz.factory.evaluation_options import JudgeSettings
+
+TASKS_PANEL = "Tasks"
+DEFAULT_LOG_FOLDER = Path("evaluations")
+SPLITS = "core, lite, paraphrase, reaction, unseen, all"
+
+TasksOption = Annotated[str, typer.Option("--tasks", help=f"Split ({SPLITS}) or task file (JSONL or YAML).")]
+SceneNames = Annotated[
+    list[str] | None, typer.Option("--scene", help="Scene to make tasks for (repeatable; default: every scene).")
+]
+JudgeRepeats = Annotated[
+    int, typer.Option("--judge-repeats", min=1, help="Number of judgements of each run.", rich_help_panel="Judge")
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SelectionFlags:
+    """Which tasks are run."""
+
+    split: Annotated[
+        str, typer.Option("--split", "--tasks", help=f"Split ({SPLITS}) or task file.", rich_help_panel=TASKS_PANEL)
+    ] = "core"
+    category: Annotated[
+        list[str] | None,
+        typer.Option("--category", help="Run only tasks of this category (repeatable).", rich_help_panel=TASKS_PANEL),
+    ] = None
+    scene: Annotated[
+        list[str] | None,
+        typer.Option("--scene", help="Run only tasks of this scene (repeatable).", rich_help_panel=TASKS_PANEL),
+    ] = None
+    limit: Annotated[
+        int | None,
+        typer.Option(
+            "--limit",
+            min=1,
+            help="Run at most N tasks, sampled evenly across the selected categories and scenes.",
+            rich_help_panel=TASKS_PANEL,
+        ),
+    ] = None
+    epochs: Annotated[int, typer.Option("--epochs", min=1, help="Number of runs of each task.", rich_help_panel=TASKS_PANEL)] = 1
+
+
+@dataclass(frozen=True, kw_only=True)
+class EvaluationFlags:
+    """How runs are carried out, and where their log is written."""
+
+    concurrency: Annotated[
+        int | None,
+        typer.Option(
+            "--concurrency",
+            min=1,
+            max=256,
+            help="Runs at a time (default: 8 with model servers, else one per CPU core).",
+            rich_help_panel=RUN_PANEL,
+        ),
+    ] = None
+    latency: Annotated[
+        bool, typer.Option("--latency", help="Run one task at a time, to measure latencies.", rich_help_panel=RUN_PANEL)
+    ] = False
+    seed: Annotated[int, typer.Option("--seed", help="Seed for every random choice.", rich_help_panel=RUN_PANEL)] = 1
+    max_steps: Annotated[
+        int, typer.Option("--max-steps", min=1, help="Maximum number of planner steps in a run.", rich_help_panel=RUN_PANEL)
+    ] = 60
+    time_budget: Annotated[
+        float | None,
+        typer.Option("--time-budget", min=1, help="Maximum seconds of a run (default: no limit).", rich_help_panel=RUN_PANEL),
+    ] = None
+    out: Annotated[Path, typer.Option("--out", help="Folder for logs.", rich_help_panel=RUN_PANEL)] = DEFAULT_LOG_FOLDER
+
+
+@dataclass(frozen=True, kw_only=True)
+class SingleRunFlags(EvaluationFlags):
+    """The options of one evaluation, as opposed to a sweep over several pairs."""
+
+    pictures: Annotated[
+        bool,
+        typer.Option(
+            "--pictures/--no-pictures",
+            help="Render frames and log them. Ground-truth perception needs none.",
+            rich_help_panel=RUN_PANEL,
+        ),
+    ] = True
+    resume: Annotated[
+        Path | None,
+        typer.Option(
+            "--resume",
+            metavar="LOG",
+            help="Log to resume (default: the one of the same evaluation in --out).",
+            rich_help_panel=RUN_PANEL,
+        ),
+    ] = None
+    fresh: Annotated[
+        bool, typer.Option("--fresh", help="Start again instead of resuming an earlier log.", rich_help_panel=RUN_PANEL)
+    ] = False
+    variant: Annotated[
+        str, typer.Option("--variant", help="Label for runs that differ by one setting.", rich_help_panel=RUN_PANEL)
+    ] = ""
+    price: Annotated[
+        str | None,
+        typer.Option(
+            "--price",
+            metavar="IN,OUT",
+            help="US dollars per million input and output tokens of the planner.",
+            rich_help_panel=RUN_PANEL,
+        ),
+    ] = None
+    agent: Annotated[
+        str,
+        typer.Option(
+            "--agent",
+            metavar="MODULE:CLASS",
+            help="External agent in place of the built-in loop; see docs/evaluation.md.",
+            rich_help_panel="Models",
+        ),
+    ] = "scope"
+
+
+def judge_settings(flags: JudgeFlags, repeats: int = 1) -> JudgeSettings:
+    """Return the judge that options and environment name."""
+    from scope_ptz.factory.evaluation_options import JudgeSettings
+
+    return JudgeSettings(
+        flags.judge_url,
+        flags.judge_model,
+        flags.judge_key_file,
+        flags.judge_timeout,
+        tuple(flags.judge_option or ()),
+        repeats,
+    )
+
+
+def price_of(text: str | None) -> Price | None:
+    """Parse ``IN,OUT`` as a price. Raises ``InputError``."""
+    if text is None:
+        return None
+    from scope_ptz.bench.engine.estimate import Price
+
+    try:
+        given = [float(part) for part in text.split(",")]
+    except ValueError:
+        given = []
+    if len(given) != 2 or min(given) < 0:
+        raise InputError(f"--price wants two amounts, in and out, in US dollars per million tokens (0.15,0.60), got '{text}'.")
+    return Price(*given)
+
+
+def published_tasks() -> list[Task]:
+    """Return the tasks of every published split that is installed."""
+    from scope_ptz.bench.tasks.splits import load_split
+
+    found: list[Task] = []
+    for split in ("core", "paraphrase", "reaction", "unseen"):
+        try:
+            found += load_split(split)
+        except InputError:
+            continue
+    return found
+
+
+def category_named(name: str) -> str:
+    """Return a category by its name; empty for all. Raises ``InputError`` for an unknown one."""
+    from scope_ptz.bench.engine.run_totals import CATEGORIES
+
+    if name and name not in CATEGORIES:
+        raise InputError(f"There is no category '{name}'. There are: {', '.join(CATEGORIES)}.")
+    return name

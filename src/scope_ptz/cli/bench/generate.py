@@ -1,0 +1,208 @@
+"""Commands that bring tasks in: ``generate`` (drafts of a language model) and ``import`` (files in the paper's format)."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from scope_ptz.cli.exit import FAILED, complain, put, put_json
+from scope_ptz.cli.options import JsonOption
+from scope_ptz.errors import ConfigError, InputError, OutputError
+
+if TYPE_CHECKING:
+    from scope_ptz.bench.tasks.task import Category
+    from scope_ptz.endpoints.endpoint import Endpoint
+    from scope_ptz.taskgen.generating.draft_ledger import DraftLedger
+    from scope_ptz.taskgen.generating.drafting_loop import GenerationRequest
+    from scope_ptz.taskgen.importing.scene_names import SceneNames
+
+MAX_MODELS_LISTED = 20
+
+
+def generate(
+    scene: Annotated[str, typer.Option("--scene", help="Scene, or variation of one, in which the tasks are set.")],
+    url: Annotated[str, typer.Option("--url", help="Address of an OpenAI-compatible server, ending in /v1.")],
+    out: Annotated[Path, typer.Option("--out", help="Folder for drafts, accepted tasks and the review list.")],
+    model: Annotated[str, typer.Option(help="Name of the model on its server (default: the only one it lists).")] = "",
+    key_file: Annotated[Path | None, typer.Option("--key-file", help="File with the server's key.")] = None,
+    number: Annotated[int, typer.Option("--n", min=1, help="Number of tasks, in the proportions of the published ones.")] = 20,
+    want: Annotated[
+        list[str] | None, typer.Option("--want", metavar="CATEGORY=N", help="Number of tasks of a category, instead of --n.")
+    ] = None,
+    known: Annotated[str, typer.Option(help="Split or task file with examples, which are not to be repeated.")] = "",
+    runs: Annotated[Path | None, typer.Option(help="Folder of recorded runs of operators.")] = None,
+    feedback: Annotated[
+        Path | None, typer.Option(help='Ratings of runs, JSONL: {"run": folder name, "rating": "good" or "bad", "note": ...}.')
+    ] = None,
+    requests: Annotated[
+        int, typer.Option(min=1, help="Maximum number of requests to the model, including earlier ones in the folder.")
+    ] = 20,
+    temperature: Annotated[float, typer.Option(min=0, max=2, help="Sampling temperature of the model.")] = 0.8,
+    seed: Annotated[int, typer.Option(help="Seed for views and examples, and for the model where it takes one.")] = 1,
+    timeout: Annotated[float, typer.Option(min=0.1, help="Seconds for one request, retries included.")] = 300.0,
+) -> int:
+    """Draft tasks with a language model. Expected answers come from the ground truth; tasks that cannot be proved are dropped.
+
+    Running the same command again continues in the same folder.
+    """
+    import anyio
+
+    from scope_ptz.bench.tasks.splits import load_split
+    from scope_ptz.factory.scenes import open_scene
+    from scope_ptz.taskgen.generating.draft_ledger import DraftLedger
+    from scope_ptz.taskgen.generating.drafting_loop import GenerationRequest
+    from scope_ptz.taskgen.generating.operator_runs import read_runs
+
+    order = GenerationRequest(
+        scene=open_scene(scene),
+        requested=_requested(want or [], number),
+        known=load_split(known) if known else (),
+        runs=read_runs(runs, feedback),
+        seed=seed,
+        most_requests=requests,
+    )
+    ledger = DraftLedger(out)
+    endpoint = _endpoint(url, key_file, timeout)
+    try:
+        anyio.run(_draft, order, ledger, endpoint, model, temperature)
+    finally:
+        tasks, review = ledger.finish()
+    missing = ledger.missing(order.requested)
+    put(f"{len(ledger.kept)} tasks accepted of {len(ledger.entries)} drafts: {tasks}; to review: {review}")
+    if missing:
+        names = ", ".join(f"{n} of {name}" for name, n in missing.items())
+        complain(f"still missing: {names}. Run the same command again with more --requests.")
+        return FAILED
+    return 0
+
+
+async def _draft(order: GenerationRequest, ledger: DraftLedger, endpoint: Endpoint, model: str, temperature: float) -> None:
+    from scope_ptz.bench.judging.server import JudgeModelOptions, JudgeServer
+    from scope_ptz.factory.proof import task_prover
+    from scope_ptz.taskgen.generating.drafting_loop import generate as generate_tasks
+
+    options = JudgeModelOptions(temperature=temperature, seed=order.seed)
+    port = JudgeServer(await _with_model(endpoint, model), options)
+    try:
+        await generate_tasks(order, port, task_prover(order.scene), ledger, complain)
+    finally:
+        await port.close()
+
+
+def _requested(want: list[str], number: int) -> dict[Category, int]:
+    """Return the number of tasks of each category: as given, or ``number`` in the published proportions."""
+    from scope_ptz.taskgen.authoring.assembly import QUOTAS
+
+    if not want:
+        shares = sorted(QUOTAS, key=lambda name: -(number * QUOTAS[name] / sum(QUOTAS.values()) % 1))
+        wanted = {name: number * QUOTAS[name] // sum(QUOTAS.values()) for name in QUOTAS}
+        for name in shares[: number - sum(wanted.values())]:
+            wanted[name] += 1
+        return {name: n for name, n in wanted.items() if n}
+    found: dict[Category, int] = {}
+    for given in want:
+        written, _, count = given.partition("=")
+        category = next((name for name in QUOTAS if name == written), None)
+        if category is None or not count.isdecimal() or not int(count):
+            raise InputError(f"--want {given}: a category and a number, such as counting=5. Categories: {', '.join(QUOTAS)}.")
+        found[category] = int(count)
+    return found
+
+
+def _endpoint(url: str, key_file: Path | None, timeout_s: float) -> Endpoint:
+    from pydantic import ValidationError
+
+    from scope_ptz.endpoints.endpoint import Endpoint, Timeouts, key_from_file
+
+    key = key_from_file(key_file) if key_file else None
+    try:
+        return Endpoint(url=url, key=key, timeouts=Timeouts.within(timeout_s))
+    except ValidationError as error:
+        raise ConfigError(f"--url {url}: {error.errors(include_url=False, include_input=False)[0]['msg']}.") from None
+
+
+async def _with_model(endpoint: Endpoint, model: str) -> Endpoint:
+    """Return the endpoint with the name of its model."""
+    from scope_ptz.endpoints.catalogue import find_api
+    from scope_ptz.endpoints.failures import ServerFailure
+
+    if model:
+        return endpoint.model_copy(update={"model": model})
+    try:
+        endpoint, served = await find_api(endpoint)
+    except ServerFailure as failure:
+        raise ConfigError(
+            f"The server at {endpoint.url} does not say which model it serves ({failure}). Name it with --model."
+        ) from None
+    if len(served) != 1:
+        raise InputError(
+            f"The server at {endpoint.url} serves {', '.join(served[:MAX_MODELS_LISTED]) or 'no model'}. Name one with --model."
+        )
+    return endpoint.model_copy(update={"model": served[0]})
+
+
+def import_tasks(
+    file: Annotated[Path, typer.Argument(help="CSV file in the paper's published format.")],
+    scenes: Annotated[
+        Path | None,
+        typer.Option("--scenes", help="Folder with the scenes of the file (default: the installed scenes)."),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="File for the tasks (JSONL; default: FILE's name with .imported.jsonl, here).")
+    ] = None,
+    mapping: Annotated[
+        Path | None, typer.Option("--map", help="YAML or JSON file that maps the file's locations and presets to scenes.")
+    ] = None,
+    as_json: JsonOption = False,
+) -> int:
+    """Import tasks from a file in the paper's format: map tools, arguments, categories and scenes, and report what is doubtful.
+
+    Exit code 1 when no row can be run.
+    """
+    from scope_ptz.bench.tasks.imported import dump_imported
+    from scope_ptz.taskgen.importing.import_report import import_file, report_lines
+
+    imported = import_file(file, places_in(scenes, mapping))
+    target = out or Path(f"{file.stem}.imported.jsonl")
+    report = target.with_name(target.name.removesuffix(".jsonl") + ".report.json")
+    dump_imported(imported.tasks, target)
+    content = imported.as_dict()
+    try:
+        report.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", "utf-8")
+    except OSError as error:
+        raise OutputError(f"The report {report} cannot be written: {error.strerror}.") from error
+    if as_json:
+        put_json(content, indent=1)
+    else:
+        for line in report_lines(imported):
+            put(line)
+        put("")
+        put(f"{len(imported.tasks)} tasks in {target}, every row with its findings in {report}")
+        if any(content["map_to_fill"].values()):
+            put("Map unknown names of scenes and presets with --map; 'map_to_fill' in the report lists them.")
+    if not imported.tasks and not content["rows"]:
+        complain(f"{file} has a header and no rows: there is nothing to import.")
+    elif not imported.tasks:
+        known = ", ".join(sorted(places_in(scenes, mapping).scenes)) or "none"
+        complain(f"no row can be run. Installed scenes: {known}. Name those of the file with --scenes or --map.")
+    return 0 if imported.tasks else FAILED
+
+
+def places_in(folder: Path | None, mapping: Path | None) -> SceneNames:
+    """Return the scenes of a folder and the installed ones, with a mapping of names. Raises ``InputError``."""
+    from scope_ptz.factory.scenes import scene_search
+    from scope_ptz.settings import load_settings
+    from scope_ptz.simulator.pack import list_scenes, load_scene
+    from scope_ptz.taskgen.importing.scene_names import SceneNameMap, SceneNames, ScenePresets, read_scene_names
+
+    if folder is not None and not folder.is_dir():
+        raise InputError(f"There is no folder {folder} of scenes.")
+    search = (*([folder] if folder else []), *scene_search(load_settings()))
+    known = {}
+    for name in list_scenes(search):
+        file = load_scene(name, search).file
+        known[name] = ScenePresets({preset.name: preset.viewpoint for preset in file.presets}, file.home_preset, file.start_s)
+    return SceneNames(known, read_scene_names(mapping) if mapping else SceneNameMap())

@@ -1,0 +1,192 @@
+"""Commands about judges: ``rescore`` logs, measure agreement (``agree``), and test a judge on known faults (``judge-gold``)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from scope_ptz.cli.bench.flags import TasksOption, judge_settings
+from scope_ptz.cli.exit import FAILED, complain, put, put_json
+from scope_ptz.cli.options import JsonOption, JudgeFlags
+from scope_ptz.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from scope_ptz.bench.judging.agreement import Rater
+    from scope_ptz.bench.judging.judgement_tally import JudgementTally
+    from scope_ptz.bench.judging.server import JudgeServer
+
+DEFAULT_CONCURRENCY = 8
+
+
+def rescore(
+    logs: Annotated[list[Path], typer.Argument(help="Logs of finished evaluations. Scores are added to them; none is removed.")],
+    judge: JudgeFlags,
+    checks: Annotated[bool, typer.Option("--checks", help="Apply this version's executable checks again.")] = False,
+    repeats: Annotated[int, typer.Option("--judge-repeats", min=1, help="Number of judgements to add to each run.")] = 1,
+    concurrency: Annotated[
+        int, typer.Option("--concurrency", min=1, max=256, help="Runs that are judged at a time.")
+    ] = DEFAULT_CONCURRENCY,
+    decides: Annotated[
+        str,
+        typer.Option("--decides", metavar="JUDGE", help="Judge whose verdicts count from now on where only a judge can score."),
+    ] = "",
+) -> int:
+    """Add verdicts of a judge (--judge-url) or of today's checks (--checks) to logs. The agent is not run again.
+
+    Where only a judge can score a run, the first judge keeps deciding when another is added; --decides names another.
+
+    Running the same command again resumes an interrupted rescoring: it asks only for missing judgements. Exit code 1 when the
+    judge's server failed on any of them.
+    """
+    import anyio
+
+    from scope_ptz.bench.judging.deciding_judge import other_judges_note
+    from scope_ptz.bench.judging.judgement_tally import JudgementTally
+    from scope_ptz.factory.evaluate import require_engine
+
+    require_engine()
+    from scope_ptz.bench.engine.logs import read_evaluation
+    from scope_ptz.bench.engine.rescoring import let_decide
+    from scope_ptz.factory.evaluation import eval_context
+    from scope_ptz.factory.rescore import add_scores, open_requested_judge
+
+    settings = judge_settings(judge, repeats)
+    if not checks and not settings.requested and not decides:
+        raise InputError("Say what to score by: a judge (--judge-url), the checks (--checks), or both.")
+
+    async def work() -> JudgementTally:
+        total = JudgementTally()
+        port = await open_requested_judge(settings) if settings.requested else None
+        try:
+            for log in logs:
+                if checks or port is not None:
+                    tally = await add_scores(
+                        log, port, eval_context(seed=1), repeats=repeats, checks=checks, at_a_time=concurrency, notify=complain
+                    )
+                    total += tally
+                    put(f"{log}: {'checked again' if checks else ''}{', ' if checks and port else ''}{_made(port, tally)}")
+                if decides:
+                    let_decide(log, decides)
+                if several := other_judges_note(read_evaluation(log).trials):
+                    put(f"{log}: {several}")
+        finally:
+            if port is not None:
+                await port.close()
+        return total
+
+    total = anyio.run(work)
+    if total.failed:
+        complain(retry_message(total))
+        return FAILED
+    return 0
+
+
+def _made(judge: JudgeServer | None, tally: JudgementTally) -> str:
+    """Return what came of a log's judgements."""
+    if judge is None:
+        return ""
+    return f"{tally.made} judgement{'' if tally.made == 1 else 's'} by {judge.client.endpoint.model}: {tally.summary}"
+
+
+def judge_failure(tally: JudgementTally) -> str:
+    """Return the sentence about judgements for which a judge's server failed."""
+    first = f", the first with: {tally.failure}" if tally.failure else ""
+    first = first if first.endswith((".", "!", "?")) else f"{first}."
+    return f"{tally.failed} of {tally.made} judgements failed because the judge's server gave no usable reply{first}"
+
+
+def retry_message(tally: JudgementTally) -> str:
+    """Return the failure of a judge's server with the remedy."""
+    return (
+        f"{judge_failure(tally)} Nothing is lost; running the same command again retries {'it' if tally.failed == 1 else 'them'}."
+    )
+
+
+def agree(
+    logs: Annotated[
+        list[Path], typer.Argument(help="Logs with judgements or labels, and verdicts on gold runs (.jsonl of judge-gold).")
+    ],
+    as_json: JsonOption = False,
+    seed: Annotated[int, typer.Option(help="Seed of the bootstrap.")] = 1,
+) -> None:
+    """Measure how far judges, their repeats, the checks, human labels and known faults agree.
+
+    Prints raw agreement, Cohen's kappa (pairs), Fleiss' kappa (groups), and 95% intervals.
+    """
+    from scope_ptz.bench.judging.agreement import measure_agreement
+    from scope_ptz.bench.judging.agreement_text import agreement_lines
+
+    report = measure_agreement(raters_in(logs), seed)
+    if as_json:
+        put_json(report.as_dict(), indent=1)
+    else:
+        for line in agreement_lines(report):
+            put(line)
+
+
+def raters_in(logs: Sequence[Path]) -> list[Rater]:
+    """Return everyone who rated runs in these files. Raises ``InputError`` or ``TraceError``."""
+    from scope_ptz.bench.judging.agreement import raters_of
+    from scope_ptz.bench.judging.human_labels import labels_file, read_labels, with_labels
+    from scope_ptz.taskgen.gold.judge_results import raters_of_gold, read_verdicts
+
+    gold = [path for path in logs if path.suffix == ".jsonl"]
+    evaluations = []
+    for path in logs:
+        if path not in gold:
+            from scope_ptz.bench.engine.logs import read_evaluation
+
+            evaluations.append(with_labels(read_evaluation(path), read_labels(labels_file(path))))
+    verdicts = [verdict for path in gold for verdict in read_verdicts(path)]
+    return [*raters_of(evaluations), *raters_of_gold(verdicts)]
+
+
+def judge_gold(
+    out: Annotated[Path, typer.Option("--out", help="File for verdicts (JSONL). Verdicts that it holds are not requested again.")],
+    judge: JudgeFlags,
+    gold: Annotated[Path | None, typer.Option("--gold", help="File of gold runs (default: the published one).")] = None,
+    tasks: TasksOption = "core",
+    passing: Annotated[int, typer.Option(min=0, help="Number of runs without a fault to mix in.")] = 60,
+    repeats: Annotated[int, typer.Option(min=1, help="Number of judgements of each run.")] = 1,
+    limit: Annotated[int | None, typer.Option(min=1, help="Judge at most N gold runs, of all error modes in turn.")] = None,
+    concurrency: Annotated[int, typer.Option(min=1, help="Judgements at a time.")] = DEFAULT_CONCURRENCY,
+    as_json: JsonOption = False,
+) -> int:
+    """Test a judge on runs with known faults, mixed with runs without any.
+
+    Prints false accepts, false rejects, and which error modes the judge names.
+    """
+    import anyio
+
+    from scope_ptz.factory.rescore import open_requested_judge
+    from scope_ptz.factory.validation_perception import equip_with_truth
+    from scope_ptz.factory.worlds import worlds_of
+    from scope_ptz.taskgen.gold.judge_cases import gold_cases, judge_all, result_lines
+    from scope_ptz.taskgen.gold.judge_results import read_verdicts, results
+
+    before = read_verdicts(out)
+    cases = gold_cases(gold, tasks, passing, limit, worlds_of, equip_with_truth)
+
+    async def work() -> JudgementTally:
+        port = await open_requested_judge(judge_settings(judge))
+        try:
+            return await judge_all(port, cases, before, out, repeats=repeats, concurrency=concurrency, notify=complain)
+        finally:
+            await port.close()
+
+    tally = anyio.run(work)
+    found = results(read_verdicts(out))
+    if as_json:
+        put_json([result.as_dict() for result in found], indent=1)
+    else:
+        for result in found:
+            for line in result_lines(result):
+                put(line)
+    if tally.failed:
+        complain(retry_message(tally))
+        return FAILED
+    return 0

@@ -1,0 +1,191 @@
+"""What a terminal shows of an evaluation: notes and the estimate, a live table, and the scores at the end."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterable, Sequence
+
+from rich.console import Console, Group, RenderableType
+from rich.live import Live
+from rich.progress_bar import ProgressBar
+from rich.table import Table
+from rich.text import Text
+
+from scope_ptz.bench.engine.entries import Entry
+from scope_ptz.bench.engine.estimate_text import duration_text, estimate_lines
+from scope_ptz.bench.engine.failure_summary import counts_text, server_events
+from scope_ptz.bench.engine.run_totals import CATEGORIES, accuracy
+from scope_ptz.bench.judging.deciding_judge import other_judges_note
+from scope_ptz.bench.judging.judgement_tally import not_judged, without_verdict
+from scope_ptz.bench.scoring.trials import Evaluation, Trial
+from scope_ptz.cli.exit import complain
+from scope_ptz.factory.evaluation_options import EvaluationPlan, EvaluationProgress
+
+PRINT_EVERY_S = 15.0
+"""Seconds between two lines of progress where no table can be drawn."""
+MAX_RUNNING_SHOWN = 6
+RULE_BASED_NOTE = (
+    "This is the built-in rule-based planner: a baseline and a check of the installation, not the result of a model.\n"
+    "For scores of models, put one in: scope bench run --planner-url http://HOST:PORT/v1 (scope models lists models)."
+)
+GROUND_TRUTH_NOTE = (
+    "Perception is the simulator's ground truth, not a model, so the score is not the result of a pair of models.\n"
+    "Put a vision model in with --perception NAME --perception-url http://HOST:PORT/v1 (scope models lists models)."
+)
+
+
+class LiveProgress(EvaluationProgress):
+    """Prints notes and the estimate, and draws a table of the runs while they end."""
+
+    def __init__(self, console: Console) -> None:
+        self._console = console
+        self._plan: EvaluationPlan | None = None
+        self._trials: dict[str, Trial] = {}
+        self._running: dict[str, float] = {}
+        self._began = self._printed = time.monotonic()
+        self._live: Live | None = None
+
+    def note(self, text: str) -> None:
+        complain(text)
+
+    def _print(self, text: str) -> None:
+        self._console.print(text, highlight=False, soft_wrap=True, markup=False)
+
+    def planned(self, plan: EvaluationPlan) -> None:
+        lines = estimate_lines(
+            plan.estimate,
+            planner=plan.planner,
+            perception=plan.perception,
+            concurrency=plan.concurrency,
+            agent=plan.agent,
+            planner_is_free=not plan.asks_planner_server,
+        )
+        for line in filter(None, (plan.origin, *lines)):
+            self._print(line)
+        self._plan, self._trials = plan, {trial.sample: trial for trial in plan.finished}
+        self._began = self._printed = time.monotonic()
+        if self._console.is_terminal:
+            self._live = Live(get_renderable=self._drawn, console=self._console, refresh_per_second=2)
+            self._live.start()
+
+    def closed(self) -> None:
+        if self._live is not None:
+            self._live.stop()
+            self._live = None
+
+    def began(self, sample: str, entry: Entry) -> None:  # noqa: ARG002 - the watcher's signature
+        self._running[sample] = time.monotonic()
+
+    def ended(self, sample: str, trial: Trial) -> None:
+        self._running.pop(sample, None)
+        self._trials[sample] = trial
+        now = time.monotonic()
+        if self._live is None and now - self._printed >= PRINT_EVERY_S:
+            self._printed = now
+            self._print(self._line())
+
+    def _seconds_left(self) -> float | None:
+        new = len(self._trials) - len(self._plan.finished) if self._plan is not None else 0
+        if new < 1 or self._plan is None:
+            return None
+        return (time.monotonic() - self._began) / new * (self._plan.runs - len(self._trials))
+
+    def _line(self) -> str:
+        left, rows = self._seconds_left(), self._trials.values()
+        correct = sum(t.headline == "correct" for t in rows)
+        broken = sum(t.headline == "infrastructure" for t in rows)
+        pending = sum(without_verdict(t) for t in rows)
+        when = f", about {duration_text(left)} left" if left is not None else ""
+        judged = f", {pending} not judged yet" if pending else ""
+        total = self._plan.runs if self._plan is not None else len(rows)
+        return f"{len(rows)} of {total} runs: {correct} correct{judged}, {broken} broken by infrastructure{when}"
+
+    def _drawn(self) -> RenderableType:
+        rows = list(self._trials.values())
+        title, total = (self._plan.pair, self._plan.runs) if self._plan is not None else ("", len(rows))
+        head = Text.assemble((title, "bold"), "  ", self._line())
+        bar = ProgressBar(total=total or 1, completed=len(rows), width=60)
+        now = time.monotonic()
+        longest = sorted(self._running.items(), key=lambda item: item[1])[:MAX_RUNNING_SHOWN]
+        names = ", ".join(f"{name.rpartition('#')[0].partition('-')[2]} {now - since:.0f} s" for name, since in longest)
+        more = len(self._running) - len(longest)
+        running = Text(
+            f"running  {names or 'nothing yet'}{f' and {more} more' if more > 0 else ''}", style="dim", overflow="ellipsis"
+        )
+        return Group(head, bar, category_table(rows), running)
+
+
+def category_table(trials: Iterable[Trial]) -> Table:
+    """Return the table of accuracy by category, macro and micro."""
+    rows = list(trials)
+    table = Table("category", box=None, pad_edge=False, header_style="bold")
+    for name in ("runs", "correct", "wrong", "unscored", "broken", "accuracy"):
+        table.add_column(name, justify="right")
+    shares = []
+    for category in CATEGORIES:
+        own = [t for t in rows if t.task.category == category]
+        if own:
+            share = accuracy(own)
+            shares += [share] if share is not None else []
+            table.add_row(category.replace("_", " "), *_counts(own), _percent(share))
+    if rows:
+        table.add_section()
+        table.add_row(
+            "macro (mean of categories)", *[""] * 5, _percent(sum(shares) / len(shares) if shares else None), style="bold"
+        )
+        table.add_row("micro (all runs)", *_counts(rows), _percent(accuracy(rows)), style="bold")
+    return table
+
+
+def _counts(trials: Sequence[Trial]) -> list[str]:
+    by = [sum(t.headline == name for t in trials) for name in ("correct", "incorrect", "unscored", "infrastructure")]
+    return [str(len(trials)), *(str(n) if n else "-" for n in by)]
+
+
+def _percent(share: float | None) -> str:
+    return f"{100 * share:.1f} %" if share is not None else "-"
+
+
+def unscored_lines(trials: Sequence[Trial]) -> list[str]:
+    """Return lines about runs that only a judge can score and that have no verdict. They are in no share."""
+    pending = sum(not_judged(t) for t in trials)
+    unparseable = sum(without_verdict(t) and not not_judged(t) for t in trials)
+    lines = [f"not scored {pending} not judged yet: scope bench rescore LOG --judge-url ..."] if pending else []
+    return lines + ([f"not scored {unparseable} without a verdict: the judge's replies were unparseable"] if unparseable else [])
+
+
+def summary(evaluation: Evaluation) -> RenderableType:
+    """Return the scores of an evaluation, how runs failed, and how long they took."""
+    trials, card = evaluation.trials, evaluation.card
+    parts: list[RenderableType] = [Text(card.pair, style="bold"), category_table(trials)]
+    if note := baseline_note(evaluation):
+        parts.append(Text(note, style="yellow"))
+    modes = sorted(
+        ((m, sum(t.error_mode == m for t in trials)) for m in {t.error_mode for t in trials if t.error_mode}), key=lambda x: -x[1]
+    )
+    parts += [Text(line) for line in unscored_lines(trials)]
+    parts += [Text(f"judged     {several}")] if (several := other_judges_note(trials)) else []
+    if modes:
+        parts.append(Text("failed by  " + ", ".join(f"{mode.value.replace('_', ' ')} {count}" for mode, count in modes)))
+    if events := server_events(trials):
+        having = sum(bool(t.server_events) for t in trials)
+        parts.append(Text(f"servers    failed: {counts_text(events)} (in {having} of {len(trials)} runs)"))
+    timed = sorted(t.timings.total_s for t in trials if t.headline != "infrastructure")
+    if timed:
+        median, p95 = timed[len(timed) // 2], timed[math.ceil(0.95 * len(timed)) - 1]
+        shared = " (runs shared the machine; measure latency with --latency)" if card.contended else ""
+        parts.append(Text(f"a run      median {_run_time(median)}, 95% within {_run_time(p95)}{shared}", style="dim"))
+    return Group(*parts)
+
+
+def baseline_note(evaluation: Evaluation) -> str:
+    """Return what to say beside a score that is not the result of models; empty where it is."""
+    card = evaluation.card
+    if card.planner.deterministic:
+        return RULE_BASED_NOTE
+    return GROUND_TRUTH_NOTE if card.perception.deterministic else ""
+
+
+def _run_time(seconds: float) -> str:
+    return f"{seconds * 1000:.0f} ms" if seconds < 1 else duration_text(seconds)

@@ -1,0 +1,206 @@
+"""Commands that read logs: ``report``, ``gate``, and the file for a public leaderboard (``submission``)."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from scope_ptz.cli.bench.flags import published_tasks
+from scope_ptz.cli.exit import FAILED, complain, put, put_json
+from scope_ptz.cli.options import JsonOption, command
+from scope_ptz.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from scope_ptz.bench.reports.submission import Header, TrialLine
+    from scope_ptz.bench.reports.task_pages import StoredRun
+    from scope_ptz.bench.scoring.trials import Evaluation, Trial
+    from scope_ptz.bench.tasks.task import Task
+
+submission_app = typer.Typer(help="Write and check the file for a public leaderboard.", no_args_is_help=True)
+MAX_FAULTS_LISTED = 50
+MAX_FAULTS_ON_ONE_LINE = 3
+HUMAN_RESULT_SUFFIX = ".json"
+"""Results of ``scope bench human`` are JSON files, not logs."""
+
+
+def report(
+    logs: Annotated[list[Path], typer.Argument(help="Logs of 'scope bench run', and results of 'scope bench human' (.json).")],
+    out: Annotated[Path, typer.Option("--out", "-o", help="Folder to write. An older report in it is replaced.")],
+    tasks: Annotated[
+        str | None,
+        typer.Option("--tasks", help="Split or task file with the evidence of failed tasks (default: all published tasks)."),
+    ] = None,
+    pages: Annotated[bool, typer.Option("--pages/--no-pages", help="Write a page with frames for each failed task.")] = True,
+) -> None:
+    """Write a report on one or more logs: a web page, Markdown, and CSV tables.
+
+    It has all tables and figures of the paper, for any set of runs.
+    """
+    _require_extra()
+    from scope_ptz.bench.reports.writer import write_report
+    from scope_ptz.bench.tasks.splits import load_split
+    from scope_ptz.registry import load_registry
+    from scope_ptz.settings import load_settings
+
+    paths = list(dict.fromkeys(path.resolve() for path in logs))
+    evaluations = [_read(path) for path in paths]
+    path_of = {id(evaluation): path for evaluation, path in zip(evaluations, paths, strict=True)}
+
+    def open_trial(evaluation: Evaluation, trial: Trial) -> StoredRun:
+        from scope_ptz.bench.engine.logs import open_sample
+        from scope_ptz.bench.human_runs import open_run
+
+        path = path_of[id(evaluation)]
+        return open_run(path, trial.sample) if path.suffix == HUMAN_RESULT_SUFFIX else open_sample(path, trial.sample)
+
+    evidence: Sequence[Task] = () if not pages else load_split(tasks) if tasks is not None else published_tasks()
+    made = write_report(
+        evaluations,
+        load_registry(load_settings().models_file()),
+        out,
+        open_sample=open_trial,
+        tasks={task.id: task for task in evidence},
+        progress=_print_progress if sys.stderr.isatty() else None,
+        pages=pages,
+    )
+    for line in (*made.summary, *made.warnings):
+        put(line)
+    put(f"{out / 'index.html'}")
+
+
+def gate(
+    log: Annotated[Path, typer.Argument(help="Log to check.")],
+    baseline: Annotated[Path, typer.Option("--baseline", help="Log to compare with.")],
+    alpha: Annotated[
+        float, typer.Option(min=1e-6, max=0.5, help="Significance level: a loss with a smaller p value counts.")
+    ] = 0.05,
+    as_json: JsonOption = False,
+) -> int:
+    """Compare two logs task by task, for continuous integration.
+
+    Exit code 1 on a significant loss, overall or in a category; 2 when the logs are not comparable.
+    """
+    from scope_ptz.factory.evaluate import require_engine
+
+    require_engine()
+    from scope_ptz.bench.engine.logs import read_evaluation
+    from scope_ptz.bench.engine.regression_gate import gate as compare
+    from scope_ptz.bench.engine.regression_text import comparison_lines, judge_change_note
+
+    now, before = read_evaluation(log), read_evaluation(baseline)
+    found = compare(now, before, alpha)
+    if as_json:
+        rows = [asdict(found.overall), *(asdict(c) for c in found.categories)]
+        put_json({"passed": found.passed, "alpha": alpha, "groups": rows, "left_out": found.left_out}, indent=2)
+    else:
+        for line in comparison_lines(found, now):
+            put(line)
+    if note := judge_change_note(now, before):
+        complain(note)
+    return 0 if found.passed else FAILED
+
+
+@submission_app.command("make")
+@command
+def submission_make(
+    log: Annotated[Path, typer.Argument(help="Log of a finished evaluation.")],
+    out: Annotated[Path, typer.Option("--out", "-o", help="File to write (JSON lines).")],
+    tasks: Annotated[
+        str | None, typer.Option("--tasks", help="Split or task file that the log must cover (default: the split that was run).")
+    ] = None,
+    partial: Annotated[
+        bool, typer.Option("--partial", help="Write an incomplete submission, which `submission validate` refuses.")
+    ] = False,
+) -> None:
+    """Write the submission of a log: its run card, and verdict, answer, calls and times of every task.
+
+    A log that does not cover its split is refused.
+    """
+    _require_extra()
+    from scope_ptz.bench.reports.submission import submission_lines, write_submission
+    from scope_ptz.bench.tasks.splits import SPLITS
+
+    evaluation = _read(log)
+    header, lines = submission_lines(evaluation)
+    skip = partial and tasks is None and header.card.split not in SPLITS
+    lacking = [] if skip else _missing(header, lines, tasks)
+    if lacking and not partial:
+        raise InputError(
+            f"{log} does not cover {tasks or header.card.split}: {_first(lacking)}. A submission is of a whole split: run the "
+            "rest, without --limit, --category and --scene, or write what there is with --partial."
+        )
+    write_submission((header, lines), out)
+    put(f"{out}: {len(evaluation.trials)} trials of {evaluation.card.pair}")
+    if lacking:
+        complain(f"{out} is partial and no valid submission: {_first(lacking)}.")
+
+
+@submission_app.command("validate")
+@command
+def submission_validate(
+    file: Annotated[Path, typer.Argument(help="Submission to check.")],
+    tasks: Annotated[
+        str | None, typer.Option("--tasks", help="Split or task file to compare with (default: the split that it names).")
+    ] = None,
+    as_json: JsonOption = False,
+) -> int:
+    """Check that a submission is complete, consistent, in range, and of a known dataset. Exit code 1 on any fault."""
+    from scope_ptz.bench.reports.submission_checks import check_submission
+
+    found = check_submission(file, _split(tasks))
+    if as_json:
+        put_json(found.as_dict(), indent=1)
+    else:
+        for fault in found.faults[:MAX_FAULTS_LISTED]:
+            complain(fault)
+        if len(found.faults) > MAX_FAULTS_LISTED:
+            complain(f"and {len(found.faults) - MAX_FAULTS_LISTED} more")
+        put(found.summary)
+    return FAILED if found.faults else 0
+
+
+def _missing(header: Header, lines: Sequence[TrialLine], tasks: str | None) -> list[str]:
+    from scope_ptz.bench.reports.submission_checks import coverage
+
+    return coverage(header, lines, _split(tasks))
+
+
+def _first(faults: Sequence[str]) -> str:
+    more = len(faults) - MAX_FAULTS_ON_ONE_LINE
+    return "; ".join(faults[:MAX_FAULTS_ON_ONE_LINE]) + (f"; and {more} more such faults" if more > 0 else "")
+
+
+def _require_extra() -> None:
+    from scope_ptz.perception.backends.spec import need
+
+    need("bench", "inspect_ai", "jinja2", "matplotlib", "scipy")
+
+
+def _read(path: Path) -> Evaluation:
+    """Read a log with its human labels, or a human result. Raises ``TraceError`` or ``InputError``."""
+    from scope_ptz.bench.judging.human_labels import labels_file, read_labels, with_labels
+
+    if path.suffix == HUMAN_RESULT_SUFFIX:
+        from scope_ptz.bench.human_runs import read_result
+
+        return read_result(path)
+    from scope_ptz.bench.engine.logs import read_evaluation
+
+    return with_labels(read_evaluation(path), read_labels(labels_file(path)))
+
+
+def _split(name: str | None) -> Sequence[Task] | None:
+    from scope_ptz.bench.tasks.splits import load_split
+
+    return None if name is None else load_split(name)
+
+
+def _print_progress(done: int, total: int) -> None:
+    sys.stderr.write(f"\rpages of failed tasks: {done} of {total}" + ("\n" if done == total else ""))
+    sys.stderr.flush()

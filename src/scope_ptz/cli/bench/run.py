@@ -1,0 +1,99 @@
+"""``scope bench run``: run an evaluation, or resume an interrupted one."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import TYPE_CHECKING
+
+from scope_ptz.cli.bench.flags import JudgeRepeats, SelectionFlags, SingleRunFlags, judge_settings, price_of
+from scope_ptz.cli.exit import FAILED, complain, put, put_json
+from scope_ptz.cli.options import JsonOption, JudgeFlags, PairFlags
+
+if TYPE_CHECKING:
+    from scope_ptz.factory.evaluation_options import EvaluationResult
+
+
+def run(
+    selection: SelectionFlags,
+    running: SingleRunFlags,
+    models: PairFlags,
+    judge: JudgeFlags,
+    judge_repeats: JudgeRepeats = 1,
+    as_json: JsonOption = False,
+) -> int:
+    """Run a planner and perception pair, or an external agent, on the benchmark, and print its scores.
+
+    Without options, the built-in planner and ground-truth perception run the published core tasks, locally and without any key.
+
+    Running the same command again resumes an interrupted evaluation. Exit code 1 when runs are missing or broken.
+    """
+    import anyio
+    from rich.console import Console
+
+    from scope_ptz.bench.engine.run_totals import evaluation_summary
+    from scope_ptz.cli.bench.progress import LiveProgress, summary
+    from scope_ptz.factory.evaluate import EvaluationOptions, evaluate
+
+    judge_options = judge_settings(judge, judge_repeats)
+    options = EvaluationOptions(
+        models=models.options(),
+        out=running.out,
+        tasks=selection.split,
+        categories=tuple(selection.category or ()),
+        scenes=tuple(selection.scene or ()),
+        limit=selection.limit,
+        epochs=selection.epochs,
+        seed=running.seed,
+        agent=running.agent,
+        max_steps=running.max_steps,
+        time_s=running.time_budget,
+        concurrency=running.concurrency,
+        latency=running.latency,
+        pictures=running.pictures,
+        variant=running.variant,
+        fresh=running.fresh,
+        resume=running.resume,
+        price=price_of(running.price),
+        judge=judge_options if judge_options.requested else None,
+    )
+    console = Console(highlight=False, stderr=as_json)
+
+    async def work() -> EvaluationResult:
+        return await evaluate(options, progress=LiveProgress(console))
+
+    result = anyio.run(work)
+    if as_json:
+        judgements = {"judge": result.judge, "judgements": asdict(result.judgements)} if result.judgements is not None else {}
+        put_json(evaluation_summary(result.evaluation) | judgements)
+    else:
+        console.print(summary(result.evaluation))
+        if result.judgements is not None:
+            put(f"judge      {result.judge}: {result.judgements.summary}")
+        put(f"log        {result.evaluation.log}")
+    return _report_failures(result)
+
+
+def _report_failures(result: EvaluationResult) -> int:
+    """Print what failed and how to go on, and return the exit code."""
+    from scope_ptz.bench.engine.failure_summary import failure_summary
+    from scope_ptz.cli.bench.judge import judge_failure
+
+    evaluation, judgements = result.evaluation, result.judgements
+    broken = sum(trial.headline == "infrastructure" for trial in evaluation.trials)
+    missing = max(evaluation.wanted - len(evaluation.trials), 0)
+    for line in failure_summary(evaluation.trials, evaluation.card):
+        complain(line)
+    if broken or missing:
+        parts = []
+        if broken:
+            parts.append(f"{broken} {'run was' if broken == 1 else 'runs were'} broken by infrastructure")
+        if missing:
+            parts.append(f"{missing} {'run is' if missing == 1 else 'runs are'} missing")
+        complain(f"{' and '.join(parts)}; running the same command again repeats {'it' if broken + missing == 1 else 'them'}.")
+    failed = judgements is not None and judgements.failed
+    if judgements is not None and failed:
+        complain(
+            f"{judge_failure(judgements)} No run is lost. Run the same command again to retry, or "
+            f"`scope bench rescore {evaluation.log} --judge-url ...`."
+        )
+    return FAILED if broken or missing or failed else 0

@@ -1,0 +1,201 @@
+"""``scope bench sweep``: run several pairs on the same tasks, with one log for each pair."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+import typer
+
+from scope_ptz.cli.bench.flags import EvaluationFlags, SelectionFlags
+from scope_ptz.cli.exit import FAILED, complain, put_json
+from scope_ptz.cli.options import JsonOption, ModelFlags
+from scope_ptz.errors import InputError, ScopeError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from rich.console import Console
+    from rich.table import Table
+
+    from scope_ptz.bench.scoring.trials import Evaluation
+    from scope_ptz.factory.evaluation_options import EvaluationOptions, EvaluationResult
+    from scope_ptz.factory.models import ModelOptions
+
+MIN_WIDTH_FOR_CATEGORIES = 160
+"""Characters of a terminal from which a column for each category fits."""
+PAIR_COLUMN_WIDTH = 36
+
+
+@dataclass(frozen=True, kw_only=True)
+class ServerFlags(ModelFlags):
+    """The options about model servers that hold for all pairs. The pairs themselves name planner and perception."""
+
+    planner: ClassVar[None] = None  # type: ignore[misc]
+    perception: ClassVar[None] = None  # type: ignore[misc]
+    planner_model: ClassVar[None] = None  # type: ignore[misc]
+    perception_model: ClassVar[None] = None  # type: ignore[misc]
+    reader: ClassVar[None] = None  # type: ignore[misc]
+    detector: ClassVar[None] = None  # type: ignore[misc]
+
+
+def sweep(
+    selection: SelectionFlags,
+    running: EvaluationFlags,
+    servers: ServerFlags,
+    pairs: Annotated[
+        str | None,
+        typer.Option("--pairs", help="Pairs to run, separated by commas: PLANNER+PERCEPTION, or one model that does both."),
+    ] = None,
+    paper: Annotated[bool, typer.Option("--paper", help="Run the 19 pairs of the paper.")] = False,
+    as_json: JsonOption = False,
+) -> int:
+    """Run several pairs on the same tasks, one after the other, and compare their scores.
+
+    Your models file states where each model is served; --planner-url and --perception-url hold for all pairs.
+
+    Running the same command again resumes the sweep: it skips complete pairs and retries those that could not be reached.
+    """
+    from rich.console import Console
+
+    from scope_ptz.bench.engine.run_totals import evaluation_summary
+    from scope_ptz.factory.evaluate import EvaluationOptions, require_engine
+
+    require_engine()
+    names = pair_names(pairs, paper=paper)
+    shared = EvaluationOptions(
+        models=servers.options(),
+        out=running.out,
+        tasks=selection.split,
+        categories=tuple(selection.category or ()),
+        scenes=tuple(selection.scene or ()),
+        limit=selection.limit,
+        epochs=selection.epochs,
+        seed=running.seed,
+        max_steps=running.max_steps,
+        time_s=running.time_budget,
+        concurrency=running.concurrency,
+        latency=running.latency,
+    )
+    console = Console(highlight=False, stderr=as_json)
+    done = _run_all(names, shared, console)
+    if as_json:
+        put_json({name: {"error": made} if isinstance(made, str) else evaluation_summary(made) for name, made in done.items()})
+    else:
+        for table in sweep_tables(done, console.width):
+            console.print(table, "")
+    if any(isinstance(made, str) or not is_complete(made) for made in done.values()):
+        complain("not every pair is complete; running the same command again resumes them.")
+        return FAILED
+    return 0
+
+
+def pair_names(text: str | None, *, paper: bool) -> list[str]:
+    """Return the pairs to run, each once. Raises ``InputError`` for unknown ones, before anything is run."""
+    from scope_ptz.factory.model_resolver import read_pair
+    from scope_ptz.registry import load_registry
+    from scope_ptz.settings import load_settings
+
+    if (text is None) == (not paper):
+        raise InputError("Say which pairs: --pairs a+b,c+d or --paper.")
+    registry = load_registry(load_settings().models_file())
+    if paper:
+        return [pair.name for pair in registry.pairs.values() if pair.origin == "paper"]
+    names = list(dict.fromkeys(name.strip() for name in (text or "").split(",") if name.strip()))
+    if not names:
+        raise InputError("--pairs names no pair.")
+    for name in names:
+        read_pair(registry, name)
+    return names
+
+
+def _run_all(names: list[str], shared: EvaluationOptions, console: Console) -> dict[str, Evaluation | str]:
+    """Run every pair. Return its evaluation, or the message of the error that prevented it."""
+    import anyio
+
+    from scope_ptz.bench.engine.failure_summary import failure_summary
+    from scope_ptz.cli.bench.progress import LiveProgress
+    from scope_ptz.factory.evaluate import evaluate
+
+    async def work(options: EvaluationOptions) -> EvaluationResult:
+        return await evaluate(options, progress=LiveProgress(console))
+
+    done: dict[str, Evaluation | str] = {}
+    for number, name in enumerate(names, 1):
+        console.rule(f"{number} of {len(names)}: {name}")
+        try:
+            evaluation = anyio.run(work, replace(shared, models=_models_of_pair(shared.models, name))).evaluation
+            done[name] = evaluation
+            for line in failure_summary(evaluation.trials, evaluation.card):
+                complain(f"{name}: {line}")
+        except ScopeError as error:
+            done[name] = str(error)
+            complain(f"{name}: {error}")
+    return done
+
+
+def _models_of_pair(shared: ModelOptions, name: str) -> ModelOptions:
+    """Return the options of one pair. Addresses and keys are left out for the built-in planner and perception."""
+    from scope_ptz.builtin_names import BUILT_IN_PERCEPTION, GRAMMAR
+
+    planner, _, perception = name.partition("+")
+    options = replace(shared, pair=name)
+    if planner == GRAMMAR:
+        options = replace(options, planner_url=None, planner_key_file=None, planner_options=())
+    if perception in BUILT_IN_PERCEPTION:
+        options = replace(options, perception_url=None, perception_key_file=None, perception_options=())
+    return options
+
+
+def is_complete(evaluation: Evaluation) -> bool:
+    """Return whether every run has ended and none was broken by infrastructure."""
+    return evaluation.finished and not any(trial.headline == "infrastructure" for trial in evaluation.trials)
+
+
+def sweep_tables(done: dict[str, Evaluation | str], width: int) -> Iterator[Table]:
+    """Return tables of the pairs of models, of the built-in ones, of server failures, and of pairs that did not run.
+
+    ``width`` is that of the terminal in characters; a wide one gets a column for each category.
+    """
+    from scope_ptz.bench.engine.failure_summary import failure_summary
+
+    made = [(name, e) for name, e in done.items() if not isinstance(e, str)]
+    ranked, others = [row for row in made if row[1].card.ranked], [row for row in made if not row[1].card.ranked]
+    if ranked:
+        yield _pairs_table("Pairs of models, best first", ranked, width)
+    if others:
+        yield _pairs_table("Rule-based planner or ground-truth perception: baselines, not results of models", others, width)
+    failures = [(name, line) for name, e in made for line in failure_summary(e.trials, e.card)]
+    missing = [(name, why) for name, why in done.items() if isinstance(why, str)]
+    for title, rows in (("Server failures", failures), ("Not run", missing)):
+        if rows:
+            table = _table(title)
+            table.add_column("reason", overflow="fold")
+            for row in rows:
+                table.add_row(*row)
+            yield table
+
+
+def _pairs_table(title: str, rows: Sequence[tuple[str, Evaluation]], width: int) -> Table:
+    from scope_ptz.bench.engine.run_totals import CATEGORIES, accuracy, macro_accuracy
+
+    shown = CATEGORIES if width >= MIN_WIDTH_FOR_CATEGORIES else ()
+    table = _table(title)
+    for column in ("macro", "micro", *(c.replace("_", " ") for c in shown), "runs", "broken"):
+        table.add_column(column, justify="right", no_wrap=column in ("macro", "micro", "runs", "broken"))
+    for name, evaluation in sorted(rows, key=lambda row: -(macro_accuracy(row[1].trials) or 0.0)):
+        trials = evaluation.trials
+        shares = [macro_accuracy(trials), accuracy(trials)]
+        shares += [accuracy([t for t in trials if t.task.category == category]) for category in shown]
+        broken = sum(t.headline == "infrastructure" for t in trials)
+        cells = [f"{100 * share:.1f}" if share is not None else "-" for share in shares]
+        table.add_row(name, *cells, f"{len(trials)} of {evaluation.wanted}", str(broken) if broken else "-")
+    return table
+
+
+def _table(title: str) -> Table:
+    from rich.table import Table
+
+    table = Table(title=title, title_justify="left", title_style="", box=None, pad_edge=False, header_style="bold")
+    table.add_column("pair", overflow="fold", min_width=PAIR_COLUMN_WIDTH)
+    return table

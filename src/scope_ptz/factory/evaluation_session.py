@@ -1,0 +1,294 @@
+"""One evaluation in progress: its tasks and models, its log, and what is missing in it."""
+
+from __future__ import annotations
+
+import gc
+import json
+import os
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import anyio
+
+from scope_ptz.bench.engine.context import Watcher
+from scope_ptz.builtin_names import BUILT_IN_PERCEPTION, GRAMMAR
+from scope_ptz.errors import InputError, ScopeError
+from scope_ptz.factory.evaluation_options import (
+    OWN_AGENT,
+    EvaluationOptions,
+    EvaluationPlan,
+    EvaluationProgress,
+    EvaluationResult,
+    JudgeSettings,
+)
+from scope_ptz.factory.models import ResolvedPair
+from scope_ptz.factory.rescore import complete_judgements, judge_model, open_requested_judge, with_judge
+
+if TYPE_CHECKING:
+    from scope_ptz.bench.engine.benchmark_task import Task
+    from scope_ptz.bench.engine.entries import Entry
+    from scope_ptz.bench.engine.runs import EngineSetup, StoredLog
+    from scope_ptz.bench.judging.server import JudgeServer
+    from scope_ptz.bench.scoring.trials import Trial
+    from scope_ptz.planner.base import Planner
+
+RUNS_AT_A_TIME_WITH_SERVERS = 8
+PERCEPTION_CALLS_PER_STEP = 8
+"""The agent loop makes up to this many perception calls of one step at the same time."""
+MAX_BROKEN_IN_A_ROW = 12
+"""An evaluation stops after this many consecutive runs were broken by infrastructure."""
+
+
+COLLECTOR_THRESHOLDS = (20_000, 20, 50)
+
+
+class EvaluationSession:
+    """One call of ``evaluate``: its tasks and models, and the connections to close at its end."""
+
+    def __init__(self, options: EvaluationOptions, pair: ResolvedPair, progress: EvaluationProgress) -> None:
+        from scope_ptz.bench.engine.entries import digest, select
+        from scope_ptz.bench.engine.external_agents import source_digest
+        from scope_ptz.bench.engine.runs import identity_of
+        from scope_ptz.factory.evaluation import eval_context, planner_for
+
+        self.options, self.pair, self.progress = options, pair, progress
+        self.judge: JudgeServer | None = None
+        self.agent_source = source_digest(options.agent) if options.agent != OWN_AGENT else ""
+        self.planner = planner_for(pair.planner) if options.agent == OWN_AGENT else None
+        self.context = eval_context(seed=options.seed, planner=self.planner, perception=pair.perception)
+        self.entries: tuple[Entry, ...] = select(
+            self.context.load_tasks(options.tasks), options.categories, options.scenes, options.limit
+        )
+        _check_pictures(options, pair, self.planner)
+        local = pair.planner.endpoint is None and pair.perception.spec is None and options.agent == OWN_AGENT
+        default = (os.cpu_count() or 1) if local else RUNS_AT_A_TIME_WITH_SERVERS
+        self.concurrency = 1 if options.latency else options.concurrency or default
+        details = self.planner.details if self.planner is not None else {}
+        spec = pair.perception.spec
+        self.identity = identity_of(
+            digest(self.entries), options.epochs, options.seed, options.agent, options.max_steps, options.time_s,
+            options.pictures, options.latency, options.variant, pair.planner.name, pair.perception.name,
+            {name: value for name, value in details.items() if name != "url"},
+            spec.model_dump(mode="json", exclude={"endpoint"}) if spec else None, _served_models(pair), self.agent_source,
+        )  # fmt: skip
+
+    async def close(self) -> None:
+        """Close planner, perception and judge."""
+        for held in (self.planner, self.context.perception, self.judge):
+            if held is not None:
+                await held.close()
+
+    async def stored_logs(self) -> list[StoredLog]:
+        """Return the logs of this evaluation to resume, the one that got furthest first."""
+        from scope_ptz.bench.engine.runs import find_logs, stored_log
+
+        if self.options.resume is not None:
+            log = stored_log(self.options.resume)
+            if (log.header.eval.metadata or {}).get("identity") != self.identity:
+                raise InputError(f"{log.path} is of another evaluation: tasks, models or settings differ. Give its own options.")
+            return [log]
+        return [] if self.options.fresh else await find_logs(self.options.out, self.identity)
+
+    async def run(self, stored: Sequence[StoredLog]) -> Path:
+        """Run what ``stored`` logs lack, and return the path of the log that holds everything.
+
+        Raises ``ScopeError`` when too many consecutive runs failed for reasons of infrastructure.
+        """
+        from scope_ptz.bench.engine.failure_summary import failure_summary
+        from scope_ptz.bench.engine.logs import read_evaluation
+        from scope_ptz.bench.engine.runs import run
+
+        finished = tuple(t for t in read_evaluation(stored[0].path).trials if t.headline != "infrastructure") if stored else ()
+        plan = self._plan(finished, stored)
+        judge = self.judge = await open_requested_judge(self.options.judge) if self.options.judge is not None else None
+        setup = await self._engine_setup(judge)
+        group = anyio.create_task_group()
+        breaker = _CircuitBreaker(self.progress, group.cancel_scope.cancel)
+        task = self._task(breaker, judge)
+        outcome: list[Path | ScopeError] = []
+
+        async def work() -> None:
+            try:
+                outcome.append(await run(task, setup, stored))
+            except ScopeError as error:
+                outcome.append(error)
+
+        self.progress.planned(plan)
+        try:
+            # The engine handles a cancellation by itself; in a task of its own, ours is not marked as cancelled by it.
+            with few_collections():
+                async with group:
+                    group.start_soon(work)
+        finally:
+            self.progress.closed()
+        if breaker.tripped:
+            why = "".join(f" {line[0].upper()}{line[1:]}" for line in failure_summary([*finished, *breaker.trials], setup.card))
+            raise ScopeError(
+                f"The evaluation stopped because {MAX_BROKEN_IN_A_ROW} consecutive runs were broken by infrastructure.{why} "
+                "Check the servers; running the same command again resumes the evaluation."
+            )
+        (came,) = outcome
+        if isinstance(came, ScopeError):
+            raise came
+        return came
+
+    async def with_judgements(self, log: Path, *, retry_failed: bool) -> EvaluationResult:
+        """Return a log as it stands after its missing judgements were requested.
+
+        ``retry_failed``: also request those again for which the judge's server failed.
+        """
+        from scope_ptz.bench.engine.logs import read_evaluation
+
+        judge = self.options.judge
+        if judge is None:
+            return EvaluationResult(read_evaluation(log))
+        return await complete_judgements(
+            log, judge, lambda: self._opened_judge(judge), self.context, retry_failed=retry_failed, notify=self.progress.note
+        )
+
+    async def _opened_judge(self, settings: JudgeSettings) -> JudgeServer:
+        """Return the judge's port, opened at most once."""
+        if self.judge is None:
+            self.judge = await open_requested_judge(settings)
+        return self.judge
+
+    def _task(self, watcher: Watcher, judge: JudgeServer | None) -> Task:
+        from scope_ptz.bench.engine.benchmark_task import benchmark_task
+
+        options = self.options
+        context = replace(self.context, watcher=watcher, load_tasks=lambda _: self.entries)
+        if judge is not None:
+            context = with_judge(context, judge)
+        return benchmark_task(lambda _: context)(
+            split=options.tasks, category=list(options.categories) or None, scene=list(options.scenes) or None,
+            limit=options.limit, agent=options.agent, pictures=options.pictures, max_steps=options.max_steps,
+            time_s=options.time_s, seed=options.seed, epochs=options.epochs,
+            judgements=options.judge.repeats if options.judge else 0,
+        )  # fmt: skip
+
+    async def _engine_setup(self, judge: JudgeServer | None) -> EngineSetup:
+        from scope_ptz.bench.engine.runs import EngineSetup
+        from scope_ptz.bench.engine.scope_model import engine_model
+        from scope_ptz.factory.run_card import run_card
+
+        options, pair = self.options, self.pair
+        card = await run_card(
+            pair, self.planner, self.entries, agent=options.agent, agent_source=self.agent_source,
+            concurrency=self.concurrency, contended=not options.latency, variant=options.variant, price=options.price,
+            split=Path(options.tasks).name, seed=options.seed, max_steps=options.max_steps, epochs=options.epochs,
+        )  # fmt: skip
+        connections = self.concurrency * PERCEPTION_CALLS_PER_STEP
+        endpoint, spec = pair.planner.endpoint, pair.perception.spec
+        planner = None
+        if self.planner is not None:
+            served = endpoint.model if endpoint else None
+            planner = engine_model(pair.planner.name, connections, url=endpoint.url if endpoint else None, served=served)
+        url = spec.endpoint.url if spec is not None and spec.endpoint is not None else None
+        perception = engine_model(pair.perception.name, connections, url=url)
+        judging = judge_model(judge, self.concurrency * 2) if judge is not None else None
+        return EngineSetup(
+            options.out, planner, perception, judging, self.concurrency, self.identity, card, realtime=not _is_built_in(pair)
+        )
+
+    def _plan(self, finished: tuple[Trial, ...], stored: Sequence[StoredLog]) -> EvaluationPlan:
+        from scope_ptz.bench.engine.entries import digest
+        from scope_ptz.bench.engine.estimate import estimate
+        from scope_ptz.bench.engine.runs import earlier_evaluations, log_of_other_source
+
+        options, pair = self.options, self.pair
+        agent = options.agent if options.agent != OWN_AGENT else None
+        runs, origin = len(self.entries) * options.epochs, ""
+        if stored:
+            origin = f"Resuming {stored[0].path}: {len(finished)} of {runs} runs are done."
+        elif agent:
+            other = log_of_other_source(options.out, agent, self.agent_source, digest(self.entries))
+            if other is not None:
+                origin = f"The source of {agent} differs from that in {other}: this is a new evaluation."
+        earlier = earlier_evaluations(options.out, agent or pair.planner.name, pair.perception.name)
+        done = {trial.task.id for trial in finished} if options.epochs == 1 else set()
+        left = [entry for entry in self.entries if entry.facts.id not in done]
+        expected = estimate(left, options.epochs, self.concurrency, earlier, options.price, prompt_chars(self.planner))
+        return EvaluationPlan(
+            runs, pair.planner.name, pair.perception.name, agent, self.concurrency, finished, expected,
+            pair.planner.endpoint is not None, origin,
+        )  # fmt: skip
+
+
+class _CircuitBreaker(Watcher):
+    """Passes runs on to a watcher, and stops the evaluation when too many in a row were broken by infrastructure."""
+
+    def __init__(self, watcher: Watcher, stop: Callable[[], None]) -> None:
+        self._watcher, self._stop = watcher, stop
+        self._broken_in_a_row = 0
+        self.trials: list[Trial] = []
+        self.tripped = False
+
+    def began(self, sample: str, entry: Entry) -> None:
+        self._watcher.began(sample, entry)
+
+    def ended(self, sample: str, trial: Trial) -> None:
+        self.trials.append(trial)
+        self._watcher.ended(sample, trial)
+        self._broken_in_a_row = self._broken_in_a_row + 1 if trial.headline == "infrastructure" else 0
+        if self._broken_in_a_row >= MAX_BROKEN_IN_A_ROW and not self.tripped:
+            self.tripped = True
+            self._stop()
+
+
+@contextmanager
+def few_collections() -> Iterator[None]:
+    """Let the garbage collector run less often, and not over what lives until the end.
+
+    Scenes and tasks are many small objects. Going through them again and again takes a tenth of an evaluation's time.
+    """
+    thresholds = gc.get_threshold()
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(*COLLECTOR_THRESHOLDS)
+    try:
+        yield
+    finally:
+        gc.set_threshold(*thresholds)
+        gc.unfreeze()
+
+
+def prompt_chars(planner: Planner | None) -> int | None:
+    """Return the length of a planner's prompt and tools; None without a prompt, or where pictures dominate it."""
+    from scope_ptz.planner.chat.prompts import Prompt
+    from scope_ptz.tools.registry import schemas
+
+    prompt = getattr(planner, "prompt", None)
+    if planner is None or planner.sees or not isinstance(prompt, Prompt):
+        return None
+    return len(prompt.text) + len(json.dumps(list(schemas())))
+
+
+def _check_pictures(options: EvaluationOptions, pair: ResolvedPair, planner: Planner | None) -> None:
+    """Raise ``InputError`` when pictures are off and a model needs them."""
+    if options.pictures:
+        return
+    if pair.perception.spec is not None:
+        raise InputError(f"The perception '{pair.perception.name}' looks at pictures: leave --no-pictures out.")
+    if planner is not None and planner.sees:
+        raise InputError(f"The planner '{planner.name}' looks at pictures: leave --no-pictures out.")
+
+
+def _is_built_in(pair: ResolvedPair) -> bool:
+    """Return whether runs are so cheap that an interrupted evaluation may repeat the last few."""
+    planner, perception = pair.planner, pair.perception
+    return (
+        planner.name == GRAMMAR
+        and perception.name in BUILT_IN_PERCEPTION
+        and planner.instance is None
+        and perception.instance is None
+    )
+
+
+def _served_models(pair: ResolvedPair) -> list[str]:
+    """Return the names of the served models, which identify an evaluation. The address may change when it is resumed."""
+    spec = pair.perception.spec
+    perception = spec.endpoint.model if spec is not None and spec.endpoint is not None else ""
+    return [pair.planner.endpoint.model if pair.planner.endpoint else "", perception]

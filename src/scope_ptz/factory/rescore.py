@@ -1,0 +1,139 @@
+"""Score logs again: today's checks, a judge's verdicts, and judgements that are missing."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from scope_ptz.factory.evaluation_options import EvaluationResult, JudgeSettings
+from scope_ptz.factory.judges import UnnamedJudgeError, open_judge
+
+if TYPE_CHECKING:
+    from scope_ptz.bench.engine.context import EvalContext, ModelRequest
+    from scope_ptz.bench.engine.scope_model import Model
+    from scope_ptz.bench.judging.judge import Complete
+    from scope_ptz.bench.judging.judgement_tally import JudgementTally
+    from scope_ptz.bench.judging.server import JudgeServer
+
+Notify = Callable[[str], None]
+"""Receives a note for the user, one sentence at a time."""
+
+JUDGEMENTS_AT_A_TIME = 8
+REPORT_EVERY = 25
+"""Samples between two notes about the progress of scoring."""
+
+
+def with_judge(context: EvalContext, judge: JudgeServer) -> EvalContext:
+    """Return a context that provides one judge for every request."""
+
+    async def make_judge(request: ModelRequest, repeat: int) -> Complete:  # noqa: ARG001 - the engine asks by name
+        return judge.repeated(repeat)
+
+    return replace(context, make_judge=make_judge)
+
+
+async def open_requested_judge(settings: JudgeSettings) -> JudgeServer:
+    """Open the judge of an evaluation. Raises ``InputError`` or ``UnnamedJudgeError``."""
+    return await open_judge(settings.url, settings.model, settings.key_file, settings.timeout_s, settings.options)
+
+
+def judge_model(judge: JudgeServer, max_connections: int) -> Model:
+    """Return the engine's model that stands for a judge."""
+    from scope_ptz.bench.engine.scope_model import engine_model
+
+    endpoint = judge.client.endpoint
+    return engine_model(endpoint.model, max_connections, url=endpoint.url, served=endpoint.model)
+
+
+async def add_scores(
+    log: Path,
+    judge: JudgeServer | None,
+    context: EvalContext,
+    *,
+    repeats: int,
+    further: bool = True,
+    checks: bool = False,
+    at_a_time: int = JUDGEMENTS_AT_A_TIME,
+    notify: Notify,
+) -> JudgementTally:
+    """Add scores to a log and return what came of the judgements. The agent is not run again.
+
+    Args:
+        log: Log of a finished evaluation.
+        judge: Judge to ask, or None for checks alone.
+        context: Context of the evaluation.
+        repeats: Number of judgements of each run.
+        further: Add ``repeats`` judgements to those in the log; otherwise complete the first ``repeats``.
+        checks: Apply today's executable checks again.
+        at_a_time: Runs that are scored concurrently.
+        notify: Receives notes about progress.
+
+    Raises:
+        InputError: The evaluation is not finished.
+        TraceError: There is no log, or it is damaged.
+    """
+    from scope_ptz.bench.engine.rescoring import rescore
+
+    def report(done: int, total: int) -> None:
+        if done % REPORT_EVERY == 0 or done == total:
+            notify(f"{log.name}: {done} of {total}")
+
+    if judge is not None:
+        context = with_judge(context, judge)
+    model = judge_model(judge, at_a_time) if judge is not None else None
+    return await rescore(
+        log, context, judge_model=model, repeats=repeats, further=further, with_checks=checks, at_a_time=at_a_time, report=report
+    )
+
+
+async def complete_judgements(
+    log: Path,
+    settings: JudgeSettings,
+    opened_judge: Callable[[], Awaitable[JudgeServer]],
+    context: EvalContext,
+    *,
+    retry_failed: bool,
+    notify: Notify,
+) -> EvaluationResult:
+    """Request the judgements that a log lacks, and return the evaluation with a tally of its judgements.
+
+    Args:
+        log: Log of an evaluation.
+        settings: The judge, and how often it judges each run.
+        opened_judge: Opens the judge's port; not called when nothing is missing and the judge's name is known.
+        context: Context of the evaluation.
+        retry_failed: Also request judgements again for which the judge's server failed.
+        notify: Receives notes for the user.
+
+    Raises:
+        UnnamedJudgeError: The judge has no known name, and some runs lack judgements.
+    """
+    from scope_ptz.bench.engine.logs import read_evaluation
+    from scope_ptz.bench.judging.judgement_tally import JudgementTally, judged_by, requested_judgements
+    from scope_ptz.settings import load_settings
+
+    evaluation = read_evaluation(log)
+    requested = settings.model or load_settings().judge_model
+    if not requested:
+        try:
+            requested = (await opened_judge()).client.endpoint.model
+        except UnnamedJudgeError as error:
+            only = judged_by(evaluation.trials, "", settings.repeats)
+            if only is None:
+                raise
+            notify(f"{error} Every run has been judged by {only}; its verdicts are reported here.")
+            requested = only
+    name = judged_by(evaluation.trials, requested, settings.repeats)
+    if name is None:
+        judge = await opened_judge()
+        name = judge.client.endpoint.model
+        judgements = requested_judgements(evaluation.trials, name, settings.repeats)
+        missing = sum(judgement is None or judgement.verdict == "failed" for judgement in judgements)
+        if evaluation.finished and (None in judgements or (retry_failed and missing)):
+            notify(f"{missing} of {len(judgements)} judgements by {name} are missing; requesting them now.")
+            await add_scores(log, judge, context, repeats=settings.repeats, further=False, notify=notify)
+            evaluation = read_evaluation(log)
+    made = [judgement for judgement in requested_judgements(evaluation.trials, name, settings.repeats) if judgement is not None]
+    return EvaluationResult(evaluation, name, JudgementTally.of(made))

@@ -1,0 +1,136 @@
+"""Testing a judge on gold runs: which runs it judges, the requests, and the result as lines of text."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+
+import anyio
+
+from scope_ptz.bench.judging.agreement_text import figures
+from scope_ptz.bench.judging.json_lines import append_line
+from scope_ptz.bench.judging.judge import Judge
+from scope_ptz.bench.judging.judgement_tally import JudgementTally
+from scope_ptz.bench.judging.rubrics import prompt_version
+from scope_ptz.bench.judging.server import JudgeServer
+from scope_ptz.bench.program_runner import MakeToolContext, ProgramRunner
+from scope_ptz.bench.scoring.episode import PresetViewpoints
+from scope_ptz.bench.scoring.error_modes import ErrorMode
+from scope_ptz.bench.scoring.trials import Judgement
+from scope_ptz.bench.scoring.verdict import score_episode
+from scope_ptz.bench.tasks.splits import load_split, published_folder
+from scope_ptz.bench.tasks.task import Task
+from scope_ptz.simulator.pack import Scene
+from scope_ptz.taskgen.facts.answer_phrasing import right_answers
+from scope_ptz.taskgen.facts.robust import TASK_CAMERA
+from scope_ptz.taskgen.gold.gold_runs import read_gold
+from scope_ptz.taskgen.gold.judge_results import (
+    PASSES,
+    WITHOUT_VERDICT,
+    GoldCase,
+    GoldResult,
+    GoldVerdict,
+    gold_case,
+    in_turn,
+    passing_case,
+)
+from scope_ptz.taskgen.gold.judge_results import judge_gold as judge_cases
+from scope_ptz.taskgen.gold.reference_runs import HEADS
+
+
+async def judge_all(
+    port: JudgeServer,
+    cases: Sequence[GoldCase],
+    before: Sequence[GoldVerdict],
+    out: Path,
+    *,
+    repeats: int,
+    concurrency: int,
+    notify: Callable[[str], None],
+) -> JudgementTally:
+    """Judge the cases that have no verdict yet, and append the verdicts to a file. Failed verdicts are requested again.
+
+    Args:
+        port: The judge's server.
+        cases: Runs to judge.
+        before: Verdicts that the file holds already.
+        out: File for verdicts.
+        repeats: Number of judgements of each run.
+        concurrency: Judgements at a time.
+        notify: Receives a note before each round.
+    """
+    name = port.client.endpoint.model
+    version = prompt_version()
+    done = {
+        (verdict.key, verdict.judgement.repeat)
+        for verdict in before
+        if (verdict.judgement.judge, verdict.judgement.prompt) == (name, version) and verdict.judgement.verdict != "failed"
+    }
+
+    made: list[Judgement] = []
+
+    def note(verdict: GoldVerdict) -> None:
+        made.append(verdict.judgement)
+        append_line(out, json.dumps(verdict.model_dump(mode="json"), ensure_ascii=False))
+
+    for repeat in range(repeats):
+        left = [case for case in cases if (case.key, repeat) not in done]
+        notify(f"{name}: {len(left)} of {len(cases)} runs to judge" + (f", judgement {repeat + 1}" if repeats > 1 else ""))
+        score_episode = Judge(name, port.repeated(repeat))
+        await judge_cases(score_episode, left, concurrency=concurrency, repeat=repeat, note=note)
+    return JudgementTally.of(made)
+
+
+def gold_cases(
+    gold: Path | None,
+    split: str,
+    passing: int,
+    limit: int | None,
+    worlds_of: Callable[[Iterable[Task]], Mapping[str, Scene]],
+    equip_with_truth: Callable[[Mapping[str, Scene]], MakeToolContext],
+) -> list[GoldCase]:
+    """Return gold runs and, mixed in, runs of the same tasks that pass, made by their reference programs.
+
+    Args:
+        gold: File of gold runs; None for the published one.
+        split: Split or task file that the runs are of.
+        passing: Number of runs without a fault.
+        limit: Maximum number of gold runs.
+        worlds_of: Opens the worlds of tasks.
+        equip_with_truth: Gives cameras in these worlds a perception that knows the ground truth.
+    """
+    _, runs = read_gold(gold or published_folder() / "gold.jsonl.gz", load_split(split))
+    runs = in_turn(runs)[:limit]
+    worlds = worlds_of(run.task for run in runs)
+    places = {name: PresetViewpoints.of(world.file) for name, world in worlds.items()}
+    equip = equip_with_truth(worlds)
+    cases = [gold_case(run, places[run.task.world]) for run in runs]
+
+    async def add_passing() -> None:
+        for task in list({run.task.id: run.task for run in runs}.values())[:passing]:
+            answer, outcome = right_answers(task.expected)[0], task.behaviour.outcomes[0]
+            episode = await ProgramRunner(worlds[task.world], equip, TASK_CAMERA).run(task, task.reference, answer, outcome)
+            if score_episode(task, episode).headline == "correct":
+                cases.append(passing_case(task, episode, places[task.world]))
+
+    anyio.run(add_passing)
+    return cases
+
+
+def result_lines(result: GoldResult) -> Iterator[str]:
+    """Return the confusion matrix of a judge on gold runs, with its false accepts and rejects."""
+    modes = [mode.value for mode in ErrorMode]
+    columns = [*modes, "correct", *WITHOUT_VERDICT]
+    made = sum(result.cells.values())
+    times = f", {made} judgements" if made != result.runs else ""
+    runs = f"{result.runs} gold run{'' if result.runs == 1 else 's'}"
+    yield f"{result.judge}: {runs}{times}; rows: the fault put in, columns: what the judge reported"
+    yield f"{'':<20}" + "".join(f"{HEADS.get(name, name):>12}" for name in columns)
+    for row in (*modes, PASSES):
+        if any(fault == row for fault, _ in result.cells):
+            yield f"{row.replace('_', ' '):<20}" + "".join(f"{result.cells.get((row, name), 0) or '.':>12}" for name in columns)
+    for what, share in (("false accepts", result.false_accept_rate), ("false rejects", result.false_reject_rate)):
+        yield f"{what}: {f'{share:.1%}' if share is not None else 'not measured'}"
+    yield f"correct or not: {figures(result.verdicts)}"
+    yield f"error mode, of faulty runs that it rejected: {figures(result.modes)}"

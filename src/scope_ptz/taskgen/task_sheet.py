@@ -1,0 +1,135 @@
+"""A task for a human reader: its text, the run of its reference program, and pictures of its start and its evidence."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import anyio
+import numpy as np
+from PIL import Image
+
+from scope_ptz.agent.drawing import AMBER, CYAN, EDGE, FAINT, INK, SURFACE, Canvas, cut, drawable, wrap
+from scope_ptz.bench.program_runner import MakeToolContext, ProgramRunner
+from scope_ptz.bench.scoring.coverage import box_directions
+from scope_ptz.bench.scoring.episode import FrameGeometry
+from scope_ptz.bench.scoring.verdict import score_episode
+from scope_ptz.bench.tasks.task import EvidenceView, Item, Task
+from scope_ptz.errors import OutputError
+from scope_ptz.geometry import Equirectangular, Perspective, Pose, Projection
+from scope_ptz.simulator.pack import Scene
+from scope_ptz.simulator.views import picture
+from scope_ptz.taskgen.facts.answer_phrasing import right_answers
+
+EYES = FrameGeometry(1280, 720)
+_MARGIN, _HEAD, _LINE = 28, 118, 24
+_WIDE = 2200.0
+_NEAR = (260, 146)
+"""Size in pixels of the close-ups under the picture of a sweep."""
+
+
+def summary(task: Task, wordings: Sequence[Task]) -> Iterator[str]:
+    """Return lines about a task. ``wordings`` are its paraphrases."""
+    yield f"{task.id}  ({task.category}, {task.difficulty}, {task.scope} scope; needs {', '.join(task.needs) or 'nothing'})"
+    yield f"asked      {task.instruction}"
+    for other in wordings:
+        yield f"or         {other.instruction}"
+    yield f"starts     {task.world}, preset {task.preset}, {task.time_s:g} s"
+    yield f"expected   {json.dumps(task.expected.model_dump(exclude_defaults=True), ensure_ascii=False)}"
+    for view in task.evidence:
+        pose = view.aim
+        items = ", ".join(item.instance for item in view.items) or "nothing"
+        yield f"evidence   {pose.viewpoint} at {pose.pan_deg:g}/{pose.tilt_deg:g}/{pose.zoom:g}x, {view.scope}: {items}"
+    if task.pair:
+        yield f"twin       {task.pair}"
+
+
+def reference_run(task: Task, scene: Scene, equip: MakeToolContext) -> Iterator[str]:
+    """Return the calls of the reference program with the results of the tools, and the verdict."""
+    text, outcome = right_answers(task.expected)[0], task.behaviour.outcomes[0]
+    stage = ProgramRunner(scene, equip, EYES)
+    episode = anyio.run(stage.run, task, task.reference, text, outcome)
+    for call in episode.calls:
+        yield f"call       {call.name} {json.dumps(dict(call.arguments))} -> {call.error or (call.result or {}).get('message')}"
+    yield f"answer     {text if outcome == 'answered' else f'({outcome})'}"
+    verdict = score_episode(task, episode)
+    yield f"verdict    {verdict.headline}: {verdict.reason}"
+
+
+def write_frames(task: Task, scene: Scene, out: Path) -> Iterator[Path]:
+    """Write a picture of the start, then one of each view of the evidence with its items outlined and listed."""
+    start = next(p for p in scene.file.presets if p.name == task.preset)
+    at_start = EYES.view(Pose(start.pan_deg, start.tilt_deg, start.zoom))
+    sheets = [(f"{task.id}-start.png", _sheet(task, scene, start.viewpoint, at_start, (), f"start: preset {start.name}"))]
+    for number, view in enumerate(task.evidence, 1):
+        caption = f"evidence {number} of {len(task.evidence)}: {_where(view)}"
+        sheets.append((f"{task.id}-{number}.png", _sheet(task, scene, view.aim.viewpoint, _projection(view), view.items, caption)))
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        for name, sheet in sheets:
+            sheet.save(out / name)
+            yield out / name
+    except OSError as error:
+        raise OutputError(f"Pictures cannot be written to {out}: {error.strerror}. Choose another with --out.") from error
+
+
+def _where(view: EvidenceView) -> str:
+    aim = view.aim
+    if view.scope == "full":
+        return f"everything around {aim.viewpoint}"
+    return f"{aim.viewpoint}, pan {aim.pan_deg:g}°, tilt {aim.tilt_deg:g}°, zoom {aim.zoom:g}x"
+
+
+def _projection(view: EvidenceView) -> Projection:
+    aim = view.aim
+    return EYES.sweep() if view.scope == "full" else EYES.view(Pose(aim.pan_deg, aim.tilt_deg, aim.zoom))
+
+
+def _sheet(task: Task, scene: Scene, viewpoint: str, projection: Projection, items: Sequence[Item], caption: str) -> Image.Image:
+    """Draw the task's text, the frame, and the list of outlined items; a sweep also shows each item in close-up."""
+    image = Image.fromarray(picture(scene, viewpoint, projection, task.time_s))
+    swept = isinstance(projection, Equirectangular)
+    width = _WIDE if swept else float(projection.width)
+    height = width * projection.height / projection.width
+    columns = int(width / (_NEAR[0] + 12)) if swept else 2
+    cell = (width / columns, _NEAR[1] + _LINE + 18 if swept else _LINE)
+    rows = -(-len(items) // columns)
+    canvas = Canvas(width + 2 * _MARGIN, _HEAD + height + _MARGIN + (rows * cell[1] + 24 if rows else 0))
+    lines = wrap(task.instruction, 24, width, 2)
+    for at, line in enumerate(lines):
+        canvas.text(_MARGIN, (72 if len(lines) == 1 else 42) + 30 * at, line, 24, INK, bold=True)
+    canvas.text(_MARGIN, _HEAD - 16, cut(drawable(f"{task.id} · {caption}"), 17, width), 17, FAINT)
+    canvas.picture(image, _MARGIN, _HEAD, width, height)
+    for number, item in enumerate(items, 1):
+        _outline(canvas, projection, item, number, width, height)
+        row, column = divmod(number - 1, columns)
+        x, y = _MARGIN + column * cell[0], _HEAD + height + 34 + row * cell[1]
+        if swept:
+            near = Image.fromarray(picture(scene, viewpoint, _near(item), task.time_s))
+            canvas.picture(near, x, y - 16, *_NEAR)
+            y += _NEAR[1] + 8
+        canvas.panel(x, y - 14, 34, 20, SURFACE, radius=6, edge=EDGE)
+        canvas.text(x + 17, y - 4, str(number), 14, AMBER, bold=True, anchor="mm")
+        caption_text = item.instance if item.value is None or isinstance(item.value, bool) else f"{item.instance}: {item.value}"
+        canvas.text(x + 44, y, cut(drawable(caption_text), 17, cell[0] - 60), 17, INK)
+    return canvas.finish()
+
+
+def _near(item: Item) -> Perspective:
+    """Return a view of an item with some of its surroundings."""
+    left, bottom, right, top = item.box_deg
+    across = (right - left) % 360.0
+    hfov_deg = min(max(2.5 * max(across, (top - bottom) * _NEAR[0] / _NEAR[1]), 6.0), 80.0)
+    return Perspective((left + across / 2 + 180) % 360 - 180, (bottom + top) / 2, hfov_deg, 2 * _NEAR[0], 2 * _NEAR[1])
+
+
+def _outline(canvas: Canvas, projection: Projection, item: Item, number: int, width: float, height: float) -> None:
+    points = projection.points(box_directions(item.box_deg)) * (width, height)
+    if np.isnan(points).any():
+        return
+    (x0, y0), (x1, y1) = (tuple(map(float, corner)) for corner in (points.min(axis=0), points.max(axis=0)))
+    canvas.frame(_MARGIN + x0, _HEAD + y0, x1 - x0, y1 - y0, CYAN)
+    canvas.tag(
+        _MARGIN + min(max(x0, 12), width - 12), _HEAD + max(y0 - 12, 12), str(number), 13, fill=AMBER, ink="#0E131A", anchor="m"
+    )
