@@ -12,7 +12,7 @@ DEMO := Go to the highway preset, then pan right in 15 degree steps until you se
 .PHONY: demo test test-full check format bench requirements clean
 
 demo: $(BASE)
-	@$(BIN)/scope ask "$(DEMO)"
+	@$(BIN)/scope ask "$(DEMO)" --next-steps
 
 test: $(DEV)
 	$(BIN)/pytest -q -n 2 -m "not full" tests

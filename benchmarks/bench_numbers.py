@@ -25,9 +25,9 @@ from scope_ptz.agent.loop import Agent
 from scope_ptz.agent.records import Called, Decided, Ended, Started
 from scope_ptz.agent.store import NoImages
 from scope_ptz.agent.trace import Trace
-from scope_ptz.bench.programs import BlankCamera
-from scope_ptz.bench.scoring.episode import Places, episode_of
-from scope_ptz.bench.scoring.verdict import judge
+from scope_ptz.bench.program_runner import BlankCamera
+from scope_ptz.bench.scoring.episode import PresetViewpoints, episode_of
+from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.splits import load_split
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.camera.simulated import SimulatedCamera
@@ -107,7 +107,7 @@ async def _score(tasks: Sequence[Task], eyes: str) -> Score:
                 world.release()
         last = task.scene
         trace = await _run(task, worlds[task.world], perception, drawn=eyes == "rapidocr")
-        verdict = judge(task, episode_of(trace, Places.of(worlds[task.world].file), keeps_files=False))
+        verdict = score_episode(task, episode_of(trace, PresetViewpoints.of(worlds[task.world].file), keeps_files=False))
         score.of[task.category] += 1
         score.right[task.category] += verdict.headline == "correct"
         score.unscored += verdict.headline == "unscored"

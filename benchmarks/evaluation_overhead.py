@@ -20,7 +20,7 @@ from scope_ptz.agent.loop import Agent
 from scope_ptz.agent.store import NoImages, RunFolder
 from scope_ptz.bench.engine.context import EvalContext, ModelRequest
 from scope_ptz.bench.engine.entries import Entry
-from scope_ptz.bench.programs import BlankCamera
+from scope_ptz.bench.program_runner import BlankCamera
 from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.cli.bench_evaluate import RunOptions, evaluate
 from scope_ptz.factory.evaluation import eval_context, planner_for

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rapidocr import RapidOCR
 
-from scope_ptz.bench.answers.reader import agrees, read
+from scope_ptz.bench.answers import agrees, parse_answer
 from scope_ptz.bench.tasks.splits import load_split
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.cli.bench_inputs import worlds_of
@@ -58,9 +58,9 @@ def main() -> int:
         if name not in folders:
             print(f"no scene '{name}'; known: {', '.join(folders) or 'none'}", file=sys.stderr)
             return 2
-        read, missed = _measure(Scene(folders[name]), engine, arguments.views, arguments.seed)
-        total = read + len(missed)
-        print(f"{name}: {read} of {total} legible texts read ({read / max(1, total):.1%}) in {arguments.views} views", flush=True)
+        found, missed = _measure(Scene(folders[name]), engine, arguments.views, arguments.seed)
+        total = found + len(missed)
+        print(f"{name}: {found} of {total} legible texts read ({found / max(1, total):.1%}) in {arguments.views} views", flush=True)
         if arguments.misses:
             for line in missed:
                 print(f"  {line}")
@@ -68,19 +68,19 @@ def main() -> int:
 
 
 def _measure(scene: Scene, engine: RapidOCR, views: int, seed: int) -> tuple[int, list[str]]:
-    read, missed = 0, []
+    number_read, missed = 0, []
     for viewpoint, pose, legible in _views(scene, views, random.Random(seed)):
         view = _perspective(pose)
         words = _words(engine, picture(scene, viewpoint, view, 0.0))
         for text in legible:
             found = _at(text, words)
             if _alike(text.text.text, found) >= ALIKE:
-                read += 1
+                number_read += 1
             else:
                 place = f"{viewpoint} {pose.pan_deg:.1f} {pose.tilt_deg:.1f} {pose.zoom:.2f}x"
                 size = f"capitals {text.cap_height_px:.0f} px, {text.angle_deg:.0f} deg"
                 missed.append(f"{text.text.text!r} as {found!r}, {size}, {place}")
-    return read, missed
+    return number_read, missed
 
 
 def _measure_tasks(tasks: Sequence[Task], engine: RapidOCR, misses: bool) -> None:
@@ -94,7 +94,7 @@ def _measure_tasks(tasks: Sequence[Task], engine: RapidOCR, misses: bool) -> Non
             texts = {t.text.id: t for t in view_truth(scene, aim.viewpoint, view, task.time_s).texts}
             found += [_at(texts[name], words) for name in asked if name in texts]
         said = " ".join(found)
-        if agrees(task.expected, read(task.expected, f'It reads "{said}".')):
+        if agrees(task.expected, parse_answer(task.expected, f'It reads "{said}".')):
             right += 1
         else:
             missed.append(f"{task.id} {right_answers(task.expected)[0]!r} as {said!r}: {task.instruction}")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from scope_ptz.cli.cards import markdown
+from scope_ptz.simulator.card import markdown
 from scope_ptz.simulator.pack import list_scenes, load_scene
 
 DOCS = Path(__file__).parent.parent / "docs"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from scope_ptz.bench.scoring.episode import Call, Episode, Eyes, Picture, Standing, looks_of
+from scope_ptz.bench.scoring.episode import CameraPosition, Episode, EpisodeCall, FrameGeometry, SavedPicture, observations_of
 from scope_ptz.bench.tasks.expected import (
     ActionOnly,
     AnyExpected,
@@ -38,11 +38,11 @@ from scope_ptz.bench.tasks.task import (
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Pose
 from scope_ptz.tools.adjust_ptz import AdjustPtz, requested_pose
 
-EYES = Eyes(1280, 720)
+EYES = FrameGeometry(1280, 720)
 PRESETS = {
-    "gate": Standing("mast", Pose(10.0, -10.0, 1.0)),
-    "highway": Standing("mast", Pose(-40.0, -14.0, 1.2)),
-    "bridge": Standing("bridge", Pose(90.0, -8.0, 1.5)),
+    "gate": CameraPosition("mast", Pose(10.0, -10.0, 1.0)),
+    "highway": CameraPosition("mast", Pose(-40.0, -14.0, 1.2)),
+    "bridge": CameraPosition("bridge", Pose(90.0, -8.0, 1.5)),
 }
 START = PRESETS["gate"]
 SIGN_BOX = (20.0, -6.0, 24.0, -4.0)
@@ -52,16 +52,16 @@ Step = tuple[str, dict[str, Any]] | tuple[str, dict[str, Any], dict[str, Any]]
 
 def play(steps: Sequence[Step], text: str, *, instruction: str = "do it", outcome: str | None = "answered") -> Episode:
     """A run of calls: ``(tool, arguments)`` for moves, ``(tool, arguments, what the tool said)`` for looks."""
-    at, calls, pictures = START, list[Call](), list[Picture]()
+    at, calls, pictures = START, list[EpisodeCall](), list[SavedPicture]()
     for step in steps:
         name, arguments, said = step[0], step[1], dict(step[2]) if len(step) > 2 else {}
         after = stand_after(at, name, arguments, said)
         if name == "take_image":
-            pictures.append(Picture(f"pictures/{len(pictures) + 1:03d}.png", exists=True))
+            pictures.append(SavedPicture(f"pictures/{len(pictures) + 1:03d}.png", exists=True))
             said["file"] = pictures[-1].file
         said.setdefault("message", f"{name} done; {' '.join(str(v) for v in arguments.values() if name == 'go_to_preset')}")
         failed = "error" in said
-        call = Call(
+        call = EpisodeCall(
             name=name,
             arguments=arguments,
             before=at,
@@ -71,34 +71,34 @@ def play(steps: Sequence[Step], text: str, *, instruction: str = "do it", outcom
             fault=said.get("fault", "bad_call") if failed else None,
             time_s=float(len(calls)),
         )
-        looks = looks_of(call, EYES) if call.succeeded else ()
-        calls.append(Call(**{n: getattr(call, n) for n in Call.__slots__ if n != "looks"}, looks=looks))
+        looks = observations_of(call, EYES) if call.succeeded else ()
+        calls.append(EpisodeCall(**{n: getattr(call, n) for n in EpisodeCall.__slots__ if n != "observations"}, observations=looks))
         at = after
     return Episode(instruction, START, tuple(calls), at, text, outcome, tuple(pictures))
 
 
-def stand_after(at: Standing, name: str, arguments: Mapping[str, Any], said: Mapping[str, Any]) -> Standing:
+def stand_after(at: CameraPosition, name: str, arguments: Mapping[str, Any], said: Mapping[str, Any]) -> CameraPosition:
     if "error" in said:
         return at
     if "pose" in said:
-        return Standing(at.viewpoint, Pose(**said["pose"]))
+        return CameraPosition(at.viewpoint, Pose(**said["pose"]))
     if name == "adjust_ptz":
         wanted = requested_pose(at.pose, AdjustPtz.model_validate(arguments), Limits())
-        return Standing(at.viewpoint, Limits().clamp(wanted)[0])
+        return CameraPosition(at.viewpoint, Limits().clamp(wanted)[0])
     if name == "go_to_preset":
         return PRESETS[arguments["name"]]
     return START if name == "go_home" else at
 
 
-def aim(at: Standing) -> Aim:
+def aim(at: CameraPosition) -> Aim:
     return Aim(viewpoint=at.viewpoint or "", pan_deg=at.pose.pan_deg, tilt_deg=at.pose.tilt_deg, zoom=at.pose.zoom)
 
 
-def final(at: Standing) -> FinalPose:
+def final(at: CameraPosition) -> FinalPose:
     return FinalPose(**aim(at).model_dump())
 
 
-def view(at: Standing, **further: Any) -> EvidenceView:
+def view(at: CameraPosition, **further: Any) -> EvidenceView:
     """The view of a standing as a whole, unless items are given."""
     whole = further.pop("whole", "items" not in further)
     return EvidenceView(aim=aim(at), hfov_deg=AXIS_M5075_G.hfov_deg(at.pose.zoom), whole=whole, **further)
@@ -155,8 +155,8 @@ STEP_RIGHT = RequiredCall(tool="adjust_ptz", arguments={"pan_deg": Argument(equa
 VAN = Item(instance="van-01", value="red", box_deg=(85.0, -12.0, 95.0, -5.0), min_px=40)
 SIGN = Item(instance="sign-02", value="ROAD CLOSED", box_deg=SIGN_BOX, cap_height_deg=0.3)
 AT_HIGHWAY, AT_BRIDGE = PRESETS["highway"], PRESETS["bridge"]
-BEYOND_HIGHWAY = Standing("mast", Pose(-25.0, -14.0, 1.2))
-SIGN_VIEW = Standing("mast", Pose(22.0, -5.0, 4.0))
+BEYOND_HIGHWAY = CameraPosition("mast", Pose(-25.0, -14.0, 1.2))
+SIGN_VIEW = CameraPosition("mast", Pose(22.0, -5.0, 4.0))
 
 
 def samples() -> list[tuple[Task, Episode]]:
@@ -219,7 +219,7 @@ def samples() -> list[tuple[Task, Episode]]:
         evidence=[view(at, shows=Number(value=n, unit=("cone",))) for at, n in ((START, 4), (AT_HIGHWAY, 9), (AT_BRIDGE, 1))],
         needs=("preset",), instruction="Rank the presets by cones.",
     )  # fmt: skip
-    turned = Standing("mast", Pose(30.0, -20.0, 1.0))
+    turned = CameraPosition("mast", Pose(30.0, -20.0, 1.0))
     add(
         "single_call", ActionOnly(), [("adjust_ptz", {"pan_deg": 20.0, "tilt_deg": -10.0})], "Done.",
         behaviour=Behaviour(final=final(turned), forbidden=Forbidden(changes=("zoom",))), needs=("move",),

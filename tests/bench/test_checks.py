@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scope_ptz.bench.scoring.checks import check_pose, framed, run_checks
-from scope_ptz.bench.scoring.episode import Episode, Picture, Standing
-from scope_ptz.bench.scoring.matching import in_any_order, in_order
-from scope_ptz.bench.scoring.verdict import judge, tally
+from scope_ptz.bench.scoring.episode import CameraPosition, Episode, SavedPicture
+from scope_ptz.bench.scoring.required_calls import missing_in_any_order, missing_in_order
+from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.expected import ActionOnly, Number
 from scope_ptz.bench.tasks.task import Argument, Behaviour, Forbidden, Framing, RequiredCall, Task
 from scope_ptz.errors import ScopeError
@@ -34,16 +34,16 @@ def action(behaviour: Behaviour, **further: Any) -> Task:
 
 @pytest.mark.parametrize(("of", "episode"), SAMPLES, ids=[t.id for t, _ in SAMPLES])
 def test_every_sample_passes_and_doing_nothing_never_does(of: Task, episode: Episode) -> None:
-    assert judge(of, episode).headline == "correct"
-    idle = play([], episode.text)
-    assert judge(of, idle).headline == "incorrect"
-    assert judge(of, play([], "I did nothing.")).headline != "correct"
+    assert score_episode(of, episode).headline == "correct"
+    idle = play([], episode.answer)
+    assert score_episode(of, idle).headline == "incorrect"
+    assert score_episode(of, play([], "I did nothing.")).headline != "correct"
 
 
 @pytest.mark.parametrize("text", ["none", "0", "yes", "no", "5", "red"])
 @pytest.mark.parametrize("of", [t for t, _ in SAMPLES], ids=[t.id for t, _ in SAMPLES])
 def test_no_answer_passes_without_looking(of: Task, text: str) -> None:
-    assert judge(of, play([], text)).headline != "correct"
+    assert score_episode(of, play([], text)).headline != "correct"
 
 
 @pytest.mark.parametrize(
@@ -51,16 +51,16 @@ def test_no_answer_passes_without_looking(of: Task, text: str) -> None:
     [("5 cones", True), ("four cones", False), ("several cones", None), ("I cannot tell.", False), ("", None)],
 )
 def test_the_answer(text: str, passed: bool | None) -> None:
-    episode = replace(COUNT_RUN, text=text)
+    episode = replace(COUNT_RUN, answer=text)
     assert outcome_of("answer", COUNT_TASK, episode) is passed
     headline = {True: "correct", False: "incorrect", None: "unscored"}[passed]
-    assert judge(COUNT_TASK, episode).headline == headline
+    assert score_episode(COUNT_TASK, episode).headline == headline
 
 
 def test_an_answer_that_was_never_given_is_wrong() -> None:
     for outcome in ("step_limit", "budget"):
-        assert judge(COUNT_TASK, replace(COUNT_RUN, outcome=outcome)).headline == "incorrect"
-    assert judge(COUNT_TASK, replace(COUNT_RUN, outcome="clarification", text="Which cones?")).headline == "incorrect"
+        assert score_episode(COUNT_TASK, replace(COUNT_RUN, outcome=outcome)).headline == "incorrect"
+    assert score_episode(COUNT_TASK, replace(COUNT_RUN, outcome="clarification", answer="Which cones?")).headline == "incorrect"
 
 
 @pytest.mark.parametrize(
@@ -95,7 +95,7 @@ def test_coverage(steps: list[Step], passed: bool) -> None:
 def test_the_final_pose(pan: float, tilt: float, zoom: float, viewpoint: str, passed: bool) -> None:
     wanted = action(Behaviour(final=final(AT_HIGHWAY)))
     pose = AT_HIGHWAY.pose
-    ends = Standing(viewpoint, Pose(pose.pan_deg + pan, pose.tilt_deg + tilt, pose.zoom * zoom))
+    ends = CameraPosition(viewpoint, Pose(pose.pan_deg + pan, pose.tilt_deg + tilt, pose.zoom * zoom))
     result = check_pose(wanted, replace(COUNT_RUN, final=ends))
     assert result is not None
     assert result.passed is passed
@@ -137,15 +137,15 @@ TAKE: Step = ("take_image", {})
 )
 def test_required_calls(wanted: list[RequiredCall], steps: list[Step], ordered: bool, anyhow: bool) -> None:
     calls = play(steps, "").calls
-    assert (in_order(wanted, calls) is None) is ordered
-    assert (in_any_order(wanted, calls) is None) is anyhow
+    assert (missing_in_order(wanted, calls) is None) is ordered
+    assert (missing_in_any_order(wanted, calls) is None) is anyhow
 
 
 def test_a_zoom_by_percent_is_a_zoom_by_its_factor_and_calls_are_matched_best_in_any_order() -> None:
     twice = RequiredCall(tool="adjust_ptz", arguments={"zoom_factor": Argument(equals=2.0, within=0.01)})
-    assert in_order([twice], play([("adjust_ptz", {"zoom_percent": 100.0})], "").calls) is None
+    assert missing_in_order([twice], play([("adjust_ptz", {"zoom_percent": 100.0})], "").calls) is None
     some, cones = RequiredCall(tool="count_objects"), CONES
-    assert in_any_order([some, cones], play([counted(1, "cones"), counted(2, "cars")], "").calls) is None
+    assert missing_in_any_order([some, cones], play([counted(1, "cones"), counted(2, "cars")], "").calls) is None
 
 
 def test_what_must_not_happen() -> None:
@@ -165,9 +165,9 @@ def test_pictures_must_be_as_many_and_exist() -> None:
     assert outcome_of("pictures", two, play([TAKE, TAKE], "")) is True
     assert outcome_of("pictures", two, play([TAKE], "")) is False
     assert outcome_of("pictures", two, play([TAKE, TAKE, TAKE], "")) is False
-    lost = replace(play([TAKE, TAKE], ""), pictures=(Picture("a.png", True), Picture("b.png", False)))
+    lost = replace(play([TAKE, TAKE], ""), pictures=(SavedPicture("a.png", True), SavedPicture("b.png", False)))
     assert outcome_of("pictures", two, lost) is False
-    unkept = replace(lost, pictures=(Picture("a.png"), Picture("b.png")))
+    unkept = replace(lost, pictures=(SavedPicture("a.png"), SavedPicture("b.png")))
     assert outcome_of("pictures", two, unkept) is True
 
 
@@ -178,21 +178,21 @@ def test_framing_is_fill_of_the_limiting_side_and_offset_from_the_middle(pan: fl
     corners = frame.directions([[low + off, 0.4], [high + off, 0.4], [high + off, 0.6], [low + off, 0.6]])
     pans, tilts = pan_tilt_deg(corners)
     outline = tuple((float(p), float(t)) for p, t in zip(pans, tilts, strict=True))
-    episode = replace(COUNT_RUN, final=Standing("mast", Pose(pan, tilt, 3.0)))
+    episode = replace(COUNT_RUN, final=CameraPosition("mast", Pose(pan, tilt, 3.0)))
     measured, offset = framed(outline, episode)
     assert measured == pytest.approx(fill, abs=1e-3)
     assert offset == pytest.approx(abs(off), abs=1e-3)
     wanted = action(Behaviour(framing=Framing(instance="x", viewpoint="mast", outline_deg=outline)))
     if not (abs(fill - 0.6) < 1e-3 or abs(fill - 0.9) < 1e-3 or abs(abs(off) - 0.02) < 1e-3):
         assert outcome_of("framing", wanted, episode) is (0.6 <= fill <= 0.9 and abs(off) <= 0.02)
-    assert outcome_of("framing", wanted, replace(episode, final=Standing("bridge", Pose(pan, tilt, 3.0)))) is False
-    assert outcome_of("framing", wanted, replace(episode, final=Standing("mast", Pose(pan + 180, -tilt, 3.0)))) is False
+    assert outcome_of("framing", wanted, replace(episode, final=CameraPosition("bridge", Pose(pan, tilt, 3.0)))) is False
+    assert outcome_of("framing", wanted, replace(episode, final=CameraPosition("mast", Pose(pan + 180, -tilt, 3.0)))) is False
 
 
 def test_the_right_calls_with_a_wrong_answer_and_the_right_answer_at_a_wrong_pose_both_fail() -> None:
-    assert judge(COUNT_TASK, replace(COUNT_RUN, text="6")).headline == "incorrect"
+    assert score_episode(COUNT_TASK, replace(COUNT_RUN, answer="6")).headline == "incorrect"
     wrong_pose = play([GO_HIGHWAY, counted(5), ("adjust_ptz", {"pan_deg": 3.0})], "There are 5 cones.")
-    assert [c.name for c in judge(COUNT_TASK, wrong_pose).checks if not c.passed] == ["pose"]
+    assert [c.name for c in score_episode(COUNT_TASK, wrong_pose).checks if not c.passed] == ["pose"]
 
 
 @pytest.mark.parametrize(
@@ -209,44 +209,34 @@ def test_the_right_calls_with_a_wrong_answer_and_the_right_answer_at_a_wrong_pos
     ],
 )
 def test_infrastructure_is_its_own_outcome(changes: dict[str, Any], headline: str) -> None:
-    assert judge(COUNT_TASK, replace(COUNT_RUN, **changes)).headline == headline
+    assert score_episode(COUNT_TASK, replace(COUNT_RUN, **changes)).headline == headline
 
 
 def test_failed_eyes_are_infrastructure_unless_the_agent_claims_to_have_seen() -> None:
     blind: list[Step] = [GO_HIGHWAY, ("count_objects", {"description": "cones"}, {"error": "timeout", "fault": "perception"})]
-    assert judge(COUNT_TASK, play(blind, "I could not see: perception failed.")).headline == "infrastructure"
-    assert judge(COUNT_TASK, play(blind, "There are 5 cones.")).headline == "incorrect"
-    assert judge(COUNT_TASK, play([*blind, counted(5)], "There are 5 cones.")).headline == "correct"
+    assert score_episode(COUNT_TASK, play(blind, "I could not see: perception failed.")).headline == "infrastructure"
+    assert score_episode(COUNT_TASK, play(blind, "There are 5 cones.")).headline == "incorrect"
+    assert score_episode(COUNT_TASK, play([*blind, counted(5)], "There are 5 cones.")).headline == "correct"
 
 
 def test_a_reaction_is_judged_by_how_the_run_ends() -> None:
     refusal = action(
         Behaviour(outcomes=("refused", "clarification"), forbidden=Forbidden(changes=("pan", "tilt"))), stratum="reaction"
     )
-    assert judge(refusal, play([], "There is no such preset.", outcome="refused")).headline == "correct"
-    assert judge(refusal, play([], "Done.", outcome="answered")).headline == "incorrect"
-    assert judge(refusal, play([GO_HIGHWAY], "No.", outcome="refused")).headline == "incorrect"
+    assert score_episode(refusal, play([], "There is no such preset.", outcome="refused")).headline == "correct"
+    assert score_episode(refusal, play([], "Done.", outcome="answered")).headline == "incorrect"
+    assert score_episode(refusal, play([GO_HIGHWAY], "No.", outcome="refused")).headline == "incorrect"
 
 
 def test_a_task_without_a_check_is_an_error() -> None:
     empty = COUNT_TASK.model_copy(update={"expected": ActionOnly(), "behaviour": Behaviour(), "evidence": ()})
     with pytest.raises(ScopeError, match="no check"):
-        judge(empty, COUNT_RUN)
+        score_episode(empty, COUNT_RUN)
 
 
 def test_collateral_change_is_told_but_decides_nothing() -> None:
     here = task(901, "counting", Number(value=2, unit=("cone",)), [counted(2)], evidence=[view(START)])
-    assert not judge(here, play([counted(2)], "2")).collateral
-    wandered = judge(here, play([counted(2), ("adjust_ptz", {"pan_deg": 30.0})], "2"))
+    assert not score_episode(here, play([counted(2)], "2")).collateral
+    wandered = score_episode(here, play([counted(2), ("adjust_ptz", {"pan_deg": 30.0})], "2"))
     assert (wandered.headline, wandered.collateral) == ("correct", True)
-    assert not judge(COUNT_TASK, COUNT_RUN).collateral
-
-
-def test_the_headline_counts_what_is_unscored_as_not_correct_and_shows_the_bounds() -> None:
-    texts = ["5", "5", "6", "several"]
-    verdicts = [judge(COUNT_TASK, replace(COUNT_RUN, text=text)) for text in texts]
-    verdicts.append(judge(COUNT_TASK, replace(COUNT_RUN, outcome=None)))
-    counted_up = tally(verdicts)
-    assert counted_up.counts == {"correct": 2, "incorrect": 1, "unscored": 1, "infrastructure": 1}
-    assert (counted_up.share, counted_up.low, counted_up.high) == (0.5, 0.4, 0.8)
-    assert tally([]).share is None
+    assert not score_episode(COUNT_TASK, COUNT_RUN).collateral

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from scope_ptz.bench.scoring.coverage import box_directions, density_px_deg, gap, inside, reference_directions, shows
-from scope_ptz.bench.scoring.episode import Look, Standing
+from scope_ptz.bench.scoring.coverage import box_directions, density_px_deg, inside, reference_directions, shows, uncovered_part
+from scope_ptz.bench.scoring.episode import CameraPosition, Observation
 from scope_ptz.bench.tasks.task import EvidenceView, Item
 from scope_ptz.geometry import Pose, direction, pan_tilt_deg
 from tests.bench.making import EYES, view
@@ -20,47 +20,47 @@ PANS, TILTS, ZOOMS = st.floats(-179, 179), st.floats(-55, 25), st.floats(1, 5)
 POSES = st.builds(Pose, PANS, TILTS, ZOOMS)
 
 
-def look(pose: Pose, viewpoint: str = "mast", **further: Any) -> Look:
-    return Look(viewpoint, EYES.view(pose), further.pop("time_s", 0.0), further.pop("how", "count"), **further)
+def look(pose: Pose, viewpoint: str = "mast", **further: Any) -> Observation:
+    return Observation(viewpoint, EYES.view(pose), further.pop("time_s", 0.0), further.pop("how", "count"), **further)
 
 
-SWEEP = Look("mast", EYES.sweep(), 0.0, "count")
+SWEEP = Observation("mast", EYES.sweep(), 0.0, "count")
 
 
 def evidence(pose: Pose, **further: Any) -> EvidenceView:
-    return view(Standing("mast", pose), **further)
+    return view(CameraPosition("mast", pose), **further)
 
 
 @given(POSES)
 def test_a_frame_covers_the_view_that_it_is(pose: Pose) -> None:
-    assert gap(evidence(pose), [look(pose)]) is None
-    assert gap(evidence(pose), [look(pose, "bridge")]) is not None
-    assert gap(evidence(pose), []) is not None
+    assert uncovered_part(evidence(pose), [look(pose)]) is None
+    assert uncovered_part(evidence(pose), [look(pose, "bridge")]) is not None
+    assert uncovered_part(evidence(pose), []) is not None
 
 
 @given(POSES, st.floats(0.06, 1.0), st.sampled_from([1, -1]))
 def test_a_frame_turned_away_by_more_than_the_inset_does_not(pose: Pose, share: float, side: int) -> None:
     fov = EYES.optics.hfov_deg(pose.zoom)
     turned = Pose(pose.pan_deg + side * share * fov / math.cos(math.radians(pose.tilt_deg)), pose.tilt_deg, pose.zoom)
-    assert gap(evidence(pose), [look(turned)]) is not None
+    assert uncovered_part(evidence(pose), [look(turned)]) is not None
 
 
 @given(POSES)
 def test_within_half_a_degree_and_three_percent_of_zoom_a_view_at_the_wide_end_is_covered(pose: Pose) -> None:
     assume(pose.zoom <= 1.5)
     near = Pose(pose.pan_deg + 0.5, pose.tilt_deg, pose.zoom * 0.99)
-    assert gap(evidence(pose), [look(near)]) is None
+    assert uncovered_part(evidence(pose), [look(near)]) is None
 
 
 @given(POSES)
 def test_zooming_in_loses_the_border_and_zooming_out_the_detail(pose: Pose) -> None:
     assume(1.5 <= pose.zoom <= 3.5)
     closer, wider = Pose(pose.pan_deg, pose.tilt_deg, pose.zoom * 1.2), Pose(pose.pan_deg, pose.tilt_deg, pose.zoom / 1.4)
-    assert gap(evidence(pose), [look(closer)]) is not None
-    assert gap(evidence(pose), [look(wider)]) is None
+    assert uncovered_part(evidence(pose), [look(closer)]) is not None
+    assert uncovered_part(evidence(pose), [look(wider)]) is None
     needs = density_px_deg(look(pose))
-    assert gap(evidence(pose, min_density_px_deg=needs), [look(pose)]) is None
-    assert gap(evidence(pose, min_density_px_deg=needs), [look(wider)]) is not None
+    assert uncovered_part(evidence(pose, min_density_px_deg=needs), [look(pose)]) is None
+    assert uncovered_part(evidence(pose, min_density_px_deg=needs), [look(wider)]) is not None
 
 
 @given(POSES)
@@ -69,8 +69,8 @@ def test_two_halves_cover_a_view_together(pose: Pose) -> None:
     fov = EYES.optics.hfov_deg(pose.zoom)
     halves = [look(Pose(pose.pan_deg + side * fov * 0.25, pose.tilt_deg, pose.zoom * 0.8)) for side in (1, -1)]
     if pose.zoom * 0.8 >= 1:
-        assert gap(evidence(pose), halves) is None
-        assert gap(evidence(pose), halves[:1]) is not None
+        assert uncovered_part(evidence(pose), halves) is None
+        assert uncovered_part(evidence(pose), halves[:1]) is not None
 
 
 @given(POSES)
@@ -78,14 +78,14 @@ def test_a_sweep_covers_its_band_and_nothing_else_does(pose: Pose) -> None:
     sweep = EYES.sweep()
     band = (sweep.bottom_tilt_deg + 1, sweep.top_tilt_deg - 1)
     around = evidence(pose, scope="full", band_deg=band)
-    assert gap(around, [SWEEP]) is None
-    assert gap(around, [look(pose)]) is not None
+    assert uncovered_part(around, [SWEEP]) is None
+    assert uncovered_part(around, [look(pose)]) is not None
 
 
 def test_a_ring_of_frames_covers_what_a_sweep_covers() -> None:
     around = evidence(Pose(), scope="full", band_deg=(-12.0, 12.0))
-    assert gap(around, [look(Pose(pan, 0.0, 1.0)) for pan in range(-180, 180, 30)]) is None
-    assert gap(around, [look(Pose(pan, 0.0, 1.0)) for pan in range(-180, 120, 30)]) is not None
+    assert uncovered_part(around, [look(Pose(pan, 0.0, 1.0)) for pan in range(-180, 180, 30)]) is None
+    assert uncovered_part(around, [look(Pose(pan, 0.0, 1.0)) for pan in range(-180, 120, 30)]) is not None
 
 
 @given(POSES, st.floats(0.5, 4.0), st.sampled_from([(1.0, 0.5), (0.0, 0.5), (0.5, 0.0), (0.5, 1.0), (1.0, 1.0)]))
@@ -120,13 +120,13 @@ def test_capitals_must_be_fourteen_pixels_high(zoom: float, legible: bool) -> No
 def test_only_looks_about_the_thing_at_the_time_count() -> None:
     pose = Pose(10, -10, 1)
     about = evidence(pose, about=("cone", "traffic cone"))
-    assert gap(about, [look(pose, asked="orange traffic cones")]) is None
-    assert gap(about, [look(pose, asked="How many cones are there?")]) is None
-    assert gap(about, [look(pose, asked="clouds")]) is not None
-    assert gap(about, [look(pose, how="planner")]) is None
+    assert uncovered_part(about, [look(pose, asked="orange traffic cones")]) is None
+    assert uncovered_part(about, [look(pose, asked="How many cones are there?")]) is None
+    assert uncovered_part(about, [look(pose, asked="clouds")]) is not None
+    assert uncovered_part(about, [look(pose, how="planner")]) is None
     timed = evidence(pose, window_s=(10.0, 20.0))
-    assert gap(timed, [look(pose, time_s=12.0)]) is None
-    assert gap(timed, [look(pose, time_s=22.0)]) is not None
+    assert uncovered_part(timed, [look(pose, time_s=12.0)]) is None
+    assert uncovered_part(timed, [look(pose, time_s=22.0)]) is not None
 
 
 @given(st.floats(-180, 180), st.floats(-40, 20), st.floats(0.1, 30), st.floats(0.1, 20))
@@ -148,5 +148,5 @@ def test_reference_directions_lie_in_the_reference_frame(pose: Pose) -> None:
 
 def test_a_look_that_brought_no_answer_covers_nothing() -> None:
     pose = Pose(10.0, -10.0, 1.0)
-    assert gap(evidence(pose), [look(pose, how="query", known=True)]) is None
-    assert gap(evidence(pose), [look(pose, how="query", known=False)]) is not None
+    assert uncovered_part(evidence(pose), [look(pose, how="query", known=True)]) is None
+    assert uncovered_part(evidence(pose), [look(pose, how="query", known=False)]) is not None

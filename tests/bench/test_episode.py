@@ -11,13 +11,13 @@ import pytest
 from scope_ptz.agent.records import Budgets
 from scope_ptz.agent.store import RunFolder
 from scope_ptz.agent.trace import TraceWriter, read_trace
-from scope_ptz.bench.scoring.episode import Episode, Eyes, Places, episode_of
+from scope_ptz.bench.scoring.episode import Episode, FrameGeometry, PresetViewpoints, episode_of
 from scope_ptz.errors import PerceptionError
 from scope_ptz.geometry import Equirectangular, Perspective, Pose
 from scope_ptz.tools.sweep import sweep
 from tests.agent.scripted import ScriptedCamera, answer, calls, make_agent
 
-PLACES = Places({"gate": "mast", "highway": "bridge"}, "mast")
+PLACES = PresetViewpoints({"gate": "mast", "highway": "bridge"}, "mast")
 COUNT = ("count_objects", {"description": "cones"})
 
 
@@ -47,11 +47,11 @@ def test_poses_and_viewpoints_follow_the_calls(tmp_path: Path) -> None:
     assert [c.after.viewpoint for c in episode.calls] == ["bridge", "bridge", "bridge", "mast", "mast"]
     assert [c.after.pose.pan_deg for c in episode.calls] == [20.0, 35.0, 35.0, 0.0, 0.0]
     assert [c.before.pose.pan_deg for c in episode.calls] == [0.0, 20.0, 35.0, 35.0, 0.0]
-    first, second = episode.looks
+    first, second = episode.observations
     assert (first.viewpoint, second.viewpoint) == ("bridge", "mast")
     assert isinstance(first.projection, Perspective)
     assert (first.projection.pan_deg, first.asked, first.how) == (35.0, "cones", "count")
-    assert (episode.outcome, episode.text, episode.final.viewpoint) == ("answered", "Two.", "mast")
+    assert (episode.outcome, episode.answer, episode.final.viewpoint) == ("answered", "Two.", "mast")
 
 
 def test_a_failed_look_is_no_look_and_a_wrong_preset_moves_nothing(tmp_path: Path) -> None:
@@ -63,7 +63,7 @@ def test_a_failed_look_is_no_look_and_a_wrong_preset_moves_nothing(tmp_path: Pat
         counts=[PerceptionError("down")],
     )
     assert [c.fault for c in episode.calls] == ["bad_call", "perception"]
-    assert episode.looks == ()
+    assert episode.observations == ()
     assert {c.after.pose for c in episode.calls} == {Pose()}
 
 
@@ -76,9 +76,9 @@ def test_pictures_exist_in_the_run_folder_or_were_not_kept_on_purpose(tmp_path: 
 
 def test_what_a_seeing_planner_was_shown_counts_as_looks(tmp_path: Path) -> None:
     blind = run(tmp_path, calls(("adjust_ptz", {"pan_deg": 15.0})), answer("Five."))
-    assert blind.looks == ()
+    assert blind.observations == ()
     seeing = run(tmp_path, calls(("adjust_ptz", {"pan_deg": 15.0})), answer("Five."), planner_sees=True)
-    assert [(look.how, look.projection.pan_deg) for look in seeing.looks if isinstance(look.projection, Perspective)] == [
+    assert [(look.how, look.projection.pan_deg) for look in seeing.observations if isinstance(look.projection, Perspective)] == [
         ("planner", 0.0),
         ("planner", 15.0),
     ]
@@ -86,12 +86,12 @@ def test_what_a_seeing_planner_was_shown_counts_as_looks(tmp_path: Path) -> None
 
 def test_a_zoom_looks_first_from_where_it_began_and_a_track_all_along(tmp_path: Path) -> None:
     zoomed = run(tmp_path, calls(("zoom_to_object", {"description": "van"})), answer(), counts=[1])
-    assert zoomed.looks[0].how == "locate"
-    assert isinstance(zoomed.looks[0].projection, Perspective)
-    assert zoomed.looks[0].projection.pan_deg == 0.0
+    assert zoomed.observations[0].how == "locate"
+    assert isinstance(zoomed.observations[0].projection, Perspective)
+    assert zoomed.observations[0].projection.pan_deg == 0.0
     tracked = run(tmp_path, calls(("track_object", {"description": "van", "duration_s": 2.0})), answer(), counts=[1])
-    assert len(tracked.looks) >= 3
-    assert tracked.looks[-1].time_s > tracked.looks[0].time_s
+    assert len(tracked.observations) >= 3
+    assert tracked.observations[-1].time_s > tracked.observations[0].time_s
 
 
 def test_a_run_that_was_cut_off_has_no_outcome(tmp_path: Path) -> None:
@@ -105,7 +105,7 @@ def test_a_run_that_was_cut_off_has_no_outcome(tmp_path: Path) -> None:
     lines = folder.trace.read_text("utf-8").splitlines(keepends=True)
     folder.trace.write_text("".join(lines[:-1]), "utf-8")
     episode = episode_of(read_trace(folder.path), PLACES)
-    assert (episode.outcome, episode.text) == (None, "")
+    assert (episode.outcome, episode.answer) == (None, "")
     limited = run(tmp_path, calls(COUNT), budgets=Budgets(max_steps=2))
     assert limited.outcome == "step_limit"
 
@@ -115,7 +115,7 @@ def test_the_sweep_of_an_episode_is_the_sweep_that_the_tool_takes(size: tuple[in
     camera = ScriptedCamera()
     taken = anyio.run(sweep, camera).projection
     assert isinstance(taken, Equirectangular)
-    assert Eyes(64, 36).sweep() == taken
-    band = Eyes(*size).sweep()
+    assert FrameGeometry(64, 36).sweep() == taken
+    band = FrameGeometry(*size).sweep()
     assert band.pan_span_deg == 360.0
     assert band.bottom_tilt_deg < -60

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scope_ptz.bench.scoring.episode import Episode, Look
+from scope_ptz.bench.scoring.episode import Episode, Observation
 from scope_ptz.bench.scoring.error_modes import ErrorMode, error_mode
-from scope_ptz.bench.scoring.verdict import judge
+from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.expected import ActionOnly, Choice, Text
 from scope_ptz.bench.tasks.task import Argument, Behaviour, Item, RequiredCall, Task
 from scope_ptz.taskgen.gold.mutations import FaultSetting, GoldRun, confusion, mutate
@@ -58,7 +58,7 @@ def test_a_run_that_passes_or_cannot_be_scored_has_no_mode() -> None:
     for of, episode in SAMPLES:
         assert error_mode(of, episode) is None
     of, episode = SAMPLES[0]
-    assert error_mode(of, replace(episode, text="several cones")) is None
+    assert error_mode(of, replace(episode, answer="several cones")) is None
     assert error_mode(of, replace(episode, outcome="camera_error")) is None
 
 
@@ -187,7 +187,7 @@ def test_the_truth_of_the_very_view_goes_before_the_evidence() -> None:
     extra = play([counted(5, "cars"), GO_BRIDGE, counted(9, "cars"), GO_HIGHWAY, counted(3, "cars")], "The highway has more.")
     assert error_mode(of, extra) is ErrorMode.REASONING
 
-    def truth(look: Look) -> int | None:
+    def truth(look: Observation) -> int | None:
         return {"mast": None, "bridge": 8}.get(look.viewpoint or "")
 
     assert error_mode(of, extra, truth) is ErrorMode.VLM_COUNTING
@@ -257,7 +257,7 @@ def test_any_run_that_is_judged_incorrect_has_exactly_one_mode_and_no_other_run_
 ) -> None:
     of, _ = sample
     episode = play(steps, text, outcome=end)
-    verdict = judge(of, episode)
+    verdict = score_episode(of, episode)
     assert (error_mode(of, episode) is not None) == (verdict.headline == "incorrect")
     if verdict.headline == "correct":
         assert all(check.passed for check in verdict.checks)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from scope_ptz.agent.trace import read_trace
-from scope_ptz.bench.human import open_run, read_result
+from scope_ptz.bench.human_runs import open_run, read_result
 from scope_ptz.bench.tasks.expected import ActionOnly, Number
 from scope_ptz.bench.tasks.files import dump_tasks
 from scope_ptz.bench.tasks.task import Aim, Behaviour, EvidenceView, FinalPose, Task

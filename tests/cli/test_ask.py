@@ -10,6 +10,8 @@ from typing import Any
 import pytest
 from PIL import Image
 
+from scope_ptz.agent.loop import MAX_CALLS_PER_STEP, MAX_REPEATED_BAD_CALLS
+from scope_ptz.planner.base import Finish
 from tests.agent.scripted import ScriptedPlanner, Step, answer, calls
 from tests.cli.conftest import SCENE, Scope
 
@@ -23,7 +25,7 @@ def runs(root: Path) -> list[Path]:
 
 def follow(monkeypatch: pytest.MonkeyPatch, *script: Step) -> None:
     """Let a script plan instead of the built-in planner."""
-    monkeypatch.setattr("scope_ptz.cli.asking.make_planner", lambda _: ScriptedPlanner(*script))
+    monkeypatch.setattr("scope_ptz.cli.ask.make_planner", lambda _: ScriptedPlanner(*script))
 
 
 def test_json_is_one_object_with_the_promised_fields(scope: Scope, tmp_path: Path) -> None:
@@ -156,9 +158,34 @@ def test_exit_codes_tell_outcomes(
     assert (done.code, done.json["outcome"]) == (code, outcome)
 
 
-def test_a_question_back_is_no_failure(scope: Scope) -> None:
+def test_what_was_not_understood_has_its_own_exit_code_and_no_filmstrip(scope: Scope, tmp_path: Path) -> None:
     done = scope("ask", "florp the wibble sideways", "--scene", SCENE, "--json")
-    assert (done.code, done.json["outcome"], done.json["tool_calls"]) == (0, "clarification", [])
+    assert (done.code, done.json["outcome"], done.json["tool_calls"]) == (3, "clarification", [])
+    assert {p.name for p in runs(tmp_path)[0].iterdir()} == {"trace.jsonl", "frames"}
+
+
+def test_a_refusal_has_its_own_exit_code(scope: Scope, monkeypatch: pytest.MonkeyPatch) -> None:
+    follow(monkeypatch, Finish(kind="refused", text="No."))
+    done = scope("ask", "do it", "--scene", SCENE, "--json")
+    assert (done.code, done.json["outcome"]) == (4, "refused")
+
+
+def test_a_planner_that_repeats_a_wrong_call_is_stopped(scope: Scope, monkeypatch: pytest.MonkeyPatch) -> None:
+    follow(monkeypatch, calls(("adjust_ptz", {"pan_deg": "far"})))
+    done = scope("ask", "do it", "--scene", SCENE, "--json")
+    assert (done.code, done.json["outcome"]) == (1, "planner_error")
+    assert len(done.json["tool_calls"]) == MAX_REPEATED_BAD_CALLS
+    assert "same wrong call" in done.json["answer"]
+
+
+def test_calls_beyond_the_limit_of_a_step_are_dropped_and_reported(scope: Scope, monkeypatch: pytest.MonkeyPatch) -> None:
+    follow(monkeypatch, calls(*[("take_image", {})] * 10_000), answer("Done."))
+    done = scope("ask", "do it", "--scene", SCENE, "--json")
+    made = done.json["tool_calls"]
+    assert len(made) == MAX_CALLS_PER_STEP + 1
+    assert "this one had 10000" in made[-1]["error"]
+    assert [call["error"] for call in made[:-1]] == [None] * MAX_CALLS_PER_STEP
+    assert Path(done.json["run_dir"], "trace.jsonl").stat().st_size < 100_000
 
 
 def test_control_characters_do_not_reach_the_terminal(scope: Scope, monkeypatch: pytest.MonkeyPatch) -> None:

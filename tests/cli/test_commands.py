@@ -110,7 +110,7 @@ def test_replay_without_the_scene_shows_the_trace_and_says_so(
     made = scope("ask", "pan right 15", "--scene", SCENE, "--json").json
     monkeypatch.setenv("SCOPE_SCENES_DIR", str(tmp_path))
     done = scope("replay", made["run_dir"])
-    assert done.code == 0
+    assert done.code == 2
     assert "from the trace only" in done.out
     assert "adjust_ptz" in done.out
 
@@ -153,9 +153,9 @@ def test_scene_list(scope: Scope) -> None:
 
 def test_scene_show(scope: Scope, tmp_path: Path) -> None:
     sheet = tmp_path / "sheet.png"
-    done = scope("scene", "show", SCENE, "--contact-sheet", str(sheet))
+    done = scope("scene", "show", SCENE, "--all", "--contact-sheet", str(sheet))
     assert done.code == 0
-    for words in ("from-the-roof", "NO ENTRY", "white roller", "zebra", "5 ball", "samples a pixel", "SHA-256"):
+    for words in ("from-the-roof", "NO ENTRY", "white roller", "zebra", "5 ball", "samples per pixel", "SHA-256"):
         assert words in done.out
     with Image.open(sheet) as image:
         assert image.width == 1600
@@ -169,6 +169,18 @@ def test_scene_show_opens_its_sheet_on_wish(scope: Scope, monkeypatch: pytest.Mo
     assert shown == [], "nobody sits at a terminal"
     assert scope("scene", "show", SCENE, "--open").code == 0
     assert len(shown) == 1 and Path(shown[0]).is_file() and Path(shown[0]).is_relative_to(tmp_path / "cache")
+
+
+@pytest.mark.parametrize("name", ["freight-yard", "high-street", "highway-works", "station-square"])
+def test_the_short_card_fits_a_screen(scope: Scope, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, name: str) -> None:
+    async def draw_nothing(*_: object) -> None: ...
+
+    monkeypatch.setattr("scope_ptz.cli.scenes._write_contact_sheet", draw_nothing)
+    monkeypatch.setenv("COLUMNS", "80")
+    done = scope("scene", "show", name, "--contact-sheet", "sheet.png")
+    assert done.code == 0
+    assert len(done.out.splitlines()) <= 40
+    assert "--all" in done.out
 
 
 def test_scene_card_as_markdown(scope: Scope) -> None:

@@ -143,14 +143,14 @@ def test_a_profile_tells_speed_validity_and_the_verdict(scope: Scope, tmp_path: 
             scope, "qwen3-30b-a3b+moondream3", "--planner-url", url, "--perception-url", url, "--instructions", str(file)
         )  # fmt: skip
         text = scope("profile", "--planner-url", url, "--instructions", str(file), "--prompts").out
-    planner, eyes = report["planner"], report["eyes"]
+    planner, perception = report["planner"], report["perception"]
     assert planner["planner"]["turns"] == 2
     assert (planner["planner"]["valid"]["count"], planner["planner"]["valid"]["of"]) == (1, 2)
     assert planner["planner"]["first_token_s"]["median"] > 0
     assert planner["planner"]["tokens_per_s"]["median"] > 0
     assert planner["computed_memory_gb"] > 60
     assert planner["serving"]["/v1/models id"] == MODEL
-    assert set(eyes["eyes"]["by_skill"]) == {"query", "caption", "detect", "point"}
+    assert set(perception["perception"]["by_skill"]) == {"query", "caption", "detect", "point"}
     assert report["real_time"] == "met"
     assert "Real-time bar" in text
     assert "tools changed by prompt edits" in text
@@ -159,14 +159,14 @@ def test_a_profile_tells_speed_validity_and_the_verdict(scope: Scope, tmp_path: 
 def test_failures_are_counted_and_no_verdict_is_invented(scope: Scope) -> None:
     with Misbehaving(then=status(401)) as server:
         report = profiled(scope, "--perception", "moondream2", "--perception-url", server.url, code=1)
-        assert report["eyes"]["eyes"]["failures"] == {"unauthorised": 8}
+        assert report["perception"]["perception"]["failures"] == {"unauthorised": 8}
     assert report["real_time"] == "unknown"
 
 
 def test_eyes_that_fail_at_one_thing_do_not_meet_the_bar(scope: Scope) -> None:
     with Misbehaving(then=good(moondream={**MOONDREAM, "detect": {"error": "out of memory"}})) as server:
         report = profiled(scope, "--perception", "moondream2", "--perception-url", server.url, code=1)
-    eyes = report["eyes"]["eyes"]
+    eyes = report["perception"]["perception"]
     assert (set(eyes["by_skill"]), eyes["never_worked"]) == ({"query", "caption", "point"}, ["detect"])
     assert "out of memory" in eyes["first_failure"]
     assert report["real_time"] == "unknown"

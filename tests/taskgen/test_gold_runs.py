@@ -39,7 +39,7 @@ def test_stored_runs_are_equal_and_give_the_same_bytes(gold: list[GoldRun], tmp_
     published, read = read_gold(one, TASKS)
     assert published == {"runs": len(gold), "named": len(gold), "accepted": 0}
     assert confusion_matrix(read).cells == confusion_matrix(gold).cells
-    assert [g.episode.looks for g in read] == [g.episode.looks for g in gold]
+    assert [g.episode.observations for g in read] == [g.episode.observations for g in gold]
     write_gold(read, two)
     assert one.read_bytes() == two.read_bytes()
 

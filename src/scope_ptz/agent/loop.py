@@ -21,13 +21,25 @@ from scope_ptz.endpoints.failures import count_failures
 from scope_ptz.errors import CameraError, InputError, OutputError, PackError, PlannerError
 from scope_ptz.geometry import Pose
 from scope_ptz.perception.base import Perception
-from scope_ptz.planner.base import Briefing, CallTools, Decision, Exchange, Finish, PastTurn, Planner, State, Usage
+from scope_ptz.planner.base import (
+    MAX_INSTRUCTION_CHARS,
+    Briefing,
+    CallTools,
+    Decision,
+    Exchange,
+    Finish,
+    PastTurn,
+    Planner,
+    State,
+    Usage,
+)
 from scope_ptz.tools.context import ImageStore
 from scope_ptz.tools.registry import TOOLS, ToolRegistry
 from scope_ptz.version import __version__
 
-MAX_INSTRUCTION_CHARS = 4000  # longer instructions raise InputError
 STOP_TIMEOUT_S = 5.0  # limit for stopping the camera and reading its pose at the end of a run
+MAX_CALLS_PER_STEP = 32  # further calls of one decision are dropped, and the planner is told so
+MAX_REPEATED_BAD_CALLS = 5  # steps in a row with the same wrong call, after which the run ends as a planner error
 
 
 class Agent:
@@ -45,6 +57,7 @@ class Agent:
         snapshots: bool = True,
         tools: ToolRegistry = TOOLS,
         run_tool: RunTool | None = None,
+        guarded: bool = True,
     ) -> None:
         """Put an agent together.
 
@@ -58,10 +71,12 @@ class Agent:
             snapshots: whether to store the first view and the view after each move. Frames that perception reads are always stored.
             tools: the tools that the planner can call.
             run_tool: runs the calls in place of ``tools.run``. Pass a wrapper around it to observe the calls.
+            guarded: whether to end the run of a planner that repeats the same wrong call, and to cap the calls of a step. Replays
+                do neither, because a trace of an older version may contain such steps.
         """
         self.planner, self.camera, self.perception, self.images = planner, camera, perception, images
         self.budgets, self.labels, self.snapshots = budgets or Budgets(), labels or RunLabels(), snapshots
-        self.tools, self.run_tool = tools, run_tool
+        self.tools, self.run_tool, self.guarded = tools, run_tool, guarded
 
     async def run(
         self, instruction: str, *, conversation: tuple[PastTurn, ...] = (), listener: Listener = lambda _: None
@@ -192,6 +207,8 @@ class _Episode:
             failure = await self.calls.carry_out(self.steps, decision, self.history)
             if failure is not None:
                 return failure
+            if self.agent.guarded and self.calls.same_bad_call >= MAX_REPEATED_BAD_CALLS:
+                return RunEnd("planner_error", f"The planner made the same wrong call {MAX_REPEATED_BAD_CALLS} times in a row.")
         return RunEnd("step_limit", f"No answer within {budgets.max_steps} steps.")
 
     async def _decide(self, state: State) -> Decision:
@@ -205,6 +222,8 @@ class _Episode:
             decision = await planner.step(state)
         if not isinstance(decision, CallTools | Finish):
             raise PlannerError(f"The planner answered with {type(decision).__name__}, which is no decision.")
+        if self.agent.guarded:
+            decision = _capped(decision)
         self.usage += decision.usage
         if decision.served is not None:
             self.calls.events.update(count_failures(decision.served.attempts))
@@ -235,3 +254,16 @@ class _Episode:
         )
         self.emit(ended)
         return ended
+
+
+def _capped(decision: Decision) -> Decision:
+    """Return the decision with no more calls than a step may have. The first dropped one stays, as a wrong call that says so."""
+    if not isinstance(decision, CallTools) or len(decision.calls) <= MAX_CALLS_PER_STEP:
+        return decision
+    dropped = decision.calls[MAX_CALLS_PER_STEP]
+    problem = (
+        f"A step may have at most {MAX_CALLS_PER_STEP} calls and this one had {len(decision.calls)}. "
+        "This call and those after it were dropped."
+    )
+    calls = (*decision.calls[:MAX_CALLS_PER_STEP], dropped.model_copy(update={"problem": problem}))
+    return decision.model_copy(update={"calls": calls})

@@ -74,6 +74,7 @@ async def replay(trace: Trace, camera: Camera) -> Replay:
         NoImages(),
         budgets=Budgets(max_steps=trace.started.budgets.max_steps),
         snapshots=False,
+        guarded=False,
     )
     made: list[Called] = []
 

@@ -141,11 +141,6 @@ class RunFolder(EncodedImages):
         """Path of the filmstrip."""
         return self.path / "filmstrip.png"
 
-    def discard_if_empty(self) -> None:
-        """Remove the folder if the run failed before anything was stored."""
-        if self.path.is_dir() and not any(self.path.iterdir()):
-            self.path.rmdir()
-
     def discard_if_not_started(self) -> None:
         """Remove the folder if the run failed or was cancelled before the first line of its trace was written."""
         if not self.trace.is_file() or self.trace.stat().st_size == 0:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import traceback
 from collections import Counter
-from collections.abc import Awaitable, Callable, Iterator, Sequence
+from collections.abc import Awaitable, Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -74,6 +74,8 @@ class CallRunner:
         self.camera = TimedCamera(camera, watch)
         self.pose = Pose()
         self.bad_calls = self.perception_failures = 0
+        self.same_bad_call = 0  # Steps in a row with the same wrong call
+        self._last_bad_call: tuple[str, dict[str, Any]] | None = None
         self.events: Counter[str] = Counter()
 
     async def carry_out(self, step: int, decision: CallTools, history: list[Exchange]) -> RunEnd | None:
@@ -100,7 +102,13 @@ class CallRunner:
         finally:
             outcomes = tuple(d.outcome for _, d in sorted(done.items()) if d.fault != "cancelled")
             history.append(Exchange(outcomes=outcomes, thought=decision.thought))
+            self._count_repetition(done.values())
         return None
+
+    def _count_repetition(self, done: Iterable[_Done]) -> None:
+        bad = next(((d.outcome.call.name, d.outcome.call.arguments) for d in done if d.fault == "bad_call"), None)
+        self.same_bad_call = 0 if bad is None else self.same_bad_call + 1 if bad == self._last_bad_call else 1
+        self._last_bad_call = bad
 
     async def _batch(self, step: int, calls: Sequence[ToolCall], batch: Sequence[int], done: dict[int, _Done]) -> None:
         made: dict[int, _Done] = {}

@@ -266,7 +266,7 @@ def load_results(path: str | PathLike[str]) -> EvaluationResults:
 
 def score(trials: Sequence[Trial]) -> float | None:
     """Return the share of correct trials among the scored ones; None when none is scored."""
-    from scope_ptz.bench.judging.tally import without_verdict
+    from scope_ptz.bench.judging.judgement_tally import without_verdict
 
     scored = [trial for trial in trials if trial.headline != "infrastructure" and not without_verdict(trial)]
     return sum(trial.headline == "correct" for trial in scored) / len(scored) if scored else None

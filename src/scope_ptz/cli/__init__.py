@@ -1,10 +1,16 @@
-"""The command line: ``scope ...``. Importing it costs next to nothing; each command imports what it needs when it runs."""
+"""The command line: ``scope ...``. Importing this package is cheap; each command imports what it needs when it runs."""
 
 from __future__ import annotations
 
+import sys
+
 
 def main() -> None:
-    """Entry point of ``scope``."""
-    from scope_ptz.cli.app import app
+    """Run ``scope``; the entry point of the installed program."""
+    from scope_ptz.cli.exit import guarded_streams, readable_arguments
 
-    app(prog_name="scope")
+    with guarded_streams():
+        from scope_ptz.cli.app import app
+
+        sys.argv[1:] = readable_arguments(sys.argv[1:])
+        app(prog_name="scope")

@@ -1,78 +1,42 @@
-"""The commands and their options. Bodies import lazily so that ``scope --help`` is instant."""
+"""The commands of ``scope`` outside ``scope bench``. Their bodies import lazily, so that ``scope --help`` is instant."""
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from scope_ptz.builtin_names import DEFAULT_SCENE
 from scope_ptz.cli.bench import bench_app
-from scope_ptz.cli.endings import ending
-from scope_ptz.cli.model_commands import doctor, models_app, profile
-from scope_ptz.cli.model_options import (
-    DetectorOption,
-    PairOption,
-    PerceptionKeyOption,
-    PerceptionModelOption,
-    PerceptionOption,
-    PerceptionOptions,
-    PerceptionUrlOption,
-    PlannerKeyOption,
-    PlannerModelOption,
-    PlannerOption,
-    PlannerOptions,
-    PlannerUrlOption,
-    ReaderOption,
-    TimeoutOption,
-    model_options,
-)
+from scope_ptz.cli.exit import EXIT_CODES
+from scope_ptz.cli.options import JsonOption, ModelFlags, OutputFile, PairFlags, SeedOption, SessionFlags, StartFlags, command
 
-if TYPE_CHECKING:
-    from scope_ptz.cli.asking import Asking
-    from scope_ptz.factory.models import ModelOptions
+_HELP = {"help_option_names": ["-h", "--help"]}
 
 app = typer.Typer(
     help="Talk to a pan-tilt-zoom camera in plain language.",
-    epilog="Exit codes: 0 done, 1 the run failed, 2 wrong input or a damaged pack, 130 cancelled.",
+    epilog=EXIT_CODES,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     add_completion=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
+    context_settings=_HELP,
 )
-scene_app = typer.Typer(help="The scenes: list, show, view, build, bake and verify them.", no_args_is_help=True)
-app.add_typer(scene_app, name="scene")
-app.add_typer(models_app, name="models")
-app.add_typer(bench_app, name="bench")
+scene_app = typer.Typer(help="Scenes: list, show, view, build, bake and verify them.", no_args_is_help=True)
+models_app = typer.Typer(help="Models: list them, show one, print how to serve it, list pairs.", invoke_without_command=True)
+app.add_typer(scene_app, name="scene", rich_help_panel="Set up")
+app.add_typer(models_app, name="models", rich_help_panel="Set up")
+app.add_typer(bench_app, name="bench", rich_help_panel="Measure")
 
-SceneOption = Annotated[str, typer.Option("--scene", help="Scene to look at; see `scope scene list`.")]
-CameraOption = Annotated[
-    str | None,
-    typer.Option("--camera", help="Camera in place of --scene: blender:SCENE, blender:FILE.blend, or SCHEME:ADDRESS of a plug-in."),
-]
-ViewpointOption = Annotated[str | None, typer.Option("--viewpoint", help="Where the camera stands.")]
-PresetOption = Annotated[str | None, typer.Option("--preset", help="Preset to start at.")]
-TimeOption = Annotated[
-    float | None, typer.Option("--at", min=0.0, help="Scene time to begin at, in seconds (default: the scene's).")
-]
-RunsDirOption = Annotated[Path | None, typer.Option("--runs-dir", help="Where run folders are made (default: runs).")]
-MaxStepsOption = Annotated[int, typer.Option("--max-steps", min=1, help="Steps after which a run is given up.")]
-TimeBudgetOption = Annotated[float | None, typer.Option("--time-budget", min=0.001, help="Wall seconds a run may take.")]
-SeedOption = Annotated[int, typer.Option("--seed", help="Seed of everything random.")]
-RealtimeOption = Annotated[
-    bool | None,
-    typer.Option("--realtime/--fast", help="Move in real time, or at once (default: real time on a terminal)."),
-]
-JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON and nothing else.")]
-Output = Annotated[Path, typer.Option("--out", "-o", help="File to write.")]
-SceneName = Annotated[str, typer.Argument(help="Name of the scene.")]
+Instruction = Annotated[str, typer.Argument(help="What the camera should do, in plain words.")]
+SceneName = Annotated[str, typer.Argument(help="Name of the scene; see `scope scene list`.")]
 SceneSource = Annotated[str, typer.Argument(help="Name of a built-in scene, or a Python file with `build(stage)`.")]
+ModelName = Annotated[str, typer.Argument(metavar="NAME", help="Name of the model; see `scope models`.")]
 
 
-def _version(wanted: bool) -> None:
-    if wanted:
+def _version(requested: bool) -> None:
+    if requested:
         from scope_ptz.version import __version__
 
         sys.stdout.write(f"scope-ptz {__version__}\n")
@@ -86,231 +50,254 @@ def _root(
     """Talk to a pan-tilt-zoom camera in plain language."""
 
 
-def _asking(
-    camera: str, viewpoint: str | None, preset: str | None, at: float | None, wishes: ModelOptions, runs_dir: Path | None,
-    max_steps: int, time_budget: float | None, realtime: bool | None, seed: int, as_json: bool = False,
-) -> Asking:  # fmt: skip
-    from scope_ptz.agent.records import Budgets
-    from scope_ptz.cli.asking import Asking
-    from scope_ptz.settings import load_settings
-
-    return Asking(
-        camera=camera,
-        viewpoint=viewpoint,
-        preset=preset,
-        time_s=at,
-        wishes=wishes,
-        runs_dir=runs_dir or load_settings().runs_dir,
-        budgets=Budgets(max_steps=max_steps, time_s=time_budget),
-        seed=seed,
-        realtime=realtime,
-        as_json=as_json,
-    )
-
-
-@app.command()
+# Talking to a camera ---------------------------------------------------------------------------------------------------
+@app.command(epilog=EXIT_CODES, rich_help_panel="Talk to a camera")
+@command
 def ask(
-    instruction: Annotated[str, typer.Argument(help="What the camera should do, in plain words.")],
-    scene: SceneOption = DEFAULT_SCENE,
-    camera: CameraOption = None,
-    viewpoint: ViewpointOption = None,
-    preset: PresetOption = None,
-    at: TimeOption = None,
-    planner: PlannerOption = None,
-    perception: PerceptionOption = None,
-    pair: PairOption = None,
-    planner_url: PlannerUrlOption = None,
-    perception_url: PerceptionUrlOption = None,
-    planner_model: PlannerModelOption = None,
-    perception_model: PerceptionModelOption = None,
-    planner_key_file: PlannerKeyOption = None,
-    perception_key_file: PerceptionKeyOption = None,
-    planner_option: PlannerOptions = None,
-    perception_option: PerceptionOptions = None,
-    reader: ReaderOption = None,
-    detector: DetectorOption = None,
-    timeout: TimeoutOption = None,
-    runs_dir: RunsDirOption = None,
-    max_steps: MaxStepsOption = 64,
-    time_budget: TimeBudgetOption = None,
-    realtime: RealtimeOption = None,
-    seed: SeedOption = 0,
+    instruction: Instruction,
+    session: SessionFlags,
+    models: PairFlags,
+    hints: Annotated[bool, typer.Option("--next-steps", help="Print commands to try next.")] = False,
     as_json: JsonOption = False,
-) -> None:
+) -> int:
     """Carry out one instruction and keep the run: trace, frames and a filmstrip."""
-    with ending(as_json=as_json):
-        from scope_ptz.cli.asking import ask as run
+    from scope_ptz.cli.ask import ask as run
 
-        wishes = model_options(
-            planner, perception, pair, planner_url, perception_url, planner_model, perception_model, planner_key_file, perception_key_file,
-            planner_option, perception_option, reader, detector, timeout,
-        )  # fmt: skip
-        options = _asking(camera or scene, viewpoint, preset, at, wishes, runs_dir, max_steps, time_budget, realtime, seed, as_json)
-        sys.exit(run(instruction, options))
+    return run(instruction, session, models.options(), as_json=as_json, next_steps=hints)
 
 
-@app.command()
-def chat(
-    scene: SceneOption = DEFAULT_SCENE,
-    camera: CameraOption = None,
-    viewpoint: ViewpointOption = None,
-    preset: PresetOption = None,
-    at: TimeOption = None,
-    planner: PlannerOption = None,
-    perception: PerceptionOption = None,
-    pair: PairOption = None,
-    planner_url: PlannerUrlOption = None,
-    perception_url: PerceptionUrlOption = None,
-    planner_model: PlannerModelOption = None,
-    perception_model: PerceptionModelOption = None,
-    planner_key_file: PlannerKeyOption = None,
-    perception_key_file: PerceptionKeyOption = None,
-    planner_option: PlannerOptions = None,
-    perception_option: PerceptionOptions = None,
-    reader: ReaderOption = None,
-    detector: DetectorOption = None,
-    timeout: TimeoutOption = None,
-    runs_dir: RunsDirOption = None,
-    max_steps: MaxStepsOption = 64,
-    time_budget: TimeBudgetOption = None,
-    realtime: RealtimeOption = None,
-    seed: SeedOption = 0,
-) -> None:
-    """Several instructions in one conversation. /pose, /save and /quit do what they say."""
-    with ending():
-        from scope_ptz.cli.chatting import chat as run
+@app.command(rich_help_panel="Talk to a camera")
+@command
+def chat(session: SessionFlags, models: PairFlags) -> int:
+    """Give several instructions in one conversation. Type /help in it for its commands."""
+    from scope_ptz.cli.chat import chat as run
 
-        wishes = model_options(
-            planner, perception, pair, planner_url, perception_url, planner_model, perception_model, planner_key_file, perception_key_file,
-            planner_option, perception_option, reader, detector, timeout,
-        )  # fmt: skip
-        options = _asking(camera or scene, viewpoint, preset, at, wishes, runs_dir, max_steps, time_budget, realtime, seed)
-        sys.exit(run(options))
+    return run(session, models.options())
 
 
-@app.command()
+@app.command(rich_help_panel="Talk to a camera")
+@command
 def plan(
     instruction: Annotated[str | None, typer.Argument(help="What the camera should do, in plain words.")] = None,
-    presets: Annotated[str | None, typer.Option("--presets", help="Preset names, joined by commas.")] = None,
-    source: Annotated[Path | None, typer.Option("--from", help='File of {"instruction", "presets"} lines ("-": stdin).')] = None,
+    presets: Annotated[str | None, typer.Option("--presets", help="Names of the camera's presets, separated by commas.")] = None,
+    source: Annotated[
+        Path | None, typer.Option("--from", help='File of {"instruction", "presets"} lines; "-" reads stdin.')
+    ] = None,
     as_json: JsonOption = False,
-) -> None:
+) -> int:
     """Show which calls an instruction leads to, without moving anything."""
-    with ending(as_json=as_json):
-        from scope_ptz.cli.planning import plan as run
+    from scope_ptz.cli.plan import plan as run
 
-        sys.exit(run(instruction, presets, source, as_json=as_json))
+    return run(instruction, presets, source, as_json=as_json)
 
 
-@app.command()
+@app.command(rich_help_panel="Talk to a camera")
+@command
 def replay(
     run_dir: Annotated[Path, typer.Argument(metavar="RUN", help="Run folder, or a trace file.")],
     as_json: JsonOption = False,
+) -> int:
+    """Repeat a run from its trace, without models, and report whether the results are the same."""
+    from scope_ptz.cli.replay import replay as run
+
+    return run(run_dir, as_json=as_json)
+
+
+@app.command(rich_help_panel="Talk to a camera")
+@command
+def tools(as_json: Annotated[bool, typer.Option("--json", help="Print on one line instead of indented.")] = False) -> None:
+    """Print the schemas of the nine tools in the OpenAI function format."""
+    from scope_ptz.cli.exit import put_json
+    from scope_ptz.tools.registry import schemas
+
+    put_json(schemas(), indent=None if as_json else 2)
+
+
+# Models and servers ----------------------------------------------------------------------------------------------------
+@app.command(rich_help_panel="Measure")
+@command
+def profile(
+    models: ModelFlags,
+    pair: Annotated[
+        str | None,
+        typer.Argument(metavar="PAIR", help="PLANNER+PERCEPTION, or one model that does both; see `scope models pairs`."),
+    ] = None,
+    instructions: Annotated[
+        Path | None, typer.Option("--instructions", help='File of {"instruction", "calls"} lines (default: the packaged 60).')
+    ] = None,
+    limit: Annotated[int | None, typer.Option("--limit", min=1, help="Use at most N instructions, sampled evenly.")] = None,
+    frames: Annotated[int, typer.Option("--frames", min=1, help="Number of frames to show to perception.")] = 6,
+    scene: Annotated[str, typer.Option("--scene", help="Scene to take the frames from.")] = DEFAULT_SCENE,
+    prompts: Annotated[
+        bool, typer.Option("--prompts", help="Also measure how small edits of prompt and instruction change the tool choice.")
+    ] = False,
+    as_json: JsonOption = False,
+) -> int:
+    """Measure a pair on your own servers: speed, well-formed calls, perception latency, the paper's real-time bar."""
+    from scope_ptz.cli.profile import Extent
+    from scope_ptz.cli.profile import profile as run
+
+    extent = Extent(instructions=instructions, limit=limit, frames=frames, scene=scene, prompts=prompts)
+    return run(models.options(pair), extent, as_json=as_json)
+
+
+@app.command(rich_help_panel="Set up")
+@command
+def doctor(models: PairFlags, as_json: JsonOption = False) -> int:
+    """Report what is installed, reachable and missing; with a server's address, whether it does what SCOPE needs."""
+    from scope_ptz.cli.doctor import check_installation, check_servers
+
+    options = models.options()
+    if any((options.pair, options.planner, options.perception, options.planner_url, options.perception_url)):
+        return check_servers(options, as_json=as_json)
+    return check_installation(as_json=as_json)
+
+
+@models_app.callback()
+@command
+def models_list(
+    context: typer.Context,
+    memory: Annotated[float | None, typer.Option("--memory", min=0.1, help="List only models that fit into N GB.")] = None,
+    role: Annotated[str | None, typer.Option("--role", help="List only models for planner, or for perception.")] = None,
+    as_json: JsonOption = False,
 ) -> None:
-    """Repeat a run from its trace, without models, and say whether it came out the same."""
-    with ending(as_json=as_json):
-        from scope_ptz.cli.replaying import replay as run
+    """List the models: the paper's, current ones, and your own (SCOPE_MODELS)."""
+    if context.invoked_subcommand is not None:
+        return
+    from scope_ptz.cli.models import list_models
 
-        sys.exit(run(run_dir, as_json=as_json))
+    list_models(role, memory, as_json=as_json)
 
 
-@app.command()
-def tools(
-    as_json: Annotated[bool, typer.Option("--json", help="JSON on one line instead of indented.")] = False,
+@models_app.command("show")
+@command
+def models_show(name: ModelName, as_json: JsonOption = False) -> None:
+    """Print what is known about a model, with the command for each server that runs it."""
+    from scope_ptz.cli.models import show_model
+
+    show_model(name, as_json=as_json)
+
+
+@models_app.command("serve-command")
+@command
+def models_serve(
+    name: ModelName,
+    server: Annotated[
+        str | None, typer.Option("--server", help="Server: vllm, sglang, llama.cpp, ollama, ... (default: the model's first).")
+    ] = None,
 ) -> None:
-    """Print the tools' schemas in the OpenAI function format."""
-    with ending(as_json=as_json):
-        from scope_ptz.cli.endings import put_json
-        from scope_ptz.tools.registry import schemas
+    """Print the exact command that serves a model."""
+    from scope_ptz.cli.models import serve_command
 
-        put_json(schemas(), indent=None if as_json else 2)
+    serve_command(name, server)
 
 
-app.command()(profile)
-app.command()(doctor)
+@models_app.command("plugins")
+@command
+def models_plugins(as_json: JsonOption = False) -> None:
+    """List the cameras, planners and perception that installed plug-ins add."""
+    from scope_ptz.cli.models import list_plugins
+
+    list_plugins(as_json=as_json)
 
 
+@models_app.command("pairs")
+@command
+def models_pairs(as_json: JsonOption = False) -> None:
+    """List the pairs of a planner and a perception model: the paper's 19, and more."""
+    from scope_ptz.cli.models import list_pairs
+
+    list_pairs(as_json=as_json)
+
+
+# Scenes ----------------------------------------------------------------------------------------------------------------
 @scene_app.command("list")
-def scene_list(as_json: JsonOption = False) -> None:
-    """List the scenes that can be loaded."""
-    with ending(as_json=as_json):
-        from scope_ptz.cli.scenes import list_scenes
+@command
+def scene_list(as_json: JsonOption = False) -> int:
+    """List the scenes that can be loaded, and report those that cannot."""
+    from scope_ptz.cli.scenes import list_scenes
 
-        list_scenes(as_json=as_json)
+    return list_scenes(as_json=as_json)
 
 
 @scene_app.command("show")
+@command
 def scene_show(
     name: SceneName,
+    everything: Annotated[bool, typer.Option("--all", help="Print everything: all texts, objects and checksums, too.")] = False,
     contact_sheet: Annotated[
         Path | None, typer.Option("--contact-sheet", help="PNG file for the picture of all presets (default: in the cache).")
     ] = None,
     opened: Annotated[
-        bool | None, typer.Option("--open/--no-open", help="Open the picture (default: when there is a desktop to see it on).")
+        bool | None, typer.Option("--open/--no-open", help="Open the picture (default: open it if there is a desktop).")
     ] = None,
     as_markdown: Annotated[bool, typer.Option("--markdown", help="Print the card as a Markdown page and nothing else.")] = False,
 ) -> None:
-    """Print a scene's card (viewpoints, presets, what is in it and what is not) and open a picture of all presets."""
-    with ending():
-        from scope_ptz.cli.scenes import show_scene
+    """Print a scene's card: viewpoints, presets, what it contains and lacks. Draws a picture of all presets."""
+    from scope_ptz.cli.scenes import print_markdown, show_scene
 
-        show_scene(name, contact_sheet, opened=opened, as_markdown=as_markdown)
+    if as_markdown:
+        print_markdown(name, contact_sheet)
+    else:
+        show_scene(name, contact_sheet, opened=opened, everything=everything)
 
 
 @scene_app.command("view")
+@command
 def scene_view(
-    name: SceneName,
-    out: Output,
-    viewpoint: ViewpointOption = None,
-    preset: PresetOption = None,
-    at: TimeOption = None,
-    pan: Annotated[float | None, typer.Option("--pan", help="Pan in degrees, positive = right.")] = None,
-    tilt: Annotated[float | None, typer.Option("--tilt", help="Tilt in degrees, positive = up.")] = None,
-    zoom: Annotated[float | None, typer.Option("--zoom", help="Magnification, 1 = widest.")] = None,
+    start: StartFlags,
+    out: OutputFile,
+    name: Annotated[str | None, typer.Argument(help="Name of the scene, unless --camera or --scene is given.")] = None,
+    pan: Annotated[
+        float | None, typer.Option("--pan", help="Pan in degrees, positive is right (default: as at the start).")
+    ] = None,
+    tilt: Annotated[
+        float | None, typer.Option("--tilt", help="Tilt in degrees, positive is up (default: as at the start).")
+    ] = None,
+    zoom: Annotated[float | None, typer.Option("--zoom", help="Magnification, 1 is widest (default: as at the start).")] = None,
 ) -> None:
     """Write what the camera sees at a pose to a picture file."""
-    with ending():
-        from scope_ptz.cli.scenes import view_scene
+    from scope_ptz.cli.scenes import view_scene
 
-        view_scene(name, viewpoint, preset, at, (pan, tilt, zoom), out)
+    view_scene(start, name, (pan, tilt, zoom), out)
 
 
 @scene_app.command("build")
+@command
 def scene_build(
     name: SceneSource,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Blender file to write (default: NAME.blend).")] = None,
 ) -> None:
     """Build a scene from its code in Blender and save it as a .blend file."""
-    with ending():
-        from scope_ptz.cli.baking import build_scene
+    from scope_ptz.cli.bake import build_scene
 
-        build_scene(name, out)
+    build_scene(name, out)
 
 
 @scene_app.command("bake")
+@command
 def scene_bake(
     name: SceneSource,
-    quality: Annotated[str, typer.Option("--quality", help="draft, standard or high.")] = "standard",
+    quality: Annotated[str, typer.Option("--quality", help="Render quality: draft, standard or high.")] = "standard",
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Scene folder to write (default: scenes/NAME).")] = None,
-    viewpoint: Annotated[list[str] | None, typer.Option("--viewpoint", help="Only this viewpoint; may be repeated.")] = None,
-) -> None:
-    """Render a scene's viewpoints into packs. An interrupted bake goes on where it stopped."""
-    with ending():
-        from scope_ptz.cli.baking import bake_scene
+    viewpoint: Annotated[list[str] | None, typer.Option("--viewpoint", help="Bake only this viewpoint (repeatable).")] = None,
+) -> int:
+    """Render a scene's viewpoints into packs. Running the same command again resumes an interrupted bake."""
+    from scope_ptz.cli.bake import bake_scene
 
-        sys.exit(bake_scene(name, out, quality, viewpoint or []))
+    return bake_scene(name, out, quality, viewpoint or [])
 
 
 @scene_app.command("verify")
+@command
 def scene_verify(
     name: SceneName,
     seed: SeedOption = 1,
-    wide: Annotated[int, typer.Option("--wide", min=0, help="Poses at the widest zoom, over all tilts.")] = 8,
-    zoomed: Annotated[int, typer.Option("--zoomed", min=0, help="Poses at 2x to 5x, where the pack has tiles.")] = 8,
+    wide: Annotated[int, typer.Option("--wide", min=0, help="Number of poses at the widest zoom, over all tilts.")] = 8,
+    zoomed: Annotated[int, typer.Option("--zoomed", min=0, help="Number of poses at 2x to 5x, where the pack has tiles.")] = 8,
     keep: Annotated[Path | None, typer.Option("--keep", help="Folder to keep the live renders in.")] = None,
-) -> None:
+) -> int:
     """Compare a scene's packs with live Blender renders of the same poses."""
-    with ending():
-        from scope_ptz.cli.baking import verify_scene
+    from scope_ptz.cli.bake import verify_scene
 
-        sys.exit(verify_scene(name, seed, wide, zoomed, keep))
+    return verify_scene(name, seed, wide, zoomed, keep)

@@ -12,8 +12,8 @@ from scope_ptz.cli.endings import ending, put, put_json
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from scope_ptz.bench.judging.agreement import Rater, Report
-    from scope_ptz.bench.judging.kappa import Agreement
+    from scope_ptz.bench.judging.agreement import AgreementReport, Rater
+    from scope_ptz.bench.judging.kappa import KappaResult
 
 AsJson = Annotated[bool, typer.Option("--json", help="The whole report as JSON.")]
 _DIGITS = 3
@@ -28,9 +28,9 @@ def agree(
 ) -> None:
     """How far judges, their repeats, the checks, people and known faults agree: raw, Cohen's and Fleiss' kappa, 95% intervals."""
     with ending(as_json=as_json):
-        from scope_ptz.bench.judging.agreement import agreement
+        from scope_ptz.bench.judging.agreement import measure_agreement
 
-        report = agreement(raters_in(logs), seed)
+        report = measure_agreement(raters_in(logs), seed)
         if as_json:
             put_json(report.as_dict(), indent=1)
         else:
@@ -41,7 +41,7 @@ def agree(
 def raters_in(logs: Sequence[Path]) -> list[Rater]:
     """Everyone who rated what is in these files. Raises ``InputError`` or ``TraceError``."""
     from scope_ptz.bench.judging.agreement import raters_of
-    from scope_ptz.bench.judging.labels import labels_file, read_labels, with_labels
+    from scope_ptz.bench.judging.human_labels import labels_file, read_labels, with_labels
     from scope_ptz.taskgen.gold.judge_results import raters_of_gold, read_verdicts
 
     gold = [path for path in logs if path.suffix == ".jsonl"]
@@ -55,7 +55,7 @@ def raters_in(logs: Sequence[Path]) -> list[Rater]:
     return [*raters_of(evaluations), *raters_of_gold(verdicts)]
 
 
-def agreement_lines(report: Report) -> Iterator[str]:
+def agreement_lines(report: AgreementReport) -> Iterator[str]:
     """The report as text: who rated, then pairs with verdicts and modes, then groups."""
     if not report.raters:
         yield "Nobody rated anything in these files: judge them with 'scope bench rescore', or label them with 'scope bench label'."
@@ -83,7 +83,7 @@ def agreement_lines(report: Report) -> Iterator[str]:
         yield f"  verdicts     {figures(group.verdicts)}{left_out}"
 
 
-def figures(agreed: Agreement) -> str:
+def figures(agreed: KappaResult) -> str:
     """One line of figures; "no value" where everyone said the same, and none where nothing was rated by both."""
     if not agreed.runs:
         return "no run that both have rated"
@@ -99,7 +99,7 @@ def _s(number: int) -> str:
     return "" if number == 1 else "s"
 
 
-def _told(agreed: Agreement) -> str:
+def _told(agreed: KappaResult) -> str:
     cells = {(first, second): number for first, second, number in agreed.confusion}
     both = {name: cells.get((name, name), 0) for name in ("correct", "incorrect")}
     one, two = cells.get(("correct", "incorrect"), 0), cells.get(("incorrect", "correct"), 0)

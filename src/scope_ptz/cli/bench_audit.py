@@ -13,8 +13,8 @@ from scope_ptz.cli.endings import complain, ending, put, put_json
 from scope_ptz.errors import InputError, OutputError
 
 if TYPE_CHECKING:
-    from scope_ptz.bench.programs import Stage
-    from scope_ptz.bench.scoring.episode import Look
+    from scope_ptz.bench.program_runner import ProgramRunner
+    from scope_ptz.bench.scoring.episode import Observation
     from scope_ptz.bench.tasks.task import Task
     from scope_ptz.simulator.pack import Scene
 
@@ -43,7 +43,7 @@ def make(
     with ending():
         import anyio
 
-        from scope_ptz.bench.programs import Stage
+        from scope_ptz.bench.program_runner import ProgramRunner
         from scope_ptz.bench.tasks.files import digest_of
         from scope_ptz.bench.tasks.splits import load_split
         from scope_ptz.cli.bench_show import EYES
@@ -56,7 +56,7 @@ def make(
             raise InputError("None of these tasks wants an answer: there is nothing to ask.")
         worlds = worlds_of([task for _, task in chosen])
         equip = equip_with_truth(worlds, KnownViews())
-        stages = {name: Stage(world, equip, EYES) for name, world in worlds.items()}
+        stages = {name: ProgramRunner(world, equip, EYES) for name, world in worlds.items()}
         try:
             out.mkdir(parents=True)
         except FileExistsError as error:
@@ -97,14 +97,14 @@ def score(
                 put(f"     {row.reader or 'nobody'} said {row.answer!r}, expected is {row.expected!r}. {row.finding}")
 
 
-async def _question(q: str, task: Task, stage: Stage, out: Path) -> dict[str, Any]:
+async def _question(q: str, task: Task, stage: ProgramRunner, out: Path) -> dict[str, Any]:
     """The row of a question; its pictures are written."""
     import cv2
 
     from scope_ptz.simulator.views import picture
 
     episode = await stage.run(task, task.reference, "")
-    looks = list({(look.viewpoint, look.projection): look for call in episode.calls for look in call.looks[:1]}.values())
+    looks = list({(look.viewpoint, look.projection): look for call in episode.calls for look in call.observations[:1]}.values())
     shown = []
     for number, look in enumerate(looks, 1):
         name = f"{q}-{number}.jpg"
@@ -117,7 +117,7 @@ async def _question(q: str, task: Task, stage: Stage, out: Path) -> dict[str, An
     return {"q": q, "asked": task.instruction, "pictures": shown}
 
 
-def _caption(look: Look, scene: Scene) -> str:
+def _caption(look: Observation, scene: Scene) -> str:
     """Where a picture was taken, as whoever steers the camera would know it."""
     from scope_ptz.geometry import AXIS_M5075_G, Perspective
 

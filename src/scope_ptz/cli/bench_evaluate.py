@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from scope_ptz.bench.engine.entries import Entry
     from scope_ptz.bench.engine.estimate import Price
     from scope_ptz.bench.engine.runs import Found, Setting
-    from scope_ptz.bench.judging.server import ServerPort
+    from scope_ptz.bench.judging.server import JudgeServer
     from scope_ptz.planner.base import Planner
 
 OWN_AGENT = "scope"
@@ -94,7 +94,7 @@ class _Prepared:
 
         self.options, self.choice = options, choice
         self.agent_source = source_digest(options.agent) if options.agent != OWN_AGENT else ""
-        self.judge: ServerPort | None = None
+        self.judge: JudgeServer | None = None
         self.planner = planner_for(choice.planner) if options.agent == OWN_AGENT else None
         self.lent = eval_context(seed=options.seed, planner=self.planner, perception=choice.perception)
         self.entries: tuple[Entry, ...] = chosen(
@@ -186,13 +186,13 @@ class _Prepared:
         if wish is None:
             return Ended(read_evaluation(log))
 
-        async def opened() -> ServerPort:
+        async def opened() -> JudgeServer:
             self.judge = self.judge or await open_wished(wish)
             return self.judge
 
         return await judged(log, wish, opened, self.lent, again=again)
 
-    async def _setting(self, judge: ServerPort | None) -> Setting:
+    async def _setting(self, judge: JudgeServer | None) -> Setting:
         from inspect_ai.model import GenerateConfig, get_model
 
         import scope_ptz.factory.inspect_plugin  # noqa: F401 - the models of this project

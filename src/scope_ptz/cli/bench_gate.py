@@ -49,7 +49,7 @@ def gate(
 
 def other_judges(now: Evaluation, before: Evaluation) -> str:
     """What is to be said where different judges decided in the two logs; empty where not."""
-    from scope_ptz.bench.judging.deciding import decider_of
+    from scope_ptz.bench.judging.deciding_judge import decider_of
 
     one, two = decider_of(before.trials), decider_of(now.trials)
     if one is None or two is None or one == two:

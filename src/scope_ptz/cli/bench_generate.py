@@ -72,11 +72,11 @@ def generate(
 
 
 async def _run(order: GenerationRequest, ledger: DraftLedger, endpoint: Endpoint, model: str, temperature: float) -> None:
-    from scope_ptz.bench.judging.server import JudgeOptions, ServerPort
+    from scope_ptz.bench.judging.server import JudgeModelOptions, JudgeServer
     from scope_ptz.taskgen.generating.drafting_loop import generate as drafts
 
-    options = JudgeOptions(temperature=temperature, seed=order.seed)
-    port = ServerPort(await _named(endpoint, model), options)
+    options = JudgeModelOptions(temperature=temperature, seed=order.seed)
+    port = JudgeServer(await _named(endpoint, model), options)
     try:
         await drafts(order, port, prover(order.scene), ledger, complain)
     finally:

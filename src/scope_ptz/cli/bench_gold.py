@@ -70,8 +70,8 @@ def check(
 
 async def made_gold(tasks: Sequence[Task], seed: int) -> list[GoldRun]:
     """Gold runs of tasks: their reference programs through the tools with the ground truth for eyes, then the faults."""
-    from scope_ptz.bench.programs import Stage
-    from scope_ptz.bench.scoring.verdict import judge
+    from scope_ptz.bench.program_runner import ProgramRunner
+    from scope_ptz.bench.scoring.verdict import score_episode
     from scope_ptz.factory.validation_perception import KnownViews, equip_with_truth
     from scope_ptz.taskgen.authoring.task_places import preset_at
     from scope_ptz.taskgen.facts.answer_phrasing import right_answers
@@ -81,7 +81,7 @@ async def made_gold(tasks: Sequence[Task], seed: int) -> list[GoldRun]:
 
     worlds = worlds_of(tasks)
     equip = equip_with_truth(worlds, KnownViews())
-    stages = {name: Stage(world, equip, TASK_CAMERA) for name, world in worlds.items()}
+    stages = {name: ProgramRunner(world, equip, TASK_CAMERA) for name, world in worlds.items()}
     settings = {
         name: FaultSetting({p.name: preset_at(p) for p in world.file.presets}, TASK_CAMERA) for name, world in worlds.items()
     }
@@ -89,7 +89,7 @@ async def made_gold(tasks: Sequence[Task], seed: int) -> list[GoldRun]:
     for task in tasks:
         if task.stratum == "core" and task.reference:
             episode = await stages[task.world].run(task, task.reference, right_answers(task.expected)[0])
-            if judge(task, episode).headline == "correct":
+            if score_episode(task, episode).headline == "correct":
                 runs.append((task, episode))
     return gold_runs(runs, settings, seed)
 

@@ -105,7 +105,7 @@ class _Sitting:
         return left
 
     def _finish(self) -> None:
-        from scope_ptz.bench.human import write_result
+        from scope_ptz.bench.human_runs import write_result
 
         result = self._result()
         if not result.trials:
@@ -115,14 +115,14 @@ class _Sitting:
         put(f"\n{len(result.trials)} of {result.wanted} tasks done, {right} correct; {write_result(result, self.out)}")
 
     def _result(self) -> Evaluation:
-        from scope_ptz.bench.human import card, trial
+        from scope_ptz.bench.human_runs import human_run_card, human_trial
         from scope_ptz.bench.scoring.trials import Evaluation
 
         done = [(task, trace) for task in self.tasks if (trace := self._trace(task)) is not None]
         started = min((trace.started.started for _, trace in done), default=datetime.now(UTC)).isoformat()
         return Evaluation(
-            card=card(self.by, self.split, self.tasks, started, MAX_STEPS),
-            trials=tuple(trial(task, self.worlds[task.world].file, trace, task.id) for task, trace in done),
+            card=human_run_card(self.by, self.split, self.tasks, started, MAX_STEPS),
+            trials=tuple(human_trial(task, self.worlds[task.world].file, trace, task.id) for task, trace in done),
             wanted=len(self.tasks),
             log=str(self.out),
         )

@@ -20,8 +20,8 @@ from scope_ptz.factory.judges import open_judge
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from scope_ptz.bench.judging.server import ServerPort
-    from scope_ptz.bench.judging.tally import Tally
+    from scope_ptz.bench.judging.judgement_tally import JudgementTally
+    from scope_ptz.bench.judging.server import JudgeServer
     from scope_ptz.bench.scoring.trials import Judgement
     from scope_ptz.taskgen.gold.judge_results import GoldCase, GoldResult, GoldVerdict
 
@@ -52,7 +52,7 @@ def judge_gold(
         before = read_verdicts(out)
         cases = gold_cases(gold, tasks, passing, limit)
 
-        async def work() -> Tally:
+        async def work() -> JudgementTally:
             port = await open_judge(judge_url, judge_model, judge_key_file, judge_timeout, judge_option)
             try:
                 return await _judge_all(port, cases, before, out, repeats=repeats, concurrency=concurrency)
@@ -73,13 +73,13 @@ def judge_gold(
 
 
 async def _judge_all(
-    port: ServerPort, cases: Sequence[GoldCase], before: Sequence[GoldVerdict], out: Path, *, repeats: int, concurrency: int
-) -> Tally:
+    port: JudgeServer, cases: Sequence[GoldCase], before: Sequence[GoldVerdict], out: Path, *, repeats: int, concurrency: int
+) -> JudgementTally:
     """Judge what was not judged yet, and what came of that. A verdict that failed before is asked for again."""
+    from scope_ptz.bench.judging.json_lines import append_line
     from scope_ptz.bench.judging.judge import Judge
-    from scope_ptz.bench.judging.lines import append_line
+    from scope_ptz.bench.judging.judgement_tally import JudgementTally
     from scope_ptz.bench.judging.rubrics import prompt_version
-    from scope_ptz.bench.judging.tally import Tally
     from scope_ptz.taskgen.gold.judge_results import judge_gold as judge_cases
 
     name = port.client.endpoint.model
@@ -101,16 +101,16 @@ async def _judge_all(
         complain(f"{name}: {len(left)} of {len(cases)} runs to judge" + (f", time {repeat + 1}" if repeats > 1 else ""))
         judge = Judge(name, port.repeated(repeat))
         await judge_cases(judge, left, concurrency=concurrency, repeat=repeat, note=note)
-    return Tally.of(made)
+    return JudgementTally.of(made)
 
 
 def gold_cases(gold: Path | None, tasks: str, passing: int, limit: int | None) -> list[GoldCase]:
     """Gold runs and, among them, runs of the same tasks that pass, made by their reference programs."""
     import anyio
 
-    from scope_ptz.bench.programs import Stage
-    from scope_ptz.bench.scoring.episode import Places
-    from scope_ptz.bench.scoring.verdict import judge
+    from scope_ptz.bench.program_runner import ProgramRunner
+    from scope_ptz.bench.scoring.episode import PresetViewpoints
+    from scope_ptz.bench.scoring.verdict import score_episode
     from scope_ptz.bench.tasks.splits import load_split, published_folder
     from scope_ptz.cli.bench_inputs import worlds_of
     from scope_ptz.factory.validation_perception import equip_with_truth
@@ -122,15 +122,15 @@ def gold_cases(gold: Path | None, tasks: str, passing: int, limit: int | None) -
     _, runs = read_gold(gold or published_folder() / "gold.jsonl.gz", load_split(tasks))
     runs = in_turn(runs)[:limit]
     worlds = worlds_of(run.task for run in runs)
-    places = {name: Places.of(world.file) for name, world in worlds.items()}
+    places = {name: PresetViewpoints.of(world.file) for name, world in worlds.items()}
     equip = equip_with_truth(worlds)
     cases = [gold_case(run, places[run.task.world]) for run in runs]
 
     async def add_passing() -> None:
         for task in list({run.task.id: run.task for run in runs}.values())[:passing]:
             answer, outcome = right_answers(task.expected)[0], task.behaviour.outcomes[0]
-            episode = await Stage(worlds[task.world], equip, TASK_CAMERA).run(task, task.reference, answer, outcome)
-            if judge(task, episode).headline == "correct":
+            episode = await ProgramRunner(worlds[task.world], equip, TASK_CAMERA).run(task, task.reference, answer, outcome)
+            if score_episode(task, episode).headline == "correct":
                 cases.append(passing_case(task, episode, places[task.world]))
 
     anyio.run(add_passing)

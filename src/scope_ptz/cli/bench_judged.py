@@ -12,8 +12,8 @@ from scope_ptz.cli.endings import complain
 
 if TYPE_CHECKING:
     from scope_ptz.bench.engine.context import EvalContext
-    from scope_ptz.bench.judging.server import ServerPort
-    from scope_ptz.bench.judging.tally import Tally
+    from scope_ptz.bench.judging.judgement_tally import JudgementTally
+    from scope_ptz.bench.judging.server import JudgeServer
     from scope_ptz.bench.scoring.trials import Evaluation
 
 
@@ -35,10 +35,10 @@ class Ended:
 
     evaluation: Evaluation
     judge: str = ""
-    judged: Tally | None = None
+    judged: JudgementTally | None = None
 
 
-async def open_wished(wish: JudgeOptions) -> ServerPort:
+async def open_wished(wish: JudgeOptions) -> JudgeServer:
     """The port to the judge that is wished for. Raises ``InputError``."""
     from scope_ptz.factory.judges import open_judge
 
@@ -46,12 +46,12 @@ async def open_wished(wish: JudgeOptions) -> ServerPort:
 
 
 async def judged(
-    log: Path, wish: JudgeOptions, opened: Callable[[], Awaitable[ServerPort]], lent: EvalContext, *, again: bool
+    log: Path, wish: JudgeOptions, opened: Callable[[], Awaitable[JudgeServer]], lent: EvalContext, *, again: bool
 ) -> Ended:
     """A log as it stands, when the judge has been asked about the runs that it was not asked about yet. ``again``: also about those
     on which its server failed; ``opened``: its port, which is not wanted when nothing is left to ask."""
     from scope_ptz.bench.engine.logs import read_evaluation
-    from scope_ptz.bench.judging.tally import Tally, judged_by, wanted
+    from scope_ptz.bench.judging.judgement_tally import JudgementTally, judged_by, requested_judgements
     from scope_ptz.factory.evaluation import judge_maker
     from scope_ptz.factory.judges import UnnamedJudgeError
     from scope_ptz.settings import load_settings
@@ -71,12 +71,12 @@ async def judged(
     if name is None:
         judge = await opened()
         name = judge.client.endpoint.model
-        there = wanted(evaluation.trials, name, wish.repeats)
+        there = requested_judgements(evaluation.trials, name, wish.repeats)
         missing = sum(judgement is None or judgement.verdict == "failed" for judgement in there)
         if evaluation.finished and (None in there or (again and missing)):
             complain(f"{missing} of {len(there)} judgements by {name} are missing: it is asked for them now.")
             lent = replace(lent, make_judge=judge_maker(judge))
             await score_again(log, judge, lent, repeats=wish.repeats, more=False, at_a_time=AT_A_TIME)
             evaluation = read_evaluation(log)
-    made = [judgement for judgement in wanted(evaluation.trials, name, wish.repeats) if judgement is not None]
-    return Ended(evaluation, name, Tally.of(made))
+    made = [judgement for judgement in requested_judgements(evaluation.trials, name, wish.repeats) if judgement is not None]
+    return Ended(evaluation, name, JudgementTally.of(made))

@@ -72,14 +72,14 @@ def drawn(evaluation: Evaluation, number: int | None, seed: int) -> list[Trial]:
 
 
 def _compare(log: Path, *, as_json: bool) -> None:
-    from scope_ptz.bench.judging.agreement import agreement
+    from scope_ptz.bench.judging.agreement import measure_agreement
     from scope_ptz.errors import InputError
 
     raters = raters_in([log])
     people = {rater.name for rater in raters if rater.kind == "person"}
     if not people:
         raise InputError(f"Nobody has labelled runs of {log} yet. Label some with 'scope bench label {log} --by NAME'.")
-    report = agreement(raters)
+    report = measure_agreement(raters)
     report = replace(report, pairs=tuple(pair for pair in report.pairs if {pair.first, pair.second} & people))
     if as_json:
         put_json(report.as_dict(), indent=1)
@@ -92,7 +92,7 @@ class _Labelling:
     """One sitting: runs one after the other, until all are labelled, or the person or the input ends it."""
 
     def __init__(self, log: Path, by: str, trials: Sequence[Trial], pictures: Path) -> None:
-        from scope_ptz.bench.judging.labels import labels_file, read_labels
+        from scope_ptz.bench.judging.human_labels import labels_file, read_labels
 
         self.log, self.by, self.trials, self.pictures = log, by, trials, pictures
         self.file = labels_file(log)
@@ -169,7 +169,7 @@ class _Labelling:
         return Label(by=self.by, verdict="correct" if verb == "c" else "unclear", note=note)
 
     def _keep(self, trial: Trial, made: Label) -> None:
-        from scope_ptz.bench.judging.labels import add_label
+        from scope_ptz.bench.judging.human_labels import add_label
 
         add_label(self.file, made, trial.sample)
         self.done.add(trial.sample)

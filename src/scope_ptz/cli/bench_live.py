@@ -15,8 +15,8 @@ from rich.text import Text
 
 from scope_ptz.bench.engine.context import Watcher
 from scope_ptz.bench.engine.entries import Entry
-from scope_ptz.bench.judging.deciding import beside
-from scope_ptz.bench.judging.tally import not_judged, without_verdict
+from scope_ptz.bench.judging.deciding_judge import other_judges_note
+from scope_ptz.bench.judging.judgement_tally import not_judged, without_verdict
 from scope_ptz.bench.scoring.trials import Evaluation, Trial
 from scope_ptz.bench.tasks.task import Category
 from scope_ptz.cli.bench_troubles import events_of, told
@@ -166,7 +166,7 @@ def summary(evaluation: Evaluation) -> RenderableType:
         ((m, sum(t.error_mode == m for t in trials)) for m in {t.error_mode for t in trials if t.error_mode}), key=lambda x: -x[1]
     )
     parts += [Text(line) for line in waiting(trials)]
-    parts += [Text(f"judged     {several}")] if (several := beside(trials)) else []
+    parts += [Text(f"judged     {several}")] if (several := other_judges_note(trials)) else []
     if modes:
         parts.append(Text("failed by  " + ", ".join(f"{mode.value.replace('_', ' ')} {count}" for mode, count in modes)))
     if events := events_of(trials):

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from scope_ptz.bench.reports.submission import Header, TrialLine
-    from scope_ptz.bench.reports.task_pages import SampleFiles
+    from scope_ptz.bench.reports.task_pages import StoredRun
     from scope_ptz.bench.scoring.trials import Evaluation, Trial
     from scope_ptz.bench.tasks.task import Task
 
@@ -39,16 +39,16 @@ def report(
     """Write a page, Markdown and CSV tables of logs: everything that the paper shows, for any set of runs."""
     with ending():
         _need_extra()
-        from scope_ptz.bench.reports.write import write_report
+        from scope_ptz.bench.reports.writer import write_report
         from scope_ptz.registry import load_registry
         from scope_ptz.settings import load_settings
 
         evaluations = [_read(path) for path in _each_once(logs)]
         where = {id(evaluation): path for evaluation, path in zip(evaluations, _each_once(logs), strict=True)}
 
-        def open_trial(evaluation: Evaluation, trial: Trial) -> SampleFiles:
+        def open_trial(evaluation: Evaluation, trial: Trial) -> StoredRun:
             from scope_ptz.bench.engine.logs import open_sample
-            from scope_ptz.bench.human import open_run
+            from scope_ptz.bench.human_runs import open_run
 
             path = where[id(evaluation)]
             return open_run(path, trial.sample) if path.suffix == RESULT else open_sample(path, trial.sample)
@@ -120,7 +120,7 @@ def submission_validate(
                 complain(fault)
             if len(found.faults) > MOST_TOLD:
                 complain(f"and {len(found.faults) - MOST_TOLD} more")
-            put(found.told)
+            put(found.summary)
         if found.faults:
             sys.exit(FAILED)
 
@@ -154,10 +154,10 @@ def _each_once(logs: Sequence[Path]) -> list[Path]:
 
 def _read(path: Path) -> Evaluation:
     """A log with people's labels. Raises ``TraceError`` or ``InputError``."""
-    from scope_ptz.bench.judging.labels import labels_file, read_labels, with_labels
+    from scope_ptz.bench.judging.human_labels import labels_file, read_labels, with_labels
 
     if path.suffix == RESULT:
-        from scope_ptz.bench.human import read_result
+        from scope_ptz.bench.human_runs import read_result
 
         return read_result(path)
     from scope_ptz.bench.engine.logs import read_evaluation

@@ -15,8 +15,8 @@ from scope_ptz.factory.judges import open_judge
 
 if TYPE_CHECKING:
     from scope_ptz.bench.engine.context import EvalContext
-    from scope_ptz.bench.judging.server import ServerPort
-    from scope_ptz.bench.judging.tally import Tally
+    from scope_ptz.bench.judging.judgement_tally import JudgementTally
+    from scope_ptz.bench.judging.server import JudgeServer
 
 
 AT_A_TIME = 8
@@ -48,8 +48,8 @@ def rescore(
     with ending():
         import anyio
 
-        from scope_ptz.bench.judging.deciding import beside
-        from scope_ptz.bench.judging.tally import Tally
+        from scope_ptz.bench.judging.deciding_judge import other_judges_note
+        from scope_ptz.bench.judging.judgement_tally import JudgementTally
         from scope_ptz.cli.bench_evaluate import need_engine
         from scope_ptz.factory.evaluation import eval_context
         from scope_ptz.settings import load_settings
@@ -62,8 +62,8 @@ def rescore(
         if not checks and not wants_judge and not decides:
             raise InputError("Say what to score by: a judge (--judge-url), the checks (--checks), or both.")
 
-        async def work() -> Tally:
-            all_made = Tally()
+        async def work() -> JudgementTally:
+            all_made = JudgementTally()
             judge = await open_judge(judge_url, judge_model, judge_key_file, judge_timeout, judge_option) if wants_judge else None
             try:
                 for log in logs:
@@ -74,7 +74,7 @@ def rescore(
                         put(f"{log}: {'checked again' if checks else ''}{', ' if checks and judge else ''}{told(judge, made)}")
                     if decides:
                         let_decide(log, decides)
-                    if several := beside(read_evaluation(log).trials):
+                    if several := other_judges_note(read_evaluation(log).trials):
                         put(f"{log}: {several}")
             finally:
                 if judge is not None:
@@ -87,28 +87,35 @@ def rescore(
             sys.exit(FAILED)
 
 
-def told(judge: ServerPort | None, made: Tally) -> str:
+def told(judge: JudgeServer | None, made: JudgementTally) -> str:
     """What came of a log's judgements."""
     if judge is None:
         return ""
-    return f"{made.made} judgement{'' if made.made == 1 else 's'} by {judge.client.endpoint.model}: {made.told}"
+    return f"{made.made} judgement{'' if made.made == 1 else 's'} by {judge.client.endpoint.model}: {made.summary}"
 
 
-def judge_failed(made: Tally) -> str:
+def judge_failed(made: JudgementTally) -> str:
     """The sentence about judgements that a judge's server failed on."""
     first = f", the first with: {made.failure}" if made.failure else ""
     first = first if first.endswith((".", "!", "?")) else f"{first}."
     return f"{made.failed} of {made.made} judgements failed because the judge's server gave no usable reply{first}"
 
 
-def them(made: Tally) -> str:
+def them(made: JudgementTally) -> str:
     """The judgements that failed, as a pronoun."""
     return "it" if made.failed == 1 else "them"
 
 
 async def score_again(
-    log: Path, judge: ServerPort | None, lent: EvalContext, *, repeats: int, more: bool = True, checks: bool = False, at_a_time: int
-) -> Tally:
+    log: Path,
+    judge: JudgeServer | None,
+    lent: EvalContext,
+    *,
+    repeats: int,
+    more: bool = True,
+    checks: bool = False,
+    at_a_time: int,
+) -> JudgementTally:
     """Add scores to a log; what came of the judgements. ``more``: beside those there are, not in place of what is missing."""
     from scope_ptz.bench.engine.context import EQUIPMENT
     from scope_ptz.bench.engine.rescoring import rescore as again

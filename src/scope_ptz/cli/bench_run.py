@@ -162,7 +162,7 @@ def run(
         else:
             console.print(summary(evaluation))
             if judged is not None:
-                put(f"judge      {ended.judge}: {judged.told}")
+                put(f"judge      {ended.judge}: {judged.summary}")
             put(f"log        {evaluation.log}")
         finish(ended)
 
@@ -196,7 +196,7 @@ def finish(ended: Ended) -> None:
 def result(evaluation: Evaluation) -> dict[str, object]:
     """What ``--json`` prints. Runs without a judge's verdict, where only a judge can score, are in no share. ``troubles``: what
     servers did to runs, in sentences."""
-    from scope_ptz.bench.judging.tally import not_judged
+    from scope_ptz.bench.judging.judgement_tally import not_judged
     from scope_ptz.cli.bench_live import CATEGORIES, accuracy, macro
     from scope_ptz.cli.bench_troubles import events_of, troubles
 

@@ -11,10 +11,10 @@ import numpy as np
 from PIL import Image
 
 from scope_ptz.agent.drawing import AMBER, CYAN, EDGE, FAINT, INK, SURFACE, Canvas, cut, drawable, wrap
-from scope_ptz.bench.programs import Stage
+from scope_ptz.bench.program_runner import ProgramRunner
 from scope_ptz.bench.scoring.coverage import box_directions
-from scope_ptz.bench.scoring.episode import Eyes
-from scope_ptz.bench.scoring.verdict import judge
+from scope_ptz.bench.scoring.episode import FrameGeometry
+from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.task import EvidenceView, Item, Task
 from scope_ptz.errors import OutputError
 from scope_ptz.factory.validation_perception import equip_with_truth
@@ -23,7 +23,7 @@ from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.views import picture
 from scope_ptz.taskgen.facts.answer_phrasing import right_answers
 
-EYES = Eyes(1280, 720)
+EYES = FrameGeometry(1280, 720)
 _MARGIN, _HEAD, _LINE = 28, 118, 24
 _WIDE = 2200.0
 _NEAR = (260, 146)
@@ -49,12 +49,12 @@ def summary(task: Task, wordings: Sequence[Task]) -> Iterator[str]:
 def reference_run(task: Task, scene: Scene) -> Iterator[str]:
     """The calls of the reference program with what the tools said, and the verdict on it."""
     text, outcome = right_answers(task.expected)[0], task.behaviour.outcomes[0]
-    stage = Stage(scene, equip_with_truth({scene.name: scene}), EYES)
+    stage = ProgramRunner(scene, equip_with_truth({scene.name: scene}), EYES)
     episode = anyio.run(stage.run, task, task.reference, text, outcome)
     for call in episode.calls:
         yield f"call       {call.name} {json.dumps(dict(call.arguments))} -> {call.error or (call.result or {}).get('message')}"
     yield f"answer     {text if outcome == 'answered' else f'({outcome})'}"
-    verdict = judge(task, episode)
+    verdict = score_episode(task, episode)
     yield f"verdict    {verdict.headline}: {verdict.reason}"
 
 

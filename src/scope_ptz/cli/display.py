@@ -1,4 +1,4 @@
-"""What a person sees of a run while it happens, and at its end."""
+"""What a person sees of a run, while it happens and at its end."""
 
 from __future__ import annotations
 
@@ -16,6 +16,8 @@ from scope_ptz.agent.records import Called, Decided, Ended, Started
 from scope_ptz.agent.timing import Timings
 from scope_ptz.planner.base import CallTools, ToolCall
 
+MESSAGE_CHARS = 2000  # longer messages of tools are cut when printed
+SHOWN_CHARS = 200  # longer instructions and arguments are cut when printed
 _OUTCOME_WORDS = {
     "answered": ("Answer", "bold green"),
     "clarification": ("Question", "bold yellow"),
@@ -29,18 +31,23 @@ _OUTCOME_WORDS = {
 
 
 def plain(text: str) -> str:
-    """Text from outside without control characters: a sign or a model must not steer the terminal."""
+    """Return text without control characters, so that a sign in a scene or a model cannot control the terminal."""
     return "".join(c if c.isprintable() or c == "\n" else " " for c in text)
 
 
+def shortened(text: str, most: int = SHOWN_CHARS) -> str:
+    """Return at most the first characters of a text, with the length of the whole if something was cut off."""
+    return text if len(text) <= most else f"{text[:most].rstrip()}… ({len(text)} characters)"
+
+
 def arguments_text(arguments: dict[str, Any]) -> str:
-    """Arguments as people read them: ``pan_deg=15, view=current``."""
+    """Return arguments as people read them: ``pan_deg=15, view=current``."""
     parts = (f"{k}={v if isinstance(v, str) and v.isprintable() else json.dumps(v)}" for k, v in arguments.items())
-    return plain(", ".join(parts))
+    return plain(shortened(", ".join(parts)))
 
 
 def seconds(value: float) -> str:
-    """A duration with two useful digits."""
+    """Return a duration with its unit."""
     return f"{value:.1f} s" if value >= 1 else f"{value * 1000:.0f} ms"
 
 
@@ -71,7 +78,7 @@ class LiveView:
             self._status.start()
 
     def _start(self, record: Started) -> None:
-        self.console.print(Text.assemble(("› ", "bold cyan"), (plain(record.instruction), "bold")))
+        self.console.print(Text.assemble(("› ", "bold cyan"), (plain(shortened(record.instruction)), "bold")))
         about = f"{record.camera} · planner {record.planner} · perception {record.perception}"
         self.console.print(Padding(Text(plain(about), style="dim"), (0, 0, 0, 2)))
         self.console.print()
@@ -90,19 +97,29 @@ class LiveView:
             Text(seconds(record.timings.total_s), style="dim"),
         )
         if outcome.error is not None:
-            table.add_row("", "", Text(plain(outcome.error), style="red"), "")
+            table.add_row("", "", Text(plain(shortened(outcome.error)), style="red"), "")
         elif outcome.result is not None:
-            table.add_row("", "", Text(plain(str(outcome.result["message"])), style="green"), "")
+            table.add_row("", "", Text(plain(shortened(str(outcome.result["message"]), MESSAGE_CHARS)), style="green"), "")
         self.console.print(table)
 
 
-def show_end(console: Console, ended: Ended, note: str, folder: Path, filmstrip: Path | None) -> None:
-    """The answer, what it rests on, where the time went, and where everything is kept."""
+def show_end(console: Console, ended: Ended, note: str = "", folder: Path | None = None, filmstrip: Path | None = None) -> None:
+    """Print the answer, what it is based on, where the time went, and where the run is kept.
+
+    Args:
+        console: Where to print.
+        ended: The run's last record.
+        note: What perception is, if it is not a model.
+        folder: The run folder; without one only the answer is printed.
+        filmstrip: The run's picture, if one was made.
+    """
     title, style = _OUTCOME_WORDS[ended.outcome]
     console.print()
     console.print(Text.assemble((f"{title}: ", style), (plain(ended.text), "bold")))
     if note:
         console.print(Text(note, style="yellow"))
+    if folder is None:
+        return
     console.print(Text(timings_text(ended.timings), style="dim"))
     console.print(Text(f"Run folder: {folder}", style="dim"), soft_wrap=True)
     if filmstrip is not None:
@@ -110,7 +127,7 @@ def show_end(console: Console, ended: Ended, note: str, folder: Path, filmstrip:
 
 
 def timings_text(timings: Timings) -> str:
-    """Where the time went."""
+    """Return a sentence that says where the time went."""
     parts = (("planner", timings.planner_s), ("perception", timings.perception_s), ("camera", timings.camera_s))
     split = ", ".join(f"{name} {seconds(value)}" for name, value in (*parts, ("rendering", timings.render_s)))
-    return f"{seconds(timings.total_s)} in all: {split}."
+    return f"{seconds(timings.total_s)} in total: {split}."

@@ -1,4 +1,4 @@
-"""``scope doctor``: what is installed, reachable and missing, and how to get it."""
+"""``scope doctor``: what is installed and missing and how to get it; and whether a model server does what SCOPE needs."""
 
 from __future__ import annotations
 
@@ -6,30 +6,47 @@ import os
 import platform
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import AsyncIterator, Iterator
 from dataclasses import asdict, dataclass
 from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
+import anyio
 from rich.console import Console
 from rich.text import Text
 
 from scope_ptz.builtin_names import DEFAULT_SCENE
-from scope_ptz.cli.cards import folder_bytes
-from scope_ptz.cli.endings import FAILED, put_json
-from scope_ptz.errors import PackError
-from scope_ptz.factory.scenes import open_scene, scene_search
+from scope_ptz.cli.display import plain
+from scope_ptz.cli.exit import FAILED, put_json, run_async
+from scope_ptz.errors import ConfigError, InputError, PackError
+from scope_ptz.factory.cameras import open_camera
+from scope_ptz.factory.models import ModelOptions, make_perception, resolve_models
+from scope_ptz.factory.scenes import scene_search
 from scope_ptz.settings import ScopeSettings, load_settings
+from scope_ptz.simulator.card import folder_bytes, megabytes
 from scope_ptz.version import __version__
 
+if TYPE_CHECKING:
+    from scope_ptz.endpoints.chat_server_checks import ServerCheck
+    from scope_ptz.factory.models import ResolvedPerception, ResolvedPlanner
+
 Verdict = Literal["ok", "optional", "missing"]
-_MARKS: dict[Verdict, tuple[str, str]] = {"ok": ("ok", "green"), "optional": ("--", "yellow"), "missing": ("!!", "bold red")}
+_OK, _PARTLY, _BAD = ("ok", "green"), ("--", "yellow"), ("!!", "bold red")
+_MARKS: dict[str, tuple[str, str]] = {"ok": _OK, "optional": _PARTLY, "missing": _BAD, "partly": _PARTLY, "failed": _BAD}
+_THING, _PRESET = "traffic cone", "highway"  # an object that the default scene shows for certain at this preset
 
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """``optional``: not there and not needed for the demo; ``missing``: something does not work without it."""
+    """One thing that was examined.
+
+    Attributes:
+        what: Its name.
+        verdict: ``optional`` if it is absent but not needed for the demo, ``missing`` if something does not work without it.
+        detail: What was found.
+        remedy: What to do about it.
+    """
 
     what: str
     verdict: Verdict
@@ -37,8 +54,8 @@ class Finding:
     remedy: str = ""
 
 
-def doctor(*, as_json: bool) -> int:
-    """Print all findings; exit code 1 when something needed is missing."""
+def check_installation(*, as_json: bool) -> int:
+    """Print all findings, and return 1 if something is missing that is needed."""
     findings = list(examine(load_settings()))
     if as_json:
         put_json([asdict(finding) for finding in findings])
@@ -53,7 +70,7 @@ def doctor(*, as_json: bool) -> int:
 
 
 def examine(settings: ScopeSettings) -> Iterator[Finding]:
-    """Everything worth knowing when something does not work."""
+    """Yield a finding for everything that may explain why something does not work."""
     yield Finding("scope-ptz", "ok", f"{__version__} in {Path(__file__).parents[1]}")
     enough = sys.version_info >= (3, 11)
     yield Finding(
@@ -67,17 +84,17 @@ def examine(settings: ScopeSettings) -> Iterator[Finding]:
 
 
 def _plugins() -> Iterator[Finding]:
-    """What each installed plug-in does when it is loaded and tried."""
-    import anyio
-
+    """Load each installed plug-in and try it."""
     from scope_ptz.factory.plugin_checks import check_plugin
     from scope_ptz.factory.plugins import list_plugins
 
+    verdicts: dict[str, Verdict] = {"ok": "ok", "partly": "optional", "failed": "missing"}
     for plugin in list_plugins():
         check = anyio.run(check_plugin, plugin)
-        verdict: Verdict = {"ok": "ok", "partly": "optional", "failed": "missing"}[check.verdict]  # type: ignore[assignment]
         remedy = f"Update {plugin.package}, or uninstall it." if check.verdict == "failed" else ""
-        yield Finding(f"{plugin.kind} {plugin.name}", verdict, f"plug-in of {plugin.package}: {check.detail}", remedy)
+        yield Finding(
+            f"{plugin.kind} {plugin.name}", verdicts[check.verdict], f"plug-in of {plugin.package}: {check.detail}", remedy
+        )
 
 
 def _packages() -> Finding:
@@ -98,26 +115,24 @@ def _packages() -> Finding:
 
 
 def _scenes(settings: ScopeSettings) -> Iterator[Finding]:
-    from scope_ptz.simulator.pack import find_scenes
+    from scope_ptz.simulator.pack import find_scenes, load_scene
 
-    scenes = find_scenes(scene_search(settings))
-    if settings.scenes_dir is not None and not settings.scenes_dir.is_dir():
-        yield Finding("SCOPE_SCENES_DIR", "missing", f"{settings.scenes_dir} is no folder", "Correct the variable, or unset it.")
+    search: tuple[Path, ...] = ()
+    try:
+        search = scene_search(settings)
+    except ConfigError as error:
+        yield Finding("SCOPE_SCENES_DIR", "missing", f"{settings.scenes_dir} is not a folder", str(error))
+    scenes = find_scenes(search)
     for name, folder in scenes.items():
         try:
-            files = _verify(name)
+            scene = load_scene(name, search)
+            files = sum(scene.viewpoint(place.name).check_files() for place in scene.file.viewpoints)
         except PackError as error:
             yield Finding(f"scene {name}", "missing", str(error), f"Restore {folder}, or bake it again: scope scene bake {name}")
         else:
-            yield Finding(f"scene {name}", "ok", f"{files} files match their checksums, {folder_bytes(folder) / 1e6:.1f} MB")
+            yield Finding(f"scene {name}", "ok", f"{files} files match their checksums, {megabytes(folder_bytes(folder))}")
     if DEFAULT_SCENE not in scenes:
         yield Finding(f"scene {DEFAULT_SCENE}", "missing", "not found", f"Reinstall, or bake it: scope scene bake {DEFAULT_SCENE}")
-
-
-def _verify(name: str) -> int:
-    """Check every file of a scene against its manifest; the number of files. Raises ``PackError``."""
-    scene = open_scene(name)
-    return sum(scene.viewpoint(place.name).check_files() for place in scene.file.viewpoints)
 
 
 def _runs_dir(path: Path) -> Finding:
@@ -139,5 +154,57 @@ def _blender(settings: ScopeSettings) -> Finding:
         return Finding("Blender", "ok", f"bpy {BPY_VERSION} in {environment_python(settings.cache_dir).parents[1]}")
     return Finding(
         "Blender", "optional", "not installed; only `scope scene build` and `scope scene bake` need it",
-        "They install it by themselves (about 400 MB), or set SCOPE_BLENDER to your own blender program.",
+        "The first of them downloads it (about 400 MB). To use your own blender program, set SCOPE_BLENDER.",
     )  # fmt: skip
+
+
+def check_servers(options: ModelOptions, *, as_json: bool) -> int:
+    """Print each check of the model servers as it ends, and return 1 if one of them failed."""
+    found: list[tuple[str, ServerCheck]] = []
+    console = Console(highlight=False)
+
+    async def work() -> None:
+        choice = await resolve_models(options)
+        if choice.planner.endpoint is None and choice.perception.spec is None:
+            raise InputError("There is no server to check. Name one with --planner-url, or with --perception and --perception-url.")
+        async for server, check in _server_checks(choice.planner, choice.perception):
+            found.append((server, check))
+            if not as_json:
+                _show_check(console, server, check)
+
+    run_async(work)
+    if as_json:
+        put_json([{"server": server, **check.model_dump()} for server, check in found])
+    return FAILED if any(check.verdict == "failed" for _, check in found) else 0
+
+
+async def _server_checks(planner: ResolvedPlanner, perception: ResolvedPerception) -> AsyncIterator[tuple[str, ServerCheck]]:
+    """Yield the checks of both servers, each with the name of its server."""
+    if planner.endpoint is not None:
+        from scope_ptz.endpoints.chat_server_checks import LAST, check_chat
+        from scope_ptz.planner.chat.planning_checks import check_planning
+        from scope_ptz.tools.registry import schemas
+
+        server, alive = f"planner {planner.name}".strip(), False
+        async for check in check_chat(planner.endpoint):
+            alive = check.what == LAST
+            yield server, check
+        if alive:
+            async for check in check_planning(planner.endpoint, schemas(), planner.options):
+                yield server, check
+    if perception.spec is not None:
+        from scope_ptz.perception.models.vision_checks import check_perception
+
+        backend = make_perception(perception, None, 0)
+        try:
+            async with await open_camera(f"sim:{DEFAULT_SCENE}", preset=_PRESET) as opened:
+                async for check in check_perception(backend, await opened.camera.frame(), thing=_THING):
+                    yield f"perception {perception.name}", check
+        finally:
+            await backend.close()
+
+
+def _show_check(console: Console, server: str, check: ServerCheck) -> None:
+    mark, style = _MARKS[check.verdict]
+    head = Text.assemble((f"{mark}  ", style), (f"{plain(server)}: {check.what}", "bold"), (f"  {check.seconds:.2f} s  ", "dim"))
+    console.print(head + Text(plain(check.detail)), soft_wrap=True)

@@ -1,4 +1,4 @@
-"""``scope models``: which models there are, what they need, and how they are served."""
+"""``scope models``: the known models, what they need, and how they are served."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from rich.table import Table
 from rich.text import Text
 
 from scope_ptz.cli.display import plain
-from scope_ptz.cli.endings import put, put_json
+from scope_ptz.cli.exit import put, put_json
 from scope_ptz.errors import ConfigError, UnknownNameError
 from scope_ptz.registry import Model, Registry, Role, load_registry
 from scope_ptz.registry.model_entries import RUNTIME_GB, WINDOW
@@ -17,22 +17,28 @@ from scope_ptz.settings import load_settings
 
 MEMORY_NOTE = (
     f"Memory in GB, computed, not measured: parameters x bytes + cache for {WINDOW} tokens + {RUNTIME_GB:g} GB. "
-    "'from' is the least that any server needs (4-bit weights where there are any)."
+    "'from': with the smallest weights that a server offers, mostly 4-bit."
 )
-_WIDE, _PIPE = 120, 180
-"""Columns from which the longer table fits, and those of what is no terminal."""
-_THINKING = {"none": "no", "optional": "when asked", "default": "unless told not to", "always": "always"}
+_WIDE, _PIPE = 120, 180  # columns that the longer table needs, and columns assumed for a file or a pipe
+_THINKING = {"none": "no", "optional": "when asked", "default": "unless switched off", "always": "always"}
 
 
 def registry() -> Registry:
-    """The shipped models and the user's own."""
+    """Return the shipped models and the user's own."""
     return load_registry(load_settings().models_file())
 
 
 def list_models(role: str | None, memory_gb: float | None, *, as_json: bool) -> None:
-    """Print the models, those that fit into ``memory_gb`` only when it is given."""
-    known = registry()
-    chosen = [m for m in known.models.values() if _wanted(m, _role(role), memory_gb)]
+    """Print the models.
+
+    Args:
+        role: Only models for this role.
+        memory_gb: Only models that fit into so much memory. Those that fit with smaller weights only are named below the table.
+        as_json: Print JSON, without the latter.
+    """
+    known, only = registry(), _role(role)
+    suitable = [m for m in known.models.values() if only is None or only in m.roles]
+    chosen = [m for m in suitable if memory_gb is None or m.memory_for() <= memory_gb]
     if as_json:
         put_json([describe(known, model) for model in chosen], indent=2)
         return
@@ -60,12 +66,15 @@ def list_models(role: str | None, memory_gb: float | None, *, as_json: bool) -> 
             style="bold" if m.origin == "paper" else "",
         )  # fmt: skip
     console.print(table)
-    console.print(Text(MEMORY_NOTE, style="dim"))
-    _name_plugins(console, _role(role))
+    if memory_gb is not None:
+        smaller = [m for m in suitable if m not in chosen and m.smallest()[1] <= memory_gb]
+        if smaller:
+            names = ", ".join(f"{m.name} ({m.smallest()[1]:.1f} GB)" for m in smaller)
+            console.print(Text(f"With smaller weights, {memory_gb:g} GB are enough for: {names}."), soft_wrap=True)
+    console.print(Text(MEMORY_NOTE, style="dim"), soft_wrap=True)
+    _name_plugins(console, only)
     if console.is_terminal:
-        console.print(
-            Text("Bold: the paper's. `scope models show NAME` tells the rest, `scope models pairs` the pairs.", style="dim")
-        )
+        console.print(Text("Bold: models of the paper. More: `scope models show NAME`, `scope models pairs`.", style="dim"))
 
 
 def list_plugins(*, as_json: bool) -> None:
@@ -85,8 +94,18 @@ def list_plugins(*, as_json: bool) -> None:
     _console().print(table)
 
 
+def _name_plugins(console: Console, role: Role | None) -> None:
+    """Name the plug-ins that can be used like the models of the table."""
+    from scope_ptz.factory.plugins import plugins_of
+
+    for kind in ("planner", "perception") if role is None else (role,):
+        names = [f"{plugin.name} ({plugin.package})" for plugin in plugins_of(kind) if not plugin.problem]
+        if names:
+            console.print(Text(plain(f"Plug-ins for --{kind}: {', '.join(names)}")), soft_wrap=True)
+
+
 def show_model(name: str, *, as_json: bool) -> None:
-    """Print everything that is known of a model."""
+    """Print everything that is known about a model."""
     known = registry()
     model = known.model(name)
     if as_json:
@@ -95,8 +114,8 @@ def show_model(name: str, *, as_json: bool) -> None:
     put(f"{model.title} ({model.name})")
     facts = [
         ("repository", model.repo + (f" at {model.revision}" if model.revision else "")),
-        ("role", " and ".join(model.roles) + (", sees pictures in the chat" if model.sees else "")),
-        ("from", {"paper": "the paper", "current": "beside the paper", "yours": "your models file"}[model.origin]),
+        ("role", " and ".join(model.roles) + (", accepts pictures in the chat" if model.sees else "")),
+        ("from", {"paper": "the paper", "current": "added to the paper's", "yours": "your models file"}[model.origin]),
         ("size", f"{model.size_b:g}B parameters, {model.active_b:g}B active"),
         ("precision", model.precision),
         ("context", f"{model.context:,} tokens" if model.context else "-"),
@@ -129,12 +148,12 @@ def _show_serving(known: Registry, model: Model, server: str) -> None:
 
 
 def serve_command(name: str, server: str | None) -> None:
-    """Print the commands that serve a model and nothing else, so that they can be piped into a shell."""
+    """Print the commands that serve a model, and nothing else, for a shell to run."""
     known = registry()
     model = known.model(name)
     if server is None:
         if not model.serve:
-            raise ConfigError(f"No server is known for {model.name}. Add one to your models file, under `serve`.")
+            raise ConfigError(f"No server is known for {model.name}. Add one under `serve` in your models file.")
         server = next(iter(model.serve))
     for line in known.commands(model, server):
         put(line)
@@ -159,12 +178,12 @@ def list_pairs(*, as_json: bool) -> None:
         table.add_row(str(row["name"]), f"{row['memory_gb']:.1f}", f"{average:.1f} %" if average is not None else "-")
     console = _console()
     console.print(table)
-    console.print(Text("Averages are the paper's figures (macro, over its eight categories), not measured here.", style="dim"))
-    console.print(Text("Any PLANNER+EYES of `scope models` works, and so does one model that is both.", style="dim"))
+    console.print(Text("Averages are the paper's (macro average over its eight categories), not measured here.", style="dim"))
+    console.print(Text("Any PLANNER+PERCEPTION of `scope models` works, and so does one model that does both.", style="dim"))
 
 
 def describe(known: Registry, model: Model) -> dict[str, Any]:
-    """A model as JSON data, with memory and commands for each server."""
+    """Return a model as JSON data, with memory and commands for each server."""
     data = model.model_dump(mode="json", exclude={"serve", "key_file", "memory_gb", "kv_kib"})
     servings = {
         server: {
@@ -180,7 +199,7 @@ def describe(known: Registry, model: Model) -> dict[str, Any]:
 
 
 def _console() -> Console:
-    """A terminal as wide as it is; a file or pipe as wide as the table."""
+    """Return a console that is as wide as the terminal, or as the table if the output is a file or a pipe."""
     console = Console(highlight=False)
     return console if console.is_terminal else Console(highlight=False, width=_PIPE)
 
@@ -191,17 +210,3 @@ def _role(role: str | None) -> Role | None:
             return role
         case _:
             raise UnknownNameError("role", role, ("planner", "perception"))
-
-
-def _name_plugins(console: Console, role: Role | None) -> None:
-    """Name the plug-ins that can be used like the models of the table."""
-    from scope_ptz.factory.plugins import plugins_of
-
-    for kind in ("planner", "perception") if role is None else (role,):
-        names = [f"{plugin.name} ({plugin.package})" for plugin in plugins_of(kind) if not plugin.problem]
-        if names:
-            console.print(Text(plain(f"Plug-ins for --{kind}: {', '.join(names)}")))
-
-
-def _wanted(model: Model, role: Role | None, memory_gb: float | None) -> bool:
-    return (role is None or role in model.roles) and (memory_gb is None or model.smallest()[1] <= memory_gb)

@@ -1,83 +1,147 @@
-"""``scope scene list|show|view``: what there is to look at."""
+"""``scope scene list|show|view``: the scenes, their cards, and pictures of them."""
 
 from __future__ import annotations
 
 import sys
+from collections import Counter
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-import anyio
 import typer
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from scope_ptz.cli.cards import card, folder_bytes, markdown, megabytes
-from scope_ptz.cli.endings import put, put_json
-from scope_ptz.errors import InputError, OutputError
+from scope_ptz.cli.display import plain
+from scope_ptz.cli.exit import put, put_json, run_async
+from scope_ptz.cli.options import StartFlags
+from scope_ptz.errors import InputError, OutputError, PackError
 from scope_ptz.factory.cameras import open_camera
 from scope_ptz.factory.scenes import open_scene, scene_search
 from scope_ptz.geometry import Pose
 from scope_ptz.settings import has_desktop, load_settings
-from scope_ptz.simulator.pack import Scene
-from scope_ptz.simulator.pack import list_scenes as scene_names
+from scope_ptz.simulator.card import card, folder_bytes, markdown, megabytes
+from scope_ptz.simulator.models import ScenePreset
+from scope_ptz.simulator.pack import Scene, find_scenes
+
+MOST_NAMED = 16  # names in a list of the short card; the rest is counted
 
 
-def list_scenes(*, as_json: bool) -> None:
-    """Print every scene that can be loaded, with its viewpoints and sizes."""
-    scenes = [_facts(open_scene(name)) for name in scene_names(scene_search(load_settings()))]
+def list_scenes(*, as_json: bool) -> int:
+    """Print every scene with its viewpoints and sizes, and what is wrong with those that cannot be loaded."""
+    folders = dict(sorted(find_scenes(scene_search(load_settings())).items()))
+    scenes = [_facts(name, folder) for name, folder in folders.items()]
     if as_json:
         put_json(scenes)
-        return
+        return 0
     if not scenes:
-        put("There are no scenes. `scope doctor` says where they are looked for.")
-        return
-    table = Table("scene", "viewpoint", "presets", "instances", "texts", "size", box=None, pad_edge=False, header_style="dim")
+        put("There are no scenes. `scope doctor` reports where they are searched for.")
+        return 0
+    table = Table("scene", "viewpoint", "presets", "objects", "texts", "size", box=None, pad_edge=False, header_style="dim")
     for scene in scenes:
         for number, viewpoint in enumerate(scene["viewpoints"]):
             shared = (str(scene["instances"]), str(scene["texts"]), megabytes(scene["bytes"])) if number == 0 else ("", "", "")
             table.add_row(scene["name"] if number == 0 else "", viewpoint["name"], ", ".join(viewpoint["presets"]), *shared)
-    Console(highlight=False).print(table)
+    console = Console(highlight=False)
+    console.print(table)
+    for scene in scenes:
+        if "error" in scene:
+            console.print(Text(plain(f"{scene['name']} cannot be loaded: {scene['error']}"), style="red"), soft_wrap=True)
+    return 0
 
 
-def _facts(scene: Scene) -> dict[str, Any]:
-    file = scene.file
+def _facts(name: str, folder: Path) -> dict[str, Any]:
+    """Return the facts about a scene; ``error`` is there only if it cannot be loaded."""
+    try:
+        file = open_scene(name).file
+    except PackError as error:
+        return {"name": name, "viewpoints": [], "instances": 0, "texts": 0, "bytes": 0, "error": str(error)}
     return {
-        "name": scene.name,
+        "name": name,
         "viewpoints": [
             {"name": v.name, "presets": [p.name for p in file.presets if p.viewpoint == v.name]} for v in file.viewpoints
         ],
         "instances": len(file.instances),
         "texts": len(file.texts),
-        "bytes": folder_bytes(scene.folder),
+        "bytes": folder_bytes(folder),
     }
 
 
-def show_scene(name: str, sheet: Path | None, *, opened: bool | None, as_markdown: bool) -> None:
-    """Print a scene's card, and draw a sheet of all its presets.
+def print_markdown(name: str, sheet: Path | None) -> None:
+    """Print a scene's card as a Markdown page that links to its contact sheet."""
+    put(markdown(open_scene(name), None if sheet is None else str(sheet)).rstrip("\n"))
+
+
+def show_scene(name: str, sheet: Path | None, *, opened: bool | None, everything: bool) -> None:
+    """Print a scene's card, and draw a contact sheet of its presets.
 
     Args:
-        name: the scene.
-        sheet: PNG file for the sheet; one in the cache folder when None.
-        opened: whether the sheet is shown in the desktop's picture viewer; None: when a person sits at a desktop.
-        as_markdown: print the card as a Markdown page and nothing else.
+        name: The scene.
+        sheet: PNG file for the contact sheet; one in the cache folder when None.
+        opened: Whether to open the sheet in the desktop's picture viewer; None: if a person sits at a desktop.
+        everything: Print the whole card instead of one that fits a screen.
     """
     scene = open_scene(name)
-    if as_markdown:
-        put(markdown(scene, None if sheet is None else str(sheet)).rstrip("\n"))
-        return
     file, console = scene.file, Console(highlight=False)
     console.print(Text.assemble((file.title, "bold"), (f"  ({file.name} {file.version}, Blender {file.blender_version})", "dim")))
+    if everything:
+        _print_card(console, scene)
+    else:
+        _print_short_card(console, scene)
+    path = sheet or _cached_sheet(scene)
+    run_async(partial(_write_contact_sheet, scene, path))
+    console.print(Text(f"\nContact sheet: {path}"), soft_wrap=True)
+    if not everything:
+        console.print(Text(f"`scope scene show {name} --all` prints everything.", style="dim"))
+    if sys.stdout.isatty() and has_desktop() if opened is None else opened:
+        typer.launch(str(path))
+
+
+def _print_card(console: Console, scene: Scene) -> None:
     for paragraph in card(scene):
         console.print()
         console.print(Text(paragraph.title, style="bold cyan"))
         for line, body in paragraph.lines:
             console.print(Text.assemble("  ", (f"{line}  " if line else "", "bold"), body.replace("`", "")))
-    path = sheet or _cached_sheet(scene)
-    anyio.run(_write_contact_sheet, scene, path)
-    console.print(Text(f"\nContact sheet: {path}"), soft_wrap=True)
-    if sys.stdout.isatty() and has_desktop() if opened is None else opened:
-        typer.launch(str(path))
+
+
+def _print_short_card(console: Console, scene: Scene) -> None:
+    """Print what helps to give instructions: where the camera can look, and what there is to see."""
+    file = scene.file
+    width = max(len(preset.name) for preset in file.presets)
+    for viewpoint in file.viewpoints:
+        _print_line(
+            console,
+            Text.assemble(
+                (f"Viewpoint {viewpoint.name}", "bold cyan"), f": {viewpoint.description}" if viewpoint.description else ""
+            ),
+        )
+        for preset in file.presets:
+            if preset.viewpoint == viewpoint.name:
+                home = " (home)" if preset.name == file.home_preset else ""
+                line = f"{_pose(preset)}{home}  {preset.description}"
+                _print_line(console, Text.assemble("  ", (f"{preset.name:{width}}", "bold"), "  ", line))
+    categories = Counter([i.category for i in file.instances] + [a.category for a in file.actors])
+    counts = [f"{count} {category}" for category, count in categories.most_common()]
+    texts = [f"“{text}”" for text in dict.fromkeys(" ".join(t.text.split()) for t in file.texts)]
+    for title, items in (
+        (f"Objects ({len(file.instances) + len(file.actors)})", counts),
+        (f"Texts ({len(file.texts)})", texts),
+        ("Moving", [actor.name for actor in file.actors]),
+        ("Deliberately absent", list(file.absent)),
+    ):
+        more = f", and {len(items) - MOST_NAMED} more" if len(items) > MOST_NAMED else ""
+        console.print(Text.assemble((title, "bold cyan"), f": {', '.join(items[:MOST_NAMED]) or 'none'}{more}"))
+
+
+def _print_line(console: Console, text: Text) -> None:
+    console.print(text, no_wrap=True, overflow="ellipsis")
+
+
+def _pose(preset: ScenePreset) -> str:
+    return f"pan {preset.pan_deg:g}°, tilt {preset.tilt_deg:g}°, zoom {preset.zoom:g}x"
 
 
 def _cached_sheet(scene: Scene) -> Path:
@@ -94,36 +158,44 @@ async def _write_contact_sheet(scene: Scene, path: Path) -> None:
 
     from scope_ptz.agent.contact_sheet import contact_sheet
 
-    camera = (await open_camera(f"sim:{scene.name}")).camera
     pictures = []
-    for preset in scene.file.presets:
-        await camera.go_to_preset(preset.name)
-        caption = f"{preset.name} · {preset.viewpoint}"
-        pictures.append((caption, Image.fromarray((await camera.frame()).image)))
+    async with await open_camera(f"sim:{scene.name}") as opened:
+        for preset in scene.file.presets:
+            await opened.camera.go_to_preset(preset.name)
+            caption = f"{preset.name} · {preset.viewpoint}"
+            pictures.append((caption, Image.fromarray((await opened.camera.frame()).image)))
     _save(contact_sheet(scene.file.title, pictures), path)
 
 
-def view_scene(
-    name: str, viewpoint: str | None, preset: str | None, time_s: float | None,
-    wanted: tuple[float | None, float | None, float | None], out: Path,
-) -> None:  # fmt: skip
-    """Write what the camera sees at a pose (pan, tilt in degrees, zoom; what is not given stays as at the start)."""
+def view_scene(flags: StartFlags, name: str | None, pose: tuple[float | None, float | None, float | None], out: Path) -> None:
+    """Write what a camera sees to a picture file.
+
+    Args:
+        flags: The camera and where it starts.
+        name: The scene of a simulated camera, instead of the one in ``flags``.
+        pose: Pan and tilt in degrees, and zoom; None keeps the value at the start.
+        out: The picture file.
+    """
     from PIL import Image
 
-    async def work() -> None:
-        camera = (await open_camera(f"sim:{name}", viewpoint=viewpoint, preset=preset, time_s=time_s)).camera
-        here = await camera.pose()
-        pan, tilt, zoom = (given if given is not None else now for given, now in zip(wanted, _parts(here), strict=True))
-        try:
-            arrival = await camera.move(Pose(pan, tilt, zoom))
-        except ValueError as error:
-            raise InputError(f"That is no pose: {error}.") from error
-        _save(Image.fromarray((await camera.frame()).image), out)
-        pose = arrival.pose.as_dict()
-        cut = f" (stopped by the {' and '.join(arrival.clamped)} limit)" if arrival.clamped else ""
-        put(f"Wrote {out}: pan {pose['pan_deg']:g}, tilt {pose['tilt_deg']:g}, zoom {pose['zoom']:g}x{cut}")
+    if name is not None and (flags.camera or flags.scene):
+        raise InputError("Name the camera once: as the argument, or with --camera or --scene.")
+    start = flags if name is None else replace(flags, scene=name)
 
-    anyio.run(work)
+    async def work() -> None:
+        async with await start.open() as opened:
+            here = await opened.camera.pose()
+            pan, tilt, zoom = (given if given is not None else now for given, now in zip(pose, _parts(here), strict=True))
+            try:
+                arrival = await opened.camera.move(Pose(pan, tilt, zoom))
+            except ValueError as error:
+                raise InputError(f"The pose is not possible: {error}.") from error
+            _save(Image.fromarray((await opened.camera.frame()).image), out)
+        reached = arrival.pose.as_dict()
+        cut = f" (stopped by the {' and '.join(arrival.clamped)} limit)" if arrival.clamped else ""
+        put(f"Wrote {out}: pan {reached['pan_deg']:g}, tilt {reached['tilt_deg']:g}, zoom {reached['zoom']:g}x{cut}")
+
+    run_async(work)
 
 
 def _parts(pose: Pose) -> tuple[float, float, float]:

@@ -11,7 +11,7 @@ from anyio import to_thread
 
 from scope_ptz.bench.engine.context import EvalContext, ModelRequest
 from scope_ptz.bench.engine.entries import Entry, entries_of, imported_entries
-from scope_ptz.bench.scoring.episode import Look
+from scope_ptz.bench.scoring.episode import Observation
 from scope_ptz.camera.base import Frame, FrameOrigin
 from scope_ptz.errors import PerceptionError
 from scope_ptz.factory.models import (
@@ -32,7 +32,7 @@ from scope_ptz.simulator.pack import Scene
 
 if TYPE_CHECKING:
     from scope_ptz.bench.judging.judge import Complete
-    from scope_ptz.bench.judging.server import ServerPort
+    from scope_ptz.bench.judging.server import JudgeServer
     from scope_ptz.perception.base import Perception
     from scope_ptz.perception.ground_truth import GroundTruthPerception
 
@@ -80,7 +80,7 @@ def eval_context(
     seed: int,
     planner: Planner | None = None,
     perception: ResolvedPerception | None = None,
-    judge: ServerPort | None = None,
+    judge: JudgeServer | None = None,
 ) -> EvalContext:
     """Build the context of an evaluation.
 
@@ -104,7 +104,7 @@ def eval_context(
 
     truth = _ground_truth(scenes)
 
-    async def true_count(scene: str, look: Look) -> int | None:
+    async def true_count(scene: str, look: Observation) -> int | None:
         return await _count(truth, scene, look)
 
     return EvalContext(
@@ -119,7 +119,7 @@ def eval_context(
     )
 
 
-def judge_maker(port: ServerPort) -> Callable[[ModelRequest, int], Awaitable[Complete]]:
+def judge_maker(port: JudgeServer) -> Callable[[ModelRequest, int], Awaitable[Complete]]:
     """Return a maker of judges that uses one server for every request."""
 
     async def make(request: ModelRequest, repeat: int) -> Complete:  # noqa: ARG001 - the engine asks by name
@@ -161,7 +161,7 @@ def _model_options(request: ModelRequest, role: str) -> ModelOptions:
     )  # fmt: skip
 
 
-async def _open_judge(request: ModelRequest) -> ServerPort:
+async def _open_judge(request: ModelRequest) -> JudgeServer:
     from scope_ptz.factory.judges import TIMEOUT_S, open_judge
 
     options = {name: value for name, value in request.options.items() if value is not None}
@@ -170,7 +170,7 @@ async def _open_judge(request: ModelRequest) -> ServerPort:
     return await open_judge(request.url, str(served), Path(str(key)) if key else None, TIMEOUT_S, further)
 
 
-async def _count(truth: GroundTruthPerception, scene: str, look: Look) -> int | None:
+async def _count(truth: GroundTruthPerception, scene: str, look: Observation) -> int | None:
     """Count what a perception call asked for in the view that it received; None where the description is too open to count."""
     from scope_ptz.factory.validation_perception import is_plain_noun
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from inspect_ai.model import Model
 
-    from scope_ptz.bench.judging.server import ServerPort
+    from scope_ptz.bench.judging.server import JudgeServer
 
 
-def judge_as_model(judge: ServerPort, max_requests: int) -> Model:
+def judge_as_model(judge: JudgeServer, max_requests: int) -> Model:
     """Return the engine's model that plays the role "judge".
 
     Args:

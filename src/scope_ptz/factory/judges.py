@@ -11,7 +11,7 @@ from scope_ptz.errors import ConfigError, InputError, ScopeError
 from scope_ptz.factory.option_values import parse_options
 
 if TYPE_CHECKING:
-    from scope_ptz.bench.judging.server import ServerPort
+    from scope_ptz.bench.judging.server import JudgeServer
     from scope_ptz.endpoints.endpoint import Endpoint
 
 TIMEOUT_S = 300.0
@@ -32,7 +32,7 @@ class UnnamedJudgeError(ScopeError):
 
 async def open_judge(
     url: str | None, model: str | None, key_file: Path | None, timeout_s: float, options: Iterable[str] | None = None
-) -> ServerPort:
+) -> JudgeServer:
     """Open the port to a judge's server. The caller closes it.
 
     Args:
@@ -51,7 +51,7 @@ async def open_judge(
     """
     from pydantic import ValidationError
 
-    from scope_ptz.bench.judging.server import JudgeOptions, ServerPort
+    from scope_ptz.bench.judging.server import JudgeModelOptions, JudgeServer
     from scope_ptz.endpoints.endpoint import Endpoint, Timeouts, key_from_file
     from scope_ptz.settings import load_settings
 
@@ -61,13 +61,13 @@ async def open_judge(
         raise ConfigError("No judge's server is named. Give its address with --judge-url or SCOPE_JUDGE_URL.")
     key = key_from_file(key_file) if key_file else settings.judge_key
     try:
-        judge_options = JudgeOptions.model_validate(parse_options(options or (), "--judge-option"))
+        judge_options = JudgeModelOptions.model_validate(parse_options(options or (), "--judge-option"))
     except ValidationError as error:
         first = error.errors(include_url=False, include_input=False)[0]
         where = ".".join(str(part) for part in first["loc"])
-        raise ConfigError(f"--judge-option {where}: {first['msg']}. Known: {', '.join(JudgeOptions.model_fields)}.") from None
+        raise ConfigError(f"--judge-option {where}: {first['msg']}. Known: {', '.join(JudgeModelOptions.model_fields)}.") from None
     endpoint = Endpoint(url=address, key=key, timeouts=Timeouts.within(timeout_s))
-    return ServerPort(await _with_judge_name(endpoint, model or settings.judge_model), judge_options)
+    return JudgeServer(await _with_judge_name(endpoint, model or settings.judge_model), judge_options)
 
 
 async def _with_judge_name(endpoint: Endpoint, name: str) -> Endpoint:

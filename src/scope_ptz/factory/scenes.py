@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from scope_ptz.errors import ConfigError
 from scope_ptz.settings import ScopeSettings, load_settings
 
 if TYPE_CHECKING:
@@ -12,8 +13,16 @@ if TYPE_CHECKING:
 
 
 def scene_search(settings: ScopeSettings) -> tuple[Path, ...]:
-    """Return the folders that are searched for scenes before the built-in ones."""
-    return (settings.scenes_dir,) if settings.scenes_dir else ()
+    """Return the folders that are searched for scenes before the built-in ones.
+
+    Raises:
+        ConfigError: SCOPE_SCENES_DIR does not name a folder.
+    """
+    if settings.scenes_dir is None:
+        return ()
+    if not settings.scenes_dir.is_dir():
+        raise ConfigError(f"SCOPE_SCENES_DIR is {settings.scenes_dir}, which is not a folder. Correct the variable, or unset it.")
+    return (settings.scenes_dir,)
 
 
 def open_scene(name: str) -> Scene:

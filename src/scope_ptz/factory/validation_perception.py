@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import lru_cache
 
-from scope_ptz.bench.answers.reader import agrees, read
-from scope_ptz.bench.programs import Equip
+from scope_ptz.bench.answers import agrees, parse_answer
+from scope_ptz.bench.program_runner import MakeToolContext
 from scope_ptz.camera.base import Frame
 from scope_ptz.english import COLOURS
 from scope_ptz.geometry import Projection
@@ -68,7 +68,7 @@ def answered(draft: TaskDraft) -> bool:
         return True
     view = _view(truth)
     replies = [answer(view, parse_question(question)) for question in asked]
-    if len(draft.perception_calls) == 1 and agrees(draft.expected, read(draft.expected, replies[0].text)) is False:
+    if len(draft.perception_calls) == 1 and agrees(draft.expected, parse_answer(draft.expected, replies[0].text)) is False:
         return False
     return all(reply.known for reply in replies)
 
@@ -88,7 +88,7 @@ def _view(truth: RobustTruth) -> View:
     return read_view(truth.first, truth.scene.file, truth.time_s)
 
 
-def equip_with_truth(scenes: Mapping[str, Scene], views: KnownViews | None = None) -> Equip:
+def equip_with_truth(scenes: Mapping[str, Scene], views: KnownViews | None = None) -> MakeToolContext:
     """Return a maker of tool contexts with ground-truth perception and a store that saves nothing."""
     perception = GroundTruthPerception(lambda name: scenes[name], (views or KnownViews()).look)
     return lambda camera: ToolContext(camera, perception, NamesOnly())

@@ -6,12 +6,14 @@ The plan is unrolled as if every tool call succeeded and every condition were me
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import ToolCall, ToolOutcome
 from scope_ptz.planner.grammar.binding.understand import understand
+from scope_ptz.planner.grammar.execution.outline import OutlineBlock
+from scope_ptz.planner.grammar.execution.outline import outline as make_outline
 from scope_ptz.planner.grammar.execution.program import Program
 
 _MOST_CALLS = 200
@@ -28,12 +30,21 @@ class PlannedCall:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """The calls of an instruction, or ``clarification``: the question or refusal when there is nothing to call."""
+    """What an instruction leads to.
+
+    Attributes:
+        instruction: The instruction.
+        understood: Whether there is anything to do.
+        calls: The calls, as if every tool succeeded and every condition were met at its first test.
+        clarification: The question or the refusal when there is nothing to do.
+        outline: The calls with loops and conditions as such.
+    """
 
     instruction: str
     understood: bool
     calls: tuple[PlannedCall, ...]
     clarification: str | None
+    outline: OutlineBlock = field(default_factory=OutlineBlock)
 
     def as_dict(self) -> dict[str, Any]:
         return {
@@ -75,7 +86,8 @@ def plan(
             name, arguments = run.send(ToolOutcome(call=call, result=imagined.result(name, arguments)))
     except StopIteration:
         pass
-    return Plan(instruction, True, tuple(calls), None)
+    imagined = _Imagined(pose, limits, preset_poses or {})
+    return Plan(instruction, True, tuple(calls), None, make_outline(meaning.steps, limits, pose, imagined.result))
 
 
 @dataclass(slots=True)

@@ -5,6 +5,7 @@ Files are decoded on first use, and only after their checksum has been verified.
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable, Mapping
 from functools import cached_property
@@ -20,17 +21,24 @@ from scope_ptz.simulator.viewpoint import Viewpoint, read_json
 
 
 def find_scenes(search: Iterable[Path] = ()) -> dict[str, Path]:
-    """Return scene folders by scene name: folders with a ``scene.json`` in ``search`` and in the package.
+    """Return the folder of each scene by name: folders with a ``scene.json`` in ``search`` and in the package.
 
-    When a name occurs twice, the first folder wins.
+    The first folder with a name wins. Nothing is opened, so a damaged scene is listed, too.
     """
     found: dict[str, Path] = {}
     for root in (*search, Path(str(files("scope_ptz"))) / "data" / "scenes"):
         if root.is_dir():
             for folder in sorted(root.iterdir()):
-                if (folder / "scene.json").is_file():
+                if _holds_scene(folder):
                     found.setdefault(folder.name, folder)
     return found
+
+
+def _holds_scene(folder: Path) -> bool:
+    try:
+        return os.path.lexists(folder / "scene.json") or (folder.is_dir() and not os.access(folder, os.R_OK | os.X_OK))
+    except OSError:
+        return False
 
 
 def list_scenes(search: Iterable[Path] = ()) -> list[str]:

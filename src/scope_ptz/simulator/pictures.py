@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from scope_ptz.errors import PackError
 from scope_ptz.simulator import layers
+from scope_ptz.simulator.files import read_regular_file
 from scope_ptz.simulator.models import Layer
 
 
@@ -33,7 +34,7 @@ class Pictures:
         if not path.is_relative_to(self.folder.resolve()):
             raise PackError(f"{self.folder / 'manifest.json'} names a file outside its folder: {layer.file}. Do not use this pack.")
         try:
-            digest = hashlib.sha256(path.read_bytes()).hexdigest()
+            digest = hashlib.sha256(read_regular_file(path)).hexdigest()
         except OSError as error:
             raise PackError(f"{path} is missing or cannot be read ({error.strerror}). Restore it or bake again.") from error
         if digest != layer.sha256:

@@ -18,6 +18,7 @@ from pydantic import BaseModel, ValidationError
 from scope_ptz.errors import PackError
 from scope_ptz.simulator import layers
 from scope_ptz.simulator.atlas import Atlas, Scale
+from scope_ptz.simulator.files import read_regular_file
 from scope_ptz.simulator.models import FORMAT_VERSION, ActorSheet, Extent, Layer, Manifest, SceneFile, SceneViewpoint, Sprite
 from scope_ptz.simulator.pictures import Pictures
 from scope_ptz.simulator.tiles import Tiles
@@ -196,10 +197,10 @@ def read_json(path: Path, model: type[_File]) -> _File:
         PackError: The file is missing, damaged or of a newer format.
     """
     try:
-        content = json.loads(path.read_bytes())
+        content = json.loads(read_regular_file(path))
     except OSError as error:
         raise PackError(f"{path} is missing or cannot be read ({error.strerror}). Restore it or bake again.") from error
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise PackError(f"{path} is no valid JSON ({error}). Restore the pack or bake it again.") from error
     version = content.get("format") if isinstance(content, dict) else None
     if isinstance(version, int) and version > FORMAT_VERSION:

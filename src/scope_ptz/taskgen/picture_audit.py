@@ -15,10 +15,10 @@ from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from scope_ptz.bench.answers.reader import agrees, read
+from scope_ptz.bench.answers import agrees, parse_answer
 from scope_ptz.bench.tasks.expected import ActionOnly
 from scope_ptz.bench.tasks.files import digest_of
-from scope_ptz.bench.tasks.sampling import stratified
+from scope_ptz.bench.tasks.stratified import stratified_sample
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import InputError
 from scope_ptz.taskgen.facts.answer_phrasing import right_answers
@@ -111,7 +111,7 @@ def draw_questions(tasks: Sequence[Task], number: int, seed: int) -> list[tuple[
         Question numbers with their tasks. The numbers do not reveal the order of the tasks.
     """
     candidates = [task for task in tasks if task.stratum == "core" and not isinstance(task.expected, ActionOnly)]
-    chosen = stratified(candidates, number, seed)
+    chosen = stratified_sample(candidates, number, seed)
     mixed = sorted(chosen, key=lambda t: hashlib.sha256(f"order:{seed}:{t.id}".encode()).hexdigest())
     return [(f"q{n:03d}", task) for n, task in enumerate(mixed, 1)]
 
@@ -146,7 +146,7 @@ def score_answers(folder: Path, tasks: Sequence[Task]) -> Audit:
 
 
 def _audited(q: str, task: Task, answer: ReaderAnswer, findings: Mapping[str, str]) -> AuditedAnswer:
-    agreed = agrees(task.expected, read(task.expected, answer.answer)) if answer.answer.strip() else None
+    agreed = agrees(task.expected, parse_answer(task.expected, answer.answer)) if answer.answer.strip() else None
     outcome: Outcome = "agrees" if agreed else "disagrees" if agreed is False else "not readable"
     return AuditedAnswer(
         q=q,

@@ -11,7 +11,7 @@ from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.estimate import Price, estimate
 from scope_ptz.bench.engine.logs import read_evaluation
 from scope_ptz.bench.engine.runs import earlier
-from scope_ptz.bench.tasks.wording import facts_of
+from scope_ptz.bench.tasks.task_wording import facts_of
 from scope_ptz.cli.bench_evaluate import opening_chars
 from scope_ptz.cli.bench_foretelling import amount, lines
 from scope_ptz.endpoints.endpoint import Endpoint

@@ -16,7 +16,7 @@ from scope_ptz.bench.engine.annotations import check_beside
 from scope_ptz.bench.engine.journal import Journal, journal_file
 from scope_ptz.bench.engine.logs import open_sample, read_evaluation
 from scope_ptz.bench.engine.runs import alone
-from scope_ptz.bench.judging.labels import add_label, labels_file, read_labels
+from scope_ptz.bench.judging.human_labels import add_label, labels_file, read_labels
 from scope_ptz.bench.judging.rubrics import prompt_version
 from scope_ptz.bench.scoring.trials import Judgement, Label
 from scope_ptz.bench.tasks.files import dump_tasks

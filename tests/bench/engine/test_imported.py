@@ -7,14 +7,14 @@ from pathlib import Path
 
 from scope_ptz.bench.engine.gate import gate
 from scope_ptz.bench.engine.logs import read_evaluation
-from scope_ptz.bench.judging.deciding import beside, decided, decider_of
-from scope_ptz.bench.judging.tally import not_judged
-from scope_ptz.bench.reports.judged import judge_name, verdicts
-from scope_ptz.bench.reports.runs import Run
+from scope_ptz.bench.judging.deciding_judge import decided_by_one_judge, decider_of, other_judges_note
+from scope_ptz.bench.judging.judgement_tally import not_judged
+from scope_ptz.bench.reports.report_judge import judge_name, verdicts
+from scope_ptz.bench.reports.report_runs import ReportRun
 from scope_ptz.bench.scoring.trials import Evaluation, Judgement, Trial
-from scope_ptz.bench.tasks.facts import TaskFacts
 from scope_ptz.bench.tasks.imported import ImportedTask
 from scope_ptz.bench.tasks.task import RequiredCall
+from scope_ptz.bench.tasks.task_facts import TaskFacts
 from scope_ptz.cli.bench_live import accuracy, waiting
 from tests.bench.engine.making import SCENE
 from tests.bench.reports.making import card, facts
@@ -56,7 +56,7 @@ def test_imported_tasks_run_and_are_judged(scope: Scope, tmp_path: Path) -> None
     other = {"reason": "It did not.", "verdict": "incorrect", "error_mode": "scope"}
     with Misbehaving(then=good(Say(json.dumps(other)))) as server:
         second = scope("bench", "rescore", str(log), "--judge-url", server.url, "--judge-model", "b")
-    assert second.code == 0 and "decides on the run that only a judge can score; what b (judge-1:" in second.out
+    assert second.code == 0 and "decides on the run that only a judge can score; the verdicts of b (judge-1:" in second.out
     (trial,) = read_evaluation(log).trials
     assert (trial.headline, trial.reason, [j.judge for j in trial.judgements]) == ("correct", "It turned.", ["j", "b"])
     assert "judged     j (judge-1:" in scope(*run[:-1]).out
@@ -92,29 +92,29 @@ def test_one_judge_decides_on_all_runs_of_a_log(evaluated: Path) -> None:
 
     # The first judge's server failed on one: another's verdict does not stand in for it, and the run waits for its judge.
     rows = [judged(first, a, b), judged(second, a, b), judged(third, said_by("a", "failed"), b), fourth]
-    made = decided(rows)
+    made = decided_by_one_judge(rows)
     assert [t.headline for t in made] == ["correct", "correct", "unscored", "unscored"]
     assert not_judged(made[2]) and not_judged(made[3]) and accuracy(made) == 1.0
-    assert decider_of(made) == "a (p)" and "a (p) decides on the 4 runs" in beside(made)
-    named = decided(rows, "b")
+    assert decider_of(made) == "a (p)" and "a (p) decides on the 4 runs" in other_judges_note(made)
+    named = decided_by_one_judge(rows, "b")
     assert [t.headline for t in named] == ["incorrect", "incorrect", "incorrect", "unscored"]
     assert [t.judgements[0].judge for t in named[:3]] == ["b", "b", "b"]
     assert decider_of(named) == "b (p)"
     # One model under two prompts is two judges, and a judge that has said nothing yet decides nothing.
     again = [judged(first, a, said_by("a", "incorrect", "q")), judged(second, a)]
-    assert [t.headline for t in decided(again)] == ["correct", "correct"]
-    assert [t.headline for t in decided(again, "a (q)")] == ["incorrect", "unscored"]
-    assert [t.headline for t in decided(again, "nobody")] == ["correct", "correct"]
+    assert [t.headline for t in decided_by_one_judge(again)] == ["correct", "correct"]
+    assert [t.headline for t in decided_by_one_judge(again, "a (q)")] == ["incorrect", "unscored"]
+    assert [t.headline for t in decided_by_one_judge(again, "nobody")] == ["correct", "correct"]
     broken = judged(first, a).model_copy(update={"headline": "infrastructure"})
-    assert decided([broken])[0].headline == "infrastructure" and beside([broken]) == ""
+    assert decided_by_one_judge([broken])[0].headline == "infrastructure" and other_judges_note([broken]) == ""
 
 
 def test_the_judge_of_a_report_is_the_one_that_decides_and_never_one_that_was_away() -> None:
     task = facts(1)[0]
 
-    def run(*made: Judgement, by: str = "judge") -> Run:
+    def run(*made: Judgement, by: str = "judge") -> ReportRun:
         row = report_trial(task, scored_by=by, judgements=made)
-        return Run(1, Evaluation(card=card("qwen3-4b", "moondream2"), trials=(row,), wanted=1), "x", None, None)
+        return ReportRun(1, Evaluation(card=card("qwen3-4b", "moondream2"), trials=(row,), wanted=1), "x", None, None)
 
     a, b, away = said_by("a", "correct"), said_by("b", "incorrect"), said_by("A-phantom", "failed")
     assert judge_name([run(a, b)]) == "a" and judge_name([run(b, a)]) == "b"
@@ -123,7 +123,7 @@ def test_the_judge_of_a_report_is_the_one_that_decides_and_never_one_that_was_aw
     assert (judge_name([run(away, by="checks")]), judge_name([run()])) == ("A-phantom", None)
     # What a judge said first where its server had failed before.
     late = a.model_copy(update={"repeat": 1})
-    assert verdicts(run(said_by("a", "failed"), late).scored, "a")[0][1] == late
+    assert verdicts(run(said_by("a", "failed"), late).scored_trials, "a")[0][1] == late
 
 
 def test_replies_without_a_verdict_are_in_no_share_and_in_no_gate(scope: Scope, evaluated: Path) -> None:

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from scope_ptz.bench.engine.journal import Journal
 from scope_ptz.bench.engine.logs import read_evaluation, uuids_in
+from scope_ptz.bench.judging.judgement_tally import JudgementTally, judged_by
 from scope_ptz.bench.judging.rubrics import prompt_version
-from scope_ptz.bench.judging.tally import Tally, judged_by
 from scope_ptz.bench.scoring.trials import Judgement
 from tests.bench.engine.test_judges import verdict
 from tests.cli.conftest import Scope
@@ -136,9 +136,11 @@ def test_what_is_said_of_judgements(evaluated: Path) -> None:
     def judgement(verdict: str, **values: object) -> Judgement:
         return Judgement.model_validate({"judge": "j", "prompt": prompt_version(), "verdict": verdict, **values})
 
-    told = Tally.of([judgement("correct"), judgement("failed", reason="No route\nto it."), judgement("failed", reason="x")])
-    told += Tally.of([judgement("unparseable"), judgement("incorrect", error_mode="scope")])
-    assert (told.told, told.made, told.failure) == ("2 with a verdict, 1 unparseable, 2 failed", 5, "No route to it.")
+    told = JudgementTally.of(
+        [judgement("correct"), judgement("failed", reason="No route\nto it."), judgement("failed", reason="x")]
+    )
+    told += JudgementTally.of([judgement("unparseable"), judgement("incorrect", error_mode="scope")])
+    assert (told.summary, told.made, told.failure) == ("2 with a verdict, 1 unparseable, 2 failed", 5, "No route to it.")
     first, second, *_ = read_evaluation(evaluated).trials
     whole = [t.model_copy(update={"judgements": (judgement("unparseable"),)}) for t in (first, second)]
     half = [whole[0], second.model_copy(update={"judgements": (judgement("failed"),)})]

@@ -14,7 +14,7 @@ from inspect_ai.log import read_eval_log
 from scope_ptz.bench.engine.entries import Entry, chosen
 from scope_ptz.bench.engine.logs import open_sample, read_evaluation
 from scope_ptz.bench.scoring.error_modes import ErrorMode
-from scope_ptz.bench.tasks.wording import facts_of
+from scope_ptz.bench.tasks.task_wording import facts_of
 from tests.bench.engine.making import SCENE, TASKS
 from tests.cli.conftest import Scope
 

@@ -10,13 +10,13 @@ from typing import Any
 import anyio
 import pytest
 
-from scope_ptz.bench.judging.agreement import agreement, raters_of
-from scope_ptz.bench.judging.judge import Judge, NoReplyError, Reply
+from scope_ptz.bench.judging.agreement import measure_agreement, raters_of
+from scope_ptz.bench.judging.json_lines import append_line
+from scope_ptz.bench.judging.judge import Completion, Judge, NoReplyError
 from scope_ptz.bench.judging.kappa import cohen
-from scope_ptz.bench.judging.lines import append_line
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Evaluation, Judgement, Label, ModelCard, RunCard, Trial
-from scope_ptz.bench.tasks.wording import facts_of
+from scope_ptz.bench.tasks.task_wording import facts_of
 from scope_ptz.cli.bench_agree import agreement_lines, figures
 from scope_ptz.cli.bench_judge_gold import gold_lines
 from scope_ptz.errors import InputError
@@ -67,7 +67,7 @@ def evaluation(*trials: Trial) -> Evaluation:
 
 def test_everyone_who_rated_is_found_and_compared() -> None:
     ann = (Label(by="ann", verdict="incorrect", error_mode=ErrorMode.SCOPE),)
-    report = agreement(
+    report = measure_agreement(
         raters_of(
             [
                 evaluation(
@@ -102,20 +102,22 @@ def test_everyone_who_rated_is_found_and_compared() -> None:
 
 
 def test_one_model_under_two_prompts_is_two_judges() -> None:
-    report = agreement(raters_of([evaluation(trial(1, "correct", judgement("correct"), judgement("correct", prompt="judge-2:0")))]))
+    report = measure_agreement(
+        raters_of([evaluation(trial(1, "correct", judgement("correct"), judgement("correct", prompt="judge-2:0")))])
+    )
     assert [pair.first for pair in report.pairs] == ["the checks", "the checks", "one (judge-1:0)"]
 
 
 def test_runs_of_different_logs_are_different_runs() -> None:
     one = evaluation(trial(1, "correct", judgement("correct")))
     two = evaluation(trial(1, "incorrect", judgement("correct"))).model_copy(update={"log": "b.eval"})
-    (pair,) = agreement(raters_of([one, two])).pairs
+    (pair,) = measure_agreement(raters_of([one, two])).pairs
     assert pair.verdicts.runs == 2
 
 
 def test_the_report_as_text_and_as_json() -> None:
     rows = [trial(n, "correct" if n % 2 else "incorrect", judgement("correct" if n % 3 else "incorrect")) for n in range(12)]
-    report = agreement(raters_of([evaluation(*rows)]))
+    report = measure_agreement(raters_of([evaluation(*rows)]))
     text = "\n".join(agreement_lines(report))
     assert "the checks  against  one (judge-1:0)" in text
     assert "12 runs, agree on 50.0%" in text
@@ -124,7 +126,7 @@ def test_the_report_as_text_and_as_json() -> None:
     assert content["pairs"][0]["verdicts"]["kappa"] == pytest.approx(0.0)
     assert figures(cohen(["correct"], ["correct"], ["t"], 1)).startswith("1 run, agree on 100.0%")
     assert figures(cohen([], [], [], 1)) == "no run that both have rated"
-    assert "Nobody rated" in next(iter(agreement_lines(agreement([]))))
+    assert "Nobody rated" in next(iter(agreement_lines(measure_agreement([]))))
 
 
 # Gold runs
@@ -147,12 +149,12 @@ class Oracle:
     """A port that knows which runs are faulty, as a good judge would, and errs where it is told to."""
 
     def __init__(self, cases: list[GoldCase], *, accepts: str = "", fails: str = "") -> None:
-        from scope_ptz.bench.judging.judge import messages
+        from scope_ptz.bench.judging.judge import judge_messages
 
-        self.known = {messages(case.facts, case.case)[1]["content"]: case for case in cases}
+        self.known = {judge_messages(case.facts, case.case)[1]["content"]: case for case in cases}
         self.accepts, self.fails, self.asked = accepts, fails, 0
 
-    async def __call__(self, messages: list[dict[str, Any]], schema: dict[str, Any]) -> Reply:
+    async def __call__(self, messages: list[dict[str, Any]], schema: dict[str, Any]) -> Completion:
         self.asked += 1
         case = self.known[messages[1]["content"]]
         if self.fails and case.fault == self.fails:
@@ -163,7 +165,7 @@ class Oracle:
             "error_mode": case.fault if wrong else "none",
             "reason": "so it is",
         }
-        return Reply(text=json.dumps(content))
+        return Completion(text=json.dumps(content))
 
 
 def verdicts_of(cases: list[GoldCase], port: Oracle, repeat: int = 0) -> list[GoldVerdict]:
@@ -216,7 +218,7 @@ def test_verdicts_on_disk_and_their_repeats(tmp_path: Path) -> None:
     assert sum(made.cells.values()) == 48
     raters = raters_of_gold(read_verdicts(path))
     assert [rater.name.split(" (")[0] for rater in raters] == ["the known faults", "oracle", "oracle"]
-    report = agreement(raters)
+    report = measure_agreement(raters)
     known, repeats = report.pairs
     assert known.verdicts.raw == 1.0
     assert repeats.verdicts.raw is not None

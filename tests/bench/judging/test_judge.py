@@ -10,10 +10,10 @@ import anyio
 import pytest
 from pydantic import SecretStr
 
-from scope_ptz.bench.judging.judge import Judge, NoReplyError, Reply
+from scope_ptz.bench.judging.judge import Completion, Judge, NoReplyError
 from scope_ptz.bench.judging.rendering import LEAST_CHARS
 from scope_ptz.bench.judging.rubrics import prompt_version
-from scope_ptz.bench.judging.server import JudgeOptions, ServerPort
+from scope_ptz.bench.judging.server import JudgeModelOptions, JudgeServer
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Judgement
 from scope_ptz.endpoints.endpoint import Endpoint, Timeouts
@@ -29,7 +29,7 @@ def judged(url: str, *, timeouts: Timeouts | None = None, retries: int = 0, **op
     endpoint = Endpoint(url=url, model="gpt-oss-120b", key=SecretStr(KEY), timeouts=timeouts or Timeouts(), retries=retries)
 
     async def ask() -> Judgement:
-        port = ServerPort(endpoint, JudgeOptions.model_validate(options))
+        port = JudgeServer(endpoint, JudgeModelOptions.model_validate(options))
         try:
             return await Judge("gpt-oss-120b", port).judge_case(*facts_and_case())
         finally:
@@ -164,7 +164,7 @@ def test_servers_that_take_less(behave: m.Behaviour, requests: int) -> None:
 
 def test_what_a_server_refused_it_is_not_sent_again() -> None:
     async def twice(url: str) -> None:
-        port = ServerPort(Endpoint(url=url, model="x", retries=0))
+        port = JudgeServer(Endpoint(url=url, model="x", retries=0))
         for repeat in range(2):
             made = await Judge("x", port.repeated(repeat)).judge_case(*facts_and_case(), repeat=repeat)
             assert (made.verdict, made.repeat) == ("correct", repeat)
@@ -187,7 +187,7 @@ def test_a_window_too_small_gets_a_shorter_story() -> None:
     facts, _ = facts_and_case()
 
     async def ask(url: str) -> Judgement:
-        port = ServerPort(Endpoint(url=url, model="x", retries=0))
+        port = JudgeServer(Endpoint(url=url, model="x", retries=0))
         try:
             return await Judge("x", port).judge_case(facts, long_case(400, 2000))
         finally:
@@ -211,11 +211,11 @@ def test_a_window_too_small_for_anything_is_failed() -> None:
 def test_a_port_of_ones_own() -> None:
     """The evaluation engine gives judges a port that is no server of ours."""
 
-    async def port(messages: list[dict[str, Any]], schema: dict[str, Any]) -> Reply:
+    async def port(messages: list[dict[str, Any]], schema: dict[str, Any]) -> Completion:
         assert schema["type"] == "object"
-        return Reply(text=json.dumps(CORRECT), input_tokens=3)
+        return Completion(text=json.dumps(CORRECT), input_tokens=3)
 
-    async def none(messages: list[dict[str, Any]], schema: dict[str, Any]) -> Reply:
+    async def none(messages: list[dict[str, Any]], schema: dict[str, Any]) -> Completion:
         raise NoReplyError("gone")
 
     async def both() -> tuple[Judgement, Judgement]:

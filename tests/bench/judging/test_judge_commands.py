@@ -12,7 +12,7 @@ import anyio
 import pytest
 from typer.testing import CliRunner, Result
 
-from scope_ptz.bench.programs import Stage
+from scope_ptz.bench.program_runner import ProgramRunner
 from scope_ptz.bench.scoring.episode import Episode
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.tasks.files import dump_tasks
@@ -39,7 +39,7 @@ def gold(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with two tasks of the shipped scene and their gold runs: turned the wrong way, and not at all."""
     folder = tmp_path_factory.mktemp("gold")
     scene = open_scene("highway-works")
-    stage = Stage(scene, equip_with_truth({scene.name: scene}), TASK_CAMERA)
+    stage = ProgramRunner(scene, equip_with_truth({scene.name: scene}), TASK_CAMERA)
     setting = FaultSetting({preset.name: preset_at(preset) for preset in scene.file.presets}, TASK_CAMERA)
     tasks = [turn_task(1, 20), turn_task(2, 30)]
 

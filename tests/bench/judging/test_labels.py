@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner, Result
 
-from scope_ptz.bench.judging.labels import add_label, labels_file, read_labels, with_labels
+from scope_ptz.bench.judging.human_labels import add_label, labels_file, read_labels, with_labels
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Label
 from scope_ptz.bench.tasks.expected import ActionOnly

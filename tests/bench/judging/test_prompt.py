@@ -10,14 +10,14 @@ import pytest
 
 from scope_ptz.agent.trace import Trace, read_trace
 from scope_ptz.bench.judging.case import CaseCall, case_of
-from scope_ptz.bench.judging.judge import messages
+from scope_ptz.bench.judging.judge import judge_messages
 from scope_ptz.bench.judging.quoting import BAR
 from scope_ptz.bench.judging.rendering import LEAST_CHARS, render
 from scope_ptz.bench.judging.rubrics import prompt_version, system_prompt
-from scope_ptz.bench.scoring.episode import Places
+from scope_ptz.bench.scoring.episode import PresetViewpoints
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.tasks.task import Category
-from scope_ptz.bench.tasks.wording import expected_in_words, facts_of
+from scope_ptz.bench.tasks.task_wording import expected_in_words, facts_of
 from scope_ptz.cli.app import app
 from scope_ptz.geometry import Pose
 from tests.bench.judging.runs import facts_and_case, long_case
@@ -144,14 +144,14 @@ def test_a_recorded_trace_is_judged_by_what_is_in_it(recorded: Trace) -> None:
     assert case.outcome == "answered"
     assert case.answer
     assert not case.sees
-    text = messages(facts_and_case()[0], case)[1]["content"]
+    text = judge_messages(facts_and_case()[0], case)[1]["content"]
     assert '| adjust_ptz {"pan_deg": 20' in text
     assert "pictures/001.png" in text
 
 
 def test_where_the_camera_stood_is_told_as_far_as_it_is_known(recorded: Trace) -> None:
     assert [call.viewpoint for call in case_of(recorded).calls] == ["mast", "mast", None, None, None]
-    told = case_of(recorded, Places({"board": "verge"}, "mast"))
+    told = case_of(recorded, PresetViewpoints({"board": "verge"}, "mast"))
     assert [call.viewpoint for call in told.calls] == ["mast", "mast", "verge", "verge", "mast"]
     text = render(facts_and_case()[0], told, 60_000)
     assert 'Camera afterwards: at viewpoint "verge", pan' in text

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scope_ptz.bench.judging.replies import MOST_REASON_CHARS, REPLY_SCHEMA, JudgeReply, read_reply
+from scope_ptz.bench.judging.judge_replies import MOST_REASON_CHARS, REPLY_SCHEMA, JudgeReply, parse_judge_reply
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from tests.bench.judging.runs import CORRECT, MISCOUNTED, written
 
@@ -26,7 +26,7 @@ from tests.bench.judging.runs import CORRECT, MISCOUNTED, written
     ],
 )
 def test_verdicts_in_their_wrappings(text: str) -> None:
-    assert read_reply(text) == JudgeReply(
+    assert parse_judge_reply(text) == JudgeReply(
         verdict="incorrect", error_mode=ErrorMode.VLM_COUNTING, reason="The tool counted 4, expected 5."
     )
 
@@ -57,25 +57,25 @@ def test_verdicts_in_their_wrappings(text: str) -> None:
     ],
 )
 def test_what_is_no_verdict(text: str, problem: str) -> None:
-    read = read_reply(text)
+    read = parse_judge_reply(text)
     assert isinstance(read, str)
     assert problem in read
 
 
 def test_a_long_reason_is_cut() -> None:
-    read = read_reply(written({**CORRECT, "reason": "very " * 1000}))
+    read = parse_judge_reply(written({**CORRECT, "reason": "very " * 1000}))
     assert isinstance(read, JudgeReply)
     assert len(read.reason) == MOST_REASON_CHARS
 
 
 @given(st.text())
 def test_text_alone_never_gives_a_verdict(text: str) -> None:
-    assert isinstance(read_reply(text), str)
+    assert isinstance(parse_judge_reply(text), str)
 
 
 @given(st.sampled_from([*ErrorMode, None]), st.sampled_from(["correct", "incorrect"]), st.text(min_size=1))
 def test_what_the_schema_allows_is_read_or_refused_for_the_one_reason(mode: ErrorMode | None, verdict: str, reason: str) -> None:
-    read = read_reply(json.dumps({"reason": reason, "verdict": verdict, "error_mode": mode.value if mode else "none"}))
+    read = parse_judge_reply(json.dumps({"reason": reason, "verdict": verdict, "error_mode": mode.value if mode else "none"}))
     consistent = (mode is None) == (verdict == "correct")
     assert isinstance(read, JudgeReply) == (consistent and bool(" ".join(reason.split())))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from scope_ptz.bench.reports.build import Report, build_report
+from scope_ptz.bench.reports.assemble import EvaluationReport, build_report
 from scope_ptz.bench.scoring.trials import Evaluation
 from scope_ptz.registry import load_registry
 from tests.bench.reports.making import sweep
@@ -16,5 +16,5 @@ def evaluations() -> list[Evaluation]:
 
 
 @pytest.fixture(scope="session")
-def report(evaluations: list[Evaluation]) -> Report:
+def report(evaluations: list[Evaluation]) -> EvaluationReport:
     return build_report(evaluations, load_registry())

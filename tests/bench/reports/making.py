@@ -8,9 +8,9 @@ from typing import Any
 
 from scope_ptz.agent.timing import Timings
 from scope_ptz.bench.scoring.error_modes import ErrorMode
-from scope_ptz.bench.scoring.trials import Check, Evaluation, Judgement, LookTime, ModelCard, RunCard, Trial
-from scope_ptz.bench.tasks.facts import TaskFacts
+from scope_ptz.bench.scoring.trials import CheckRecord, Evaluation, Judgement, ModelCard, ObservationTime, RunCard, Trial
 from scope_ptz.bench.tasks.task import Category
+from scope_ptz.bench.tasks.task_facts import TaskFacts
 
 CATEGORIES: tuple[Category, ...] = (
     "counting", "descriptor", "location", "ocr", "single_call", "multi_step_command", "multi_step_reasoning", "comparative"
@@ -78,7 +78,7 @@ def trial(task: TaskFacts, headline: Any = "correct", **further: Any) -> Trial:
         "sample": f"{task.id}/1", "reason": "every check passed" if headline == "correct" else "answer: says 4, not 5",
         "outcome": "answered", "answer": "There are 5 cones.", "steps": 3, "tool_calls": {"go_to_preset": 1, "count_objects": 1},
         "error_mode": ErrorMode.VLM_COUNTING if headline == "incorrect" else None,
-        "checks": (Check(name="answer", passed=headline == "correct", reason="says 5"),),
+        "checks": (CheckRecord(name="answer", passed=headline == "correct", reason="says 5"),),
     }  # fmt: skip
     return Trial(task=task, headline=headline, **{**basics, **further})
 
@@ -125,7 +125,7 @@ def _chanced(
     return trial(
         task, headline, epoch=epoch, sample=f"{task.id}/{epoch}", error_mode=mode, judgements=(judgement,) if judged else (),
         timings=Timings(planner_s=planner_s, perception_s=eyes_s, camera_s=0.2, render_s=0.1, total_s=planner_s + eyes_s + 0.35),
-        looks=(LookTime(view=task.scope, eyes_s=look_s, capture_s=0.25, call_s=look_s + 0.3),), input_tokens=3000,
+        looks=(ObservationTime(view=task.scope, eyes_s=look_s, capture_s=0.25, call_s=look_s + 0.3),), input_tokens=3000,
         output_tokens=200, cost_usd=0.002, collateral=chance.random() < 0.03, steps=chance.randint(2, 6),
     )  # fmt: skip
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from scope_ptz.bench.reports.build import build_report
+from scope_ptz.bench.reports.assemble import build_report
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Evaluation, Judgement, Trial
 from scope_ptz.registry import load_registry

@@ -8,9 +8,9 @@ import pytest
 
 from scope_ptz.agent.records import Called, RecordedPose
 from scope_ptz.agent.timing import PerceptionReply, Timings
-from scope_ptz.bench.reports.build import Report, build_report
-from scope_ptz.bench.reports.tables import Value, bare
-from scope_ptz.bench.scoring.trials import Evaluation, LookTime, Trial
+from scope_ptz.bench.reports.assemble import EvaluationReport, build_report
+from scope_ptz.bench.reports.tables import CellValue, unmarked
+from scope_ptz.bench.scoring.trials import Evaluation, ObservationTime, Trial
 from scope_ptz.planner.base import ToolCall, ToolOutcome
 from scope_ptz.registry import load_registry
 from tests.bench.reports.making import card, facts, trial
@@ -19,8 +19,8 @@ from tests.bench.reports.test_report import BEST, log, row, scored, table
 PATIENT = Timings(planner_s=1.0, perception_s=0.5, camera_s=0.25, render_s=40.0, total_s=42.0)
 
 
-def views(report: Report, eyes: str) -> dict[str, dict[str, Value]]:
-    """The rows of a pair of eyes in the table of views, by view."""
+def views(report: EvaluationReport, eyes: str) -> dict[str, dict[str, CellValue]]:
+    """The rows of a perception model in the table of views, by view."""
     found = table(report, "latency_views")
     start = next(number for number, name in found.groups.items() if name == eyes)
     names = [column.name for column in found.columns]
@@ -64,12 +64,12 @@ def test_rendering_neither_counts_nor_ranks() -> None:
     stages = [told[f"{stage}_median"] for stage in ("planner_s", "perception_s", "tools_s", "own_s", "capture_s", "total_s")]
     assert stages == pytest.approx([1.0, 0.5, 0.25, 1.75, 40.25, 42.0])
     words = {section.key: " ".join(section.text) for section in made.sections}
-    assert "all but the camera" in words["latency"] and "all of a trial but the camera" in words["design"]
+    assert "all stages without the camera" in words["latency"] and "without the camera" in words["design"]
     chart = next(chart for section in made.sections for chart in section.charts if chart.key == "chart-front")
     assert "without the camera" in chart.svg and "1.75 s" in chart.alt and "42" not in chart.alt
 
 
-def test_a_look_is_the_eyes_and_its_capture_stands_apart(report: Report, evaluations: list[Evaluation]) -> None:
+def test_a_look_is_the_eyes_and_its_capture_stands_apart(report: EvaluationReport, evaluations: list[Evaluation]) -> None:
     alone = scored(log(evaluations, BEST, split="lite"))
     by_view = {view: [look for t in alone for look in t.looks if look.view == view] for view in ("current", "full")}
     found = views(report, "moondream3")
@@ -87,7 +87,7 @@ def test_a_look_is_the_eyes_and_its_capture_stands_apart(report: Report, evaluat
 
 
 def test_eyes_take_no_longer_for_a_look_than_for_the_trial_it_is_of() -> None:
-    looks = (LookTime(view="current", eyes_s=0.02, capture_s=5.3, call_s=5.4),)
+    looks = (ObservationTime(view="current", eyes_s=0.02, capture_s=5.3, call_s=5.4),)
     timings = Timings(planner_s=0.1, perception_s=0.02, render_s=5.3, total_s=5.5)
     rows = [trial(t, timings=timings, looks=looks) for t in facts(1)]
     told = row(build_report([timed("qwen3-4b", *rows)], load_registry()), "latency_eyes", "moondream3")
@@ -101,4 +101,4 @@ def test_runs_without_looks_give_no_figures_for_them() -> None:
     current = views(made, "moondream3")["Current view"]
     assert current["looks"] == 0
     parts = ("eyes_median", "eyes_p95", "ratio", "capture_median", "capture_p95", "call_median")
-    assert [bare(current[name]) for name in parts] == [None] * len(parts)
+    assert [unmarked(current[name]) for name in parts] == [None] * len(parts)

@@ -7,13 +7,13 @@ from typing import Any
 
 import pytest
 
-from scope_ptz.bench.reports.build import Report, build_report
+from scope_ptz.bench.reports.assemble import EvaluationReport, build_report
 from scope_ptz.bench.reports.chart_style import shades
-from scope_ptz.bench.reports.labels import served_instead
-from scope_ptz.bench.reports.runs import collect, main_tasks
-from scope_ptz.bench.reports.tables import bare
+from scope_ptz.bench.reports.display_names import served_instead
+from scope_ptz.bench.reports.report_runs import main_tasks, report_runs
+from scope_ptz.bench.reports.tables import unmarked
 from scope_ptz.bench.scoring.trials import Evaluation, ModelCard
-from scope_ptz.bench.tasks.facts import TaskFacts
+from scope_ptz.bench.tasks.task_facts import TaskFacts
 from scope_ptz.registry import load_registry
 from tests.bench.reports.making import evaluation, facts
 from tests.bench.reports.test_report import row, table
@@ -30,21 +30,21 @@ def renamed(tasks: Sequence[TaskFacts]) -> list[TaskFacts]:
     return [t.model_copy(update={"id": f"{t.id}5"}) for t in tasks]
 
 
-def charts(report: Report) -> dict[str, str]:
+def charts(report: EvaluationReport) -> dict[str, str]:
     return {chart.key: chart.alt + chart.svg for section in report.sections for chart in section.charts}
 
 
 def test_what_waits_for_a_judge_is_neither_right_nor_wrong() -> None:
     own = run("qwen3-4b", "moondream3")
     waiting = own.trials[0].model_copy(update={"headline": "unscored", "scored_by": "judge", "judgements": ()})
-    (before,) = collect([own], load_registry())
-    (after,) = collect([own.model_copy(update={"trials": (waiting, *own.trials[1:])})], load_registry())
-    assert len(after.scored) == len(before.scored) - 1
-    assert waiting in after.headline and waiting not in after.scored
+    (before,) = report_runs([own], load_registry())
+    (after,) = report_runs([own.model_copy(update={"trials": (waiting, *own.trials[1:])})], load_registry())
+    assert len(after.scored_trials) == len(before.scored_trials) - 1
+    assert waiting in after.main_trials and waiting not in after.scored_trials
 
 
 @pytest.fixture(scope="module")
-def mixed() -> Report:
+def mixed() -> EvaluationReport:
     """Two pairs over the same tasks; a third and the reference over others; a reference over the same."""
     pairs = [run(planner, "moondream3") for planner in PAIRS]
     elsewhere = run("grammar", "ground-truth", [*TASKS[:3], *renamed(TASKS[3:20])])
@@ -57,31 +57,33 @@ FEWER = "qwen3-4b-fp8 + moondream3 [10 of the 32 tasks]"
 OTHERS = "grammar + ground-truth [20 tasks, 3 of the 32 shared]"
 
 
-def test_runs_over_other_tasks_are_named_first_and_marked_everywhere(mixed: Report) -> None:
+def test_runs_over_other_tasks_are_named_first_and_marked_everywhere(mixed: EvaluationReport) -> None:
     before = " ".join(mixed.warnings)
-    assert f"Not over the same tasks as the other pairs: {FEWER}." in before
-    assert f"Reference runs, variants and baselines over other tasks than the pairs': {OTHERS}." in before
+    assert f"These pairs cover other tasks than the rest: {FEWER}." in before
+    assert f"These reference runs, variants and baselines cover other tasks than the model pairs: {OTHERS}." in before
     for found in mixed.tables:
         for values in found.rows:
-            first = str(bare(values[0]))
+            first = str(unmarked(values[0]))
             if first.startswith(("grammar + ground-truth", "qwen3-4b-fp8 + moondream3")):
                 assert first in (OTHERS, FEWER), found.key
     drawn = charts(mixed)
     for key in ("chart-accuracy", "chart-error-modes"):
         assert "20 tasks, 3" in drawn[key] and "10 of the" in drawn[key]
-    assert "Hollow: over other tasks" in next(c.title for s in mixed.sections for c in s.charts if c.key == "chart-accuracy")
+    assert "Hollow: runs over other tasks" in next(c.title for s in mixed.sections for c in s.charts if c.key == "chart-accuracy")
 
 
-def test_only_pairs_over_the_main_tasks_are_counted_and_averaged(mixed: Report) -> None:
+def test_only_pairs_over_the_main_tasks_are_counted_and_averaged(mixed: EvaluationReport) -> None:
     assert "2 pairs of models on the main task set (32 tasks); 1 more pair over other tasks." in mixed.summary[0]
     told = [row(mixed, "scope", f"{planner} + moondream3")["current"] for planner in PAIRS]
     assert row(mixed, "scope", "Mean of the model pairs")["current"] == pytest.approx(sum(map(float, told)) / 2)  # type: ignore[arg-type]
-    assert {bare(values[0]) for values in table(mixed, "design_points").rows} == {f"{planner} + moondream3" for planner in PAIRS}
+    assert {unmarked(values[0]) for values in table(mixed, "design_points").rows} == {
+        f"{planner} + moondream3" for planner in PAIRS
+    }
 
 
 def test_runs_over_the_same_tasks_are_not_marked() -> None:
-    runs = collect([run("qwen3-4b", "moondream3"), run("grammar", "ground-truth")], load_registry())
-    assert [(r.label, r.elsewhere) for r in runs] == [("qwen3-4b + moondream3", ""), ("grammar + ground-truth", "")]
+    runs = report_runs([run("qwen3-4b", "moondream3"), run("grammar", "ground-truth")], load_registry())
+    assert [(r.label, r.other_tasks) for r in runs] == [("qwen3-4b + moondream3", ""), ("grammar + ground-truth", "")]
     assert main_tasks(runs) == {t.id for t in TASKS}
     alone = build_report([run("qwen3-4b", "moondream3")], load_registry())
     assert "1 pair of models on the main task set (32 tasks)." in alone.summary[0]
@@ -90,7 +92,7 @@ def test_runs_over_the_same_tasks_are_not_marked() -> None:
 
 def test_reference_runs_are_told_apart_in_the_chart_of_error_modes() -> None:
     references = [run(planner, "ground-truth") for planner in (*PAIRS, "qwen3-4b-fp8", "grammar", "qwen3-32b", "qwen3-14b")]
-    runs = collect([run("qwen3-4b", "moondream3"), *references], load_registry())
+    runs = report_runs([run("qwen3-4b", "moondream3"), *references], load_registry())
     looks = shades(runs)
     assert len(set(looks)) == len(runs)
     assert all((hatch is None) is r.ranked for r, (_, hatch) in zip(runs, looks, strict=True))
@@ -109,9 +111,9 @@ def test_a_server_that_named_another_model_is_said_in_rankings_and_before_them()
     made = build_report([served("qwen3-30b-a3b", "m-9701"), run("qwen3-4b", "moondream3")], load_registry())
     label = f"{other} + moondream3"
     for key in ("accuracy", "outcomes", "latency_stages", "design_points", "oracle", "error_modes", "costs", "runs"):
-        firsts = {str(bare(values[0])) for values in table(made, key).rows}
+        firsts = {str(unmarked(values[0])) for values in table(made, key).rows}
         assert label in firsts and not any("30b" in first and first != label for first in firsts), key
-    assert other in {bare(values[0]) for values in table(made, "latency_planner").rows}
+    assert other in {unmarked(values[0]) for values in table(made, "latency_planner").rows}
     drawn = charts(made)
     assert all("served: m-9701" in drawn[key] for key in ("chart-accuracy", "chart-front", "chart-oracle"))
     (line,) = [line for line in made.warnings if "another model" in line]
@@ -120,7 +122,7 @@ def test_a_server_that_named_another_model_is_said_in_rankings_and_before_them()
 
 def test_another_model_in_its_place_is_another_system() -> None:
     asked, other = served("qwen3-4b", "Qwen/Qwen3-4B-Instruct-2507"), served("qwen3-4b", "m-1", contended=False)
-    runs = collect([asked, other], load_registry())
+    runs = report_runs([asked, other], load_registry())
     assert len({r.system for r in runs}) == 2
     told = build_report([asked, other], load_registry())
     assert row(told, "design_points", "qwen3-4b + moondream3")["contended"] == "contended"

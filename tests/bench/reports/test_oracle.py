@@ -1,4 +1,4 @@
-"""Perfect perception against what was really there: every oracle beside its own baseline, means over the same pairs."""
+"""The oracle setting: each oracle is compared with its own baseline, and means cover the same pairs."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from typing import Any
 
 import pytest
 
-from scope_ptz.bench.reports.build import Report, build_report
+from scope_ptz.bench.reports.assemble import EvaluationReport, build_report
 from scope_ptz.bench.reports.sections import Chart
-from scope_ptz.bench.reports.tables import Marked, Table, bare
+from scope_ptz.bench.reports.tables import MarkedCell, ReportTable, unmarked
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Evaluation, Judgement
-from scope_ptz.bench.statistics.clustered import Estimate
+from scope_ptz.bench.statistics.clustered import IntervalEstimate
 from scope_ptz.registry import load_registry
 from tests.bench.reports.making import JUDGE, card, facts, trial
 from tests.bench.reports.test_report import row, table
@@ -22,7 +22,7 @@ TASKS = facts(4)
 
 
 def run(planner: str, eyes: str, wrong: int, *, judged_wrong: int | None = None, number: int = 32) -> Evaluation:
-    """A run that failed the first ``wrong`` tasks of each four, by the judge ``judged_wrong``; half of them for the eyes' sake."""
+    """A run that failed the first ``wrong`` tasks of each four, by the judge ``judged_wrong``; perception caused half of them."""
     trials = []
     for at, task in enumerate(TASKS[:number]):
         place = at % 4
@@ -39,17 +39,17 @@ def run(planner: str, eyes: str, wrong: int, *, judged_wrong: int | None = None,
     return Evaluation(card=card(planner, eyes), trials=tuple(trials), wanted=number)
 
 
-def build(*evaluations: Evaluation) -> Report:
+def build(*evaluations: Evaluation) -> EvaluationReport:
     return build_report(evaluations, load_registry())
 
 
-def chart(report: Report) -> Chart:
+def chart(report: EvaluationReport) -> Chart:
     return next(c for section in report.sections for c in section.charts if c.key == "chart-oracle")
 
 
-def cell(found: Table, first: str, name: str) -> Any:
+def cell(found: ReportTable, first: str, name: str) -> Any:
     at = [column.name for column in found.columns].index(name)
-    return next(values[at] for values in found.rows if bare(values[0]) == first)
+    return next(values[at] for values in found.rows if unmarked(values[0]) == first)
 
 
 def test_each_oracle_stands_beside_the_baseline_of_its_own_verdicts() -> None:
@@ -59,8 +59,8 @@ def test_each_oracle_stands_beside_the_baseline_of_its_own_verdicts() -> None:
     assert [told[n] for n in ("macro_checks", "oracle_rules", "macro_rerun")] == pytest.approx([0.75, 1.0, 1.0])
     assert [told[n] for n in ("macro_judge", "oracle_judge")] == pytest.approx([0.5, 0.75])
     drawn = chart(made)
-    checks = "by the checks: as it is 75.0%, VLM failures as right 100.0%, run again with ground-truth eyes 100.0%"
-    assert checks in drawn.alt and "by the judge: as it is 50.0%, VLM failures as right 75.0%" in drawn.alt
+    checks = "by the checks: measured 75.0%, VLM errors counted as correct 100.0%, rerun with ground-truth perception 100.0%"
+    assert checks in drawn.alt and "by the judge: measured 50.0%, VLM errors counted as correct 75.0%" in drawn.alt
     assert drawn.svg.index("Macro accuracy by the checks") < drawn.svg.index("Macro accuracy by the judge")
 
 
@@ -91,6 +91,6 @@ def test_means_are_of_the_pairs_that_have_both() -> None:
 def test_a_run_made_again_over_other_tasks_is_told_of_the_shared_ones_and_not_drawn() -> None:
     made = build(run("qwen3-4b", "moondream3", 1), run("qwen3-4b", "ground-truth", 0, number=16))
     shown = cell(table(made, "oracle"), "qwen3-4b + moondream3", "macro_rerun")
-    assert isinstance(shown, Marked) and shown.note == "on 16 of its 32 tasks"
-    assert isinstance(shown.value, Estimate) and shown.value.n == 16
+    assert isinstance(shown, MarkedCell) and shown.note == "on 16 of its 32 tasks"
+    assert isinstance(shown.value, IntervalEstimate) and shown.value.n == 16
     assert "run again" not in chart(made).alt

@@ -1,4 +1,4 @@
-"""Noisy eyes are no ground truth, models are no reference, variants are no pairs; and what is called incorrect is not unscored."""
+"""Which runs count as references and as pairs, and how incorrect and unscored trials are named."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from scope_ptz.agent.timing import Timings
-from scope_ptz.bench.reports.build import Report, build_report
-from scope_ptz.bench.reports.runs import collect
+from scope_ptz.bench.reports.assemble import EvaluationReport, build_report
+from scope_ptz.bench.reports.report_runs import report_runs
 from scope_ptz.bench.scoring.trials import Evaluation, ModelCard
 from scope_ptz.registry import load_registry
 from tests.bench.reports.making import card, evaluation, facts, trial
@@ -28,15 +28,15 @@ def whole(planner: str, eyes: str, headline: str, **further: Any) -> Evaluation:
     return Evaluation(card=made, trials=tuple(trial(t, headline) for t in TASKS), wanted=len(TASKS))
 
 
-def build(*evaluations: Evaluation) -> Report:
+def build(*evaluations: Evaluation) -> EvaluationReport:
     return build_report(evaluations, load_registry())
 
 
-def chart(report: Report, key: str) -> Any:
+def chart(report: EvaluationReport, key: str) -> Any:
     return next(c for section in report.sections for c in section.charts if c.key == key)
 
 
-def words(report: Report, key: str) -> str:
+def words(report: EvaluationReport, key: str) -> str:
     return " ".join(next(section for section in report.sections if section.key == key).text)
 
 
@@ -56,13 +56,15 @@ def test_the_audit_sets_beside_a_task_only_what_no_model_and_no_noise_took_part_
     made = build(*pairs, *noise, whole("grammar", "ground-truth", "correct"))
     assert {row(made, "audit", t.id)["reference"] for t in TASKS} == {1.0}
     assert {row(build(*pairs, *noise), "audit", t.id)["reference"] for t in TASKS} == {None}
-    assert [r.label for r in collect([*pairs, *noise], load_registry()) if r.exact] == []
-    assert "grammar planner with ground-truth eyes" in words(made, "audit") and "exact reference" not in words(made, "audit")
+    assert [r.label for r in report_runs([*pairs, *noise], load_registry()) if r.is_exact_reference] == []
+    assert "grammar planner with ground-truth perception" in words(made, "audit") and "exact reference" not in words(made, "audit")
 
 
 def test_nothing_is_called_exact_by_construction() -> None:
     text = words(build(whole(*PAIRS[0], "correct"), whole("grammar", "noisy", "correct")), "accuracy")
-    assert "exact by construction" not in text and "exact about what shows" in text and "may misunderstand a question" in text
+    assert (
+        "exact by construction" not in text and "exact about what is visible" in text and "may misunderstand an instruction" in text
+    )
 
 
 def timed(planner: str, seconds: float, calls: int, **further: Any) -> Evaluation:
@@ -73,7 +75,7 @@ def timed(planner: str, seconds: float, calls: int, **further: Any) -> Evaluatio
 
 def test_a_variant_is_no_pair_where_latency_is_told() -> None:
     made = build(timed("qwen3-4b", 2.0, 2), timed("qwen3-4b", 50.0, 9, variant="short"), timed("qwen3-30b-a3b", 3.0, 4))
-    assert "2 of 2 model pairs were timed only while" in words(made, "latency")
+    assert "2 of 2 model pairs. They were timed only while" in words(made, "latency")
     assert "2 pairs of models" in made.summary[0]
     told = row(made, "latency_planner", "qwen3-4b")
     assert (told["trial_median"], told["calls"], told["pairs"], told["pairs_all"]) == (2.0, 2.0, 1, 1)
@@ -93,7 +95,7 @@ def test_incorrect_and_unscored_are_told_apart() -> None:
     made = build(Evaluation(card=card(*PAIRS[0]), trials=trials, wanted=len(trials)))
     assert any("16 of 16 incorrect trials; 8 more are unscored and have no error mode." in line for line in made.summary)
     text = words(made, "errors")
-    assert "Every incorrect trial has exactly one error mode" in text and "Unscored trials" in text
+    assert "exactly one error mode to every incorrect trial" in text and "Unscored trials" in text
     assert table(made, "error_modes").title.startswith("Incorrect trials")
     unscored = next(t.task.id for t in trials if t.headline == "unscored")
     assert (row(made, "failed_tasks", unscored)["failed"], row(made, "failed_tasks", unscored)["unscored"]) == (1, 1)
@@ -101,7 +103,8 @@ def test_incorrect_and_unscored_are_told_apart() -> None:
 
 def test_costs_say_whose_tokens_they_are() -> None:
     found = table(build(whole(*PAIRS[0], "correct")), "costs")
-    assert "the planner's as its server" in found.notes[0] and "the eyes take is not counted" in found.notes[0]
+    assert "those of the planner, as its server" in found.notes[0]
+    assert "Tokens of the perception model are not counted" in found.notes[0]
 
 
 def test_long_conditions_have_room() -> None:
@@ -118,9 +121,9 @@ def test_a_bar_of_no_height_is_not_drawn() -> None:
 
 
 def test_a_ring_around_a_filling_is_apart_from_it() -> None:
-    from scope_ptz.bench.reports.recommendations import candidates
+    from scope_ptz.bench.reports.candidates import candidates
 
-    runs = collect([evaluation(*pair, TASKS, 0.6, spoiled=0.0) for pair in PAIRS[:1]], load_registry())
+    runs = report_runs([evaluation(*pair, TASKS, 0.6, spoiled=0.0) for pair in PAIRS[:1]], load_registry())
     (found,) = candidates(runs, runs)
     assert found.on_front and found.contended
     svg = chart(build(*(r.evaluation for r in runs)), "chart-front").svg

@@ -8,11 +8,19 @@ from math import isclose
 import numpy as np
 import pytest
 
-from scope_ptz.bench.reports.build import build_report
-from scope_ptz.bench.reports.runs import Run, collect
-from scope_ptz.bench.reports.tables import Marked, bare
+from scope_ptz.bench.reports.assemble import build_report
+from scope_ptz.bench.reports.report_runs import ReportRun, report_runs
+from scope_ptz.bench.reports.tables import MarkedCell, unmarked
 from scope_ptz.bench.scoring.trials import Evaluation
-from scope_ptz.bench.statistics.clustered import Estimate, Scores, gap, independent_variance, macro_weights, newcombe, share
+from scope_ptz.bench.statistics.clustered import (
+    IntervalEstimate,
+    Scores,
+    independent_variance,
+    macro_weights,
+    newcombe,
+    share,
+    share_difference,
+)
 from scope_ptz.registry import load_registry
 from tests.bench.reports.making import card, facts, trial
 from tests.bench.reports.test_report import table
@@ -31,8 +39,8 @@ def repeated(times: int, right: frozenset[str], planner: str = "qwen3-4b", eyes:
     return Evaluation(card=card(planner, eyes, epochs=times), trials=trials, wanted=len(trials))
 
 
-def run(times: int, right: frozenset[str]) -> Run:
-    return collect([repeated(times, right)], load_registry())[0]
+def run(times: int, right: frozenset[str]) -> ReportRun:
+    return report_runs([repeated(times, right)], load_registry())[0]
 
 
 @pytest.mark.parametrize("number", [0, 1, 4, 9, 10])
@@ -81,7 +89,7 @@ def test_equal_values_are_all_the_best() -> None:
     for name in ("macro", "micro", "ocr", "single_call"):
         at = [column.name for column in found.columns].index(name)
         cells = [values[at] for values in found.rows]
-        assert all(isinstance(cell, Marked) and cell.best and cell.best_of_all for cell in cells), name
+        assert all(isinstance(cell, MarkedCell) and cell.best and cell.best_of_all for cell in cells), name
 
 
 def test_no_rounding_decides_what_is_best() -> None:
@@ -106,13 +114,13 @@ def test_the_difference_of_two_shares_is_newcombes() -> None:
 def test_a_side_without_spread_is_as_uncertain_in_the_difference_as_alone() -> None:
     first = Scores(np.array([1.0, 0, 1, 1, 0, 1, 0, 1]), ("a",) * 8, (1, 1, 2, 2, 3, 3, 4, 4))
     alike = Scores(np.zeros(2), ("a",) * 2, (1, 2))
-    found, alone = gap(first, alike), share(alike)
+    found, alone = share_difference(first, alike), share(alike)
     assert found is not None and found.low is not None and found.high is not None and alone is not None and alone.high is not None
     assert found.value == pytest.approx(5 / 8)
     assert found.value - found.low >= alone.high - 1e-12 > 0.9, "two trials of one side leave it open"
     assert -1 <= found.low <= found.value <= found.high <= 1
-    assert gap(first, Scores(np.array([]), (), ())) is None
-    single = gap(first, Scores(np.array([0.0, 1.0]), ("a",) * 2, (1, 1)))
+    assert share_difference(first, Scores(np.array([]), (), ())) is None
+    single = share_difference(first, Scores(np.array([0.0, 1.0]), ("a",) * 2, (1, 1)))
     assert single is not None and (single.low, single.high) == (None, None)
 
 
@@ -124,8 +132,8 @@ def test_current_minus_full_says_so_in_the_report() -> None:
     made = build_report(
         [Evaluation(card=card("qwen3-4b", "moondream3"), trials=tuple(trials), wanted=len(trials))], load_registry()
     )
-    _, _, _, _, side, between = (bare(cell) for cell in table(made, "scope").rows[0])
-    assert isinstance(side, Estimate) and isinstance(between, Estimate)
+    _, _, _, _, side, between = (unmarked(cell) for cell in table(made, "scope").rows[0])
+    assert isinstance(side, IntervalEstimate) and isinstance(between, IntervalEstimate)
     assert side.value == 0.0 and side.high is not None and side.high > 0.9
     assert (
         between.low is not None and between.value - between.low >= side.high - 1e-12 and isclose(between.value, 2 / 3, abs_tol=0.02)

@@ -1,4 +1,4 @@
-"""What the eyes said, as a person reads it on the page of a failed task."""
+"""Answers of perception as text on the page of a failed task."""
 
 from __future__ import annotations
 
@@ -60,8 +60,8 @@ def test_a_reply_of_another_form_is_told_as_it_is(odd: dict[str, Any]) -> None:
     assert _seen(odd)
 
 
-def test_a_task_that_rests_on_no_view_is_told_from_one_that_is_not_at_hand() -> None:
+def test_a_task_without_evidence_differs_from_a_task_that_is_not_available() -> None:
     tasks = [task for task, _ in samples()]
-    assert next(evidence_lines(task) for task in tasks if not task.evidence) == ("none: the answer rests on no view",)
+    assert next(evidence_lines(task) for task in tasks if not task.evidence) == ("none: the answer does not depend on any view",)
     assert all("pan" in line for task in tasks if task.evidence for line in evidence_lines(task))
     assert evidence_lines(None) == ()

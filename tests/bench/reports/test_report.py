@@ -9,13 +9,13 @@ from statistics import fmean, median
 import pytest
 
 from scope_ptz.agent.timing import Timings
-from scope_ptz.bench.reports.build import Report, build_report
-from scope_ptz.bench.reports.runs import CATEGORY_TITLES, collect, timed
-from scope_ptz.bench.reports.tables import Marked, Table, Value, bare, in_words
-from scope_ptz.bench.reports.write import html
+from scope_ptz.bench.reports.assemble import EvaluationReport, build_report
+from scope_ptz.bench.reports.report_runs import CATEGORY_TITLES, report_runs, timing_run
+from scope_ptz.bench.reports.tables import CellValue, MarkedCell, ReportTable, in_words, unmarked
+from scope_ptz.bench.reports.writer import html
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Evaluation, Trial
-from scope_ptz.bench.statistics.clustered import Estimate
+from scope_ptz.bench.statistics.clustered import IntervalEstimate
 from scope_ptz.errors import InputError
 from scope_ptz.registry import load_registry
 from tests.bench.reports.making import card, evaluation, facts, trial
@@ -26,18 +26,18 @@ PARTIAL = "qwen3-4b + qwen2.5-vl-7b [24 of the 48 tasks]"
 LOOKS = {ErrorMode.VLM_COUNTING, ErrorMode.VLM_QUERY}
 
 
-def table(report: Report, key: str) -> Table:
+def table(report: EvaluationReport, key: str) -> ReportTable:
     return next(t for t in report.tables if t.key == key)
 
 
-def row(report: Report, key: str, first: str) -> dict[str, str | int | float | None]:
+def row(report: EvaluationReport, key: str, first: str) -> dict[str, str | int | float | None]:
     """A row by its first cell, estimates as their value."""
     found = table(report, key)
-    values = next(r for r in found.rows if bare(r[0]) == first)
+    values = next(r for r in found.rows if unmarked(r[0]) == first)
     plain = {}
     for column, value in zip(found.columns, values, strict=True):
-        cell = bare(value)
-        plain[column.name] = cell.value if isinstance(cell, Estimate) else cell
+        cell = unmarked(value)
+        plain[column.name] = cell.value if isinstance(cell, IntervalEstimate) else cell
     return plain
 
 
@@ -56,7 +56,7 @@ def macro(trials: list[Trial], right: dict[str, bool] | None = None) -> float:
     return fmean(fmean(values) for values in by_category.values())
 
 
-def test_accuracy_is_that_of_the_trials(report: Report, evaluations: list[Evaluation]) -> None:
+def test_accuracy_is_that_of_the_trials(report: EvaluationReport, evaluations: list[Evaluation]) -> None:
     for pair in ("qwen3-4b + moondream2", "qwen3-4b-fp8 + moondream3", BEST):
         trials = scored(log(evaluations, pair))
         told = row(report, "accuracy", pair)
@@ -68,7 +68,7 @@ def test_accuracy_is_that_of_the_trials(report: Report, evaluations: list[Evalua
         assert told["tasks"] == 48
 
 
-def test_bounds_hold_what_could_not_be_scored(report: Report, evaluations: list[Evaluation]) -> None:
+def test_bounds_hold_what_could_not_be_scored(report: EvaluationReport, evaluations: list[Evaluation]) -> None:
     found = Counter(t.headline for t in log(evaluations, "qwen3-4b + qwen2.5-vl-7b").trials)
     assert found["unscored"] and found["infrastructure"]
     told = row(report, "outcomes", PARTIAL)
@@ -81,39 +81,39 @@ def test_bounds_hold_what_could_not_be_scored(report: Report, evaluations: list[
     assert told["at_most"] == pytest.approx((total - found["incorrect"]) / total)
 
 
-def test_what_is_no_model_pair_is_ranked_nowhere(report: Report) -> None:
+def test_what_is_no_model_pair_is_ranked_nowhere(report: EvaluationReport) -> None:
     apart = {"grammar + ground-truth", "qwen3-30b-a3b + ground-truth", "qwen3-30b-a3b + blind, blind"}
     for key in ("accuracy", "comparisons", "resolution", "design_points", "memory_fits", "quantised", "oracle"):
-        cells = {str(bare(value)) for values in table(report, key).rows for value in values}
+        cells = {str(unmarked(value)) for values in table(report, key).rows for value in values}
         assert not apart & cells, key
     for key in ("spread_planner", "spread_eyes", "latency_planner", "latency_eyes", "latency_views", "mixtures"):
-        words = " ".join(str(bare(value)) for values in table(report, key).rows for value in values)
+        words = " ".join(str(unmarked(value)) for values in table(report, key).rows for value in values)
         assert not any(name in words for name in ("grammar", "ground-truth", "blind")), key
     others = table(report, "accuracy_not_ranked")
-    assert {bare(values[0]) for values in others.rows} == apart
-    assert not any(isinstance(v, Marked) and (v.best or v.best_of_all) for values in others.rows for v in values)
-    assert any("grammar planner or ground-truth eyes" in warning for warning in report.warnings)
+    assert {unmarked(values[0]) for values in others.rows} == apart
+    assert not any(isinstance(v, MarkedCell) and (v.best or v.best_of_all) for values in others.rows for v in values)
+    assert any("grammar planner or ground-truth perception" in warning for warning in report.warnings)
 
 
-def test_the_best_is_marked_among_runs_of_the_same_tasks(report: Report) -> None:
-    rows = {str(bare(values[0])): values for values in table(report, "accuracy").rows}
+def test_the_best_is_marked_among_runs_of_the_same_tasks(report: EvaluationReport) -> None:
+    rows = {str(unmarked(values[0])): values for values in table(report, "accuracy").rows}
     names = [column.name for column in table(report, "accuracy").columns]
     at = names.index("macro")
     comparable = [label for label in rows if "lite" not in label and "qwen2.5" not in label]
     best = max(comparable, key=lambda label: _value(rows[label][at]))
-    assert [label for label, values in rows.items() if isinstance(values[at], Marked) and values[at].best_of_all] == [best]  # type: ignore[union-attr]
+    assert [label for label, values in rows.items() if isinstance(values[at], MarkedCell) and values[at].best_of_all] == [best]  # type: ignore[union-attr]
     partial = rows[PARTIAL][at]
-    assert isinstance(partial, Marked) and partial.note == "over 4 of 8 categories" and not partial.best
-    assert any("Not over the same tasks" in warning and "qwen2.5-vl-7b" in warning for warning in report.warnings)
+    assert isinstance(partial, MarkedCell) and partial.note == "over 4 of 8 categories" and not partial.best
+    assert any("cover other tasks than the rest" in warning and "qwen2.5-vl-7b" in warning for warning in report.warnings)
 
 
-def _value(cell: Value) -> float:
-    plain = bare(cell)
-    assert isinstance(plain, Estimate)
+def _value(cell: CellValue) -> float:
+    plain = unmarked(cell)
+    assert isinstance(plain, IntervalEstimate)
     return plain.value
 
 
-def test_error_modes_are_counted_by_rules_and_by_the_judge(report: Report, evaluations: list[Evaluation]) -> None:
+def test_error_modes_are_counted_by_rules_and_by_the_judge(report: EvaluationReport, evaluations: list[Evaluation]) -> None:
     trials = scored(log(evaluations, BEST))
     rules = Counter(t.error_mode for t in trials if t.error_mode)
     told = row(report, "error_modes", BEST)
@@ -130,7 +130,7 @@ def test_error_modes_are_counted_by_rules_and_by_the_judge(report: Report, evalu
     assert told["macro_checks"] == pytest.approx(macro(clear))
 
 
-def test_the_oracle_setting_both_ways(report: Report, evaluations: list[Evaluation]) -> None:
+def test_the_oracle_setting_both_ways(report: EvaluationReport, evaluations: list[Evaluation]) -> None:
     trials = scored(log(evaluations, BEST))
     told = row(report, "oracle", BEST)
     lifted = {t.sample: t.headline == "correct" or t.error_mode in LOOKS for t in trials}
@@ -149,20 +149,20 @@ def test_the_oracle_setting_both_ways(report: Report, evaluations: list[Evaluati
             gains[t.task.category].append((both[t.task.id].headline == "correct") - (t.headline == "correct"))
     assert told["gain_rerun"] == pytest.approx(fmean(fmean(values) for values in gains.values()))
     assert row(report, "oracle", "qwen3-4b + moondream2")["macro_rerun"] is None
-    pairs = [values for values in table(report, "oracle").rows if str(bare(values[0])).startswith("qwen")]
+    pairs = [values for values in table(report, "oracle").rows if str(unmarked(values[0])).startswith("qwen")]
     mean = row(report, "oracle", "Mean of the pairs")["oracle_rules"]
     assert mean == pytest.approx(fmean(_value(values[5]) for values in pairs))
 
 
-def test_spreads_hold_one_side(report: Report) -> None:
-    by_pair = {str(bare(v[0])): _value(v[1]) for v in table(report, "accuracy").rows}
+def test_spreads_hold_one_side(report: EvaluationReport) -> None:
+    by_pair = {str(unmarked(v[0])): _value(v[1]) for v in table(report, "accuracy").rows}
     values = [by_pair[f"{planner} + moondream2"] for planner in ("qwen3-4b", "qwen3-4b-fp8", "qwen3-30b-a3b")]
     assert row(report, "spread_planner", "moondream2")["spread"] == pytest.approx(max(values) - min(values))
     values = [by_pair[f"qwen3-30b-a3b + {eyes}"] for eyes in ("moondream2", "moondream3")]
     assert row(report, "spread_eyes", "qwen3-30b-a3b")["spread"] == pytest.approx(max(values) - min(values))
 
 
-def test_scope_and_comparisons(report: Report, evaluations: list[Evaluation]) -> None:
+def test_scope_and_comparisons(report: EvaluationReport, evaluations: list[Evaluation]) -> None:
     trials = scored(log(evaluations, BEST))
     told = row(report, "scope", BEST)
     current, full = ([t.headline == "correct" for t in trials if t.task.scope == scope] for scope in ("current", "full"))
@@ -178,7 +178,7 @@ def test_scope_and_comparisons(report: Report, evaluations: list[Evaluation]) ->
     assert isinstance(adjusted, float) and isinstance(cells["p_mcnemar"], float) and adjusted >= cells["p_mcnemar"]
 
 
-def test_latency_comes_from_the_run_without_contention(report: Report, evaluations: list[Evaluation]) -> None:
+def test_latency_comes_from_the_run_without_contention(report: EvaluationReport, evaluations: list[Evaluation]) -> None:
     alone = scored(log(evaluations, BEST, split="lite"))
     own = [t.timings.total_s - t.timings.camera_s - t.timings.render_s for t in alone]
     assert row(report, "design_points", BEST)["latency_s"] == pytest.approx(median(own))
@@ -190,13 +190,13 @@ def test_latency_comes_from_the_run_without_contention(report: Report, evaluatio
     assert row(report, "latency_planner", "qwen3-4b-fp8")["calls"] == pytest.approx(2.0)
 
 
-def test_repeats_wordings_and_variants(report: Report, evaluations: list[Evaluation]) -> None:
+def test_repeats_wordings_and_variants(report: EvaluationReport, evaluations: list[Evaluation]) -> None:
     by_task = defaultdict(list)
     for t in scored(log(evaluations, "qwen3-4b + moondream2")):
         by_task[t.task.id].append(t.headline == "correct")
     shares = [math.comb(sum(v), 2) / math.comb(len(v), 2) for v in by_task.values() if len(v) >= 2]
     assert row(report, "repeats", "qwen3-4b + moondream2")["pass_2"] == pytest.approx(fmean(shares))
-    assert {bare(values[0]) for values in table(report, "repeats").rows} == {"qwen3-4b + moondream2"}
+    assert {unmarked(values[0]) for values in table(report, "repeats").rows} == {"qwen3-4b + moondream2"}
     groups = defaultdict(list)
     for t in scored(log(evaluations, BEST, split="paraphrase")):
         groups[t.task.paraphrase_of].append(t.headline == "correct")
@@ -211,7 +211,7 @@ def test_repeats_wordings_and_variants(report: Report, evaluations: list[Evaluat
     assert told["correct"] == pytest.approx(fmean(t.headline == "correct" for t in requests))
 
 
-def test_costs_conduct_and_audit(report: Report, evaluations: list[Evaluation]) -> None:
+def test_costs_conduct_and_audit(report: EvaluationReport, evaluations: list[Evaluation]) -> None:
     trials = log(evaluations, BEST).trials
     told = row(report, "costs", BEST)
     assert told["cost_usd"] == pytest.approx(sum(t.cost_usd or 0 for t in trials))
@@ -224,10 +224,10 @@ def test_costs_conduct_and_audit(report: Report, evaluations: list[Evaluation]) 
         for t in scored(log(evaluations, pair)):
             by_task[t.task.id].append(t.headline == "correct")
     low = {task for task, values in by_task.items() if fmean(values) <= 0.25}
-    assert {bare(values[0]) for values in table(report, "audit").rows} == low and low
+    assert {unmarked(values[0]) for values in table(report, "audit").rows} == low and low
 
 
-def test_the_papers_figures_stand_apart_and_say_so(report: Report) -> None:
+def test_the_papers_figures_stand_apart_and_say_so(report: EvaluationReport) -> None:
     panel = report.sections[-1]
     assert panel.key == "paper" and "not comparable task by task" in panel.text[0]
     assert len(table(report, "paper_accuracy").rows) == 19
@@ -251,7 +251,7 @@ def test_what_was_not_measured_is_never_a_number() -> None:
     assert (told["macro_judge"], told["oracle_judge"], told["macro_rerun"], told["perception_rules"]) == (None, None, None, None)
     assert in_words(None, "share") == in_words(None, "count") == "not measured"
     words = " ".join(line for section in made.sections for line in section.text)
-    assert "not measured" in words and "Fewer than two model pairs" in words
+    assert "not measured" in words and "fewer than two model pairs" in words
 
 
 def test_an_unfinished_run_is_told_and_an_empty_one_refused() -> None:
@@ -272,13 +272,13 @@ def test_labels_say_what_tells_runs_apart_and_no_more() -> None:
     tasks = facts(1)
     shared = evaluation("qwen3-4b", "moondream2", tasks, 0.6, split="lite", latency_s=(9.0, 9.0))
     alone = evaluation("qwen3-4b", "moondream2", tasks, 0.6, split="lite", contended=False, latency_s=(1.0, 1.0))
-    runs = collect([shared, alone], load_registry())
+    runs = report_runs([shared, alone], load_registry())
     assert {run.label for run in runs} == {"qwen3-4b + moondream2", "qwen3-4b + moondream2, timed alone"}
-    assert timed(runs[0], runs).evaluation is alone
+    assert timing_run(runs[0], runs).evaluation is alone
     # A latency run that was broken off tells nothing yet: what it holds are other tasks.
-    cut = collect([shared, alone.model_copy(update={"trials": alone.trials[:3]})], load_registry())
-    assert timed(cut[0], cut).evaluation is shared
-    several = collect([shared, evaluation("qwen3-4b", "moondream2", tasks, 0.6)], load_registry())
+    cut = report_runs([shared, alone.model_copy(update={"trials": alone.trials[:3]})], load_registry())
+    assert timing_run(cut[0], cut).evaluation is shared
+    several = report_runs([shared, evaluation("qwen3-4b", "moondream2", tasks, 0.6)], load_registry())
     assert {run.label for run in several} == {"qwen3-4b + moondream2", "qwen3-4b + moondream2, lite split"}
 
 
@@ -287,17 +287,17 @@ def test_categories_with_one_viewpoint_are_named_where_the_macro_average_stands(
     tasks = [t for t in facts(2) if t.category in ("counting", "ocr")] + [facts(1)[2]]
     made = build_report([evaluation("qwen3-4b", "moondream2", tasks, 0.6, seed=3, spoiled=0.0)], load_registry())
     names = [column.name for column in table(made, "accuracy").columns]
-    cells = dict(zip(names, map(bare, table(made, "accuracy").rows[0]), strict=True))
+    cells = dict(zip(names, map(unmarked, table(made, "accuracy").rows[0]), strict=True))
     whole, single = cells["macro"], cells["location"]
-    assert isinstance(whole, Estimate) and (whole.without, whole.low is None) == (("location",), False)
-    assert isinstance(single, Estimate) and single.low is None
+    assert isinstance(whole, IntervalEstimate) and (whole.without, whole.low is None) == (("location",), False)
+    assert isinstance(single, IntervalEstimate) and single.low is None
     page = html(made)
-    assert "without location" in page and "interval not known" in page
+    assert "without location" in page and "interval unknown" in page
     assert "without location" in made.summary[1]
 
 
 def test_one_viewpoint_gives_no_interval() -> None:
     tasks = [t.model_copy(update={"scene": "a", "viewpoint": "b"}) for t in facts(2)]
     made = build_report([evaluation("qwen3-4b", "moondream2", tasks, 0.6)], load_registry())
-    cell = bare(table(made, "accuracy").rows[0][1])
-    assert isinstance(cell, Estimate) and cell.low is None and in_words(cell, "share").count("to") == 0
+    cell = unmarked(table(made, "accuracy").rows[0][1])
+    assert isinstance(cell, IntervalEstimate) and cell.low is None and in_words(cell, "share").count("to") == 0

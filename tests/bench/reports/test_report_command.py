@@ -28,7 +28,7 @@ def test_the_command_writes_everything(tmp_path: Path, monkeypatch: pytest.Monke
     assert (out / "report.md").is_file() and (out / "tables" / "accuracy.csv").is_file()
     assert not list((out / "tasks").iterdir()) and "Each has a page" not in (out / "report.md").read_text("utf-8")
     again = CliRunner().invoke(app, ["bench", "report", *files, "--out", str(tmp_path), "--no-pages"])
-    assert again.exit_code == 2 and "no report" in again.stderr
+    assert again.exit_code == 2 and "not a report" in again.stderr
 
 
 def test_a_file_that_is_no_log_is_told(tmp_path: Path) -> None:

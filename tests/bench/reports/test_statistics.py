@@ -10,7 +10,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scope_ptz.bench.statistics.choice import undominated
 from scope_ptz.bench.statistics.clustered import (
     Scores,
     cluster_variance,
@@ -27,6 +26,7 @@ from scope_ptz.bench.statistics.clustered import (
     wilson,
 )
 from scope_ptz.bench.statistics.paired import cluster_bootstrap, holm, mcnemar_exact
+from scope_ptz.bench.statistics.pareto import undominated
 from scope_ptz.bench.statistics.repeats import mean_pass_all, pass_all
 
 SMALL = Scores(np.array([1.0, 0, 1, 1, 0, 1]), ("a", "a", "a", "a", "b", "b"), ("x", "x", "y", "y", "x", "y"))

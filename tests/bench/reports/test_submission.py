@@ -19,11 +19,11 @@ from scope_ptz.bench.reports.submission import secrets_in, submission_lines, sub
 from scope_ptz.bench.reports.submission_checks import check_submission
 from scope_ptz.bench.reports.submission_trials import checks_of
 from scope_ptz.bench.scoring.checks import run_checks
-from scope_ptz.bench.scoring.trials import Check, Evaluation, Trial
-from scope_ptz.bench.scoring.verdict import judge
-from scope_ptz.bench.tasks.facts import TaskFacts
+from scope_ptz.bench.scoring.trials import CheckRecord, Evaluation, Trial
+from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.files import dump_tasks
 from scope_ptz.bench.tasks.task import Task
+from scope_ptz.bench.tasks.task_facts import TaskFacts
 from scope_ptz.cli.app import app
 from scope_ptz.errors import InputError
 from tests.bench.making import samples
@@ -43,13 +43,13 @@ def made(epochs: int = 2) -> Evaluation:
             id=task.id, dataset=task.dataset, stratum=task.stratum, scene=task.scene, viewpoint="v", preset=task.preset,
             instruction=task.instruction, category=task.category, scope=task.scope, difficulty=task.difficulty, expected="x",
         )  # fmt: skip
-        checks = tuple(Check(name=c.name, passed=c.passed, reason=c.reason) for c in run_checks(task, episode))
-        assert judge(task, episode).headline == "correct"
+        checks = tuple(CheckRecord(name=c.name, passed=c.passed, reason=c.reason) for c in run_checks(task, episode))
+        assert score_episode(task, episode).headline == "correct"
         assert {check.name for check in checks} == checks_of(task)
         calls = dict(Counter(call.name for call in episode.calls))
         further: dict[str, Any] = {"outcome": episode.outcome, "tool_calls": calls, "steps": 1 + len(episode.calls)}
         for epoch in range(1, epochs + 1):
-            trials.append(trial(known, epoch=epoch, checks=checks, answer=episode.text, **further))
+            trials.append(trial(known, epoch=epoch, checks=checks, answer=episode.answer, **further))
     trials.sort(key=lambda t: (t.task.id, t.epoch))
     first = trials[0]
     failed = tuple(c.model_copy(update={"passed": False}) if c.name == "coverage" else c for c in first.checks)
@@ -104,7 +104,7 @@ def put_card(**values: Any) -> Callable[[Rows], None]:
     [
         (drop(3), "is missing (repeats"),
         (drop(3), "line 1: totals say"),
-        (lambda rows: rows.append(rows[2]), "stands 2 times"),
+        (lambda rows: rows.append(rows[2]), "occurs 2 times"),
         (change(2, task="scope1-made-up-001"), "is no task of the split"),
         (change(2, epoch=3), "repeat 3 of 2"),
         (change(2, error_mode="scope"), "error mode scope although the trial is correct"),
@@ -114,7 +114,7 @@ def put_card(**values: Any) -> Callable[[Rows], None]:
         (change(2, headline="unscored"), "unscored although the checks tell"),
         (change(2, checks={}), "no check at all"),
         (change(2, answer="I cannot tell."), "the answer reads as wrong and its check says right"),
-        (change(2, scored_by="judge"), "which no judgement says"),
+        (change(2, scored_by="judge"), "but no judgement says so"),
         (change(2, category="ocr"), "category ocr where the task's is"),
         (change(2, outcome="won"), "outcome won is none of"),
         (change(2, steps=61), "61 steps where 60 are the most"),
@@ -195,8 +195,8 @@ JUDGED = [{"judge": "me", "prompt": "p", "verdict": "correct", "error_mode": Non
         (counted(bad_calls=2, perception_failures=1), "3 calls failed of 2"),
         (unmoved, "passed and nothing moved the camera"),
         (unpictured, "pictures passed with 0 of"),
-        (lambda rows: rows[0]["card"]["perception"].update(name="ground-truth"), "ground-truth is said to be a model"),
-        (lambda rows: rows[0]["card"]["planner"].update(name="grammar"), "grammar is said to be a model"),
+        (lambda rows: rows[0]["card"]["perception"].update(name="ground-truth"), "ground-truth is built in, but"),
+        (lambda rows: rows[0]["card"]["planner"].update(name="grammar"), "grammar is built in, but"),
     ],
 )  # fmt: skip
 def test_what_the_file_and_the_tasks_show_to_be_untrue_is_refused(
@@ -285,7 +285,7 @@ def test_runs_without_models_are_said_to_be_unranked(tmp_path: Path) -> None:
     unranked = whole.model_copy(update={"card": card("grammar", "ground-truth", split="x.jsonl")})
     write_submission(submission_lines(unranked), path)
     found = check_submission(path, TASKS)
-    assert not found.faults and "not ranked" in found.told and found.as_dict()["valid"] is True
+    assert not found.faults and "not ranked" in found.summary and found.as_dict()["valid"] is True
     with pytest.raises(InputError, match="no published split"):
         check_submission(path)
 

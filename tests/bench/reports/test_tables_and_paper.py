@@ -1,4 +1,4 @@
-"""Cells in words, in CSV and in Markdown; the paper's figures as they were copied."""
+"""Cells as text, in CSV and in Markdown, and the results copied from the paper."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from dataclasses import replace
 import pytest
 
 from scope_ptz.bench.reports.paper import load_paper
-from scope_ptz.bench.reports.tables import Column, Marked, Table, as_csv, as_markdown, escape, in_words
-from scope_ptz.bench.statistics.clustered import Estimate
+from scope_ptz.bench.reports.tables import Column, MarkedCell, ReportTable, as_csv, as_markdown, escape, in_words
+from scope_ptz.bench.statistics.clustered import IntervalEstimate
 from scope_ptz.registry import load_registry
 
-INTERVAL = Estimate(0.7383, 0.7, 0.8, 0.02, 100, 12)
+INTERVAL = IntervalEstimate(0.7383, 0.7, 0.8, 0.02, 100, 12)
 
 
 @pytest.mark.parametrize(
@@ -24,8 +24,8 @@ INTERVAL = Estimate(0.7383, 0.7, 0.8, 0.02, 100, 12)
         (0.02, "width", "2.0"), (0.0, "count", "0"), (None, "count", "not measured"), (0.0004, "p", "< 0.001"),
         (1.234, "ratio", "1.23x"), (12345, "count", "12,345"), (0.0123, "seconds", "0.01"), (0.0012, "seconds", "< 0.01"),
             (9.184, "seconds", "9.18"),
-        (0.00213, "usd", "0.0021"), ("", "text", ""), (Marked(None), "share", "not measured"),
-        (Estimate(0.5, None, None, None, 2, 1), "share", "50.0 (interval not known)"),
+        (0.00213, "usd", "0.0021"), ("", "text", ""), (MarkedCell(None), "share", "not measured"),
+        (IntervalEstimate(0.5, None, None, None, 2, 1), "share", "50.0 (interval unknown)"),
         (replace(INTERVAL, without=("single_call", "ocr")), "share", "73.8 (70.0 to 80.0, without single call, ocr)"),
     ],
 )  # fmt: skip
@@ -33,10 +33,10 @@ def test_cells_in_words(value: object, kind: object, words: str) -> None:
     assert in_words(value, kind) == words  # type: ignore[arg-type]
 
 
-def small(text: str = "a") -> Table:
+def small(text: str = "a") -> ReportTable:
     columns = (Column("run", "Run"), Column("macro", "Macro (%)", "share"), Column("cost", "Cost", "usd"))
-    return Table(
-        "key", "A | title", columns, ((text, INTERVAL, None), ("b", Marked(0.5, best=True), 1.5)), ("Note.",), {0: "group"}
+    return ReportTable(
+        "key", "A | title", columns, ((text, INTERVAL, None), ("b", MarkedCell(0.5, best=True), 1.5)), ("Note.",), {0: "group"}
     )
 
 
@@ -49,7 +49,9 @@ def test_csv_has_full_figures_and_empty_fields_for_what_is_missing() -> None:
 def test_an_interval_that_lacks_strata_names_them_in_csv_too() -> None:
     columns = (Column("run", "Run"), Column("macro", "Macro (%)", "share"))
     narrow = replace(INTERVAL, without=("single_call", "ocr"))
-    rows = list(csv.DictReader(io.StringIO(as_csv(Table("key", "T", columns, (("a", narrow), ("b", INTERVAL), ("c", None)))))))
+    rows = list(
+        csv.DictReader(io.StringIO(as_csv(ReportTable("key", "T", columns, (("a", narrow), ("b", INTERVAL), ("c", None))))))
+    )
     assert [row["macro_without"] for row in rows] == ["single_call ocr", "", ""]
     assert (rows[0]["macro"], rows[0]["macro_low"], rows[2]["macro_high"]) == ("0.7383", "0.7", "")
 
@@ -70,7 +72,7 @@ def test_markdown_means_nothing_but_what_it_shows() -> None:
 
 def test_a_row_of_another_length_is_refused() -> None:
     with pytest.raises(ValueError, match="2 values for 1 columns"):
-        Table("key", "Title", (Column("a", "A"),), ((1, 2),))
+        ReportTable("key", "Title", (Column("a", "A"),), ((1, 2),))
 
 
 def test_the_papers_averages_are_the_means_of_its_categories() -> None:

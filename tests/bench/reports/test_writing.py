@@ -15,10 +15,10 @@ from PIL import Image
 from scope_ptz.agent.records import Budgets, Called, Decided, RecordedPose, RunLabels, Started
 from scope_ptz.agent.timing import PerceptionReply, Timings
 from scope_ptz.agent.trace import Trace
-from scope_ptz.bench.reports.build import Report
+from scope_ptz.bench.reports.assemble import EvaluationReport
 from scope_ptz.bench.reports.task_pages import FrameStore, file_name
-from scope_ptz.bench.reports.write import html, markdown, write_report
-from scope_ptz.bench.scoring.trials import Check, Evaluation, Trial
+from scope_ptz.bench.reports.writer import html, markdown, write_report
+from scope_ptz.bench.scoring.trials import CheckRecord, Evaluation, Trial
 from scope_ptz.errors import OutputError, TraceError
 from scope_ptz.planner.base import CallTools, Finish, ToolCall, ToolOutcome
 from scope_ptz.registry import load_registry
@@ -98,7 +98,7 @@ def evil() -> Evaluation:
             reason=EVIL,
             outcome=EVIL,
             sample=EVIL,
-            checks=(Check(name=EVIL, passed=False, reason=EVIL),),
+            checks=(CheckRecord(name=EVIL, passed=False, reason=EVIL),),
         )
         for t in tasks
     )
@@ -160,7 +160,7 @@ def test_pictures_are_made_small(tmp_path: Path) -> None:
         assert picture.width == 1280
 
 
-def test_the_page_stands_alone_and_is_accessible(report: Report) -> None:
+def test_the_page_stands_alone_and_is_accessible(report: EvaluationReport) -> None:
     text = html(report)
     page = Page(text)
     assert not page.of("script") and not page.of("link") and not page.of("img")
@@ -181,7 +181,7 @@ def test_the_page_stands_alone_and_is_accessible(report: Report) -> None:
     assert "prefers-color-scheme: dark" in text and "@media print" in text and "#010203" not in text
 
 
-def test_a_report_is_the_same_each_time(report: Report) -> None:
+def test_a_report_is_the_same_each_time(report: EvaluationReport) -> None:
     assert html(report) == html(report)
     assert markdown(report).count("## ") >= len(report.sections)
 
@@ -197,7 +197,7 @@ def test_an_older_report_is_replaced_and_nothing_else(evil: Evaluation, tmp_path
     other = tmp_path / "other"
     other.mkdir()
     (other / "index.html").write_text("somebody's page")
-    with pytest.raises(OutputError, match="no report"):
+    with pytest.raises(OutputError, match="not a report"):
         write_report([fine], load_registry(), other)
     with pytest.raises(OutputError, match="is a file"):
         write_report([fine], load_registry(), kept)

@@ -133,10 +133,10 @@ def test_texts_are_legible_only_from_close_by(analytic_scene: Scene) -> None:
 
 def test_evidence_lies_inside_its_own_frame(yard: RobustTruth) -> None:
     from scope_ptz.bench.scoring.coverage import shows
-    from scope_ptz.bench.scoring.episode import Look
+    from scope_ptz.bench.scoring.episode import Observation
 
     assert isinstance(yard.projection, Perspective)
-    look = Look("mast", yard.projection, 0.0, "count")
+    look = Observation("mast", yard.projection, 0.0, "count")
     assert all(shows(yard.item(s), look) for s in yard.clear)
 
 

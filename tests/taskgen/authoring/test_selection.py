@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from scope_ptz.bench.scoring.episode import Standing
+from scope_ptz.bench.scoring.episode import CameraPosition
 from scope_ptz.bench.tasks.expected import AnyExpected, Choice, NoneThere, Number, YesNo
 from scope_ptz.geometry import Pose
 from scope_ptz.simulator.pack import Scene
@@ -42,7 +42,7 @@ def test_answers_are_balanced(place: TaskPlace) -> None:
 
 
 def test_a_question_is_asked_of_few_views_with_the_same_answer(place: TaskPlace) -> None:
-    views = [replace(place, at=Standing(place.at.viewpoint, Pose(float(pan), -10.0, 1.0))) for pan in range(0, 90, 15)]
+    views = [replace(place, at=CameraPosition(place.at.viewpoint, Pose(float(pan), -10.0, 1.0))) for pan in range(0, 90, 15)]
     same = [draft(view, "cars", Number(value=3), "3") for view in views]
     others = [draft(place, f"thing {n}", Number(value=n % 5), str(n % 5)) for n in range(10)]
     assert sum(d.key == "cars" for d in chosen([*same, *others], 10)) <= SAME

@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
-from scope_ptz.bench.scoring.imported import check_calls_of
+from scope_ptz.bench.scoring.imported_check import check_imported_calls
 from scope_ptz.bench.tasks.imported import ImportedTask, dump_imported, holds_imported, load_imported
 from scope_ptz.bench.tasks.task import Argument
 from scope_ptz.cli.app import app
@@ -147,7 +147,7 @@ def test_an_expected_zoom_of_zero_is_met_by_a_call_without_zoom(tmp_path: Path, 
         ({"zoom_factor": 2.0}, not zoom),
         ({"zoom_limit": "in"}, not zoom),
     ):
-        check = check_calls_of(task, play([("adjust_ptz", {"pan_deg": 20.0, **further})], "Done."))
+        check = check_imported_calls(task, play([("adjust_ptz", {"pan_deg": 20.0, **further})], "Done."))
         assert check.passed is met, (further, check.reason)
 
 
@@ -394,13 +394,13 @@ GO, LOOK = ("go_to_preset", {"name": "highway"}), counted(5)
 )
 def test_check_of_required_calls(tmp_path: Path, cells: dict[str, str], steps: list[Any], passed: bool | None) -> None:
     task = task_with(tmp_path, ["go_to_preset", "count_pointing"], {"go_to_preset": {"name": "Highway"}}, **cells)
-    check = check_calls_of(task, play(steps, "5"))
+    check = check_imported_calls(task, play(steps, "5"))
     assert (check.name, check.passed) == ("calls", passed)
     assert check.reason
 
 
 def test_without_expected_calls_the_check_has_no_result(tmp_path: Path) -> None:
-    assert check_calls_of(task_with(tmp_path, []), play([LOOK], "5")).passed is None
+    assert check_imported_calls(task_with(tmp_path, []), play([LOOK], "5")).passed is None
 
 
 # The command

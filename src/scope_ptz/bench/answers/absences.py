@@ -1,14 +1,14 @@
-"""Saying of several things at once, or in a list with marks, that they are not there."""
+"""Denials of several things at once, and absences that are marked in a list."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
 
-from scope_ptz.bench.answers.words import Word
+from scope_ptz.bench.answers.tokenizer import Word
 
 MARK = re.compile(r"[(:=|→]|\s[-–—]\s|—")
-"""Between a thing and what is noted of it in a list."""
+"""Separator between a thing and the remark about it in a list."""
 
 _LISTED = re.compile(
     r"not (currently |clearly |actually )?(visible|present|seen|found|there|detected|in (view|sight))\b|"
@@ -31,13 +31,13 @@ _TELLS = frozenset({
     "stands", "stood", "sits", "sat", "waits", "drives", "passes", "appears", "appear", "lies", "leans", "moves", "holds",
     "carries", "hangs", "faces", "rests", "remains",
 })  # fmt: skip
-"""Words that say something of a thing, so that what follows is said of others only."""
+"""Words that already say something about a thing. A denial after them is about other things."""
 
 _CROSS = re.compile(r"[\s:|–—-]*[❌✗✘✖]\ufe0f?")
 
 
 def is_denied_jointly(words: Sequence[Word], start: int, end: int) -> bool:
-    """ "The bin and the drum are not visible": of the first as of the last, where nothing else is said of the first."""
+    """Return whether a joint denial includes the words, as "the bin and the drum are not visible" includes the bin."""
     before = {w.text for w in words[:start] if w.segment == words[start].segment}
     if (_TELLS - {"but"}).intersection(before):
         return False
@@ -46,14 +46,14 @@ def is_denied_jointly(words: Sequence[Word], start: int, end: int) -> bool:
 
 
 def is_listed_as_absent(words: Sequence[Word], end: int) -> bool:
-    """ "Drum: not visible", "drum - absent"."""
+    """Return whether a list marks the thing as absent: "Drum: not visible", "drum - absent"."""
     if end >= len(words) or not MARK.search(words[end].gap):
         return False
     return _LISTED.match(" ".join(w.text for w in words[end : end + 4] if w.clause == words[end].clause)) is not None
 
 
 def uncrossed(text: str) -> str:
-    """A thing with a cross beside it as what the cross says: that it is absent. Beside a denial a cross adds nothing."""
+    """Replace crosses such as ❌ by the word "absent". A cross beside a denial is removed."""
     return "\n".join(map(_uncrossed, text.split("\n")))
 
 

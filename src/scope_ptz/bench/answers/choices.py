@@ -1,4 +1,4 @@
-"""Reading answers that name things: one of several, all that fit, facts of a description."""
+"""Parse answers that name things: one option, a set of names, or the facts of a description."""
 
 from __future__ import annotations
 
@@ -8,117 +8,161 @@ from itertools import pairwise
 
 from scope_ptz.bench.answers.comparisons import bearer_of, comparators, reference_of, ways
 from scope_ptz.bench.answers.denials import says_none, says_yes
-from scope_ptz.bench.answers.numbers import find_quantities
+from scope_ptz.bench.answers.numbers import find_numbers
 from scope_ptz.bench.answers.options import option_mentions
+from scope_ptz.bench.answers.parsed import ParsedAnswer, ParsedValue, Unreadable
 from scope_ptz.bench.answers.presence import says_that_none
-from scope_ptz.bench.answers.result import Reading, Unreadable, Value
-from scope_ptz.bench.answers.text import Mention, Script, wordings_of
+from scope_ptz.bench.answers.text import AnswerText, NameMention
+from scope_ptz.bench.answers.tokenizer import all_wordings
 from scope_ptz.bench.tasks.expected import Choice, Description, Fact, NameSet
 
 SAME = (
     "the same", "same number", "same", "equal", "equally", "equals", "tie", "tied", "draw", "identical", "no difference",
     "not differ", "as many", "as much", "even", "evenly", "both",
 )  # fmt: skip
-"""How one says that two are alike; also the wordings of a choice that is called "same"."""
+"""Wordings of equality. They are also wordings of an option that is called "same"."""
 
 _CONCLUDES = frozenset({"so", "therefore", "thus", "hence", "answer", "overall", "conclusion"})
 _MARKED_NONE = ("none", "0", "zero")
 _ALL = re.compile(r"\b(all|everything|both|each|every)\b")
 
 
-def read_choice(expected: Choice, script: Script) -> Reading:
-    """The one option that is named and not denied; where several are, the one that is picked or concluded on."""
-    if expected.subject and True in says_that_none(script, expected.subject):
+def parse_choice(expected: Choice, text: AnswerText) -> ParsedAnswer:
+    """Parse the one option that an answer names and does not deny.
+
+    If several options are named, the one counts that a comparison picks or that the answer concludes on.
+    """
+    if expected.subject and True in says_that_none(text, expected.subject):
         return Unreadable("it says that there is none")
+    stated = _stated_options(expected, text)
+    mentions = [m for m in stated if not after_than(text, m)]
+    equality = _parse_equality(expected, text, mentions)
+    if equality is not None:
+        return equality
+    if not expected.picks:
+        return _single_option(text, mentions)
+    return _parse_comparison(
+        expected, text, [m for m in stated if m.name != "same"], [m for m in mentions if m.name != "same"], stated
+    )
+
+
+def _stated_options(expected: Choice, text: AnswerText) -> list[NameMention]:
+    """Return every place that names an option and neither denies it nor names it as a contrast."""
     options = dict(expected.options)
     if "same" in options:
         options["same"] = (*options["same"], *SAME)
-    everything = [m for m in option_mentions(script, options) if not m.denied and not m.aside]
-    mentions = [m for m in everything if not after_than(script, m)]
+    return [m for m in option_mentions(text, options) if not m.denied and not m.aside]
+
+
+def _parse_equality(expected: Choice, text: AnswerText, mentions: Sequence[NameMention]) -> ParsedAnswer | None:
+    """Parse an answer that says that the options are alike; None if it does not say so."""
     alike = [m for m in mentions if m.name == "same"]
-    rest = [m for m in mentions if m.name != "same" and alike and m.start > alike[-1].start]
-    only_both = all(script.words[m.start].text == "both" for m in alike)
-    if alike and not (only_both and len({m.name for m in rest}) == 1):
-        return Value("same")
-    if alike and not _compared(expected, script, rest)[0]:
+    if not alike:
+        return None
+    later = [m for m in mentions if m.name != "same" and m.start > alike[-1].start]
+    only_both = all(text.words[m.start].text == "both" for m in alike)
+    if not only_both or len({m.name for m in later}) != 1:
+        return ParsedValue("same")
+    if not _compared(expected, text, later)[0]:
         # Unlike "I looked at both presets. The gate has more."
         return Unreadable("whether both are meant is not clear")
-    if expected.picks:
-        mentions = [m for m in mentions if m.name != "same"]
-        picked, out = _compared(expected, script, [m for m in everything if m.name != "same"])
-        if picked & out:
-            return Unreadable("the comparisons contradict each other")
-        if picked or out:
-            mentions = [m for m in mentions if m.name in (picked or {m.name for m in mentions} - out)]
-        else:
-            against = any(after_than(script, m) for m in everything)
-            mentions = [
-                m for m in mentions if (against and _heads(script, m)) or not _is_only_counted(script, m, expected.options[m.name])
-            ]
-        if len(picked) == 1:
-            return Value(picked.pop())
+    return None
+
+
+def _parse_comparison(
+    expected: Choice,
+    text: AnswerText,
+    compared: Sequence[NameMention],
+    mentions: Sequence[NameMention],
+    stated: Sequence[NameMention],
+) -> ParsedAnswer:
+    """Parse an answer to a question that asks for the most, the closest and so on.
+
+    ``compared`` are the stated options, ``mentions`` those of them that are not only compared with. ``stated`` adds equality.
+    """
+    picked, excluded = _compared(expected, text, compared)
+    if picked & excluded:
+        return Unreadable("the comparisons contradict each other")
+    if len(picked) == 1:
+        return ParsedValue(picked.pop())
+    if picked or excluded:
+        kept = picked or {m.name for m in mentions} - excluded
+        return _single_option(text, [m for m in mentions if m.name in kept])
+    has_reference = any(after_than(text, m) for m in stated)
+    chosen = [
+        m for m in mentions if (has_reference and _is_heading(text, m)) or not _is_only_counted(text, m, expected.options[m.name])
+    ]
+    return _single_option(text, chosen)
+
+
+def _single_option(text: AnswerText, mentions: Sequence[NameMention]) -> ParsedAnswer:
+    """Return the only option that is named, after additions, parts and premises are set aside where several are."""
     named = {m.name for m in mentions}
     if len(named) > 1:
-        named = {m.name for m in mentions if not _is_added(script, m)} or named
+        named = {m.name for m in mentions if not _is_added(text, m)} or named
     if len(named) > 1:
-        named = {m.name for m in mentions if m not in _of_parts(script, mentions)} or named
+        parts = _of_parts(text, mentions)
+        named = {m.name for m in mentions if m not in parts} or named
     if len(named) > 1:
-        last = max((i for i, w in enumerate(script.words) if w.text in _CONCLUDES), default=len(script.words))
-        named = {m.name for m in mentions if m.start > last} or named
+        conclusion = max((i for i, w in enumerate(text.words) if w.text in _CONCLUDES), default=len(text.words))
+        named = {m.name for m in mentions if m.start > conclusion} or named
     if len(named) == 1:
-        return Value(named.pop())
+        return ParsedValue(named.pop())
     return Unreadable("several options: " + ", ".join(sorted(named)) if named else "no option is named")
 
 
-def _compared(expected: Choice, script: Script, mentions: Sequence[Mention]) -> tuple[set[str], set[str]]:
-    """The options that a comparison picks and those that it rules out. Of two options the one that is not "farther" is "closer"."""
-    picked, out = set[str](), set[str]()
+def _compared(expected: Choice, text: AnswerText, mentions: Sequence[NameMention]) -> tuple[set[str], set[str]]:
+    """Return the options that comparisons pick, and those that they exclude.
+
+    Of two options, excluding one picks the other: if the gate is not farther, it is closer.
+    """
+    picked, excluded = set[str](), set[str]()
     pair = {name for name in expected.options if name != "same"}
-    for comparator in comparators(script, ways(expected.picks)):
-        bearer = bearer_of(script, comparator, mentions)
-        reference = reference_of(script, comparator, mentions)
+    for comparator in comparators(text, ways(expected.picks)):
+        bearer = bearer_of(text, comparator, mentions)
+        reference = reference_of(text, comparator, mentions)
         one = {bearer.name} if bearer else pair - {reference.name} if reference and len(pair) == 2 else set[str]()
         other = {reference.name} if reference else pair - one if one and len(pair) == 2 else set[str]()
         if comparator.denied:
-            out |= one if comparator.name == "forward" else set()
+            excluded |= one if comparator.name == "forward" else set()
         elif comparator.name == "forward":
             picked |= one
-            out |= {reference.name} if reference else set()
+            excluded |= {reference.name} if reference else set()
         else:
-            out |= one
+            excluded |= one
             picked |= other if len(pair) == 2 else set()
-    return picked, out
+    return picked, excluded
 
 
-def _heads(script: Script, mention: Mention) -> bool:
-    """ "Cones: two of them, against one bollard": what is named first and by itself is the answer, the rest is why."""
-    after = script.words[mention.end : mention.end + 1]
+def _is_heading(text: AnswerText, mention: NameMention) -> bool:
+    """Return whether an option opens the answer on its own, as in "Cones: two of them, against one bollard"."""
+    after = text.words[mention.end : mention.end + 1]
     return mention.start <= 1 and bool(after) and after[0].gap.strip() == ":"
 
 
-def _is_only_counted(script: Script, mention: Mention, further: Sequence[str]) -> bool:
-    """ "9 skips", "skips: 9": that tells how many there are, not that they are what is chosen."""
-    own = [q for q in find_quantities(script, (mention.name, *further)) if q.own]
+def _is_only_counted(text: AnswerText, mention: NameMention, further: Sequence[str]) -> bool:
+    """Return whether the answer only counts an option ("9 skips", "skips: 9") and does not choose it."""
+    own = [q for q in find_numbers(text, (mention.name, *further)) if q.own]
     return any(0 <= mention.start - q.end <= 3 or q.start == mention.end for q in own)
 
 
-def _is_added(script: Script, mention: Mention) -> bool:
-    """ "Green (the wall above is red)": what is added in brackets is not what is chosen; "green (or red)" is an alternative."""
-    before = script.words[mention.start - 1].text if mention.start else ""
-    return script.in_brackets(mention.start) and before not in _ALTERNATIVES
+def _is_added(text: AnswerText, mention: NameMention) -> bool:
+    """Return whether an option is a remark in brackets, as in "green (the wall above is red)" but not in "green (or red)"."""
+    before = text.words[mention.start - 1].text if mention.start else ""
+    return text.in_brackets(mention.start) and before not in _ALTERNATIVES
 
 
 _ALTERNATIVES = frozenset({"or", "maybe", "perhaps", "possibly", "probably", "rather", "actually"})
 
 
-def _of_parts(script: Script, mentions: Sequence[Mention]) -> list[Mention]:
-    """Those said of a part, or of what something stands on: the yellow of "blue, with a yellow top"."""
-    found = list[Mention]()
+def _of_parts(text: AnswerText, mentions: Sequence[NameMention]) -> list[NameMention]:
+    """Return the mentions that describe only a part of a thing or its base, such as the yellow of "blue, with a yellow top"."""
+    found = list[NameMention]()
     for at, mention in enumerate(mentions):
-        after = script.words[mention.end : mention.end + 1]
-        goes_on = bool(after) and after[0].clause == script.words[mention.start].clause and after[0].text not in _JOINS
+        after = text.words[mention.end : mention.end + 1]
+        goes_on = bool(after) and after[0].clause == text.words[mention.start].clause and after[0].text not in _JOINS
         more = bool(after) and after[0].text == "and"
-        before = " ".join(word.text for word in script.words[max(0, mention.start - 2) : mention.start])
+        before = " ".join(word.text for word in text.words[max(0, mention.start - 2) : mention.start])
         listed = at > 0 and found[-1:] == [mentions[at - 1]] and before.endswith("and")
         if (_ATTACHED.search(before) and (goes_on or more)) or (listed and goes_on):
             found.append(mention)
@@ -129,29 +173,29 @@ _ATTACHED = re.compile(r"\b(with( an?| the| its)?|on an?)$")
 _JOINS = frozenset({"and", "or", "with", "on", "in", "at", "is", "are", "but"})
 
 
-def after_than(script: Script, mention: Mention) -> bool:
-    """Whether something is named only to be compared with."""
-    clause = script.words[mention.start].clause
-    before = [w.text for w in script.words[max(0, mention.start - 6) : mention.start] if w.clause == clause]
+def after_than(text: AnswerText, mention: NameMention) -> bool:
+    """Return whether something is named only as the reference of a comparison."""
+    clause = text.words[mention.start].clause
+    before = [w.text for w in text.words[max(0, mention.start - 6) : mention.start] if w.clause == clause]
     return "than" in before[-4:] or bool({"compared", "versus", "against"} & set(before))
 
 
-def read_name_set(expected: NameSet, script: Script) -> Reading:
-    """All that are named and not denied."""
-    names = {name: wordings_of(name, further) for name, further in expected.options.items()}
-    mentions = [m for m in script.mentions(names) if not m.denied and not m.aside and not script.is_marked(m.end, _MARKED_NONE)]
+def parse_name_set(expected: NameSet, text: AnswerText) -> ParsedAnswer:
+    """Parse the set of all names that an answer states and does not deny."""
+    names = {name: all_wordings(name, further) for name, further in expected.options.items()}
+    mentions = [m for m in text.mentions(names) if not m.denied and not m.aside and not text.is_marked(m.end, _MARKED_NONE)]
     named = frozenset(m.name for m in mentions)
     for one, two in pairwise(mentions):
-        if any(w.text == "or" for w in script.words[one.end : two.start]):
+        if any(w.text == "or" for w in text.words[one.end : two.start]):
             return Unreadable("an alternative")
     if named:
-        return Value(named)
-    if _ALL.search(script.text()):
+        return ParsedValue(named)
+    if _ALL.search(text.joined()):
         return Unreadable("it does not say which")
-    if (not says_yes(script) and (says_none(script) or _denies_all(script))) or any(
-        m.denied or script.is_marked(m.end, _MARKED_NONE) for m in script.mentions(names)
+    if (not says_yes(text) and (says_none(text) or _denies_all(text))) or any(
+        m.denied or text.is_marked(m.end, _MARKED_NONE) for m in text.mentions(names)
     ):
-        return Value(frozenset[str]())
+        return ParsedValue(frozenset[str]())
     return Unreadable("nothing is named")
 
 
@@ -161,18 +205,18 @@ _DENIES_ALL = re.compile(
 )
 
 
-def _denies_all(script: Script) -> bool:
-    return _DENIES_ALL.search(script.text()) is not None
+def _denies_all(text: AnswerText) -> bool:
+    return _DENIES_ALL.search(text.joined()) is not None
 
 
-def read_description(expected: Description, script: Script) -> Reading:
-    """Which of the facts and which of the contradictions are stated."""
-    return Value((_stated(expected.facts, script), _stated(expected.contradictions, script)))
+def parse_description(expected: Description, text: AnswerText) -> ParsedAnswer:
+    """Parse which facts and which contradictions of a description an answer states."""
+    return ParsedValue((_stated(expected.facts, text), _stated(expected.contradictions, text)))
 
 
-def _stated(facts: Sequence[Fact], script: Script) -> frozenset[int]:
+def _stated(facts: Sequence[Fact], text: AnswerText) -> frozenset[int]:
     stated = set[int]()
     for number, fact in enumerate(facts):
-        if any(not m.denied and not m.aside for m in script.mentions({"fact": fact.any_of})):
+        if any(not m.denied and not m.aside for m in text.mentions({"fact": fact.any_of})):
             stated.add(number)
     return frozenset(stated)

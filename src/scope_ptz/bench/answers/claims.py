@@ -1,4 +1,4 @@
-"""Naming without claiming: what was only looked for or asked about, and what a tool told nothing of."""
+"""What an answer claims about a thing that it names: that it is there, that it is not, or nothing at all."""
 
 from __future__ import annotations
 
@@ -6,11 +6,15 @@ import re
 from collections.abc import Sequence
 from enum import Enum, auto
 
-from scope_ptz.bench.answers.words import Word
+from scope_ptz.bench.answers.tokenizer import Word
 
 
 class Claim(Enum):
-    """What naming a thing says of it. ``NOTHING``: neither that it is there nor that it is not."""
+    """What the naming of a thing claims.
+
+    ``STATED``: the sentence itself decides. ``FOUND`` and ``MISSED``: the result of a search. ``NOTHING``: the thing is only
+    searched for or asked about.
+    """
 
     STATED = auto()
     FOUND = auto()
@@ -19,7 +23,7 @@ class Claim(Enum):
 
 
 def claim_of(words: Sequence[Word], start: int, end: int) -> Claim:
-    """What the naming at words ``start`` to ``end`` (exclusive) claims."""
+    """Return what the words from ``start`` to ``end`` (exclusive), which name a thing, claim about it."""
     clause = words[start].clause
     before = "".join(f"{w.text} " for w in words[max(0, start - 30) : start] if w.clause == clause)
     after = "".join(f"{w.text} " for w in words[end : end + 30] if w.clause == clause)
@@ -58,7 +62,7 @@ _SOUGHT = re.compile(
 _GOES_ON = frozenset({
     "found", "saw", "sees", "spotted", "detected", "but", "so", "then", "yes", "no", "however", "shows", "revealed", "identified",
 })  # fmt: skip
-"""Words after which something else is told than what was looked for."""
+"""Words that end the description of a search and begin its result."""
 
 _STATES = frozenset({"see", "find", "is", "are", "was", "were", "has", "have", "there", "reads", "says"})
 _SEEN = re.compile(r"(\w+ ){0,3}?(is|are|was|were) (not )?(visible|present|found|seen|detected|there)\b")
@@ -76,5 +80,5 @@ _UNTOLD = re.compile(
     r"(?:information|info|data|results?|answers?|counts?|records?|knowledge|outputs?|response|reports?|details?|idea|reply|figures?|"
     r"detections?|readings?|measurements?) (?:\w+ ){0,5}?(?:about|of|on|for|regarding|concerning) (?:\w+ ){0,3}$"
 )
-"""A denial of what is known, not of what is there: "no information about"."""
+"""Phrases that deny knowledge and not presence, such as "no information about"."""
 _UNDONE = re.compile(r"(has|have) (not )?(yet )?been (counted|checked|searched|queried|measured)\b")

@@ -1,11 +1,11 @@
-"""Comparing words ("more", "closer"): which way they go, of what they are said and with what it is compared."""
+"""Comparative words ("more", "closer"): their direction, what they describe, and what it is compared with."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
 
-from scope_ptz.bench.answers.text import Mention, Script
+from scope_ptz.bench.answers.text import AnswerText, NameMention
 
 _OPPOSITES = (
     ({"more", "most", "greater", "greatest", "higher", "highest", "busier", "busiest"},
@@ -22,7 +22,7 @@ _AT_REFERENCE = frozenset({"of", "from", "to"})
 
 
 def ways(picks: Iterable[str]) -> dict[str, tuple[str, ...]]:
-    """The words that go the way of some ("forward") and those that go against it ("backward")."""
+    """Return the comparatives that mean the same as the given words ("forward") and the opposite ("backward")."""
     forward, backward = set(picks), set[str]()
     for ones, others in _OPPOSITES:
         for same, against in ((ones, others), (others, ones)):
@@ -32,20 +32,23 @@ def ways(picks: Iterable[str]) -> dict[str, tuple[str, ...]]:
     return {"forward": tuple(sorted(forward)), "backward": tuple(sorted(backward - forward))}
 
 
-def comparators(script: Script, wordings: dict[str, tuple[str, ...]]) -> list[Mention]:
-    """Where the words stand; "at least", "at most" and "more or less" compare nothing."""
-    found = list[Mention]()
-    for mention in script.mentions(wordings):
-        before = script.words[mention.start - 1].text if mention.start else ""
-        after = " ".join(w.text for w in script.words[mention.end : mention.end + 2])
+def comparators(text: AnswerText, wordings: dict[str, tuple[str, ...]]) -> list[NameMention]:
+    """Return every comparative in an answer. "At least", "at most" and "more or less" compare nothing."""
+    found = list[NameMention]()
+    for mention in text.mentions(wordings):
+        before = text.words[mention.start - 1].text if mention.start else ""
+        after = " ".join(w.text for w in text.words[mention.end : mention.end + 2])
         if before not in ("at", "or") and not re.match(r"or less\b", after):
             found.append(mention)
     return found
 
 
-def bearer_of(script: Script, comparator: Mention, things: Sequence[Mention]) -> Mention | None:
-    """Of what a comparing word is said: of the noun that it counts ("fewer skips"), else of what is named before it, else after."""
-    words, reference = script.words, reference_of(script, comparator, things)
+def bearer_of(text: AnswerText, comparator: NameMention, things: Sequence[NameMention]) -> NameMention | None:
+    """Return what a comparative describes.
+
+    It is the noun that the comparative counts ("fewer skips"), else the last thing named before it, else the first one after it.
+    """
+    words, reference = text.words, reference_of(text, comparator, things)
     clause = [m for m in things if words[m.start].clause == words[comparator.start].clause and m != reference]
     if words[comparator.end - 1].text in _COUNTING:
         counted = [m for m in clause if m.start == comparator.end and not words[m.start].gap.strip()]
@@ -56,13 +59,13 @@ def bearer_of(script: Script, comparator: Mention, things: Sequence[Mention]) ->
     return before[-1] if before else near[0] if near else None
 
 
-def reference_of(script: Script, comparator: Mention, things: Sequence[Mention]) -> Mention | None:
-    """What the comparator compares with: "more than B", "left of B", "compared with B"."""
-    for mention in (m for m in things if script.words[m.start].clause == script.words[comparator.start].clause):
-        between = [w.text for w in script.words[comparator.end : mention.start]] if mention.start > comparator.end - 1 else []
+def reference_of(text: AnswerText, comparator: NameMention, things: Sequence[NameMention]) -> NameMention | None:
+    """Return the reference of a comparative, such as B in "more than B", "left of B" and "compared with B"."""
+    for mention in (m for m in things if text.words[m.start].clause == text.words[comparator.start].clause):
+        between = [w.text for w in text.words[comparator.end : mention.start]] if mention.start > comparator.end - 1 else []
         if set(between) & _REFERENCES:
             return mention
-        lead = [w.text for w in script.words[max(0, mention.start - 3) : mention.start]]
+        lead = [w.text for w in text.words[max(0, mention.start - 3) : mention.start]]
         if "compared" in lead:
             return mention
         if between and set(between[:2]) & _AT_REFERENCE and len(between) <= 3:

@@ -1,12 +1,12 @@
-"""Saying that there is none, with or without saying of where."""
+"""Answers that say that there is none: "no", "none", "there are no cones at all"."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
 
-from scope_ptz.bench.answers.numbers import find_quantities
-from scope_ptz.bench.answers.text import Script
+from scope_ptz.bench.answers.numbers import find_numbers
+from scope_ptz.bench.answers.text import AnswerText
 
 _NONE = re.compile(
     r"^(no|nope|none|nothing|nobody|no one|zero)$|^(none|nothing|nobody|no one)\b(?! (of (?!them|these|those)|but|else))"
@@ -19,32 +19,39 @@ _NONE = re.compile(
 _OF_OTHERS = re.compile(r"\b(others?|else|elsewhere)\b")
 
 
-def says_none(script: Script) -> bool:
-    """Whether a sentence of the text is nothing but "none" ("No.", "There are none", "Nothing like that is visible")."""
-    parts = [" ".join(script.words[i].text for i in group) for group in (*script.segments(), *script.clauses())]
-    return any(_NONE.search(part) and not _OF_OTHERS.search(part) for part in parts)
+def says_none(text: AnswerText) -> bool:
+    """Return whether a sentence says just "none": "No.", "There are none", "Nothing like that is visible"."""
+    parts = [" ".join(text.words[i].text for i in group) for group in (*text.segments(), *text.clauses())]
+    return any(map(_is_none, parts))
 
 
-def says_yes(script: Script) -> bool:
-    return any(word.text in ("yes", "yeah", "yep", "yup") for word in script.words)
+def _is_none(part: str) -> bool:
+    return _NONE.search(part) is not None and not _OF_OTHERS.search(part)
 
 
-def denies_flatly(script: Script, subject: Sequence[str]) -> bool:
-    """Whether a clause says that there is none and neither where ("at the gate") nor of which ("red ones")."""
-    denied = [m for m in script.mentions({"subject": subject}) if m.denied and not m.aside] if subject else []
-    zeros = [q for q in find_quantities(script, subject) if q.value == 0 and not (q.other or q.bound or q.denied)]
-    named = {i for m in script.mentions({"subject": subject}) for i in range(m.start, m.end)} if subject else set[int]()
-    numbers = {i for q in find_quantities(script, subject) for i in range(q.start, q.end)}
-    segments = script.segments()
-    for clause in script.clauses():
-        parts = [" ".join(script.words[i].text for i in group) for group in segments if group[0] in clause]
-        said = any(
-            _NONE.search(part) and not _OF_OTHERS.search(part) for part in (*parts, " ".join(script.words[i].text for i in clause))
-        )
-        said = said or bool({m.start for m in denied}.union(q.start for q in zeros).intersection(clause))
-        if said and all(script.words[i].text in _FLAT for i in clause if i not in named | numbers):
-            return True
-    return False
+def says_yes(text: AnswerText) -> bool:
+    """Return whether the word "yes" occurs."""
+    return any(word.text in ("yes", "yeah", "yep", "yup") for word in text.words)
+
+
+def denies_flatly(text: AnswerText, subject: Sequence[str]) -> bool:
+    """Return whether a clause denies the subject as a whole, without a place ("at the gate") or a kind ("red ones")."""
+    mentions = text.mentions({"subject": subject}) if subject else []
+    numbers = find_numbers(text, subject)
+    denials = {m.start for m in mentions if m.denied and not m.aside}
+    denials |= {n.start for n in numbers if n.value == 0 and not (n.other or n.bound or n.denied)}
+    covered = {i for m in mentions for i in range(m.start, m.end)} | {i for n in numbers for i in range(n.start, n.end)}
+    return any(
+        (denials.intersection(clause) or _says_none_in(text, clause))
+        and all(text.words[i].text in _FLAT for i in clause if i not in covered)
+        for clause in text.clauses()
+    )
+
+
+def _says_none_in(text: AnswerText, clause: Sequence[int]) -> bool:
+    """Return whether a clause, or a segment that begins in it, says just "none"."""
+    groups = [*(group for group in text.segments() if group[0] in clause), clause]
+    return any(_is_none(" ".join(text.words[i].text for i in group)) for group in groups)
 
 
 _FLAT = frozenset({
@@ -58,4 +65,4 @@ _FLAT = frozenset({
     "has", "have", "with", "makes", "sum", "nonetheless", "instead", "also", "then", "by", "for", "as", "my", "its", "sign",
     "such", "like",
 })  # fmt: skip
-"""Words that say neither where there is none nor of which."""
+"""Words that limit a denial neither to a place nor to a kind."""

@@ -1,29 +1,30 @@
-"""Reading a price or another figure that is written somewhere: the one number that an answer gives."""
+"""Parse a price or another written figure: the only number that an answer gives."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
 
-from scope_ptz.bench.answers.numbers import Quantity, find_quantities
-from scope_ptz.bench.answers.result import Reading, Unreadable, Value
-from scope_ptz.bench.answers.text import NEGATORS, Script, script
-from scope_ptz.bench.answers.words import clean
+from scope_ptz.bench.answers.numbers import NumberMention, find_numbers
+from scope_ptz.bench.answers.parsed import ParsedAnswer, ParsedValue, Unreadable
+from scope_ptz.bench.answers.text import NEGATORS, AnswerText, answer_text
+from scope_ptz.bench.answers.tokenizer import clean
 from scope_ptz.bench.tasks.expected import Text
 
 _FIGURE = re.compile(r"[£$€]?\s*\d+(?:\.(\d+))?")
 _PENCE = re.compile(r"(?<![\d.,])(\d{1,2})\s?(?:p|pence)\b", re.IGNORECASE)
 _MIXED = re.compile(r"[^\W\d_][.,]?\d|\d[.,]?[^\W\d_]")
 _MEASURE = re.compile(r"(?<![\w.,])\d+(?:\.\d+)?(?:x|m|km|cm|s|st|nd|rd|th|px)\b", re.IGNORECASE)
-"""Digits with letters that stand for themselves: 3x, 1st."""
+"""Digits with a unit or an ordinal ending: 3x, 1st."""
 
 
 def is_figure(accepted: Sequence[str]) -> bool:
+    """Return whether every accepted text is a figure, such as a price."""
     return all(_FIGURE.fullmatch(text) for text in accepted)
 
 
-def read_figure(expected: Text, answer: str) -> Reading | None:
-    """The number of the answer, written with as many decimals as the figure has; None where it has no number."""
+def parse_figure(expected: Text, answer: str) -> ParsedAnswer | None:
+    """Parse the number of an answer, written with as many decimals as the expected figure; None if it has no number."""
     found = _FIGURE.fullmatch(expected.accepted[0])
     places = len(found.group(1) or "") if found else 0
     text = clean(answer)
@@ -31,20 +32,20 @@ def read_figure(expected: Text, answer: str) -> Reading | None:
         text = _PENCE.sub(lambda m: f"{int(m[1]) / 100:.2f}", text)
         text = re.sub(r"(?<=\d\.\d\d)\s?p\b", "", text)
         text = re.sub(r"(?<![\w.,])\.(?=\d\d\b)", "0.", re.sub(r"(?<![\d.,])(\d+),(?=\d\d(?!\d))", r"\1.", text))
-    said = script(text)
-    quantities = find_quantities(said, ())
-    told = [q for q in quantities if not _is_denied(said, q)]
-    if not quantities or _MIXED.search(_MEASURE.sub("", text)):
-        return None  # "O.95" is for what knows which letters look alike, and "5.C0" is no 5.
-    if any(q.bound for q in told):
+    statement = answer_text(text)
+    numbers = find_numbers(statement, ())
+    stated = [q for q in numbers if not _is_denied(statement, q)]
+    if not numbers or _MIXED.search(_MEASURE.sub("", text)):
+        return None  # "O.95" needs the comparison of look-alike characters, and "5.C0" is not 5.
+    if any(q.bound for q in stated):
         return Unreadable("a bound, not a figure")
-    values = {q.value for q in told}
+    values = {q.value for q in stated}
     if len(values) != 1:
-        return Unreadable("several numbers: " + ", ".join(f"{v:g}" for v in sorted(values)) if values else "only what is denied")
+        return Unreadable("several numbers: " + ", ".join(f"{v:g}" for v in sorted(values)) if values else "every number is denied")
     value = values.pop()
-    return Value(f"{value:.{places}f}" if abs(round(value, places) - value) < 1e-9 else f"{value:g}")
+    return ParsedValue(f"{value:.{places}f}" if abs(round(value, places) - value) < 1e-9 else f"{value:g}")
 
 
-def _is_denied(said: Script, quantity: Quantity) -> bool:
-    segment = said.words[quantity.start].segment
-    return quantity.denied or any(w.text in NEGATORS - {"0", "zero"} for w in said.words[: quantity.start] if w.segment == segment)
+def _is_denied(statement: AnswerText, number: NumberMention) -> bool:
+    segment = statement.words[number.start].segment
+    return number.denied or any(w.text in NEGATORS - {"0", "zero"} for w in statement.words[: number.start] if w.segment == segment)

@@ -1,11 +1,11 @@
-"""Saying what is in one half of the picture, which alone does not tell whether it is in the half that was asked about."""
+"""Answers that only say in which half of the picture something is. They do not answer for the half that was asked about."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
 
-from scope_ptz.bench.answers.text import Script
+from scope_ptz.bench.answers.text import AnswerText, NameMention
 
 _SIDE = (
     r"(on|in|at|to|from) (the |its )?(far |very )?(left|right|upper|lower|top|bottom|other)( hand)?( side| half| part)?\b"
@@ -22,26 +22,30 @@ _DEFINITE = re.compile(
 )
 
 
-def leaves_the_half_open(script: Script, subject: Sequence[str]) -> bool:
-    """Whether a text only tells the halves apart ("one on the left, none on the right"), or says of all that they are in one half.
+def leaves_the_half_open(text: AnswerText, subject: Sequence[str]) -> bool:
+    """Return whether an answer leaves open whether the subject is in the half that was asked about.
 
-    What that answers depends on which half was asked about.
+    Such an answer says something different of each half ("one on the left, none on the right"), or places all of them in one half.
     """
-    mentions = script.mentions({"subject": subject}) if subject else []
-    there, absent = False, False
-    for group in script.segments():
-        said = " ".join(script.words[i].text for i in group)
+    mentions = text.mentions({"subject": subject}) if subject else []
+    present, absent = False, False
+    for group in text.segments():
+        segment = " ".join(text.words[i].text for i in group)
         own = [m for m in mentions if group[0] <= m.start <= group[-1]]
-        if not _AT_A_SIDE.search(said):
-            there = there or any(not m.denied for m in own)
+        stated = [m for m in own if not m.denied]
+        present = present or bool(stated)
+        if not _AT_A_SIDE.search(segment):
             continue
-        denied = any(m.denied for m in own) or _NOT_AT_A_SIDE.search(said) is not None
+        if any(_ONLY.search(segment) or _is_definite(text, group, m) for m in stated):
+            return True
+        denied = len(stated) < len(own) or _NOT_AT_A_SIDE.search(segment) is not None
         absent = absent or denied
-        there = there or any(not m.denied for m in own) or (not denied and _SOME_AT_A_SIDE.search(said) is not None)
-        for mention in (m for m in own if not m.denied):
-            before = " ".join(script.words[i].text for i in group if i < mention.start)
-            after = " ".join(script.words[i].text for i in group if i >= mention.end)
-            is_definite = re.search(r"\b(the|these|those)( \w+)?$", before) is not None and _DEFINITE.match(after) is not None
-            if is_definite or _ONLY.search(said):
-                return True
-    return there and absent
+        present = present or (not denied and _SOME_AT_A_SIDE.search(segment) is not None)
+    return present and absent
+
+
+def _is_definite(text: AnswerText, group: Sequence[int], mention: NameMention) -> bool:
+    """Return whether a segment places all of the subject at one side, as in "the cones are on the left"."""
+    before = " ".join(text.words[i].text for i in group if i < mention.start)
+    after = " ".join(text.words[i].text for i in group if i >= mention.end)
+    return re.search(r"\b(the|these|those)( \w+)?$", before) is not None and _DEFINITE.match(after) is not None

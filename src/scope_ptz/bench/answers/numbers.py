@@ -1,4 +1,4 @@
-"""Numbers in free text that could be counts: of what was asked for or of something else, exact or only a bound."""
+"""Find the numbers in a text that could be counts, and what each of them counts."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from scope_ptz.bench.answers.numerals import number_at
-from scope_ptz.bench.answers.text import Script
-from scope_ptz.bench.answers.words import Word, plain_words, same_word
+from scope_ptz.bench.answers.number_words import number_at
+from scope_ptz.bench.answers.text import AnswerText
+from scope_ptz.bench.answers.tokenizer import Word, plain_words, same_word
 
 _MEASURES = ("degree", "percent", "x", "second", "minute", "metre", "kilometre", "px", "pixel", "time")
 _LABELS = frozenset({
@@ -34,7 +34,7 @@ _NOT_WRITTEN_OUT = frozenset({
     "see", "seen", "count", "counted", "find", "found", "any", "answer", "number", "it", "that", "true", "correct", "right",
     "about", "precisely", "as", "many",
 })  # fmt: skip
-"""Words between "not" and the number that it denies."""
+"""Words that may stand between "not" and the number that it denies."""
 
 _TOTALS = re.compile(
     r"\b(total|altogether|together|overall|in all|combined|sum|makes|making|therefore|thus|hence|so|final|finally)\b"
@@ -44,14 +44,22 @@ _ANNOUNCES = re.compile(
     r"\b(total( [^\W\d]\w*){0,2}|difference( (is|equals|makes|being|therefore|thus))*|(final )?answer( is)?|sum( is)?)$"
 )
 _ANYTHING = frozenset({"object", "objects", "item", "items", "thing", "things"})
-"""What a total may be of without being of something else than what was asked for."""
+"""Words for anything countable. A total of these counts what was asked for."""
 
 
 @dataclass(frozen=True, slots=True)
-class Quantity:
-    """A number in a text, words ``start`` to ``end`` (exclusive). ``own``: it counts what was asked for; ``other``: not.
+class NumberMention:
+    """A number in a text.
 
-    ``bound``: it stands in place of a number that is not told ("at least 3", "<3", "3 and a half").
+    Attributes:
+        value: Its value.
+        start: Position of its first word.
+        end: Position after its last word.
+        own: Whether it counts what was asked for.
+        other: Whether it counts something else.
+        bound: Whether it only limits the exact number ("at least 3", "<3", "3 and a half").
+        denied: Whether it is denied ("not 3").
+        total: Whether it is given as a total or a result.
     """
 
     value: float
@@ -64,10 +72,16 @@ class Quantity:
     total: bool = False
 
 
-def find_quantities(script: Script, unit: Sequence[str]) -> list[Quantity]:
-    """Every number that could be a count, in order; measures (15 degrees, 2x) not asked for, ordinals, labels and numbers glued to
-    letters ("0x3", "A4") are none."""
-    words, found, at = script.words, list[Quantity](), 0
+def find_numbers(text: AnswerText, unit: Sequence[str]) -> list[NumberMention]:
+    """Return every number that could be a count, in order.
+
+    Ordinals, labels, numbers glued to letters ("0x3", "A4") and measures that were not asked for ("15 degrees", "2x") are left out.
+
+    Args:
+        text: The text.
+        unit: The wordings of what is counted.
+    """
+    words, found, at = text.words, list[NumberMention](), 0
     while at < len(words):
         value, end = number_at(words, at)
         if value is None:
@@ -75,13 +89,13 @@ def find_quantities(script: Script, unit: Sequence[str]) -> list[Quantity]:
             continue
         is_glued = at > 0 and words[at].gap == ""
         if not is_glued and (_followed_by(words, end, unit) or not _is_no_count(words, at, end)):
-            found.append(_quantity(script, value, at, end, unit))
+            found.append(_number_mention(text, value, at, end, unit))
         at = end
     return found
 
 
-def _quantity(script: Script, value: float, start: int, end: int, unit: Sequence[str]) -> Quantity:
-    words = script.words
+def _number_mention(text: AnswerText, value: float, start: int, end: int, unit: Sequence[str]) -> NumberMention:
+    words = text.words
     owned = _followed_by(words, end, unit) or _announced(words, start, unit)
     after = words[end].text if end < len(words) and words[end].segment == words[end - 1].segment else ""
     ones = re.match(r"(\w+ ){0,2}(ones|others)\b", " ".join(w.text for w in words[end : end + 3]))
@@ -90,7 +104,7 @@ def _quantity(script: Script, value: float, start: int, end: int, unit: Sequence
     segment = " ".join(w.text for w in words if w.segment == words[start].segment)
     announced_total = _ANNOUNCES.search(before) is not None
     bare = bare or (announced_total and after in _ANYTHING)
-    return Quantity(
+    return NumberMention(
         value=value,
         start=start,
         end=end,
@@ -113,7 +127,7 @@ def _is_no_count(words: Sequence[Word], start: int, end: int) -> bool:
 
 
 def _is_label(words: Sequence[Word], at: int) -> bool:
-    """Whether the digits at a word say which of several, as in "preset 3" and "presets 1, 2 and 3"."""
+    """Return whether digits are a label, as in "preset 3" and "presets 1, 2 and 3"."""
     while at > 0 and words[at].clause == words[at - 1].clause:
         at -= 1
         if words[at].segment == words[at + 1].segment and any(same_word(words[at].text, label) for label in _LABELS):
@@ -132,7 +146,7 @@ def _is_bound(words: Sequence[Word], start: int, end: int) -> bool:
 
 
 def _is_denied(words: Sequence[Word], start: int) -> bool:
-    """ "not 3", "it is not the case that there are 3", "neither 3 nor 5"."""
+    """Return whether a number is denied: "not 3", "it is not the case that there are 3", "neither 3 nor 5"."""
     at = start - 1
     while at >= 0 and words[at].segment == words[start].segment:
         if words[at].text in ("not", "never", "neither", "nor"):
@@ -144,7 +158,7 @@ def _is_denied(words: Sequence[Word], start: int) -> bool:
 
 
 def _followed_by(words: Sequence[Word], end: int, unit: Sequence[str]) -> bool:
-    """Whether the thing counted comes after the number, with at most four adjectives between."""
+    """Return whether the counted thing follows the number, with at most four adjectives between them."""
     phrases = [plain_words(u) for u in unit]
     for at in range(end, min(end + 5, len(words))):
         if words[at].segment != words[end - 1].segment:
@@ -159,7 +173,7 @@ def _followed_by(words: Sequence[Word], end: int, unit: Sequence[str]) -> bool:
 
 
 def _announced(words: Sequence[Word], start: int, unit: Sequence[str]) -> bool:
-    """ "Cones: 5"."""
+    """Return whether the counted thing precedes the number, as in "Cones: 5"."""
     if start == 0 or not re.fullmatch(r"\s*[:=]\s*|\s+-\s+", words[start].gap):
         return False
     for phrase in (plain_words(u) for u in unit):

@@ -1,12 +1,12 @@
-"""Where a text names one of several options, by its whole name or by a shortening that fits no other of them."""
+"""Find where an answer names one of several options, by its full name or by an unambiguous short form."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import combinations
 
-from scope_ptz.bench.answers.text import Mention, Script, wordings_of
-from scope_ptz.bench.answers.words import plain_words, same_word
+from scope_ptz.bench.answers.text import AnswerText, NameMention
+from scope_ptz.bench.answers.tokenizer import all_wordings, plain_words, same_word
 
 _LINKS = frozenset({"with", "in", "of", "on", "at", "from", "who", "carrying", "and"})
 _BEFORE = frozenset({
@@ -19,29 +19,29 @@ _AFTER = frozenset({
     "stands", "takes", "being", "followed", "because", "since", "as", "while", "next", "last", "first", "second", "third", "by",
     "to",
 })  # fmt: skip
-"""What may stand around a shortening; any other word would make it the name of another thing ("the Whitlock sign", "bus stop")."""
+"""Words that may surround a short form. Any other word would make it another thing's name ("the Whitlock sign", "bus stop")."""
 
 
-def option_mentions(script: Script, options: Mapping[str, Sequence[str]]) -> list[Mention]:
-    """Every place where an option is named. "The bus" names the red double-decker bus where there is no other bus."""
-    whole = {name: wordings_of(name, further) for name, further in options.items()}
+def option_mentions(text: AnswerText, options: Mapping[str, Sequence[str]]) -> list[NameMention]:
+    """Return every place that names an option. "The bus" names the red double-decker bus if no other option is a bus."""
+    whole = {name: all_wordings(name, further) for name, further in options.items()}
     short = _shortenings(whole)
-    found = script.mentions({name: (*wordings, *short[name]) for name, wordings in whole.items()})
-    return [m for m in found if _is_one_of(script, m, whole[m.name]) or _stands_alone(script, m)]
+    found = text.mentions({name: (*wordings, *short[name]) for name, wordings in whole.items()})
+    return [m for m in found if _is_one_of(text, m, whole[m.name]) or _stands_alone(text, m)]
 
 
-def _is_one_of(script: Script, mention: Mention, wordings: Sequence[str]) -> bool:
-    said = [w.text for w in script.words[mention.start : mention.end]]
-    return any(len(words) == len(said) and _begins(words, said) for words in map(plain_words, wordings))
+def _is_one_of(text: AnswerText, mention: NameMention, wordings: Sequence[str]) -> bool:
+    named = [w.text for w in text.words[mention.start : mention.end]]
+    return any(len(words) == len(named) and _begins(words, named) for words in map(plain_words, wordings))
 
 
-def _begins(words: Sequence[str], said: Sequence[str]) -> bool:
+def _begins(words: Sequence[str], named: Sequence[str]) -> bool:
     articles = ({"a", "the"}, {"an", "the"}, {"a", "an"})
-    return all(same_word(one, other) or {one, other} in articles for one, other in zip(words, said, strict=True))
+    return all(same_word(one, other) or {one, other} in articles for one, other in zip(words, named, strict=True))
 
 
-def _stands_alone(script: Script, mention: Mention) -> bool:
-    words = script.words
+def _stands_alone(text: AnswerText, mention: NameMention) -> bool:
+    words = text.words
     before = words[mention.start - 1 : mention.start] if mention.start else ()
     plural = words[mention.end - 1].text.endswith("s")
     opens = (
@@ -58,7 +58,10 @@ _PLACES = frozenset({"in the middle", "on the left", "on the right", "in the cen
 
 
 def _shortenings(whole: Mapping[str, Sequence[str]]) -> dict[str, tuple[str, ...]]:
-    """By option: its noun with some of the words before it, or the proper name that it begins with; none that fits two options."""
+    """Return the short forms of each option that fit no other option.
+
+    A short form is the noun with some of the words before it, or the proper name at the beginning of the option.
+    """
     found = dict[str, tuple[str, ...]]()
     for name in whole:
         others = [plain_words(wording) for other, wordings in whole.items() if other != name for wording in wordings]
@@ -80,7 +83,7 @@ def _shorter(name: str) -> list[tuple[str, ...]]:
 
 
 def _is_within(words: Sequence[str], other: Sequence[str]) -> bool:
-    """Whether some words stand in a name in their order, with or without others between."""
+    """Return whether a name contains the words in their order, possibly with others between them."""
     at = 0
     for word in other:
         if at < len(words) and same_word(word, words[at]):

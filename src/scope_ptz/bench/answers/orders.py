@@ -1,4 +1,4 @@
-"""Reading answers that compare: orders of several things, and how one stands to another."""
+"""Parse answers that compare: an order of several things, or the relation between two."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from itertools import pairwise
 
 from scope_ptz.bench.answers.choices import SAME
 from scope_ptz.bench.answers.comparisons import bearer_of, reference_of
-from scope_ptz.bench.answers.numbers import find_quantities
+from scope_ptz.bench.answers.numbers import find_numbers
 from scope_ptz.bench.answers.options import option_mentions
-from scope_ptz.bench.answers.ranks import concluding, contradicts_its_numbers
-from scope_ptz.bench.answers.result import Reading, Unreadable, Value
-from scope_ptz.bench.answers.text import Mention, Script
+from scope_ptz.bench.answers.order_numbers import concluding, contradicts_its_numbers
+from scope_ptz.bench.answers.parsed import ParsedAnswer, ParsedValue, Unreadable
+from scope_ptz.bench.answers.text import AnswerText, NameMention
 from scope_ptz.bench.tasks.expected import Ordering, Relation
 
 _FILLERS = frozenset({
@@ -25,59 +25,62 @@ _NAMING = frozenset({
 _TURNED = {"forward": "backward", "backward": "forward"}
 
 
-def read_ordering(expected: Ordering, script: Script) -> Reading:
-    """The options in the order that the answer gives them, turned round where it begins at the other end."""
-    everything = [m for m in option_mentions(script, expected.options) if not m.denied or _is_counted(script, m)]
-    begins = concluding(script, everything, set(expected.options))
+def parse_ordering(expected: Ordering, text: AnswerText) -> ParsedAnswer:
+    """Parse the order that an answer gives, reversed if the answer begins at the other end."""
+    everything = [m for m in option_mentions(text, expected.options) if not m.denied or _is_counted(text, m)]
+    begins = concluding(text, everything, set(expected.options))
     mentions = [m for m in everything if m.start >= begins]
     order = list(dict.fromkeys(m.name for m in mentions))
     if set(order) != set(expected.options):
         return Unreadable("not all of them are named" if order else "none of them is named")
-    ends = [m for m in script.mentions({"first": expected.first, "last": expected.last}) if m.start >= begins]
-    told = _told(script, mentions, ends, order, begins)
-    if isinstance(told, str):
-        return Unreadable(told)
-    if contradicts_its_numbers(script, everything, told, expected.first):
+    ends = [m for m in text.mentions({"first": expected.first, "last": expected.last}) if m.start >= begins]
+    stated = _stated_order(text, mentions, ends, order, begins)
+    if isinstance(stated, str):
+        return Unreadable(stated)
+    if contradicts_its_numbers(text, everything, stated, expected.first):
         return Unreadable("its own numbers contradict the order")
-    return Value(told)
+    return ParsedValue(stated)
 
 
-def _told(
-    script: Script, mentions: Sequence[Mention], ends: Sequence[Mention], order: list[str], begins: int
+def _stated_order(
+    text: AnswerText, mentions: Sequence[NameMention], ends: Sequence[NameMention], order: list[str], begins: int
 ) -> tuple[str, ...] | str:
-    """The order that is told, or the reason why none is."""
-    thans = sum(w.text == "than" for w in script.words[begins:])
+    """Return the stated order, or the reason why there is none."""
+    thans = sum(w.text == "than" for w in text.words[begins:])
     if 0 < thans < len(order) - 1:
         return "only some of them are compared"
-    placed = _placed(script, mentions, ends)
+    placed = _placed(text, mentions, ends)
     if placed.get("first") is not None and placed.get("last") is not None and placed["first"] != placed["last"]:
         between = [name for name in order if name not in placed.values()]
         if len(between) > 1 and (order[0], order[-1]) not in ((placed["first"], placed["last"]), (placed["last"], placed["first"])):
-            return "the order between the two ends is not told"
+            return "the order between the two ends is missing"
         if order[0] == placed["last"] and order[-1] == placed["first"]:
             between.reverse()
         return (str(placed["first"]), *between, str(placed["last"]))
     starts_at_last = placed.get("last") == order[0] or _heading_is_turned(mentions, ends)
-    if starts_at_last or any("<" in w.gap for w in script.words[begins:]):
+    if starts_at_last or any("<" in w.gap for w in text.words[begins:]):
         order.reverse()
     elif placed.get("first") not in (None, order[0]) or placed.get("last") not in (None, order[-1]):
-        return "the order is told in two ways"
+        return "the order is ambiguous"
     return tuple(order)
 
 
-def _is_counted(script: Script, mention: Mention) -> bool:
-    """Whether a number of none stands beside a thing: "cabinets (none)" has a place in an order, and denies nothing."""
-    after = script.words[mention.end] if mention.end < len(script.words) else None
+def _is_counted(text: AnswerText, mention: NameMention) -> bool:
+    """Return whether a thing is counted as zero. "Cabinets (none)" has a place in an order and denies nothing."""
+    after = text.words[mention.end] if mention.end < len(text.words) else None
     return after is not None and after.text in ("none", "0", "zero") and re.search(r"[(:=]", after.gap) is not None
 
 
-def _placed(script: Script, mentions: Sequence[Mention], ends: Sequence[Mention]) -> dict[str, str | None]:
-    """Which option is said to be at which end: in a segment what is named before it, else, where it has one end, after it."""
+def _placed(text: AnswerText, mentions: Sequence[NameMention], ends: Sequence[NameMention]) -> dict[str, str | None]:
+    """Return the option that the answer places at each end.
+
+    In a segment it is the option named before the word for the end. If the segment names only one end, it may follow that word.
+    """
     placed: dict[str, str | None] = {}
-    for group in script.segments():
+    for group in text.segments():
         here = [m for m in mentions if group[0] <= m.start <= group[-1]]
         end = [m for m in ends if group[0] <= m.start <= group[-1] and not m.denied]
-        if any([w.text for w in script.words[one.end : two.start]] == ["to"] for one, two in pairwise(end)):
+        if any([w.text for w in text.words[one.end : two.start]] == ["to"] for one, two in pairwise(end)):
             continue  # "from most to fewest" places nothing.
         since = group[0]
         for one in end:
@@ -88,52 +91,52 @@ def _placed(script: Script, mentions: Sequence[Mention], ends: Sequence[Mention]
     return placed
 
 
-def _heading_is_turned(mentions: Sequence[Mention], ends: Sequence[Mention]) -> bool:
-    """ "From fewest to most: ..."."""
+def _heading_is_turned(mentions: Sequence[NameMention], ends: Sequence[NameMention]) -> bool:
+    """Return whether the answer announces the opposite order, as in "From fewest to most: ..."."""
     before = [m.name for m in ends if m.start < mentions[0].start]
     return before[:2] == ["last", "first"] or before == ["last"]
 
 
-def read_relation(expected: Relation, script: Script) -> Reading:
-    """How the subject stands to the object, as every clause of the answer that says so agrees."""
-    said = set[str]()
+def parse_relation(expected: Relation, text: AnswerText) -> ParsedAnswer:
+    """Parse the relation between subject and object. All clauses that state one must agree."""
+    relations = set[str]()
     names = {"subject": expected.subject, "object": expected.object}
     ways = {"forward": expected.forward, "backward": expected.backward}
-    things = script.mentions(names)
-    comparators = [m for m in script.mentions(ways) if not m.denied]
+    things = text.mentions(names)
+    comparators = [m for m in text.mentions(ways) if not m.denied]
     for comparator in comparators:
-        way = _way(script, comparator, things)
+        way = _way(text, comparator, things)
         if way is None:
             return Unreadable("it does not say which of them")
-        said.add(way)
-    alike = [m for m in script.mentions({"same": (*expected.same, *SAME)}) if not m.denied]
+        relations.add(way)
+    alike = [m for m in text.mentions({"same": (*expected.same, *SAME)}) if not m.denied]
     if alike and not comparators:
-        return Value("same")
-    denied = any(m.denied for m in script.mentions({**ways, "same": SAME}))
-    if not comparators and not denied and not any(w.text == "or" for w in script.words):
+        return ParsedValue("same")
+    denied = any(m.denied for m in text.mentions({**ways, "same": SAME}))
+    if not comparators and not denied and not any(w.text == "or" for w in text.words):
         named = {m.name for m in things if not m.denied}
-        if len(named) == 1 and _is_bare(script, things):
-            said.add("forward" if named == {"subject"} else "backward")
-    if len(said) == 1:
-        return Value(said.pop())
-    return Unreadable("it says both" if said else "no comparison")
+        if len(named) == 1 and _is_bare(text, things):
+            relations.add("forward" if named == {"subject"} else "backward")
+    if len(relations) == 1:
+        return ParsedValue(relations.pop())
+    return Unreadable("it says both" if relations else "no comparison")
 
 
-def _is_bare(script: Script, things: Sequence[Mention]) -> bool:
-    """Whether a text does no more than name a thing ("The gate.", "At the gate, by two")."""
+def _is_bare(text: AnswerText, things: Sequence[NameMention]) -> bool:
+    """Return whether an answer only names a thing ("The gate.", "At the gate, by two")."""
     named = {i for m in things for i in range(m.start, m.end)}
-    counted = {i for q in find_quantities(script, ()) for i in range(q.start, q.end)}
-    return all(w.text in _NAMING for i, w in enumerate(script.words) if i not in named | counted)
+    counted = {i for q in find_numbers(text, ()) for i in range(q.start, q.end)}
+    return all(w.text in _NAMING for i, w in enumerate(text.words) if i not in named | counted)
 
 
-def _way(script: Script, comparator: Mention, things: Sequence[Mention]) -> str | None:
-    """The relation of subject to object that one comparator states; None when it does not say of which of them."""
-    reference = reference_of(script, comparator, things)
+def _way(text: AnswerText, comparator: NameMention, things: Sequence[NameMention]) -> str | None:
+    """Return the relation that one comparative states; None if it does not say which thing it describes."""
+    reference = reference_of(text, comparator, things)
     if reference is not None:
         return comparator.name if reference.name == "object" else _TURNED[comparator.name]
-    bearer = bearer_of(script, comparator, things)
+    bearer = bearer_of(text, comparator, things)
     if bearer is not None:
         return comparator.name if bearer.name == "subject" else _TURNED[comparator.name]
-    clause = script.words[comparator.start].clause
-    words = {w.text for i, w in enumerate(script.words) if w.clause == clause and not comparator.start <= i < comparator.end}
+    clause = text.words[comparator.start].clause
+    words = {w.text for i, w in enumerate(text.words) if w.clause == clause and not comparator.start <= i < comparator.end}
     return comparator.name if words <= _FILLERS else None

@@ -1,41 +1,45 @@
-"""Reading whether something is so, and whether there is any of it."""
+"""Parse whether something is so, and whether there is any of it."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
 
-from scope_ptz.bench.answers.counts import is_miscounted, read_number
+from scope_ptz.bench.answers.counts import is_miscounted, parse_number
 from scope_ptz.bench.answers.denials import denies_flatly, says_none, says_yes
 from scope_ptz.bench.answers.halves import leaves_the_half_open
-from scope_ptz.bench.answers.numbers import find_quantities
-from scope_ptz.bench.answers.result import Reading, Unreadable, Value
-from scope_ptz.bench.answers.text import Mention, Script
-from scope_ptz.bench.answers.words import plain_words
+from scope_ptz.bench.answers.numbers import find_numbers
+from scope_ptz.bench.answers.parsed import ParsedAnswer, ParsedValue, Unreadable
+from scope_ptz.bench.answers.text import AnswerText, NameMention
+from scope_ptz.bench.answers.tokenizer import plain_words
 from scope_ptz.bench.tasks.expected import NoneThere, YesNo
 
 _YES = frozenset({"yes", "yeah", "yep", "yup", "correct", "affirmative", "true", "indeed"})
 _NO = frozenset({"no", "nope", "nah", "negative", "false", "incorrect"})
 _NO_LAST = frozenset({"no", "nope", "nah"})
-"""At the end of a piece they deny nothing that follows: "I say no", "it is a no"."""
+"""Words that are a verdict of their own at the end of a segment: "I say no", "it is a no"."""
 
 
-def verdict_words(script: Script) -> set[bool]:
-    """The yes and no that stand by themselves: at the beginning before a comma, or as a whole clause."""
-    said = {True} if says_yes(script) else set[bool]()
-    for group in script.segments():
-        words = [script.words[i].text for i in group]
+def verdict_words(text: AnswerText) -> set[bool]:
+    """Return the yes and no that stand on their own: at the beginning of the answer, or as a whole segment.
+
+    Returns:
+        True for yes, False for no; both if the answer contradicts itself.
+    """
+    verdicts = {True} if says_yes(text) else set[bool]()
+    for group in text.segments():
+        words = [text.words[i].text for i in group]
         alone = len(words) == 1 or (group[0] == 0 and words[0] in ("yes", "yeah", "yep", "indeed"))
         if alone and words[0] in _YES:
-            said.add(True)
+            verdicts.add(True)
         if len(words) == 1 and words[0] in _NO:
-            said.add(False)
+            verdicts.add(False)
         if words[-1] in _NO_LAST or words == ["not"]:
-            said |= {False, "not" in words[:-1]}
-    said |= {word == "yes" for word in re.findall(r"\b(?:answer|verdict) is (?:a clear )?(yes|no)\b", script.text())}
-    if re.search(r"\b(yes|no) (and |or )?(yes|no)\b", script.text()) or "not yes" in script.text():
+            verdicts |= {False, "not" in words[:-1]}
+    verdicts |= {word == "yes" for word in re.findall(r"\b(?:answer|verdict) is (?:a clear )?(yes|no)\b", text.joined())}
+    if re.search(r"\b(yes|no) (and |or )?(yes|no)\b", text.joined()) or "not yes" in text.joined():
         return {True, False}
-    return said
+    return verdicts
 
 
 _ELLIPSIS = re.compile(
@@ -45,124 +49,127 @@ _ELLIPSIS = re.compile(
 _REFUTED = re.compile(r"^((and|so|but) )*(it|this|that|the (claim|statement)) (is|was) (false|untrue|incorrect|wrong)$")
 
 
-def _short_answers(script: Script) -> set[bool]:
-    """ "It is not.", "They do.", "That is not the case." """
-    said = set[bool]()
-    for group in script.segments():
-        piece = _text_of(script, group)
+def _short_answers(text: AnswerText) -> set[bool]:
+    """Return the yes and no of short answers: "It is not.", "They do.", "That is not the case"."""
+    verdicts = set[bool]()
+    for group in text.segments():
+        piece = _text_of(text, group)
         if match := _ELLIPSIS.match(piece):
-            said.add(match["not"] is None)
+            verdicts.add(match["not"] is None)
         elif _REFUTED.match(piece):
-            said.add(False)
-    return said
+            verdicts.add(False)
+    return verdicts
 
 
-def read_yes_no(expected: YesNo, script: Script) -> Reading:
-    """A bare yes or no, and what is stated about the thing; they must not contradict each other."""
-    said = verdict_words(script) | _short_answers(script)
-    if not said and leaves_the_half_open(script, expected.affirms):
-        return Unreadable("of which half it is told may not be what is asked")
-    mentions = script.mentions({"yes": expected.affirms, "no": expected.denies})
+def parse_yes_no(expected: YesNo, text: AnswerText) -> ParsedAnswer:
+    """Parse a yes or no, and what is stated about the thing. The two must not contradict each other."""
+    verdicts = verdict_words(text) | _short_answers(text)
+    if not verdicts and leaves_the_half_open(text, expected.affirms):
+        return Unreadable("it is about one half of the picture, perhaps not the one that was asked about")
+    mentions = text.mentions({"yes": expected.affirms, "no": expected.denies})
     stated = {(mention.name == "yes") != (mention.denied or mention.aside) for mention in mentions}
-    if len(stated) == 2 and len(said) == 1 and (last := script.segments()[-1:]) and _CONCLUDED.match(_text_of(script, last[0])):
-        return Value(said.pop())  # "At the gate: no van. At the works: 1 van. So yes."
-    said |= stated
-    if not said and says_none(script):
-        said = {False}
-    if denies_flatly(script, ()) and True in said:
-        said.add(False)
-    for clause in script.clauses():
-        if re.search(r"\bthere (is|are) (none|not any)( here| there| visible| in view)?$", _text_of(script, clause)):
-            said.add(False)
-    if len(said) == 1:
-        return Value(said.pop())
-    return Unreadable("both yes and no" if said else "neither yes nor no")
+    if len(stated) == 2 and len(verdicts) == 1 and (last := text.segments()[-1:]) and _CONCLUDED.match(_text_of(text, last[0])):
+        return ParsedValue(verdicts.pop())  # "At the gate: no van. At the works: 1 van. So yes."
+    verdicts |= stated
+    if not verdicts and says_none(text):
+        verdicts = {False}
+    if denies_flatly(text, ()) and True in verdicts:
+        verdicts.add(False)
+    for clause in text.clauses():
+        if re.search(r"\bthere (is|are) (none|not any)( here| there| visible| in view)?$", _text_of(text, clause)):
+            verdicts.add(False)
+    if len(verdicts) == 1:
+        return ParsedValue(verdicts.pop())
+    return Unreadable("both yes and no" if verdicts else "neither yes nor no")
 
 
 _CONCLUDED = re.compile(r"^(so|therefore|thus|hence|overall) (the answer is |it is )?(yes|no)$")
 
 
-def _text_of(script: Script, group: Sequence[int]) -> str:
-    return " ".join(script.words[i].text for i in group)
+def _text_of(text: AnswerText, group: Sequence[int]) -> str:
+    return " ".join(text.words[i].text for i in group)
 
 
-def read_none_there(expected: NoneThere, script: Script) -> Reading:
-    """True when the answer says that there is none and nothing that is only said of one that is there; False when there is one."""
-    if re.search(r"\b(none|no|nothing|zero|0) or (one|two|some|several|a few|1|2)\b", script.text()):
+def parse_none_there(expected: NoneThere, text: AnswerText) -> ParsedAnswer:
+    """Parse whether an answer says that there is none.
+
+    The value is True if it says so and claims nothing that only a present thing could have. It is False if it says the opposite.
+    """
+    if re.search(r"\b(none|no|nothing|zero|0) or (one|two|some|several|a few|1|2)\b", text.joined()):
         return Unreadable("an alternative")
-    said = says_that_none(script, expected.subject)
-    if not verdict_words(script) and leaves_the_half_open(script, expected.subject):
-        return Unreadable("of which half it is told may not be what is asked")
-    if True in said and (_counts_some(script, expected.subject) or _claims(script, expected)):
-        said = {True, False}
-    if len(said) == 1:
-        return Value(said.pop())
+    verdicts = says_that_none(text, expected.subject)
+    if not verdict_words(text) and leaves_the_half_open(text, expected.subject):
+        return Unreadable("it is about one half of the picture, perhaps not the one that was asked about")
+    if True in verdicts and (_counts_some(text, expected.subject) or _claims(text, expected)):
+        verdicts = {True, False}
+    if len(verdicts) == 1:
+        return ParsedValue(verdicts.pop())
     return Unreadable(
-        "both that there is one and that there is none" if said else "neither that there is one nor that there is none"
+        "both that there is one and that there is none" if verdicts else "neither that there is one nor that there is none"
     )
 
 
-def says_that_none(script: Script, subject: Sequence[str]) -> set[bool]:
-    """True: somewhere the text says that there is none; False: that there is one."""
-    mentions = script.mentions({"subject": subject})
-    said = {not v for v in verdict_words(script)}
-    mentions = [m for m in mentions if m.denied or not _is_another(script, m, subject)]
-    said |= {m.denied for m in mentions if not (m.aside or (m.denied and _is_partial(script, m, subject)))}
-    numbers = [q for q in find_quantities(script, subject) if not (q.other or q.bound or q.denied)]
-    said |= {q.value == 0 for q in numbers if not mentions or q.value == 0}
-    if says_none(script):
-        said.add(True)
-    return said
+def says_that_none(text: AnswerText, subject: Sequence[str]) -> set[bool]:
+    """Return what an answer says about the subject: True for "there is none", False for "there is one", or both."""
+    mentions = text.mentions({"subject": subject})
+    verdicts = {not v for v in verdict_words(text)}
+    mentions = [m for m in mentions if m.denied or not _is_another(text, m, subject)]
+    verdicts |= {m.denied for m in mentions if not (m.aside or (m.denied and _is_partial(text, m, subject)))}
+    numbers = [q for q in find_numbers(text, subject) if not (q.other or q.bound or q.denied)]
+    verdicts |= {q.value == 0 for q in numbers if not mentions or q.value == 0}
+    if says_none(text):
+        verdicts.add(True)
+    return verdicts
 
 
-def _is_another(script: Script, mention: Mention, subject: Sequence[str]) -> bool:
-    """ "The only van is red", where green vans are asked after: it is said of one that is not meant."""
-    before = script.words[max(0, mention.start - 1) : mention.start]
+def _is_another(text: AnswerText, mention: NameMention, subject: Sequence[str]) -> bool:
+    """Return whether a mention means another thing, as in "the only van is red" when the question is about green vans."""
+    before = text.words[max(0, mention.start - 1) : mention.start]
     is_short = mention.end - mention.start < len(plain_words(subject[0]))
     return is_short and any(w.text in ("only", "other") for w in before)
 
 
-def _is_partial(script: Script, mention: Mention, subject: Sequence[str]) -> bool:
-    """ "No kite is in the other quarters", "not 5 kites": that does not say that there is none."""
-    clause = script.words[mention.start].clause
-    after = " ".join(w.text for w in script.words[mention.end : mention.end + 8] if w.clause == clause)
+def _is_partial(text: AnswerText, mention: NameMention, subject: Sequence[str]) -> bool:
+    """Return whether a denial covers only a place or a number: "no kite is in the other quarters", "not 5 kites"."""
+    clause = text.words[mention.start].clause
+    after = " ".join(w.text for w in text.words[mention.end : mention.end + 8] if w.clause == clause)
     elsewhere = re.match(r"(\w+ ){0,4}?((in|at|on|from|of) (the|any) others?|elsewhere)\b", after)
-    return elsewhere is not None or is_miscounted(script, mention, subject)
+    return elsewhere is not None or is_miscounted(text, mention, subject)
 
 
-def _counts_some(script: Script, subject: Sequence[str]) -> bool:
-    """Whether a number above zero is told that could count what is said not to be there."""
-    number = read_number(script, subject)
+def _counts_some(text: AnswerText, subject: Sequence[str]) -> bool:
+    """Return whether an answer states a number above zero that could count the subject."""
+    number = parse_number(text, subject)
     some = isinstance(number, float) and number > 0
-    return some or any(q.value > 0 and not (q.other or q.denied) for q in find_quantities(script, subject))
+    return some or any(q.value > 0 and not (q.other or q.denied) for q in find_numbers(text, subject))
 
 
-def _claims(script: Script, expected: NoneThere) -> bool:
-    """Whether something is stated that could only be said of one that is there; said of a named other thing it is no such claim."""
-    mentions = script.mentions({"claim": expected.claims, "subject": expected.subject})
+def _claims(text: AnswerText, expected: NoneThere) -> bool:
+    """Return whether an answer states something that only a present subject could have, such as its colour."""
+    mentions = text.mentions({"claim": expected.claims, "subject": expected.subject})
     denials = [m for m in mentions if m.name == "subject" and m.denied]
     return any(
-        not (m.denied or m.aside or _is_of_another(script, m) or any(_is_where(script, m, denial) for denial in denials))
+        not (m.denied or m.aside or _is_of_another(text, m) or any(_is_where(text, m, denial) for denial in denials))
         for m in mentions
         if m.name == "claim"
     )
 
 
-def _is_of_another(script: Script, claim: Mention) -> bool:
-    """ "A green van", "a van stands top left": something else is named in the piece."""
-    segment = script.words[claim.start].segment
-    before = "".join(f"{w.text} " for w in script.words[: claim.start] if w.segment == segment)
+def _is_of_another(text: AnswerText, claim: NameMention) -> bool:
+    """Return whether a claim belongs to another thing in its segment: "a green van", "a van stands top left"."""
+    segment = text.words[claim.start].segment
+    before = "".join(f"{w.text} " for w in text.words[: claim.start] if w.segment == segment)
     if _ANOTHER.search(before) and not _ITS_OWN.search(before):
         return True
-    after = script.words[claim.end : claim.end + 1]
-    if not after or after[0].segment != script.words[claim.end - 1].segment or re.search(r"[^\s-]", after[0].gap):
+    after = text.words[claim.end : claim.end + 1]
+    if not after or after[0].segment != text.words[claim.end - 1].segment or re.search(r"[^\s-]", after[0].gap):
         return False
     return not (after[0].text in _OF_THE_SUBJECT or after[0].text.endswith("ly"))
 
 
-def _is_where(script: Script, claim: Mention, denial: Mention) -> bool:
-    """Whether a claim tells where or of which the denial is: "top left: no kite", "the kite is absent from the top left"."""
-    words, between = script.words, script.words[min(claim.end, denial.end) : max(claim.start, denial.start)]
+def _is_where(text: AnswerText, claim: NameMention, denial: NameMention) -> bool:
+    """Return whether a claim only limits a denial, as in "top left: no kite" and "the kite is absent from the top left"."""
+    words, between = text.words, text.words[min(claim.end, denial.end) : max(claim.start, denial.start)]
     if claim.start < denial.start and words[claim.end].gap.strip() == ":" and words[claim.end].clause == words[denial.start].clause:
         return True
     one_piece = words[claim.start].segment == words[denial.start].segment
@@ -178,4 +185,4 @@ _OF_THE_SUBJECT = frozenset({
     "though", "however", "here", "there", "now", "so", "as", "for", "corner", "quarter", "quadrant", "side", "part", "half",
     "hand", "area", "region", "section", "from", "instead", "again", "please", "answer", "anyway", "i", "visible", "looking",
 })  # fmt: skip
-"""What may follow a claim without making it another thing's."""
+"""Words that may follow a claim without naming another thing."""

@@ -1,4 +1,4 @@
-"""What a text quotes: which quotation marks belong together, and which quotes are readings and which are names or denied."""
+"""Find the quotes in a text, and which of them are lettering and not names or denied readings."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _NAMED_AFTER = re.compile(rf"\s*(?:(?!(?:and|then|but|also|it|which|that)\b)\w+ 
 
 @dataclass(frozen=True, slots=True)
 class Quote:
-    """What stands between two marks, ``start`` and ``end`` (exclusive) with the marks."""
+    """A quote. ``start`` and ``end`` (exclusive) include the quotation marks, ``text`` does not."""
 
     text: str
     start: int
@@ -34,7 +34,10 @@ class Quote:
 
 
 def quotes_of(text: str) -> list[Quote]:
-    """The quotes of a clean text in order. Of a quote that itself says what reads what, those within; else the whole."""
+    """Return the quotes of a cleaned text in order.
+
+    If a quote is a whole sentence that itself quotes what something reads, the inner quotes are returned instead.
+    """
     opened, found = list[tuple[str, int]](), list[Quote]()
     for at, mark in enumerate(text):
         if mark not in "\"'":
@@ -63,8 +66,8 @@ def _close(text: str, start: int, end: int, found: list[Quote]) -> None:
         found.append(Quote(text[start + 1 : end - 1], start, end))
 
 
-def readings_of(quotes: list[Quote], text: str) -> list[Quote]:
-    """Those quotes that tell what is read: not what is denied, nor the names of presets, nor what it is that reads so."""
+def quoted_lettering(quotes: list[Quote], text: str) -> list[Quote]:
+    """Return the quotes that report lettering. Denied readings, preset names and names of signs are left out."""
     kept = list[Quote]()
     for number, quote in enumerate(quotes):
         before = text[quotes[number - 1].end if number else 0 : quote.start]

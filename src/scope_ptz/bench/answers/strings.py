@@ -1,20 +1,20 @@
-"""Reading what an answer says is written somewhere, and comparing texts as a person would who knows what cameras confuse."""
+"""Parse the lettering that an answer reports, and compare lettering with tolerance for characters that look alike."""
 
 from __future__ import annotations
 
 import re
 from itertools import pairwise
 
-from scope_ptz.bench.answers.figures import is_figure, read_figure
-from scope_ptz.bench.answers.quotes import Quote, quotes_of, readings_of
-from scope_ptz.bench.answers.result import Reading, Unreadable, Value
-from scope_ptz.bench.answers.text import Script
-from scope_ptz.bench.answers.words import clean
+from scope_ptz.bench.answers.figures import is_figure, parse_figure
+from scope_ptz.bench.answers.parsed import ParsedAnswer, ParsedValue, Unreadable
+from scope_ptz.bench.answers.quotes import Quote, quoted_lettering, quotes_of
+from scope_ptz.bench.answers.text import AnswerText
+from scope_ptz.bench.answers.tokenizer import clean
 from scope_ptz.bench.tasks.expected import Text
-from scope_ptz.english.number_words import SMALL_NUMBERS
+from scope_ptz.english.numerals import SMALL_NUMBERS
 
-APART = " / "
-"""Between texts that stand apart from each other."""
+TEXT_SEPARATOR = " / "
+"""Separator between texts that are written in separate places."""
 
 _LOOK_ALIKES = str.maketrans({"o": "0", "i": "1", "l": "1", "|": "1", "s": "5", "b": "8"})
 _DIGITS = {word: str(number) for number, word in enumerate(SMALL_NUMBERS[:13])}
@@ -24,12 +24,13 @@ _CUES = (
     (re.compile(r"\b(?:shows?|called|named)\b\s*", re.IGNORECASE), 14),
     (re.compile(r"\b(?:(?<![Tt]here )is|(?<![Tt]here )are)\b\s*"), 6),
 )
-"""What comes before a text, the surest first, and how many words may follow; of the last sort the last one counts.
-An "IS" in capitals is lettering."""
+"""Patterns that introduce a text, the most reliable first, and how many words may follow.
+
+For the last pattern its last match counts. An "IS" in capitals is lettering and does not match."""
 _WRITTEN = re.compile(
     r"^\W*(?!it\b|what\b|the (?:text|words?)\b)(.{1,80}?)\s+(?:is|are)\s+(?:written|painted|printed|displayed)\b", re.IGNORECASE
 )
-"""A sentence that begins with what is written."""
+"""A sentence that begins with the lettering."""
 
 _LEADS = re.compile(r"^(?:the )?(?:text|words?|letters|lettering)\s+(?:that reads?\s+)?", re.IGNORECASE)
 _TRAILERS = re.compile(
@@ -48,47 +49,54 @@ _FINISHED = re.compile(
     r"(?:,? (?:\w+ly|with success|as (?:requested|asked)|now))*)\W*",
     re.IGNORECASE,
 )
-"""An answer in prose that tells of something else than of what is written."""
+"""Prose that reports a finished task and no lettering."""
 
 _MOST_ALONE = 8
 _MOST_IN_CAPITALS = 16
 
 
 def same_text(one: str, other: str, *, ocr: bool) -> bool:
-    """Whether two texts are the same but for case, punctuation and spaces, and with ``ocr`` but for look-alikes.
+    """Return whether two texts are equal apart from case, punctuation and spaces.
 
-    Parts that stand apart (" / ") may come in any order.
+    Args:
+        one: A text. Parts separated by " / " may come in any order.
+        other: The other text.
+        ocr: Whether characters that look alike (0/O, 1/I, 5/S, 8/B) count as the same.
     """
-    parts, others = ([folded(part, ocr) for part in text.split(APART)] for text in (one, other))
+    parts, others = ([normalized_text(part, ocr) for part in text.split(TEXT_SEPARATOR)] for text in (one, other))
     return "".join(parts) == "".join(others) or sorted(parts) == sorted(others)
 
 
-def folded(text: str, ocr: bool) -> str:
+def normalized_text(text: str, ocr: bool) -> str:
+    """Return a text in lower case without punctuation and spaces; with ``ocr`` look-alike characters are unified."""
     words = re.findall(r"[^\W_]+", re.sub(r"(?<=\w)'(?=\w)", "", clean(text).lower()))
     joined = "".join(_DIGITS.get(word, word) for word in words)
     return joined.translate(_LOOK_ALIKES) if ocr else joined
 
 
-def read_text(expected: Text, script: Script, answer: str) -> Reading:
-    """What the answer quotes; else what follows "reads", "says" or "is"; else a short answer as a whole."""
+def parse_text(expected: Text, statement: AnswerText, answer: str) -> ParsedAnswer:
+    """Parse the lettering that an answer reports.
+
+    It is what the answer quotes, else what follows "reads", "says" or "is", else a short answer as a whole.
+    """
     text = clean(answer)
     quotes = quotes_of(text)
-    if script.declined and not quotes:
+    if statement.declined and not quotes:
         return Unreadable("declined")
-    if is_figure(expected.accepted) and (figure := Unreadable("a guess") if script.hedged else read_figure(expected, answer)):
+    if is_figure(expected.accepted) and (figure := Unreadable("a guess") if statement.hedged else parse_figure(expected, answer)):
         return figure
     if quotes:
         return _from_quotes(quotes, text)
     if re.search(r"\b(?:no (?:text|letters|writing)|blank|nothing (?:is )?written)\b", text, re.IGNORECASE):
-        return Value("")
+        return ParsedValue("")
     begins = _WRITTEN.match(text)
     candidate, most = (begins.group(1), _MOST_ALONE) if begins else _after_cue(text)
     if most == 0:
-        return Unreadable("only what it does not read is told")
+        return Unreadable("it only states what the text is not")
     candidate = _NEXT_SENTENCE.split(candidate)[0]
     candidate = _TRAILERS.sub("", candidate.strip().strip(".!,")).strip()
-    candidate = _LEADS.sub("", re.sub(r"\s*\n\s*", APART, candidate))
-    words = [word for word in candidate.split() if word != APART.strip()]
+    candidate = _LEADS.sub("", re.sub(r"\s*\n\s*", TEXT_SEPARATOR, candidate))
+    words = [word for word in candidate.split() if word != TEXT_SEPARATOR.strip()]
     if candidate.isupper():
         # Nobody writes prose in capitals: this is the lettering itself.
         most = max(most, _MOST_IN_CAPITALS)
@@ -98,12 +106,14 @@ def read_text(expected: Text, script: Script, answer: str) -> Reading:
         return Unreadable("no text is quoted")
     if "or" in [w.lower() for w in words] and not any("or" in a.lower().split() for a in expected.accepted):
         return Unreadable("an alternative")
-    return Value(candidate)
+    return ParsedValue(candidate)
 
 
 def _after_cue(text: str) -> tuple[str, int]:
-    """What follows the surest cue, and how many words it may have; the whole text where there is no cue, no word where all that is
-    said to be read is denied."""
+    """Return what follows the most reliable cue, and how many words it may have.
+
+    Without a cue it is the whole text. If every cue is denied ("does not read"), no word is allowed.
+    """
     for cue, most in _CUES:
         found = [match for match in cue.finditer(text) if match.end() < len(text)]
         ends = [match.end() for match in found if not _DENIED.search(text[: match.start()])]
@@ -114,14 +124,14 @@ def _after_cue(text: str) -> tuple[str, int]:
     return text, _MOST_ALONE
 
 
-def _from_quotes(quotes: list[Quote], text: str) -> Reading:
-    readings = readings_of(quotes, text)
+def _from_quotes(quotes: list[Quote], text: str) -> ParsedAnswer:
+    readings = quoted_lettering(quotes, text)
     if not readings:
-        return Unreadable("only what it does not read is quoted")
+        return Unreadable("it only quotes what the text is not")
     between = [text[one.end : two.start] for one, two in pairwise(quotes)]
-    if len({folded(q.text, ocr=False) for q in quotes}) > 1 and any(
+    if len({normalized_text(q.text, ocr=False) for q in quotes}) > 1 and any(
         re.fullmatch(r"\s*,?\s+(?:or|and then)\s+", b) for b in between
     ):
         return Unreadable("an alternative")
-    said = {folded(quote.text, ocr=False): quote.text for quote in reversed(readings)}
-    return Value(APART.join(reversed(said.values())))
+    texts = {normalized_text(quote.text, ocr=False): quote.text for quote in reversed(readings)}
+    return ParsedValue(TEXT_SEPARATOR.join(reversed(texts.values())))

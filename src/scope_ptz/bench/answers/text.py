@@ -1,17 +1,14 @@
-"""Free text as clauses of words: markup and spelling set aside, what is denied, guessed, asked or declined told apart.
-
-This is the benchmark's own reading of English. It shares nothing with the language of the ground-truth perception.
-"""
+"""An answer as clauses of words, with the parts that are denied, guessed, asked or declined marked or left out."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from scope_ptz.bench.answers.absences import MARK, is_denied_jointly, is_listed_as_absent, uncrossed
 from scope_ptz.bench.answers.claims import Claim, claim_of
-from scope_ptz.bench.answers.words import Word, clean, plain_words, same_word, words_of
+from scope_ptz.bench.answers.tokenizer import Word, clean, plain_words, same_word, words_of
 
 NEGATORS = frozenset({"no", "not", "never", "without", "neither", "nor", "none", "nobody", "nothing", "zero", "0", "lacks", "lack"})
 _ASIDE = (
@@ -19,7 +16,7 @@ _ASIDE = (
     ("except",), ("except", "for"), ("besides",), ("excluding",),
 )  # fmt: skip
 _A_OR_THE = frozenset({"a", "an", "the"})
-"""In the middle of a name one is as good as the other."""
+"""Articles that are interchangeable inside a name."""
 
 _ARTICLES = frozenset({"a", "an", "the", "one", "two", "three", "some", "its", "his", "their"})
 _SUBJECTS = frozenset({"it", "they", "there", "i", "we", "this", "that"})
@@ -43,15 +40,14 @@ _CORRECTED = re.compile(
     r"on second thoughts?|my mistake|oops)\b|(?:^|[.,;!—-]\s*)(?:no,? )?(?:wait|hold on)\b(?=\W)",
     re.IGNORECASE,
 )
-"""What takes back all that was said before it."""
+"""Phrases that withdraw everything before them."""
 
 _ABSENT = r"(is |are |was |were )?((now|currently|completely|entirely) )?(absent|missing|nowhere)\b"
 _NOT_NO = re.compile(
     r"\b(not|never) (no|without|zero|0|none)$|\bnot (true|the case|correct|right)( that)?( there (is|are|was|were))? no$"
     r"|\b(no|not|without|zero) (\w+ )?(shortage|lack|lacks|absence|want)( of)?$"
 )
-"""A denial denied: "not without", "no lack of"."""
-
+"""Double negations, such as "not without" and "no lack of"."""
 
 _WHO_CAN = frozenset({"i", "we", "you", "they", "it", "that", "who", "nobody", "one"})
 _CAN_WHAT = frozenset({
@@ -61,8 +57,16 @@ _CAN_WHAT = frozenset({
 
 
 @dataclass(frozen=True, slots=True)
-class Mention:
-    """Words ``start`` to ``end`` (exclusive) name ``name``. ``denied``: said not to be so; ``aside``: named to be told apart."""
+class NameMention:
+    """A place in an answer that names something.
+
+    Attributes:
+        name: The name that the words stand for.
+        start: Position of the first word.
+        end: Position after the last word.
+        denied: Whether the answer says that it is not so or not there.
+        aside: Whether it is named only as a contrast ("unlike the van").
+    """
 
     name: str
     start: int
@@ -72,19 +76,31 @@ class Mention:
 
 
 @dataclass(frozen=True, slots=True)
-class Script:
-    """A text made ready for reading. ``declined``/``hedged``: something in it was, and those clauses are left out of ``words``."""
+class AnswerText:
+    """The words of an answer that state something.
+
+    Attributes:
+        words: The words, without questions and without declined or hedged clauses.
+        declined: Whether a clause said that it cannot tell.
+        hedged: Whether a clause was only a guess.
+    """
 
     words: tuple[Word, ...]
     declined: bool
     hedged: bool
 
-    def mentions(self, names: Mapping[str, Sequence[str]]) -> list[Mention]:
-        """Every place where one of the wordings of a name stands; of overlapping ones the longest. "No cone is missing" says
-        nothing of cones, nor does "I looked for cones"."""
+    def mentions(self, names: Mapping[str, Sequence[str]]) -> list[NameMention]:
+        """Return every place that names something.
+
+        If wordings overlap, the longest one counts. Places that claim nothing are left out: "no cone is missing" and "I looked for
+        cones" say nothing about cones.
+
+        Args:
+            names: The wordings of each name.
+        """
         phrases = [(tuple(plain_words(w)), name) for name, wordings in names.items() for w in wordings]
         phrases.sort(key=lambda p: -len(p[0]))
-        found, taken = list[Mention](), set[int]()
+        found, taken = list[NameMention](), set[int]()
         for start in range(len(self.words)):
             for phrase, name in phrases:
                 end = start + len(phrase)
@@ -94,12 +110,12 @@ class Script:
                     if claim is Claim.NOTHING or self._denied_twice(start, end):
                         break
                     denied = self.denied(start, end) if claim is Claim.STATED else claim is Claim.MISSED
-                    found.append(Mention(name, start, end, denied, self._aside(start)))
+                    found.append(NameMention(name, start, end, denied, self._aside(start)))
                     break
         return found
 
     def in_brackets(self, at: int) -> bool:
-        """Whether the word at a place stands in round brackets."""
+        """Return whether the word at a position is inside round brackets."""
         gaps = "".join(word.gap for word in self.words[: at + 1])
         return gaps.count("(") > gaps.count(")")
 
@@ -113,7 +129,7 @@ class Script:
         )
 
     def _is_verb(self, at: int) -> bool:
-        """Whether "can" says what is possible, and names no can."""
+        """Return whether "can" is the verb and not the object."""
         before, after = self.words[max(0, at - 1) : at], self.words[at + 1 : at + 2]
         return any(w.text in _WHO_CAN for w in before) or any(w.text in _CAN_WHAT for w in after)
 
@@ -124,7 +140,7 @@ class Script:
         return any(tuple(before[-len(words) :]) == words for words in _ASIDE)
 
     def denied(self, start: int, end: int) -> bool:
-        """Whether what stands at these words is said not to be so or not to be there."""
+        """Return whether the words from ``start`` to ``end`` are denied."""
         return self._denied_before(start) or self.denied_after(end) or is_denied_jointly(self.words, start, end)
 
     def _denied_before(self, start: int) -> bool:
@@ -149,17 +165,18 @@ class Script:
         return bool(ends) or (self._denied_before(start) and re.match(_ABSENT, after) is not None)
 
     def _continues_list(self, segment: int) -> bool:
-        """ "no cars, vans or buses": the pieces after the comma are denied too when the list ends in "or"."""
+        """Return whether a segment continues a denied list, as in "no cars, vans or buses", which ends in "or"."""
         clause = next(w.clause for w in self.words if w.segment == segment)
         rest = [w.text for w in self.words if w.clause == clause and w.segment >= segment]
         own = [w.text for w in self.words if w.segment == segment]
         return ("or" in rest or "nor" in rest) and not (set(own) & (_STOPS | {"is", "are", "there", "it", "i", "yes"}))
 
     def _opens_denied_list(self, at: int) -> bool:
-        """Whether the piece that ends at a word is denied and is more than a bare "no"."""
+        """Return whether the segment that ends at a word is denied and is more than a bare "no"."""
         return at > 0 and self.words[at].text not in NEGATORS and self._denied_before(at)
 
     def denied_after(self, end: int) -> bool:
+        """Return whether the words that follow ``end`` deny what ends there ("is not visible")."""
         clause = self.words[end - 1].clause
         after = " ".join(w.text for w in self.words[end : end + 6] if w.clause == clause)
         return (
@@ -177,21 +194,22 @@ class Script:
         )
 
     def is_marked(self, end: int, marks: Sequence[str]) -> bool:
-        """Whether one of some words stands beside what ends at a word, by itself: "drum (no)", "drum: no"."""
+        """Return whether one of the marks follows ``end`` on its own, as in "drum (no)" and "drum: no"."""
         if end >= len(self.words) or self.words[end].text not in marks or not MARK.search(self.words[end].gap):
             return False
         alone = end + 1 == len(self.words) or self.words[end + 1].segment != self.words[end].segment
         return alone or self.words[end + 1].gap.lstrip()[:1] in (")", "(", "|")
 
-    def text(self) -> str:
+    def joined(self) -> str:
+        """Return the words joined by spaces."""
         return " ".join(w.text for w in self.words)
 
     def segments(self) -> list[list[int]]:
-        """Word positions by segment."""
+        """Return the word positions of each segment."""
         return _grouped([w.segment for w in self.words])
 
     def clauses(self) -> list[list[int]]:
-        """Word positions by clause."""
+        """Return the word positions of each clause."""
         return _grouped([w.clause for w in self.words])
 
 
@@ -202,38 +220,39 @@ def _grouped(labels: Sequence[int]) -> list[list[int]]:
     return list(groups.values())
 
 
-def script(text: str) -> Script:
-    """Make a text ready for reading. Questions are left out: they claim nothing."""
+def answer_text(text: str) -> AnswerText:
+    """Split an answer into the words that state something.
+
+    Questions, withdrawn statements, guesses and clauses that decline are left out, because they claim nothing.
+    """
     cleaned = re.sub(r"\s*\(with [^()]*\)", "", uncrossed(clean(text)))  # "white (with black letters)" is white
     cleaned = cleaned[max((match.end() for match in _CORRECTED.finditer(cleaned)), default=0) :]
     words = words_of(re.sub(r"[^.!?\n]*\?", "", cleaned))
     kept, declined, hedged = list[Word](), False, False
     for positions in _grouped([w.clause for w in words]):
-        said = " ".join(words[i].text for i in positions)
-        refused = [m.end() for m in _DECLINES.finditer(said)]
-        if refused and not re.search(r"\bbut\b", said[refused[-1] :]):
+        clause = " ".join(words[i].text for i in positions)
+        clause_words = [words[i] for i in positions]
+        ends_of_refusals = [m.end() for m in _DECLINES.finditer(clause)]
+        if ends_of_refusals and not re.search(r"\bbut\b", clause[ends_of_refusals[-1] :]):
             declined = True
-            kept += _ground([words[i] for i in positions], said[: refused[-1]].count(" "))
-            kept += _reason([words[i] for i in positions], said[: refused[-1]].count(" ") + 1)
-        elif _HEDGES.search(said):
+            last_word = clause[: ends_of_refusals[-1]].count(" ")
+            kept += _premise(clause_words, last_word)
+            kept += _reason(clause_words, last_word + 1)
+        elif _HEDGES.search(clause):
             hedged = True
         else:
-            kept += [words[i] for i in positions]
-    return Script(tuple(kept), declined, hedged)
+            kept += clause_words
+    return AnswerText(tuple(kept), declined, hedged)
 
 
-def _ground(words: Sequence[Word], refused: int) -> Sequence[Word]:
-    """What stands before "..., so I cannot tell"; nothing where it is not the ground of it."""
-    segment = words[refused].segment
+def _premise(words: Sequence[Word], refusal: int) -> Sequence[Word]:
+    """Return the words before ", so I cannot tell"; none if the refusal does not follow from them."""
+    segment = words[refusal].segment
     begins = next(at for at, word in enumerate(words) if word.segment == segment)
     return words[:begins] if words[begins].text in ("so", "therefore", "thus", "hence") else ()
 
 
 def _reason(words: Sequence[Word], start: int) -> Sequence[Word]:
-    """What stands after "I cannot tell:" or "... because"; nothing when no reason is given."""
+    """Return the words after "I cannot tell:" or "because"; none if no reason is given."""
     begins = (at for at in range(start, len(words)) if ":" in words[at].gap or words[at].text == "because")
     return words[next(begins, len(words)) :]
-
-
-def wordings_of(name: str, further: Iterable[str]) -> tuple[str, ...]:
-    return name, *further

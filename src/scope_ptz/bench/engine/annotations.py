@@ -10,8 +10,8 @@ from pathlib import Path
 from scope_ptz.bench.engine.journal import journal_file
 from scope_ptz.bench.engine.logs import uuids_in
 from scope_ptz.bench.engine.sampling import sample_name
-from scope_ptz.bench.judging.labels import LabelRow, labels_file, read_labels
-from scope_ptz.bench.judging.lines import append_line, whole_lines
+from scope_ptz.bench.judging.human_labels import LabelRow, labels_file, read_labels
+from scope_ptz.bench.judging.json_lines import append_line, whole_lines
 
 
 def check_beside(logs: Sequence[Path]) -> None:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from scope_ptz.bench.engine.entries import Entry, OpenScene
 from scope_ptz.bench.judging.judge import Complete
-from scope_ptz.bench.scoring.episode import Look
+from scope_ptz.bench.scoring.episode import Observation
 from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.errors import ConfigError
 from scope_ptz.planner.base import Planner
@@ -30,7 +30,7 @@ class ModelRequest:
     options: Mapping[str, Any] = field(default_factory=dict)
 
 
-TruthOf = Callable[[str, Look], Awaitable[int | None]]
+TruthOf = Callable[[str, Observation], Awaitable[int | None]]
 """How many of what was asked really show in the picture of a look into a scene."""
 LoadTasks = Callable[[str], tuple[Entry, ...]]
 """The tasks of a split by its name, or of a file."""

@@ -15,10 +15,10 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from scope_ptz.bench.tasks.facts import TaskFacts
 from scope_ptz.bench.tasks.imported import ImportedTask
 from scope_ptz.bench.tasks.task import Task
-from scope_ptz.bench.tasks.wording import facts_of
+from scope_ptz.bench.tasks.task_facts import TaskFacts
+from scope_ptz.bench.tasks.task_wording import facts_of
 from scope_ptz.errors import InputError, TraceError, UnknownNameError
 from scope_ptz.simulator.pack import Scene
 

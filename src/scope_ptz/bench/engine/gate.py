@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from statistics import fmean
 
-from scope_ptz.bench.judging.tally import without_verdict
+from scope_ptz.bench.judging.judgement_tally import without_verdict
 from scope_ptz.bench.scoring.trials import Evaluation, Trial
 from scope_ptz.bench.statistics.paired import holm, mcnemar_exact
 from scope_ptz.errors import InputError

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from scope_ptz.bench.judging.lines import append_line, whole_lines
+from scope_ptz.bench.judging.json_lines import append_line, whole_lines
 from scope_ptz.bench.judging.rubrics import prompt_version
 from scope_ptz.bench.scoring.trials import Judgement
 from scope_ptz.errors import TraceError

@@ -27,7 +27,7 @@ from scope_ptz.bench.engine.models import LOOK, Asked, ScopeModel
 from scope_ptz.bench.engine.sampling import STORE, Kept, sample_name, trace_of
 from scope_ptz.bench.engine.scorers import METRICS
 from scope_ptz.bench.engine.scoring import broken_by
-from scope_ptz.bench.judging.judge import Judge, Message, NoReplyError, Reply
+from scope_ptz.bench.judging.judge import Completion, Judge, JudgeMessage, NoReplyError
 
 FIRST_SEED = 1
 """Of a judge of another provider; each further judgement has the next one."""
@@ -69,7 +69,7 @@ class LoggedJudge:
     def __init__(self, model: Model, repeat: int) -> None:
         self._model, self._repeat = model, repeat
 
-    async def __call__(self, messages: list[Message], schema: dict[str, Any]) -> Reply:
+    async def __call__(self, messages: list[JudgeMessage], schema: dict[str, Any]) -> Completion:
         told = [_ROLES[message["role"]](content=message["content"]) for message in messages]
         if isinstance(self._model.api, ScopeModel):
             port = await self._model.api.judge(self._repeat)
@@ -79,11 +79,11 @@ class LoggedJudge:
                 await self._model.generate(told)
             finally:
                 LOOK.reset(token)
-            reply: Reply = asked.answer
+            reply: Completion = asked.answer
             return reply
         return await self._foreign(told, schema)
 
-    async def _foreign(self, told: list[ChatMessage], schema: dict[str, Any]) -> Reply:
+    async def _foreign(self, told: list[ChatMessage], schema: dict[str, Any]) -> Completion:
         """A model of somebody else's provider."""
         shape = ResponseSchema(name="verdict", json_schema=JSONSchema.model_validate(schema))
         config = GenerateConfig(response_schema=shape, temperature=0.0, seed=FIRST_SEED + self._repeat)
@@ -94,7 +94,7 @@ class LoggedJudge:
         if output.stop_reason == "model_length":
             raise NoReplyError(f"The run is too long for the judge {self._model}.", overflow=True)
         used = output.usage
-        return Reply(
+        return Completion(
             text=output.completion,
             input_tokens=used.input_tokens + (used.input_tokens_cache_read or 0) if used else 0,
             output_tokens=used.output_tokens if used else 0,

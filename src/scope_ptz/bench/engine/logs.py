@@ -23,8 +23,8 @@ from scope_ptz.bench.engine.pictures import jpeg_of
 from scope_ptz.bench.engine.sampling import STORE, Kept, sample_name, trace_of
 from scope_ptz.bench.engine.scorers import TRIAL
 from scope_ptz.bench.engine.scoring import trial_of
-from scope_ptz.bench.judging.deciding import decided
-from scope_ptz.bench.scoring.episode import Places
+from scope_ptz.bench.judging.deciding_judge import decided_by_one_judge
+from scope_ptz.bench.scoring.episode import PresetViewpoints
 from scope_ptz.bench.scoring.trials import Evaluation, Trial
 from scope_ptz.errors import TraceError
 
@@ -41,7 +41,7 @@ class SampleFiles:
     """One run of a log: its trace, the viewpoints of presets, and its pictures by the names that the trace gives them."""
 
     trace: Trace
-    places: Places
+    places: PresetViewpoints
     references: Mapping[str, str]
     attachments: Mapping[str, str]
 
@@ -61,7 +61,7 @@ def read_evaluation(path: Path) -> Evaluation:
         header = read_header(path)
         wanted = (header.eval.dataset.samples or 0) * (header.eval.config.epochs or 1)
         named = (header.eval.metadata or {}).get(DECIDES, "")
-        trials = decided([trial_in(sample, path) for sample in samples(path)], named)
+        trials = decided_by_one_judge([trial_in(sample, path) for sample in samples(path)], named)
         first = next((kept_in(sample) for sample in samples(path)), None)
         card = card_of(header, trace_of(first.trace, path) if first is not None else None)
     order = {str(name): at for at, name in enumerate(header.eval.dataset.sample_ids or ())}

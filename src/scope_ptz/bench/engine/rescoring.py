@@ -21,9 +21,9 @@ from scope_ptz.bench.engine.judging import judge
 from scope_ptz.bench.engine.logs import DECIDES, HEADER, kept_in, read_evaluation, read_header, reading, trials_by_sample
 from scope_ptz.bench.engine.sampling import STORE
 from scope_ptz.bench.engine.scorers import checks
-from scope_ptz.bench.judging.deciding import check_decides
+from scope_ptz.bench.judging.deciding_judge import check_decides
+from scope_ptz.bench.judging.judgement_tally import JudgementTally
 from scope_ptz.bench.judging.rubrics import prompt_version
-from scope_ptz.bench.judging.tally import Tally
 from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.errors import InputError, OutputError
 
@@ -43,7 +43,7 @@ async def rescore(
     with_checks: bool = False,
     at_a_time: int = AT_A_TIME,
     say: Say,
-) -> Tally:
+) -> JudgementTally:
     """Append scores to a log; what came of the judgements that were made now. The log is replaced when all is done, and not before.
 
     ``more``: so many judgements beside those there are; without, what is missing of the first ``repeats``. Raises ``TraceError``
@@ -73,7 +73,7 @@ async def rescore(
     finally:
         scratch.unlink(missing_ok=True)
     journal.done()
-    return Tally.of(journal.made)
+    return JudgementTally.of(journal.made)
 
 
 def let_decide(log: Path, judge: str) -> None:

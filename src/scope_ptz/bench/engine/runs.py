@@ -6,7 +6,6 @@ that decides its results; what it holds is taken over, and only the rest is run.
 
 from __future__ import annotations
 
-import fcntl
 import hashlib
 import json
 from collections.abc import Iterator, Mapping, Sequence
@@ -25,6 +24,7 @@ from inspect_ai.util._display import init_display_type
 
 from scope_ptz.bench.engine.annotations import check_beside, put_away
 from scope_ptz.bench.engine.cards import AGENT_SOURCE, CARD, card_of
+from scope_ptz.bench.engine.file_lock import lock_file
 from scope_ptz.bench.engine.logs import DECIDES, read_evaluation, read_header, runs_in, uuids_in
 from scope_ptz.bench.engine.sampling import sample_name
 from scope_ptz.bench.scoring.trials import Evaluation, RunCard
@@ -141,10 +141,8 @@ def alone(log_dir: Path, identity: str) -> Iterator[None]:
     except OSError as error:
         raise OutputError(f"The log folder {log_dir} cannot be written: {error.strerror}. Choose another with --out.") from error
     with lock:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            raise InputError(f"This very evaluation is running already, into {log_dir}.") from None
+        if not lock_file(lock):
+            raise InputError(f"This very evaluation is running already, into {log_dir}.")
         yield
 
 

@@ -13,7 +13,7 @@ from pydantic import ValidationError
 from scope_ptz.agent.records import RECORD, Called, Decided, Ended, Started
 from scope_ptz.agent.trace import FILE_NAME, Trace
 from scope_ptz.bench.engine.entries import Entry
-from scope_ptz.bench.scoring.episode import Episode, Places, episode_of
+from scope_ptz.bench.scoring.episode import Episode, PresetViewpoints, episode_of
 from scope_ptz.errors import TraceError
 
 STORE = "scope"
@@ -59,9 +59,9 @@ class Kept:
             raise TraceError("A sample of this log holds no run of this benchmark.") from error
 
     @property
-    def places(self) -> Places:
+    def places(self) -> PresetViewpoints:
         """Which viewpoint each preset and home have."""
-        return Places(self.presets, self.home)
+        return PresetViewpoints(self.presets, self.home)
 
     def episode(self, trace: Trace) -> Episode:
         """The run as checks see it."""

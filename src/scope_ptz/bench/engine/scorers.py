@@ -82,7 +82,7 @@ async def _with_truths(entry: Entry, kept: Kept) -> Kept:
         return kept
     truths = dict[str, int | None]()
     for number, call in enumerate(kept.episode(trace).calls):
-        for look in call.looks:
+        for look in call.observations:
             if look.how == "count":
                 truths[str(number)] = await lent.truth(entry.world, look)
     return Kept(kept.trace, kept.presets, kept.home, kept.sees, kept.pictures, truths)

@@ -11,19 +11,19 @@ from scope_ptz.agent.records import Ended
 from scope_ptz.agent.trace import Trace
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.sampling import Kept, sample_name, trace_of
-from scope_ptz.bench.judging.deciding import verdict_by
-from scope_ptz.bench.scoring.episode import Episode, Look
+from scope_ptz.bench.judging.deciding_judge import verdict_by
+from scope_ptz.bench.scoring.episode import Episode, Observation
 from scope_ptz.bench.scoring.error_modes import error_mode
-from scope_ptz.bench.scoring.imported import check_calls_of
-from scope_ptz.bench.scoring.trials import Check, Judgement, LookTime, Trial
-from scope_ptz.bench.scoring.verdict import AGENTS_OWN_FAILURES, judge
+from scope_ptz.bench.scoring.imported_check import check_imported_calls
+from scope_ptz.bench.scoring.trials import CheckRecord, Judgement, ObservationTime, Trial
+from scope_ptz.bench.scoring.verdict import AGENTS_OWN_FAILURES, score_episode
 
 _LOOKERS = ("count_objects", "query_answer")
 
 
 def trial_of(entry: Entry, kept: Kept, epoch: int, where: Path, judgements: tuple[Judgement, ...] = ()) -> Trial:
     """The judged run: by its task's checks; where there are none by the first verdict of a judge (a log with several judges says
-    which of them decides: ``judging.deciding``)."""
+    which of them decides: ``judging.deciding_judge``)."""
     name = sample_name(entry.facts.id, epoch)
     trace = trace_of(kept.trace, where)
     if trace is None:
@@ -34,7 +34,7 @@ def trial_of(entry: Entry, kept: Kept, epoch: int, where: Path, judgements: tupl
         )  # fmt: skip
     verdict = _by_checks(entry, kept, trace) if entry.task else _by_judge(trace, judgements)
     if entry.imported is not None:
-        verdict["checks"] = (check_calls_of(entry.imported, kept.episode(trace)),)
+        verdict["checks"] = (check_imported_calls(entry.imported, kept.episode(trace)),)
     return Trial.model_validate(
         {"task": entry.facts, "epoch": epoch, "sample": name, "judgements": judgements} | verdict | _run(trace)
     )
@@ -43,14 +43,14 @@ def trial_of(entry: Entry, kept: Kept, epoch: int, where: Path, judgements: tupl
 def _by_checks(entry: Entry, kept: Kept, trace: Trace) -> dict[str, Any]:
     assert entry.task is not None  # noqa: S101 - the caller has looked
     episode = kept.episode(trace)
-    verdict = judge(entry.task, episode)
+    verdict = score_episode(entry.task, episode)
     truth = _Truths(episode, kept.truths)
     return {
         "headline": verdict.headline,
         "scored_by": "checks",
         "reason": verdict.reason,
         "error_mode": error_mode(entry.task, episode, truth if kept.truths else None),
-        "checks": tuple(Check(name=c.name, passed=c.passed, reason=c.reason) for c in verdict.checks),
+        "checks": tuple(CheckRecord(name=c.name, passed=c.passed, reason=c.reason) for c in verdict.checks),
         "collateral": verdict.collateral,
     }
 
@@ -59,11 +59,11 @@ class _Truths:
     """The truth of the looks of a run, as it was looked up when the run was over."""
 
     def __init__(self, episode: Episode, truths: Mapping[str, int | None]) -> None:
-        looks = [(look, truths.get(str(number))) for number, call in enumerate(episode.calls) for look in call.looks]
+        looks = [(look, truths.get(str(number))) for number, call in enumerate(episode.calls) for look in call.observations]
         self._known = {id(look): really for look, really in looks}
         self._looks = [look for look, _ in looks]
 
-    def __call__(self, look: Look) -> int | None:
+    def __call__(self, look: Observation) -> int | None:
         return next((self._known[id(own)] for own in self._looks if own == look), None)
 
 
@@ -85,11 +85,11 @@ def broken_by(ended: Ended | None) -> str | None:
     return None
 
 
-def _look_times(trace: Trace) -> tuple[LookTime, ...]:
+def _look_times(trace: Trace) -> tuple[ObservationTime, ...]:
     """Where the time of each look went."""
     looked = [c for c in trace.calls if c.outcome.call.name in _LOOKERS and c.outcome.error is None]
     return tuple(
-        LookTime(
+        ObservationTime(
             view="full" if called.outcome.call.arguments.get("view") == "full" else "current",
             eyes_s=called.perception_s,
             capture_s=max(called.timings.capture_s, 0.0),

@@ -18,7 +18,7 @@ from scope_ptz.bench.engine.pictures import KeptPictures, reference
 from scope_ptz.bench.engine.ports import LoggedPlanner, ToolLog
 from scope_ptz.bench.engine.sampling import STORE, Kept, sample_name
 from scope_ptz.bench.engine.scoring import broken_by
-from scope_ptz.bench.programs import BlankCamera
+from scope_ptz.bench.program_runner import BlankCamera
 from scope_ptz.camera.simulated import SimulatedCamera
 from scope_ptz.errors import ConfigError
 from scope_ptz.planner.base import Planner

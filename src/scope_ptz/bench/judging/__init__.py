@@ -1,1 +1,1 @@
-"""Language models as judges of runs, people's labels, and how well they all agree."""
+"""Language models as judges of runs, human labels, and the agreement between all raters."""

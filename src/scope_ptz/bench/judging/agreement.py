@@ -1,4 +1,4 @@
-"""Who agrees with whom about runs: judges, their repeats, the executable checks, people, and the known faults of gold runs."""
+"""Agreement between raters of runs: the executable checks, judges and their repeats, people, and the known faults of gold runs."""
 
 from __future__ import annotations
 
@@ -8,29 +8,30 @@ from dataclasses import dataclass, field
 from itertools import combinations
 from typing import Any, Literal
 
-from scope_ptz.bench.judging.kappa import Agreement, cohen, fleiss
+from scope_ptz.bench.judging.kappa import KappaResult, cohen, fleiss
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Evaluation, Judgement, Trial
 
 CORRECT, INCORRECT = "correct", "incorrect"
-Kind = Literal["checks", "judge", "person", "gold"]
+RaterKind = Literal["checks", "judge", "person", "gold"]
 
 
 @dataclass(frozen=True, slots=True)
 class Rating:
-    """``mode``: of an incorrect run, None where the rater names none."""
+    """A rating of a run. ``mode`` is the error mode of an incorrect run, None if the rater names none."""
 
     correct: bool
     mode: ErrorMode | None = None
 
     @property
     def verdict(self) -> str:
+        """The rating in words."""
         return CORRECT if self.correct else INCORRECT
 
 
 @dataclass(frozen=True, slots=True)
-class Item:
-    """A run that is rated: ``cluster`` is the task that it is of, whose runs are alike."""
+class RatedRun:
+    """A run that is rated. ``cluster`` is its task, because runs of one task are alike."""
 
     log: str
     sample: str
@@ -39,43 +40,56 @@ class Item:
 
 @dataclass
 class Rater:
-    """``group``: raters that are repeats of one another share it. ``apart``: what was no rating, by its name."""
+    """A rater and its ratings.
+
+    Attributes:
+        name: Name of the rater.
+        kind: What the rater is.
+        group: Shared by raters that are repeats of one another.
+        ratings: The rating of each run.
+        apart: How many verdicts are not ratings, by verdict ("unscored", "failed", ...).
+    """
 
     name: str
-    kind: Kind
+    kind: RaterKind
     group: str
-    ratings: dict[Item, Rating] = field(default_factory=dict)
+    ratings: dict[RatedRun, Rating] = field(default_factory=dict)
     apart: Counter[str] = field(default_factory=Counter)
 
 
 @dataclass(frozen=True)
-class Pair:
-    """Two raters about the runs that both rated. ``modes``: of those that both call incorrect and give a mode, the modes."""
+class RaterPair:
+    """The agreement of two raters on the runs that both rated.
+
+    ``modes`` covers the runs for which both name an error mode.
+    """
 
     first: str
     second: str
-    verdicts: Agreement
-    modes: Agreement
+    verdicts: KappaResult
+    modes: KappaResult
 
 
 @dataclass(frozen=True)
-class Group:
-    """Several raters about the runs that all of them rated, and how many runs only some of them did."""
+class RaterGroup:
+    """The agreement of several raters on the runs that all of them rated. ``left_out`` counts the runs that only some rated."""
 
     raters: tuple[str, ...]
     what: str
-    verdicts: Agreement
+    verdicts: KappaResult
     left_out: int
 
 
 @dataclass(frozen=True)
-class Report:
+class AgreementReport:
+    """The agreement of all raters, in pairs and in groups."""
+
     raters: tuple[Rater, ...]
-    pairs: tuple[Pair, ...]
-    groups: tuple[Group, ...]
+    pairs: tuple[RaterPair, ...]
+    groups: tuple[RaterGroup, ...]
 
     def as_dict(self) -> dict[str, Any]:
-        """As JSON data."""
+        """Return the report as JSON data."""
         return {
             "raters": [
                 {
@@ -97,8 +111,15 @@ class Report:
         }
 
 
-def agreement(raters: Sequence[Rater], seed: int = 1) -> Report:
-    """All of it. Of a judge's repeats the first stands for it against others; the repeats are compared with one another."""
+def measure_agreement(raters: Sequence[Rater], seed: int = 1) -> AgreementReport:
+    """Measure the agreement of raters in pairs and in groups.
+
+    Only the first repeat of a judge is compared with other raters. Its repeats are compared with one another.
+
+    Args:
+        raters: The raters.
+        seed: Seed of the bootstrap intervals.
+    """
     first = {rater.group: rater for rater in reversed(raters)}
     leading = [rater for rater in raters if first[rater.group] is rater]
     repeats: dict[str, list[Rater]] = {}
@@ -111,14 +132,14 @@ def agreement(raters: Sequence[Rater], seed: int = 1) -> Report:
         alike = [rater for rater in leading if rater.kind == kind]
         if len(alike) > 1:
             groups.append(_group(alike, what, seed))
-    return Report(tuple(raters), tuple(p for p in pairs if p.verdicts.runs), tuple(g for g in groups if g.verdicts.runs))
+    return AgreementReport(tuple(raters), tuple(p for p in pairs if p.verdicts.runs), tuple(g for g in groups if g.verdicts.runs))
 
 
-def _pair(one: Rater, two: Rater, seed: int) -> Pair:
+def _pair(one: Rater, two: Rater, seed: int) -> RaterPair:
     shared = [item for item in one.ratings if item in two.ratings]
     both = [(item, one.ratings[item], two.ratings[item]) for item in shared]
     blamed = [(item, a.mode.value, b.mode.value) for item, a, b in both if a.mode is not None and b.mode is not None]
-    return Pair(
+    return RaterPair(
         one.name,
         two.name,
         cohen([a.verdict for _, a, _ in both], [b.verdict for _, _, b in both], [item.cluster for item, _, _ in both], seed),
@@ -126,16 +147,16 @@ def _pair(one: Rater, two: Rater, seed: int) -> Pair:
     )
 
 
-def _group(raters: Sequence[Rater], what: str, seed: int) -> Group:
+def _group(raters: Sequence[Rater], what: str, seed: int) -> RaterGroup:
     anyone = {item for rater in raters for item in rater.ratings}
     shared = [item for item in raters[0].ratings if all(item in rater.ratings for rater in raters)]
     rows = [[rater.ratings[item].verdict for rater in raters] for item in shared]
     agreed = fleiss(rows, [item.cluster for item in shared], seed)
-    return Group(tuple(rater.name for rater in raters), what, agreed, len(anyone) - len(shared))
+    return RaterGroup(tuple(rater.name for rater in raters), what, agreed, len(anyone) - len(shared))
 
 
 def raters_of(evaluations: Iterable[Evaluation]) -> list[Rater]:
-    """Everyone who rated runs of these evaluations: the checks first, then judges, then people."""
+    """Return everyone who rated runs of these evaluations: the checks first, then judges, then people."""
     found = _Found()
     for evaluation in evaluations:
         for trial in evaluation.trials:
@@ -145,13 +166,14 @@ def raters_of(evaluations: Iterable[Evaluation]) -> list[Rater]:
 
 
 class _Found:
-    """Raters as they turn up."""
+    """Collects raters and their ratings."""
 
     def __init__(self) -> None:
         self.raters: dict[str, Rater] = {}
 
     def take(self, trial: Trial, log: str) -> None:
-        item = Item(log, trial.sample, trial.task.paraphrase_of or trial.task.id)
+        """Add the ratings of one trial."""
+        item = RatedRun(log, trial.sample, trial.task.paraphrase_of or trial.task.id)
         if trial.scored_by == "checks":
             self._rate("the checks", "checks", "the checks", item, trial.headline, trial.error_mode)
         for name, group, judgement in numbered(trial.judgements):
@@ -159,13 +181,13 @@ class _Found:
         for label in trial.labels:
             self._rate(label.by, "person", label.by, item, label.verdict, label.error_mode)
 
-    def _rate(self, name: str, kind: Kind, group: str, item: Item, verdict: str, mode: ErrorMode | None) -> None:
+    def _rate(self, name: str, kind: RaterKind, group: str, item: RatedRun, verdict: str, mode: ErrorMode | None) -> None:
         rater = self.raters.setdefault(f"{kind}:{name}", Rater(name, kind, f"{kind}:{group}"))
-        rate(rater, item, verdict, mode)
+        add_rating(rater, item, verdict, mode)
 
 
-def rate(rater: Rater, item: Item, verdict: str, mode: ErrorMode | None) -> None:
-    """Note a rating, or what is none ("unscored", "unparseable", "failed", "unclear", ...), which is counted apart."""
+def add_rating(rater: Rater, item: RatedRun, verdict: str, mode: ErrorMode | None) -> None:
+    """Add a rating. Verdicts that are not ratings ("unscored", "unparseable", "failed", "unclear") are counted separately."""
     if verdict in (CORRECT, INCORRECT):
         rater.ratings[item] = Rating(verdict == CORRECT, mode)
     else:
@@ -173,9 +195,12 @@ def rate(rater: Rater, item: Item, verdict: str, mode: ErrorMode | None) -> None
 
 
 def numbered(judgements: Sequence[Judgement]) -> Iterator[tuple[str, str, Judgement]]:
-    """Judgements of one run with the name of the rater, "gpt-oss-120b #2" for a second judgement, and that of the judge.
+    """Yield the judgements of one run with the names of their raters.
 
-    One model under two prompts is two judges.
+    One model with two prompts counts as two judges.
+
+    Yields:
+        The rater ("gpt-oss-120b (judge-1) #2" for a second judgement), the judge, and the judgement.
     """
     times = Counter[str]()
     for judgement in judgements:

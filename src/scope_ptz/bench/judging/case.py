@@ -1,4 +1,4 @@
-"""A run as a judge sees it: what was asked, what was called, what came back, what was said. From a trace, or without one."""
+"""A run as a judge sees it: the instruction, the calls with their results, and the final answer."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from scope_ptz.agent.trace import Trace
-from scope_ptz.bench.scoring.episode import Episode, Places, Standing
+from scope_ptz.bench.scoring.episode import CameraPosition, Episode, PresetViewpoints
 from scope_ptz.geometry import Pose
 from scope_ptz.planner.base import ToolOutcome
 
 
 @dataclass(frozen=True, slots=True)
 class CaseCall:
-    """A tool call. ``error``: why it failed; ``pose``: where the camera looked afterwards, ``viewpoint``: from where, if known."""
+    """A tool call. ``pose`` and ``viewpoint`` (if known) are those after the call; ``error`` says why it failed."""
 
     name: str
     arguments: Mapping[str, Any]
@@ -25,10 +25,20 @@ class CaseCall:
 
 
 @dataclass(frozen=True, slots=True)
-class Case:
-    """``outcome``: how the run ended, None when it was cut off. ``viewpoint``: the optical centre that it started from, if known.
+class JudgeCase:
+    """A run to be judged.
 
-    ``sees``: the agent was shown pictures itself, and may answer from them. ``places``: the viewpoints of presets, if known.
+    Attributes:
+        instruction: What the agent was asked to do.
+        start: The camera's first pose.
+        viewpoint: The viewpoint at the start, if known.
+        presets: Names of the presets.
+        calls: The tool calls in order.
+        final: The camera's last pose.
+        answer: The agent's final answer.
+        outcome: How the run ended; None if it was interrupted.
+        sees: Whether the agent was shown pictures and may answer from them.
+        places: The viewpoints of the presets, if known.
     """
 
     instruction: str
@@ -40,11 +50,16 @@ class Case:
     answer: str
     outcome: str | None
     sees: bool = False
-    places: Places | None = None
+    places: PresetViewpoints | None = None
 
 
-def case_of(trace: Trace, places: Places | None = None) -> Case:
-    """The run of a trace. ``places``: which viewpoint each preset has; without it, it is known only as long as none is gone to."""
+def case_of(trace: Trace, places: PresetViewpoints | None = None) -> JudgeCase:
+    """Build a case from a trace.
+
+    Args:
+        trace: The recorded run.
+        places: The viewpoints of the presets. Without them the viewpoint is unknown after the first move to a preset.
+    """
     started, ended = trace.started, trace.ended
     at, calls = started.viewpoint, list[CaseCall]()
     for called in trace.calls:
@@ -61,7 +76,7 @@ def case_of(trace: Trace, places: Places | None = None) -> Case:
             )
         )
     last = calls[-1].pose if calls else started.pose.pose()
-    return Case(
+    return JudgeCase(
         instruction=started.instruction,
         start=started.pose.pose(),
         viewpoint=started.viewpoint,
@@ -75,29 +90,29 @@ def case_of(trace: Trace, places: Places | None = None) -> Case:
     )
 
 
-def case_of_episode(episode: Episode, places: Places) -> Case:
-    """A run that was made without a trace, such as a gold run. ``places``: of its scene."""
-    return Case(
+def case_of_episode(episode: Episode, places: PresetViewpoints) -> JudgeCase:
+    """Build a case from a run without a trace, such as a gold run. ``places`` are the presets of its scene."""
+    return JudgeCase(
         instruction=episode.instruction,
         start=episode.start.pose,
         viewpoint=episode.start.viewpoint,
         presets=tuple(places.presets),
         calls=tuple(_call(call.name, call.arguments, call.result, call.error, call.after) for call in episode.calls),
         final=episode.final.pose,
-        answer=episode.text,
+        answer=episode.answer,
         outcome=episode.outcome,
-        sees=bool(episode.seen),
+        sees=bool(episode.planner_views),
         places=places,
     )
 
 
 def _call(
-    name: str, arguments: Mapping[str, Any], result: Mapping[str, Any] | None, error: str | None, after: Standing
+    name: str, arguments: Mapping[str, Any], result: Mapping[str, Any] | None, error: str | None, after: CameraPosition
 ) -> CaseCall:
     return CaseCall(name=name, arguments=arguments, result=result, error=error, pose=after.pose, viewpoint=after.viewpoint)
 
 
-def _viewpoint_after(outcome: ToolOutcome, before: str | None, places: Places | None, home: str | None) -> str | None:
+def _viewpoint_after(outcome: ToolOutcome, before: str | None, places: PresetViewpoints | None, home: str | None) -> str | None:
     name = outcome.call.name
     if outcome.error is not None or name not in ("go_to_preset", "go_home"):
         return before

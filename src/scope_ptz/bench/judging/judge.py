@@ -1,4 +1,4 @@
-"""A judge: a run in, a judgement out. It knows neither the evaluation engine nor a server, only a port that completes messages."""
+"""A judge turns a run into a judgement. It depends on neither the evaluation engine nor a server, only on a completion function."""
 
 from __future__ import annotations
 
@@ -9,29 +9,29 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict
 
 from scope_ptz.agent.trace import Trace
-from scope_ptz.bench.judging.case import Case, case_of
+from scope_ptz.bench.judging.case import JudgeCase, case_of
+from scope_ptz.bench.judging.judge_replies import REPLY_SCHEMA, JudgeReply, parse_judge_reply
 from scope_ptz.bench.judging.quoting import cut
 from scope_ptz.bench.judging.rendering import LEAST_CHARS, render
-from scope_ptz.bench.judging.replies import REPLY_SCHEMA, JudgeReply, read_reply
 from scope_ptz.bench.judging.rubrics import prompt_version, system_prompt
-from scope_ptz.bench.scoring.episode import Places
+from scope_ptz.bench.scoring.episode import PresetViewpoints
 from scope_ptz.bench.scoring.trials import Judgement
-from scope_ptz.bench.tasks.facts import TaskFacts
+from scope_ptz.bench.tasks.task_facts import TaskFacts
 from scope_ptz.errors import ScopeError
 
 DEFAULT_JUDGE = "gpt-oss-120b"
 ATTEMPTS = 3
-"""How often a judge may answer before its verdict counts as unparseable."""
+"""Replies that a judge may give before its verdict counts as unparseable."""
 
 BUDGET_CHARS = 60_000
-"""Of a run as it is told; some 15 thousand tokens."""
+"""Maximum length of the description of a run; about 15,000 tokens."""
 
 _ECHO_CHARS = 2_000
-Message = dict[str, Any]
+JudgeMessage = dict[str, Any]
 
 
-class Reply(BaseModel):
-    """What a judge's model said, without its reasoning. ``cut_off``: it was stopped at a limit of tokens."""
+class Completion(BaseModel):
+    """A reply of a judge's model, without its reasoning. ``cut_off`` is true if it reached the token limit."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -42,32 +42,43 @@ class Reply(BaseModel):
 
 
 class NoReplyError(ScopeError):
-    """A judge's server gave no usable reply. ``overflow``: the messages outgrew the model's context."""
+    """A judge's server gave no usable reply. ``overflow`` is true if the messages exceed the model's context."""
 
     def __init__(self, message: str, *, overflow: bool = False) -> None:
         self.overflow = overflow
         super().__init__(message)
 
 
-Complete = Callable[[list[Message], dict[str, Any]], Awaitable[Reply]]
-"""The port: messages and the reply's JSON schema in, a reply out. It raises ``NoReplyError`` and nothing else."""
+Complete = Callable[[list[JudgeMessage], dict[str, Any]], Awaitable[Completion]]
+"""Completes messages under the JSON schema of the reply. It raises ``NoReplyError`` and nothing else."""
 
 
 class Judge:
-    """May judge many runs at once; it keeps nothing between them. ``name``: of its model, as judgements are to tell it."""
+    """A judge. It may judge many runs concurrently and keeps no state between them.
+
+    Args:
+        name: Name of its model, as recorded in judgements.
+        complete: Completes messages.
+        attempts: Replies that it may give for one judgement.
+        budget_chars: Maximum length of the description of a run.
+    """
 
     def __init__(self, name: str, complete: Complete, *, attempts: int = ATTEMPTS, budget_chars: int = BUDGET_CHARS) -> None:
         self.name, self.complete, self.attempts, self.budget_chars = name, complete, attempts, budget_chars
 
-    async def judge(self, facts: TaskFacts, trace: Trace, *, repeat: int = 0, places: Places | None = None) -> Judgement:
-        """The judgement on a recorded run. Never raises for what a model or server does: see ``Judgement.verdict``.
+    async def judge(self, facts: TaskFacts, trace: Trace, *, repeat: int = 0, places: PresetViewpoints | None = None) -> Judgement:
+        """Judge a recorded run. Errors of models and servers are part of the judgement and never raised.
 
-        ``places``: which viewpoint each preset has, so that the judge is told where the camera stood.
+        Args:
+            facts: The facts about the task.
+            trace: The recorded run.
+            repeat: Number of the judgement, if one judge gives several.
+            places: The viewpoints of the presets, so that the judge knows where the camera stood.
         """
         return await self.judge_case(facts, case_of(trace, places), repeat=repeat)
 
-    async def judge_case(self, facts: TaskFacts, case: Case, *, repeat: int = 0) -> Judgement:
-        """The judgement on a run. ``repeat``: number of the judgement, where one judge gives several."""
+    async def judge_case(self, facts: TaskFacts, case: JudgeCase, *, repeat: int = 0) -> Judgement:
+        """Judge a run. ``repeat`` is the number of the judgement, if one judge gives several."""
         session = _Session(self, repeat)
         began = perf_counter()
         judgement = await session.run(facts, case)
@@ -81,9 +92,10 @@ class _Session:
         self.judge, self.repeat = judge, repeat
         self.asked = self.input_tokens = self.output_tokens = 0
 
-    async def run(self, facts: TaskFacts, case: Case) -> Judgement:
+    async def run(self, facts: TaskFacts, case: JudgeCase) -> Judgement:
+        """Ask until a reply is valid, the attempts are used up, or the server fails."""
         budget, problem = self.judge.budget_chars, ""
-        begun = messages(facts, case, budget)
+        begun = judge_messages(facts, case, budget)
         now, answers = begun, 0
         while answers < self.judge.attempts:
             self.asked += 1
@@ -92,18 +104,18 @@ class _Session:
             except NoReplyError as failure:
                 if failure.overflow and budget > LEAST_CHARS:
                     budget = max(budget // 2, LEAST_CHARS)
-                    now = begun = messages(facts, case, budget)
+                    now = begun = judge_messages(facts, case, budget)
                     continue
                 return self._made("failed", str(failure))
             answers += 1
             self.input_tokens += reply.input_tokens
             self.output_tokens += reply.output_tokens
-            read = "it was cut off at the limit of tokens" if reply.cut_off else read_reply(reply.text)
+            read = "it was cut off at the limit of tokens" if reply.cut_off else parse_judge_reply(reply.text)
             if isinstance(read, JudgeReply):
                 made = self._made(read.verdict, read.reason)
                 return made.model_copy(update={"error_mode": read.error_mode})
             problem = read
-            now = [*begun, *_told_back(reply.text, problem)]
+            now = [*begun, *_correction(reply.text, problem)]
         return self._made("unparseable", problem)
 
     def _made(self, verdict: str, reason: str) -> Judgement:
@@ -121,17 +133,18 @@ class _Session:
         )
 
 
-def messages(facts: TaskFacts, case: Case, budget_chars: int = BUDGET_CHARS) -> list[Message]:
-    """What a judge is sent about a run."""
+def judge_messages(facts: TaskFacts, case: JudgeCase, budget_chars: int = BUDGET_CHARS) -> list[JudgeMessage]:
+    """Return the messages that a judge receives about a run."""
     return [
         {"role": "system", "content": system_prompt(facts.category)},
         {"role": "user", "content": render(facts, case, budget_chars)},
     ]
 
 
-def _told_back(said: str, problem: str) -> list[Message]:
+def _correction(reply: str, problem: str) -> list[JudgeMessage]:
+    """Return the invalid reply and a request for a valid one."""
     return [
-        {"role": "assistant", "content": cut(said, _ECHO_CHARS) or "(nothing)"},
+        {"role": "assistant", "content": cut(reply, _ECHO_CHARS) or "(nothing)"},
         {
             "role": "user",
             "content": f"This is no valid verdict: {problem}. Reply again with one JSON object in the given schema, nothing else.",

@@ -1,8 +1,8 @@
-"""How far raters agree beyond chance: Cohen's kappa for two (1960), Fleiss' for more (1971), with bootstrap intervals.
+"""Agreement of raters beyond chance: Cohen's kappa for two raters (1960), Fleiss' kappa for more (1971), with bootstrap intervals.
 
-Point estimates are statsmodels'. Intervals are percentile bootstraps over clusters (Efron and Tibshirani 1993, section 13.3):
-ratings of runs of one task are alike, so that whole tasks are drawn. kappa = (p_o - p_e) / (1 - p_e) has no value where every
-rating is the same (p_e = 1).
+Point estimates are computed by statsmodels. Intervals are percentile bootstraps over clusters (Efron and Tibshirani 1993, section
+13.3): ratings of runs of one task are alike, so whole tasks are drawn. kappa = (p_o - p_e) / (1 - p_e) is undefined if all ratings
+are the same (p_e = 1).
 """
 
 from __future__ import annotations
@@ -18,16 +18,23 @@ from numpy.typing import NDArray
 LEVEL = 0.95
 DRAWS = 2000
 _LEAST_DEFINED = 0.5
-"""Of all draws: below this share of draws in which kappa has a value, an interval would be of something else."""
+"""Minimum share of draws in which kappa is defined. With fewer, no interval is given."""
 
 Numbers = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
-class Agreement:
-    """``raw``: share of runs (of pairs of ratings, for more than two raters) that agree; ``kappa``: None where it has no value.
+class KappaResult:
+    """The agreement of raters.
 
-    ``confusion``: of two raters, how often the first said one label and the second another; empty for more.
+    Attributes:
+        runs: Number of runs.
+        raters: Number of raters.
+        raw: Share of runs on which two raters agree; for more raters, share of pairs of ratings.
+        kappa: Agreement beyond chance; None if undefined.
+        low: Lower limit of the 95% interval of kappa.
+        high: Upper limit of the 95% interval of kappa.
+        confusion: For two raters, how often each combination of labels occurs.
     """
 
     runs: int
@@ -39,16 +46,23 @@ class Agreement:
     confusion: tuple[tuple[str, str, int], ...] = ()
 
     def as_dict(self) -> dict[str, Any]:
-        """As JSON data."""
+        """Return the result as JSON data."""
         confusion = [{"first": one, "second": two, "runs": number} for one, two, number in self.confusion]
         figures = {name: getattr(self, name) for name in ("runs", "raters", "raw", "kappa", "low", "high")}
         return {**figures, **({"confusion": confusion} if confusion else {})}
 
 
-def cohen(first: Sequence[str], second: Sequence[str], clusters: Sequence[Hashable], seed: int = 1) -> Agreement:
-    """Agreement of two raters. All three sequences have one element a run; ``clusters``: which runs belong together."""
+def cohen(first: Sequence[str], second: Sequence[str], clusters: Sequence[Hashable], seed: int = 1) -> KappaResult:
+    """Measure the agreement of two raters by Cohen's kappa.
+
+    Args:
+        first: The first rater's label of each run.
+        second: The second rater's label of each run.
+        clusters: The cluster of each run.
+        seed: Seed of the bootstrap.
+    """
     if not first:
-        return Agreement(0, 2, None, None)
+        return KappaResult(0, 2, None, None)
     labels = sorted({*first, *second})
     place = {label: at for at, label in enumerate(labels)}
     tables = _by_cluster(
@@ -56,7 +70,7 @@ def cohen(first: Sequence[str], second: Sequence[str], clusters: Sequence[Hashab
     )
     table = tables.sum(axis=0).reshape(len(labels), len(labels))
     counted = Counter(zip(first, second, strict=True))
-    return Agreement(
+    return KappaResult(
         runs=len(first),
         raters=2,
         raw=float(np.trace(table) / table.sum()),
@@ -66,10 +80,19 @@ def cohen(first: Sequence[str], second: Sequence[str], clusters: Sequence[Hashab
     )
 
 
-def fleiss(ratings: Sequence[Sequence[str]], clusters: Sequence[Hashable], seed: int = 1) -> Agreement:
-    """Agreement of any number of raters. ``ratings``: of each run the labels, as many for every run."""
+def fleiss(ratings: Sequence[Sequence[str]], clusters: Sequence[Hashable], seed: int = 1) -> KappaResult:
+    """Measure the agreement of several raters by Fleiss' kappa.
+
+    Args:
+        ratings: The labels of each run, as many for every run.
+        clusters: The cluster of each run.
+        seed: Seed of the bootstrap.
+
+    Raises:
+        ValueError: Runs have different numbers of ratings, or fewer than two.
+    """
     if not ratings:
-        return Agreement(0, 0, None, None)
+        return KappaResult(0, 0, None, None)
     raters = len(ratings[0])
     labels = sorted({label for row in ratings for label in row})
     counts = np.array([[row.count(label) for label in labels] for row in map(list, ratings)], dtype=float)
@@ -80,7 +103,7 @@ def fleiss(ratings: Sequence[Sequence[str]], clusters: Sequence[Hashable], seed:
     names = list(dict.fromkeys(clusters))
     sums = np.zeros((len(names), rows.shape[1]))
     np.add.at(sums, [names.index(cluster) for cluster in clusters], rows)
-    return Agreement(
+    return KappaResult(
         runs=len(ratings),
         raters=raters,
         raw=float(pairs.mean()),
@@ -90,7 +113,7 @@ def fleiss(ratings: Sequence[Sequence[str]], clusters: Sequence[Hashable], seed:
 
 
 def cohen_values(tables: Numbers) -> Numbers:
-    """Cohen's kappa of each table of counts (n, k, k); NaN where it has none."""
+    """Return Cohen's kappa of each table of counts, of shape ``(n, k, k)``; NaN if undefined."""
     total = tables.sum(axis=(1, 2))
     with np.errstate(invalid="ignore", divide="ignore"):
         observed = np.trace(tables, axis1=1, axis2=2) / total
@@ -99,7 +122,11 @@ def cohen_values(tables: Numbers) -> Numbers:
 
 
 def fleiss_values(sums: Numbers) -> Numbers:
-    """Fleiss' kappa of each row (n, k + 2): sums over runs of counts by label, of the share of agreeing pairs, and of runs."""
+    """Return Fleiss' kappa of each row of sums.
+
+    Args:
+        sums: Shape ``(n, k + 2)``: counts by label, the share of agreeing pairs and the number of runs, each summed over runs.
+    """
     with np.errstate(invalid="ignore", divide="ignore"):
         shares = sums[:, :-2] / sums[:, :-2].sum(axis=1, keepdims=True)
         return _beyond_chance(sums[:, -2] / sums[:, -1], (shares**2).sum(axis=1))
@@ -111,7 +138,7 @@ def _beyond_chance(observed: Numbers, by_chance: Numbers) -> Numbers:
 
 
 def _by_cluster(clusters: Sequence[Hashable], cells: Sequence[int], size: int) -> Numbers:
-    """Counts of cells by cluster, (clusters, size)."""
+    """Return the counts of cells by cluster, of shape ``(clusters, size)``."""
     known: dict[Hashable, int] = {}
     rows = [known.setdefault(cluster, len(known)) for cluster in clusters]
     counts = np.zeros((len(known), size))
@@ -120,7 +147,7 @@ def _by_cluster(clusters: Sequence[Hashable], cells: Sequence[int], size: int) -
 
 
 def _interval(by_cluster: Numbers, value: Callable[[Numbers], Numbers], seed: int) -> dict[str, Any]:
-    """Percentiles of a statistic of the summed rows when clusters are drawn with replacement; None where it cannot be told."""
+    """Return the percentile interval of a statistic of summed rows, with clusters drawn with replacement; None if unknown."""
     clusters = len(by_cluster)
     if clusters < 2:
         return {"low": None, "high": None}

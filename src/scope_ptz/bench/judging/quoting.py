@@ -1,7 +1,7 @@
-"""Text of others as data: what an agent, a camera or a task file wrote cannot be taken for the judge's own prompt.
+"""Quote untrusted text in judge prompts, so that a judge cannot mistake it for its own instructions.
 
-Every line of such text begins with a bar. Nothing inside can end the quotation, because whatever ends a line begins a new one with
-a bar, and control tokens of chat templates are broken up, since many servers read them in any message.
+Every line of the text begins with a bar, so nothing in the text can end the quotation. Control tokens of chat templates are broken
+up, because many servers interpret them in any message.
 """
 
 from __future__ import annotations
@@ -14,23 +14,23 @@ _TOKENS = re.compile(
     r"<(?=[|｜])|(?<=[|｜])>|<(?=/?(?:s|bos|eos|think|thinking|start_of_turn|end_of_turn|im_start|im_end|tool_call)\b)|\[(?=/?(?:INST|SYS)\])",
     re.IGNORECASE,
 )
-"""Where tokens such as ``<|im_end|>``, ``</s>`` or ``[/INST]`` begin or end."""
+"""Brackets of control tokens such as ``<|im_end|>``, ``</s>`` or ``[/INST]``."""
 _HEX_UP_TO = 0xFFFF
 
 
 def quoted(text: str) -> str:
-    """The text with a bar before each line; never empty. Characters that do not show are written as escapes."""
+    """Return a text with a bar before each line. The result is never empty. Unprintable characters are escaped."""
     return "\n".join(BAR + _harmless(line) for line in _LINE_ENDS.split(text))
 
 
 def inline(text: str, most: int) -> str:
-    """A name for use within a line: one line, cut to ``most`` characters, in quotation marks that it cannot close."""
+    """Return a name for use within a line: on one line, at most ``most`` characters, in quotation marks that it cannot close."""
     line = _harmless(" ".join(_LINE_ENDS.sub(" ", text).split())).replace('"', "'")
     return f'"{line if len(line) <= most else line[: most - 1] + "…"}"'
 
 
 def cut(text: str, most: int) -> str:
-    """The head and the tail of a text that is longer than ``most`` characters, with a note of how much is missing."""
+    """Return a text of at most about ``most`` characters. The middle of a longer text is replaced by a note."""
     if len(text) <= most:
         return text
     head, tail = most * 2 // 3, most // 3
@@ -45,7 +45,7 @@ def _harmless(line: str) -> str:
 
 
 def _apart(token: re.Match[str]) -> str:
-    """The bracket moved away from what makes a token of it."""
+    """Separate a bracket from the rest of its control token."""
     return f" {token[0]}" if token[0] == ">" else f"{token[0]} "
 
 

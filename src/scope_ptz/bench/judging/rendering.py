@@ -1,7 +1,7 @@
-"""A run in the words that a judge reads, within a budget of characters.
+"""Describe a run to a judge within a budget of characters.
 
-What decides a verdict is never left out: instruction, expectation and answer stay. A run that is too long first loses the middle of
-long tool results, then the calls in its middle, of which a count by tool remains.
+The instruction, the expected answer and the final answer are always included. In a long run, long tool results are shortened first;
+then calls in the middle are replaced by their number for each tool.
 """
 
 from __future__ import annotations
@@ -13,22 +13,22 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from scope_ptz.bench.judging.case import Case, CaseCall
+from scope_ptz.bench.judging.case import CaseCall, JudgeCase
 from scope_ptz.bench.judging.quoting import cut, inline, quoted
-from scope_ptz.bench.scoring.episode import Places
-from scope_ptz.bench.tasks.facts import TaskFacts
+from scope_ptz.bench.scoring.episode import PresetViewpoints
+from scope_ptz.bench.tasks.task_facts import TaskFacts
 from scope_ptz.geometry import Pose
 
 LEAST_CHARS = 6_000
-"""A budget below this would leave nothing to judge by."""
+"""Minimum budget in characters. A shorter description could not be judged."""
 
 _INSTRUCTION_CHARS, _EXPECTED_CHARS, _ANSWER_CHARS = 4_000, 2_000, 8_000
 _RESULT_CHARS = (4_000, 1_200, 300)
-"""Of one result, tried in this order."""
+"""Maximum lengths of one tool result, tried in this order."""
 
 _NAME_CHARS, _MOST_PRESETS, _NOTE_CHARS = 60, 40, 300
 _BULK = frozenset({"boxes", "box", "path", "frames", "source"})
-"""Parts of results that tell a judge nothing, or who looked, which is none of its business."""
+"""Parts of results that are left out: they do not help a judge, or they would reveal the perception model."""
 
 _LOOKER = re.compile(r" ?\(seen by [^()]*\)")
 
@@ -44,14 +44,20 @@ _ENDINGS = {
 }
 
 
-def render(facts: TaskFacts, case: Case, budget: int) -> str:
-    """The task and the run. ``budget``: characters; at least ``LEAST_CHARS`` are used."""
+def render(facts: TaskFacts, case: JudgeCase, budget: int) -> str:
+    """Describe a task and a run.
+
+    Args:
+        facts: The facts about the task.
+        case: The run.
+        budget: Maximum length in characters. A budget below ``LEAST_CHARS`` counts as ``LEAST_CHARS``.
+    """
     head, tail = _task_part(facts, case), _end_part(case)
     room = max(budget, LEAST_CHARS) - len(head) - len(tail)
     return f"{head}\n\n{_calls_part(case.calls, max(room, LEAST_CHARS // 4))}\n\n{tail}"
 
 
-def _task_part(facts: TaskFacts, case: Case) -> str:
+def _task_part(facts: TaskFacts, case: JudgeCase) -> str:
     names = [_preset(name, case) for name in case.presets[:_MOST_PRESETS]]
     more = len(case.presets) - len(names)
     presets = ", ".join(names) + (f" and {more} more" if more > 0 else "") if names else "none"
@@ -78,13 +84,13 @@ def _task_part(facts: TaskFacts, case: Case) -> str:
     return "\n".join(lines)
 
 
-def _preset(name: str, case: Case) -> str:
-    """A preset with the viewpoint that it is at, where that is known."""
+def _preset(name: str, case: JudgeCase) -> str:
+    """Return a preset with its viewpoint, if known."""
     at = case.places.presets.get(name) if case.places is not None else None
     return inline(name, _NAME_CHARS) + (f" (viewpoint {inline(at, _NAME_CHARS)})" if at else "")
 
 
-def _end_part(case: Case) -> str:
+def _end_part(case: JudgeCase) -> str:
     viewpoint = case.calls[-1].viewpoint if case.calls else case.viewpoint
     ending = _ENDINGS.get(case.outcome or "", "the run was cut off before its end")
     return "\n".join(
@@ -103,25 +109,25 @@ def _calls_part(calls: Sequence[CaseCall], room: int) -> str:
         return "Tool calls: none."
     title = f"Tool calls, in order ({len(calls)}):"
     for most in _RESULT_CHARS:
-        told = _all_told(calls, most, room)
-        if told is not None:
-            return "\n".join((title, *told))
+        texts = _all_calls(calls, most, room)
+        if texts is not None:
+            return "\n".join((title, *texts))
     return "\n".join((title, *_ends_kept(calls, room)))
 
 
-def _all_told(calls: Sequence[CaseCall], most: int, room: int) -> list[str] | None:
-    """Every call, unless that takes more than there is room for."""
-    told, left = list[str](), room
+def _all_calls(calls: Sequence[CaseCall], most: int, room: int) -> list[str] | None:
+    """Return the text of every call, or None if they do not fit into ``room`` characters."""
+    texts, left = list[str](), room
     for number, call in enumerate(calls, 1):
-        told.append(_call_text(number, call, most))
-        left -= len(told[-1]) + 1
+        texts.append(_call_text(number, call, most))
+        left -= len(texts[-1]) + 1
         if left < 0:
             return None
-    return told
+    return texts
 
 
 def _ends_kept(calls: Sequence[CaseCall], room: int) -> list[str]:
-    """The first and the last calls, as many as there is room for, taken in turn from both ends, and what the rest were."""
+    """Return as many of the first and last calls as fit, taken alternately from both ends, and a note about the others."""
     front, back = list[str](), list[str]()
     left = room - _NOTE_CHARS
     while len(front) + len(back) < len(calls):
@@ -141,8 +147,10 @@ def _ends_kept(calls: Sequence[CaseCall], room: int) -> list[str]:
 
 def _call_text(number: int, call: CaseCall, most: int) -> str:
     arguments = cut(_json(call.arguments), most)
-    said = f"error: {cut(call.error, most)}" if call.error is not None else f"result: {cut(_json(_kept(call.result or {})), most)}"
-    body = quoted(f"{cut(call.name, 80)} {arguments}\n{said}")
+    result = (
+        f"error: {cut(call.error, most)}" if call.error is not None else f"result: {cut(_json(_kept(call.result or {})), most)}"
+    )
+    body = quoted(f"{cut(call.name, 80)} {arguments}\n{result}")
     return f"Call {number}:\n{body}\nCamera afterwards:{_at(call.viewpoint)} {in_words(call.pose)}."
 
 
@@ -162,12 +170,12 @@ def _json(content: Mapping[str, Any]) -> str:
 
 
 def in_words(pose: Pose) -> str:
-    """A pose as a person reads it."""
+    """Return a pose in words."""
     return f"pan {pose.pan_deg:.1f}, tilt {pose.tilt_deg:.1f} degrees, zoom {pose.zoom:.2f}x"
 
 
 def specimen() -> str:
-    """A made-up run in the words of this module, each of its parts once: what changes when the layout does."""
+    """Return the description of an invented run with every part once. The prompt version includes it, so it covers the layout."""
     pose = Pose(10.0, -5.0, 2.0)
     facts = TaskFacts(
         id="id", dataset="dataset", stratum="core", scene="scene", viewpoint="mast", preset="gate", instruction="Look.",
@@ -175,5 +183,7 @@ def specimen() -> str:
     )  # fmt: skip
     calls = [CaseCall("tool", {"a": 1}, {"message": "Done.", "box": [0]}, None, pose, "mast")]
     calls += [CaseCall("tool", {}, None, "It failed.", pose)] * LEAST_CHARS
-    case = Case("Look.", pose, "mast", ("gate",), tuple(calls), pose, "Five.", "answered", True, Places({"gate": "mast"}, "mast"))
+    case = JudgeCase(
+        "Look.", pose, "mast", ("gate",), tuple(calls), pose, "Five.", "answered", True, PresetViewpoints({"gate": "mast"}, "mast")
+    )
     return "\n\n".join(render(facts, shown, LEAST_CHARS) for shown in (case, replace(case, calls=(), outcome=None, answer="")))

@@ -1,6 +1,7 @@
-"""What judges are told: the published prompt, a file. Another wording is another file, or scores stop being comparable.
+"""The published prompt of judges, which is a file.
 
-The name of the file and a digest of its text stand in every judgement.
+Another wording needs another file, because verdicts are comparable only under the same prompt. Every judgement records the name of
+the file and a digest of its text.
 """
 
 from __future__ import annotations
@@ -11,8 +12,8 @@ import re
 from functools import cache
 from importlib.resources import files
 
+from scope_ptz.bench.judging.judge_replies import REPLY_SCHEMA
 from scope_ptz.bench.judging.rendering import specimen
-from scope_ptz.bench.judging.replies import REPLY_SCHEMA
 from scope_ptz.bench.tasks.task import Category
 
 PROMPT = "judge-1"
@@ -20,7 +21,7 @@ _HEADING = re.compile(r"^# (.+)\n", re.MULTILINE)
 
 
 def system_prompt(category: Category) -> str:
-    """What a judge is told before it sees a run of this category."""
+    """Return the system prompt for runs of a category."""
     parts = _sections()
     rubric = f"For tasks of the category {category}:\n{parts[category]}"
     reply = parts["reply"].replace("{schema}", json.dumps(REPLY_SCHEMA))
@@ -28,13 +29,13 @@ def system_prompt(category: Category) -> str:
 
 
 def mode_lines() -> list[str]:
-    """The error modes with their definitions, numbered, in the order of precedence."""
+    """Return the error modes with their definitions, numbered, in the order of precedence."""
     return [line for line in _sections()["error modes"].splitlines() if line[:1].isdigit()]
 
 
 @cache
 def prompt_version() -> str:
-    """The name of the prompt and a digest of what it really says, the layout of runs included, as it stands in judgements."""
+    """Return the name of the prompt and a digest of its text and of the layout of runs, as recorded in judgements."""
     text = _text() + json.dumps(REPLY_SCHEMA) + specimen()
     return f"{PROMPT}:{hashlib.sha256(text.encode()).hexdigest()[:12]}"
 

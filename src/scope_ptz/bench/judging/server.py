@@ -1,4 +1,4 @@
-"""The judge's port to an OpenAI-compatible server: bound to the schema where the server can do that, and less where it cannot."""
+"""A judge's connection to an OpenAI-compatible server. Replies are constrained to the schema if the server supports it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from scope_ptz.bench.judging.judge import Message, NoReplyError, Reply
+from scope_ptz.bench.judging.judge import Completion, JudgeMessage, NoReplyError
 from scope_ptz.endpoints.chat import ChatClient
 from scope_ptz.endpoints.chat_replies import ChatReply
 from scope_ptz.endpoints.endpoint import Endpoint
@@ -23,13 +23,17 @@ _FORMS: tuple[Form, ...] = ("json_schema", "json_object", "free")
 _REFUSALS = (K.BAD_REQUEST, K.SERVER_ERROR, K.NOT_FOUND, K.ERROR_BODY)
 _ABOUT_FORM = re.compile(r"response_format|json_?(schema|object)|schema|grammar|guided|structured|xgrammar|outlines", re.IGNORECASE)
 _MOST_LESSONS = 6
-"""A server that still refuses after so many concessions refuses something else."""
+"""Maximum number of requests with fewer and fewer options. After that the server refuses something else."""
 
 
-class JudgeOptions(BaseModel):
-    """How a judge's model is asked. Temperature 0 and a seed make it repeat itself as far as its server can.
+class JudgeModelOptions(BaseModel):
+    """Options of requests to a judge's model. Temperature 0 and a seed make replies repeatable if the server supports it.
 
-    ``max_tokens``: of a reply, reasoning included. ``reasoning_effort``: "low", "medium" or "high", for models that know it.
+    Attributes:
+        temperature: Sampling temperature.
+        seed: Seed of the sampling.
+        max_tokens: Maximum tokens of a reply, reasoning included.
+        reasoning_effort: For models that support it.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -42,26 +46,30 @@ class JudgeOptions(BaseModel):
 
 @dataclass
 class _Known:
-    """What a server turned out to take; shared by all ports to it."""
+    """What a server accepts, as learned from its replies. Shared by all connections to it."""
 
     dialect: Dialect = field(default_factory=lambda: Dialect("native", fixed=True))
     form: int = 0
 
 
-class ServerPort:
-    """Callable as the judge's port; may be shared by concurrent judgements. It keeps connections, and what the server refuses."""
+class JudgeServer:
+    """Completes a judge's messages on a server. Concurrent judgements may share it. It remembers what the server refuses."""
 
-    def __init__(self, endpoint: Endpoint, options: JudgeOptions | None = None) -> None:
-        self.options, self.client, self._known = options or JudgeOptions(), ChatClient(endpoint), _Known()
+    def __init__(self, endpoint: Endpoint, options: JudgeModelOptions | None = None) -> None:
+        self.options, self.client, self._known = options or JudgeModelOptions(), ChatClient(endpoint), _Known()
 
-    def repeated(self, repeat: int) -> ServerPort:
-        """The port for a further judgement by the same judge: another seed, the same connections."""
+    def repeated(self, repeat: int) -> JudgeServer:
+        """Return the server for another judgement by the same judge, with another seed and the same connections."""
         port = copy(self)
         port.options = self.options.model_copy(update={"seed": self.options.seed + repeat})
         return port
 
-    async def __call__(self, messages: list[Message], schema: dict[str, Any]) -> Reply:
-        """Ask. Raises ``NoReplyError``."""
+    async def __call__(self, messages: list[JudgeMessage], schema: dict[str, Any]) -> Completion:
+        """Complete messages under a JSON schema.
+
+        Raises:
+            NoReplyError: The server failed or refuses every form of request.
+        """
         form, quiet, dialect = self._known.form, False, self._known.dialect
         for _ in range(_MOST_LESSONS):
             fields = dialect.fields(self.options.model_dump())
@@ -76,20 +84,20 @@ class ServerPort:
                     form, quiet = form + 1, quiet or failure.kind is K.EMPTY
                     continue
                 if failure.kind is K.EMPTY:
-                    return Reply(text="")
+                    return Completion(text="")
                 raise NoReplyError(str(failure), overflow=failure.kind is K.CONTEXT_OVERFLOW) from None
-            if not quiet:  # Silence may pass; a refusal stays.
+            if not quiet:  # An empty reply may be temporary; a refusal is not.
                 self._known.form = max(self._known.form, form)
             return _read(reply)
         raise NoReplyError(f"The judge's server at {self.client.endpoint.url} refuses every form of request.")
 
     async def close(self) -> None:
-        """Close the connections."""
+        """Close all connections."""
         await self.client.close()
 
 
 def _refuses_form(failure: ServerFailure) -> bool:
-    """Whether a server may have stumbled over the constraint: it says so, or calls the request bad without saying why."""
+    """Return whether a server may have refused the response format: it says so, or rejects the request without a reason."""
     return failure.kind in _REFUSALS and (failure.kind is K.BAD_REQUEST or _ABOUT_FORM.search(failure.detail) is not None)
 
 
@@ -101,8 +109,8 @@ def _response_format(form: Form, schema: dict[str, Any]) -> dict[str, Any]:
     return {"response_format": {"type": "json_schema", "json_schema": {"name": "verdict", "strict": True, "schema": schema}}}
 
 
-def _read(reply: ChatReply) -> Reply:
-    return Reply(
+def _read(reply: ChatReply) -> Completion:
+    return Completion(
         text=part(reply.text, reply.reasoning).text,
         input_tokens=reply.input_tokens,
         output_tokens=reply.output_tokens,

@@ -1,1 +1,1 @@
-"""Reports of evaluations: what the paper shows, for any set of runs, as a page, Markdown and CSV."""
+"""Reports on evaluations: tables, charts, pages of failed tasks, and submissions."""

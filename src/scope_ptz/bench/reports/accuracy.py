@@ -1,4 +1,4 @@
-"""Accuracy by category as in the paper's table, with bounds, and the judge's beside the checks'."""
+"""The accuracy section: accuracy by category as in the paper's table, its bounds, and the judge's verdicts next to the checks'."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from scope_ptz.bench.reports import charts as drawing
-from scope_ptz.bench.reports.judged import judge_name, verdicts
-from scope_ptz.bench.reports.runs import CATEGORY_TITLES, Run, macro, of_main_set, scores_of
+from scope_ptz.bench.reports.report_judge import judge_name, verdicts
+from scope_ptz.bench.reports.report_runs import CATEGORY_TITLES, ReportRun, macro, of_main_set, scores_of
 from scope_ptz.bench.reports.sections import Section
-from scope_ptz.bench.reports.tables import Column, Marked, Table, Value, bare
+from scope_ptz.bench.reports.tables import CellValue, Column, MarkedCell, ReportTable, unmarked
 from scope_ptz.bench.scoring.trials import Trial
-from scope_ptz.bench.statistics.clustered import Estimate, share
+from scope_ptz.bench.statistics.clustered import IntervalEstimate, share
 
 KIND_WORDS = {
     "models": "models",
@@ -22,53 +22,56 @@ KIND_WORDS = {
 }
 ROUNDING = 1e-9
 INTERVALS = (
-    "With each share stands its 95% interval, clustered by viewpoint (linearised variance by cluster, Student's t with one degree "
-    "of freedom fewer than there are viewpoints, Wilson's form at the effective sample size). Repeats of a task are one "
-    "observation of it. With one viewpoint it is not known. "
-    "“Without”: categories with one viewpoint, which are in the macro average but add nothing to its interval: it is too narrow."
+    "Each value has a 95% interval, clustered by viewpoint (linearised variance by cluster, Student's t with one degree of freedom "
+    "fewer than there are viewpoints, Wilson's form at the effective sample size). Repeats of a task count as one observation. "
+    "With only one viewpoint the interval is unknown. “Without” lists categories with only one viewpoint. They are included in "
+    "the macro average but do not widen its interval, which is therefore too narrow."
 )
 
 
-def accuracy_section(runs: Sequence[Run]) -> Section:
-    """Accuracy of every run that has core tasks, model pairs apart from what is no model pair."""
-    having = [run for run in runs if run.scored]
+def accuracy_section(runs: Sequence[ReportRun]) -> Section:
+    """Return the accuracy of every run with core tasks. Model pairs and other runs have separate tables."""
+    having = [run for run in runs if run.scored_trials]
     ranked, others = [r for r in having if r.ranked], [r for r in having if not r.ranked]
     tables = [category_table("accuracy", "Accuracy by category (%): model pairs", ranked, rank=True)]
     if others:
         tables.append(category_table("accuracy_not_ranked", "Accuracy by category (%): not ranked", others, rank=False))
     tables.append(_bounds(having))
-    if any(t.judgements for run in having for t in run.scored):
+    if any(t.judgements for run in having for t in run.scored_trials):
         tables.append(_by_judge(having))
     text = [
-        "Macro is the unweighted mean over categories, which is what the paper calls average; micro is the share of all "
-        "trials (a trial is "
-        "one run of one task). Both count correct trials among those that infrastructure did not break; an unscored trial is "
-        "not correct. Trials that only a judge can score are left out until one has given a verdict."
+        "The macro average is the unweighted mean over categories, which the paper calls average. The micro average is the share "
+        "of all trials; a trial is one run of one task. Both count correct trials among those that infrastructure did not break. "
+        "An unscored trial counts as not correct. Trials that only a judge can score are left out until a judge has given a "
+        "verdict."
     ]
     if len({(run.task_set, run.tasks) for run in having}) > 1:
         text.append(
-            "Not all runs did the same tasks: the best values are marked among runs of exactly the same tasks, and the chart "
-            "shows the main task set."
+            "Not all runs cover the same tasks. The best values are marked among runs over exactly the same tasks. The chart shows "
+            "the main task set."
             + (
-                " Runs over other tasks of it are hollow and stand below; their labels say how many tasks they share with the rest."
-                if any(run.elsewhere for run in having)
+                " Runs over a different selection of its tasks are hollow and below the others; their labels give the number of "
+                "shared tasks."
+                if any(run.other_tasks for run in having)
                 else ""
             )
         )
     if others:
         text.append(
-            "The grammar planner and ground-truth eyes are no models. Ground-truth eyes are exact about what shows, unless they "
-            "are the noisy ones; both understand a language of their own only and may misunderstand a question or an "
-            "instruction. Runs with either, blind baselines and people stand in a table of their own and take no part in any "
-            "ranking."
+            "The grammar planner and ground-truth perception are not models. Ground-truth perception is exact about what is "
+            "visible, except in its noisy variant. Both understand a limited language and may misunderstand an instruction or a "
+            "question. Runs with either of them, blind baselines and human baselines are in a separate table and are not ranked."
         )
     main = of_main_set(runs)
     charts = (drawing.accuracy_chart(main),) if main else ()
     return Section("accuracy", "Accuracy", tuple(text), charts, tuple(tables))
 
 
-def category_table(key: str, title: str, runs: Sequence[Run], *, rank: bool) -> Table:
-    """A row a run, grouped by eyes. Best of its eyes: bold; best of its task set: underlined too."""
+def category_table(key: str, title: str, runs: Sequence[ReportRun], *, rank: bool) -> ReportTable:
+    """Return a table with one row per run, grouped by perception model.
+
+    The best value with a perception model is bold. The best value over the same tasks is also underlined.
+    """
     columns = [Column("run", "Run"), Column("macro", "Macro average", "share"), Column("micro", "Micro average", "share")]
     columns += [Column(name, words, "share") for name, words in CATEGORY_TITLES.items()]
     columns.append(Column("tasks", "Tasks", "count"))
@@ -76,44 +79,46 @@ def category_table(key: str, title: str, runs: Sequence[Run], *, rank: bool) -> 
     rows, groups = [], {}
     previous = None
     for number, (run, values) in enumerate(raw):
-        group = f"{run.eyes_name} ({' '.join(run.task_set)})"
+        group = f"{run.perception_name} ({' '.join(run.task_set)})"
         if group != previous:
             groups[number], previous = group, group
         cells = [_marked(value, index, run, raw) if rank else value for index, value in enumerate(values)]
         cells[0] = _partial_macro(cells[0], run)
         rows.append((run.label, *cells, len(run.tasks)))
-    notes = (INTERVALS, "Bold: the best with these eyes; underlined: the best of all on these tasks; only where there is another.")
-    return Table(key, title, tuple(columns), tuple(rows), notes if rank else (INTERVALS,), groups)
+    notes = (INTERVALS, "Bold: the best value with this perception model. Underlined: the best value on these tasks.")
+    return ReportTable(key, title, tuple(columns), tuple(rows), notes if rank else (INTERVALS,), groups)
 
 
-def _category(run: Run, name: str) -> Estimate | None:
-    return share(scores_of([t for t in run.scored if t.task.category == name]))
+def _category(run: ReportRun, name: str) -> IntervalEstimate | None:
+    return share(scores_of([t for t in run.scored_trials if t.task.category == name]))
 
 
-def _marked(value: Estimate | None, index: int, run: Run, raw: Sequence[tuple[Run, list[Estimate | None]]]) -> Value:
+def _marked(
+    value: IntervalEstimate | None, index: int, run: ReportRun, raw: Sequence[tuple[ReportRun, list[IntervalEstimate | None]]]
+) -> CellValue:
     if value is None:
         return None
     same_tasks = [(r, v[index]) for r, v in raw if r.task_set == run.task_set and r.tasks == run.tasks]
-    alike = [v.value for r, v in same_tasks if v and r.eyes_name == run.eyes_name]
+    alike = [v.value for r, v in same_tasks if v and r.perception_name == run.perception_name]
     every = [v.value for _, v in same_tasks if v]
-    return Marked(value, _is_best(value.value, alike), _is_best(value.value, every))
+    return MarkedCell(value, _is_best(value.value, alike), _is_best(value.value, every))
 
 
 def _is_best(value: float, among: Sequence[float]) -> bool:
-    """Whether none of several is better; what differs by rounding only is alike."""
+    """Return whether no other value is better. Values that differ only by rounding are equal."""
     return len(among) > 1 and value > max(among) - ROUNDING
 
 
-def _partial_macro(value: Value, run: Run) -> Value:
-    """A macro average that lacks categories says so."""
-    number = len({t.task.category for t in run.scored})
+def _partial_macro(value: CellValue, run: ReportRun) -> CellValue:
+    """Add a note to a macro average that does not cover all categories."""
+    number = len({t.task.category for t in run.scored_trials})
     if number == len(CATEGORY_TITLES):
         return value
-    marks = value if isinstance(value, Marked) else Marked(bare(value))
+    marks = value if isinstance(value, MarkedCell) else MarkedCell(unmarked(value))
     return replace(marks, note=f"over {number} of {len(CATEGORY_TITLES)} categories")
 
 
-def _bounds(runs: Sequence[Run]) -> Table:
+def _bounds(runs: Sequence[ReportRun]) -> ReportTable:
     columns = (
         Column("run", "Run"), Column("trials", "Trials", "count"), Column("correct", "Correct", "count"),
         Column("incorrect", "Incorrect", "count"), Column("unscored", "Unscored", "count"),
@@ -121,53 +126,52 @@ def _bounds(runs: Sequence[Run]) -> Table:
         Column("at_least", "At least (%)", "share"), Column("at_most", "At most (%)", "share"),
     )  # fmt: skip
     notes = (
-        "Unscored: no check failed, but the answer could not be read. Infrastructure: servers or the camera failed, which "
-        "says nothing "
-        "about the agent. At least and at most: all of these wrong, or all of them right.",
+        "Unscored: no check failed, but the answer could not be parsed. Infrastructure: a server or the camera failed, which says "
+        "nothing about the agent. At least and at most: the share if all of these trials were wrong, or all of them right.",
     )
-    return Table("outcomes", "What came of the trials, with bounds", columns, tuple(_counted(run) for run in runs), notes)
+    return ReportTable("outcomes", "Outcomes of the trials, with bounds", columns, tuple(_counted(run) for run in runs), notes)
 
 
-def _counted(run: Run) -> tuple[Value, ...]:
-    found = Counter(t.headline for t in run.headline)
-    total = len(run.headline)
-    ran = len(run.scored)
+def _counted(run: ReportRun) -> tuple[CellValue, ...]:
+    found = Counter(t.headline for t in run.main_trials)
+    total = len(run.main_trials)
+    ran = len(run.scored_trials)
     return (
         run.label, total, found["correct"], found["incorrect"], found["unscored"], found["infrastructure"],
         found["correct"] / ran if ran else None, found["correct"] / total, 1 - found["incorrect"] / total,
     )  # fmt: skip
 
 
-def _by_judge(runs: Sequence[Run]) -> Table:
+def _by_judge(runs: Sequence[ReportRun]) -> ReportTable:
     columns = (
         Column("run", "Run"), Column("judge", "Judge"), Column("judged", "Judged", "count"),
         Column("unparseable", "Unparseable", "count"), Column("failed", "Judge failed", "count"),
         Column("macro_judge", "Macro by judge (%)", "share"), Column("macro_checks", "Macro by checks (%)", "share"),
-        Column("agreement", "Verdicts alike (%)", "share"),
+        Column("agreement", "Same verdict (%)", "share"),
     )  # fmt: skip
     notes = (
-        "The paper's accuracy is the judge's. Both macros are of trials that have a verdict of the judge; unparseable and failed "
-        "judgements are in neither. Trials that a judge scored, for want of a check of the answer, are not in the macro by checks "
-        "and not in the agreement.",
+        "The paper's accuracy is by a judge. Both macro averages cover the trials with a verdict of the judge; unparseable and "
+        "failed judgements are left out. Trials without a check of the answer, which a judge scored, count neither in the macro "
+        "average by checks nor in the agreement.",
     )
-    return Table("judge", "The judge's verdicts beside the checks'", columns, tuple(_judged_row(run) for run in runs), notes)
+    return ReportTable("judge", "Verdicts of the judge and of the checks", columns, tuple(_judged_row(run) for run in runs), notes)
 
 
-def _judged_row(run: Run) -> tuple[Value, ...]:
+def _judged_row(run: ReportRun) -> tuple[CellValue, ...]:
     name = judge_name([run])
     if name is None:
         return run.label, None, 0, 0, 0, None, None, None
-    said = verdicts(run.scored, name)
-    states = Counter(judgement.verdict for _, judgement in said)
-    clear = [(t, j.verdict == "correct") for t, j in said if j.verdict in ("correct", "incorrect")]
+    judged = verdicts(run.scored_trials, name)
+    states = Counter(judgement.verdict for _, judgement in judged)
+    clear = [(t, j.verdict == "correct") for t, j in judged if j.verdict in ("correct", "incorrect")]
     trials = [t for t, _ in clear]
     checked = [t for t in trials if t.scored_by == "checks"]
     own = [(t, right) for t, right in clear if t.scored_by == "checks" and t.headline != "unscored"]
     alike = sum((t.headline == "correct") == right for t, right in own) / len(own) if own else None
     by_judge = macro(scores_of(trials, [right for _, right in clear]))
-    return run.label, name, len(said), states["unparseable"], states["failed"], by_judge, macro(scores_of(checked)), alike
+    return run.label, name, len(judged), states["unparseable"], states["failed"], by_judge, macro(scores_of(checked)), alike
 
 
 def share_correct(trials: Sequence[Trial]) -> float | None:
-    """Share of correct runs among those given; None without any."""
+    """Return the share of correct trials; None without trials."""
     return sum(t.headline == "correct" for t in trials) / len(trials) if trials else None

@@ -1,5 +1,4 @@
-"""What charts are drawn on. Colour-blind-safe colours, text as text, axes in the colour of the page's ink: they work in light and
-dark."""
+"""The style of charts: colour-blind-safe colours, and inline SVG that adopts the page's light or dark colours and its fonts."""
 
 from __future__ import annotations
 
@@ -11,7 +10,7 @@ from contextlib import contextmanager
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
-from scope_ptz.bench.reports.runs import Run
+from scope_ptz.bench.reports.report_runs import ReportRun
 from scope_ptz.bench.reports.sections import Chart
 
 if TYPE_CHECKING:
@@ -20,12 +19,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 INK, FAINT, PAPER = "#010203", "#040506", "#070809"
-"""Stand-ins that become the page's own colours."""
+"""Placeholder colours that the page's own colours replace."""
 HUES = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E442")
-"""Okabe and Ito (2008)."""
+"""The colour-blind-safe palette of Okabe and Ito (2008)."""
 GREY = "#8a8f98"
 GREYS, HATCHES = ("#c9ccd1", "#9a9fa8", "#757b85", "#b3b7bd"), ("////", "....", "xxxx", "----", "\\\\\\\\")
-"""Told apart by both: their numbers have no factor in common."""
+"""Fills of runs that are not ranked. Four greys and five hatches give twenty combinations."""
 PX = 96.0
 _SETTINGS: Any = {
     "svg.fonttype": "none", "svg.hashsalt": "scope",
@@ -38,27 +37,27 @@ _SETTINGS: Any = {
 
 @contextmanager
 def canvas(width_px: int, height_px: int) -> Iterator[tuple[Figure, Axes]]:
-    """A figure with one set of axes."""
+    """Open a figure with one set of axes."""
     with panels(width_px, height_px, 1) as (figure, (axes,)):
         yield figure, axes
 
 
 @contextmanager
 def panels(width_px: int, height_px: int, number: int) -> Iterator[tuple[Figure, Sequence[Axes]]]:
-    """A figure with axes side by side that share their rows."""
+    """Open a figure with several axes side by side that share their rows."""
     import matplotlib as mpl
     from matplotlib.backends.backend_svg import FigureCanvasSVG
     from matplotlib.figure import Figure
 
     with mpl.rc_context(_SETTINGS), warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "Glyph")  # The reader's browser has the glyphs; only their width is guessed here.
+        warnings.filterwarnings("ignore", "Glyph")  # The browser has the glyphs; here they only affect estimated widths.
         figure = Figure(figsize=(width_px / PX, height_px / PX), dpi=PX, layout="constrained")
         FigureCanvasSVG(figure)
         yield figure, list(figure.subplots(1, number, sharey=True, squeeze=False)[0])
 
 
 def as_chart(key: str, title: str, alt: str, figure: Figure) -> Chart:
-    """The figure as inline SVG: ids of its own, the page's colours and fonts."""
+    """Convert a figure to inline SVG with unique ids and the page's colours and fonts."""
     out = io.StringIO()
     figure.savefig(out, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
     svg = out.getvalue()
@@ -72,29 +71,29 @@ def as_chart(key: str, title: str, alt: str, figure: Figure) -> Chart:
     return Chart(key, title, alt, svg, round(figure.get_figwidth() * PX))
 
 
-def colours(runs: Sequence[Run]) -> dict[str, str]:
-    """A hue for each pair of eyes, lighter for smaller planners, as in the paper's figure; grey for what is not ranked."""
-    eyes = list(dict.fromkeys(run.eyes_name for run in runs if run.ranked))
+def colours(runs: Sequence[ReportRun]) -> dict[str, str]:
+    """Return a colour per run: a hue per perception model, lighter for smaller planners; grey for runs that are not ranked."""
+    perception = list(dict.fromkeys(run.perception_name for run in runs if run.ranked))
     found = {}
     for run in runs:
         if not run.ranked:
             found[run.label] = GREY
             continue
-        name = run.eyes_name
-        same = [r for r in runs if r.ranked and r.eyes_name == name]
+        name = run.perception_name
+        same = [r for r in runs if r.ranked and r.perception_name == name]
         place = (same.index(run) + 1) / len(same)
-        found[run.label] = _mixed(HUES[eyes.index(name) % len(HUES)], 0.45 + 0.55 * place)
+        found[run.label] = _mixed(HUES[perception.index(name) % len(HUES)], 0.45 + 0.55 * place)
     return found
 
 
 def _mixed(colour: str, share: float) -> str:
-    """A colour mixed with light grey, so that it shows on white and on black."""
+    """Mix a colour with light grey, so that it is visible on white and on black."""
     parts = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
     return "#" + "".join(f"{round(part * share + 205 * (1 - share)):02x}" for part in parts)
 
 
-def shades(runs: Sequence[Run]) -> list[tuple[str, str | None]]:
-    """Fill and hatch for the bars of each run. What is not ranked has no hue: its greys and hatches tell it apart."""
+def shades(runs: Sequence[ReportRun]) -> list[tuple[str, str | None]]:
+    """Return the fill and hatch of each run's bars. Runs that are not ranked have a grey and a hatch instead of a hue."""
     tint, others = colours(runs), [run for run in runs if not run.ranked]
     found: list[tuple[str, str | None]] = []
     for run in runs:
@@ -107,33 +106,33 @@ def shades(runs: Sequence[Run]) -> list[tuple[str, str | None]]:
 
 
 def short(label: str, most: int = 46) -> str:
-    """A label that fits, without characters that no picture can hold."""
+    """Return a label shortened to ``most`` characters, without unprintable characters."""
     shown = "".join(mark if mark.isprintable() else " " for mark in label)
     return shown if len(shown) <= most else shown[: most - 1] + "…"
 
 
 def lines(label: str, most: int = 42) -> str:
-    """A label on as many lines as it needs, three at most, so that nothing that sets a run apart is cut off."""
+    """Return a label wrapped to at most three lines."""
     return "\n".join(wrap(short(label, 3 * most - 8), most) or [""])
 
 
 def legend_columns(labels: Sequence[str], most: int = 52) -> int:
-    """Columns of a legend below the axes: one where a label would not fit half the width in whatever font the reader has."""
+    """Return the number of legend columns: two if every label fits half the width, else one."""
     return 2 if len(labels) > 1 and max(map(len, labels)) <= most else 1
 
 
 def legend_below(figure: Figure, labels: Sequence[str], keys: Sequence[Artist] = ()) -> None:
-    """A legend that cuts no label off. ``keys``: what stands before the labels where what is drawn does not carry them itself."""
+    """Draw a legend below the axes. ``keys`` are its handles if the drawn artists carry no labels."""
     columns = legend_columns(labels)
     loc: Any = "outside lower center" if columns == 2 else "outside lower left"
     figure.legend(**({"handles": keys} if keys else {}), loc=loc, ncols=columns, fontsize=9.5)
 
 
 def legend_px(labels: Sequence[str]) -> int:
-    """Its height."""
+    """Return the height of the legend in pixels."""
     return 20 * -(-len(labels) // legend_columns(labels))
 
 
 def row_px(labels: Sequence[str], least: int = 26) -> int:
-    """Height of a row that the longest of these labels fits in."""
+    """Return the height in pixels of a row that fits every label."""
     return max([least, *(8 + 16 * (1 + words.count("\n")) for words in labels)])

@@ -1,4 +1,4 @@
-"""Charts as SVG, and what they say to whoever cannot see them."""
+"""The charts of a report as SVG, with text alternatives."""
 
 from __future__ import annotations
 
@@ -25,23 +25,26 @@ from scope_ptz.bench.reports.chart_style import (
     shades,
     short,
 )
-from scope_ptz.bench.reports.runs import Run
+from scope_ptz.bench.reports.report_runs import ReportRun
 from scope_ptz.bench.reports.sections import Chart
-from scope_ptz.bench.reports.tables import Marked, Table, bare
+from scope_ptz.bench.reports.tables import MarkedCell, ReportTable, unmarked
 from scope_ptz.bench.scoring.error_modes import ErrorMode
-from scope_ptz.bench.statistics.clustered import Estimate
+from scope_ptz.bench.statistics.clustered import IntervalEstimate
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.collections import PathCollection
 
-    from scope_ptz.bench.reports.recommendations import Candidate
+    from scope_ptz.bench.reports.candidates import Candidate
 
 
-def accuracy_chart(runs: Sequence[Run]) -> Chart:
-    """Macro accuracy with its interval, the best on top; runs over other tasks below and hollow, reference runs last and grey."""
-    ordered = sorted(runs, key=lambda r: (r.ranked, not r.elsewhere, r.macro.value if r.macro else 0.0))
+def accuracy_chart(runs: Sequence[ReportRun]) -> Chart:
+    """Draw macro accuracy with its intervals, best first.
+
+    Runs over other tasks are hollow and below the others. Runs that are not ranked are last and grey.
+    """
+    ordered = sorted(runs, key=lambda r: (r.ranked, not r.other_tasks, r.macro.value if r.macro else 0.0))
     tint = colours(runs)
     labels = [lines(r.label + ("" if r.ranked else " (not ranked)")) for r in ordered]
     with canvas(880, 110 + row_px(labels) * len(ordered)) as (figure, axes):
@@ -51,28 +54,37 @@ def accuracy_chart(runs: Sequence[Run]) -> Chart:
                 continue
             if found.low is not None and found.high is not None:
                 axes.plot([100 * found.low, 100 * found.high], [y, y], color=tint[run.label], lw=2.5, solid_capstyle="round")
-            face = PAPER if run.elsewhere else tint[run.label]
+            face = PAPER if run.other_tasks else tint[run.label]
             axes.plot(100 * found.value, y, "o" if run.ranked else "D", mec=tint[run.label], mfc=face, mew=2, ms=7, clip_on=False)
         axes.set_yticks(range(len(ordered)), labels)
         axes.set_xlim(0, 101)
         axes.set_ylim(-0.6, len(ordered) - 0.4)
         axes.set_xlabel("Macro accuracy (%), 95% interval")
         values = "; ".join(f"{r.label} {100 * r.macro.value:.1f}%" for r in reversed(ordered) if r.macro)
-        title = "Macro accuracy" + (". Hollow: over other tasks" if any(r.elsewhere for r in runs) else "")
+        title = "Macro accuracy" + (". Hollow: runs over other tasks" if any(r.other_tasks for r in runs) else "")
         return as_chart("chart-accuracy", title, f"Macro accuracy by run, best first: {values}.", figure)
 
 
 def mode_chart(
     key: str,
     title: str,
-    runs: Sequence[Run],
+    runs: Sequence[ReportRun],
     counted: Mapping[str, Counter[ErrorMode]],
     of: Mapping[str, int],
     titles: Mapping[ErrorMode, str],
-    among: Sequence[Run],
+    among: Sequence[ReportRun],
 ) -> Chart:
-    """Grouped bars, a group for each error mode; ``of``: how many trials a run's counts are out of; ``among``: the runs of all such
-    charts, so that a run looks alike in each."""
+    """Draw grouped bars with one group per error mode.
+
+    Args:
+        key: Key of the chart.
+        title: Title of the chart.
+        runs: The runs in the chart.
+        counted: The error modes of each run.
+        of: The number of trials of each run.
+        titles: The titles of the error modes.
+        among: The runs of all such charts, so that a run has the same fill in each.
+    """
     from matplotlib.patches import Patch
 
     keys: list[Artist] = []
@@ -84,7 +96,7 @@ def mode_chart(
             heights = [100 * counted[run.label][mode] / max(1, of[run.label]) for mode in titles]
             at = [group - 0.42 + (number + 0.5) * width for group in range(len(titles))]
             (fill, hatch), edge = fills[run.label], "none" if run.ranked else "#22262b"
-            # A bar of no height is none: its edge would show as a dash on the axis.
+            # Bars of zero height are left out, because their edges would appear as dashes on the axis.
             bars = [(x, height) for x, height in zip(at, heights, strict=True) if height]
             axes.bar([x for x, _ in bars], [y for _, y in bars], width * 0.92, color=fill, hatch=hatch, edgecolor=edge, lw=0.6)
             keys.append(Patch(facecolor=fill, hatch=hatch, edgecolor=edge, lw=0.6, label=words))
@@ -94,36 +106,40 @@ def mode_chart(
         axes.set_xticks(range(len(titles)), [words.replace(" ", "\n", 1) for words in titles.values()])
         axes.set_xlim(-0.5, len(titles) - 0.5)
         axes.set_ylim(bottom=0)
-        axes.set_ylabel("Incorrect trials of 100")
+        axes.set_ylabel("Incorrect trials per 100")
         legend_below(figure, labels, keys)
         totals = ", ".join(f"{words} {sum(counted[r.label][mode] for r in runs)}" for mode, words in titles.items())
-        alt = f"Bars: incorrect trials by error mode and run. Trials over all runs: {totals}. The table below has every figure."
+        alt = f"Bars: incorrect trials by error mode and run. Trials over all runs: {totals}. The table below has all values."
         return as_chart(f"chart-{key.replace('_', '-')}", title, alt, figure)
 
 
 AS_IS, LIFTED, AGAIN = ("o", HUES[0]), ("s", HUES[1]), ("D", HUES[2])
 ORACLE_PANELS = (
     ("by the checks", (
-        ("macro_checks", "as it is", AS_IS), ("oracle_rules", "VLM failures as right", LIFTED),
-        ("macro_rerun", "run again with ground-truth eyes", AGAIN),
+        ("macro_checks", "measured", AS_IS), ("oracle_rules", "VLM errors counted as correct", LIFTED),
+        ("macro_rerun", "rerun with ground-truth perception", AGAIN),
     )),
-    ("by the judge", (("macro_judge", "as it is", AS_IS), ("oracle_judge", "VLM failures as right", LIFTED))),
+    ("by the judge", (("macro_judge", "measured", AS_IS), ("oracle_judge", "VLM errors counted as correct", LIFTED))),
 )  # fmt: skip
-"""Each by verdicts of one kind, so that what is compared differs in nothing else."""
+"""The panels of the oracle chart. Each panel uses verdicts of one kind only."""
 
 
-def oracle_chart(table: Table) -> Chart:
-    """Accuracy as it is beside perfect perception, by the checks and by the judge in panels of their own. ``table``: of pairs."""
+def oracle_chart(table: ReportTable) -> Chart:
+    """Draw measured accuracy next to accuracy with perfect perception, in one panel by the checks and one by the judge.
+
+    Args:
+        table: The table of the oracle setting, without its rows of means.
+    """
     names = [column.name for column in table.columns]
     rows = [(str(row[0]), {name: _whole(cell) for name, cell in zip(names, row, strict=True)}) for row in reversed(table.rows)]
     drawn = [(words, series) for words, series in ORACLE_PANELS if any(v[name] is not None for _, v in rows for name, *_ in series)]
-    labels, told, known = [lines(label) for label, _ in rows], [], dict[str, Any]()
+    labels, parts, known = [lines(label) for label, _ in rows], [], dict[str, Any]()
     with panels(1080, 150 + row_px(labels, 34) * len(rows), max(1, len(drawn))) as (figure, grid):
         for axes, (words, series) in zip(grid, drawn, strict=False):
             for y, (label, values) in enumerate(rows):
                 found = [(title, 100 * value) for name, title, _ in series if (value := values[name]) is not None]
                 if found:
-                    told.append(f"{label} {words}: {', '.join(f'{title} {value:.1f}%' for title, value in found)}")
+                    parts.append(f"{label} {words}: {', '.join(f'{title} {value:.1f}%' for title, value in found)}")
                     axes.plot([min(v for _, v in found), max(v for _, v in found)], [y, y], color=GREY, lw=1.5, zorder=1)
             for name, title, (marker, colour) in series:
                 points = [(100 * value, y) for y, (_, values) in enumerate(rows) if (value := values[name]) is not None]
@@ -134,25 +150,25 @@ def oracle_chart(table: Table) -> Chart:
             axes.set_ylim(-0.6, len(rows) - 0.4)
         grid[0].set_yticks(range(len(rows)), labels)
         figure.legend(known.values(), known.keys(), loc="outside lower center", ncols=3, fontsize=9.5)
-        return as_chart("chart-oracle", "The oracle setting", f"Macro accuracy by pair. {'; '.join(told)}.", figure)
+        return as_chart("chart-oracle", "The oracle setting", f"Macro accuracy by pair. {'; '.join(parts)}.", figure)
 
 
 def _whole(cell: Any) -> float | None:
-    """A value that is of all tasks of the run: one that is of some says so in its note."""
-    return None if isinstance(cell, Marked) and cell.note else _value(cell)
+    """Return a value that covers all tasks of its run; None for one with a note that it covers only some."""
+    return None if isinstance(cell, MarkedCell) and cell.note else _value(cell)
 
 
 def _value(cell: Any) -> float | None:
-    found = bare(cell)
-    if isinstance(found, Estimate):
+    found = unmarked(cell)
+    if isinstance(found, IntervalEstimate):
         return found.value
     return float(found) if isinstance(found, int | float) else None
 
 
-def time_chart(runs: Sequence[Run], titles: Mapping[str, str]) -> Chart:
-    """Mean seconds by stage, stacked, without the camera; what the camera took stands beside the bar in figures."""
+def time_chart(runs: Sequence[ReportRun], titles: Mapping[str, str]) -> Chart:
+    """Draw the mean seconds of each stage, stacked, without the camera. The camera's seconds are written next to each bar."""
     stages = ("planner_s", "perception_s", "tools_s")
-    timed = [(run, [t.timings for t in run.scored if t.timings.total_s > 0]) for run in runs]
+    timed = [(run, [t.timings for t in run.scored_trials if t.timings.total_s > 0]) for run in runs]
     rows = [(run, {s: fmean(getattr(t, s) for t in own) for s in titles}) for run, own in reversed(timed) if own]
     notes = [("" if r.ranked else " (not ranked)") + (" (contended)" if r.evaluation.card.contended else "") for r, _ in rows]
     labels = [lines(run.label + note) for (run, _), note in zip(rows, notes, strict=True)]
@@ -168,17 +184,17 @@ def time_chart(runs: Sequence[Run], titles: Mapping[str, str]) -> Chart:
         axes.set_xlim(0, max(left) * 1.45)
         axes.set_yticks(range(len(rows)), labels)
         axes.grid(axis="y", visible=False)
-        axes.set_xlabel("Mean wall seconds a trial without the camera, by stage")
+        axes.set_xlabel("Mean wall seconds per trial without the camera, by stage")
         figure.legend(loc="outside lower center", ncols=3, fontsize=9.5)
-        told = "; ".join(f"{r.label} {m['own_s']:.2f} s and the camera {m['capture_s']:.2f} s" for r, m in reversed(rows))
-        alt = f"Mean wall seconds of a trial by stage, without the camera. In all: {told}."
-        return as_chart("chart-time", "Where a pair's own time goes", alt, figure)
+        totals = "; ".join(f"{r.label} {m['own_s']:.2f} s and the camera {m['capture_s']:.2f} s" for r, m in reversed(rows))
+        alt = f"Mean wall seconds of a trial by stage, without the camera. Totals: {totals}."
+        return as_chart("chart-time", "Time of each pair by stage", alt, figure)
 
 
 def front_chart(found: Sequence[Candidate]) -> Chart:
-    """Accuracy against latency; the area of a ring is its memory; those on the Pareto front are filled. Numbers lead to names.
+    """Draw accuracy against latency. The area of a ring is memory, filled rings are on the Pareto front.
 
-    A filling leaves a gap to its ring, so that a broken ring shows around it as it does around nothing.
+    Numbers in the rings refer to the legend. The filling leaves a gap, so that a dashed ring remains visible around it.
     """
     from matplotlib.legend_handler import HandlerTuple
     from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
@@ -202,7 +218,7 @@ def front_chart(found: Sequence[Candidate]) -> Chart:
         axes.xaxis.set_major_locator(LogLocator(base=10, subs=(1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0)))
         axes.xaxis.set_major_formatter(ScalarFormatter())
         axes.xaxis.set_minor_formatter(NullFormatter())
-        axes.set_xlabel("Median wall seconds of a trial without the camera: planner, perception, tools (logarithmic)")
+        axes.set_xlabel("Median wall seconds per trial without the camera: planner, perception and tools (logarithmic)")
         axes.set_ylabel("Macro accuracy (%)")
         one_on_the_other = {tuple: HandlerTuple(ndivide=1)}
         figure.legend(keys, names, handler_map=one_on_the_other, loc="outside right upper", fontsize=9.5, labelspacing=0.9)
@@ -212,12 +228,12 @@ def front_chart(found: Sequence[Candidate]) -> Chart:
             if c.on_front
         )
         alt = f"Scatter: accuracy against latency without the camera, area by memory. On the Pareto front: {on}."
-        title = "Accuracy, latency and memory. Filled: on the Pareto front; area: memory; broken ring: timed under contention"
+        title = "Accuracy, latency and memory. Filled: on the Pareto front. Area: memory. Dashed ring: timed under contention"
         return as_chart("chart-front", title, alt, figure)
 
 
 def _point(axes: Axes, at: tuple[float, ...], area: float, shade: str, of: Candidate) -> tuple[PathCollection, ...]:
-    """A ring of this area in square points, and its filling if it has one. ``at``: empty for what only the legend shows."""
+    """Draw a ring, filled if it is on the Pareto front. ``area`` is in square points; ``at`` is empty for the legend."""
     x, y = ([at[0]], [at[1]]) if at else ([], [])
     width = 2.0
     broken = (0, (3.0, 1.8)) if of.contended else "-"
@@ -227,20 +243,20 @@ def _point(axes: Axes, at: tuple[float, ...], area: float, shade: str, of: Candi
     return ring, axes.scatter(x, y, s=(sqrt(area) - 3 * width) ** 2, facecolor=shade, edgecolor="none", alpha=0.85)
 
 
-def repeats_chart(table: Table, most: int) -> Chart:
-    """pass^k by k."""
+def repeats_chart(table: ReportTable, most: int) -> Chart:
+    """Draw pass^k against k."""
     labels = [short(str(row[0]), 100) for row in table.rows]
     with canvas(880, 330 + legend_px(labels)) as (figure, axes):
-        told = []
+        parts = []
         for number, (row, words) in enumerate(zip(table.rows, labels, strict=True)):
             points = [(k, 100 * value) for k, cell in enumerate(row[2:], 1) if (value := _value(cell)) is not None]
             if points:
                 hue, marker = HUES[number % len(HUES)], "os^Dvp*"[number % 7]
                 axes.plot(*zip(*points, strict=True), marker=marker, color=hue, label=words, lw=2, ms=7)
-                told.append(f"{row[0]} from {points[0][1]:.1f}% to {points[-1][1]:.1f}%")
+                parts.append(f"{row[0]} from {points[0][1]:.1f}% to {points[-1][1]:.1f}%")
         axes.set_xticks(range(1, most + 1))
         axes.set_ylim(0, 102)
         axes.set_xlabel("k")
         axes.set_ylabel("pass^k (%)")
         legend_below(figure, labels)
-        return as_chart("chart-repeats", "pass^k", f"pass^k falls with k: {'; '.join(told)}.", figure)
+        return as_chart("chart-repeats", "pass^k", f"pass^k falls with k: {'; '.join(parts)}.", figure)

@@ -1,4 +1,4 @@
-"""The paper's published figures: a panel of their own, marked as the paper's."""
+"""The paper's published results in a panel of their own, marked as the paper's."""
 
 from __future__ import annotations
 
@@ -7,19 +7,21 @@ from importlib.resources import files
 
 from pydantic import BaseModel, ConfigDict
 
-from scope_ptz.bench.reports.runs import CATEGORY_TITLES
+from scope_ptz.bench.reports.report_runs import CATEGORY_TITLES
 from scope_ptz.bench.reports.sections import Section
-from scope_ptz.bench.reports.tables import Column, Marked, Table, Value
+from scope_ptz.bench.reports.tables import CellValue, Column, MarkedCell, ReportTable
 
 
 class _Row(BaseModel):
-    """``line``: of the paper's LaTeX source."""
+    """A row of one of the paper's tables. ``line`` is its line in the paper's LaTeX source."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
     line: int
 
 
 class PaperSource(BaseModel):
+    """The paper itself and its judge."""
+
     model_config = ConfigDict(frozen=True, extra="forbid")
     title: str
     doi: str
@@ -27,16 +29,22 @@ class PaperSource(BaseModel):
 
 
 class PaperCategory(_Row):
+    """The number of tasks of a category."""
+
     category: str
     tasks: int
 
 
 class PaperMode(_Row):
+    """An error mode and its meaning."""
+
     mode: str
     description: str
 
 
 class PaperModel(_Row):
+    """A model that the paper evaluates. Sizes are in 10^9 parameters."""
+
     title: str
     name: str
     role: str
@@ -46,7 +54,7 @@ class PaperModel(_Row):
 
 
 class PaperAccuracy(_Row):
-    """Percent. ``planner`` and ``eyes`` are names of the registry."""
+    """The accuracy of a pair in percent. ``planner`` and ``eyes`` (the perception model) are names in the registry."""
 
     planner: str
     eyes: str
@@ -61,10 +69,13 @@ class PaperAccuracy(_Row):
     single_call: float
 
     def category(self, name: str) -> float:
+        """Return the accuracy in a category."""
         return float(getattr(self, name))
 
 
 class PaperLatency(_Row):
+    """The latency and the tool calls of a model."""
+
     role: str
     name: str
     median_s: float
@@ -72,12 +83,14 @@ class PaperLatency(_Row):
 
 
 class PaperFigure(_Row):
+    """Another number from the paper."""
+
     what: str
     value: str
 
 
 class Paper(BaseModel):
-    """All tables of the paper that hold figures."""
+    """All results of the paper."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
     paper: PaperSource
@@ -89,14 +102,14 @@ class Paper(BaseModel):
     figures: tuple[PaperFigure, ...]
 
     def micro(self, row: PaperAccuracy) -> float:
-        """Micro average in percent, computed from a row's shares and the numbers of tasks; the paper gives only the macro."""
+        """Compute the micro average of a row in percent. The paper gives only the macro average."""
         right = sum(round(row.category(c.category) * c.tasks / 100) for c in self.categories)
         return 100 * right / sum(c.tasks for c in self.categories)
 
 
 @cache
 def load_paper() -> Paper:
-    """The figures that come with the package."""
+    """Load the paper's results, which come with the package."""
     import yaml
 
     text = files("scope_ptz").joinpath("data", "paper.yaml").read_text(encoding="utf-8")
@@ -104,14 +117,12 @@ def load_paper() -> Paper:
 
 
 def paper_section() -> Section:
-    """The panel."""
+    """Return the panel with the paper's results."""
     paper = load_paper()
     text = (
-        f"Everything in this panel is copied from the paper ({paper.paper.title}, doi {paper.paper.doi}); nothing in it was "
-        "measured here. "
-        "It stands for orientation and is not comparable task by task: the paper's 536 tasks, scenes and servers are others, "
-        "and its "
-        f"verdicts are those of a judge ({paper.paper.judge}), not of checks.",
+        f"All values in this panel are copied from the paper ({paper.paper.title}, doi {paper.paper.doi}). None was measured here. "
+        "They are a point of reference and not comparable task by task: the paper's 536 tasks, scenes and servers are different, "
+        f"and its verdicts are those of a judge ({paper.paper.judge}), not of checks.",
     )
     tables = (_accuracy(paper), _latency(paper), _figures(paper), _models(paper), _categories(paper), _modes(paper))
     return Section(
@@ -119,7 +130,7 @@ def paper_section() -> Section:
     )
 
 
-def _accuracy(paper: Paper) -> Table:
+def _accuracy(paper: Paper) -> ReportTable:
     columns = [Column("planner", "Planner"), *(Column(n, words, "share") for n, words in CATEGORY_TITLES.items())]
     columns += [Column("average", "Average (macro)", "share"), Column("micro", "Micro, computed from these", "share")]
     columns.append(Column("line", "Line", "count"))
@@ -129,8 +140,8 @@ def _accuracy(paper: Paper) -> Table:
             groups[number] = previous = row.eyes
         own = [other for other in paper.accuracy if other.eyes == row.eyes]
         names = (*CATEGORY_TITLES, "average")
-        cells: list[Value] = [
-            Marked(
+        cells: list[CellValue] = [
+            MarkedCell(
                 float(getattr(row, name)) / 100,
                 best=getattr(row, name) >= max(getattr(other, name) for other in own),
                 best_of_all=getattr(row, name) >= max(getattr(other, name) for other in paper.accuracy),
@@ -139,46 +150,46 @@ def _accuracy(paper: Paper) -> Table:
         ]
         rows.append((row.planner, *cells, paper.micro(row) / 100, row.line))
     notes = (
-        "Percent. The paper's average is the macro average. 36.5 (qwen3-next-80b-a3b with moondream2-4bit, comparative) is "
-        "no share of 62.",
+        "Values are in percent. The paper's average is the macro average. The value 36.5 (qwen3-next-80b-a3b with moondream2-4bit, "
+        "comparative) is not a possible share of 62 tasks.",
     )
-    return Table("paper_accuracy", "The paper: accuracy by category", tuple(columns), tuple(rows), notes, groups)
+    return ReportTable("paper_accuracy", "The paper: accuracy by category", tuple(columns), tuple(rows), notes, groups)
 
 
-def _latency(paper: Paper) -> Table:
+def _latency(paper: Paper) -> ReportTable:
     columns = (
         Column("model", "Model"), Column("role", "Role"), Column("median_s", "Median latency (s)", "seconds"),
         Column("tool_calls", "Tool calls, mean", "number"), Column("line", "Line", "count"),
     )  # fmt: skip
     rows = tuple((row.name, row.role, row.median_s, row.tool_calls, row.line) for row in paper.latency)
-    notes = ("Inference latency in its serving set-up, partly under contention, as its own limitations say.",)
-    return Table("paper_latency", "The paper: latency and tool calls", columns, rows, notes)
+    notes = ("Inference latency in the paper's serving set-up, partly under contention, as the paper's limitations state.",)
+    return ReportTable("paper_latency", "The paper: latency and tool calls", columns, rows, notes)
 
 
-def _figures(paper: Paper) -> Table:
-    columns = (Column("what", "Figure"), Column("value", "Value"), Column("line", "Line", "count"))
+def _figures(paper: Paper) -> ReportTable:
+    columns = (Column("what", "Quantity"), Column("value", "Value"), Column("line", "Line", "count"))
     rows = tuple((figure.what, figure.value, figure.line) for figure in paper.figures)
-    return Table("paper_figures", "The paper: further figures", columns, rows)
+    return ReportTable("paper_figures", "The paper: other results", columns, rows)
 
 
-def _models(paper: Paper) -> Table:
+def _models(paper: Paper) -> ReportTable:
     columns = (
         Column("title", "Model"), Column("name", "Name in the registry"), Column("role", "Role"),
         Column("size_b", "Parameters (10^9)", "number"), Column("active_b", "Active (10^9)", "number"),
         Column("precision", "Precision"), Column("line", "Line", "count"),
     )  # fmt: skip
     rows = tuple((m.title, m.name, m.role, m.size_b, m.active_b, m.precision, m.line) for m in paper.models)
-    return Table("paper_models", "The paper: models", columns, rows)
+    return ReportTable("paper_models", "The paper: models", columns, rows)
 
 
-def _categories(paper: Paper) -> Table:
+def _categories(paper: Paper) -> ReportTable:
     columns = (Column("category", "Category"), Column("tasks", "Tasks", "count"), Column("line", "Line", "count"))
     rows = tuple((CATEGORY_TITLES[c.category], c.tasks, c.line) for c in paper.categories)
-    return Table("paper_categories", "The paper: tasks by category", columns, rows)
+    return ReportTable("paper_categories", "The paper: tasks by category", columns, rows)
 
 
-def _modes(paper: Paper) -> Table:
+def _modes(paper: Paper) -> ReportTable:
     columns = (Column("mode", "Error mode"), Column("description", "Meaning"), Column("line", "Line", "count"))
-    return Table(
+    return ReportTable(
         "paper_modes", "The paper: error modes", columns, tuple((m.mode, m.description, m.line) for m in paper.error_modes)
     )

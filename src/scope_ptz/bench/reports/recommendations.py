@@ -1,59 +1,26 @@
-"""Choosing what to deploy: spreads, scopes, mixtures against dense models, quantised against full precision, the Pareto front."""
+"""The sections that help to choose a pair: Pareto front, memory, spreads, scopes, mixtures of experts and quantisation."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from statistics import fmean
 
 from scope_ptz.bench.reports import charts as drawing
-from scope_ptz.bench.reports.comparing import compare, comparison_table
-from scope_ptz.bench.reports.latency import middle, stage_seconds
-from scope_ptz.bench.reports.runs import FULL_PRECISION, Run, is_mixture, scores_of, timed
+from scope_ptz.bench.reports.candidates import Candidate, candidates
+from scope_ptz.bench.reports.paired_comparison import compare, comparison_table
+from scope_ptz.bench.reports.report_runs import FULL_PRECISION, ReportRun, is_mixture, scores_of
 from scope_ptz.bench.reports.sections import Section
-from scope_ptz.bench.reports.tables import Column, Table, Value
-from scope_ptz.bench.statistics.choice import undominated
-from scope_ptz.bench.statistics.clustered import gap, share
+from scope_ptz.bench.reports.tables import CellValue, Column, ReportTable
+from scope_ptz.bench.statistics.clustered import share, share_difference
 from scope_ptz.registry import Model
 
 LATENCY = "trial without the camera, median (s)"
 SIZES_GB = (8, 16, 24, 48, 80, 160)
-"""Usual sizes of accelerator memory, and of two of the largest."""
+"""Common sizes of accelerator memory; the last one is two of the largest."""
 
 
-@dataclass(frozen=True, slots=True)
-class Candidate:
-    """A pair with what it is chosen by; None: not measured or not in the registry. ``latency_s``: a trial without the camera."""
-
-    run: Run
-    accuracy: float | None
-    latency_s: float | None
-    memory_gb: float | None
-    contended: bool
-    on_front: bool = False
-
-    @property
-    def complete(self) -> bool:
-        return None not in (self.accuracy, self.latency_s, self.memory_gb)
-
-
-def candidates(ranked: Sequence[Run], every: Sequence[Run]) -> list[Candidate]:
-    """Ranked runs with accuracy, latency and memory, and which of them no other beats in all three."""
-    found = []
-    for run in ranked:
-        source = timed(run, every)
-        seconds = middle(stage_seconds(source, "own_s"))
-        accuracy = run.macro.value if run.macro else None
-        found.append(Candidate(run, accuracy, seconds, run.memory_gb, source.evaluation.card.contended))
-    complete = [c for c in found if c.complete]
-    # Rounded, so that of two alike in accuracy none is beaten by what arithmetic made of the last digit.
-    points = [(-round(c.accuracy or 0.0, 9), c.latency_s or 0.0, c.memory_gb or 0.0) for c in complete]
-    front = {id(c) for c, on in zip(complete, undominated(points), strict=True) if on}
-    return [Candidate(c.run, c.accuracy, c.latency_s, c.memory_gb, c.contended, id(c) in front) for c in found]
-
-
-def design_section(ranked: Sequence[Run], every: Sequence[Run]) -> Section:
-    """Accuracy, latency and memory together, and what fits into how much memory."""
+def design_section(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> Section:
+    """Return accuracy, latency and memory of each pair, and the best pair for each size of memory."""
     found = candidates(ranked, every)
     columns = (
         Column("run", "Run"),
@@ -75,25 +42,23 @@ def design_section(ranked: Sequence[Run], every: Sequence[Run]) -> Section:
         for c in sorted(found, key=lambda c: -(c.accuracy or 0.0))
     )
     notes = (
-        "Memory is computed from the registry (parameters at their precision, cache for 16,384 tokens, 1.5 GB for each "
-        "server), not "
-        "measured. On the front: no other pair is at least as accurate, as fast and as small, and better in one of these.",
+        "Memory is computed from the registry (parameters at their precision, cache for 16,384 tokens, 1.5 GB for each server), "
+        "not measured. A pair is on the front if no other pair is at least as accurate, as fast and as small, and better in one "
+        "of these.",
     )
     text = (
-        "A pair worth choosing is one that no other beats in accuracy, latency and memory at once. Differences in accuracy "
-        "that were "
-        "not shown (see the comparisons) are no reason to prefer the larger pair, and latencies compare only where they were "
-        "measured "
-        "alike: all of them alone, on the same machine.",
-        "Latency here is planner, perception and tools: all of a trial but the camera. Rendering frames is the simulator's cost, "
-        "and would rank pairs by the views that they asked for.",
+        "Choose a pair that no other pair beats in accuracy, latency and memory at once. A difference in accuracy that was not "
+        "shown (see the comparisons) is no reason to prefer the larger pair. Latencies are comparable only if all of them were "
+        "measured alone on the same machine.",
+        "Latency is the time of planner, perception and tools without the camera. The time for rendering frames belongs to the "
+        "simulator and would rank pairs by the views that they asked for.",
     )
     charts = (drawing.front_chart(found),) if any(c.complete for c in found) else ()
-    tables = (Table("design_points", "Accuracy, latency and memory", columns, rows, notes), _fitting(found))
+    tables = (ReportTable("design_points", "Accuracy, latency and memory", columns, rows, notes), _fitting(found))
     return Section("design", "Accuracy, latency, memory", text, charts, tables)
 
 
-def _fitting(found: Sequence[Candidate]) -> Table:
+def _fitting(found: Sequence[Candidate]) -> ReportTable:
     columns = (
         Column("memory", "Memory"),
         Column("run", "Most accurate pair that fits"),
@@ -101,33 +66,51 @@ def _fitting(found: Sequence[Candidate]) -> Table:
         Column("latency_s", LATENCY.capitalize(), "seconds"),
         Column("memory_gb", "Memory (GB, computed)", "gb"),
     )
-    rows: list[tuple[Value, ...]] = []
+    rows: list[tuple[CellValue, ...]] = []
     for size in SIZES_GB:
         fitting = [c for c in found if c.memory_gb is not None and c.memory_gb <= size and c.accuracy is not None]
         if fitting:
             best = max(fitting, key=lambda c: (round(c.accuracy or 0.0, 9), -(c.latency_s or 0.0)))
             rows.append((f"{size} GB", best.run.label, best.accuracy, best.latency_s, best.memory_gb))
-    notes = (f"Tried: {', '.join(map(str, SIZES_GB))} GB. A size that is not listed holds none of these pairs.",)
-    return Table("memory_fits", "What fits into how much memory", columns, tuple(rows), notes)
+    notes = (f"Sizes: {', '.join(map(str, SIZES_GB))} GB. No pair fits into a size that is not listed.",)
+    return ReportTable("memory_fits", "Best pair by memory size", columns, tuple(rows), notes)
 
 
-def spread_section(ranked: Sequence[Run]) -> Section:
-    """How much the planner matters, and how much the eyes."""
+def spread_section(ranked: Sequence[ReportRun]) -> Section:
+    """Return how much accuracy depends on the planner, and how much on the perception model."""
     tables = (
-        _spread("spread_planner", "Changing only the planner", "Eyes held", ranked, lambda r: r.system[1], lambda r: r.system[0]),
-        _spread("spread_eyes", "Changing only the eyes", "Planner held", ranked, lambda r: r.system[0], lambda r: r.system[1]),
+        _spread(
+            "spread_planner",
+            "Changing only the planner",
+            "Fixed perception model",
+            ranked,
+            lambda r: r.system[1],
+            lambda r: r.system[0],
+        ),
+        _spread(
+            "spread_eyes",
+            "Changing only the perception model",
+            "Fixed planner",
+            ranked,
+            lambda r: r.system[0],
+            lambda r: r.system[1],
+        ),
     )
     text = (
-        "The spread is the highest macro accuracy minus the lowest with one side of the pair held. It grows with the "
-        "number of pairs and "
-        "with noise: see which of the differences were shown.",
+        "The spread is the highest macro accuracy minus the lowest while one model of the pair is fixed. It grows with the number "
+        "of pairs and with noise; the comparisons say which differences were shown.",
     )
-    return Section("spread", "Planner spread against vision spread", text, (), tables)
+    return Section("spread", "Spread by planner and by perception model", text, (), tables)
 
 
 def _spread(
-    key: str, title: str, held_title: str, runs: Sequence[Run], held: Callable[[Run], str], changed: Callable[[Run], str]
-) -> Table:
+    key: str,
+    title: str,
+    held_title: str,
+    runs: Sequence[ReportRun],
+    held: Callable[[ReportRun], str],
+    changed: Callable[[ReportRun], str],
+) -> ReportTable:
     columns = (
         Column("held", held_title),
         Column("pairs", "Pairs", "count"),
@@ -137,7 +120,7 @@ def _spread(
         Column("high", "Macro (%)", "share"),
         Column("spread", "Spread (points)", "points"),
     )
-    rows: list[tuple[Value, ...]] = []
+    rows: list[tuple[CellValue, ...]] = []
     for name in dict.fromkeys(held(run) for run in runs):
         own = [
             (run.macro.value, changed(run)) for run in runs if held(run) == name and run.macro and run.system[2:] == ("scope", "")
@@ -147,11 +130,11 @@ def _spread(
             rows.append((name, len(own), worst, low, best, high, high - low))
         else:
             rows.append((name, len(own), None, None, None, None, None))
-    return Table(key, title, columns, tuple(rows), ("Our own loop with its standard prompt only.",))
+    return ReportTable(key, title, columns, tuple(rows), ("Only runs of SCOPE's own agent loop with its standard prompt.",))
 
 
-def scope_section(runs: Sequence[Run]) -> Section:
-    """Current view against full scene."""
+def scope_section(runs: Sequence[ReportRun]) -> Section:
+    """Return accuracy on tasks about the current view against tasks about the full scene."""
     columns = (
         Column("run", "Run"),
         Column("current_trials", "Trials, current", "count"),
@@ -161,53 +144,52 @@ def scope_section(runs: Sequence[Run]) -> Section:
         Column("difference", "Current minus full (points)", "points"),
     )
     rows = [_scope_row(run) for run in runs]
-    ranked = [row for row, run in zip(rows, runs, strict=True) if run.ranked and not run.elsewhere]
+    ranked = [row for row, run in zip(rows, runs, strict=True) if run.ranked and not run.other_tasks]
     if len(ranked) > 1:
         counts = [sum(int(str(row[index])) for row in ranked) for index in (1, 3)]
         rows.append(("Mean of the model pairs", counts[0], _mean(ranked, 2), counts[1], _mean(ranked, 4), _mean(ranked, 5)))
     text = (
-        "Micro accuracy by what the task asks about. The two kinds of task also differ in category, so that the difference "
-        "is not the "
-        "panorama's alone. The interval of the difference joins those of its two sides (Newcombe 1998), so that it is no more "
-        "certain than either; where one of them has none, neither has the difference.",
+        "Micro accuracy by the scope of the task. Tasks of the two scopes also differ in category, so the panorama is not the only "
+        "cause of the difference. The interval of the difference combines the intervals of both sides (Newcombe 1998). It is "
+        "unknown if one of them is unknown.",
     )
-    return Section("scope", "Current view against full scene", text, (), (Table("scope", "By scope", columns, tuple(rows)),))
+    return Section("scope", "Current view against full scene", text, (), (ReportTable("scope", "By scope", columns, tuple(rows)),))
 
 
-def _scope_row(run: Run) -> tuple[Value, ...]:
-    parts = {scope: [t for t in run.scored if t.task.scope == scope] for scope in ("current", "full")}
+def _scope_row(run: ReportRun) -> tuple[CellValue, ...]:
+    parts = {scope: [t for t in run.scored_trials if t.task.scope == scope] for scope in ("current", "full")}
     current, full = (scores_of(parts[scope]) for scope in ("current", "full"))
-    return run.label, len(parts["current"]), share(current), len(parts["full"]), share(full), gap(current, full)
+    return run.label, len(parts["current"]), share(current), len(parts["full"]), share(full), share_difference(current, full)
 
 
-def _mean(rows: Sequence[tuple[Value, ...]], index: int) -> float | None:
+def _mean(rows: Sequence[tuple[CellValue, ...]], index: int) -> float | None:
     known = [v for row in rows if (v := getattr(row[index], "value", None)) is not None]
     return fmean(known) if known else None
 
 
-def architecture_section(ranked: Sequence[Run], every: Sequence[Run]) -> Section:
-    """Mixtures of experts against dense models, quantised against full precision, as far as the registry knows the models."""
+def architecture_section(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> Section:
+    """Compare mixtures of experts with dense models, and quantised models with full precision, for models in the registry."""
     pairs = [(q, f) for q in ranked for f in ranked if _is_quantised_of(q, f)]
     found = [c for quantised, full in pairs if (c := compare(quantised, full)) is not None]
     notes = (
-        "Models of one family, size and number of active parameters in the registry, the rest of the pair unchanged. Seconds and "
-        "gigabytes of these pairs stand in the table of accuracy, latency and memory.",
+        "Models of one family, size and number of active parameters in the registry, with the rest of the pair unchanged. Latency "
+        "and memory of these pairs are in the table of accuracy, latency and memory.",
     )
     precision = comparison_table("quantised", "Quantised minus full precision", found, notes)
-    text = ["Which models are mixtures of experts or quantised is the registry's word; models that it does not know are left out."]
+    text = ["The registry says which models are mixtures of experts or quantised. Models that it does not contain are left out."]
     if not found:
-        text.append("No two pairs differ in precision alone: quantised against full precision is not measured.")
+        text.append("No two pairs differ only in precision, so quantisation is not measured.")
     tables = (_mixtures(ranked, every), *((precision,) if found else ()))
-    return Section("architecture", "Mixtures against dense, quantised against full", tuple(text), (), tables)
+    return Section("architecture", "Mixtures of experts and quantisation", tuple(text), (), tables)
 
 
-def _is_quantised_of(one: Run, other: Run) -> bool:
-    """Whether a pair is another with one of its models quantised and nothing else changed."""
+def _is_quantised_of(one: ReportRun, other: ReportRun) -> bool:
+    """Return whether a pair equals another one except that one of its models is quantised."""
     if one.task_set != other.task_set or one.system[2:] != other.system[2:]:
         return False
     if one.system[1] == other.system[1]:
         return _quantised_of(one.planner, other.planner)
-    return one.system[0] == other.system[0] and _quantised_of(one.eyes, other.eyes)
+    return one.system[0] == other.system[0] and _quantised_of(one.perception, other.perception)
 
 
 def _quantised_of(one: Model | None, other: Model | None) -> bool:
@@ -216,9 +198,9 @@ def _quantised_of(one: Model | None, other: Model | None) -> bool:
     return bool(one.family) and one.precision not in FULL_PRECISION and other.precision in FULL_PRECISION
 
 
-def _mixtures(ranked: Sequence[Run], every: Sequence[Run]) -> Table:
-    """A row for each model that is held while mixtures and dense models change on the other side."""
-    columns = [Column("held", "Held"), Column("changed", "Changed")]
+def _mixtures(ranked: Sequence[ReportRun], every: Sequence[ReportRun]) -> ReportTable:
+    """Return a table with a row for each model that is paired with both mixtures of experts and dense models."""
+    columns = [Column("held", "Fixed model"), Column("changed", "Changed model")]
     for key, words in (("moe", "Mixtures"), ("dense", "Dense")):
         columns += [
             Column(f"{key}_pairs", f"{words}: pairs", "count"),
@@ -228,8 +210,8 @@ def _mixtures(ranked: Sequence[Run], every: Sequence[Run]) -> Table:
         ]
     columns.append(Column("difference", "Mixtures minus dense (points)", "points"))
     found = candidates(ranked, every)
-    rows: list[tuple[Value, ...]] = []
-    for side, other in (("planner", 1), ("eyes", 0)):
+    rows: list[tuple[CellValue, ...]] = []
+    for side, other in (("planner", 1), ("perception", 0)):
         for name in dict.fromkeys(c.run.system[other] for c in found):
             own = [c for c in found if c.run.system[other] == name and getattr(c.run, side)]
             kinds = [[c for c in own if is_mixture(getattr(c.run, side)) is mixture] for mixture in (True, False)]
@@ -237,11 +219,9 @@ def _mixtures(ranked: Sequence[Run], every: Sequence[Run]) -> Table:
                 cells = [v for k in kinds for v in (len(k), *(_average(k, w) for w in ("accuracy", "latency_s", "memory_gb")))]
                 moe, dense = (_average(kind, "accuracy") for kind in kinds)
                 apart = None if moe is None or dense is None else moe - dense
-                rows.append((name, "planners" if side == "planner" else "eyes", *cells, apart))
-    notes = (
-        "Means over the pairs of each kind. Where a model that is held had only one kind beside it, there is nothing to compare.",
-    )
-    return Table("mixtures", "Mixtures of experts against dense models", tuple(columns), tuple(rows), notes)
+                rows.append((name, "planners" if side == "planner" else "perception models", *cells, apart))
+    notes = ("Means over the pairs of each kind. A fixed model that was paired with only one kind is left out.",)
+    return ReportTable("mixtures", "Mixtures of experts against dense models", tuple(columns), tuple(rows), notes)
 
 
 def _average(found: Sequence[Candidate], what: str) -> float | None:

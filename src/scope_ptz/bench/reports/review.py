@@ -1,4 +1,4 @@
-"""What to look at by hand: tasks that nearly everyone fails, side effects, costs, and what went wrong around them."""
+"""The sections for review: tasks that nearly all pairs fail, costs, side effects and incidents."""
 
 from __future__ import annotations
 
@@ -6,29 +6,33 @@ from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
 from statistics import fmean
 
-from scope_ptz.bench.reports.failures import MODE_TITLES
-from scope_ptz.bench.reports.runs import CATEGORY_TITLES, Run
+from scope_ptz.bench.reports.error_analysis import MODE_TITLES
+from scope_ptz.bench.reports.report_runs import CATEGORY_TITLES, ReportRun
 from scope_ptz.bench.reports.sections import Section
-from scope_ptz.bench.reports.tables import Column, Marked, Table, Value
+from scope_ptz.bench.reports.tables import CellValue, Column, MarkedCell, ReportTable
 from scope_ptz.bench.scoring.trials import Trial
 
 LOW = 0.25
-"""Mean success at or below which a task is listed."""
+"""Tasks with at most this success rate are listed."""
 MOST_LISTED = 60
 
 
-def audit_section(ranked: Sequence[Run], reference: Sequence[Run], pages: Mapping[str, str]) -> Section:
-    """Tasks with low success across pairs. ``reference``: runs of the grammar planner with ground-truth eyes, exact ones only;
-    ``pages``: the page of a failed task, by its id."""
+def audit_section(ranked: Sequence[ReportRun], reference: Sequence[ReportRun], pages: Mapping[str, str]) -> Section:
+    """List the tasks with a low success rate over all pairs.
+
+    Args:
+        ranked: The runs of model pairs.
+        reference: Runs of the grammar planner with exact ground-truth perception.
+        pages: The page of each failed task, by the task's id.
+    """
     text = [
-        f"Tasks on which the pairs together succeed in at most {LOW:.0%} of their trials. Such a task is hard, or wrong: "
-        "whoever audits the "
-        "benchmark begins here. Beside it stands what the grammar planner with ground-truth eyes made of the task: what these "
-        "pass can be done as it is worded. They understand instructions and questions of their own language only, so that their "
-        "failing alone proves nothing."
+        f"The tasks on which all pairs together succeed in at most {LOW:.0%} of their trials. Such a task is hard or wrong, so an "
+        "audit of the benchmark starts here. The last column is the result of the grammar planner with ground-truth perception. A "
+        "task that they pass can be done as it is worded. They understand only a limited language, so their failure alone proves "
+        "nothing."
     ]
     if len(ranked) < 2:
-        text.append("Fewer than two model pairs: not measured.")
+        text.append("There are fewer than two model pairs, so this is not measured.")
         return Section("audit", "Tasks that nearly every pair fails", tuple(text))
     by_task = _by_task(ranked)
     low = sorted((fmean(t.headline == "correct" for _, t in runs), task) for task, runs in by_task.items())
@@ -44,33 +48,39 @@ def audit_section(ranked: Sequence[Run], reference: Sequence[Run], pages: Mappin
         Column("trials", "Trials", "count"),
         Column("passed_by", "Passed by"),
         Column("modes", "Error modes (rules)"),
-        Column("reference", "Grammar planner, ground-truth eyes (%)", "share"),
+        Column("reference", "Grammar planner, ground-truth perception (%)", "share"),
     )
     rows = tuple(_audit_row(task, value, by_task[task], exact.get(task, []), pages) for value, task in chosen[:MOST_LISTED])
     text.append(
         f"{len(chosen)} of {len(by_task)} tasks." + (f" The first {MOST_LISTED} are listed." if len(chosen) > MOST_LISTED else "")
     )
-    return Section("audit", "Tasks that nearly every pair fails", tuple(text), (), (Table("audit", "For audit", columns, rows),))
+    return Section(
+        "audit", "Tasks that nearly every pair fails", tuple(text), (), (ReportTable("audit", "Tasks to audit", columns, rows),)
+    )
 
 
-def _by_task(runs: Sequence[Run]) -> dict[str, list[tuple[Run, Trial]]]:
-    found: dict[str, list[tuple[Run, Trial]]] = defaultdict(list)
+def _by_task(runs: Sequence[ReportRun]) -> dict[str, list[tuple[ReportRun, Trial]]]:
+    found: dict[str, list[tuple[ReportRun, Trial]]] = defaultdict(list)
     for run in runs:
-        for trial in run.scored:
+        for trial in run.scored_trials:
             found[trial.task.id].append((run, trial))
     return found
 
 
 def _audit_row(
-    task: str, success: float, own: Sequence[tuple[Run, Trial]], exact: Sequence[tuple[Run, Trial]], pages: Mapping[str, str]
-) -> tuple[Value, ...]:
+    task: str,
+    success: float,
+    own: Sequence[tuple[ReportRun, Trial]],
+    exact: Sequence[tuple[ReportRun, Trial]],
+    pages: Mapping[str, str],
+) -> tuple[CellValue, ...]:
     facts = own[0][1].task
     passed = list(dict.fromkeys(run.label for run, trial in own if trial.headline == "correct"))
     modes = Counter(trial.error_mode for _, trial in own if trial.error_mode)
     named = ", ".join(f"{MODE_TITLES[mode]} {number}" for mode, number in modes.most_common())
     reference = fmean(trial.headline == "correct" for _, trial in exact) if exact else None
     return (
-        Marked(task, link=pages.get(task, "")),
+        MarkedCell(task, link=pages.get(task, "")),
         CATEGORY_TITLES[facts.category],
         facts.scope,
         facts.instruction,
@@ -83,32 +93,33 @@ def _audit_row(
     )
 
 
-def costs_section(runs: Sequence[Run]) -> Section:
-    """Tokens and money."""
+def costs_section(runs: Sequence[ReportRun]) -> Section:
+    """Return the tokens and the cost of each run."""
     columns = (
         Column("run", "Run"),
         Column("trials", "Trials", "count"),
         Column("input_tokens", "Input tokens", "count"),
         Column("output_tokens", "Output tokens", "count"),
-        Column("tokens_a_trial", "Tokens a trial, mean", "count"),
+        Column("tokens_a_trial", "Tokens per trial, mean", "count"),
         Column("priced", "Priced trials", "count"),
         Column("cost_usd", "Cost of priced trials (USD)", "usd"),
-        Column("cost_a_trial", "USD a trial", "usd"),
-        Column("cost_a_success", "USD a correct trial", "usd"),
-        Column("judge_tokens", "Judge's tokens", "count"),
+        Column("cost_a_trial", "USD per trial", "usd"),
+        Column("cost_a_success", "USD per correct trial", "usd"),
+        Column("judge_tokens", "Tokens of judges", "count"),
     )
     notes = (
-        "Tokens are the planner's as its server reports them; not measured where none are reported. What the eyes take is not "
-        "counted, whether their server reports it or not. A cost is that of the planner's tokens, and stands only where the log "
-        "has one.",
+        "Tokens are those of the planner, as its server reports them. Tokens of the perception model are not counted. The cost is "
+        "that of the planner's tokens and is given only if the log contains it.",
     )
-    return Section("costs", "Cost", (), (), (Table("costs", "Tokens and cost", columns, tuple(_cost_row(r) for r in runs), notes),))
+    return Section(
+        "costs", "Cost", (), (), (ReportTable("costs", "Tokens and cost", columns, tuple(_cost_row(r) for r in runs), notes),)
+    )
 
 
-def _cost_row(run: Run) -> tuple[Value, ...]:
+def _cost_row(run: ReportRun) -> tuple[CellValue, ...]:
     trials = run.evaluation.trials
-    given, taken = sum(t.input_tokens for t in trials), sum(t.output_tokens for t in trials)
-    counted = given + taken > 0
+    sent, received = sum(t.input_tokens for t in trials), sum(t.output_tokens for t in trials)
+    counted = sent + received > 0
     priced = [t for t in trials if t.cost_usd is not None]
     cost = sum(t.cost_usd or 0.0 for t in priced) if priced else None
     right = sum(t.headline == "correct" for t in priced)
@@ -116,9 +127,9 @@ def _cost_row(run: Run) -> tuple[Value, ...]:
     return (
         run.label,
         len(trials),
-        given if counted else None,
-        taken if counted else None,
-        (given + taken) / len(trials) if counted else None,
+        sent if counted else None,
+        received if counted else None,
+        (sent + received) / len(trials) if counted else None,
         len(priced),
         cost,
         cost / len(priced) if cost is not None else None,
@@ -127,35 +138,38 @@ def _cost_row(run: Run) -> tuple[Value, ...]:
     )
 
 
-def conduct_section(runs: Sequence[Run]) -> Section:
-    """Collateral change, wrong calls, failed looks and failing servers."""
+def conduct_section(runs: Sequence[ReportRun]) -> Section:
+    """Return collateral changes, wrong calls, failures of perception and failures of servers."""
     columns = (
         Column("run", "Run"),
         Column("collateral", "Collateral change (%)", "share"),
-        Column("bad_calls", "Wrong calls a trial", "number"),
-        Column("perception_failures", "Failed looks a trial", "number"),
-        Column("steps", "Steps a trial", "number"),
+        Column("bad_calls", "Wrong calls per trial", "number"),
+        Column("perception_failures", "Failed perception calls per trial", "number"),
+        Column("steps", "Steps per trial", "number"),
         Column("limit", "At the step or time limit (%)", "share"),
-        Column("server_events", "Server failures, made good or not"),
+        Column("server_events", "Server failures, including recovered ones"),
     )
     notes = (
-        "Collateral change: the camera ended elsewhere although neither the instruction nor the way to the answer wanted "
-        "that. It decides "
-        "nothing.",
+        "Collateral change: the camera ended elsewhere although neither the instruction nor the way to the answer required a move. "
+        "It does not affect accuracy.",
     )
     having = [run for run in runs if run.evaluation.trials]
     rows = tuple(_conduct_row(run) for run in having)
     return Section(
-        "conduct", "Side effects and incidents", (), (), (Table("conduct", "Side effects and incidents", columns, rows, notes),)
+        "conduct",
+        "Side effects and incidents",
+        (),
+        (),
+        (ReportTable("conduct", "Side effects and incidents", columns, rows, notes),),
     )
 
 
-def _conduct_row(run: Run) -> tuple[Value, ...]:
+def _conduct_row(run: ReportRun) -> tuple[CellValue, ...]:
     trials = [t for t in run.evaluation.trials if t.headline != "infrastructure"]
     events = sum((Counter(t.server_events) for t in run.evaluation.trials), Counter[str]())
-    told = ", ".join(f"{kind} {number}" for kind, number in sorted(events.items())) or "none"
+    failures = ", ".join(f"{kind} {number}" for kind, number in sorted(events.items())) or "none"
     if not trials:
-        return run.label, None, None, None, None, None, told
+        return run.label, None, None, None, None, None, failures
     return (
         run.label,
         fmean(t.collateral for t in trials),
@@ -163,5 +177,5 @@ def _conduct_row(run: Run) -> tuple[Value, ...]:
         fmean(t.perception_failures for t in trials),
         fmean(t.steps for t in trials),
         fmean(t.outcome in ("step_limit", "budget") for t in trials),
-        told,
+        failures,
     )

@@ -1,15 +1,15 @@
-"""What a report is made of."""
+"""The parts of a report: sections with charts and tables."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from scope_ptz.bench.reports.tables import Table
+from scope_ptz.bench.reports.tables import ReportTable
 
 
 @dataclass(frozen=True, slots=True)
 class Chart:
-    """An SVG picture. ``alt`` says what it shows to whoever cannot see it; ``width_px``: below it, it is scrolled, not shrunk."""
+    """A chart as SVG. ``alt`` is its text alternative. In a window narrower than ``width_px`` it is scrolled."""
 
     key: str
     title: str
@@ -20,11 +20,11 @@ class Chart:
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """``text``: paragraphs before charts and tables; ``folded``: tables that are closed at first."""
+    """A section. ``text`` holds the paragraphs before charts and tables; ``folded`` names the tables that are collapsed."""
 
     key: str
     title: str
     text: tuple[str, ...] = ()
     charts: tuple[Chart, ...] = ()
-    tables: tuple[Table, ...] = ()
+    tables: tuple[ReportTable, ...] = ()
     folded: frozenset[str] = frozenset()

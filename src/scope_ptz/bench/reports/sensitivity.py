@@ -1,4 +1,4 @@
-"""How much depends on wording, on the prompt and on chance; and requests that want no deed."""
+"""The sections about sensitivity to wording, prompt and chance, about unclear or forbidden requests, and about baselines."""
 
 from __future__ import annotations
 
@@ -8,33 +8,31 @@ from statistics import fmean
 
 from scope_ptz.bench.reports import charts as drawing
 from scope_ptz.bench.reports.accuracy import share_correct
-from scope_ptz.bench.reports.comparing import compare, comparison_table
-from scope_ptz.bench.reports.runs import CATEGORY_TITLES, Run
+from scope_ptz.bench.reports.paired_comparison import compare, comparison_table
+from scope_ptz.bench.reports.report_runs import CATEGORY_TITLES, ReportRun
 from scope_ptz.bench.reports.sections import Section
-from scope_ptz.bench.reports.tables import Column, Table, Value
+from scope_ptz.bench.reports.tables import CellValue, Column, ReportTable
 from scope_ptz.bench.scoring.trials import Trial
 from scope_ptz.bench.statistics.repeats import mean_pass_all
 
 System = tuple[str, str, str, str]
 
 
-def sensitivity_section(runs: Sequence[Run]) -> Section:
-    """Paraphrases and prompts."""
-    text = [
-        "A scenario is a task together with its other wordings; it succeeds when every wording does, in the first trial of each."
-    ]
+def sensitivity_section(runs: Sequence[ReportRun]) -> Section:
+    """Return the sensitivity to paraphrases and to prompts."""
+    text = ["A scenario is a task with all its wordings. It succeeds if every wording succeeds in its first trial."]
     paraphrases = _wordings(runs)
     variants = _variants(runs)
     if not paraphrases.rows:
-        text.append("No run holds paraphrases together with their originals: sensitivity to wording is not measured.")
+        text.append("No run contains both paraphrases and their originals, so sensitivity to wording is not measured.")
     if not variants.rows:
-        text.append("No pair was run with more than one prompt or setting: sensitivity to the prompt is not measured.")
+        text.append("No pair was run with more than one prompt or setting, so sensitivity to the prompt is not measured.")
     tables = tuple(table for table in (paraphrases, variants) if table.rows)
     return Section("sensitivity", "Sensitivity to wording and prompt", tuple(text), (), tables)
 
 
-def _by_system(runs: Sequence[Run]) -> dict[System, list[Trial]]:
-    """First trials of each task of a system, infrastructure left out, whichever logs hold them; of several logs the first."""
+def _by_system(runs: Sequence[ReportRun]) -> dict[System, list[Trial]]:
+    """Return the first trial of each task of a system over all logs, without trials that infrastructure broke."""
     found: dict[System, dict[str, Trial]] = defaultdict(dict)
     for run in runs:
         for trial in run.evaluation.trials:
@@ -44,7 +42,7 @@ def _by_system(runs: Sequence[Run]) -> dict[System, list[Trial]]:
 
 
 def _scenarios(trials: Sequence[Trial]) -> list[list[bool]]:
-    """Outcomes of the wordings of each scenario of which the original and a paraphrase were run."""
+    """Return the outcomes of the wordings of each scenario whose original and at least one paraphrase were run."""
     groups: dict[str, list[Trial]] = defaultdict(list)
     for trial in trials:
         groups[trial.task.paraphrase_of or trial.task.id].append(trial)
@@ -52,47 +50,49 @@ def _scenarios(trials: Sequence[Trial]) -> list[list[bool]]:
     return [[t.headline == "correct" for t in group] for group in whole]
 
 
-def _wordings(runs: Sequence[Run]) -> Table:
+def _wordings(runs: Sequence[ReportRun]) -> ReportTable:
     columns = (
         Column("system", "Pair"),
         Column("scenarios", "Scenarios", "count"),
         Column("wordings", "Wordings", "count"),
         Column("mean", "Mean over wordings (%)", "share"),
-        Column("all", "Every wording right (%)", "share"),
-        Column("any", "Some wording right (%)", "share"),
+        Column("all", "Every wording correct (%)", "share"),
+        Column("any", "Some wording correct (%)", "share"),
         Column("mixed", "Depends on the wording (%)", "share"),
     )
-    rows: list[tuple[Value, ...]] = []
+    rows: list[tuple[CellValue, ...]] = []
     for system, trials in _by_system(runs).items():
         found = _scenarios(trials)
         if found:
             every, some = fmean(all(g) for g in found), fmean(any(g) for g in found)
             mean = fmean(fmean(g) for g in found)
             rows.append((_name(system), len(found), sum(map(len, found)), mean, every, some, some - every))
-    return Table("wording", "Other wordings of the same task", columns, tuple(rows))
+    return ReportTable("wording", "Other wordings of the same task", columns, tuple(rows))
 
 
 def _name(system: System) -> str:
-    planner, eyes, agent, variant = system
-    return ", ".join([f"{planner} + {eyes}", *([f"agent {agent}"] if agent != "scope" else []), *([variant] if variant else [])])
+    planner, perception, agent, variant = system
+    return ", ".join(
+        [f"{planner} + {perception}", *([f"agent {agent}"] if agent != "scope" else []), *([variant] if variant else [])]
+    )
 
 
-def _variants(runs: Sequence[Run]) -> Table:
-    """Every variant of a pair against the pair as it is."""
+def _variants(runs: Sequence[ReportRun]) -> ReportTable:
+    """Compare every variant of a pair with the unchanged pair."""
     found = []
     for run in runs:
         if run.evaluation.card.variant and run.kind != "blind":
             plain = [r for r in runs if r.system == (*run.system[:3], "") and r.task_set == run.task_set]
             found += [c for base in plain[:1] if (c := compare(run, base)) is not None]
-    return comparison_table("prompts", "Prompts and settings: each variant minus the pair as it is", found)
+    return comparison_table("prompts", "Prompts and settings: each variant minus the unchanged pair", found)
 
 
-def repeats_section(runs: Sequence[Run]) -> Section:
-    """pass^k where tasks were repeated."""
+def repeats_section(runs: Sequence[ReportRun]) -> Section:
+    """Return pass^k for runs with repeated tasks."""
     repeated = [run for run in runs if _most(run) > 1]
     most = max((_most(run) for run in repeated), default=0)
     if not repeated:
-        return Section("repeats", "Repeats", ("Every task was run once: pass^k for k above 1 is not measured.",))
+        return Section("repeats", "Repeats", ("Every task was run once, so pass^k is not measured for k above 1.",))
     columns = [Column("run", "Run"), Column("tasks", "Tasks", "count")]
     columns += [Column(f"pass_{k}", f"pass^{k} (%)", "share") for k in range(1, most + 1)]
     rows = []
@@ -100,28 +100,28 @@ def repeats_section(runs: Sequence[Run]) -> Section:
         tasks = _passed(run)
         rows.append((run.label, len(tasks), *(mean_pass_all(tasks, k)[0] for k in range(1, most + 1))))
     text = (
-        "pass^k is the chance that k trials of a task all succeed, C(c, k) / C(n, k) for c of n, averaged over the tasks "
-        "with at least k "
-        "trials that infrastructure did not break. pass^1 is the mean over tasks. Runs without repeats are left out.",
+        "pass^k is the probability that k trials of a task all succeed. It is C(c, k) / C(n, k) for c correct of n trials, "
+        "averaged over the tasks with at least k trials that infrastructure did not break. pass^1 is the mean over tasks. Runs "
+        "without repeats are left out.",
     )
-    table = Table("repeats", "pass^k", tuple(columns), tuple(rows))
+    table = ReportTable("repeats", "pass^k", tuple(columns), tuple(rows))
     return Section("repeats", "Repeats", text, (drawing.repeats_chart(table, most),), (table,))
 
 
-def _passed(run: Run) -> list[tuple[int, int]]:
-    """Trials and correct trials of each task."""
+def _passed(run: ReportRun) -> list[tuple[int, int]]:
+    """Return the numbers of trials and of correct trials of each task."""
     found: dict[str, list[bool]] = defaultdict(list)
-    for trial in run.scored:
+    for trial in run.scored_trials:
         found[trial.task.id].append(trial.headline == "correct")
     return [(len(values), sum(values)) for values in found.values()]
 
 
-def _most(run: Run) -> int:
+def _most(run: ReportRun) -> int:
     return max((runs for runs, _ in _passed(run)), default=0)
 
 
-def reaction_section(runs: Sequence[Run]) -> Section | None:
-    """Requests that want a question back or a refusal. None where no run holds any."""
+def reaction_section(runs: Sequence[ReportRun]) -> Section | None:
+    """Return how runs react to requests that call for a question or a refusal; None if no run contains any."""
     having = [(run, own) for run in runs if (own := _reactions(run))]
     if not having:
         return None
@@ -130,7 +130,7 @@ def reaction_section(runs: Sequence[Run]) -> Section | None:
         Column("trials", "Trials", "count"),
         Column("correct", "Correct (%)", "share"),
         Column("answered", "Answered anyway (%)", "share"),
-        Column("asked", "Asked back (%)", "share"),
+        Column("asked", "Asked a question (%)", "share"),
         Column("refused", "Refused (%)", "share"),
     )
     rows = tuple(
@@ -143,35 +143,34 @@ def reaction_section(runs: Sequence[Run]) -> Section | None:
         for run, own in having
     )
     text = (
-        "Requests that are unclear, impossible or not allowed: right is a question back or a refusal, with the camera left "
-        "where it is. "
-        "They are no part of accuracy.",
+        "These requests are unclear, impossible or forbidden. The correct reaction is a question or a refusal without moving the "
+        "camera. They do not count towards accuracy.",
     )
-    table = Table("reactions", "Requests that want a question or a refusal", columns, rows)
+    table = ReportTable("reactions", "Requests that call for a question or a refusal", columns, rows)
     return Section("reactions", "Unclear, impossible and forbidden requests", text, (), (table,))
 
 
-def _reactions(run: Run) -> list[Trial]:
+def _reactions(run: ReportRun) -> list[Trial]:
     return [t for t in run.evaluation.trials if t.task.stratum == "reaction" and t.headline != "infrastructure"]
 
 
-def baseline_section(runs: Sequence[Run]) -> Section | None:
-    """What can be had without seeing, and what a person gets. None where no such run was given."""
-    having = [run for run in runs if run.kind in ("blind", "person") and run.scored]
+def baseline_section(runs: Sequence[ReportRun]) -> Section | None:
+    """Return the accuracy of blind and human baselines; None if there is no such run."""
+    having = [run for run in runs if run.kind in ("blind", "person") and run.scored_trials]
     if not having:
         return None
-    columns = [Column("run", "Run"), Column("kind", "What it is"), *(Column(n, w, "share") for n, w in CATEGORY_TITLES.items())]
+    columns = [Column("run", "Run"), Column("kind", "Kind"), *(Column(n, w, "share") for n, w in CATEGORY_TITLES.items())]
     columns.append(Column("macro", "Macro (%)", "share"))
     rows = tuple(
         (
             run.label,
             "sees nothing" if run.kind == "blind" else "a person",
-            *(share_correct([t for t in run.scored if t.task.category == name]) for name in CATEGORY_TITLES),
+            *(share_correct([t for t in run.scored_trials if t.task.category == name]) for name in CATEGORY_TITLES),
             run.macro,
         )
         for run in having
     )
-    text = (
-        "What a planner gets right without seeing anything is no merit of the eyes; what a person gets right is what can be had.",
+    text = ("The blind baseline shows what a planner achieves without perception. The human baseline shows what is achievable.",)
+    return Section(
+        "baselines", "Baselines", text, (), (ReportTable("baselines", "Blind and human baselines", tuple(columns), rows),)
     )
-    return Section("baselines", "Baselines", text, (), (Table("baselines", "Blind and human baselines", tuple(columns), rows),))

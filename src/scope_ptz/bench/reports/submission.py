@@ -1,6 +1,7 @@
-"""The file for a public leaderboard: JSON lines, a header and then a line for every trial, without keys and addresses.
+"""Submissions to a public leaderboard: a header and one JSON line per trial, without keys and addresses.
 
-Its schema is ``data/submission.schema.json``; docs/reports.md says what a validator makes of it.
+The schema is ``data/submission.schema.json``; docs/reports.md describes its validation. The docstrings of the models of lines are
+part of that schema and change only with its version.
 """
 
 from __future__ import annotations
@@ -14,9 +15,9 @@ from typing import Annotated, Any, Literal, Protocol, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
-from scope_ptz.bench.reports.labels import split_name
+from scope_ptz.bench.reports.display_names import split_name
 from scope_ptz.bench.scoring.error_modes import ErrorMode
-from scope_ptz.bench.scoring.trials import Check, Count, Evaluation, ModelCard, RunCard, Seconds, Trial
+from scope_ptz.bench.scoring.trials import CheckRecord, Count, Evaluation, ModelCard, RunCard, Seconds, Trial
 from scope_ptz.bench.scoring.verdict import Headline
 from scope_ptz.bench.tasks.task import CANARY, Category, ToolName
 from scope_ptz.errors import InputError, OutputError
@@ -29,7 +30,7 @@ _SAME = (
     "epoch", "headline", "scored_by", "error_mode", "outcome", "steps", "bad_calls", "perception_failures", "collateral",
     "input_tokens", "output_tokens", "cost_usd",
 )  # fmt: skip
-"""What is published as it is."""
+"""Fields of a trial that are published unchanged."""
 Line = Annotated[str, Field(max_length=500)]
 _SECRET = re.compile(
     r"(?:\b(?:sk|pk|rk)-[A-Za-z0-9_-]{16,}|\bhf_[A-Za-z0-9]{16,}|\bgh[pousr]_[A-Za-z0-9]{20,}|\bAKIA[A-Z0-9]{16}\b"
@@ -110,7 +111,7 @@ LINE: TypeAdapter[Header | TrialLine] = TypeAdapter(Annotated[Header | TrialLine
 
 
 class Described(Protocol):
-    """A task or what is known of one."""
+    """A task, or the facts about one."""
 
     @property
     def id(self) -> str: ...
@@ -123,24 +124,28 @@ class Described(Protocol):
 
 
 def submission_schema() -> dict[str, Any]:
-    """The JSON schema of one line, as it is published."""
+    """Return the published JSON schema of one line."""
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "A line of a submission", **LINE.json_schema()}
 
 
 def tasks_digest(tasks: Iterable[Described]) -> str:
-    """Names exactly these tasks, whatever their order and however often they occur."""
+    """Return a digest of a set of tasks. Order and repetitions do not matter."""
     rows = sorted({f"{task.id}\t{task.category}\t{task.scope}\t{task.instruction}" for task in tasks})
     return hashlib.sha256("\n".join(rows).encode()).hexdigest()
 
 
 def totals_of(lines: Sequence[TrialLine]) -> Totals:
-    """Counted from the lines."""
+    """Count the headlines and error modes of lines."""
     modes = Counter(line.error_mode for line in lines if line.error_mode is not None)
     return Totals(trials=len(lines), headlines=dict(Counter(line.headline for line in lines)), error_modes=dict(modes))
 
 
 def submission_lines(evaluation: Evaluation) -> tuple[Header, list[TrialLine]]:
-    """Header and trials. Raises ``InputError`` for an unfinished run, which would be no fair entry."""
+    """Return the header and the trials of a submission.
+
+    Raises:
+        InputError: The evaluation is unfinished.
+    """
     card = evaluation.card
     if not evaluation.finished or not evaluation.trials:
         raise InputError(f"This run is unfinished: {len(evaluation.trials)} of {evaluation.wanted} trials. Resume it first.")
@@ -160,7 +165,11 @@ def submission_lines(evaluation: Evaluation) -> tuple[Header, list[TrialLine]]:
 
 
 def write_submission(parts: tuple[Header, list[TrialLine]], out: Path) -> None:
-    """Write the file. Raises ``OutputError``."""
+    """Write a submission.
+
+    Raises:
+        OutputError: The file cannot be written.
+    """
     header, lines = parts
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
@@ -170,7 +179,7 @@ def write_submission(parts: tuple[Header, list[TrialLine]], out: Path) -> None:
 
 
 def secrets_in(content: Any, where: str = "") -> Iterator[str]:
-    """Places of a piece of JSON that look like keys, tokens or passwords."""
+    """Yield the places in JSON data that look like keys, tokens or passwords."""
     if isinstance(content, dict):
         for name, value in content.items():
             place = f"{where}.{name}" if where else str(name)
@@ -186,7 +195,7 @@ def secrets_in(content: Any, where: str = "") -> Iterator[str]:
 
 def _line(trial: Trial) -> TrialLine:
     answer = trial.answer if len(trial.answer) <= MOST_ANSWER else trial.answer[:MOST_ANSWER] + CUT
-    said = tuple(
+    judgements = tuple(
         JudgeSaid(judge=j.judge, prompt=j.prompt, verdict=j.verdict, error_mode=j.error_mode)
         for j in trial.judgements
         if j.repeat == 0
@@ -199,31 +208,31 @@ def _line(trial: Trial) -> TrialLine:
         answer=_SECRET.sub("[removed]", answer),
         tool_calls=_tools(trial.tool_calls),
         times=times,
-        judged=said,
+        judged=judgements,
         **{name: getattr(trial, name) for name in _SAME},
     )
 
 
-def _verdicts(checks: Sequence[Check]) -> dict[str, bool | None]:
+def _verdicts(checks: Sequence[CheckRecord]) -> dict[str, bool | None]:
     return {check.name: check.passed for check in checks}
 
 
 def _tools(calls: Mapping[str, int]) -> dict[str, int]:
-    """Calls by tool; whatever else a model invented counts under one name."""
+    """Return calls by tool. Tools that a model invented are counted together as "unknown"."""
     known = Counter({name: number for name, number in calls.items() if name in TOOLS})
     invented = sum(number for name, number in calls.items() if name not in TOOLS)
     return dict(known | Counter({UNKNOWN_TOOL: invented})) if invented else dict(known)
 
 
 def _public(model: ModelCard) -> ModelCard:
-    """A model without its server's address, which the provider may be."""
+    """Return a model without the address of its server."""
     provider = "" if "://" in model.provider else model.provider
     return model.model_copy(update={"reported": _harmless(model.reported), "provider": provider})
 
 
-def _harmless(said: Mapping[str, Any]) -> dict[str, Any]:
-    """Settings without what looks like a secret or an address; whatever stands beside such a value stays."""
-    return {name: _stripped(value) for name, value in said.items() if not _harmful(name, value)}
+def _harmless(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Return settings without values that look like a secret or an address."""
+    return {name: _stripped(value) for name, value in settings.items() if not _harmful(name, value)}
 
 
 def _stripped(value: Any) -> Any:
@@ -235,7 +244,7 @@ def _stripped(value: Any) -> Any:
 
 
 def _harmful(name: str, value: Any) -> bool:
-    """Whether a single value may not be published. Of a value with parts these are looked at one by one."""
+    """Return whether a value must not be published. The parts of a nested value are checked separately."""
     if "://" in name or _SECRET.search(name):
         return True
     return isinstance(value, str) and ("://" in value or any(secrets_in({name: value})))

@@ -1,4 +1,4 @@
-"""Whether a submission can be believed: every line is held against the schema, the others, and the tasks themselves."""
+"""Validate a submission: every line is checked against the schema, the other lines and the tasks."""
 
 from __future__ import annotations
 
@@ -20,13 +20,20 @@ from scope_ptz.errors import InputError
 from scope_ptz.version import __version__
 
 MOST_BYTES = 200_000_000
-NOT_RANKED = "not ranked: {pair} uses the grammar planner or ground-truth eyes, which are no models"
-"""Planners and eyes that are no models, whatever a header says of them."""
+NOT_RANKED = "not ranked: {pair} uses the grammar planner or ground-truth perception, which are not models"
+"""Built-in planners and perception backends. They are not models, whatever a header says."""
 
 
 @dataclass(frozen=True, slots=True)
-class Findings:
-    """``faults``: one sentence each, with the line; ``counts``: what the file comes to when it is counted again."""
+class SubmissionFindings:
+    """The result of a validation.
+
+    Attributes:
+        file: Name of the file.
+        faults: One sentence for each fault, with its line.
+        counts: Trials by headline, counted from the lines.
+        notes: Remarks that are not faults.
+    """
 
     file: str
     faults: tuple[str, ...]
@@ -34,12 +41,14 @@ class Findings:
     notes: tuple[str, ...] = ()
 
     @property
-    def told(self) -> str:
+    def summary(self) -> str:
+        """The result in words."""
         counts = ", ".join(f"{number} {name}" for name, number in self.counts.items())
         verdict = f"NOT VALID: {len(self.faults)} faults" if self.faults else "valid"
         return "\n".join([f"{self.file}: {verdict}" + (f" ({counts})" if counts else ""), *self.notes])
 
     def as_dict(self) -> dict[str, Any]:
+        """Return the result as JSON data."""
         return {
             "file": self.file,
             "valid": not self.faults,
@@ -49,10 +58,15 @@ class Findings:
         }
 
 
-def check_submission(path: Path, tasks: Sequence[Task] | None = None) -> Findings:
-    """Check a file. ``tasks``: what it should have run; without them the published split that it names.
+def check_submission(path: Path, tasks: Sequence[Task] | None = None) -> SubmissionFindings:
+    """Validate a submission.
 
-    Raises ``InputError`` when there is no file, or its split is not known and no tasks are given.
+    Args:
+        path: The file.
+        tasks: The tasks that it should cover; by default those of the published split that it names.
+
+    Raises:
+        InputError: The file cannot be read, or its split is unknown and no tasks are given.
     """
     rows, faults = _rows(path)
     headers = [(number, row) for number, row in rows if isinstance(row, Header)]
@@ -60,7 +74,7 @@ def check_submission(path: Path, tasks: Sequence[Task] | None = None) -> Finding
     if len(headers) != 1 or headers[0][0] != 1:
         faults.append(f"line 1: a submission begins with its only header; this one has {len(headers)}")
     if not headers:
-        return Findings(path.name, tuple(faults))
+        return SubmissionFindings(path.name, tuple(faults))
     header = headers[0][1]
     known = {task.id: task for task in (tasks if tasks is not None else _published(header))}
     faults += [f"line 1: {fault}" for fault in _header_faults(header, [row for _, row in lines], known)]
@@ -73,13 +87,14 @@ def check_submission(path: Path, tasks: Sequence[Task] | None = None) -> Finding
     if broken := counted.headlines.get("infrastructure", 0):
         notes.append(f"{broken} of {counted.trials} trials were broken by infrastructure and are in no share")
     counts = {"trials": counted.trials, **{str(name): number for name, number in counted.headlines.items()}}
-    return Findings(path.name, tuple(faults), counts, tuple(notes))
+    return SubmissionFindings(path.name, tuple(faults), counts, tuple(notes))
 
 
 def coverage(header: Header, lines: Sequence[TrialLine], tasks: Sequence[Task] | None = None) -> list[str]:
-    """Why these trials are not a whole split: missing, repeated and foreign tasks, or tasks that are worded otherwise.
+    """Return why trials do not cover a whole split: missing, repeated, unknown or differently worded tasks.
 
-    Raises ``InputError`` when the split is not known and no tasks are given.
+    Raises:
+        InputError: The split is unknown and no tasks are given.
     """
     known = {task.id: task for task in (tasks if tasks is not None else _published(header))}
     faults = list(_completeness(header, lines, known))
@@ -125,13 +140,13 @@ def _header_faults(header: Header, lines: Sequence[TrialLine], known: Mapping[st
     counted = totals_of(lines)
     if header.totals.trials != counted.trials:
         yield f"totals say {header.totals.trials} trials, there are {counted.trials}"
-    for kind, said, found in (
+    for kind, reported, found in (
         ("headline", header.totals.headlines, counted.headlines),
         ("error mode", header.totals.error_modes, counted.error_modes),
     ):
-        for name in sorted({*said, *found}):
-            if said.get(name, 0) != found.get(name, 0):
-                yield f"totals say {said.get(name, 0)} times {kind} {name}, counted {found.get(name, 0)}"
+        for name in sorted({*reported, *found}):
+            if reported.get(name, 0) != found.get(name, 0):
+                yield f"totals say {reported.get(name, 0)} times {kind} {name}, counted {found.get(name, 0)}"
     datasets = {task.dataset for task in known.values()}
     if header.card.dataset not in {"+".join(sorted(datasets)), *datasets}:
         yield f"dataset {header.card.dataset} is not that of the tasks ({', '.join(sorted(datasets))})"
@@ -143,7 +158,7 @@ def _header_faults(header: Header, lines: Sequence[TrialLine], known: Mapping[st
         yield f"{header.wanted} trials were wanted where {len(known)} tasks times {header.card.epochs} are {whole}"
     for model in (header.card.planner, header.card.perception):
         if _built_in(model.name) and not model.deterministic:
-            yield f"{model.name} is said to be a model ('deterministic' is false), and it is built in"
+            yield f"{model.name} is built in, but the header says that it is a model ('deterministic' is false)"
     if (version := _version(header.card.package_version)) is None:
         yield f"package version {header.card.package_version} is no version"
     elif version > (_version(__version__) or ()):
@@ -167,7 +182,7 @@ def _version(text: str) -> tuple[int, ...] | None:
 def _completeness(header: Header, lines: Sequence[TrialLine], known: Mapping[str, Task]) -> Iterator[str]:
     counted = Counter((line.task, line.epoch) for line in lines)
     for task, epoch in sorted(key for key, number in counted.items() if number > 1):
-        yield f"{task}, repeat {epoch}, stands {counted[task, epoch]} times"
+        yield f"{task}, repeat {epoch}, occurs {counted[task, epoch]} times"
     for task in sorted({task for task, _ in counted} - set(known)):
         yield f"{task} is no task of the split"
     for task in sorted(known):

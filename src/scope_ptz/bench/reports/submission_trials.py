@@ -1,4 +1,4 @@
-"""Whether a trial of a submission agrees with itself and with its task, as far as the file can tell."""
+"""Check that a trial of a submission is consistent with itself and with its task."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 from scope_ptz.agent.records import OUTCOMES
-from scope_ptz.bench.answers.reader import agrees, read
-from scope_ptz.bench.answers.result import Value
+from scope_ptz.bench.answers import ParsedValue, agrees, parse_answer
 from scope_ptz.bench.reports.submission import CUT, TOOLS, UNKNOWN_TOOL, Header, TrialLine
 from scope_ptz.bench.scoring.trials import RunCard
 from scope_ptz.bench.scoring.verdict import MOVERS
@@ -16,16 +15,16 @@ from scope_ptz.bench.tasks.task import Task
 from scope_ptz.tools.registry import TOOLS as REGISTRY
 
 SLACK_S = 0.5
-"""By how much the parts of a time may exceed the whole: clocks are read one after the other."""
+"""Seconds by which a part may exceed the whole, because clocks are read one after the other."""
 BREAKING = ("camera_error", "cancelled", "planner_error")
-"""Outcomes with which infrastructure ends a run; a planner's error may be its own, too."""
+"""Outcomes of runs that infrastructure may have broken. A planner error may also be the model's own."""
 LOOKERS = REGISTRY.perceiving
 MOVING = frozenset({"move", "zoom", "preset"})
-"""What a task may need that changes where the camera is or looks."""
+"""Needs of a task that change the camera's viewpoint or pose."""
 
 
 def trial_faults(line: TrialLine, header: Header, task: Task | None) -> Iterator[str]:
-    """What is wrong with a trial. ``task``: None where it is no task of the split."""
+    """Yield the faults of a trial. ``task`` is None if it is not a task of the split."""
     if line.epoch > header.card.epochs:
         yield f"repeat {line.epoch} of {header.card.epochs}"
     if line.error_mode is not None and line.headline != "incorrect":
@@ -53,10 +52,10 @@ def trial_faults(line: TrialLine, header: Header, task: Task | None) -> Iterator
 
 
 def _verdict_faults(line: TrialLine) -> Iterator[str]:
-    """The headline follows from the checks."""
+    """Yield faults of the headline, which must follow from the checks."""
     if line.scored_by == "judge":
-        if line.headline in ("correct", "incorrect") and line.headline not in {said.verdict for said in line.judged}:
-            yield f"{line.headline} by the judge, which no judgement says"
+        if line.headline in ("correct", "incorrect") and line.headline not in {judgement.verdict for judgement in line.judged}:
+            yield f"{line.headline} by the judge, but no judgement says so"
         return
     passed = list(line.checks.values())
     if line.headline in ("correct", "incorrect", "unscored") and not passed:
@@ -70,7 +69,7 @@ def _verdict_faults(line: TrialLine) -> Iterator[str]:
 
 
 def _answer_faults(line: TrialLine, task: Task) -> Iterator[str]:
-    """The answer, read again, gives what the answer check says."""
+    """Yield a fault if the answer, parsed again, does not give the result of the answer check."""
     if isinstance(task.expected, ActionOnly) or line.scored_by == "judge" or line.answer.endswith(CUT):
         return
     if "answer" not in line.checks:
@@ -78,7 +77,7 @@ def _answer_faults(line: TrialLine, task: Task) -> Iterator[str]:
             yield "the task wants an answer and there is no answer check"
         return
     ended = line.outcome in ("answered", "clarification", "refused")
-    found = agrees(task.expected, read(task.expected, line.answer)) if ended else False
+    found = agrees(task.expected, parse_answer(task.expected, line.answer)) if ended else False
     if found != line.checks["answer"]:
         yield f"the answer reads as {_words(found)} and its check says {_words(line.checks['answer'])}"
 
@@ -88,7 +87,7 @@ def _words(passed: bool | None) -> str:
 
 
 def checks_of(task: Task) -> set[str]:
-    """The names of the checks that every run of a task has."""
+    """Return the names of the checks that apply to a task."""
     behaviour = task.behaviour
     called_for = {
         "outcome": True,
@@ -100,40 +99,43 @@ def checks_of(task: Task) -> set[str]:
         "pictures": behaviour.pictures is not None,
         "framing": behaviour.framing is not None,
     }
-    return {name for name, wanted in called_for.items() if wanted}
+    return {name for name, required in called_for.items() if required}
 
 
 def _check_faults(line: TrialLine, task: Task) -> Iterator[str]:
-    """Every check of the task is there, no other, and the checks decide."""
+    """Yield faults of the checks: missing or unknown ones, or a verdict that is not theirs."""
     if line.scored_by == "judge":
         yield "scored by a judge, and the task has checks"
     if line.headline == "infrastructure" and line.outcome is None and not line.checks:
-        return  # It never began.
-    wanted = checks_of(task)
-    if lacking := sorted(wanted - set(line.checks)):
+        return  # The run never began.
+    required = checks_of(task)
+    if lacking := sorted(required - set(line.checks)):
         yield f"the task's checks {', '.join(lacking)} are missing"
-    if further := sorted(set(line.checks) - wanted):
+    if further := sorted(set(line.checks) - required):
         yield f"the task has no checks {', '.join(further)[:200]}"
     if "outcome" in line.checks and line.checks["outcome"] is not (line.outcome in task.behaviour.outcomes):
         yield f"the outcome {line.outcome} and its check differ"
 
 
 def _broken_faults(line: TrialLine, task: Task) -> Iterator[str]:
-    """Only a server, the camera or a cut break a run. One that ended in another way may still have been blind: then nothing looked
-    with success, and no value was claimed."""
+    """Yield a fault if a trial was not broken by infrastructure although its headline says so.
+
+    Only a server, the camera or an interruption breaks a run. A run that ended in another way is broken only if perception always
+    failed and the answer claims no value.
+    """
     if line.headline != "infrastructure" or line.outcome in (None, *BREAKING):
         return
     claimed = line.outcome == "answered" and not isinstance(task.expected, ActionOnly) and not line.answer.endswith(CUT)
     if (
         not line.perception_failures
         or line.checks.get("coverage") is not False
-        or (claimed and isinstance(read(task.expected, line.answer), Value))
+        or (claimed and isinstance(parse_answer(task.expected, line.answer), ParsedValue))
     ):
         yield f"broken by infrastructure although it ended {line.outcome} and perception did not fail it"
 
 
 def _call_faults(line: TrialLine, header: Header, task: Task) -> Iterator[str]:
-    """What the checks say was done needs calls."""
+    """Yield faults of the calls: checks that passed require them."""
     made, calls = sum(line.tool_calls.values()), Counter(line.tool_calls)
     if line.outcome is not None and line.outcome not in BREAKING and not line.steps:
         yield f"it ended {line.outcome} without a step"
@@ -157,7 +159,7 @@ def _call_faults(line: TrialLine, header: Header, task: Task) -> Iterator[str]:
 
 
 def _may_see(card: RunCard) -> bool:
-    """Whether the planner itself is shown what the camera sees, as one that is eyes at once, a person, or another agent may be."""
+    """Return whether the planner itself may be shown frames: it is also the perception model, a person, or an external agent."""
     settings = card.sampling.get("planner")
-    says = settings.get("sees") if isinstance(settings, dict) else None
-    return card.agent != "scope" or card.planner.name == card.perception.name or str(says).lower() == "true"
+    sees = settings.get("sees") if isinstance(settings, dict) else None
+    return card.agent != "scope" or card.planner.name == card.perception.name or str(sees).lower() == "true"

@@ -1,4 +1,4 @@
-"""A table as data, and its cells in words. Page, Markdown and CSV are all made from the same tables, so that they cannot differ."""
+"""Tables as data, and their cells as text. The page, the Markdown file and the CSV files are all made from the same tables."""
 
 from __future__ import annotations
 
@@ -7,53 +7,69 @@ import io
 from dataclasses import dataclass, field
 from typing import Literal
 
-from scope_ptz.bench.statistics.clustered import Estimate
+from scope_ptz.bench.statistics.clustered import IntervalEstimate
 
 MISSING = "not measured"
-Kind = Literal["text", "prose", "count", "share", "points", "width", "seconds", "number", "gb", "usd", "p", "ratio"]
-"""``prose``: text of a sentence or more;
-``share``: 0..1, shown in percent; ``points``: a difference, in percentage points; ``width``: that without a sign."""
+ColumnKind = Literal["text", "prose", "count", "share", "points", "width", "seconds", "number", "gb", "usd", "p", "ratio"]
+"""Kinds of columns. "prose": text of a sentence or more; "share": 0 to 1, shown in percent; "points": a difference in percentage
+points; "width": the same without a sign."""
 
 
 @dataclass(frozen=True, slots=True)
-class Marked:
-    """A value with what the page adds to it. ``best``: in its group; ``best_of_all``: in the table; ``link``: a page."""
+class MarkedCell:
+    """A value with marks.
 
-    value: str | int | float | Estimate | None
+    Attributes:
+        value: The value.
+        best: Whether it is the best of its group.
+        best_of_all: Whether it is the best of the table.
+        link: Address of a page.
+        note: A remark next to the value.
+    """
+
+    value: str | int | float | IntervalEstimate | None
     best: bool = False
     best_of_all: bool = False
     link: str = ""
     note: str = ""
 
 
-Value = str | int | float | Estimate | Marked | None
+CellValue = str | int | float | IntervalEstimate | MarkedCell | None
 
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """``name`` heads the column of the CSV, ``title`` that of the page."""
+    """A column. ``name`` is its header in CSV files, ``title`` its header on the page."""
 
     name: str
     title: str
-    kind: Kind = "text"
+    kind: ColumnKind = "text"
 
     @property
     def worded(self) -> bool:
-        """Whether it holds words, not figures."""
+        """Whether it holds text and not numbers."""
         return self.kind in ("text", "prose")
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
-    """``key``: its file name; ``notes``: how to read it. The first column names the row."""
+class ReportTable:
+    """A table.
+
+    Attributes:
+        key: Name of its CSV file.
+        title: Its title.
+        columns: The columns. The first one names the row.
+        rows: The cells of each row.
+        notes: How to read it.
+        groups: Headings before rows, by the number of the row.
+    """
 
     key: str
     title: str
     columns: tuple[Column, ...]
-    rows: tuple[tuple[Value, ...], ...]
+    rows: tuple[tuple[CellValue, ...], ...]
     notes: tuple[str, ...] = ()
     groups: dict[int, str] = field(default_factory=dict)
-    """Headings before rows, by the number of the row."""
 
     def __post_init__(self) -> None:
         for row in self.rows:
@@ -61,33 +77,33 @@ class Table:
                 raise ValueError(f"table {self.key}: a row of {len(row)} values for {len(self.columns)} columns")
 
 
-def bare(value: Value) -> str | int | float | Estimate | None:
-    """A value without its marks."""
-    return value.value if isinstance(value, Marked) else value
+def unmarked(value: CellValue) -> str | int | float | IntervalEstimate | None:
+    """Return a value without its marks."""
+    return value.value if isinstance(value, MarkedCell) else value
 
 
-def in_words(value: Value, kind: Kind) -> str:
-    """A cell as a person reads it; what is missing is said to be."""
-    plain = bare(value)
+def in_words(value: CellValue, kind: ColumnKind) -> str:
+    """Return a cell as text. A missing value is "not measured"."""
+    plain = unmarked(value)
     if plain is None:
         return MISSING
     if isinstance(plain, str):
         return plain
-    if isinstance(plain, Estimate):
-        told = ", ".join(filter(None, interval(plain, kind)))
-        return f"{_number(plain.value, kind)} ({told})"
+    if isinstance(plain, IntervalEstimate):
+        certainty = ", ".join(filter(None, interval(plain, kind)))
+        return f"{_number(plain.value, kind)} ({certainty})"
     return _number(plain, kind)
 
 
-def interval(found: Estimate, kind: Kind) -> tuple[str, str]:
-    """The interval of an estimate in words, empty where there is none; and what must be known of it."""
+def interval(found: IntervalEstimate, kind: ColumnKind) -> tuple[str, str]:
+    """Return the interval of an estimate as text (empty if there is none), and its limitation."""
     if found.low is None or found.high is None:
-        return "", "interval not known"
+        return "", "interval unknown"
     lacking = ", ".join(name.replace("_", " ") for name in found.without)
     return f"{_number(found.low, kind)} to {_number(found.high, kind)}", f"without {lacking}" if lacking else ""
 
 
-def _number(value: float, kind: Kind) -> str:
+def _number(value: float, kind: ColumnKind) -> str:
     match kind:
         case "share" | "width":
             return f"{100 * value:.1f}"
@@ -109,11 +125,14 @@ def _number(value: float, kind: Kind) -> str:
             return f"{value:,}" if isinstance(value, int) else f"{value:.2f}"
 
 
-def as_csv(table: Table) -> str:
-    """RFC 4180, numbers in full precision, shares as 0..1, missing values empty. Estimates take three columns, and a fourth where
-    an interval is without some strata."""
-    cells_of = [[bare(row[index]) for row in table.rows] for index in range(len(table.columns))]
-    endings = [_endings([cell for cell in cells if isinstance(cell, Estimate)]) for cells in cells_of]
+def as_csv(table: ReportTable) -> str:
+    """Return a table as CSV (RFC 4180).
+
+    Numbers have full precision, shares are 0 to 1, missing values are empty. An estimate takes three columns, and a fourth one if
+    its interval leaves out some strata.
+    """
+    cells_of = [[unmarked(row[index]) for row in table.rows] for index in range(len(table.columns))]
+    endings = [_endings([cell for cell in cells if isinstance(cell, IntervalEstimate)]) for cells in cells_of]
     out = io.StringIO()
     writer = csv.writer(out)
     heads = (["group"] if table.groups else []) + [
@@ -127,8 +146,8 @@ def as_csv(table: Table) -> str:
         group = table.groups.get(number, group)
         cells: list[str | int | float | None] = [_inert(group)] if table.groups else []
         for value, further in zip(row, endings, strict=True):
-            plain = bare(value)
-            if isinstance(plain, Estimate):
+            plain = unmarked(value)
+            if isinstance(plain, IntervalEstimate):
                 cells += [plain.value, plain.low, plain.high, " ".join(plain.without)][: 1 + len(further)]
             else:
                 cells += [_inert(plain) if isinstance(plain, str) else plain, *(None for _ in further)]
@@ -136,20 +155,20 @@ def as_csv(table: Table) -> str:
     return out.getvalue()
 
 
-def _endings(estimates: list[Estimate]) -> tuple[str, ...]:
-    """The further columns that these estimates of one column take."""
+def _endings(estimates: list[IntervalEstimate]) -> tuple[str, ...]:
+    """Return the endings of the additional CSV columns of an estimate."""
     if not estimates:
         return ()
     return ("low", "high", "without") if any(found.without for found in estimates) else ("low", "high")
 
 
 def _inert(text: str) -> str:
-    """Text that a spreadsheet does not run as a formula, whatever a model wrote."""
+    """Return text that a spreadsheet does not run as a formula."""
     return f"'{text}" if text.startswith(("=", "+", "-", "@", "\t", "\r")) else text
 
 
-def as_markdown(table: Table) -> str:
-    """A pipe table with its heading and notes. Text is escaped, so that it is shown and never acts."""
+def as_markdown(table: ReportTable) -> str:
+    """Return a Markdown table with its heading and notes. All text is escaped."""
     lines = [f"### {escape(table.title)}", ""]
     lines += ["| " + " | ".join(escape(column.title) for column in table.columns) + " |"]
     lines += ["|" + "|".join("---" if column.worded else "---:" for column in table.columns) + "|"]
@@ -162,9 +181,9 @@ def as_markdown(table: Table) -> str:
     return "\n".join([*lines, "", *(f"*{escape(note)}*\n" for note in table.notes)])
 
 
-def _markdown_cell(value: Value, column: Column) -> str:
+def _markdown_cell(value: CellValue, column: Column) -> str:
     words = escape(in_words(value, column.kind))
-    if isinstance(value, Marked):
+    if isinstance(value, MarkedCell):
         words = f"[{words}]({value.link})" if value.link else words
         words = f"**{words}**" if value.best else words
         words = f"<u>{words}</u>" if value.best_of_all else words
@@ -176,6 +195,6 @@ _SPECIAL = str.maketrans({mark: f"\\{mark}" for mark in "\\`*_{}[]()#+-!|~"} | {
 
 
 def escape(text: str) -> str:
-    """Text for Markdown, on one line, without any meaning as markup."""
+    """Escape text for Markdown and put it on one line."""
     plain = " ".join(text.split())
     return plain if plain.replace(".", "").replace(" ", "").isalnum() else plain.translate(_SPECIAL)

@@ -1,4 +1,4 @@
-"""What stands on the page of a failed task: what was asked and expected, and every trial that failed, step by step."""
+"""The content of a failed task's page: the instruction, the expected answer, and every failed trial step by step."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from typing import Any, Protocol
 
 from scope_ptz.agent.records import Called
 from scope_ptz.agent.trace import Trace
-from scope_ptz.bench.reports.runs import Run
+from scope_ptz.bench.reports.report_runs import ReportRun
 from scope_ptz.bench.scoring.trials import Evaluation, Trial
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import ScopeError
@@ -25,24 +25,28 @@ MOST_PIXELS = 64_000_000
 MOST_TEXT = 2_000
 
 
-class SampleFiles(Protocol):
-    """What a log keeps of one run: its trace, and its pictures by the names that the trace uses."""
+class StoredRun(Protocol):
+    """A run as a log stores it: its trace, and its pictures by the names in the trace."""
 
     @property
-    def trace(self) -> Trace: ...
+    def trace(self) -> Trace:
+        """The trace of the run."""
+        ...
 
-    def picture(self, name: str) -> bytes | None: ...
+    def picture(self, name: str) -> bytes | None:
+        """Return a picture; None if it was not stored."""
+        ...
 
 
-OpenSample = Callable[[Evaluation, Trial], SampleFiles]
+OpenSample = Callable[[Evaluation, Trial], StoredRun]
 
 
 @dataclass(frozen=True, slots=True)
 class CallShown:
-    """``frame``: path of its picture relative to the report's folder."""
+    """A call on the page. ``frame`` is the path of its picture, ``replies`` are the answers of perception."""
 
     call: str
-    said: str
+    result: str
     failed: bool
     pose: str
     replies: tuple[str, ...]
@@ -51,6 +55,8 @@ class CallShown:
 
 @dataclass(frozen=True, slots=True)
 class StepShown:
+    """A step on the page. ``view`` is the frame that the planner was shown."""
+
     number: int
     thought: str
     calls: tuple[CallShown, ...]
@@ -59,9 +65,9 @@ class StepShown:
 
 @dataclass(frozen=True, slots=True)
 class FailedRun:
-    """``missing``: why the trajectory cannot be shown."""
+    """A failed trial on the page. ``missing`` says why its trajectory cannot be shown."""
 
-    run: Run
+    run: ReportRun
     trial: Trial
     steps: tuple[StepShown, ...] = ()
     first_frame: str | None = None
@@ -70,6 +76,8 @@ class FailedRun:
 
 @dataclass(frozen=True, slots=True)
 class TaskPage:
+    """The page of a failed task."""
+
     task: str
     file: str
     evidence: tuple[str, ...]
@@ -77,30 +85,35 @@ class TaskPage:
 
     @property
     def facts(self) -> Any:
+        """The facts about the task."""
         return self.runs[0].trial.task
 
 
 def page_files(evaluations: Sequence[Evaluation]) -> dict[str, str]:
-    """The page of each task that failed, relative to the report's folder. Names are made here: nothing of a log is ever a path."""
+    """Return the page of each failed task, relative to the report's folder. No text from a log is used as a path."""
     failed = {t.task.id for e in evaluations for t in e.trials if t.headline in ("incorrect", "unscored")}
     return {task: f"tasks/{file_name(task)}" for task in sorted(failed)}
 
 
 def file_name(task: str) -> str:
-    """A harmless file name, stable and unlike any other task's."""
+    """Return a safe and stable file name that is unique to the task."""
     readable = re.sub(r"[^a-z0-9]+", "-", task.lower()).strip("-")[:60]
     return f"{readable or 'task'}-{hashlib.sha256(task.encode()).hexdigest()[:10]}.html"
 
 
 class FrameStore:
-    """Pictures of the report: decoded, made small and written again under the hash of what came, so that none is kept twice."""
+    """Stores the pictures of a report, resized, under the hash of their content, so that equal pictures are stored once."""
 
     def __init__(self, folder: Path, shown_as: str) -> None:
         self._folder, self._shown_as = folder, shown_as
         self._known: dict[str, str | None] = {}
 
     def keep(self, content: bytes | None) -> str | None:
-        """Where the picture stands, as pages refer to it; None when there is none or it cannot be read."""
+        """Store a picture.
+
+        Returns:
+            Its path as used on pages; None if there is no picture or it cannot be decoded.
+        """
         if not content:
             return None
         digest = hashlib.sha256(content).hexdigest()[:24]
@@ -125,10 +138,14 @@ class FrameStore:
 
 
 def task_pages(
-    runs: Sequence[Run], files: Mapping[str, str], open_sample: OpenSample | None, frames: FrameStore, tasks: Mapping[str, Task]
+    runs: Sequence[ReportRun],
+    files: Mapping[str, str],
+    open_sample: OpenSample | None,
+    frames: FrameStore,
+    tasks: Mapping[str, Task],
 ) -> list[Callable[[], TaskPage]]:
-    """Pages, made one at a time when they are called for, because pictures take memory."""
-    failed: dict[str, list[tuple[Run, Trial]]] = defaultdict(list)
+    """Return functions that each build one page. Pages are built one at a time, because pictures take memory."""
+    failed: dict[str, list[tuple[ReportRun, Trial]]] = defaultdict(list)
     for run in runs:
         for trial in run.evaluation.trials:
             if trial.task.id in files and trial.headline in ("incorrect", "unscored"):
@@ -141,22 +158,22 @@ def task_pages(
     return [partial(page, task) for task in sorted(failed)]
 
 
-def _failed_run(run: Run, trial: Trial, open_sample: OpenSample | None, frames: FrameStore) -> FailedRun:
+def _failed_run(run: ReportRun, trial: Trial, open_sample: OpenSample | None, frames: FrameStore) -> FailedRun:
     if open_sample is None:
-        return FailedRun(run, trial, missing="Trajectories were left out of this report.")
+        return FailedRun(run, trial, missing="This report was made without trajectories.")
     try:
         sample = open_sample(run.evaluation, trial)
         trace = sample.trace
         return FailedRun(run, trial, _steps(trace, sample, frames), _kept(trace.started.frame, sample, frames))
     except ScopeError as error:
-        return FailedRun(run, trial, missing=f"The log does not give the trajectory: {error}")
+        return FailedRun(run, trial, missing=f"The log does not contain the trajectory: {error}")
 
 
-def _kept(name: str | None, sample: SampleFiles, frames: FrameStore) -> str | None:
+def _kept(name: str | None, sample: StoredRun, frames: FrameStore) -> str | None:
     return None if name is None else frames.keep(sample.picture(name))
 
 
-def _steps(trace: Trace, sample: SampleFiles, frames: FrameStore) -> tuple[StepShown, ...]:
+def _steps(trace: Trace, sample: StoredRun, frames: FrameStore) -> tuple[StepShown, ...]:
     shown = []
     for decided in trace.decisions:
         calls = tuple(_call(called, sample, frames) for called in trace.calls if called.step == decided.step)
@@ -166,11 +183,11 @@ def _steps(trace: Trace, sample: SampleFiles, frames: FrameStore) -> tuple[StepS
     return tuple(shown)
 
 
-def _call(called: Called, sample: SampleFiles, frames: FrameStore) -> CallShown:
+def _call(called: Called, sample: StoredRun, frames: FrameStore) -> CallShown:
     outcome = called.outcome
     arguments = ", ".join(f"{key}={json.dumps(value, ensure_ascii=False)}" for key, value in outcome.call.arguments.items())
     failed = outcome.error is not None
-    said = outcome.error if outcome.error is not None else _message(outcome.result)
+    result = outcome.error if outcome.error is not None else _message(outcome.result)
     pose = f"pan {called.pose.pan_deg:.1f}°, tilt {called.pose.tilt_deg:.1f}°, zoom {called.pose.zoom:.2f}x"
     replies = tuple(
         cut(
@@ -179,7 +196,7 @@ def _call(called: Called, sample: SampleFiles, frames: FrameStore) -> CallShown:
         for reply in called.replies
     )
     return CallShown(
-        cut(f"{outcome.call.name}({arguments})"), cut(said), failed, pose, replies, _kept(called.frame, sample, frames)
+        cut(f"{outcome.call.name}({arguments})"), cut(result), failed, pose, replies, _kept(called.frame, sample, frames)
     )
 
 
@@ -193,8 +210,7 @@ def _message(result: Mapping[str, Any] | None) -> str:
 
 
 def _seen(result: Mapping[str, Any] | None) -> str:
-    """What the eyes said: places in percent of the frame, texts as they are. Who was asked, how often and the raw reply are left to
-    the log."""
+    """Return what perception answered: places in percent of the frame, texts unchanged. Other details are in the log."""
     for key, one in (("boxes", "box"), ("points", "point")):
         places = result.get(key) if result else None
         if isinstance(places, list | tuple) and result is not None:
@@ -206,16 +222,16 @@ def _seen(result: Mapping[str, Any] | None) -> str:
 
 
 def _place(place: Any) -> str:
-    """A box or a point: from left and from top, in percent of the frame. What is neither is told as it is."""
+    """Return a box or a point in percent of the frame. Other values are returned as text."""
     if not isinstance(place, Mapping):
         return _in_words(place)
     sides = [_percent(place, axis) for axis in "xy"]
     if None in sides:
         return _in_words(place)
     score = place.get("score")
-    said = [str(place["label"])] if place.get("label") else []
-    said += [f"score {score:.2f}"] if isinstance(score, int | float) else []
-    return f"{' '.join([*said, 'at'] if said else ['at'])} {sides[0]} from the left, {sides[1]} from the top"
+    parts = [str(place["label"])] if place.get("label") else []
+    parts += [f"score {score:.2f}"] if isinstance(score, int | float) else []
+    return f"{' '.join([*parts, 'at'])} {sides[0]} from the left, {sides[1]} from the top"
 
 
 def _percent(place: Mapping[str, Any], axis: str) -> str | None:
@@ -229,10 +245,10 @@ def _notes(result: Mapping[str, Any]) -> str:
 
 
 def _in_words(value: Any) -> str:
-    """Data as a person reads it: names with their values, figures of four digits, nothing of what is empty."""
+    """Return data as text: names with values, numbers with four digits, without empty values."""
     if isinstance(value, Mapping):
-        told = {str(key).replace("_", " "): part for key, part in value.items() if part not in (None, "", [], {}, ())}
-        return "; ".join(f"{key}: {_in_words(part)}" for key, part in told.items()) or "nothing"
+        parts = {str(key).replace("_", " "): part for key, part in value.items() if part not in (None, "", [], {}, ())}
+        return "; ".join(f"{key}: {_in_words(part)}" for key, part in parts.items()) or "nothing"
     if isinstance(value, list | tuple):
         return ", ".join(f"({_in_words(part)})" if isinstance(part, Mapping) else _in_words(part) for part in value) or "nothing"
     if isinstance(value, bool):
@@ -241,18 +257,18 @@ def _in_words(value: Any) -> str:
 
 
 def cut(text: str) -> str:
-    """A text that fits a page."""
+    """Return a text shortened to fit a page."""
     return text if len(text) <= MOST_TEXT else f"{text[:MOST_TEXT]} … ({len(text):,} characters)"
 
 
 def evidence_lines(task: Task | None) -> tuple[str, ...]:
-    """What the expected answer rests on, as far as the task itself is at hand."""
+    """Return the evidence of a task, one line per view; empty if the task itself is not available."""
     lines = []
     if task is not None and not task.evidence:
-        return ("none: the answer rests on no view",)
+        return ("none: the answer does not depend on any view",)
     for view in task.evidence if task else ():
         aim = view.aim
-        items = ", ".join(f"{i.instance}{'' if i.value is None else f' = {i.value}'}" for i in view.items) or "nothing of the kind"
+        items = ", ".join(f"{i.instance}{'' if i.value is None else f' = {i.value}'}" for i in view.items) or "no items"
         whole = "; everything in it counts" if view.whole else ""
         lines.append(
             f"{aim.viewpoint}, pan {aim.pan_deg:g}°, tilt {aim.tilt_deg:g}°, zoom {aim.zoom:g}x, {view.scope}: {items}{whole}"

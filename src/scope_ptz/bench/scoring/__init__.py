@@ -1,1 +1,1 @@
-"""Scoring: checks, verdicts, error modes, judged trials."""
+"""Scoring of runs: checks, verdicts, error modes, and the records of trials."""

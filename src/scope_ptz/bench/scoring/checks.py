@@ -1,4 +1,4 @@
-"""The checks: one function a kind, each on a task and a run. None is "cannot be told", which is never a pass."""
+"""The executable checks. Each function checks one aspect of a run against its task."""
 
 from __future__ import annotations
 
@@ -8,11 +8,10 @@ from typing import Literal
 
 import numpy as np
 
-from scope_ptz.bench.answers.reader import agrees, read
-from scope_ptz.bench.answers.result import Declined, Unreadable
-from scope_ptz.bench.scoring.coverage import gap
-from scope_ptz.bench.scoring.episode import Episode, Standing
-from scope_ptz.bench.scoring.matching import in_any_order, in_order
+from scope_ptz.bench.answers import Declined, Unreadable, agrees, parse_answer
+from scope_ptz.bench.scoring.coverage import uncovered_part
+from scope_ptz.bench.scoring.episode import CameraPosition, Episode
+from scope_ptz.bench.scoring.required_calls import missing_in_any_order, missing_in_order
 from scope_ptz.bench.tasks.expected import ActionOnly
 from scope_ptz.bench.tasks.task import FinalPose, RunOutcome, Task
 from scope_ptz.geometry import Perspective, direction, wrap_pan_deg
@@ -20,12 +19,12 @@ from scope_ptz.geometry import Perspective, direction, wrap_pan_deg
 CheckName = Literal["outcome", "answer", "coverage", "pose", "calls", "forbidden", "pictures", "framing"]
 SAME_ANGLE_DEG = 0.5
 SAME_ZOOM_SHARE = 0.03
-"""Within these two poses are the same."""
+"""Two poses within these tolerances are the same."""
 
 
 @dataclass(frozen=True, slots=True)
 class CheckResult:
-    """``passed`` is None when it cannot be told (an answer that cannot be read)."""
+    """The result of one check. ``passed`` is None if the check cannot decide, because the answer is unreadable."""
 
     name: CheckName
     passed: bool | None
@@ -33,30 +32,30 @@ class CheckResult:
 
 
 def run_checks(task: Task, episode: Episode) -> tuple[CheckResult, ...]:
-    """Every check that the task calls for, in a fixed order."""
+    """Run every check that applies to a task, in a fixed order."""
     results = (check(task, episode) for check in _CHECKS)
     return tuple(result for result in results if result is not None)
 
 
 def check_outcome(task: Task, episode: Episode) -> CheckResult:
-    """The run ended as it should: answered, or where the task wants that with a question or a refusal."""
-    wanted: tuple[RunOutcome, ...] = task.behaviour.outcomes
-    passed = episode.outcome in wanted
-    return CheckResult("outcome", passed, "as wanted" if passed else f"ended {episode.outcome}, not {' or '.join(wanted)}")
+    """Check that the run ended as required: with an answer, or with a question or a refusal where the task asks for one."""
+    required: tuple[RunOutcome, ...] = task.behaviour.outcomes
+    passed = episode.outcome in required
+    return CheckResult("outcome", passed, "as wanted" if passed else f"ended {episode.outcome}, not {' or '.join(required)}")
 
 
 def check_answer(task: Task, episode: Episode) -> CheckResult | None:
-    """The answer, read by the deterministic reader, is the expected one."""
+    """Check that the final answer, as parsed, agrees with the expected answer."""
     if isinstance(task.expected, ActionOnly):
         return None
     if episode.outcome not in ("answered", "clarification", "refused"):
         return CheckResult("answer", False, "there is no answer")
-    reading = read(task.expected, episode.text)
-    passed = agrees(task.expected, reading)
-    if isinstance(reading, Unreadable):
-        return CheckResult("answer", None, f"cannot be read: {reading.reason}")
-    said = "declined" if isinstance(reading, Declined) else f"read as {_plain(reading.value)}"
-    return CheckResult("answer", passed, said if passed else f"{said}, which is not what is expected")
+    parsed = parse_answer(task.expected, episode.answer)
+    passed = agrees(task.expected, parsed)
+    if isinstance(parsed, Unreadable):
+        return CheckResult("answer", None, f"cannot be read: {parsed.reason}")
+    stated = "declined" if isinstance(parsed, Declined) else f"read as {_plain(parsed.value)}"
+    return CheckResult("answer", passed, stated if passed else f"{stated}, which is not what is expected")
 
 
 def _plain(value: object) -> str:
@@ -68,16 +67,16 @@ def _plain(value: object) -> str:
 
 
 def check_coverage(task: Task, episode: Episode) -> CheckResult | None:
-    """Perception looked, successfully, at everything that the answer rests on."""
-    wanted = [view for view in task.evidence if view.must_look]
-    if not wanted:
+    """Check that perception successfully observed everything that the answer rests on."""
+    required = [view for view in task.evidence if view.must_look]
+    if not required:
         return None
-    gaps = [found for view in wanted if (found := gap(view, episode.looks)) is not None]
+    gaps = [found for view in required if (found := uncovered_part(view, episode.observations)) is not None]
     return CheckResult("coverage", not gaps, "; ".join(gaps) or "everything asked about was looked at")
 
 
 def check_pose(task: Task, episode: Episode) -> CheckResult | None:
-    """The camera ends where the instruction wants it."""
+    """Check that the camera ends at the pose that the instruction asks for."""
     final = task.behaviour.final
     if final is None:
         return None
@@ -85,34 +84,34 @@ def check_pose(task: Task, episode: Episode) -> CheckResult | None:
     return CheckResult("pose", not wrong, "; ".join(wrong) or "the final pose is as wanted")
 
 
-def pose_difference(wanted: FinalPose, is_at: Standing) -> list[str]:
-    """What of a pose is not as wanted, in words."""
+def pose_difference(required: FinalPose, is_at: CameraPosition) -> list[str]:
+    """Return how a camera state differs from the required one, in words; empty if it is within tolerance."""
     wrong = []
-    if is_at.viewpoint != wanted.viewpoint:
-        wrong.append(f"at viewpoint {is_at.viewpoint}, not {wanted.viewpoint}")
-    pan = abs(wrap_pan_deg(is_at.pose.pan_deg - wanted.pan_deg))
-    tilt = abs(is_at.pose.tilt_deg - wanted.tilt_deg)
-    zoom = abs(is_at.pose.zoom / wanted.zoom - 1)
-    if pan > wanted.tolerance_deg + 1e-6:
+    if is_at.viewpoint != required.viewpoint:
+        wrong.append(f"at viewpoint {is_at.viewpoint}, not {required.viewpoint}")
+    pan = abs(wrap_pan_deg(is_at.pose.pan_deg - required.pan_deg))
+    tilt = abs(is_at.pose.tilt_deg - required.tilt_deg)
+    zoom = abs(is_at.pose.zoom / required.zoom - 1)
+    if pan > required.tolerance_deg + 1e-6:
         wrong.append(f"pan is off by {pan:.2f} degrees")
-    if tilt > wanted.tolerance_deg + 1e-6:
+    if tilt > required.tolerance_deg + 1e-6:
         wrong.append(f"tilt is off by {tilt:.2f} degrees")
-    if zoom > wanted.zoom_share + 1e-6:
+    if zoom > required.zoom_share + 1e-6:
         wrong.append(f"zoom is off by {zoom:.1%}")
     return wrong
 
 
 def check_calls(task: Task, episode: Episode) -> CheckResult | None:
-    """The calls that the instruction fixes were made with success, in order where it fixes the order."""
+    """Check that the calls that the instruction requires succeeded, in order if the instruction gives one."""
     behaviour = task.behaviour
     if not behaviour.calls:
         return None
-    missing = (in_order if behaviour.order == "ordered" else in_any_order)(behaviour.calls, episode.calls)
+    missing = (missing_in_order if behaviour.order == "ordered" else missing_in_any_order)(behaviour.calls, episode.calls)
     return CheckResult("calls", missing is None, missing or "every required call was made")
 
 
 def check_forbidden(task: Task, episode: Episode) -> CheckResult | None:
-    """Nothing happened that must not."""
+    """Check that no forbidden tool was used and no forbidden change remained."""
     forbidden = task.behaviour.forbidden
     if not forbidden.tools and not forbidden.changes:
         return None
@@ -122,8 +121,8 @@ def check_forbidden(task: Task, episode: Episode) -> CheckResult | None:
     return CheckResult("forbidden", not wrong, "; ".join(wrong) or "nothing forbidden happened")
 
 
-def changes(before: Standing, after: Standing) -> list[str]:
-    """Which of viewpoint, pan, tilt and zoom differ."""
+def changes(before: CameraPosition, after: CameraPosition) -> list[str]:
+    """Return which of viewpoint, pan, tilt and zoom differ between two states."""
     one, two = before.pose, after.pose
     differs = {
         "viewpoint": before.viewpoint != after.viewpoint,
@@ -135,19 +134,19 @@ def changes(before: Standing, after: Standing) -> list[str]:
 
 
 def check_pictures(task: Task, episode: Episode) -> CheckResult | None:
-    """As many pictures were taken as were asked for, and their files are there."""
-    wanted = task.behaviour.pictures
-    if wanted is None:
+    """Check that the requested number of pictures was taken and that their files exist."""
+    required = task.behaviour.pictures
+    if required is None:
         return None
     lost = [picture.file for picture in episode.pictures if picture.exists is False]
     if lost:
         return CheckResult("pictures", False, f"missing: {', '.join(lost)}")
     taken = len({picture.file for picture in episode.pictures})
-    return CheckResult("pictures", taken == wanted, f"{taken} of {wanted} pictures were taken")
+    return CheckResult("pictures", taken == required, f"{taken} of {required} pictures were taken")
 
 
 def check_framing(task: Task, episode: Episode) -> CheckResult | None:
-    """The target is in the middle of the final view and as large as wanted."""
+    """Check that the target is in the middle of the final view and as large as required."""
     framing = task.behaviour.framing
     if framing is None:
         return None
@@ -163,7 +162,16 @@ def check_framing(task: Task, episode: Episode) -> CheckResult | None:
 
 
 def framed(outline_deg: Sequence[tuple[float, float]], episode: Episode) -> tuple[float, float]:
-    """Fill of the limiting side and the larger offset from the middle of an outline in the final view; infinite when behind."""
+    """Return how an outline is framed in the final view.
+
+    Args:
+        outline_deg: Directions (pan, tilt) along the outline.
+        episode: The run.
+
+    Returns:
+        The share of the frame that the longer side fills, and the larger offset from the middle as a share of the frame. Both are
+        infinite if the outline is behind the camera.
+    """
     pose = episode.final.pose
     view = Perspective(pose.pan_deg, pose.tilt_deg, episode.optics.hfov_deg(pose.zoom), 1600, round(1600 / episode.aspect))
     outline = np.array(outline_deg, dtype=np.float64)

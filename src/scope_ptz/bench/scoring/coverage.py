@@ -1,4 +1,7 @@
-"""Whether a run looked where its answer comes from. An answer passes only on successful perception that covers its evidence."""
+"""Coverage of evidence: whether a run observed the views that its answer rests on.
+
+An answer passes only if successful observations cover its evidence.
+"""
 
 from __future__ import annotations
 
@@ -8,52 +11,66 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from scope_ptz.bench.answers.words import names_any
-from scope_ptz.bench.scoring.episode import Look
+from scope_ptz.bench.answers import names_any
+from scope_ptz.bench.scoring.episode import Observation
 from scope_ptz.bench.tasks.task import EvidenceView, Item
 from scope_ptz.geometry import Equirectangular, Perspective, direction
 
 INSET = 0.02
-"""A view is covered when its frame is, but for this share at each border: nothing counted lies there."""
+"""Share of a view at each border that need not be covered. Nothing that counts lies there."""
 
 MIN_CAP_PX = 14.0
-"""Capitals must be this high to be read; the definition of legible."""
+"""Minimum height of capitals in pixels. Smaller text is not legible."""
 
 _GRID = 9
 _EDGE = 1e-6
 Floats = NDArray[np.float64]
 
 
-def gap(view: EvidenceView, looks: Sequence[Look]) -> str | None:
-    """What of a view the looks leave uncovered, in words; None when they cover it all."""
-    here = [look for look in looks if look.known and counts_for(view, look)]
+def uncovered_part(view: EvidenceView, observations: Sequence[Observation]) -> str | None:
+    """Return what the observations leave uncovered, in words.
+
+    Args:
+        view: A view that the answer rests on.
+        observations: The observations of the run.
+
+    Returns:
+        None if they cover the view.
+    """
+    here = [observation for observation in observations if observation.known and counts_for(view, observation)]
     if not here:
         return f"nothing looked from {view.aim.viewpoint}{' at what was asked' if view.about else ''}"
     if view.whole:
         points = reference_directions(view)
         seen = np.zeros(len(points), dtype=bool)
-        for look in here:
-            if density_px_deg(look) >= view.min_density_px_deg * (1 - _EDGE):
-                seen |= inside(look, points)
+        for observation in here:
+            if density_px_deg(observation) >= view.min_density_px_deg * (1 - _EDGE):
+                seen |= inside(observation, points)
         if not seen.all():
             return f"{1 - seen.mean():.0%} of the view from {view.aim.viewpoint} was not looked at closely enough"
     for item in view.items:
-        if not any(shows(item, look) for look in here):
+        if not any(shows(item, observation) for observation in here):
             return f"{item.instance} was in no look large enough"
     return None
 
 
-def counts_for(view: EvidenceView, look: Look) -> bool:
-    """Whether a look is from the right place, at the right time, and about the right thing."""
-    if look.viewpoint != view.aim.viewpoint:
+def counts_for(view: EvidenceView, observation: Observation) -> bool:
+    """Return whether an observation has the viewpoint, the time and the subject of a view."""
+    if observation.viewpoint != view.aim.viewpoint:
         return False
-    if view.window_s is not None and not view.window_s[0] <= look.time_s <= view.window_s[1]:
+    if view.window_s is not None and not view.window_s[0] <= observation.time_s <= view.window_s[1]:
         return False
-    return not view.about or look.how == "planner" or names_any(look.asked, view.about)
+    return not view.about or observation.how == "planner" or names_any(observation.asked, view.about)
 
 
 def reference_directions(view: EvidenceView) -> Floats:
-    """Directions (n, 3) all over the reference frame, its border inset; all around in the band when the scope is full."""
+    """Return directions all over a view's reference frame, without its border.
+
+    If the scope is full, they cover the whole circle within the view's band of tilts.
+
+    Returns:
+        Unit vectors of shape ``(n, 3)``.
+    """
     steps = np.linspace(INSET, 1 - INSET, _GRID)
     if view.scope == "full" and view.band_deg is not None:
         bottom, top = view.band_deg
@@ -64,34 +81,34 @@ def reference_directions(view: EvidenceView) -> Floats:
     return frame.directions(np.stack([xs.ravel(), ys.ravel()], axis=-1))
 
 
-def inside(look: Look, directions: Floats) -> NDArray[np.bool_]:
-    """Which of some directions (n, 3) lie in the picture of a look."""
-    points = look.projection.points(directions)
+def inside(observation: Observation, directions: Floats) -> NDArray[np.bool_]:
+    """Return which directions, of shape ``(n, 3)``, lie in the picture of an observation."""
+    points = observation.projection.points(directions)
     with np.errstate(invalid="ignore"):
         return np.asarray(np.all((points >= -_EDGE) & (points <= 1 + _EDGE), axis=-1))
 
 
-def is_within(item: Item, look: Look) -> bool:
-    """Whether a piece of evidence is wholly in the picture of a look, of whatever size."""
-    return bool(inside(look, box_directions(item.box_deg)).all())
+def is_within(item: Item, observation: Observation) -> bool:
+    """Return whether a piece of evidence is completely in the picture, whatever its size."""
+    return bool(inside(observation, box_directions(item.box_deg)).all())
 
 
-def shows(item: Item, look: Look) -> bool:
-    """Whether a piece of evidence is wholly in the picture of a look and large enough there."""
-    if not is_within(item, look):
+def shows(item: Item, observation: Observation) -> bool:
+    """Return whether a piece of evidence is completely in the picture and large enough."""
+    if not is_within(item, observation):
         return False
     outline = box_directions(item.box_deg)
-    points = look.projection.points(outline) * (look.projection.width, look.projection.height)
+    points = observation.projection.points(outline) * (observation.projection.width, observation.projection.height)
     size = points.max(axis=0) - points.min(axis=0)
-    if isinstance(look.projection, Equirectangular) and size[0] > look.projection.width / 2:
-        size[0] = look.projection.width - size[0]
-    if item.cap_height_deg is not None and item.cap_height_deg * density_px_deg(look) < MIN_CAP_PX * (1 - _EDGE):
+    if isinstance(observation.projection, Equirectangular) and size[0] > observation.projection.width / 2:
+        size[0] = observation.projection.width - size[0]
+    if item.cap_height_deg is not None and item.cap_height_deg * density_px_deg(observation) < MIN_CAP_PX * (1 - _EDGE):
         return False
     return bool(size.max() >= item.min_px * (1 - _EDGE))
 
 
 def box_directions(box_deg: tuple[float, float, float, float], per_side: int = 5) -> Floats:
-    """Directions (4 * per_side, 3) along the border of a box of pans and tilts."""
+    """Return directions along the border of a box of pans and tilts, of shape ``(4 * per_side, 3)``."""
     left, bottom, right, top = box_deg
     width = right - left if right >= left else right - left + 360.0
     t = np.linspace(0.0, 1.0, per_side)
@@ -101,6 +118,6 @@ def box_directions(box_deg: tuple[float, float, float, float], per_side: int = 5
     return direction(pans, tilts)
 
 
-def density_px_deg(look: Look) -> float:
-    """Pixels per degree in the middle of a look's picture."""
-    return look.projection.density * math.pi / 180
+def density_px_deg(observation: Observation) -> float:
+    """Return the pixels per degree in the middle of the picture."""
+    return observation.projection.density * math.pi / 180

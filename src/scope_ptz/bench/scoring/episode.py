@@ -1,6 +1,6 @@
-"""A run as checks see it: calls with poses before and after, what perception looked at, and how it ended.
+"""A run as the checks see it: its calls with the camera's pose before and after, its observations, and how it ended.
 
-It is made from a recorded trace, or by hand in tests, and knows nothing of any scene's truth.
+An episode is built from a recorded trace, or by hand in tests. It knows nothing about the scene's ground truth.
 """
 
 from __future__ import annotations
@@ -22,18 +22,24 @@ _HOW: dict[str, How] = {"count_objects": "count", "query_answer": "query", "zoom
 
 
 @dataclass(frozen=True, slots=True)
-class Standing:
-    """Where the camera is: optical centre and pose."""
+class CameraPosition:
+    """The camera's viewpoint and pose."""
 
     viewpoint: str | None
     pose: Pose
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
-    """One successful look of perception (or of a planner that sees): from where, at what, when, and what it was asked.
+class Observation:
+    """One successful observation by perception, or by a planner that is shown frames.
 
-    ``known``: what was asked could be told; a look that brought no answer covers nothing.
+    Attributes:
+        viewpoint: Where the camera stood.
+        projection: What the picture shows.
+        time_s: Scene time.
+        how: The kind of perception call; "planner" for a frame that the planner was shown.
+        asked: The description or question of the call.
+        known: Whether perception could answer. An observation without an answer covers no evidence.
     """
 
     viewpoint: str | None
@@ -45,31 +51,33 @@ class Look:
 
     @property
     def swept(self) -> bool:
+        """Whether the observation is of a panorama."""
         return isinstance(self.projection, Equirectangular)
 
 
 @dataclass(frozen=True, slots=True)
-class Call:
-    """A tool call. ``fault`` says whose doing an ``error`` was, as in the trace; ``looks`` are those that succeeded."""
+class EpisodeCall:
+    """A tool call. ``fault`` says who caused ``error``, as in the trace; ``observations`` holds the successful ones."""
 
     name: str
     arguments: Mapping[str, Any]
-    before: Standing
-    after: Standing
+    before: CameraPosition
+    after: CameraPosition
     result: Mapping[str, Any] | None = None
     error: str | None = None
     fault: str | None = None
     time_s: float = 0.0
-    looks: tuple[Look, ...] = ()
+    observations: tuple[Observation, ...] = ()
 
     @property
     def succeeded(self) -> bool:
+        """Whether the call returned a result."""
         return self.error is None and self.result is not None
 
 
 @dataclass(frozen=True, slots=True)
-class Picture:
-    """A file that ``take_image`` reported. ``exists``: None where nothing was kept on purpose."""
+class SavedPicture:
+    """A picture that ``take_image`` reported. ``exists`` is None if the run was set to keep no pictures."""
 
     file: str
     exists: bool | None = None
@@ -77,42 +85,57 @@ class Picture:
 
 @dataclass(frozen=True, slots=True)
 class Episode:
-    """A run. ``outcome`` is None when it was cut off; ``failure`` is how a planner's server failed, if one did."""
+    """A run.
+
+    Attributes:
+        instruction: What the agent was asked to do.
+        start: Where the camera began.
+        calls: The tool calls in order.
+        final: Where the camera ended.
+        answer: The agent's final answer.
+        outcome: How the run ended; None if it was interrupted.
+        pictures: The pictures that the agent took.
+        planner_views: The frames that the planner itself was shown.
+        failure: How the planner's server failed, if it did.
+        aspect: Width of a frame divided by its height.
+        optics: The camera's lens.
+    """
 
     instruction: str
-    start: Standing
-    calls: tuple[Call, ...]
-    final: Standing
-    text: str
+    start: CameraPosition
+    calls: tuple[EpisodeCall, ...]
+    final: CameraPosition
+    answer: str
     outcome: str | None
-    pictures: tuple[Picture, ...] = ()
-    seen: tuple[Look, ...] = ()
+    pictures: tuple[SavedPicture, ...] = ()
+    planner_views: tuple[Observation, ...] = ()
     failure: str | None = None
     aspect: float = 16 / 9
     optics: Optics = field(default=AXIS_M5075_G)
 
     @property
-    def looks(self) -> tuple[Look, ...]:
-        """Every successful look, those of a seeing planner included."""
-        return (*self.seen, *(look for call in self.calls for look in call.looks))
+    def observations(self) -> tuple[Observation, ...]:
+        """Every successful observation, including the frames that the planner was shown."""
+        return (*self.planner_views, *(observation for call in self.calls for observation in call.observations))
 
 
 @dataclass(frozen=True, slots=True)
-class Places:
-    """Which optical centre each preset and home belong to, as the scene says it."""
+class PresetViewpoints:
+    """The viewpoint of each preset and of the home position, as the scene defines them."""
 
     presets: Mapping[str, str]
     home: str
 
     @classmethod
-    def of(cls, scene: SceneFile) -> Places:
+    def of(cls, scene: SceneFile) -> PresetViewpoints:
+        """Return the viewpoints of a scene's presets."""
         presets = {p.name: p.viewpoint for p in scene.presets}
         return cls(presets, presets[scene.home_preset])
 
 
 @dataclass(frozen=True, slots=True)
-class Eyes:
-    """What frames of a run look like: lens, limits and size in pixels."""
+class FrameGeometry:
+    """The geometry of a run's frames: size in pixels, lens and limits of the camera."""
 
     width: int
     height: int
@@ -120,10 +143,11 @@ class Eyes:
     limits: Limits = field(default_factory=Limits)
 
     def view(self, pose: Pose) -> Perspective:
+        """Return the projection of a frame at a pose."""
         return Perspective(pose.pan_deg, pose.tilt_deg, self.optics.hfov_deg(pose.zoom), self.width, self.height)
 
     def sweep(self) -> Equirectangular:
-        """The panorama of a sweep, at the density of the frames that it is made of."""
+        """Return the projection of a sweep's panorama, at the density of its frames."""
         blocks = plan_sweep(CameraInfo("", self.limits, self.optics, self.width, self.height, simulated=True))
         left, top = blocks[0].left_pan_deg, blocks[0].top_tilt_deg
         span, bottom = max(b.right_pan_deg for b in blocks) - left, min(b.bottom_tilt_deg for b in blocks)
@@ -131,36 +155,43 @@ class Eyes:
         return Equirectangular(left, span, top, bottom, round(span * density), round((top - bottom) * density))
 
 
-def episode_of(trace: Trace, places: Places, *, planner_sees: bool = False, keeps_files: bool = True) -> Episode:
-    """The run of a trace. ``planner_sees``: its planner was shown frames; ``keeps_files``: pictures are kept in the run folder."""
+def episode_of(trace: Trace, places: PresetViewpoints, *, planner_sees: bool = False, keeps_files: bool = True) -> Episode:
+    """Build an episode from a trace.
+
+    Args:
+        trace: The recorded run.
+        places: The viewpoints of the scene's presets.
+        planner_sees: Whether the planner was shown frames.
+        keeps_files: Whether pictures are kept in the run folder, so that missing files count as missing.
+    """
     started = trace.started
-    eyes = Eyes(started.frame_width, started.frame_height)
-    at = start = Standing(started.viewpoint, started.pose.pose())
+    geometry = FrameGeometry(started.frame_width, started.frame_height)
+    at = start = CameraPosition(started.viewpoint, started.pose.pose())
     home = started.labels.home_viewpoint or places.home
-    calls, seen, stands = list[Call](), list[Look](), {0: start}
+    calls, planner_views, states = list[EpisodeCall](), list[Observation](), {0: start}
     for called in trace.calls:
-        call = _call(called, at, places, home, eyes)
-        at = stands[called.step] = call.after
+        call = _call(called, at, places, home, geometry)
+        at = states[called.step] = call.after
         calls.append(call)
     if planner_sees:
-        seen = list(_views(trace.decisions, trace.calls, stands, eyes, started.scene_time_s))
+        planner_views = list(_planner_views(trace.decisions, trace.calls, states, geometry, started.scene_time_s))
     files = [str(c.result["file"]) for c in calls if c.name == "take_image" and c.succeeded and c.result and "file" in c.result]
     ended = trace.ended
     return Episode(
         instruction=started.instruction,
         start=start,
         calls=tuple(calls),
-        final=Standing(at.viewpoint, ended.pose.pose() if ended else at.pose),
-        text=ended.text if ended else "",
+        final=CameraPosition(at.viewpoint, ended.pose.pose() if ended else at.pose),
+        answer=ended.text if ended else "",
         outcome=ended.outcome if ended else None,
-        pictures=tuple(Picture(name, (trace.folder / name).is_file() if keeps_files else None) for name in files),
-        seen=tuple(seen),
+        pictures=tuple(SavedPicture(name, (trace.folder / name).is_file() if keeps_files else None) for name in files),
+        planner_views=tuple(planner_views),
         failure=ended.kind if ended else None,
         aspect=started.frame_width / started.frame_height,
     )
 
 
-def _call(called: Called, before: Standing, places: Places, home: str, eyes: Eyes) -> Call:
+def _call(called: Called, before: CameraPosition, places: PresetViewpoints, home: str, geometry: FrameGeometry) -> EpisodeCall:
     outcome = called.outcome
     done = outcome.error is None
     viewpoint = before.viewpoint
@@ -168,8 +199,8 @@ def _call(called: Called, before: Standing, places: Places, home: str, eyes: Eye
         viewpoint = places.presets.get(str(outcome.call.arguments.get("name")), viewpoint)
     elif done and outcome.call.name == "go_home":
         viewpoint = home
-    after = Standing(viewpoint, called.pose.pose())
-    call = Call(
+    after = CameraPosition(viewpoint, called.pose.pose())
+    call = EpisodeCall(
         name=outcome.call.name,
         arguments=outcome.call.arguments,
         before=before,
@@ -179,12 +210,17 @@ def _call(called: Called, before: Standing, places: Places, home: str, eyes: Eye
         fault=called.fault,
         time_s=called.scene_time_s,
     )
-    looks = looks_of(call, eyes) if call.succeeded else ()
-    return Call(**{name: getattr(call, name) for name in Call.__slots__ if name != "looks"}, looks=looks)
+    observations = observations_of(call, geometry) if call.succeeded else ()
+    return EpisodeCall(
+        **{name: getattr(call, name) for name in EpisodeCall.__slots__ if name != "observations"}, observations=observations
+    )
 
 
-def looks_of(call: Call, eyes: Eyes) -> tuple[Look, ...]:
-    """What perception looked at in a call that succeeded: of a zoom only the first look is sure, of a track all of its path."""
+def observations_of(call: EpisodeCall, geometry: FrameGeometry) -> tuple[Observation, ...]:
+    """Return the observations of a successful call.
+
+    Zooming yields the first observation only, because later ones are not recorded. Tracking yields one for each pose of its path.
+    """
     how, result = _HOW.get(call.name), call.result or {}
     if how is None:
         return ()
@@ -193,21 +229,26 @@ def looks_of(call: Call, eyes: Eyes) -> tuple[Look, ...]:
     if how == "track":
         path = result.get("path") or [{"time_s": 0.0, "pose": RecordedPose.of(call.before.pose).model_dump()}]
         return tuple(
-            Look(place, eyes.view(Pose(**point["pose"])), call.time_s + float(point["time_s"]), how, asked) for point in path
+            Observation(place, geometry.view(Pose(**point["pose"])), call.time_s + float(point["time_s"]), how, asked)
+            for point in path
         )
     swept = how in ("count", "query") and call.arguments.get("view", "current") == "full"
     known = how != "query" or result.get("known") is not False
-    return (Look(place, eyes.sweep() if swept else eyes.view(call.before.pose), call.time_s, how, asked, known),)
+    return (Observation(place, geometry.sweep() if swept else geometry.view(call.before.pose), call.time_s, how, asked, known),)
 
 
-def _views(
-    decisions: tuple[Decided, ...], calls: tuple[Called, ...], stands: Mapping[int, Standing], eyes: Eyes, start_s: float
-) -> Iterator[Look]:
-    """What a seeing planner was shown before each of its decisions."""
+def _planner_views(
+    decisions: tuple[Decided, ...],
+    calls: tuple[Called, ...],
+    states: Mapping[int, CameraPosition],
+    geometry: FrameGeometry,
+    start_s: float,
+) -> Iterator[Observation]:
+    """Yield the frame that the planner was shown before each of its decisions."""
     for decided in decisions:
         if decided.decision.opened is False:
             continue
-        step = max(s for s in stands if s < decided.step)
+        step = max(s for s in states if s < decided.step)
         times = [c.scene_time_s for c in calls if c.step <= step]
-        stand = stands[step]
-        yield Look(stand.viewpoint, eyes.view(stand.pose), max(times, default=start_s), "planner")
+        state = states[step]
+        yield Observation(state.viewpoint, geometry.view(state.pose), max(times, default=start_s), "planner")

@@ -1,7 +1,7 @@
-"""The paper's eight error modes: exactly one for a failed run, by rule, in a published order of precedence.
+"""The paper's eight error modes. A rule assigns exactly one to each failed run, in a published order of precedence.
 
-What the agent did comes before what perception told it, and that before what the agent made of it: whoever looked at the wrong
-thing was not misled, and whoever was misled did not reason wrongly. docs/benchmark.md states the rules in words.
+Errors of the agent's actions come first, then errors of perception, then errors of reasoning. An agent that observed the wrong
+thing was not misled by perception, and an agent that was misled did not reason wrongly. docs/benchmark.md states the rules.
 """
 
 from __future__ import annotations
@@ -10,14 +10,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
-from scope_ptz.bench.answers.words import plain_words
+from scope_ptz.bench.answers import plain_words
 from scope_ptz.bench.scoring.checks import check_framing
-from scope_ptz.bench.scoring.coverage import gap
-from scope_ptz.bench.scoring.episode import Call, Episode, Look
-from scope_ptz.bench.scoring.evidence import is_grounded
-from scope_ptz.bench.scoring.matching import fits, in_any_order, in_order
+from scope_ptz.bench.scoring.coverage import uncovered_part
+from scope_ptz.bench.scoring.episode import Episode, EpisodeCall, Observation
+from scope_ptz.bench.scoring.evidence import is_supported_by_tools
 from scope_ptz.bench.scoring.misperceptions import CountTruth, target_in, target_shown, wrong_counts, wrong_reads
-from scope_ptz.bench.scoring.verdict import Verdict, claims, judge
+from scope_ptz.bench.scoring.required_calls import call_matches, missing_in_any_order, missing_in_order
+from scope_ptz.bench.scoring.verdict import Verdict, claims, score_episode
 from scope_ptz.bench.tasks.task import ProgramCall, RequiredCall, Task
 from scope_ptz.geometry import Perspective
 
@@ -48,48 +48,58 @@ class _Case:
 
     @property
     def attempted(self) -> set[str]:
+        """Tools that the agent called, without calls that were skipped."""
         return {call.name for call in self.episode.calls if call.fault != "skipped"}
 
     @property
     def acted_wrongly(self) -> bool:
-        """Something other than the answer or the way in which the run ended is wrong."""
+        """Whether a check other than those of the answer and the outcome failed."""
         return any(check.passed is False and check.name not in ("answer", "outcome") for check in self.verdict.checks)
 
     @property
     def fixed(self) -> set[str]:
-        """Tools that the instruction fixes."""
+        """Tools that the instruction requires."""
         return {call.tool for call in self.task.behaviour.calls}
 
     @property
     def needed(self) -> set[str]:
-        """Tools that the instruction fixes or the reference uses; listing the presets is never needed unless asked for."""
+        """Tools that the instruction requires or the reference program uses. ``get_presets`` counts only if it is required."""
         return {call.tool for call in self.task.reference if call.tool != "get_presets"} | self.fixed
 
     def alike(self, name: str) -> frozenset[str]:
-        """Tools that do the work of a tool: either of the two that look; any that moves, as long as the camera got there."""
+        """Return the tools that can replace a tool.
+
+        The two tools that only observe replace each other. Tools that move replace each other if the camera reached its target.
+        """
         if name in _LOOKERS:
             return _LOOKERS
         astray = any(self.verdict.failed(check) for check in ("pose", "coverage", "framing"))
         return _MOVERS if name in _MOVERS and not astray else frozenset({name})
 
     def missing_tools(self) -> set[str]:
-        """Needed tools that were never tried, unless one that does their work was and the instruction fixes none."""
+        """Return needed tools that were never tried. A replacement counts unless the instruction requires the tool itself."""
         untried = self.needed - self.attempted
         return {name for name in untried if name in self.fixed or not self.alike(name) & self.attempted}
 
     def strangers(self) -> set[str]:
-        """Tools tried that are not needed and do not do the work of one that is."""
+        """Return tools that were tried but are neither needed nor a replacement for a needed tool."""
         idle = self.needed - self.attempted - self.fixed
         stand_ins = {other for name in idle for other in self.alike(name)}
         return self.attempted - self.needed - stand_ins - {"get_presets"}
 
 
 def error_mode(task: Task, episode: Episode, truth: CountTruth | None = None) -> ErrorMode | None:
-    """The mode of a failed run; None when it did not fail, could not be scored, or was broken by infrastructure.
+    """Return the error mode of a failed run.
 
-    ``truth`` tells how many of what was asked really show in the very picture of a look; without it the evidence is asked.
+    Args:
+        task: The task.
+        episode: The run.
+        truth: The true count of an observation. Without it the task's evidence decides whether a count is wrong.
+
+    Returns:
+        None if the run is correct, could not be scored, or was broken by infrastructure.
     """
-    verdict = judge(task, episode)
+    verdict = score_episode(task, episode)
     if verdict.headline != "incorrect":
         return None
     case = _Case(task, episode, verdict, truth)
@@ -97,109 +107,118 @@ def error_mode(task: Task, episode: Episode, truth: CountTruth | None = None) ->
 
 
 def _lacks_call(case: _Case) -> bool:
-    """A tool that is needed was never tried, and no tool that is not needed was tried in its place."""
+    """Return whether a needed tool was never tried and no other tool was tried in its place."""
     return (case.acted_wrongly or not case.episode.calls) and bool(case.missing_tools()) and not case.strangers()
 
 
 def _routed_wrongly(case: _Case) -> bool:
-    """Another tool was tried in place of a needed one; a forbidden one was used; too few or too many pictures; wrong order."""
+    """Return whether the wrong tools were used.
+
+    Another tool was tried in place of a needed one, a forbidden tool was used, or the number of pictures or the order is wrong.
+    """
     if case.acted_wrongly and case.missing_tools():
         return True
     forbidden = {call.name for call in case.episode.calls if call.succeeded} & set(case.task.behaviour.forbidden.tools)
     if forbidden or case.verdict.failed("pictures"):
         return True
     calls = case.task.behaviour.calls
-    is_order = case.task.behaviour.order == "ordered" and in_any_order(calls, case.episode.calls) is None
+    is_order = case.task.behaviour.order == "ordered" and missing_in_any_order(calls, case.episode.calls) is None
     return case.verdict.failed("calls") and is_order
 
 
 def _wrong_scope(case: _Case) -> bool:
-    """Looked, but only at the current view where all around was asked for, or the other way round."""
+    """Return whether the agent observed the current view where the whole scene was asked for, or the other way round."""
     calls = case.task.behaviour.calls
     if case.verdict.failed("calls") and _missing(case, calls, {"view"}) is None:
         return True
     if not case.verdict.failed("answer") and not case.verdict.failed("coverage"):
         return False
     for view in case.task.evidence:
-        looks = [look for look in case.episode.looks if look.viewpoint == view.aim.viewpoint and look.how in ("count", "query")]
-        wanted = view.scope == "full"
-        if view.must_look and looks and all(look.swept != wanted for look in looks):
-            return wanted or case.verdict.failed("answer")
+        observations = [
+            observation
+            for observation in case.episode.observations
+            if observation.viewpoint == view.aim.viewpoint and observation.how in ("count", "query")
+        ]
+        required = view.scope == "full"
+        if view.must_look and observations and all(observation.swept != required for observation in observations):
+            return required or case.verdict.failed("answer")
     return False
 
 
 def _missing(case: _Case, calls: tuple[RequiredCall, ...], leave_out: set[str]) -> str | None:
-    order = in_order if case.task.behaviour.order == "ordered" else in_any_order
+    order = missing_in_order if case.task.behaviour.order == "ordered" else missing_in_any_order
     return order(calls, case.episode.calls, leave_out)
 
 
 def _wrong_arguments(case: _Case) -> bool:
-    """The right tools were called with wrong arguments or at the wrong target: the camera did or saw the wrong thing."""
+    """Return whether the right tools were called with wrong arguments or at the wrong target."""
     return case.acted_wrongly and not (_was_blind(case) or _was_left_unanswered(case) or _was_misled(case))
 
 
 def _was_blind(case: _Case) -> bool:
-    """Every look failed: what is missing was not missed by wrong arguments."""
-    return not case.episode.looks and any(call.fault == "perception" for call in case.episode.calls)
+    """Return whether every observation failed, so that wrong arguments cannot be the cause."""
+    return not case.episode.observations and any(call.fault == "perception" for call in case.episode.calls)
 
 
 def _was_left_unanswered(case: _Case) -> bool:
-    """All that is wrong beside the answer is that perception, asked about the right thing in the right view, could not tell."""
+    """Return whether coverage failed only because perception could not answer a correct question about the right view."""
     wrong = {check.name for check in case.verdict.checks if check.passed is False} - {"answer", "outcome"}
-    looks = [replace(look, known=True) for look in case.episode.looks]
-    return wrong == {"coverage"} and all(gap(view, looks) is None for view in case.task.evidence if view.must_look)
+    observations = [replace(observation, known=True) for observation in case.episode.observations]
+    return wrong == {"coverage"} and all(
+        uncovered_part(view, observations) is None for view in case.task.evidence if view.must_look
+    )
 
 
 def _was_misled(case: _Case) -> bool:
-    """The camera went wrong because perception named the wrong thing or none, though it was asked for the right one."""
+    """Return whether the camera went wrong because perception located the wrong thing or none, although it was asked correctly."""
     required = case.task.behaviour.calls
     if not case.acted_wrongly or (case.verdict.failed("calls") and _missing(case, required, {"found"}) is not None):
         return False
-    wanted = case.needed & {"zoom_to_object", "track_object"}
+    locators = case.needed & {"zoom_to_object", "track_object"}
     for call in case.episode.calls:
-        if call.name not in wanted or not call.looks or not target_in(case.task, call.looks[0]):
+        if call.name not in locators or not call.observations or not target_in(case.task, call.observations[0]):
             continue
         fixed = [spec for spec in required if spec.tool == call.name]
-        asked_right = all(fits(spec, call, {"found"}) for spec in fixed) if fixed else _asks_as_reference(case.task, call)
+        asked_right = all(call_matches(spec, call, {"found"}) for spec in fixed) if fixed else _asks_as_reference(case.task, call)
         if asked_right and not _got_there(case, call):
             return True
     return False
 
 
-def _asks_as_reference(task: Task, call: Call) -> bool:
-    """Whether a call describes what the reference describes, in more or fewer words."""
+def _asks_as_reference(task: Task, call: EpisodeCall) -> bool:
+    """Return whether a call describes the same thing as the reference program, in more or fewer words."""
     asked = _content(call)
-    return any(asked <= wanted or wanted <= asked for wanted in (_content(c) for c in task.reference if c.tool == call.name))
+    return any(asked <= required or required <= asked for required in (_content(c) for c in task.reference if c.tool == call.name))
 
 
-def _content(call: Call | ProgramCall) -> set[str]:
+def _content(call: EpisodeCall | ProgramCall) -> set[str]:
     return set(plain_words(str(call.arguments.get("description", "")))) - {"a", "an", "the"}
 
 
-def _got_there(case: _Case, call: Call) -> bool:
-    """Whether a search found something and left the target framed, or in view where the task does not say how large."""
+def _got_there(case: _Case, call: EpisodeCall) -> bool:
+    """Return whether a search found something and left the target framed, or in view if the task requires no framing."""
     if (call.result or {}).get("found") is False:
         return False
     framing = check_framing(case.task, replace(case.episode, final=call.after))
     return framing.passed is True if framing is not None else target_shown(case.task, _view_after(case.episode, call))
 
 
-def _view_after(episode: Episode, call: Call) -> Look:
-    pose, seen = call.after.pose, call.looks[0].projection
+def _view_after(episode: Episode, call: EpisodeCall) -> Observation:
+    pose, seen = call.after.pose, call.observations[0].projection
     width = seen.width if isinstance(seen, Perspective) else 1280
     view = Perspective(pose.pan_deg, pose.tilt_deg, episode.optics.hfov_deg(pose.zoom), width, round(width / episode.aspect))
-    return replace(call.looks[0], viewpoint=call.after.viewpoint, projection=view)
+    return replace(call.observations[0], viewpoint=call.after.viewpoint, projection=view)
 
 
 def _made_up(case: _Case) -> bool:
-    """The answer claims what no tool said and what cannot be drawn from what tools said."""
+    """Return whether the answer claims something that does not follow from what the tools reported."""
     if case.episode.outcome != "answered":
         return False
     if _was_blind(case):
         return True
-    if _was_left_unanswered(case) and not any(look.known for look in case.episode.looks):
+    if _was_left_unanswered(case) and not any(observation.known for observation in case.episode.observations):
         return claims(case.task, case.episode)
-    return case.verdict.failed("answer") and not is_grounded(case.task, case.episode)
+    return case.verdict.failed("answer") and not is_supported_by_tools(case.task, case.episode)
 
 
 def _miscounted(case: _Case) -> bool:

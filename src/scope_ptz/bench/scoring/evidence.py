@@ -1,16 +1,20 @@
-"""What the tools of a run said, and whether the final answer rests on it."""
+"""Tool evidence: what the tools of a run reported, and whether the final answer is supported by it."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import combinations
 
-from scope_ptz.bench.answers.numbers import find_quantities
-from scope_ptz.bench.answers.reader import read
-from scope_ptz.bench.answers.result import Value
-from scope_ptz.bench.answers.strings import APART, folded
-from scope_ptz.bench.answers.text import script, wordings_of
-from scope_ptz.bench.answers.words import names_any
+from scope_ptz.bench.answers import (
+    TEXT_SEPARATOR,
+    ParsedValue,
+    all_wordings,
+    is_stated,
+    names_any,
+    normalized_text,
+    numbers_in,
+    parse_answer,
+)
 from scope_ptz.bench.scoring.episode import Episode
 from scope_ptz.bench.tasks.expected import (
     AnyExpected,
@@ -27,8 +31,8 @@ from scope_ptz.bench.tasks.task import Task
 _MOST_COUNTS = 8
 
 
-def said_by_tools(episode: Episode) -> str:
-    """Everything that tools said, as one text."""
+def text_from_tools(episode: Episode) -> str:
+    """Return everything that the tools reported, as one text."""
     parts = list[str]()
     for call in episode.calls:
         if call.succeeded and call.result is not None:
@@ -36,8 +40,8 @@ def said_by_tools(episode: Episode) -> str:
     return "\n".join(parts)
 
 
-def numbers_said(episode: Episode) -> set[float]:
-    """Numbers that tools gave, and the sums and differences that an answer may draw from counts."""
+def numbers_from_tools(episode: Episode) -> set[float]:
+    """Return the numbers that the tools reported, and the sums and differences of their counts."""
     counts, other = list[float](), set[float]()
     for call in episode.calls:
         result = call.result or {}
@@ -48,65 +52,70 @@ def numbers_said(episode: Episode) -> set[float]:
         if "matches" in result:
             other.add(float(result["matches"]))
         if "answer" in result:
-            answered = script(str(result["answer"]))
-            other |= {q.value for q in find_quantities(answered, ())}
-            other |= {0.0} if read(NoneThere(subject=("thing",)), str(result["answer"])) == Value(True) else set()
+            other |= numbers_in(str(result["answer"]))
+            other |= {0.0} if parse_answer(NoneThere(subject=("thing",)), str(result["answer"])) == ParsedValue(True) else set()
     sums = {sum(c) for n in range(1, min(len(counts), _MOST_COUNTS) + 1) for c in combinations(counts[:_MOST_COUNTS], n)}
     return other | sums | {abs(a - b) for a, b in combinations(counts, 2)} | {float(sum(c > 0 for c in counts))}
 
 
-def is_grounded(task: Task, episode: Episode) -> bool:
-    """Whether what the answer claims is in, or could be drawn from, what tools said. Denials and comparisons are conclusions."""
-    reading = read(task.expected, episode.text)
-    if not isinstance(reading, Value):
+def is_supported_by_tools(task: Task, episode: Episode) -> bool:
+    """Return whether the answer follows from what the tools reported.
+
+    Denials and comparisons are conclusions and need no report that states them.
+    """
+    reading = parse_answer(task.expected, episode.answer)
+    if not isinstance(reading, ParsedValue):
         return True
-    value, said = reading.value, said_by_tools(episode)
+    value, reported = reading.value, text_from_tools(episode)
     match task.expected:
         case Number():
-            return value in numbers_said(episode)
+            return value in numbers_from_tools(episode)
         case Text():
-            heard = folded(said, ocr=task.expected.ocr)
-            return all(folded(part, ocr=task.expected.ocr) in heard for part in str(value).split(APART))
+            reported_text = normalized_text(reported, ocr=task.expected.ocr)
+            return all(normalized_text(part, ocr=task.expected.ocr) in reported_text for part in str(value).split(TEXT_SEPARATOR))
         case Choice():
-            chosen = wordings_of(str(value), task.expected.options[str(value)]) if value != "same" else ()
+            chosen = all_wordings(str(value), task.expected.options[str(value)]) if value != "same" else ()
             several = any(len(view.items) > 1 for view in task.evidence)
-            return not chosen or (_heard_of(episode, chosen) if several else names_any(said, chosen))
+            return not chosen or (_is_mentioned(episode, chosen) if several else names_any(reported, chosen))
         case NameSet():
             named = value if isinstance(value, frozenset) else frozenset()
-            return all(_reported(episode, wordings_of(name, task.expected.options[name])) for name in named)
+            return all(_reported(episode, all_wordings(name, task.expected.options[name])) for name in named)
         case YesNo() | NoneThere():
             claims_presence = value == isinstance(task.expected, YesNo)
             return not claims_presence or _presences(task, episode)
         case Description():
-            return _contradictions_said(task.expected, value, said)
+            return _contradictions_reported(task.expected, value, reported)
         case _:
             return True
 
 
-def _heard_of(episode: Episode, wordings: Sequence[str]) -> bool:
-    """Whether tools told anything of a thing that may be compared: a count of it, whatever it was, or that it is there."""
+def _is_mentioned(episode: Episode, wordings: Sequence[str]) -> bool:
+    """Return whether the tools reported anything about a thing: a count of it, even zero, or its presence."""
     counted = (str(c.arguments.get("description", "")) for c in episode.calls if c.succeeded and "count" in (c.result or {}))
     return _reported(episode, wordings) or any(names_any(description, wordings) for description in counted)
 
 
 def _reported(episode: Episode, wordings: Sequence[str]) -> bool:
-    """Whether a tool said that a thing is there: counted some, found it, named it without denial, or said yes when asked for it."""
+    """Return whether a tool reported that a thing is present.
+
+    A tool reports presence by a count above zero, by finding the thing, by naming it without denial, or by answering yes.
+    """
     for call in episode.calls:
         result = call.result or {}
         if not call.succeeded:
             continue
         asked = " ".join(str(call.arguments.get(key, "")) for key in ("description", "question"))
         answer, chosen = str(result.get("answer", "")), str(result.get("chosen", ""))
-        if any(not mention.denied for mention in script(answer).mentions({"thing": wordings})) or names_any(chosen, wordings):
+        if is_stated(answer, wordings) or names_any(chosen, wordings):
             return True
-        yes = bool(result.get("count") or result.get("found")) or read(YesNo(value=True), answer) == Value(True)
+        yes = bool(result.get("count") or result.get("found")) or parse_answer(YesNo(value=True), answer) == ParsedValue(True)
         if yes and names_any(asked, wordings):
             return True
     return False
 
 
 def _presences(task: Task, episode: Episode) -> bool:
-    """Whether any tool reported something: an answer may call that a yes."""
+    """Return whether any tool reported something that an answer may call a yes."""
     for call in episode.calls:
         result = call.result or {}
         if call.succeeded and (result.get("count", 0) or result.get("found") or _answers_yes(task.expected, result.get("answer"))):
@@ -117,9 +126,9 @@ def _presences(task: Task, episode: Episode) -> bool:
 def _answers_yes(expected: AnyExpected, answer: object) -> bool:
     if not isinstance(answer, str):
         return False
-    return read(expected, answer) == Value(isinstance(expected, YesNo))
+    return parse_answer(expected, answer) == ParsedValue(isinstance(expected, YesNo))
 
 
-def _contradictions_said(expected: Description, value: object, said: str) -> bool:
+def _contradictions_reported(expected: Description, value: object, reported: str) -> bool:
     stated = value[1] if isinstance(value, tuple) else frozenset()
-    return all(names_any(said, expected.contradictions[n].any_of) for n in stated if isinstance(n, int))
+    return all(names_any(reported, expected.contradictions[n].any_of) for n in stated if isinstance(n, int))

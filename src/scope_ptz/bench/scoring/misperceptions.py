@@ -1,40 +1,43 @@
-"""What perception got wrong in a run: counts that differ from the truth, answers about the evidence, targets not found."""
+"""Errors of perception in a run: wrong counts, wrong answers about the evidence, and targets that were not found."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
 
-from scope_ptz.bench.answers.reader import agrees, read
-from scope_ptz.bench.answers.result import Value
-from scope_ptz.bench.answers.text import wordings_of
-from scope_ptz.bench.answers.words import names_any
+from scope_ptz.bench.answers import ParsedValue, agrees, all_wordings, names_any, parse_answer
 from scope_ptz.bench.scoring.coverage import counts_for, inside, is_within, reference_directions, shows
-from scope_ptz.bench.scoring.episode import Call, Episode, Look
+from scope_ptz.bench.scoring.episode import Episode, EpisodeCall, Observation
 from scope_ptz.bench.tasks.expected import AnyExpected, Choice, NameSet, NoneThere, Number, Ordering, YesNo
 from scope_ptz.bench.tasks.task import EvidenceView, Item, Task
 
-CountTruth = Callable[[Look], int | None]
-"""How many of what was asked really show in the very picture of a look; None when the truth cannot say."""
+CountTruth = Callable[[Observation], int | None]
+"""Return the true count of what an observation asked for, in its own picture; None if the ground truth cannot tell."""
 
 
 def wrong_counts(task: Task, episode: Episode, truth: CountTruth | None) -> bool:
-    """Whether a count differs from the truth of the very view that was counted: by the truth itself, else by the evidence."""
-    for call, look in _looks(episode):
+    """Return whether a count differs from the true count of the view that was counted.
+
+    Args:
+        task: The task.
+        episode: The run.
+        truth: The true count of an observation. Without it, or if it cannot tell, the task's evidence decides.
+    """
+    for call, observation in _observations(episode):
         counted = (call.result or {}).get("count")
-        if look.how != "count" or not isinstance(counted, int):
+        if observation.how != "count" or not isinstance(counted, int):
             continue
-        really = truth(look) if truth is not None else None
+        really = truth(observation) if truth is not None else None
         if really is not None:
             if really != counted:
                 return True
             continue
-        if any(_miscounts(view.shows, counted) for view in shown_by(task, look)):
+        if any(_miscounts(view.shows, counted) for view in shown_by(task, observation)):
             return True
     return any(
         isinstance(view.shows, Number) and _misreads(view.shows, call)
-        for call, look in _looks(episode)
-        for view in shown_by(task, look)
+        for call, observation in _observations(episode)
+        for view in shown_by(task, observation)
     )
 
 
@@ -51,60 +54,65 @@ def _miscounts(right: AnyExpected | None, counted: int) -> bool:
 
 
 def wrong_reads(task: Task, episode: Episode) -> bool:
-    """Whether perception answered a question about the evidence wrongly, could not tell, or did not find what is there."""
-    for call, look in _looks(episode):
+    """Return whether perception answered a question about the evidence wrongly, declined, or did not find a present target."""
+    for call, observation in _observations(episode):
         result = call.result or {}
-        if look.how in ("locate", "track") and result.get("found") is False and target_in(task, look):
+        if observation.how in ("locate", "track") and result.get("found") is False and target_in(task, observation):
             return True
-        if look.how == "query" and any(_answers_wrongly(view, look, call) for view in shown_by(task, look)):
+        if observation.how == "query" and any(_answers_wrongly(view, observation, call) for view in shown_by(task, observation)):
             return True
     return False
 
 
-def _answers_wrongly(view: EvidenceView, look: Look, call: Call) -> bool:
-    """Whether a reply is wrong about a view; of a question about one of several things, what it says of that thing counts."""
-    one = _asked_of(view, look.asked)
+def _answers_wrongly(view: EvidenceView, observation: Observation, call: EpisodeCall) -> bool:
+    """Return whether a reply is wrong about a view. If the question names one of several things, only that thing counts."""
+    one = _asked_of(view, observation.asked)
     if one is None:
         return _misreads(view.shows, call)
     options, reply = view.shows.options, str((call.result or {}).get("answer", ""))  # type: ignore[union-attr]
-    wordings = wordings_of(one, options[one])
+    wordings = all_wordings(one, options[one])
     there = one in view.shows.value if isinstance(view.shows, NameSet) else True
-    if (call.result or {}).get("known") is False or read(NoneThere(subject=wordings), reply) == Value(there):
+    if (call.result or {}).get("known") is False or parse_answer(NoneThere(subject=wordings), reply) == ParsedValue(there):
         return True
-    if not there and read(YesNo(value=True, affirms=wordings), reply) == Value(True):
+    if not there and parse_answer(YesNo(value=True, affirms=wordings), reply) == ParsedValue(True):
         return True
-    told_elsewise = isinstance(view.shows, Ordering) or not names_any(reply, wordings)
-    return told_elsewise and not isinstance(view.shows, NameSet) and _misreads(view.shows, call)
+    does_not_name_it = isinstance(view.shows, Ordering) or not names_any(reply, wordings)
+    return does_not_name_it and not isinstance(view.shows, NameSet) and _misreads(view.shows, call)
 
 
 def _asked_of(view: EvidenceView, asked: str) -> str | None:
-    """The only one of several compared or listed things that a question names; None when it names none or more."""
+    """Return the only one of several compared or listed things that a question names; None if it names none or more."""
     if not isinstance(view.shows, Choice | Ordering | NameSet) or (not isinstance(view.shows, NameSet) and len(view.items) < 2):
         return None
-    named = [name for name, further in view.shows.options.items() if names_any(asked, wordings_of(name, further))]
+    named = [name for name, further in view.shows.options.items() if names_any(asked, all_wordings(name, further))]
     return named[0] if len(named) == 1 else None
 
 
-def _misreads(right: AnyExpected | None, call: Call) -> bool:
+def _misreads(right: AnyExpected | None, call: EpisodeCall) -> bool:
     answer = (call.result or {}).get("answer")
     if right is None or not isinstance(answer, str):
         return False
-    return (call.result or {}).get("known") is False or agrees(right, read(right, answer)) is False
+    return (call.result or {}).get("known") is False or agrees(right, parse_answer(right, answer)) is False
 
 
-def shown_by(task: Task, look: Look) -> Iterator[EvidenceView]:
-    """The evidence that a look is of: same place, same scope, asked about it, and the frame holds the items or the whole view."""
+def shown_by(task: Task, observation: Observation) -> Iterator[EvidenceView]:
+    """Yield the evidence views that an observation shows.
+
+    The viewpoint, the scope and the subject must match, and the picture must hold the items or the whole view.
+    """
     for view in task.evidence:
-        if (view.scope == "full") == look.swept and counts_for(view, look):
-            if not all(is_within(item, look) for item in view.items):
+        if (view.scope == "full") == observation.swept and counts_for(view, observation):
+            if not all(is_within(item, observation) for item in view.items):
                 continue
-            if not view.whole or (inside(look, reference_directions(view)).mean() > 0.9 and look_is_as_wide(view, look)):
+            if not view.whole or (
+                inside(observation, reference_directions(view)).mean() > 0.9 and look_is_as_wide(view, observation)
+            ):
                 yield view
 
 
-def look_is_as_wide(view: EvidenceView, look: Look) -> bool:
-    """Whether a frame holds little more than the reference view: a count of more is not the count of that view."""
-    return look.swept or look.projection.reach_deg <= 1.1 * _reach_deg(view)
+def look_is_as_wide(view: EvidenceView, observation: Observation) -> bool:
+    """Return whether a picture shows little more than the reference view. A wider picture may hold more to count."""
+    return observation.swept or observation.projection.reach_deg <= 1.1 * _reach_deg(view)
 
 
 def _reach_deg(view: EvidenceView) -> float:
@@ -112,23 +120,25 @@ def _reach_deg(view: EvidenceView) -> float:
     return math.degrees(math.atan(half * math.hypot(1.0, 1 / view.aspect)))
 
 
-def target_in(task: Task, look: Look) -> bool:
-    """Whether something that the task is about is in the picture of a look, however small: that is what a search is for. Taken for
-    granted where the evidence names nothing."""
-    return _has_target(task, look, is_within)
+def target_in(task: Task, observation: Observation) -> bool:
+    """Return whether something that the task is about is in the picture, however small, so that a search can find it.
+
+    If the evidence names no items, the answer is yes.
+    """
+    return _has_target(task, observation, is_within)
 
 
-def target_shown(task: Task, look: Look) -> bool:
-    """Whether it is in the picture and large enough to be told or read."""
-    return _has_target(task, look, shows)
+def target_shown(task: Task, observation: Observation) -> bool:
+    """Return whether something that the task is about is in the picture and large enough to recognise or read."""
+    return _has_target(task, observation, shows)
 
 
-def _has_target(task: Task, look: Look, has: Callable[[Item, Look], bool]) -> bool:
-    items = [item for view in task.evidence for item in view.items if view.aim.viewpoint == look.viewpoint]
-    return any(has(item, look) for item in items) if items else not any(view.items for view in task.evidence)
+def _has_target(task: Task, observation: Observation, has: Callable[[Item, Observation], bool]) -> bool:
+    items = [item for view in task.evidence for item in view.items if view.aim.viewpoint == observation.viewpoint]
+    return any(has(item, observation) for item in items) if items else not any(view.items for view in task.evidence)
 
 
-def _looks(episode: Episode) -> Iterator[tuple[Call, Look]]:
+def _observations(episode: Episode) -> Iterator[tuple[EpisodeCall, Observation]]:
     for call in episode.calls:
-        for look in call.looks[:1]:
-            yield call, look
+        for observation in call.observations[:1]:
+            yield call, observation

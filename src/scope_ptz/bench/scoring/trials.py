@@ -1,6 +1,7 @@
-"""Judged runs as plain data: what an evaluation leaves behind, and all that reports, agreement and gates are made from.
+"""Evaluations as plain data: the trials of a log with their verdicts, and the conditions of the evaluation.
 
-Nothing here knows the evaluation engine; logs are turned into these records in one place.
+Reports, agreement and gates are computed from these records. ``bench.engine.logs`` converts logs of the evaluation engine to them.
+The docstrings of ``ModelCard`` and ``RunCard`` are part of the published schema of submissions.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from scope_ptz.agent.timing import Timings
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.verdict import Headline
-from scope_ptz.bench.tasks.facts import TaskFacts
+from scope_ptz.bench.tasks.task_facts import TaskFacts
 
 Count = Annotated[int, Field(ge=0)]
 Seconds = Annotated[float, Field(ge=0, allow_inf_nan=False)]
@@ -22,8 +23,8 @@ class _Record(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
 
-class Check(_Record):
-    """One executable check: passed, failed, or (None) it cannot be told."""
+class CheckRecord(_Record):
+    """The result of one executable check in a trial. ``passed`` is None if the check could not decide."""
 
     name: str
     passed: bool | None
@@ -31,9 +32,19 @@ class Check(_Record):
 
 
 class Judgement(_Record):
-    """What a judge said about a run. ``verdict`` "unparseable": it never gave a valid verdict, "failed": its server never answered.
+    """A judge's verdict on a run.
 
-    ``error_mode`` and ``reason`` are the judge's own; ``prompt``: version of the prompt; ``repeat``: 0 for its first judgement.
+    Attributes:
+        judge: Name of the judge's model.
+        prompt: Version of the prompt.
+        repeat: 0 for the judge's first judgement of the run.
+        verdict: "unparseable" if the judge never gave a valid verdict, "failed" if its server never answered.
+        error_mode: The error mode that the judge names.
+        reason: The judge's reason.
+        attempts: Requests that were made.
+        input_tokens: Tokens of all requests.
+        output_tokens: Tokens of all replies.
+        latency_s: Wall seconds of the whole judgement.
     """
 
     judge: str
@@ -49,7 +60,7 @@ class Judgement(_Record):
 
 
 class Label(_Record):
-    """A person's own judgement of a run."""
+    """A human label: one person's verdict on a run."""
 
     by: str
     verdict: Literal["correct", "incorrect", "unclear"]
@@ -57,10 +68,15 @@ class Label(_Record):
     note: str = ""
 
 
-class LookTime(_Record):
-    """Where the wall seconds of one look went. ``eyes_s``: what perception took; ``capture_s``: camera moves and frames,
-    simulated ones included; ``call_s``: the whole call, with the tool's own work. Looks made at the same time share a frame, and
-    with it its capture."""
+class ObservationTime(_Record):
+    """Wall seconds of one perception call. Concurrent calls share a frame and its capture.
+
+    Attributes:
+        view: The view that was observed.
+        eyes_s: Seconds of perception.
+        capture_s: Seconds of camera moves and frames, rendering included.
+        call_s: Seconds of the whole tool call.
+    """
 
     view: Literal["current", "full"]
     eyes_s: Seconds
@@ -69,11 +85,32 @@ class LookTime(_Record):
 
 
 class Trial(_Record):
-    """One run of one task, judged. ``epoch``: 1 for its first run; ``sample``: where the log keeps it, with trace and pictures.
+    """One run of one task with its verdict.
 
-    ``scored_by`` says whose verdict ``headline`` is: the checks', or the judge's where a task has no check of its answer.
-    ``error_mode`` is None unless the headline is "incorrect". ``tool_calls``: calls made, by tool, failed ones included.
-    ``looks``: the calls that looked.
+    Attributes:
+        task: The facts about the task.
+        epoch: 1 for the first run of the task.
+        sample: Name of the run in the log, which holds its trace and pictures.
+        headline: The verdict.
+        scored_by: Whose verdict the headline is: the checks', or a judge's if the task has no check of its answer.
+        reason: Why the headline is what it is.
+        error_mode: Why the run failed; None unless the headline is "incorrect".
+        checks: The results of the checks.
+        collateral: Whether the camera ended elsewhere without being asked to.
+        outcome: How the run ended; None if it was interrupted.
+        answer: The agent's final answer.
+        steps: Decisions of the planner.
+        tool_calls: Number of calls by tool, failed ones included.
+        bad_calls: Calls with wrong arguments or of unknown tools.
+        perception_failures: Calls that failed because perception failed.
+        server_events: Failures of model servers by kind.
+        input_tokens: Tokens of the planner's requests.
+        output_tokens: Tokens of the planner's replies.
+        cost_usd: Cost of the planner's tokens; None if unknown.
+        timings: Wall seconds by stage.
+        looks: Wall seconds of each perception call.
+        judgements: The verdicts of judges.
+        labels: The human labels.
     """
 
     task: TaskFacts
@@ -83,7 +120,7 @@ class Trial(_Record):
     scored_by: Literal["checks", "judge"] = "checks"
     reason: str
     error_mode: ErrorMode | None = None
-    checks: tuple[Check, ...] = ()
+    checks: tuple[CheckRecord, ...] = ()
     collateral: bool = False
     outcome: str | None
     answer: str
@@ -96,7 +133,7 @@ class Trial(_Record):
     output_tokens: Count = 0
     cost_usd: Annotated[float, Field(ge=0, allow_inf_nan=False)] | None = None
     timings: Timings = Timings()
-    looks: tuple[LookTime, ...] = ()
+    looks: tuple[ObservationTime, ...] = ()
     judgements: tuple[Judgement, ...] = ()
     labels: tuple[Label, ...] = ()
 
@@ -109,7 +146,7 @@ class ModelCard(_Record):
     provider: str = ""
     reported: dict[str, str] = {}
     deterministic: bool = False
-    """Not a model at all: the grammar planner, or ground truth for eyes. Kept off model rankings."""
+    """Whether it is not a model: the grammar planner or ground-truth perception. Such pairs are not ranked."""
 
 
 class RunCard(_Record):
@@ -141,17 +178,24 @@ class RunCard(_Record):
 
     @property
     def pair(self) -> str:
-        """How tables call the pair."""
+        """Name of the pair in tables."""
         return f"{self.planner.name} + {self.perception.name}"
 
     @property
     def ranked(self) -> bool:
-        """Whether the pair belongs in rankings of models."""
+        """Whether the pair takes part in rankings of models."""
         return not (self.planner.deterministic or self.perception.deterministic)
 
 
 class Evaluation(_Record):
-    """A log as data. ``wanted``: how many runs it should hold (tasks times epochs); fewer trials mean that it is unfinished."""
+    """An evaluation log as data.
+
+    Attributes:
+        card: The conditions of the evaluation.
+        trials: The finished runs.
+        wanted: Number of trials of a finished evaluation: tasks times epochs.
+        log: Path of the log.
+    """
 
     card: RunCard
     trials: tuple[Trial, ...]
@@ -160,4 +204,5 @@ class Evaluation(_Record):
 
     @property
     def finished(self) -> bool:
+        """Whether no trial is missing."""
         return len(self.trials) >= self.wanted

@@ -1,15 +1,14 @@
-"""All checks of a run together: one headline, fail closed, with what could not be scored and what was not the agent's doing told
-apart."""
+"""The verdict on a run: one headline from all of its checks.
+
+A run is correct only if every check passes. Runs that cannot be scored and runs that infrastructure broke have their own headlines.
+"""
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
-from scope_ptz.bench.answers.reader import read
-from scope_ptz.bench.answers.result import Value
+from scope_ptz.bench.answers import ParsedValue, parse_answer
 from scope_ptz.bench.scoring.checks import CheckResult, changes, run_checks
 from scope_ptz.bench.scoring.episode import Episode
 from scope_ptz.bench.tasks.expected import ActionOnly
@@ -20,12 +19,20 @@ from scope_ptz.tools.registry import TOOLS
 Headline = Literal["correct", "incorrect", "unscored", "infrastructure"]
 MOVERS = TOOLS.moving
 AGENTS_OWN_FAILURES = frozenset({"empty", "context-overflow"})
-"""Ways in which a planner's server fails that are the model's doing: it said nothing, or filled its context."""
+"""Failures of a planner's server that the model itself causes: an empty reply, or a full context."""
 
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """``collateral``: the camera ended elsewhere without being asked; a side metric that decides nothing."""
+    """The verdict on a run.
+
+    Attributes:
+        task: The task's id.
+        headline: The verdict itself.
+        checks: The results of the checks.
+        collateral: Whether the camera ended elsewhere without being asked to. It does not affect the headline.
+        reason: Why the headline is what it is.
+    """
 
     task: str
     headline: Headline
@@ -34,43 +41,23 @@ class Verdict:
     reason: str
 
     def failed(self, name: str) -> bool:
+        """Return whether a check failed."""
         return any(check.name == name and check.passed is False for check in self.checks)
 
 
-@dataclass(frozen=True, slots=True)
-class Tally:
-    """Verdicts counted. ``share`` is the headline: correct among the runs that infrastructure did not break, unscored ones counted
-    as not correct. ``low`` and ``high`` bound it: all that is unscored or broken wrong, or all of it right."""
+def score_episode(task: Task, episode: Episode) -> Verdict:
+    """Score a run by the checks of its task.
 
-    counts: dict[Headline, int]
+    Args:
+        task: The task.
+        episode: The run.
 
-    @property
-    def total(self) -> int:
-        return sum(self.counts.values())
+    Returns:
+        The verdict.
 
-    @property
-    def share(self) -> float | None:
-        ran = self.total - self.counts["infrastructure"]
-        return self.counts["correct"] / ran if ran else None
-
-    @property
-    def low(self) -> float | None:
-        return self.counts["correct"] / self.total if self.total else None
-
-    @property
-    def high(self) -> float | None:
-        return 1 - self.counts["incorrect"] / self.total if self.total else None
-
-
-def tally(verdicts: Iterable[Verdict]) -> Tally:
-    """Count verdicts by headline."""
-    counted = Counter(verdict.headline for verdict in verdicts)
-    every: tuple[Headline, ...] = ("correct", "incorrect", "unscored", "infrastructure")
-    return Tally({name: counted[name] for name in every})
-
-
-def judge(task: Task, episode: Episode) -> Verdict:
-    """The verdict on a run. Raises ``ScopeError`` when the task has nothing that could be checked."""
+    Raises:
+        ScopeError: The task has no check.
+    """
     checks = run_checks(task, episode)
     if all(check.name == "outcome" for check in checks) and task.behaviour.outcomes == ("answered",):
         raise ScopeError(f"Task {task.id} has no check.")
@@ -89,28 +76,32 @@ def _headline(task: Task, episode: Episode, checks: tuple[CheckResult, ...]) -> 
 
 
 def infrastructure(task: Task, episode: Episode) -> str | None:
-    """Why a run says nothing about the agent (it was cut off, the camera or a model server failed); None when it does."""
+    """Return why a run says nothing about the agent: it was interrupted, or the camera or a model server failed.
+
+    Returns:
+        None if the run can be scored.
+    """
     if episode.outcome is None:
         return "the run was cut off"
     if episode.outcome in ("camera_error", "cancelled"):
         return f"the run ended {episode.outcome}"
     if episode.outcome == "planner_error" and episode.failure is not None and episode.failure not in AGENTS_OWN_FAILURES:
         return f"the planner's server failed: {episode.failure}"
-    blind = any(call.fault == "perception" for call in episode.calls) and not episode.looks
+    blind = any(call.fault == "perception" for call in episode.calls) and not episode.observations
     if blind and any(view.must_look for view in task.evidence) and not claims(task, episode):
         return "perception failed and the agent said no more than it knew"
     return None
 
 
 def claims(task: Task, episode: Episode) -> bool:
-    """Whether the final text claims a value."""
+    """Return whether the final answer states a value."""
     if isinstance(task.expected, ActionOnly) or episode.outcome != "answered":
         return False
-    return isinstance(read(task.expected, episode.text), Value)
+    return isinstance(parse_answer(task.expected, episode.answer), ParsedValue)
 
 
 def collateral(task: Task, episode: Episode) -> bool:
-    """Whether the camera ended elsewhere than it began although neither the instruction nor the way to the answer wanted that."""
+    """Return whether the camera ended elsewhere although neither the instruction nor the way to the answer requires a move."""
     behaviour = task.behaviour
     asked = behaviour.final or behaviour.framing or any(call.tool in MOVERS for call in behaviour.calls)
     return not asked and set(task.needs) <= {"sweep"} and bool(changes(episode.start, episode.final))

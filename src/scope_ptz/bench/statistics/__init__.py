@@ -1,1 +1,1 @@
-"""Statistics of evaluations: small pure functions, each with the source of its formula. Nothing here knows what a run is."""
+"""Statistics for evaluations: small pure functions with the sources of their formulas. They know nothing about runs."""

@@ -1,10 +1,11 @@
-"""Means over strata with intervals that know that tasks of one viewpoint are alike.
+"""Means over strata with cluster-robust intervals, because tasks at one viewpoint are alike.
 
-An estimate is a weighted sum of stratum means, theta = sum_k w_k mean_k: with w_k = 1/K the macro average, with a single stratum
-the micro average, with weights +1 and -1 a contrast. Its variance is that of the linearised estimate, summed by cluster (Liang and
-Zeger 1986), times G/(G-1); quantiles are Student's with G-1 degrees of freedom (Cameron and Miller 2015, sections II.A and VI.D).
+An estimate is a weighted sum of stratum means, theta = sum_k w_k mean_k. With w_k = 1/K it is the macro average, with a single
+stratum the micro average, with weights +1 and -1 a contrast. Its variance is that of the linearised estimate, summed by cluster
+(Liang and Zeger 1986), times G/(G-1). Quantiles are Student's with G-1 degrees of freedom (Cameron and Miller 2015, sections II.A
+and VI.D).
 
-Repeats of a task are one observation of it, a ``unit``: however often a task is repeated, there are no more tasks.
+Repeats of a task are one observation, called a ``unit``, because repeating a task does not add tasks.
 """
 
 from __future__ import annotations
@@ -25,10 +26,14 @@ Numbers = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Scores:
-    """Outcomes with what they are grouped by, all of length n: ``values`` (n,) float, ``strata`` and ``clusters`` any labels.
+    """Outcomes with their groups, all of length n.
 
-    ``units``: what an outcome is one of several repeats of, each within one stratum and one cluster; None: every outcome is a unit
-    of its own.
+    Attributes:
+        values: The outcomes, of shape ``(n,)``.
+        strata: The stratum of each outcome.
+        clusters: The cluster of each outcome.
+        units: The unit of each outcome, if outcomes are repeats; None if every outcome is its own unit. A unit belongs to one
+            stratum and one cluster.
     """
 
     values: Numbers
@@ -47,11 +52,18 @@ class Scores:
 
 
 @dataclass(frozen=True, slots=True)
-class Estimate:
-    """``low`` and ``high``: the 95% interval, None where it is not known. ``se``: standard error; ``n``: units (tasks).
+class IntervalEstimate:
+    """An estimate with its 95% interval.
 
-    ``without``: strata of which all outcomes are of one cluster. They are in the value, but nothing is known of how they vary
-    between clusters, so that the interval is too narrow by what they would add. Where all strata are such, there is no interval.
+    Attributes:
+        value: The estimate.
+        low: Lower limit; None if unknown.
+        high: Upper limit; None if unknown.
+        se: Standard error; None if unknown.
+        n: Number of units (tasks).
+        clusters: Number of clusters.
+        without: Strata with only one cluster. They are part of the value, but their variation between clusters is unknown, so the
+            interval is too narrow. If all strata have only one cluster, there is no interval.
     """
 
     value: float
@@ -64,31 +76,35 @@ class Estimate:
 
 
 def macro_weights(scores: Scores) -> dict[Hashable, float]:
-    """Every stratum that occurs counts the same."""
+    """Return equal weights for all strata that occur."""
     present = set(scores.strata)
     return {stratum: 1.0 / len(present) for stratum in present}
 
 
 def pooled(scores: Scores) -> Scores:
-    """The same outcomes in one stratum."""
+    """Return the same outcomes in a single stratum."""
     return Scores(scores.values, ("all",) * len(scores.values), scores.clusters, scores.units)
 
 
 def weighted_mean(scores: Scores, weights: Mapping[Any, float]) -> float:
-    """Sum of weight times stratum mean. Raises ``ValueError`` when a stratum of ``weights`` has no outcome."""
+    """Return the weighted sum of the stratum means.
+
+    Raises:
+        ValueError: A stratum of ``weights`` has no outcome.
+    """
     found: dict[Hashable, list[float]] = {}
     for stratum, value in zip(scores.strata, scores.values.tolist(), strict=True):
         found.setdefault(stratum, []).append(value)
     _hold_all(found, weights)
-    # Summed exactly: runs with the same outcomes have the same mean, in whatever order and however often they were repeated.
+    # Exact summation, so that runs with the same outcomes have the same mean in any order.
     return fsum(weight * (fsum(found[stratum]) / len(found[stratum])) for stratum, weight in weights.items())
 
 
 def cluster_variance(scores: Scores, weights: Mapping[Any, float]) -> float | None:
-    """Variance of ``weighted_mean`` over clusters: G/(G-1) sum_g u_g^2, where u_g is the sum over the cluster's outcomes of
-    w_k/n_k (x - mean_k). None with fewer than two clusters.
+    """Return the variance of ``weighted_mean`` over clusters; None with fewer than two clusters.
 
-    With one stratum it is the CR1 variance of a regression on a constant.
+    It is G/(G-1) sum_g u_g^2, where u_g is the sum of w_k/n_k (x - mean_k) over the outcomes of a cluster. With one stratum it is
+    the CR1 variance of a regression on a constant.
     """
     labels, index = _factorise(scores.clusters)
     if len(labels) < 2:
@@ -99,15 +115,15 @@ def cluster_variance(scores: Scores, weights: Mapping[Any, float]) -> float | No
 
 
 def independent_variance(scores: Scores, weights: Mapping[Any, float]) -> float | None:
-    """``cluster_variance`` with every unit a cluster of its own: as if all were independent. None for fewer than two.
+    """Return the variance as if all units were independent; None with fewer than two units.
 
-    Repeats are no independent outcomes: of a model that always does the same they tell nothing new.
+    Repeats of a task are not independent: a deterministic model always repeats itself.
     """
     return cluster_variance(Scores(scores.values, scores.strata, scores.observed), weights)
 
 
 def strata_without_spread(scores: Scores, weights: Mapping[Any, float]) -> tuple[Hashable, ...]:
-    """Strata of the estimate whose outcomes are all of one cluster: their residuals sum to 0 there, whatever they are."""
+    """Return the strata with only one cluster. Their residuals always sum to 0, so they add no variance."""
     seen: dict[Hashable, set[Hashable]] = {}
     for stratum, cluster in zip(scores.strata, scores.clusters, strict=True):
         seen.setdefault(stratum, set()).add(cluster)
@@ -115,10 +131,12 @@ def strata_without_spread(scores: Scores, weights: Mapping[Any, float]) -> tuple
 
 
 def standard_error(scores: Scores, weights: Mapping[Any, float]) -> float | None:
-    """Root of the larger of the two variances: a few clusters that agree by chance must not feign precision.
+    """Return the standard error: the root of the larger of the clustered and the independent variance.
 
-    None where every stratum is of one cluster: then nothing tells how outcomes vary between clusters. What rounding leaves of a
-    variance of 0 is 0.
+    With the larger one, chance agreement between a few clusters cannot shrink the interval. A variance below rounding error is 0.
+
+    Returns:
+        None if every stratum has only one cluster, because the variation between clusters is unknown.
     """
     clustered, independent = cluster_variance(scores, weights), independent_variance(scores, weights)
     if (
@@ -131,11 +149,17 @@ def standard_error(scores: Scores, weights: Mapping[Any, float]) -> float | None
     return sqrt(variance) if variance > _ROUNDING else 0.0
 
 
-def share(scores: Scores, weights: Mapping[Any, float] | None = None) -> Estimate | None:
-    """A share in [0, 1] with a Wilson interval at the effective sample size p(1-p)/se^2 (Dean and Pagano 2015); None without data.
+def share(scores: Scores, weights: Mapping[Any, float] | None = None) -> IntervalEstimate | None:
+    """Estimate a share in [0, 1] with a Wilson interval at the effective sample size p(1-p)/se^2 (Dean and Pagano 2015).
 
-    ``weights``: of strata, taken relative to their sum; none means that all outcomes are pooled. Where every unit of a stratum is
-    alike, so that the variance is 0, the effective size is the number of units.
+    If the variance is 0, the effective size is the number of units.
+
+    Args:
+        scores: The outcomes.
+        weights: Weights of the strata, relative to their sum; None pools all outcomes.
+
+    Returns:
+        None without data.
     """
     if not len(scores.values):
         return None
@@ -146,13 +170,20 @@ def share(scores: Scores, weights: Mapping[Any, float] | None = None) -> Estimat
     if se is not None:
         size = value * (1 - value) / se**2 if se > 0 else float(units)
         low, high = wilson(value, size, t_quantile(clusters))
-    return Estimate(value, low, high, se, units, clusters, _without(scores, weights))
+    return IntervalEstimate(value, low, high, se, units, clusters, _without(scores, weights))
 
 
-def difference(scores: Scores, weights: Mapping[Any, float] | None = None) -> Estimate | None:
-    """A mean difference or contrast of shares with the interval value +- t se, cut at -1 and 1; None without data.
+def difference(scores: Scores, weights: Mapping[Any, float] | None = None) -> IntervalEstimate | None:
+    """Estimate a mean difference or a contrast of shares, with the interval value +- t se, limited to [-1, 1].
 
-    There is no interval where every outcome is alike: a variance of 0 would feign that the difference is known.
+    There is no interval if all outcomes are equal, because a variance of 0 does not mean that the difference is known.
+
+    Args:
+        scores: The differences, or the outcomes of a contrast.
+        weights: Weights of the strata; None pools all outcomes.
+
+    Returns:
+        None without data.
     """
     if not len(scores.values):
         return None
@@ -160,14 +191,18 @@ def difference(scores: Scores, weights: Mapping[Any, float] | None = None) -> Es
     value, se, clusters = weighted_mean(scores, weights), standard_error(scores, weights), len(set(scores.clusters))
     half = se * t_quantile(clusters) if se else None
     low, high = (None, None) if half is None else (max(-1.0, value - half), min(1.0, value + half))
-    return Estimate(value, low, high, se, len(set(scores.observed)), clusters, _without(scores, weights))
+    return IntervalEstimate(value, low, high, se, len(set(scores.observed)), clusters, _without(scores, weights))
 
 
-def gap(first: Scores, second: Scores) -> Estimate | None:
-    """Share of ``first`` minus that of ``second``, which are of different outcomes; None without data of one of them.
+def share_difference(first: Scores, second: Scores) -> IntervalEstimate | None:
+    """Estimate the share of ``first`` minus the share of ``second``, which have different outcomes.
 
-    The interval joins those of the two shares as if they were independent (Newcombe 1998, method 10; Zou and Donner 2008): unlike
-    value +- t se it has a width on a side whose outcomes are all alike. There is none where one of the shares has none.
+    The interval combines those of the two shares as if they were independent (Newcombe 1998, method 10; Zou and Donner 2008).
+    Unlike value +- t se, it has a width even if all outcomes of one side are equal. It is unknown if one of the shares has no
+    interval.
+
+    Returns:
+        None if one of them has no data.
     """
     one, other = share(first), share(second)
     if one is None or other is None:
@@ -186,12 +221,15 @@ def gap(first: Scores, second: Scores) -> Estimate | None:
 
 
 Bounded = tuple[float, float | None, float | None]
-"""A value with its interval."""
+"""A value with the limits of its interval."""
 
 
 def newcombe(one: Bounded, other: Bounded) -> tuple[float, float] | tuple[None, None]:
-    """Interval of the difference of two independent shares from their own intervals: the distances of the limits that lie in the
-    same direction, squared and added. None where one of them is not known."""
+    """Return the interval of the difference of two independent shares, from their own intervals by Newcombe's method.
+
+    Returns:
+        (None, None) if one of the intervals is unknown.
+    """
     (p, low, high), (q, least, most) = one, other
     if low is None or high is None or least is None or most is None:
         return None, None
@@ -203,7 +241,7 @@ def _without(scores: Scores, weights: Mapping[Any, float]) -> tuple[str, ...]:
 
 
 def wilson(value: float, size: float, quantile: float) -> tuple[float, float]:
-    """Wilson's interval (1927) of a proportion ``value`` among ``size``, which need not be whole. Within [0, 1]."""
+    """Return Wilson's interval (1927) of a proportion, within [0, 1]. The sample size need not be an integer."""
     square = quantile**2 / size
     centre = (value + square / 2) / (1 + square)
     half = quantile / (1 + square) * sqrt(max(0.0, value * (1 - value)) / size + square / (4 * size))
@@ -211,12 +249,12 @@ def wilson(value: float, size: float, quantile: float) -> tuple[float, float]:
 
 
 def t_quantile(clusters: int, level: float = LEVEL) -> float:
-    """Two-sided quantile of Student's t with one degree of freedom fewer than there are clusters."""
+    """Return the two-sided quantile of Student's t distribution with ``clusters - 1`` degrees of freedom."""
     return float(stdtrit(clusters - 1, 0.5 + level / 2))
 
 
-def two_sided_p(estimate: Estimate) -> float | None:
-    """P value of the hypothesis that a difference is 0; None where there is no standard error."""
+def two_sided_p(estimate: IntervalEstimate) -> float | None:
+    """Return the p value of the hypothesis that a difference is 0; None without a standard error."""
     if estimate.se is None:
         return None
     if estimate.se == 0:
@@ -225,7 +263,7 @@ def two_sided_p(estimate: Estimate) -> float | None:
 
 
 def detectable(se: float, clusters: int, power: float = 0.8, level: float = LEVEL) -> float:
-    """The smallest true difference that a two-sided test finds with the given power: (t_(1-a/2) + t_power) se (Bloom 1995)."""
+    """Return the smallest true difference that a two-sided test detects: (t_(1-a/2) + t_power) se (Bloom 1995)."""
     return se * float(stdtrit(clusters - 1, 0.5 + level / 2) + stdtrit(clusters - 1, power))
 
 
@@ -236,7 +274,7 @@ def _factorise(labels: Sequence[Hashable]) -> tuple[list[Hashable], NDArray[np.i
 
 
 def _coded(scores: Scores, weights: Mapping[Any, float]) -> tuple[NDArray[np.intp], Numbers]:
-    """The stratum of each outcome, (n,), and each stratum's weight over its number of outcomes."""
+    """Return the stratum of each outcome, of shape ``(n,)``, and each stratum's weight divided by its number of outcomes."""
     strata, codes = _factorise(scores.strata)
     _hold_all(strata, weights)
     counts = np.bincount(codes, minlength=len(strata))
@@ -249,7 +287,7 @@ def _hold_all(strata: Collection[Hashable], weights: Mapping[Any, float]) -> Non
 
 
 def _residuals(scores: Scores, weights: Mapping[Any, float]) -> tuple[Numbers, Numbers]:
-    """Distance of each outcome from its stratum's mean, and its share in the estimate, both (n,)."""
+    """Return the residual of each outcome and its weight in the estimate, both of shape ``(n,)``."""
     codes, weight = _coded(scores, weights)
     means = np.bincount(codes, weights=scores.values) / np.bincount(codes)
     return scores.values - means[codes], weight[codes]

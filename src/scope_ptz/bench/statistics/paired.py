@@ -1,4 +1,4 @@
-"""Two runs over the same tasks: exact test, bootstrap over viewpoints, and what to do about many tests."""
+"""Statistics of two runs over the same tasks: exact test, cluster bootstrap, and adjustment for multiple tests."""
 
 from __future__ import annotations
 
@@ -13,9 +13,13 @@ DRAWS = 10_000
 
 
 def mcnemar_exact(only_first: int, only_second: int) -> float:
-    """Two-sided exact p value of McNemar's test (1947): of the tasks on which two runs differ, as many favour either by chance.
+    """Return the two-sided exact p value of McNemar's test (1947).
 
-    min(1, 2 P(X <= min(b, c))) with X binomial(b + c, 1/2). With repeats it is the sign test of the tasks' mean differences.
+    It is min(1, 2 P(X <= min(b, c))) with X binomial(b + c, 1/2). With repeats it is the sign test of the tasks' mean differences.
+
+    Args:
+        only_first: Number of tasks on which only the first run is correct.
+        only_second: Number of tasks on which only the second run is correct.
     """
     differing = only_first + only_second
     tail = sum(comb(differing, k) for k in range(min(only_first, only_second) + 1))
@@ -23,7 +27,7 @@ def mcnemar_exact(only_first: int, only_second: int) -> float:
 
 
 def holm(p_values: Sequence[float | None]) -> list[float | None]:
-    """Holm's step-down adjustment (1979). None stays None and is no test."""
+    """Adjust p values by Holm's step-down method (1979). None stays None and does not count as a test."""
     tests = sorted((p, index) for index, p in enumerate(p_values) if p is not None)
     adjusted: list[float | None] = [None] * len(p_values)
     highest = 0.0
@@ -34,9 +38,15 @@ def holm(p_values: Sequence[float | None]) -> list[float | None]:
 
 
 def cluster_bootstrap(scores: Scores, *, seed: int = 0, draws: int = DRAWS) -> tuple[float, float] | None:
-    """95% percentile interval of the macro mean of paired differences, whole clusters drawn with replacement (Field, Welsh 2007).
+    """Return the 95% percentile interval of the macro mean of paired differences, by a cluster bootstrap (Field and Welsh 2007).
 
-    ``scores.values``: one difference a task. Strata that a draw lacks are left out of its mean. None with fewer than two clusters.
+    Args:
+        scores: One difference per task.
+        seed: Seed of the draws.
+        draws: Number of draws. Whole clusters are drawn with replacement; strata that a draw lacks are left out of its mean.
+
+    Returns:
+        None with fewer than two clusters.
     """
     clusters, strata = _codes(scores.clusters), _codes(scores.strata)
     size = (max(clusters) + 1, max(strata) + 1) if clusters else (0, 0)

@@ -1,4 +1,4 @@
-"""What repeats of a task tell."""
+"""Statistics of repeated tasks."""
 
 from __future__ import annotations
 
@@ -7,9 +7,20 @@ from math import comb
 
 
 def pass_all(runs: int, passed: int, k: int) -> float | None:
-    """pass^k of one task: the share of the ways to choose k of its runs in which all passed, C(c, k) / C(n, k) (Yao et al. 2024).
+    """Return pass^k of one task, C(c, k) / C(n, k) for c passed of n runs (Yao et al. 2024).
 
-    Unbiased for the probability that k further runs all pass. None with fewer than k runs.
+    It is an unbiased estimate of the probability that k runs all pass.
+
+    Args:
+        runs: Number of runs.
+        passed: Number of runs that passed.
+        k: Number of runs that must all pass.
+
+    Returns:
+        None with fewer than k runs.
+
+    Raises:
+        ValueError: ``passed`` is not between 0 and ``runs``, or ``k`` is below 1.
     """
     if not 0 <= passed <= runs or k < 1:
         raise ValueError("passed lies between 0 and runs, and k is 1 or more")
@@ -17,6 +28,6 @@ def pass_all(runs: int, passed: int, k: int) -> float | None:
 
 
 def mean_pass_all(tasks: Iterable[tuple[int, int]], k: int) -> tuple[float | None, int]:
-    """pass^k averaged over tasks given as (runs, passed), and how many tasks had k runs or more."""
+    """Return the mean pass^k over tasks given as (runs, passed), and the number of tasks with at least k runs."""
     shares = [share for runs, passed in tasks if (share := pass_all(runs, passed, k)) is not None]
     return (sum(shares) / len(shares) if shares else None), len(shares)

@@ -1,1 +1,1 @@
-"""Tasks as data: the schema, task files, splits."""
+"""Benchmark tasks as data: their schema, task files and splits."""

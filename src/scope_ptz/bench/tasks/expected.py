@@ -1,6 +1,7 @@
-"""What a task expects to be told: typed values, with the words that they may come in.
+"""Expected answers: typed values with the wordings in which an answer may give them.
 
-A wording is one word or a few; plurals, capitals, British and American spelling are the reader's business, not the data's.
+A wording is one word or a few. The answer parser handles plurals, capitals and spelling, so the data need not list them. The
+docstrings of these models are part of the published JSON schema of tasks and change only with its version.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field, SerializerFunctionWrapHandler
 Wording = Annotated[str, Field(min_length=1, pattern=r"\w")]
 Wordings = tuple[Wording, ...]
 Options = Annotated[dict[Wording, Wordings], Field(min_length=1)]
-"""Name of an option -> further wordings of it; the name itself is one."""
+"""The further wordings of each option, by its name. The name itself is a wording, too."""
 
 
 class _Expected(BaseModel):
@@ -20,7 +21,7 @@ class _Expected(BaseModel):
 
     @model_serializer(mode="wrap")
     def _with_kind(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Data files leave out what is default, but never the kind, without which they could not be read again."""
+        """Write the kind even if defaults are left out, because files cannot be read without it."""
         kind = type(self).model_fields.get("kind")
         return {**({} if kind is None else {"kind": kind.default}), **handler(self)}
 

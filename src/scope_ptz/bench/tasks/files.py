@@ -1,4 +1,4 @@
-"""Task files: JSONL, one task a line, or YAML, a list of them."""
+"""Read and write task files: JSONL with one task per line, or a YAML list."""
 
 from __future__ import annotations
 
@@ -21,7 +21,11 @@ def digest_of(tasks: Iterable[Task]) -> str:
 
 
 def load_tasks(path: Path) -> tuple[Task, ...]:
-    """Tasks from a JSONL file (one a line) or a YAML file (a list). Raises ``InputError`` that names the file and the task."""
+    """Load tasks from a JSONL or YAML file.
+
+    Raises:
+        InputError: The file cannot be read or a task is invalid. The message names the file and the task.
+    """
     try:
         text = path.read_text("utf-8")
         content = (
@@ -51,6 +55,6 @@ def _task(row: Any, path: Path, number: int) -> Task:
 
 
 def dump_tasks(tasks: Iterable[Task], path: Path) -> None:
-    """Write tasks as JSONL, without what is default but the canary."""
+    """Write tasks as JSONL. Default values are left out, except the canary."""
     rows = ({**task.model_dump(mode="json", exclude_defaults=True), "canary": task.canary} for task in tasks)
     path.write_text("".join(json.dumps(row, ensure_ascii=False) + "\n" for row in rows), "utf-8")

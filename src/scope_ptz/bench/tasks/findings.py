@@ -1,4 +1,4 @@
-"""What is said about rows: why one cannot be run, and what is doubtful about it."""
+"""Findings about rows of imported files: why a row cannot be run, or what is doubtful about it."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict
 
-Kind = Literal[
+FindingKind = Literal[
     "empty-question",
     "nothing-expected",
     "unknown-category",
@@ -28,10 +28,12 @@ Kind = Literal[
     "ragged-row",
     "id-repeated",
 ]
-BLOCKING: frozenset[Kind] = frozenset({"empty-question", "nothing-expected", "unknown-category", "missing-scene", "missing-preset"})
-"""A row with one of these cannot be run."""
+BLOCKING: frozenset[FindingKind] = frozenset(
+    {"empty-question", "nothing-expected", "unknown-category", "missing-scene", "missing-preset"}
+)
+"""Findings with which a row cannot be run."""
 
-MEANINGS: dict[Kind, str] = {
+MEANINGS: dict[FindingKind, str] = {
     "empty-question": "there is no question",
     "nothing-expected": "neither an answer nor a tool call is expected, so that nothing could be judged",
     "unknown-category": "the category is none of the eight",
@@ -55,14 +57,15 @@ MEANINGS: dict[Kind, str] = {
 }
 
 
-class Finding(BaseModel):
-    """``detail``: what it is about in this row."""
+class RowFinding(BaseModel):
+    """A finding about one row. ``detail`` says what it concerns."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    kind: Kind
+    kind: FindingKind
     detail: str = ""
 
     @property
     def blocks(self) -> bool:
+        """Whether the row cannot be run."""
         return self.kind in BLOCKING

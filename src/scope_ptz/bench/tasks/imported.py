@@ -1,4 +1,4 @@
-"""Imported tasks as data, and the files that hold them: JSONL, one a line."""
+"""Imported tasks as data, and their files: JSONL with one task per line."""
 
 from __future__ import annotations
 
@@ -9,20 +9,28 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from scope_ptz.bench.tasks.facts import TaskFacts
-from scope_ptz.bench.tasks.findings import Finding
+from scope_ptz.bench.tasks.findings import RowFinding
 from scope_ptz.bench.tasks.task import RequiredCall
+from scope_ptz.bench.tasks.task_facts import TaskFacts
 from scope_ptz.errors import InputError, OutputError
 
 Policy = Literal["all", "exact", "any", "none"]
-"""Which expected tools a run must use: all of them, exactly them, any of them, or none is checked."""
+"""Which of the expected tools a run must use: all of them, exactly these, any of them, or unchecked."""
 
 
 class ImportedTask(BaseModel):
-    """A row that can be run. Its answer is a judge's business; its expected calls are an executable check.
+    """A task from another file. A judge scores its answer; its expected calls are an executable check.
 
-    ``line`` and ``raw``: where it stands in the file, and its cells as they are. ``policy`` and ``order``: of ``calls``.
-    ``start_s``: scene time at the start.
+    Attributes:
+        imported: Version of this format.
+        facts: The facts about the task.
+        line: Line of the source file.
+        raw: The cells of the source file, unchanged.
+        calls: The expected calls.
+        policy: Which of the expected calls a run must make.
+        order: Whether the order of the expected calls counts.
+        start_s: Scene time at the start.
+        findings: What is doubtful about the row.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -35,11 +43,11 @@ class ImportedTask(BaseModel):
     policy: Policy = "all"
     order: Literal["ordered", "any"] = "any"
     start_s: float = 0.0
-    findings: tuple[Finding, ...] = ()
+    findings: tuple[RowFinding, ...] = ()
 
 
 def holds_imported(path: Path) -> bool:
-    """Whether a file is one of imported tasks, by its first line."""
+    """Return whether a file holds imported tasks, judged by its first line."""
     try:
         with path.open(encoding="utf-8") as file:
             first = json.loads(file.readline(2**20))
@@ -49,7 +57,11 @@ def holds_imported(path: Path) -> bool:
 
 
 def load_imported(path: Path) -> tuple[ImportedTask, ...]:
-    """The tasks of a file. Raises ``InputError`` that names the line."""
+    """Load the imported tasks of a file.
+
+    Raises:
+        InputError: The file cannot be read or a task is invalid. The message names the line.
+    """
     try:
         lines = path.read_text("utf-8").split("\n")  # Only line feeds end a line of JSON.
     except OSError as error:
@@ -70,7 +82,11 @@ def load_imported(path: Path) -> tuple[ImportedTask, ...]:
 
 
 def dump_imported(tasks: Iterable[ImportedTask], path: Path) -> None:
-    """Write tasks, one a line. Raises ``OutputError``."""
+    """Write imported tasks, one per line.
+
+    Raises:
+        OutputError: The file cannot be written.
+    """
     rows = ({**task.model_dump(mode="json", exclude_defaults=True), "imported": 1} for task in tasks)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -1,9 +1,9 @@
-"""The splits of the dataset, by name: which tasks belong to each, where they lie, and how a small one stands for all.
+"""The splits of the dataset and their files.
 
-core        the 536
-lite        a tenth of the core, by category, scene and difficulty
-paraphrase  further wordings of core tasks
-reaction    requests that want a question back or a refusal
+core        the 536 tasks
+lite        a tenth of the core tasks, stratified by category, scene and difficulty
+paraphrase  other wordings of core tasks
+reaction    requests that call for a question or a refusal
 unseen      tasks of varied worlds, made after the core by the same rules
 all         core, paraphrase and reaction together
 """
@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from scope_ptz.bench.tasks.files import dump_tasks, load_tasks
-from scope_ptz.bench.tasks.sampling import stratified
+from scope_ptz.bench.tasks.stratified import stratified_sample
 from scope_ptz.bench.tasks.task import CANARY, Stratum, Task
 from scope_ptz.errors import InputError, OutputError, UnknownNameError
 from scope_ptz.simulator.pack import Scene
@@ -30,18 +30,20 @@ LITE_SHARE = 0.1
 
 
 def published_folder() -> Path:
-    """Where the dataset that comes with the package lies."""
+    """Return the folder of the dataset that comes with the package."""
     return Path(str(files("scope_ptz"))) / "data" / "bench"
 
 
 def load_split(name: str | Path, folder: Path | None = None) -> tuple[Task, ...]:
-    """The tasks of a split, ``core`` or another name, or of a task file (JSONL or YAML).
+    """Load the tasks of a split or of a task file.
 
-    ``folder``: a dataset other than the published one, as ``scope bench build --all`` writes it.
+    Args:
+        name: Name of a split, or path of a JSONL or YAML file.
+        folder: Folder of another dataset, as ``scope bench build --all`` writes it. The default is the published dataset.
 
     Raises:
-        UnknownNameError: it is neither a split nor a file.
-        InputError: a file is missing or holds something else than tasks.
+        UnknownNameError: The name is neither a split nor a file.
+        InputError: A file is missing or holds something other than tasks.
     """
     folder = folder or published_folder()
     if str(name) not in SPLITS:
@@ -59,7 +61,7 @@ def load_split(name: str | Path, folder: Path | None = None) -> tuple[Task, ...]
 
 
 def _named(tasks: Iterable[Task], path: Path) -> tuple[Task, ...]:
-    """The tasks whose ids a file lists, one a line."""
+    """Return the tasks whose ids a file lists, one per line."""
     try:
         ids = path.read_text("utf-8").split()
     except OSError as error:
@@ -71,17 +73,22 @@ def _named(tasks: Iterable[Task], path: Path) -> tuple[Task, ...]:
 
 
 def lite(tasks: Sequence[Task], seed: int) -> tuple[Task, ...]:
-    """A stratified tenth of the core tasks."""
+    """Return a stratified tenth of the core tasks."""
     core = of_stratum(tasks, "core")
-    return stratified(core, round(len(core) * LITE_SHARE), seed)
+    return stratified_sample(core, round(len(core) * LITE_SHARE), seed)
 
 
 def of_stratum(tasks: Iterable[Task], stratum: Stratum) -> tuple[Task, ...]:
+    """Return the tasks of one stratum."""
     return tuple(task for task in tasks if task.stratum == stratum)
 
 
 def write_splits(tasks: Sequence[Task], unseen: Sequence[Task], folder: Path, *, seed: int) -> list[Path]:
-    """Write a dataset, a file a split; what was written. The same tasks and seed give the same bytes."""
+    """Write a dataset with one file per split. The same tasks and seed give the same bytes.
+
+    Returns:
+        The files that were written.
+    """
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for split, rows in (
@@ -98,7 +105,7 @@ def write_splits(tasks: Sequence[Task], unseen: Sequence[Task], folder: Path, *,
 
 
 def write_manifest(folder: Path, written: Iterable[Path], scenes: Iterable[Scene], **made_with: Any) -> Path:
-    """Write what a dataset was made of and with, and the checksum of each of its files."""
+    """Write the manifest of a dataset: how it was made, the versions of its scenes, and the checksums of its files."""
     content = {
         "canary": CANARY,
         "made_with": made_with,
@@ -111,7 +118,11 @@ def write_manifest(folder: Path, written: Iterable[Path], scenes: Iterable[Scene
 
 
 def read_manifest(folder: Path) -> dict[str, Any]:
-    """What ``write_manifest`` wrote. Raises ``InputError`` when a file of the dataset is gone or was changed since."""
+    """Read the manifest of a dataset and verify its files.
+
+    Raises:
+        InputError: A file of the dataset is missing or has changed.
+    """
     try:
         content: dict[str, Any] = json.loads((folder / MANIFEST).read_text("utf-8"))
         changed = [name for name, digest in content["files"].items() if _digest(folder / name) != digest]

@@ -1,6 +1,7 @@
-"""A benchmark task as data: what is asked, what is expected of answer and behaviour, and what the expectation rests on.
+"""The schema of benchmark tasks: the instruction, the expected answer and behaviour, and the evidence for them.
 
-Angles are degrees in the camera's own frame (pan positive = right, tilt positive = up), zoom is magnification.
+Angles are degrees in the camera's frame (pan positive = right, tilt positive = up), zoom is magnification. The docstrings of these
+models are part of the published JSON schema of tasks and change only with its version.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from scope_ptz.tools.registry import TOOLS
 CANARY: Literal["SCOPE-BENCH-CANARY 6b0c2f0e-9d1e-4f6c-8a57-0e2f6a1d7c34"] = (
     "SCOPE-BENCH-CANARY 6b0c2f0e-9d1e-4f6c-8a57-0e2f6a1d7c34"
 )
-"""Stands in every task, so that a corpus that holds tasks can be found."""
+"""Every task contains this string, so that training corpora that contain tasks can be detected."""
 
 Category = Literal[
     "counting", "descriptor", "location", "ocr", "single_call", "multi_step_command", "multi_step_reasoning", "comparative"
@@ -106,7 +107,7 @@ class Behaviour(_Model):
 
     @property
     def checks_something(self) -> bool:
-        """Whether anything but the way in which the run ended is demanded."""
+        """Whether anything other than the outcome of the run is required."""
         return bool(
             self.final or self.calls or self.forbidden.tools or self.forbidden.changes or self.pictures is not None or self.framing
         )
@@ -190,7 +191,7 @@ class Task(_Model):
 
     @property
     def world(self) -> str:
-        """The name under which the world of the task is opened: its scene's, or that of the variation of it."""
+        """The name of the world to open: the scene, or a variation of it."""
         return self.scene if self.variation is None else variation_name(self.scene, self.variation)
 
     @model_validator(mode="after")
@@ -211,5 +212,5 @@ TASK: TypeAdapter[Task] = TypeAdapter(Task)
 
 
 def schema() -> dict[str, Any]:
-    """The JSON schema of one task, as it is published."""
+    """Return the published JSON schema of a task."""
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **Task.model_json_schema()}

@@ -1,7 +1,7 @@
 """How stable a planner's tool choice is when the prompt or the instruction is edited slightly."""
 
 from scope_ptz.planner.profile.edits import INSTRUCTION_EDITS, PROMPT_EDITS, Edit
-from scope_ptz.planner.profile.first_calls import InstructionRow, PlannerTrial, ask_once, load_rows
+from scope_ptz.planner.profile.first_calls import InstructionRow, PlannerTrial, ask_once, load_rows, read_rows
 from scope_ptz.planner.profile.prompt_sensitivity import Sensitivity, measure_sensitivity
 
 __all__ = [
@@ -14,4 +14,5 @@ __all__ = [
     "ask_once",
     "load_rows",
     "measure_sensitivity",
+    "read_rows",
 ]

@@ -9,12 +9,13 @@ import json
 import re
 from collections.abc import Sequence
 from importlib.resources import files
+from pathlib import Path
 from time import perf_counter
 from typing import Any
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from scope_ptz.errors import PlannerError, ToolCallError
+from scope_ptz.errors import InputError, PlannerError, ToolCallError
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import Briefing, CallTools, Planner, State, Usage
 from scope_ptz.tools.adjust_ptz import AdjustPtz
@@ -71,6 +72,44 @@ def load_rows() -> tuple[InstructionRow, ...]:
     """Return the packaged instructions."""
     lines = (files("scope_ptz") / "data" / "profile_instructions.jsonl").read_text(encoding="utf-8").splitlines()
     return tuple(InstructionRow.model_validate(json.loads(line)) for line in lines)
+
+
+def read_rows(source: Path) -> tuple[InstructionRow, ...]:
+    """Read instructions with expected calls from a file of JSON lines.
+
+    Lines without calls are skipped, because they expect a question instead of calls.
+
+    Raises:
+        InputError: The file cannot be read, a line is malformed, or there is no line with calls.
+    """
+    try:
+        lines = source.read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{source} cannot be read: {error}.") from error
+    rows: list[InstructionRow] = []
+    for number, line in enumerate(lines, 1):
+        if not line.strip():
+            continue
+        try:
+            given = _Line.model_validate_json(line)
+            if given.calls:
+                rows.append(InstructionRow.model_validate(given.model_dump()))
+        except ValidationError as error:
+            first = error.errors(include_url=False)[0]
+            where = ".".join(str(part) for part in first["loc"])
+            raise InputError(f"{source}, line {number}: {f'{where}: ' if where else ''}{first['msg']}.") from error
+    if not rows:
+        raise InputError(f"{source} contains no instruction with expected calls.")
+    return tuple(rows)
+
+
+class _Line(BaseModel):
+    """A line of such a file."""
+
+    instruction: str
+    kind: str = ""
+    calls: list[dict[str, Any]] = []
+    alternatives: tuple[str, ...] = ()
 
 
 async def ask_once(planner: Planner, row: InstructionRow, *, asked: str | None = None, edit: str = "") -> PlannerTrial:

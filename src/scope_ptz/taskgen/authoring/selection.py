@@ -7,8 +7,8 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, field
 
-from scope_ptz.bench.scoring.coverage import gap
-from scope_ptz.bench.scoring.episode import Look
+from scope_ptz.bench.scoring.coverage import uncovered_part
+from scope_ptz.bench.scoring.episode import Observation
 from scope_ptz.bench.tasks.task import Category
 from scope_ptz.taskgen.authoring.drafts import SentenceFrames, TaskDraft
 from scope_ptz.taskgen.authoring.task_places import preset_at
@@ -221,6 +221,7 @@ def answerable_from_start(draft: TaskDraft) -> bool:
     if not needs or not views or moved or (draft.behaviour is not None and draft.behaviour.final is not None):
         return False
     start_looks = (
-        Look(start.viewpoint, TASK_CAMERA.view(start.pose), place.scene.file.start_s, "query", " ".join(v.about)) for v in views
+        Observation(start.viewpoint, TASK_CAMERA.view(start.pose), place.scene.file.start_s, "query", " ".join(v.about))
+        for v in views
     )
-    return all(gap(view, [look]) is None for view, look in zip(views, start_looks, strict=True))
+    return all(uncovered_part(view, [look]) is None for view, look in zip(views, start_looks, strict=True))

@@ -1,4 +1,4 @@
-"""Places: the start preset of a task, the moves from there to the view it is about, and phrases for these moves."""
+"""PresetViewpoints: the start preset of a task, the moves from there to the view it is about, and phrases for these moves."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
-from scope_ptz.bench.scoring.episode import Standing
+from scope_ptz.bench.scoring.episode import CameraPosition
 from scope_ptz.bench.tasks.task import Aim, FinalPose, Need, ProgramCall
 from scope_ptz.geometry import Pose
 from scope_ptz.simulator.models import ScenePreset
@@ -48,7 +48,7 @@ class TaskPlace:
     scene: Scene
     start: str
     calls: tuple[ProgramCall, ...]
-    at: Standing
+    at: CameraPosition
     swept: bool = False
 
     @cached_property
@@ -147,15 +147,15 @@ def call_phrases(call: ProgramCall, rng: random.Random) -> list[str]:
     return phrases
 
 
-def preset_at(preset: ScenePreset) -> Standing:
+def preset_at(preset: ScenePreset) -> CameraPosition:
     """Return the viewpoint and pose of a preset, within the limits of the camera."""
-    return Standing(preset.viewpoint, TASK_CAMERA.limits.clamp(Pose(preset.pan_deg, preset.tilt_deg, preset.zoom))[0])
+    return CameraPosition(preset.viewpoint, TASK_CAMERA.limits.clamp(Pose(preset.pan_deg, preset.tilt_deg, preset.zoom))[0])
 
 
-def move(at: Standing, call: ProgramCall) -> Standing | None:
+def move(at: CameraPosition, call: ProgramCall) -> CameraPosition | None:
     """Return where an adjustment leads, or None when a limit of the camera would clamp it."""
     pose, cut = TASK_CAMERA.limits.clamp(requested_pose(at.pose, AdjustPtz.model_validate(call.arguments), TASK_CAMERA.limits))
-    return None if cut else Standing(at.viewpoint, pose)
+    return None if cut else CameraPosition(at.viewpoint, pose)
 
 
 def adjust(pan: float = 0.0, tilt: float = 0.0, factor: float | None = None) -> ProgramCall:

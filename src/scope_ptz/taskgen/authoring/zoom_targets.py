@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from scope_ptz.bench.scoring.episode import Standing
+from scope_ptz.bench.scoring.episode import CameraPosition
 from scope_ptz.bench.tasks.task import Framing
 from scope_ptz.geometry import Perspective, Pose, direction, pan_tilt_deg
 from scope_ptz.simulator.truth import Sighting
@@ -55,7 +55,7 @@ def framed(place: TaskPlace, sighting: Sighting, thing: SceneThing) -> TaskPlace
     found = close_pose(extent.hull, (limits.min_zoom, limits.max_zoom))
     if found is None or limits.clamp(found[0])[1] or found[0].zoom < place.at.pose.zoom * 1.1:
         return None
-    return TaskPlace(place.scene, place.start, place.calls, Standing(place.at.viewpoint, found[0]))
+    return TaskPlace(place.scene, place.start, place.calls, CameraPosition(place.at.viewpoint, found[0]))
 
 
 def framing(place: TaskPlace, sighting: Sighting, thing: SceneThing) -> Framing | None:

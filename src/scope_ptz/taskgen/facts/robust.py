@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scope_ptz.bench.scoring.coverage import box_directions
-from scope_ptz.bench.scoring.episode import Eyes, Standing
+from scope_ptz.bench.scoring.episode import CameraPosition, FrameGeometry
 from scope_ptz.bench.tasks.task import Item
 from scope_ptz.geometry import Equirectangular, Perspective, Pose, pan_tilt_deg
 from scope_ptz.simulator.actors import Appearance, appearances, shows
@@ -34,7 +34,7 @@ from scope_ptz.simulator.truth import (
 )
 from scope_ptz.taskgen.facts.kinds import BACKDROP, FACELESS, KNOWN_BY_THEIR_FACE, Kind, SceneThing
 
-TASK_CAMERA = Eyes(1280, 720)
+TASK_CAMERA = FrameGeometry(1280, 720)
 """The camera that tasks are made and validated for."""
 
 JITTER_DEG, JITTER_ZOOM = 0.5, 0.03  # how far the poses around differ in pan and tilt, and in zoom
@@ -339,6 +339,6 @@ def legible(text: TextSighting, scale: float = 1.0) -> bool:
 
 
 @lru_cache(maxsize=600)
-def robust_truth(scene: Scene, at: Standing, time_s: float, *, swept: bool = False) -> RobustTruth:
+def robust_truth(scene: Scene, at: CameraPosition, time_s: float, *, swept: bool = False) -> RobustTruth:
     """Return the robust ground truth of a view, or of a sweep from its viewpoint. Recent results are kept."""
     return RobustTruth(scene, at.viewpoint or "", None if swept else at.pose, time_s)

@@ -8,9 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from scope_ptz.bench.answers.reader import agrees, read
-from scope_ptz.bench.answers.result import Declined, Unreadable
-from scope_ptz.bench.answers.words import names_any
+from scope_ptz.bench.answers import Declined, Unreadable, agrees, names_any, parse_answer
 from scope_ptz.bench.tasks.expected import ActionOnly, AnyExpected, Choice, NoneThere, Number, Text, YesNo
 from scope_ptz.bench.tasks.task import Behaviour, EvidenceView, ProgramCall, Task
 from scope_ptz.simulator.pack import Scene
@@ -90,7 +88,7 @@ def _compare(draft: Draft, expected: AnyExpected) -> None:
     """Reject a draft whose expected answer is not the right one, or whose instruction contains the answer."""
     if isinstance(expected, ActionOnly):
         return
-    reading = read(expected, draft.expected)
+    reading = parse_answer(expected, draft.expected)
     if isinstance(reading, Unreadable | Declined) or not agrees(expected, reading):
         right = expected.model_dump(include={"value", "accepted", "subject"})
         raise DraftRejectedError(f"the draft expects '{draft.expected}', the ground truth says {right or expected.kind}")

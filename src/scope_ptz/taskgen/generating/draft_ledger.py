@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from scope_ptz.bench.tasks.files import dump_tasks
 from scope_ptz.bench.tasks.task import Category, Task
-from scope_ptz.bench.tasks.wording import expected_in_words
+from scope_ptz.bench.tasks.task_wording import expected_in_words
 from scope_ptz.errors import InputError, OutputError
 
 RECORD, TASKS, REVIEW = "drafts.jsonl", "tasks.jsonl", "review.md"

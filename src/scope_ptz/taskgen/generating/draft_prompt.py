@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from scope_ptz.bench.tasks.task import Category, Task
-from scope_ptz.bench.tasks.wording import expected_in_words
+from scope_ptz.bench.tasks.task_wording import expected_in_words
 from scope_ptz.simulator.models import ScenePreset
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.taskgen.authoring.task_places import TaskPlace, adjust, move, preset_at

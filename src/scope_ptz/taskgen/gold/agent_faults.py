@@ -11,10 +11,9 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from scope_ptz.bench.answers.reader import read
-from scope_ptz.bench.answers.result import Value
-from scope_ptz.bench.scoring.episode import Call, Episode, Eyes, Standing, looks_of
-from scope_ptz.bench.scoring.matching import in_order
+from scope_ptz.bench.answers import ParsedValue, parse_answer
+from scope_ptz.bench.scoring.episode import CameraPosition, Episode, EpisodeCall, FrameGeometry, observations_of
+from scope_ptz.bench.scoring.required_calls import missing_in_order
 from scope_ptz.bench.scoring.verdict import MOVERS
 from scope_ptz.bench.tasks.expected import (
     ActionOnly,
@@ -32,23 +31,23 @@ TURN_ARGUMENTS = ("pan_deg", "tilt_deg")
 class FaultSetting:
     """The world of a run as fault functions need it: where its presets are, and the camera."""
 
-    presets: Mapping[str, Standing]
-    camera: Eyes
+    presets: Mapping[str, CameraPosition]
+    camera: FrameGeometry
 
 
-def replayed(episode: Episode, calls: Iterable[Call], setting: FaultSetting) -> Episode:
+def replayed(episode: Episode, calls: Iterable[EpisodeCall], setting: FaultSetting) -> Episode:
     """Return the run with other calls. Poses and observed views are worked out again from the start."""
-    at, made = episode.start, list[Call]()
+    at, made = episode.start, list[EpisodeCall]()
     for call in calls:
         after = _after(call, at, episode, setting)
-        moved = replace(call, before=at, after=after, looks=())
-        made.append(replace(moved, looks=looks_of(moved, setting.camera) if moved.succeeded else ()))
+        moved = replace(call, before=at, after=after, observations=())
+        made.append(replace(moved, observations=observations_of(moved, setting.camera) if moved.succeeded else ()))
         at = after
     kept = {str((call.result or {}).get("file")) for call in made if call.name == "take_image"}
     return replace(episode, calls=tuple(made), final=at, pictures=tuple(p for p in episode.pictures if p.file in kept))
 
 
-def _after(call: Call, at: Standing, episode: Episode, setting: FaultSetting) -> Standing:
+def _after(call: EpisodeCall, at: CameraPosition, episode: Episode, setting: FaultSetting) -> CameraPosition:
     if not call.succeeded or call.name not in MOVERS:
         return at
     if call.name == "go_to_preset":
@@ -59,16 +58,16 @@ def _after(call: Call, at: Standing, episode: Episode, setting: FaultSetting) ->
         one, two = call.before.pose, call.after.pose
         pan, tilt, zoom = two.pan_deg - one.pan_deg, two.tilt_deg - one.tilt_deg, two.zoom / one.zoom
         limits = setting.camera.limits
-        return Standing(at.viewpoint, limits.clamp(at.pose.turned(pan, tilt).zoomed(zoom))[0])
-    return Standing(at.viewpoint, call.after.pose)
+        return CameraPosition(at.viewpoint, limits.clamp(at.pose.turned(pan, tilt).zoomed(zoom))[0])
+    return CameraPosition(at.viewpoint, call.after.pose)
 
 
-def with_result(call: Call, **changes: Any) -> Call:
+def with_result(call: EpisodeCall, **changes: Any) -> EpisodeCall:
     """Return a call with some fields of its result changed."""
     return replace(call, result={**(call.result or {}), **changes})
 
 
-def changed(episode: Episode, setting: FaultSetting, change: Callable[[Call], Call | None]) -> Episode:
+def changed(episode: Episode, setting: FaultSetting, change: Callable[[EpisodeCall], EpisodeCall | None]) -> Episode:
     """Return the run with every call changed, or left out where ``change`` returns None."""
     return replayed(episode, [new for call in episode.calls if (new := change(call)) is not None], setting)
 
@@ -111,11 +110,11 @@ def swap_tools(task: Task, episode: Episode, setting: FaultSetting, rng: random.
     if any(call.name == other for call in episode.calls):
         return None
 
-    def swap(call: Call) -> Call:
+    def swap(call: EpisodeCall) -> EpisodeCall:
         if call.name != name:
             return call
         pose = call.before.pose.zoomed(1.2) if other == "adjust_ptz" else call.before.pose
-        return replace(call, name=other, arguments=arguments, after=Standing(call.before.viewpoint, pose), result=result)
+        return replace(call, name=other, arguments=arguments, after=CameraPosition(call.before.viewpoint, pose), result=result)
 
     return changed(episode, setting, swap)
 
@@ -129,7 +128,7 @@ def swap_order(task: Task, episode: Episode, setting: FaultSetting, rng: random.
     for at in places:
         calls = list(episode.calls)
         calls[at], calls[at + 1] = calls[at + 1], calls[at]
-        if in_order(task.behaviour.calls, calls) is not None:
+        if missing_in_order(task.behaviour.calls, calls) is not None:
             return replayed(episode, calls, setting)
     return None
 
@@ -145,7 +144,7 @@ def flip_scope(task: Task, episode: Episode, setting: FaultSetting, rng: random.
     if answer is None:
         return None
 
-    def flip(call: Call) -> Call:
+    def flip(call: EpisodeCall) -> EpisodeCall:
         if call.name not in PERCEPTION_TOOLS:
             return call
         view = "full" if call.arguments.get("view", "current") == "current" else "current"
@@ -154,13 +153,13 @@ def flip_scope(task: Task, episode: Episode, setting: FaultSetting, rng: random.
         )
         return with_result(replace(call, arguments={**call.arguments, "view": view}), view=view, message=answer, **result)
 
-    return replace(changed(episode, setting, flip), text=answer)
+    return replace(changed(episode, setting, flip), answer=answer)
 
 
-def count_of(expected: AnyExpected, answer: str, call: Call) -> int:
+def count_of(expected: AnyExpected, answer: str, call: EpisodeCall) -> int:
     """Return a count that would explain a wrong answer."""
-    reading, counted = read(expected, answer), int((call.result or {}).get("count", 0))
-    if isinstance(reading, Value) and isinstance(reading.value, float):
+    reading, counted = parse_answer(expected, answer), int((call.result or {}).get("count", 0))
+    if isinstance(reading, ParsedValue) and isinstance(reading.value, float):
         return round(reading.value)
     return 0 if counted else 2
 
@@ -176,7 +175,7 @@ def other_preset(task: Task, episode: Episode, setting: FaultSetting, rng: rando
     right = rng.choice(visited)
     wrong = rng.choice([name for name in setting.presets if name != right])
 
-    def go(call: Call) -> Call:
+    def go(call: EpisodeCall) -> EpisodeCall:
         if call.name != "go_to_preset" or call.arguments["name"] != right:
             return call
         return with_result(replace(call, arguments={"name": wrong}), message=f"At preset {wrong}.")
@@ -189,18 +188,18 @@ def turned_round(task: Task, episode: Episode, setting: FaultSetting, rng: rando
     if not any(call.name == "adjust_ptz" and turns(call) for call in episode.calls):
         return None
 
-    def turn(call: Call) -> Call:
+    def turn(call: EpisodeCall) -> EpisodeCall:
         if call.name != "adjust_ptz":
             return call
         one, two = call.before.pose, call.after.pose
         arguments = {k: -v if k in TURN_ARGUMENTS else v for k, v in call.arguments.items()}
         pose = Pose(2 * one.pan_deg - two.pan_deg, 2 * one.tilt_deg - two.tilt_deg, two.zoom)
-        return replace(call, arguments=arguments, after=Standing(call.after.viewpoint, pose))
+        return replace(call, arguments=arguments, after=CameraPosition(call.after.viewpoint, pose))
 
     return changed(episode, setting, turn)
 
 
-def turns(call: Call) -> bool:
+def turns(call: EpisodeCall) -> bool:
     """Whether an adjustment changes the direction and not only the magnification."""
     return any(call.arguments.get(name) for name in TURN_ARGUMENTS)
 
@@ -215,7 +214,7 @@ def other_target(task: Task, episode: Episode, setting: FaultSetting, rng: rando
     ):
         return None
 
-    def aside(call: Call) -> Call:
+    def aside(call: EpisodeCall) -> EpisodeCall:
         if call.name == "count_objects":
             arguments = {**call.arguments, "description": "clouds"}
             return with_result(replace(call, arguments=arguments), count=count_of(task.expected, answer, call), message=answer)
@@ -224,4 +223,4 @@ def other_target(task: Task, episode: Episode, setting: FaultSetting, rng: rando
             return with_result(replace(call, arguments=arguments), answer=answer, known=True, message=answer)
         return call
 
-    return replace(changed(episode, setting, aside), text=answer)
+    return replace(changed(episode, setting, aside), answer=answer)

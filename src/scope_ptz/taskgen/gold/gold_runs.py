@@ -16,11 +16,11 @@ from pathlib import Path
 from typing import Any
 
 from scope_ptz.agent.records import RecordedPose
-from scope_ptz.bench.programs import seen
-from scope_ptz.bench.scoring.episode import Call, Episode, Picture, Standing
+from scope_ptz.bench.program_runner import with_observations
+from scope_ptz.bench.scoring.episode import CameraPosition, Episode, EpisodeCall, SavedPicture
 from scope_ptz.bench.scoring.error_modes import ErrorMode, error_mode
 from scope_ptz.bench.scoring.misperceptions import wrong_counts, wrong_reads
-from scope_ptz.bench.scoring.verdict import judge
+from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.errors import InputError
 from scope_ptz.taskgen.facts.robust import TASK_CAMERA
@@ -131,7 +131,7 @@ def _assigned_mode(one: GoldRun) -> str:
     mode = error_mode(one.task, one.episode)
     if mode is not None:
         return mode.value
-    return OTHER[0] if judge(one.task, one.episode).headline == "correct" else OTHER[1]
+    return OTHER[0] if score_episode(one.task, one.episode).headline == "correct" else OTHER[1]
 
 
 def write_gold(gold: Sequence[GoldRun], path: Path) -> None:
@@ -189,31 +189,33 @@ def _run_data(episode: Episode) -> dict[str, Any]:
             for call in episode.calls
         ],
         "final": _standing_data(episode.final),
-        "text": episode.text,
+        "text": episode.answer,
         "outcome": episode.outcome,
         "pictures": [picture.file for picture in episode.pictures],
     }
 
 
-def _standing_data(at: Standing) -> list[Any]:
+def _standing_data(at: CameraPosition) -> list[Any]:
     return [at.viewpoint, round(at.pose.pan_deg, 6), round(at.pose.tilt_deg, 6), round(at.pose.zoom, 6)]
 
 
 def _episode(row: Mapping[str, Any]) -> Episode:
-    def standing(values: Sequence[Any]) -> Standing:
+    def standing(values: Sequence[Any]) -> CameraPosition:
         viewpoint, *pose = values
-        return Standing(viewpoint, RecordedPose(pan_deg=pose[0], tilt_deg=pose[1], zoom=pose[2]).pose())
+        return CameraPosition(viewpoint, RecordedPose(pan_deg=pose[0], tilt_deg=pose[1], zoom=pose[2]).pose())
 
     at = start = standing(row["start"])
-    calls = list[Call]()
+    calls = list[EpisodeCall]()
     for given in row["calls"]:
         further = {name: given.get(name) for name in ("result", "error", "fault")}
         calls.append(
-            seen(
-                Call(given["name"], given["arguments"], at, after := standing(given["after"]), time_s=given["time_s"], **further),
+            with_observations(
+                EpisodeCall(
+                    given["name"], given["arguments"], at, after := standing(given["after"]), time_s=given["time_s"], **further
+                ),
                 TASK_CAMERA,
             )
         )
         at = after
-    pictures = tuple(Picture(name) for name in row["pictures"])
+    pictures = tuple(SavedPicture(name) for name in row["pictures"])
     return Episode(row["instruction"], start, tuple(calls), standing(row["final"]), row["text"], row["outcome"], pictures)

@@ -12,17 +12,17 @@ from typing import Any
 import anyio
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from scope_ptz.bench.judging.agreement import Item, Rater, numbered, rate
-from scope_ptz.bench.judging.case import Case, case_of_episode
+from scope_ptz.bench.judging.agreement import RatedRun, Rater, add_rating, numbered
+from scope_ptz.bench.judging.case import JudgeCase, case_of_episode
+from scope_ptz.bench.judging.json_lines import whole_lines
 from scope_ptz.bench.judging.judge import Judge
-from scope_ptz.bench.judging.kappa import Agreement, cohen
-from scope_ptz.bench.judging.lines import whole_lines
-from scope_ptz.bench.scoring.episode import Episode, Places
+from scope_ptz.bench.judging.kappa import KappaResult, cohen
+from scope_ptz.bench.scoring.episode import Episode, PresetViewpoints
 from scope_ptz.bench.scoring.error_modes import ErrorMode
 from scope_ptz.bench.scoring.trials import Judgement
-from scope_ptz.bench.tasks.facts import TaskFacts
 from scope_ptz.bench.tasks.task import Task
-from scope_ptz.bench.tasks.wording import facts_of
+from scope_ptz.bench.tasks.task_facts import TaskFacts
+from scope_ptz.bench.tasks.task_wording import facts_of
 from scope_ptz.errors import InputError
 from scope_ptz.taskgen.gold.mutations import GoldRun
 
@@ -36,7 +36,7 @@ class GoldCase(BaseModel):
     model_config = ConfigDict(frozen=True, arbitrary_types_allowed=True)
 
     facts: TaskFacts
-    case: Case
+    case: JudgeCase
     fault: ErrorMode | None
     how: str
 
@@ -57,17 +57,17 @@ class GoldVerdict(BaseModel):
     judgement: Judgement
 
 
-def gold_case(gold: GoldRun, places: Places) -> GoldCase:
+def gold_case(gold: GoldRun, places: PresetViewpoints) -> GoldCase:
     """Return a faulty run as a case for a judge, with the places of its scene."""
     return _case(gold.task, gold.episode, places, gold.mode, gold.fault)
 
 
-def passing_case(task: Task, episode: Episode, places: Places) -> GoldCase:
+def passing_case(task: Task, episode: Episode, places: PresetViewpoints) -> GoldCase:
     """Return a run that passes all checks as a case for a judge."""
     return _case(task, episode, places, None, "reference")
 
 
-def _case(task: Task, episode: Episode, places: Places, fault: ErrorMode | None, how: str) -> GoldCase:
+def _case(task: Task, episode: Episode, places: PresetViewpoints, fault: ErrorMode | None, how: str) -> GoldCase:
     facts = facts_of(task, episode.start.viewpoint or "")
     case = case_of_episode(episode, places)
     return GoldCase(facts=facts, case=case, fault=fault, how=how)
@@ -119,8 +119,8 @@ class GoldResult:
     judge: str
     runs: int
     cells: Mapping[tuple[str, str], int]
-    verdicts: Agreement
-    modes: Agreement
+    verdicts: KappaResult
+    modes: KappaResult
 
     def _count(self, *, faulty: bool, verdicts: tuple[str, ...] | None = None) -> int:
         return sum(
@@ -198,11 +198,11 @@ def raters_of_gold(verdicts: Iterable[GoldVerdict]) -> list[Rater]:
     for verdict in sorted(newest.values(), key=lambda v: v.judgement.repeat):
         by_key.setdefault(verdict.key, []).append(verdict)
     for key, rows in by_key.items():
-        item = Item("gold", key, rows[0].task)
-        rate(known, item, "incorrect" if rows[0].fault else "correct", rows[0].fault)
+        item = RatedRun("gold", key, rows[0].task)
+        add_rating(known, item, "incorrect" if rows[0].fault else "correct", rows[0].fault)
         for name, group, judgement in numbered([row.judgement for row in rows]):
             rater = judges.setdefault(name, Rater(name, "judge", f"judge:{group}"))
-            rate(rater, item, judgement.verdict, judgement.error_mode)
+            add_rating(rater, item, judgement.verdict, judgement.error_mode)
     return [known, *judges.values()] if by_key else []
 
 

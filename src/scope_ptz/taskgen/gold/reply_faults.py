@@ -10,8 +10,8 @@ import random
 from collections.abc import Iterator
 from dataclasses import replace
 
-from scope_ptz.bench.scoring.episode import Call, Episode
-from scope_ptz.bench.scoring.evidence import is_grounded, numbers_said
+from scope_ptz.bench.scoring.episode import Episode, EpisodeCall
+from scope_ptz.bench.scoring.evidence import is_supported_by_tools, numbers_from_tools
 from scope_ptz.bench.tasks.expected import ActionOnly, AnyExpected, NoneThere, Number, Relation, YesNo
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.taskgen.facts.answer_phrasing import right_answers, wrong_answer
@@ -34,13 +34,13 @@ def miscount(task: Task, episode: Episode, setting: FaultSetting, rng: random.Ra
         calls = list(episode.calls)
         for n, number in zip(counts, wrong, strict=True):
             calls[n] = recounted(calls[n], number)
-        made = replace(replayed(episode, calls, setting), text=answer)
-        if is_grounded(task, made):
+        made = replace(replayed(episode, calls, setting), answer=answer)
+        if is_supported_by_tools(task, made):
             return made
     return None
 
 
-def _miscounts(expected: AnyExpected, answer: str, counts: list[Call]) -> Iterator[list[int]]:
+def _miscounts(expected: AnyExpected, answer: str, counts: list[EpisodeCall]) -> Iterator[list[int]]:
     """Yield wrong counts that could explain a wrong answer."""
     numbers = [int((call.result or {})["count"]) for call in counts]
     if not isinstance(expected, Number | NoneThere | YesNo):
@@ -54,7 +54,7 @@ def _miscounts(expected: AnyExpected, answer: str, counts: list[Call]) -> Iterat
             yield [*numbers[:-1], number]
 
 
-def recounted(call: Call, number: int) -> Call:
+def recounted(call: EpisodeCall, number: int) -> EpisodeCall:
     """Return a counting call with another result."""
     return with_result(call, count=number, message=f"{number} of '{call.arguments.get('description')}' in view.")
 
@@ -65,10 +65,10 @@ def misread(task: Task, episode: Episode, setting: FaultSetting, rng: random.Ran
     if answer is None or not any(call.name == "query_answer" for call in episode.calls):
         return None
 
-    def change(call: Call) -> Call:
+    def change(call: EpisodeCall) -> EpisodeCall:
         return with_result(call, answer=answer, message=answer) if call.name == "query_answer" else call
 
-    return replace(changed(episode, setting, change), text=answer)
+    return replace(changed(episode, setting, change), answer=answer)
 
 
 def overlook(task: Task, episode: Episode, setting: FaultSetting, rng: random.Random) -> Episode | None:
@@ -76,13 +76,13 @@ def overlook(task: Task, episode: Episode, setting: FaultSetting, rng: random.Ra
     if not any(call.name == "zoom_to_object" for call in episode.calls) or not isinstance(task.expected, ActionOnly):
         return None
 
-    def change(call: Call) -> Call:
+    def change(call: EpisodeCall) -> EpisodeCall:
         if call.name != "zoom_to_object":
             return call
         result = {"message": "Nothing that fits is in view.", "found": False, "matches": 0}
         return replace(call, result=result, after=call.before)
 
-    return replace(changed(episode, setting, change), text="It is not in view.")
+    return replace(changed(episode, setting, change), answer="It is not in view.")
 
 
 # The answer is wrong
@@ -94,8 +94,8 @@ def make_up(task: Task, episode: Episode, setting: FaultSetting, rng: random.Ran
         answer = wrong_answer(task.expected, rng)
         if answer is None:
             return None
-        if not is_grounded(task, replace(episode, text=answer)):
-            return replace(episode, text=answer)
+        if not is_supported_by_tools(task, replace(episode, answer=answer)):
+            return replace(episode, answer=answer)
     return None
 
 
@@ -105,10 +105,10 @@ def conclude_wrongly(task: Task, episode: Episode, setting: FaultSetting, rng: r
     if isinstance(expected, ActionOnly):
         return None
     if isinstance(expected, Number):
-        others = sorted(n for n in numbers_said(episode) if abs(n - expected.value) > expected.tolerance)
+        others = sorted(n for n in numbers_from_tools(episode) if abs(n - expected.value) > expected.tolerance)
         if others and rng.random() < 0.5:
-            return replace(episode, text=right_answers(expected.model_copy(update={"value": rng.choice(others)}))[0])
+            return replace(episode, answer=right_answers(expected.model_copy(update={"value": rng.choice(others)}))[0])
     answer = wrong_answer(expected, rng)
-    if answer is not None and rng.random() < 0.5 and is_grounded(task, replace(episode, text=answer)):
-        return replace(episode, text=answer)
-    return replace(episode, text=rng.choice(_DECLINES))
+    if answer is not None and rng.random() < 0.5 and is_supported_by_tools(task, replace(episode, answer=answer)):
+        return replace(episode, answer=answer)
+    return replace(episode, answer=rng.choice(_DECLINES))

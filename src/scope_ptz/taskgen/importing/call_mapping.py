@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from scope_ptz.bench.answers.words import plain_words
-from scope_ptz.bench.tasks.findings import Finding
+from scope_ptz.bench.answers import plain_words
+from scope_ptz.bench.tasks.findings import RowFinding
 from scope_ptz.bench.tasks.task import Argument, RequiredCall, ToolName
 from scope_ptz.errors import ToolCallError
 from scope_ptz.taskgen.importing.paper_names import (
@@ -38,11 +38,11 @@ class Expectation:
     """The required calls of a row, as far as they could be mapped, and the findings about the others."""
 
     calls: list[RequiredCall] = field(default_factory=list)
-    findings: list[Finding] = field(default_factory=list)
+    findings: list[RowFinding] = field(default_factory=list)
 
     def note(self, kind: Any, detail: str) -> None:
         """Add a finding."""
-        self.findings.append(Finding(kind=kind, detail=detail[:300]))
+        self.findings.append(RowFinding(kind=kind, detail=detail[:300]))
 
 
 def expected_calls(order_cell: str, arguments_cell: str, *, compare: bool, preset_of: PresetOf) -> Expectation:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, get_args
 
-from scope_ptz.bench.tasks.findings import BLOCKING, MEANINGS, Finding, Kind
+from scope_ptz.bench.tasks.findings import BLOCKING, MEANINGS, FindingKind, RowFinding
 from scope_ptz.bench.tasks.imported import ImportedTask
 from scope_ptz.bench.tasks.task import Category
 from scope_ptz.taskgen.importing.csv_table import read_table
@@ -23,7 +23,7 @@ PAPER_COUNTS: dict[Category, int] = {
 """Tasks per category in the paper, for comparison."""
 
 _MOST_LISTED = 12  # details and line numbers that the text report lists per finding
-_NAMING_LINES: frozenset[Kind] = frozenset({"duplicate", "contradiction", "same-at-every-preset", "id-repeated"})
+_NAMING_LINES: frozenset[FindingKind] = frozenset({"duplicate", "contradiction", "same-at-every-preset", "id-repeated"})
 """Findings whose detail already states the lines."""
 
 
@@ -46,7 +46,7 @@ class Imported:
     notes: tuple[str, ...]
     rows: tuple[ParsedRow, ...]
     ids: dict[int, str]
-    findings: dict[int, tuple[Finding, ...]]
+    findings: dict[int, tuple[RowFinding, ...]]
     tasks: tuple[ImportedTask, ...]
 
     @property
@@ -55,7 +55,7 @@ class Imported:
         ready = {task.line for task in self.tasks}
         return tuple(row for row in self.rows if row.line not in ready)
 
-    def lines_with(self, kind: Kind) -> list[int]:
+    def lines_with(self, kind: FindingKind) -> list[int]:
         """Return the lines of the rows with a kind of finding."""
         return [row.line for row in self.rows if any(finding.kind == kind for finding in self.findings[row.line])]
 
@@ -145,7 +145,7 @@ def report_lines(imported: Imported) -> Iterator[str]:
             yield from _kind_lines(imported, kind)
 
 
-def _kind_lines(imported: Imported, kind: Kind) -> Iterator[str]:
+def _kind_lines(imported: Imported, kind: FindingKind) -> Iterator[str]:
     lines = imported.lines_with(kind)
     if not lines:
         return

@@ -9,8 +9,8 @@ import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from scope_ptz.bench.answers.words import plain_words
-from scope_ptz.bench.tasks.findings import Finding, Kind
+from scope_ptz.bench.answers import plain_words
+from scope_ptz.bench.tasks.findings import FindingKind, RowFinding
 from scope_ptz.taskgen.facts.answer_phrasing import in_words
 from scope_ptz.taskgen.importing.row_reading import ParsedRow
 
@@ -36,9 +36,9 @@ _UNINFORMATIVE = frozenset("the a an is are it there of in on yes no none not sa
 _MOST_ANSWER_WORDS = 6
 
 
-def check_rows(rows: Sequence[ParsedRow]) -> dict[int, tuple[Finding, ...]]:
+def check_rows(rows: Sequence[ParsedRow]) -> dict[int, tuple[RowFinding, ...]]:
     """Return the findings of doubtful rows by line number."""
-    found: dict[int, list[Finding]] = defaultdict(list)
+    found: dict[int, list[RowFinding]] = defaultdict(list)
     for row in rows:
         found[row.line] += _single_row_findings(row)
     for line, finding in _row_group_findings(rows):
@@ -46,7 +46,7 @@ def check_rows(rows: Sequence[ParsedRow]) -> dict[int, tuple[Finding, ...]]:
     return {line: tuple(findings) for line, findings in found.items()}
 
 
-def _single_row_findings(row: ParsedRow) -> Iterator[Finding]:
+def _single_row_findings(row: ParsedRow) -> Iterator[RowFinding]:
     """Yield the findings of a row by itself."""
     if _NOW.search(row.question) and row.sweeps:
         yield _finding("now-but-full")
@@ -80,7 +80,7 @@ def answer_in_question(question: str, answer: str) -> str | None:
     return None
 
 
-def _row_group_findings(rows: Sequence[ParsedRow]) -> Iterator[tuple[int, Finding]]:
+def _row_group_findings(rows: Sequence[ParsedRow]) -> Iterator[tuple[int, RowFinding]]:
     """Yield the line and the finding of every row that conflicts with, or repeats, other rows."""
     by_question: dict[tuple[str, ...], list[ParsedRow]] = defaultdict(list)
     for row in rows:
@@ -100,7 +100,7 @@ def _row_group_findings(rows: Sequence[ParsedRow]) -> Iterator[tuple[int, Findin
             yield from ((row.line, _finding("id-repeated", f"{name}: {_line_list(same)}")) for row in same)
 
 
-def _same_view(rows: Sequence[ParsedRow]) -> Iterator[tuple[int, Finding]]:
+def _same_view(rows: Sequence[ParsedRow]) -> Iterator[tuple[int, RowFinding]]:
     by_answer: dict[tuple[str, ...], list[ParsedRow]] = defaultdict(list)
     for row in rows:
         by_answer[_answer_key(row.answer)].append(row)
@@ -136,5 +136,5 @@ def _line_list(rows: Sequence[ParsedRow]) -> str:
     return "lines " + ", ".join(str(row.line) for row in rows)
 
 
-def _finding(kind: Kind, detail: str = "") -> Finding:
-    return Finding(kind=kind, detail=detail[:300])
+def _finding(kind: FindingKind, detail: str = "") -> RowFinding:
+    return RowFinding(kind=kind, detail=detail[:300])

@@ -8,11 +8,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from scope_ptz.bench.tasks.facts import TaskFacts
-from scope_ptz.bench.tasks.findings import Finding, Kind
+from scope_ptz.bench.tasks.findings import FindingKind, RowFinding
 from scope_ptz.bench.tasks.imported import ImportedTask, Policy
 from scope_ptz.bench.tasks.task import Category, RequiredCall, Scope
-from scope_ptz.bench.tasks.wording import call_in_words
+from scope_ptz.bench.tasks.task_facts import TaskFacts
+from scope_ptz.bench.tasks.task_wording import call_in_words
 from scope_ptz.taskgen.importing.call_mapping import Expectation, expected_calls
 from scope_ptz.taskgen.importing.csv_table import Row
 from scope_ptz.taskgen.importing.paper_names import category_of, compares_arguments, order_of, policy_of, scope_of, spelled
@@ -25,7 +25,7 @@ _DIFFICULTIES: dict[str, Literal["easy", "medium", "hard"]] = {
     "normal": "medium", "2": "medium", "hard": "hard", "difficult": "hard", "high": "hard", "3": "hard",
 }  # fmt: skip
 _MOST_CHARS = 4000  # longer questions are cut
-Note = Callable[[Kind, str], None]
+Note = Callable[[FindingKind, str], None]
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class ParsedRow:
     policy: Policy
     order: Literal["ordered", "any"]
     difficulty: Literal["easy", "medium", "hard"]
-    findings: tuple[Finding, ...]
+    findings: tuple[RowFinding, ...]
 
     @property
     def line(self) -> int:
@@ -69,7 +69,7 @@ class ParsedRow:
         """Whether a call that moves the camera is expected."""
         return any(call.tool in MOVERS for call in self.calls)
 
-    def task(self, dataset: str, name: str, scene_names: SceneNames, findings: tuple[Finding, ...]) -> ImportedTask | None:
+    def task(self, dataset: str, name: str, scene_names: SceneNames, findings: tuple[RowFinding, ...]) -> ImportedTask | None:
         """Return the task, or None when the row cannot be run."""
         if self.scene is None or self.preset is None or self.category is None or any(f.blocks for f in findings):
             return None
@@ -102,10 +102,10 @@ class ParsedRow:
 
 def read_row(row: Row, scene_names: SceneNames) -> ParsedRow:
     """Map the cells of a row, and note everything that is unusual about them."""
-    cells, notes = row.cells, list[Finding]()
+    cells, notes = row.cells, list[RowFinding]()
 
-    def note(kind: Kind, detail: str) -> None:
-        notes.append(Finding(kind=kind, detail=detail[:300]))
+    def note(kind: FindingKind, detail: str) -> None:
+        notes.append(RowFinding(kind=kind, detail=detail[:300]))
 
     question, answer = cells["question"], cells["expected_answer"]
     if not question:

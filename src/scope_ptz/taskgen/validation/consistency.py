@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
-from scope_ptz.bench.answers.strings import same_text
+from scope_ptz.bench.answers import same_text
 from scope_ptz.bench.scoring.coverage import box_directions
 from scope_ptz.bench.tasks.expected import AnyExpected, Choice, NoneThere, Number, Ordering, Relation, Text, YesNo
 from scope_ptz.bench.tasks.task import EvidenceView, Item, Task

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from scope_ptz.bench.answers.reader import agrees, read
+from scope_ptz.bench.answers import agrees, parse_answer
 from scope_ptz.bench.tasks.expected import ActionOnly
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.taskgen.facts.answer_phrasing import right_answers
@@ -53,7 +53,7 @@ def sibling_answers(tasks: Sequence[Task]) -> dict[str, str]:
         others = [twin] if twin else [t for t in later if t.category == task.category and t.expected.kind == task.expected.kind]
         for other in others:
             text = right_answers(other.expected)[0]
-            if agrees(task.expected, read(task.expected, text)) is not True:
+            if agrees(task.expected, parse_answer(task.expected, text)) is not True:
                 found[task.id] = text
                 break
     return found

@@ -6,10 +6,10 @@ import random
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
-from scope_ptz.bench.programs import Equip, Stage
+from scope_ptz.bench.program_runner import MakeToolContext, ProgramRunner
 from scope_ptz.bench.scoring.episode import Episode
 from scope_ptz.bench.scoring.misperceptions import wrong_reads
-from scope_ptz.bench.scoring.verdict import judge
+from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.expected import NoneThere, Number
 from scope_ptz.bench.tasks.task import Task
 from scope_ptz.simulator.pack import Scene
@@ -35,7 +35,7 @@ _FALLBACK_GUESS = "2"  # for a category without a most common answer
 async def validate(
     tasks: Sequence[Task],
     scenes: Mapping[str, Scene],
-    equip: Equip,
+    equip: MakeToolContext,
     *,
     seed: int = 1,
     read_truth: TruthReader = view_truth,
@@ -55,7 +55,7 @@ async def validate(
     """
     report, common, usual = ValidationReport(), common_answers(tasks), common_answers(tasks, presences=True)
     siblings = sibling_answers(tasks)
-    stages = {name: Stage(scene, equip, TASK_CAMERA) for name, scene in scenes.items()}
+    stages = {name: ProgramRunner(scene, equip, TASK_CAMERA) for name, scene in scenes.items()}
     world = ""
     # Tasks are ordered by world, and its layers are released afterwards. All worlds together would take too much memory.
     for number, task in enumerate(sorted(tasks, key=lambda task: task.world), 1):
@@ -90,7 +90,7 @@ def _count(report: ValidationReport, task: Task) -> None:
 class _TaskValidation:
     """All attempts at one task. A program that several attempts share is run once."""
 
-    def __init__(self, report: ValidationReport, task: Task, stage: Stage) -> None:
+    def __init__(self, report: ValidationReport, task: Task, stage: ProgramRunner) -> None:
         self.report, self.task, self.stage = report, task, stage
         self._ran: dict[str, Episode] = {}
 
@@ -112,17 +112,17 @@ class _TaskValidation:
         """Record which fixed answers happen to be right."""
         for attempt in guess_attempts(self.task, usual):
             passed = self.report.guessed.setdefault(attempt.name, set())
-            if judge(self.task, await self._episode(attempt)).headline == "correct":
+            if score_episode(self.task, await self._episode(attempt)).headline == "correct":
                 passed.add(self.task.id)
 
     async def _episode(self, attempt: Attempt) -> Episode:
         key = str([(call.tool, call.arguments) for call in attempt.program])
         if key not in self._ran:
             self._ran[key] = await self.stage.run(self.task, attempt.program, attempt.text, attempt.outcome)
-        return replace(self._ran[key], text=attempt.text, outcome=attempt.outcome)
+        return replace(self._ran[key], answer=attempt.text, outcome=attempt.outcome)
 
     async def _check(self, attempt: Attempt, name: str, *, passes: bool, again: bool = False) -> None:
-        verdict = judge(self.task, await self._episode(attempt))
+        verdict = score_episode(self.task, await self._episode(attempt))
         passed = verdict.headline == "correct"
         self.report.tried[name] += not again
         self.report.passed[name] += passed

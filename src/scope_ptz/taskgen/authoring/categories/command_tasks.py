@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator
 
-from scope_ptz.bench.scoring.episode import Standing
+from scope_ptz.bench.scoring.episode import CameraPosition
 from scope_ptz.bench.tasks.task import Argument, Behaviour, Need, ProgramCall, RequiredCall
 from scope_ptz.taskgen.authoring.categories.single_call_tasks import command
 from scope_ptz.taskgen.authoring.drafts import TaskDraft
@@ -126,7 +126,7 @@ def needs_of(program: list[ProgramCall]) -> tuple[Need, ...]:
     return tuple(dict.fromkeys(found))
 
 
-def after(places: ScenePlaces, at: Standing, call: ProgramCall) -> Standing | None:
+def after(places: ScenePlaces, at: CameraPosition, call: ProgramCall) -> CameraPosition | None:
     """Return where the camera is after a call, or None when a limit would clamp the move."""
     if call.tool == "go_to_preset":
         return preset_at(places.presets[str(call.arguments["name"])])

@@ -1,0 +1,30 @@
+"""Helpers of the answer parser for texts that are not answers, such as what a tool reported."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from scope_ptz.bench.answers.numbers import find_numbers
+from scope_ptz.bench.answers.text import answer_text
+
+
+def numbers_in(text: str) -> set[float]:
+    """Return every number in a text that could be a count.
+
+    Args:
+        text: Any English text.
+
+    Returns:
+        The numbers as values. Measures ("15 degrees"), ordinals and labels ("preset 3") are left out.
+    """
+    return {number.value for number in find_numbers(answer_text(text), ())}
+
+
+def is_stated(text: str, wordings: Sequence[str]) -> bool:
+    """Return whether a text names something without denying it.
+
+    Args:
+        text: Any English text.
+        wordings: The wordings of the thing.
+    """
+    return any(not mention.denied for mention in answer_text(text).mentions({"thing": wordings}))

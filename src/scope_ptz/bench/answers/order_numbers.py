@@ -1,0 +1,96 @@
+"""The numbers beside the things of an order, and the place where the final order of an answer begins."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from itertools import pairwise
+
+from scope_ptz.bench.answers.number_words import number_at
+from scope_ptz.bench.answers.text import AnswerText, NameMention
+
+_CONCLUDES = frozenset(
+    {"so", "therefore", "thus", "hence", "order", "ordering", "ranking", "ranked", "answer", "sorted", "conclusion", "from"}
+)
+_NEAR_FIRST = frozenset({"nearest", "closest", "fewest", "smallest", "least", "lowest", "shortest"})
+_FAR_FIRST = frozenset({"farthest", "furthest", "most", "largest", "biggest", "highest", "tallest"})
+_NUMBER_NEXT = re.compile(r"\s*([:=(|~≈]|\s[-–—]\s|→)[\s(~≈]*")
+_LINKING_WORDS = frozenset(
+    {"is", "are", "at", "about", "approximately", "roughly", "with", "stands", "has", "have", "only", "just", "around"}
+)
+
+
+def concluding(text: AnswerText, mentions: Sequence[NameMention], names: set[str]) -> int:
+    """Return the position of the word from which the final order counts.
+
+    It is the last concluding word ("so", "therefore") that all names still follow. Otherwise it is the list without numbers after a
+    table of numbers, if there is one. Otherwise it is 0.
+    """
+    last = 0
+    for at, word in enumerate(text.words):
+        after = [w.text for w in text.words[at + 1 : at + 5]]
+        is_one = "to" in after if word.text == "from" else not (word.text == "order" and after[:1] == ["to"])
+        if word.text in _CONCLUDES and is_one and {m.name for m in mentions if m.start > at} == names:
+            last = at
+    return last or _listed_after_numbers(text, mentions, names)
+
+
+def _listed_after_numbers(text: AnswerText, mentions: Sequence[NameMention], names: set[str]) -> int:
+    numbered = [bool(_numbers(text, [m])) for m in mentions]
+    begins = numbered.index(False) if False in numbered else 0
+    listed = mentions[begins : begins + len(names)]
+    clauses = {text.words[m.start].clause for m in listed}
+    if begins < len(names) or any(numbered[begins : begins + len(names)]) or {m.name for m in listed} != names or len(clauses) > 1:
+        return 0
+    return next(at for at, word in enumerate(text.words) if word.clause in clauses)
+
+
+def contradicts_its_numbers(text: AnswerText, mentions: Sequence[NameMention], order: Sequence[str], first: Sequence[str]) -> bool:
+    """Return whether the counts or distances in an answer contradict its order.
+
+    Args:
+        text: The answer.
+        mentions: The places where things are named.
+        order: The stated order.
+        first: The words for the first end, such as "most" or "nearest".
+    """
+    falling, rising = bool(_FAR_FIRST.intersection(first)), bool(_NEAR_FIRST.intersection(first))
+    if falling == rising:
+        return False
+    numbers = _numbers(text, mentions)
+    values = [numbers[name] for name in order if name in numbers]
+    return any(max(one) < min(two) if falling else min(one) > max(two) for one, two in pairwise(values))
+
+
+def _numbers(text: AnswerText, mentions: Sequence[NameMention]) -> dict[str, set[float]]:
+    """Return the numbers of each thing: "4 skips", "skips (4)", "skips: 4", "the skip is 11 m away"."""
+    numbers = dict[str, set[float]]()
+    words = text.words
+    for mention in mentions:
+        value = _after(text, mention)
+        if value is None:
+            for start in range(max(0, mention.start - 3), mention.start):
+                number, end = number_at(words, start)
+                between = words[start + 1 : mention.start + 1]
+                plain = all(not w.gap.strip() for w in between) and not any(w.text in ("m", "metre", "metres") for w in between)
+                if number is not None and 0 <= mention.start - end <= 1 and plain:
+                    value = number
+                    break
+        if value is not None:
+            numbers.setdefault(mention.name, set()).add(value)
+    return numbers
+
+
+def _after(text: AnswerText, mention: NameMention) -> float | None:
+    words, at = text.words, mention.end
+    if at >= len(words):
+        return None
+    marked = _NUMBER_NEXT.fullmatch(words[at].gap) is not None
+    while at < len(words) and words[at].text in _LINKING_WORDS and at < mention.end + 3 and (marked or not words[at].gap.strip()):
+        marked, at = True, at + 1
+    value, end = number_at(words, at)
+    is_distance = end < len(words) and words[end].text in ("metre", "metres") and not words[at].gap.strip()
+    if not (marked or is_distance):
+        return None
+    is_ordinal = end < len(words) and words[end].gap == "" and words[end].text in ("st", "nd", "rd", "th")
+    return None if is_ordinal else value

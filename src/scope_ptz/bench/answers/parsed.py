@@ -1,0 +1,32 @@
+"""The results of parsing an answer: a typed value, a declined answer, or an unreadable one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+AnswerValue = float | bool | str | frozenset[str] | tuple[str, ...] | tuple[frozenset[int], frozenset[int]]
+
+
+@dataclass(frozen=True, slots=True)
+class ParsedValue:
+    """The value that an answer states.
+
+    For a description the value is a pair: the indices of the facts that are stated, and of the contradictions that are stated.
+    """
+
+    value: AnswerValue
+
+
+@dataclass(frozen=True, slots=True)
+class Declined:
+    """An answer that says that it cannot tell."""
+
+
+@dataclass(frozen=True, slots=True)
+class Unreadable:
+    """An answer that is not clearly one value, with the reason. It is never guessed."""
+
+    reason: str
+
+
+ParsedAnswer = ParsedValue | Declined | Unreadable

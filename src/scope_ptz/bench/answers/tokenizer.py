@@ -1,0 +1,141 @@
+"""Split a text into normalised words, without markup and with one spelling of each word."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import lru_cache
+
+_SPELLINGS = {
+    "color": "colour", "gray": "grey", "center": "centre", "meter": "metre", "tire": "tyre", "curb": "kerb",
+    "sidewalk": "pavement", "license": "licence", "story": "storey", "aluminum": "aluminium", "colored": "coloured",
+}  # fmt: skip
+_MEASURES = {"°": "degree", "deg": "degree", "%": "percent", "m": "metre", "km": "kilometre", "s": "second", "sec": "second"}
+_IRREGULAR = {
+    "people": "person", "men": "man", "women": "woman", "children": "child", "persons": "person",
+    "loaves": "loaf", "shelves": "shelf", "leaves": "leaf", "knives": "knife",
+}  # fmt: skip
+_IDIOMS = (
+    "without a doubt", "without doubt", "no doubt", "no problem", "of course", "for sure", "not only", "no wonder",
+    "needless to say", "as you can see", "not surprisingly", "no question", "no mistake", "even so", "even though",
+)  # fmt: skip
+_CONTRACTIONS = (
+    (re.compile(r"\bcan'?t\b|\bcannot\b"), "can not"),
+    (re.compile(r"\bwon't\b"), "will not"),
+    (re.compile(r"n't\b"), " not"),
+    (re.compile(r"\b(it|there|that|he|she|what|here|one|everything|who|let)'s\b"), r"\1 is"),
+    (re.compile(r"\b(i|we|you|they)'(m|re|ve|d|ll)\b"), r"\1"),
+    (re.compile(r"(?<=\d)\+(?!\s*\d|\w)"), " or more"),
+)
+_WORD = re.compile(r"\d+(?:,\d{3})+(?:\.\d+)?|\d+(?:\.\d+)?|[^\W\d_]+(?:'[^\W\d_]+)*|[°%]")
+_TAGS = re.compile(r"</?(?:b|i|u|em|strong|p|br|code|answer)\s*/?>", re.IGNORECASE)
+_LIST_NUMBER = re.compile(r"^\s*(\d{1,3})[.)]\s+", re.MULTILINE)
+_HARD = re.compile(r"[!?;\n]|\.(?!\d)|\s[—–-]\s|—")
+
+
+@dataclass(frozen=True, slots=True)
+class Word:
+    """A word of a text.
+
+    Attributes:
+        text: The word in lower case and British spelling.
+        gap: The characters between the previous word and this one.
+        clause: Number of its clause. A clause ends at a full stop, a dash, a semicolon or a new line.
+        segment: Number of its segment. A segment also ends at a comma, at a colon and before "but".
+    """
+
+    text: str
+    gap: str
+    clause: int
+    segment: int
+
+
+def clean(text: str) -> str:
+    """Return a text without markup and source notes, with plain quotation marks, dashes and spaces. Capitals are kept."""
+    text = unicodedata.normalize("NFKC", "".join(_plain_letter(letter) for letter in text))
+    text = re.sub(r"\s*\((?:source:|seen by)[^)]*\)", "", text, flags=re.IGNORECASE)
+    text = re.sub(r"[‘’´`]", "'", re.sub(r"[“”„«»]", '"', text)).replace("−", "-")
+    text = re.sub(r"\*\*|__|^#+\s*|^>\s+(?![\s\d])|(?<!\w)\*(?=\w)|(?<=\w)\*(?!\w)", "", text, flags=re.MULTILINE)
+    text = re.sub(_TAGS, "", text)
+    text = re.sub(r"^\s*[-*•]\s+", "", text, flags=re.MULTILINE)
+    numbers = [int(number) for number in _LIST_NUMBER.findall(text)]
+    is_list = len(numbers) > 1 and numbers == list(range(1, len(numbers) + 1))
+    return (_LIST_NUMBER.sub("", text) if is_list else text).strip()
+
+
+def _plain_letter(letter: str) -> str:
+    """Return a character without formatting: digits of any script as 0 to 9, superscripts and fractions separated."""
+    kind = unicodedata.category(letter)
+    if kind == "Cf":
+        return ""
+    if kind == "Nd":
+        return str(unicodedata.decimal(letter))
+    if kind == "No" and "⁄" in unicodedata.normalize("NFKC", letter):
+        return f" {letter}"
+    return f"^{letter}" if kind == "No" and unicodedata.decomposition(letter).startswith("<su") else letter
+
+
+def plain_words(text: str) -> list[str]:
+    """Return the normalised words of a text, as they are compared."""
+    return [w.text for w in words_of(clean(text))]
+
+
+def _british(word: str) -> str:
+    if word.endswith("s") and word[:-1] in _SPELLINGS:
+        return _SPELLINGS[word[:-1]] + "s"
+    return _SPELLINGS.get(word, word)
+
+
+def words_of(text: str) -> list[Word]:
+    """Return the words of a cleaned text in order, with their clauses and segments."""
+    low = text.lower()
+    for pattern, plain in _CONTRACTIONS:
+        low = pattern.sub(plain, low)
+    for idiom in _IDIOMS:
+        low = re.sub(rf"\b{idiom}\b", " ", low)
+    words, end, clause, segment = list[Word](), 0, 0, 0
+    for match in _WORD.finditer(low):
+        gap, word = low[end : match.start()], match.group()
+        if words and words[-1].text[0].isdigit() and not gap.strip():
+            word = _MEASURES.get(word, word)
+        end = match.end()
+        if words and _HARD.search(gap):
+            clause += 1
+        if words and (_HARD.search(gap) or re.search(r"[,:]", gap) or word in ("but", "whereas", "while", "although", "so")):
+            segment += 1
+        words.append(Word(_british(word), gap, clause, segment))
+    return words
+
+
+def names_any(text: str, wordings: Iterable[str]) -> bool:
+    """Return whether a text contains one of the wordings, no matter what it says about it."""
+    words = plain_words(text)
+    for phrase in (plain_words(w) for w in wordings):
+        for at in range(len(words) - len(phrase) + 1):
+            if all(same_word(words[at + i], p) for i, p in enumerate(phrase)):
+                return True
+    return False
+
+
+@lru_cache(maxsize=4096)
+def _forms(word: str) -> frozenset[str]:
+    forms = {word, _IRREGULAR.get(word, word)}
+    if len(word) > 3 and word.endswith("s") and not word.endswith("ss"):
+        forms.add(word[:-1])
+        if word.endswith("es"):
+            forms.add(word[:-2])
+        if word.endswith("ies"):
+            forms.add(word[:-3] + "y")
+    return frozenset(forms)
+
+
+def same_word(one: str, other: str) -> bool:
+    """Return whether two words are equal apart from singular and plural."""
+    return one == other or one in _forms(other) or other in _forms(one)
+
+
+def all_wordings(name: str, further: Iterable[str]) -> tuple[str, ...]:
+    """Return all wordings of an option: its name, then its further wordings."""
+    return name, *further

@@ -1,0 +1,128 @@
+"""The human baseline: runs of people, scored by the same checks and stored in the same records as runs of models."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from scope_ptz.agent.timing import Timings
+from scope_ptz.agent.trace import Trace, picture_of, read_trace
+from scope_ptz.bench.scoring.episode import PresetViewpoints, episode_of
+from scope_ptz.bench.scoring.error_modes import error_mode
+from scope_ptz.bench.scoring.trials import CheckRecord, Evaluation, ModelCard, RunCard, Trial
+from scope_ptz.bench.scoring.verdict import score_episode
+from scope_ptz.bench.tasks.files import digest_of
+from scope_ptz.bench.tasks.task import Task
+from scope_ptz.bench.tasks.task_wording import facts_of
+from scope_ptz.errors import InputError, OutputError, TraceError
+from scope_ptz.simulator.models import SceneFile
+from scope_ptz.version import __version__
+
+RESULT = "evaluation.json"
+DIGEST_CHARS = 16
+
+
+def human_run_card(by: str, split: str, tasks: Sequence[Task], started: str, max_steps: int) -> RunCard:
+    """Return the run card of a person, who is both planner and perception."""
+    who = ModelCard(name=by, provider="person")
+    return RunCard(
+        run_id=f"human-{by}",
+        started=started,
+        package_version=__version__,
+        engine_version="none",
+        dataset=tasks[0].dataset,
+        dataset_digest=digest_of(tasks)[:DIGEST_CHARS],
+        split=split,
+        planner=who,
+        perception=who,
+        max_steps=max_steps,
+        contended=False,
+    )
+
+
+def human_trial(task: Task, scene: SceneFile, trace: Trace, sample: str) -> Trial:
+    """Score a finished run by the task's checks. The person saw the camera's view before every decision."""
+    episode = episode_of(trace, PresetViewpoints.of(scene), planner_sees=True)
+    verdict, ended = score_episode(task, episode), trace.ended
+    viewpoint = next(preset.viewpoint for preset in scene.presets if preset.name == task.preset)
+    return Trial(
+        task=facts_of(task, viewpoint),
+        sample=sample,
+        headline=verdict.headline,
+        reason=verdict.reason,
+        error_mode=error_mode(task, episode),
+        checks=tuple(CheckRecord(name=c.name, passed=c.passed, reason=c.reason) for c in verdict.checks),
+        collateral=verdict.collateral,
+        outcome=episode.outcome,
+        answer=episode.answer,
+        steps=ended.steps if ended else len(trace.decisions),
+        tool_calls=dict(Counter(call.outcome.call.name for call in trace.calls if call.fault != "skipped")),
+        bad_calls=sum(call.fault == "bad_call" for call in trace.calls),
+        perception_failures=sum(call.fault == "perception" for call in trace.calls),
+        timings=ended.timings if ended else Timings(),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class StoredHumanRun:
+    """A person's run: its trace, and the pictures in its folder."""
+
+    trace: Trace
+
+    def picture(self, name: str) -> bytes | None:
+        """Return a picture by its name in the trace; None if it does not exist.
+
+        Raises:
+            TraceError: The name leads outside the folder.
+        """
+        path = picture_of(self.trace.folder, name)
+        try:
+            return path.read_bytes()
+        except OSError:
+            return None
+
+
+def open_run(result: Path, sample: str) -> StoredHumanRun:
+    """Open a run of a result by its name (``Trial.sample``) from its folder next to the result.
+
+    Raises:
+        TraceError: The run cannot be read, or its name leads outside the folder.
+    """
+    folder = result.parent / sample
+    if sample in {"", ".", ".."} or Path(sample).name != sample:
+        raise TraceError(f"{result} names a run outside its own folder: {sample}.")
+    return StoredHumanRun(read_trace(folder))
+
+
+def write_result(evaluation: Evaluation, folder: Path) -> Path:
+    """Write the result atomically, so that an interruption leaves the previous one.
+
+    Raises:
+        OutputError: The file cannot be written.
+    """
+    path, fresh = folder / RESULT, folder / f"{RESULT}.new"
+    try:
+        fresh.write_text(evaluation.model_dump_json(indent=1) + "\n", "utf-8")
+        fresh.replace(path)
+    except OSError as error:
+        raise OutputError(f"The result {path} cannot be written: {error.strerror}.") from error
+    return path
+
+
+def read_result(path: Path) -> Evaluation:
+    """Read a result of ``scope bench human``.
+
+    Raises:
+        InputError: The file cannot be read or holds no result.
+    """
+    try:
+        return Evaluation.model_validate_json(path.read_bytes())
+    except OSError as error:
+        raise InputError(f"The result {path} cannot be read: {error.strerror}.") from error
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        raise InputError(f"{path} holds no result: {'.'.join(map(str, first['loc']))}: {first['msg']}.") from error

@@ -1,0 +1,123 @@
+"""The deciding judge: whose verdict counts for runs that only a judge can score, if several judges have judged them.
+
+One judge decides all such runs of a log, so that no accuracy mixes two judges. It is the judge that was requested by name, else the
+one that gave the first verdict on most of the runs. Adding another judge does not change it.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from scope_ptz.bench.judging.judgement_tally import VERDICTS
+from scope_ptz.bench.scoring.error_modes import ErrorMode
+from scope_ptz.bench.scoring.trials import Judgement, Trial
+from scope_ptz.errors import InputError
+
+
+def judge_of(judgement: Judgement) -> str:
+    """Return the name of the judge. One model with two prompts counts as two judges."""
+    return f"{judgement.judge} ({judgement.prompt})"
+
+
+def first_verdict(judgements: Iterable[Judgement]) -> Judgement | None:
+    """Return the first judgement that is a verdict."""
+    return next((j for j in judgements if j.verdict in VERDICTS), None)
+
+
+def deciding_judge(trials: Iterable[Trial], requested: str = "") -> str | None:
+    """Return the judge that decides the runs of a log that only a judge can score.
+
+    Args:
+        trials: The trials of the log.
+        requested: The requested judge, with or without its prompt. Without a verdict of this judge, another one decides.
+
+    Returns:
+        None if no judge has given a verdict on such a run.
+    """
+    first, further = Counter[str](), Counter[str]()
+    for trial in trials:
+        if trial.scored_by == "judge":
+            by_judge = list(dict.fromkeys(judge_of(j) for j in trial.judgements if j.verdict in VERDICTS))
+            first.update(by_judge[:1])
+            further.update(by_judge)
+    named = [judge for judge in further if requested and requested in (judge, judge.partition(" (")[0])]
+    candidates = named or list(further)
+    return max(candidates, key=lambda judge: (first[judge], further[judge]), default=None)
+
+
+def verdict_by(judgements: Sequence[Judgement], judge: str | None = None) -> dict[str, Any]:
+    """Return the headline, the reason and the error mode of a run that only a judge can score.
+
+    A later failure of the judge's server does not withdraw an earlier verdict.
+
+    Args:
+        judgements: The judgements of the run.
+        judge: The deciding judge; None for the judge that came first.
+    """
+    own = [j for j in judgements if judge is None or judge_of(j) == judge]
+    verdict = first_verdict(own)
+    if verdict is not None:
+        mode = (verdict.error_mode or ErrorMode.REASONING) if verdict.verdict == "incorrect" else None
+        return {"headline": verdict.verdict, "reason": verdict.reason or f"said {verdict.judge}", "error_mode": mode}
+    last = next((j for j in reversed(own) if j.verdict != "failed"), own[-1] if own else None)
+    if last is not None:
+        reason = f"the judge {last.judge} gave no verdict ({last.verdict})"
+    elif judgements:
+        reason = f"{judge} has given no verdict, and another judge does not count here"
+    else:
+        reason = "no judge has said anything yet, and there are no checks of this answer"
+    return {"headline": "unscored", "reason": reason, "error_mode": None}
+
+
+def decided_by_one_judge(trials: Sequence[Trial], requested: str = "") -> list[Trial]:
+    """Return the trials of a log with the verdicts of the deciding judge where only a judge can score them.
+
+    In these trials the judgements of the deciding judge come first.
+    """
+    judge = deciding_judge(trials, requested)
+    if judge is None:
+        return list(trials)
+    return [_by(trial, judge) if trial.scored_by == "judge" else trial for trial in trials]
+
+
+def _by(trial: Trial, judge: str) -> Trial:
+    ordered = tuple(sorted(trial.judgements, key=lambda j: judge_of(j) != judge))
+    verdict = {} if trial.headline == "infrastructure" else verdict_by(ordered, judge)
+    return trial.model_copy(update={**verdict, "judgements": ordered})
+
+
+def check_decides(trials: Sequence[Trial], requested: str) -> None:
+    """Check that a judge can decide.
+
+    Raises:
+        InputError: The judge has given no verdict on a run that only a judge can score.
+    """
+    found = deciding_judge(trials, requested)
+    if found is None or requested not in (found, found.partition(" (")[0]):
+        known = dict.fromkeys(judge_of(j) for t in trials if t.scored_by == "judge" for j in t.judgements if j.verdict in VERDICTS)
+        raise InputError(
+            f"'{requested}' has given no verdict on a run that only a judge can score, so it cannot decide. "
+            f"Those that have: {', '.join(known) or 'none'}."
+        )
+
+
+def decider_of(trials: Iterable[Trial]) -> str | None:
+    """Return the judge whose verdicts are the headlines of the runs that only a judge can score."""
+    rows = (t for t in trials if t.scored_by == "judge" and t.headline in VERDICTS)
+    return next((judge_of(first) for trial in rows if (first := first_verdict(trial.judgements)) is not None), None)
+
+
+def other_judges_note(trials: Sequence[Trial]) -> str:
+    """Return a note about judges that do not decide; empty if there are none."""
+    judge = decider_of(trials)
+    rows = [trial for trial in trials if trial.scored_by == "judge"]
+    others = [o for o in dict.fromkeys(judge_of(j) for t in rows for j in t.judgements if j.verdict in VERDICTS) if o != judge]
+    if judge is None or not others:
+        return ""
+    runs = f"the {len(rows)} runs that only a judge can score" if len(rows) > 1 else "the run that only a judge can score"
+    return (
+        f"{judge} decides on {runs}; the verdicts of {', '.join(others)} are kept and do not change the accuracy "
+        "(to let another judge decide: scope bench rescore LOG --decides NAME)"
+    )

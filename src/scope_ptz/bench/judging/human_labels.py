@@ -1,0 +1,92 @@
+"""Human labels of runs: one JSON line each, in a file next to the log.
+
+A later line by the same person about the same run replaces an earlier one. Lines are only appended: an interruption loses nothing.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from scope_ptz.bench.judging.json_lines import append_line, whole_lines
+from scope_ptz.bench.scoring.error_modes import ErrorMode
+from scope_ptz.bench.scoring.trials import Evaluation, Label
+from scope_ptz.errors import InputError
+
+SUFFIX = ".labels.jsonl"
+
+
+class LabelRow(BaseModel):
+    """A label as a line of the file. ``sample`` is the run's name in its log, ``at`` is when the label was given."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    sample: str
+    by: str = Field(min_length=1)
+    verdict: Literal["correct", "incorrect", "unclear"]
+    error_mode: ErrorMode | None = None
+    note: str = ""
+    at: datetime
+
+    def label(self) -> Label:
+        """Return the label without the run and the time."""
+        return Label(by=self.by, verdict=self.verdict, error_mode=self.error_mode, note=self.note)
+
+
+def labels_file(log: Path) -> Path:
+    """Return the path of the labels of a log."""
+    return log.with_name(log.name + SUFFIX)
+
+
+def read_labels(path: Path) -> tuple[LabelRow, ...]:
+    """Read the newest label of each person about each run; none if there is no file.
+
+    An incomplete last line is ignored.
+
+    Raises:
+        InputError: The file is damaged in another way.
+    """
+    newest: dict[tuple[str, str], LabelRow] = {}
+    for number, line in whole_lines(path):
+        row = _row(line, path, number)
+        newest[row.sample, row.by] = row
+    return tuple(newest.values())
+
+
+def _row(line: str, path: Path, number: int) -> LabelRow:
+    try:
+        return LabelRow.model_validate(json.loads(line))
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        where = ".".join(str(part) for part in first["loc"])
+        raise InputError(f"{path}, line {number} is no label: {where}: {first['msg']}.") from error
+    except ValueError as error:
+        raise InputError(f"{path}, line {number} is no label: {error}.") from error
+
+
+def add_label(path: Path, label: Label, sample: str) -> LabelRow:
+    """Append a label.
+
+    Raises:
+        OutputError: The file cannot be written.
+    """
+    row = LabelRow(sample=sample, at=datetime.now(UTC), **label.model_dump())
+    append_line(path, row.model_dump_json())
+    return row
+
+
+def with_labels(evaluation: Evaluation, rows: Iterable[LabelRow]) -> Evaluation:
+    """Return the evaluation with human labels in its trials."""
+    by_sample: dict[str, list[Label]] = {}
+    for row in rows:
+        by_sample.setdefault(row.sample, []).append(row.label())
+    trials = tuple(
+        trial.model_copy(update={"labels": (*trial.labels, *by_sample[trial.sample])}) if trial.sample in by_sample else trial
+        for trial in evaluation.trials
+    )
+    return evaluation.model_copy(update={"trials": trials})

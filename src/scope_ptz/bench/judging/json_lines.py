@@ -1,0 +1,53 @@
+"""Append-only files of JSON lines. A line that an interruption left incomplete counts as never written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from scope_ptz.errors import InputError, OutputError
+
+
+def whole_lines(path: Path) -> list[tuple[int, str]]:
+    """Return the complete lines of a file that are not blank, with their numbers; none if there is no file.
+
+    Raises:
+        InputError: The file cannot be read.
+    """
+    try:
+        *lines, _ = path.read_bytes().decode("utf-8").split("\n")
+    except FileNotFoundError:
+        return []
+    except OSError as error:
+        raise InputError(f"{path} cannot be read: {error.strerror}.") from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path} is no text: {error.reason} at byte {error.start}.") from error
+    return [(number, line) for number, line in enumerate(lines, 1) if line.strip()]
+
+
+def append_line(path: Path, line: str) -> None:
+    """Append a line. An incomplete last line is removed first.
+
+    Raises:
+        OutputError: The file cannot be written.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with path.open("a+b") as file:
+            file.truncate(_finished(file.seek(0, 2), path))
+            file.write(line.encode("utf-8") + b"\n")
+    except OSError as error:
+        raise OutputError(f"{path} cannot be written: {error.strerror}.") from error
+
+
+def _finished(size: int, path: Path, step: int = 4096) -> int:
+    """Return how many bytes at the start of a file are complete lines."""
+    with path.open("rb") as file:
+        at = size
+        while at > 0:
+            start = max(0, at - step)
+            file.seek(start)
+            found = file.read(at - start).rfind(b"\n")
+            if found != -1:
+                return start + found + 1
+            at = start
+    return 0

@@ -1,0 +1,99 @@
+"""Count judgements by result, and find the runs that still need a judgement."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from scope_ptz.bench.judging.rubrics import prompt_version
+from scope_ptz.bench.scoring.trials import Judgement, Trial
+
+VERDICTS = ("correct", "incorrect")
+_MOST_CHARS = 300
+
+
+@dataclass(frozen=True, slots=True)
+class JudgementTally:
+    """Numbers of judgements by result. ``failure`` is the reason of the first failed one, on one line."""
+
+    verdicts: int = 0
+    unparseable: int = 0
+    failed: int = 0
+    failure: str = ""
+
+    @classmethod
+    def of(cls, judgements: Iterable[Judgement]) -> JudgementTally:
+        """Count judgements."""
+        made = list(judgements)
+        failed = [judgement.reason for judgement in made if judgement.verdict == "failed"]
+        return cls(
+            verdicts=sum(judgement.verdict in VERDICTS for judgement in made),
+            unparseable=sum(judgement.verdict == "unparseable" for judgement in made),
+            failed=len(failed),
+            failure=" ".join(failed[0].split())[:_MOST_CHARS] if failed else "",
+        )
+
+    def __add__(self, other: JudgementTally) -> JudgementTally:
+        return JudgementTally(
+            self.verdicts + other.verdicts, self.unparseable + other.unparseable, self.failed + other.failed,
+            self.failure or other.failure,
+        )  # fmt: skip
+
+    @property
+    def made(self) -> int:
+        """Number of all judgements."""
+        return self.verdicts + self.unparseable + self.failed
+
+    @property
+    def summary(self) -> str:
+        """The numbers in words."""
+        return f"{self.verdicts} with a verdict, {self.unparseable} unparseable, {self.failed} failed"
+
+
+def without_verdict(trial: Trial) -> bool:
+    """Return whether only a judge can score a run and none has given a verdict. Such a run counts neither as right nor as wrong."""
+    return trial.scored_by == "judge" and trial.headline == "unscored"
+
+
+def not_judged(trial: Trial) -> bool:
+    """Return whether a run without a verdict still needs a judgement.
+
+    It was not judged at all, its judge's server failed, or only judges that do not decide have judged it.
+    """
+    return without_verdict(trial) and not any(judgement.verdict == "unparseable" for judgement in trial.judgements)
+
+
+def requested_judgements(trials: Iterable[Trial], judge: str, repeats: int) -> list[Judgement | None]:
+    """Return the requested judgements of every run by a judge with the current prompt.
+
+    Runs that infrastructure broke are not judged.
+
+    Args:
+        trials: The runs.
+        judge: The judge.
+        repeats: Number of judgements per run.
+
+    Returns:
+        The judgements; None for each that is still missing.
+    """
+    found: list[Judgement | None] = []
+    for trial in trials:
+        if trial.headline != "infrastructure":
+            own = {j.repeat: j for j in trial.judgements if (j.judge, j.prompt) == (judge, prompt_version())}
+            found += [own.get(number) for number in range(repeats)]
+    return found
+
+
+def judged_by(trials: Iterable[Trial], judge: str, repeats: int) -> str | None:
+    """Return a judge that has judged every run ``repeats`` times without a failure; None if there is none.
+
+    Args:
+        trials: The runs.
+        judge: The only judge to consider; empty for any.
+        repeats: Number of judgements per run.
+    """
+    rows = list(trials)
+    names = [judge] if judge else dict.fromkeys(j.judge for trial in rows for j in trial.judgements)
+    return next(
+        (n for n in names if all(j is not None and j.verdict != "failed" for j in requested_judgements(rows, n, repeats))), None
+    )

@@ -1,0 +1,95 @@
+"""Run programs of tool calls as an agent would, with the real tools and the simulated camera, fast and in memory.
+
+The caller chooses the perception backend and the place for pictures. Blank frames are enough for backends that use the ground
+truth.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from scope_ptz.bench.scoring.episode import CameraPosition, Episode, EpisodeCall, FrameGeometry, SavedPicture, observations_of
+from scope_ptz.bench.tasks.task import ProgramCall, Task
+from scope_ptz.camera.base import Camera, Frame, FrameOrigin
+from scope_ptz.camera.simulated import SimulatedCamera
+from scope_ptz.errors import PerceptionError, ToolCallError, UnknownNameError
+from scope_ptz.geometry import Perspective
+from scope_ptz.simulator.clock import SceneClock
+from scope_ptz.simulator.pack import Scene
+from scope_ptz.tools.context import ToolContext
+from scope_ptz.tools.registry import run_tool
+
+MakeToolContext = Callable[[Camera], ToolContext]
+"""Creates the tool context of a camera, with perception and a place for pictures."""
+
+
+class BlankCamera(SimulatedCamera):
+    """A simulated camera whose frames know their origin but are blank, because rendering is most of the work."""
+
+    def __init__(self, scene: Scene, *, clock: SceneClock, width: int, height: int) -> None:
+        super().__init__(scene, clock=clock, width=width, height=height)
+        self._scene_name = scene.name
+        self._blank = np.zeros((height, width, 3), np.uint8)
+
+    async def frame(self) -> Frame:
+        pose, time_s = await self.pose(), self.clock.now_s()
+        hfov_deg = self.info.optics.hfov_deg(pose.zoom)
+        view = Perspective(pose.pan_deg, pose.tilt_deg, hfov_deg, self.info.frame_width, self.info.frame_height)
+        origin = FrameOrigin(self._scene_name, self.viewpoint, pose, time_s)
+        return Frame(image=self._blank, pose=pose, hfov_deg=hfov_deg, time_s=time_s, projection=view, origin=origin)
+
+
+class ProgramRunner:
+    """Runs programs on a scene.
+
+    Args:
+        scene: The scene.
+        make_context: Creates the tool context of a camera.
+        geometry: Size and lens of the frames.
+    """
+
+    def __init__(self, scene: Scene, make_context: MakeToolContext, geometry: FrameGeometry) -> None:
+        self.scene, self.make_context, self.geometry = scene, make_context, geometry
+
+    async def run(self, task: Task, program: Sequence[ProgramCall], text: str, outcome: str = "answered") -> Episode:
+        """Run a program from the task's start. After a failed call the program continues.
+
+        Args:
+            task: The task that gives the start.
+            program: The calls.
+            text: The final answer of the run.
+            outcome: How the run ends.
+        """
+        clock = SceneClock(task.time_s)
+        camera = BlankCamera(self.scene, clock=clock, width=self.geometry.width, height=self.geometry.height)
+        with clock.hold():
+            await camera.go_to_preset(task.preset)
+        context = self.make_context(camera)
+        start = CameraPosition(camera.viewpoint, await camera.pose())
+        calls, pictures, before = list[EpisodeCall](), list[SavedPicture](), start
+        for step in program:
+            time_s = clock.now_s()
+            result, error, fault = None, None, None
+            try:
+                result = (await run_tool(context, step.tool, dict(step.arguments))).model_dump(mode="json")
+            except (ToolCallError, UnknownNameError) as wrong:
+                error, fault = str(wrong), "bad_call"
+            except PerceptionError as failed:
+                error, fault = str(failed), "perception"
+            after = CameraPosition(camera.viewpoint, await camera.pose())
+            call = EpisodeCall(step.tool, step.arguments, before, after, result, error, fault, time_s)
+            calls.append(with_observations(call, self.geometry))
+            if result is not None and step.tool == "take_image":
+                pictures.append(SavedPicture(str(result["file"])))
+            before = after
+        return Episode(task.instruction, start, tuple(calls), before, text, outcome, tuple(pictures))
+
+
+def with_observations(call: EpisodeCall, geometry: FrameGeometry) -> EpisodeCall:
+    """Return a call with the observations that it made."""
+    observations = observations_of(call, geometry) if call.succeeded else ()
+    return EpisodeCall(
+        call.name, call.arguments, call.before, call.after, call.result, call.error, call.fault, call.time_s, observations
+    )

@@ -1,0 +1,38 @@
+"""Names of splits and models as reports show them."""
+
+from __future__ import annotations
+
+from pathlib import PurePath
+
+from scope_ptz.bench.scoring.trials import ModelCard
+from scope_ptz.registry import Model
+
+ASKED, LISTED = "model", ("/v1/models id", "/v1/models root")
+"""Keys of what a server reported: the requested name, and the entries of its list of models."""
+
+
+def split_name(split: str) -> str:
+    """Return the name of a split. For a task file it is the file name without its folder."""
+    return PurePath(split.replace("\\", "/")).name or split
+
+
+def served_instead(card: ModelCard, model: Model | None) -> str | None:
+    """Return the name of the model that a server served instead of the requested one.
+
+    An alias is not another model if the server's list says which model it stands for.
+
+    Returns:
+        None if the requested model was served or the served model is unknown.
+    """
+    reported = [card.reported[key] for key in (ASKED, *LISTED) if card.reported.get(key)]
+    if model is None or not reported:
+        return None
+    requested = {_plain(name) for name in (*model.served_names(), card.name)}
+    served = reported[0]
+    is_alias = card.reported.get(LISTED[0]) == served and _plain(card.reported.get(LISTED[1], "")) in requested
+    return None if _plain(served) in requested or is_alias else served
+
+
+def _plain(name: str) -> str:
+    """Return a model's name in lower case, without its maker or folder."""
+    return PurePath(name.replace("\\", "/")).name.lower()

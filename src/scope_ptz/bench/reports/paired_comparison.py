@@ -1,0 +1,171 @@
+"""Paired comparisons of model pairs on their shared tasks, and the smallest detectable differences."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from math import sqrt
+from statistics import median
+
+import numpy as np
+
+from scope_ptz.bench.reports.report_runs import ReportRun, viewpoint
+from scope_ptz.bench.reports.sections import Section
+from scope_ptz.bench.reports.tables import Column, ReportTable
+from scope_ptz.bench.statistics.clustered import IntervalEstimate, Scores, detectable, difference, macro_weights, two_sided_p
+from scope_ptz.bench.statistics.paired import cluster_bootstrap, holm, mcnemar_exact
+
+ALPHA = 0.05
+SEED = 0
+
+
+@dataclass(frozen=True, slots=True)
+class PairedComparison:
+    """The comparison of two runs on their shared tasks.
+
+    Attributes:
+        first: Label of the first run.
+        second: Label of the second run.
+        shared: Number of shared tasks.
+        macro: Macro accuracy of the first run minus that of the second.
+        bootstrap: Bootstrap interval of the difference.
+        only_first: Tasks on which the first run is better.
+        only_second: Tasks on which the second run is better.
+        p_mcnemar: P value of McNemar's exact test.
+        p_clustered: P value of the clustered test.
+        least: The smallest difference that is detected with 80% power.
+    """
+
+    first: str
+    second: str
+    shared: int
+    macro: IntervalEstimate
+    bootstrap: tuple[float, float] | None
+    only_first: int
+    only_second: int
+    p_mcnemar: float
+    p_clustered: float | None
+    least: float | None
+
+
+def compare(first: ReportRun, second: ReportRun) -> PairedComparison | None:
+    """Compare two runs of one dataset on their shared tasks; None if they share none."""
+    return compare_scores(first.label, second.label, _task_means(first), _task_means(second))
+
+
+TaskMeans = dict[str, tuple[str, str, float]]
+
+
+def _task_means(run: ReportRun) -> TaskMeans:
+    """Return category, viewpoint and mean outcome of each task. Repeats of a task count as one observation."""
+    found: dict[str, list[bool]] = {}
+    about = {t.task.id: (t.task.category, viewpoint(t)) for t in run.scored_trials}
+    for trial in run.scored_trials:
+        found.setdefault(trial.task.id, []).append(trial.headline == "correct")
+    return {task: (*about[task], sum(values) / len(values)) for task, values in found.items()}
+
+
+def compare_scores(first: str, second: str, one: TaskMeans, other: TaskMeans) -> PairedComparison | None:
+    """Compare two runs given by the category, the viewpoint and the mean outcome of each task."""
+    shared = sorted(one.keys() & other.keys())
+    if not shared:
+        return None
+    values = np.array([one[task][2] - other[task][2] for task in shared])
+    scores = Scores(values, tuple(one[task][0] for task in shared), tuple(one[task][1] for task in shared))
+    found = difference(scores, macro_weights(scores))
+    if found is None:
+        return None
+    better, worse = int(np.sum(values > 0)), int(np.sum(values < 0))
+    least = None if not found.se else detectable(found.se, found.clusters)
+    drawn = cluster_bootstrap(scores, seed=SEED)
+    p_mcnemar, p_clustered = mcnemar_exact(better, worse), two_sided_p(found)
+    return PairedComparison(first, second, len(shared), found, drawn, better, worse, p_mcnemar, p_clustered, least)
+
+
+def comparison_table(key: str, title: str, found: Sequence[PairedComparison], notes: tuple[str, ...] = ()) -> ReportTable:
+    """Return a table with one row per comparison. P values are adjusted for all of them together."""
+    columns = (
+        Column("first", "First"),
+        Column("second", "Second"), Column("tasks", "Shared tasks", "count"),
+        Column("difference", "First minus second, macro (points)", "points"), Column("bootstrap", "Bootstrap interval (points)"),
+        Column("only_first", "Better: first", "count"), Column("only_second", "Better: second", "count"),
+        Column("p_mcnemar", "McNemar p", "p"), Column("p_mcnemar_holm", "Holm", "p"),
+        Column("p_clustered", "Clustered p", "p"), Column("p_clustered_holm", "Holm", "p"),
+        Column("differ", "Differ"), Column("least", "Smallest detectable difference (points)", "width"),
+    )  # fmt: skip
+    mcnemar, clustered = holm([c.p_mcnemar for c in found]), holm([c.p_clustered for c in found])
+    rows = tuple(
+        (
+            c.first,
+            c.second, c.shared, c.macro, _interval(c.bootstrap), c.only_first, c.only_second,
+            c.p_mcnemar, mcnemar[n], c.p_clustered, clustered[n], differ(mcnemar[n], clustered[n]), c.least,
+        )
+        for n, c in enumerate(found)
+    )  # fmt: skip
+    return ReportTable(key, title, columns, rows, notes)
+
+
+def differ(*adjusted: float | None) -> str:
+    """Return "yes" if every adjusted p value is below 0.05, else "not shown"."""
+    return "yes" if all(p is not None and p < ALPHA for p in adjusted) else "not shown"
+
+
+def _interval(bounds: tuple[float, float] | None) -> str | None:
+    return None if bounds is None else f"{100 * bounds[0]:+.1f} to {100 * bounds[1]:+.1f}"
+
+
+def comparison_section(runs: Sequence[ReportRun]) -> Section:
+    """Compare every two ranked runs of the main task set."""
+    found = [c for one, two in combinations(runs, 2) if (c := compare(one, two)) is not None]
+    text = [
+        "Two runs are compared task by task on their shared tasks; repeats of a task are averaged first. McNemar's exact test asks "
+        "whether the tasks on which they differ favour one of them (with repeats it is the sign test of the tasks' means). The "
+        "clustered test also accounts for the similarity of tasks at one viewpoint. P values are adjusted for the number of "
+        "comparisons by Holm's method. Two runs differ only if both adjusted p values are below 0.05."
+    ]
+    single = _resolution(runs)
+    if not found:
+        return Section(
+            "comparison",
+            "Differences between model pairs",
+            (*text, "There are fewer than two model pairs, so this is not measured."),
+            (),
+            (single,),
+        )
+    number = sum(row[11] == "yes" for row in comparison_table("x", "x", found).rows)
+    smallest = [c.least for c in found if c.least is not None]
+    resolved = (
+        f" With 80% power, differences of {100 * median(smallest):.1f} points (median of the comparisons) are detectable."
+        if smallest
+        else ""
+    )
+    text.append(f"{number} of {len(found)} comparisons show a difference.{resolved}")
+    notes = (
+        f"Bootstrap: 10,000 draws of viewpoints with replacement, percentile interval, seed {SEED}; it cross-checks the other "
+        "interval. Better: number of tasks on which one run is better. Smallest detectable difference: the true difference that "
+        "the clustered test detects with 80% power, (t at 97.5% + t at 80%) times the standard error, before adjustment for many "
+        "tests.",
+    )
+    table = comparison_table("comparisons", "Paired comparisons", found, notes)
+    folded = frozenset({"comparisons"}) if len(found) > 12 else frozenset[str]()
+    return Section("comparison", "Differences between model pairs", tuple(text), (), (table, single), folded)
+
+
+def _resolution(runs: Sequence[ReportRun]) -> ReportTable:
+    """Return the smallest differences that unpaired comparisons with equally precise runs detect."""
+    columns = (
+        Column("run", "Run"), Column("se", "Standard error of macro (points)", "width"),
+        Column("viewpoints", "Viewpoints", "count"), Column("least", "Smallest detectable difference, unpaired (points)", "width"),
+    )  # fmt: skip
+    rows = []
+    for run in runs:
+        found = run.macro
+        se = found.se if found else None
+        clusters = found.clusters if found else 0
+        rows.append((run.label, se, clusters, None if not se else detectable(sqrt(2) * se, clusters)))
+    notes = (
+        "The difference to an equally precise run over other tasks that is detected with 80% power. Pairing by task usually "
+        "detects smaller differences.",
+    )
+    return ReportTable("resolution", "Smallest detectable difference", columns, tuple(rows), notes)

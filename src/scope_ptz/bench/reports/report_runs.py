@@ -1,0 +1,288 @@
+"""Runs as a report sees them: labelled, joined with the registry's models, and grouped into comparable task sets."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from scope_ptz.bench.judging.judgement_tally import without_verdict
+from scope_ptz.bench.reports.display_names import served_instead, split_name
+from scope_ptz.bench.scoring.trials import Evaluation, ModelCard, Trial
+from scope_ptz.bench.statistics.clustered import IntervalEstimate, Scores, macro_weights, share
+from scope_ptz.builtin_names import GRAMMAR, GROUND_TRUTH
+from scope_ptz.errors import UnknownNameError
+from scope_ptz.registry import Model, Registry
+
+RunKind = Literal["models", "reference", "blind", "person"]
+"""Kinds of runs. "reference": with the grammar planner or ground-truth perception; "blind": without perception; "person": human."""
+PERSON = "person"
+"""Names of the exact built-in planner and perception. Noisy ground truth is not among them."""
+MAIN_STRATA = ("core", "imported")
+FULL_PRECISION = ("fp32", "fp16", "bf16")
+CATEGORY_TITLES = {
+    "comparative": "Comparative", "counting": "Counting", "descriptor": "Descriptor", "location": "Location",
+    "multi_step_command": "Multi-step command", "multi_step_reasoning": "Multi-step reasoning", "ocr": "OCR",
+    "single_call": "Single call",
+}  # fmt: skip
+"""In the order of the paper's table."""
+
+
+@dataclass(frozen=True, eq=False)
+class ReportRun:
+    """One evaluation in a report. A trial is one run of one task in it.
+
+    Attributes:
+        number: Position in the report, from 1.
+        evaluation: The evaluation.
+        label: Unique name in the report. It says how the run differs from others.
+        planner: The planner's model; None if it is not in the registry.
+        perception: The perception model; None if it is not in the registry.
+        other_tasks: How its tasks differ from those of most pairs of the main task set, in words; empty if they do not.
+    """
+
+    number: int
+    evaluation: Evaluation
+    label: str
+    planner: Model | None
+    perception: Model | None
+    other_tasks: str = ""
+
+    @property
+    def kind(self) -> RunKind:
+        """What kind of run it is."""
+        card = self.evaluation.card
+        if card.planner.provider == PERSON:
+            return "person"
+        if "blind" in (card.perception.name, card.variant):
+            return "blind"
+        return "models" if card.ranked else "reference"
+
+    @property
+    def ranked(self) -> bool:
+        """Whether it is a pair of models."""
+        return self.kind == "models"
+
+    @property
+    def uses_exact_ground_truth(self) -> bool:
+        """Whether its perception is the exact ground truth."""
+        perception = self.evaluation.card.perception
+        return perception.deterministic and perception.name == GROUND_TRUTH
+
+    @property
+    def is_exact_reference(self) -> bool:
+        """Whether it is the grammar planner with exact ground-truth perception."""
+        planner = self.evaluation.card.planner
+        return planner.deterministic and planner.name == GRAMMAR and self.uses_exact_ground_truth and self.kind == "reference"
+
+    @property
+    def planner_name(self) -> str:
+        """Name of the planner, and of the model that its server served instead, if any."""
+        return _named(self.evaluation.card.planner, self.planner)
+
+    @property
+    def perception_name(self) -> str:
+        """Name of the perception model, and of the model that its server served instead, if any."""
+        return _named(self.evaluation.card.perception, self.perception)
+
+    @property
+    def system(self) -> tuple[str, str, str, str]:
+        """What was evaluated, without the tasks: planner, perception, agent, variant."""
+        card = self.evaluation.card
+        return self.planner_name, self.perception_name, card.agent, card.variant
+
+    @property
+    def task_set(self) -> tuple[str, str]:
+        """Dataset and split. Runs of one task set are comparable."""
+        return self.evaluation.card.dataset, split_name(self.evaluation.card.split)
+
+    @property
+    def memory_gb(self) -> float | None:
+        """Computed memory to serve both models at the registry's precision. A model in both roles counts once."""
+        if self.planner is None or self.perception is None:
+            return None
+        return sum(model.memory_for() for model in {m.name: m for m in (self.planner, self.perception)}.values())
+
+    @cached_property
+    def main_trials(self) -> tuple[Trial, ...]:
+        """Trials of core tasks or imported tasks. Accuracy covers these."""
+        return tuple(t for t in self.evaluation.trials if t.task.stratum in MAIN_STRATA)
+
+    @cached_property
+    def scored_trials(self) -> tuple[Trial, ...]:
+        """Main trials that count: not broken by infrastructure, and not waiting for a judge. Unscored ones count as not correct."""
+        return tuple(t for t in self.main_trials if t.headline != "infrastructure" and not without_verdict(t))
+
+    @cached_property
+    def tasks(self) -> frozenset[str]:
+        """Ids of the tasks that its accuracy covers."""
+        return frozenset(t.task.id for t in self.main_trials)
+
+    @cached_property
+    def checked_trials(self) -> tuple[Trial, ...]:
+        """Scored trials whose verdict is that of the checks."""
+        return tuple(t for t in self.scored_trials if t.scored_by == "checks")
+
+    @cached_property
+    def macro(self) -> IntervalEstimate | None:
+        """Macro accuracy: the unweighted mean over the categories that occur."""
+        return macro(scores_of(self.scored_trials)) if self.scored_trials else None
+
+    @cached_property
+    def micro(self) -> IntervalEstimate | None:
+        """Micro accuracy: the share of correct trials."""
+        return share(scores_of(self.scored_trials))
+
+
+def scores_of(trials: Sequence[Trial], right: Iterable[bool] | None = None) -> Scores:
+    """Return outcomes grouped by category, viewpoint and task.
+
+    Args:
+        trials: The trials.
+        right: Whether each trial counts as correct; by default its headline decides.
+    """
+    values = [t.headline == "correct" for t in trials] if right is None else list(right)
+    return Scores(
+        np.array(values, dtype=np.float64),
+        tuple(t.task.category for t in trials),
+        tuple(viewpoint(t) for t in trials),
+        tuple(t.task.id for t in trials),
+    )
+
+
+def macro(scores: Scores) -> IntervalEstimate | None:
+    """Return macro accuracy with its interval; None without data."""
+    return share(scores, macro_weights(scores)) if len(scores.values) else None
+
+
+def viewpoint(trial: Trial) -> str:
+    """Return the viewpoint by which a trial is clustered."""
+    return f"{trial.task.scene}/{trial.task.viewpoint}"
+
+
+def report_runs(evaluations: Sequence[Evaluation], registry: Registry) -> tuple[ReportRun, ...]:
+    """Return the runs of a report in the order of the paper's table.
+
+    They are ordered by perception model, then by the planner's size. Other splits and runs that are not ranked come last.
+    """
+    splits = {split_name(e.card.split) for e in evaluations}
+    bare = [ReportRun(0, e, "", _known(e.card.planner, registry), _known(e.card.perception, registry)) for e in evaluations]
+    labels = [_label(run, with_split=len(splits) > 1) for run in bare]
+    shared = {label for label, number in Counter(labels).items() if number > 1}
+    labels = [
+        f"{label}, timed alone" if label in shared and not e.card.contended else label
+        for label, e in zip(labels, evaluations, strict=True)
+    ]
+    times, seen = Counter(labels), Counter[str]()
+    runs = []
+    for run, label in zip(bare, labels, strict=True):
+        seen[label] += 1
+        runs.append(replace(run, label=f"{label} #{seen[label]}" if times[label] > 1 else label))
+    ordered = sorted(runs, key=_order)
+    common = main_tasks(ordered)
+    apart = [_other_tasks(run, common) if run in of_main_set(ordered) else "" for run in ordered]
+    return tuple(
+        replace(run, number=number, other_tasks=words, label=f"{run.label} [{words}]" if words else run.label)
+        for number, (run, words) in enumerate(zip(ordered, apart, strict=True), 1)
+    )
+
+
+def _named(card: ModelCard, model: Model | None) -> str:
+    served = served_instead(card, model)
+    return card.name if served is None else f"{card.name} (served: {served})"
+
+
+def _other_tasks(run: ReportRun, common: frozenset[str]) -> str:
+    """Return how the tasks of a run differ from the common tasks, in words; empty if they do not."""
+    if run.tasks == common:
+        return ""
+    if run.tasks < common:
+        return f"{len(run.tasks)} of the {len(common)} tasks"
+    return f"{len(run.tasks)} tasks, {len(run.tasks & common)} of the {len(common)} shared"
+
+
+def _label(run: ReportRun, *, with_split: bool) -> str:
+    card = run.evaluation.card
+    pair = f"{run.planner_name} + {run.perception_name}"
+    parts = [f"person {card.planner.name}" if card.planner.provider == PERSON else pair]
+    parts += [f"agent {card.agent}"] if card.agent != "scope" else []
+    parts += [card.variant] if card.variant else []
+    parts += [f"{split_name(card.split)} split"] if with_split and card.split != "core" else []
+    return ", ".join(parts)
+
+
+def _known(card: ModelCard, registry: Registry) -> Model | None:
+    try:
+        return registry.model(card.registry) if card.registry else None
+    except UnknownNameError:
+        return None
+
+
+def _order(run: ReportRun) -> tuple[bool, bool, str, str, float, str, str]:
+    card = run.evaluation.card
+    size = run.planner.size_b if run.planner else 0.0
+    return not run.ranked, card.split != "core", card.split, run.perception_name, size, run.planner_name, run.label
+
+
+def main_task_set(runs: Sequence[ReportRun]) -> tuple[str, str] | None:
+    """Return the task set with the most ranked runs. Ties are resolved by the number of trials."""
+    having = [run for run in runs if run.main_trials]
+    weight: dict[tuple[str, str], tuple[int, int]] = {}
+    for run in having:
+        ranked, trials = weight.get(run.task_set, (0, 0))
+        weight[run.task_set] = (ranked + run.ranked, trials + len(run.main_trials))
+    return max(weight, key=lambda key: weight[key]) if weight else None
+
+
+def of_main_set(runs: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
+    """Return the runs of the main task set that have scored trials."""
+    main = main_task_set(runs)
+    return tuple(run for run in runs if run.task_set == main and run.scored_trials)
+
+
+def main_tasks(runs: Sequence[ReportRun]) -> frozenset[str]:
+    """Return the tasks that most model pairs of the main task set cover; without pairs, those that most runs cover."""
+    main = of_main_set(runs)
+    alike = on_the_same_tasks(pairs_of(main)) or on_the_same_tasks(main)
+    return alike[0].tasks if alike else frozenset()
+
+
+def primary(runs: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
+    """Return one run per system: the one with the most scored trials, the first of several."""
+    best: dict[tuple[str, str, str, str], ReportRun] = {}
+    for run in runs:
+        if run.system not in best or len(run.scored_trials) > len(best[run.system].scored_trials):
+            best[run.system] = run
+    return tuple(run for run in runs if best[run.system] is run)
+
+
+def pairs_of(main: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
+    """Return one run per ranked system. Variants are left out if the unchanged pair is present."""
+    ranked = [run for run in main if run.ranked]
+    plain = {run.system[:3] for run in ranked if not run.system[3]}
+    return primary([run for run in ranked if not run.system[3] or run.system[:3] not in plain])
+
+
+def on_the_same_tasks(ranked: Sequence[ReportRun]) -> tuple[ReportRun, ...]:
+    """Return the runs over the most common selection of tasks. Ties are resolved by the number of tasks."""
+    if not ranked:
+        return ()
+    counted = Counter(run.tasks for run in ranked)
+    common = max(counted, key=lambda tasks: (counted[tasks], len(tasks)))
+    return tuple(run for run in ranked if run.tasks == common)
+
+
+def timing_run(run: ReportRun, runs: Sequence[ReportRun]) -> ReportRun:
+    """Return the run that gives a system's latency: the longest finished run without contention, if there is one."""
+    same = [other for other in runs if other.system == run.system and other.main_trials]
+    alone = [other for other in same if not other.evaluation.card.contended and other.evaluation.finished]
+    return max(alone, key=lambda other: len(other.main_trials)) if alone else run
+
+
+def is_mixture(model: Model) -> bool:
+    """Return whether a model is a mixture of experts, with fewer active parameters than parameters."""
+    return model.active_b < model.size_b

@@ -1,0 +1,148 @@
+"""Write a report: the HTML page, Markdown, CSV files, and a page for each failed task. All text from models is escaped."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from scope_ptz.bench.reports.assemble import EvaluationReport, build_report
+from scope_ptz.bench.reports.tables import (
+    MISSING,
+    CellValue,
+    Column,
+    MarkedCell,
+    as_csv,
+    as_markdown,
+    escape,
+    in_words,
+    interval,
+    unmarked,
+)
+from scope_ptz.bench.reports.task_pages import FrameStore, OpenSample, page_files, task_pages
+from scope_ptz.bench.scoring.trials import Evaluation
+from scope_ptz.bench.statistics.clustered import IntervalEstimate
+from scope_ptz.bench.tasks.task import Task
+from scope_ptz.errors import OutputError
+from scope_ptz.registry import Registry
+from scope_ptz.version import __version__
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+GENERATOR = "scope bench report"
+_OWN = (("tables", "*.csv"), ("tasks", "*.html"), ("frames", "*.jpg"))
+
+
+def write_report(
+    evaluations: Sequence[Evaluation],
+    registry: Registry,
+    out: Path,
+    *,
+    open_sample: OpenSample | None = None,
+    tasks: Mapping[str, Task] | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    pages: bool = True,
+) -> EvaluationReport:
+    """Write ``index.html``, ``report.md``, ``tables/*.csv``, ``tasks/*.html`` and ``frames/*.jpg``.
+
+    Args:
+        evaluations: The evaluations.
+        registry: The models that the report may look up.
+        out: The folder of the report.
+        open_sample: Opens a stored run for its trajectory; without it pages have none.
+        tasks: The tasks by id, for the evidence on their pages.
+        progress: Called with the number of finished pages and of all pages.
+        pages: Whether failed tasks have pages.
+
+    Returns:
+        The report.
+
+    Raises:
+        OutputError: The folder holds something other than a report, or cannot be written.
+        InputError: The evaluations have no trial.
+    """
+    files = page_files(evaluations) if pages else {}
+    report = build_report(evaluations, registry, files)
+    try:
+        _clear(out)
+        (out / "tables").mkdir(parents=True, exist_ok=True)
+        (out / "tasks").mkdir(exist_ok=True)
+        made_later = task_pages(report.runs, files, open_sample, FrameStore(out / "frames", "../frames"), tasks or {})
+        environment = _environment()
+        template = environment.get_template("task.html.j2")
+        for number, page in enumerate(made_later, 1):
+            made = page()
+            (out / made.file).write_text(template.render(page=made, version=__version__), "utf-8")
+            if progress is not None:
+                progress(number, len(made_later))
+        for table in report.tables:
+            (out / "tables" / f"{table.key}.csv").write_text(as_csv(table), "utf-8", newline="")
+        (out / "report.md").write_text(markdown(report), "utf-8")
+        (out / "index.html").write_text(html(report, environment), "utf-8")
+    except OSError as error:
+        raise OutputError(f"The report cannot be written to {out}: {error.strerror}.") from error
+    return report
+
+
+def _clear(out: Path) -> None:
+    """Remove an older report. A folder that holds anything else is never touched."""
+    if out.exists() and not out.is_dir():
+        raise OutputError(f"{out} is a file. Give a folder for the report.")
+    if not out.exists() or not any(out.iterdir()):
+        return
+    page = out / "index.html"
+    if not page.is_file() or f'content="{GENERATOR}' not in page.read_text("utf-8", errors="replace")[:2000]:
+        raise OutputError(f"{out} holds something that is not a report. Give an empty folder or a new name.")
+    for folder, pattern in _OWN:
+        for old in (out / folder).glob(pattern):
+            old.unlink()
+
+
+def html(report: EvaluationReport, environment: Environment | None = None) -> str:
+    """Return the HTML page. It has no scripts and loads nothing from the network."""
+    template = (environment or _environment()).get_template("index.html.j2")
+    return template.render(report=report, version=__version__, generator=GENERATOR)
+
+
+def markdown(report: EvaluationReport) -> str:
+    """Return the report as Markdown, without charts."""
+    parts = ["# SCOPE benchmark report", *(escape(line) for line in report.summary)]
+    parts += ["> " + escape(line) for line in report.warnings]
+    for section in report.sections:
+        parts.append(f"## {escape(section.title)}")
+        parts += [escape(line) for line in section.text]
+        parts += [as_markdown(table) for table in section.tables]
+    return "\n\n".join(parts) + f"\n\n*Made by scope-ptz {__version__}.*\n"
+
+
+def _environment() -> Environment:
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+    from markupsafe import Markup
+
+    found = Environment(
+        loader=PackageLoader("scope_ptz", "data/report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    found.filters["cell"] = cell
+    found.filters["drawn"] = Markup  # Only for charts, whose text the drawing library has escaped.
+    return found
+
+
+def cell(value: CellValue, column: Column) -> dict[str, Any]:
+    """Return the parts of a cell for the template: its text, its interval with the limitation, and its marks."""
+    plain = unmarked(value)
+    marks = value if isinstance(value, MarkedCell) else MarkedCell(None)
+    bounds = limits = ""
+    if isinstance(plain, IntervalEstimate):
+        bounds, limits = interval(plain, column.kind)
+        plain = plain.value
+    words = in_words(plain, column.kind)
+    return {
+        "words": words, "interval": bounds, "limits": limits, "missing": words == MISSING,
+        "text": column.worded, "prose": column.kind == "prose",
+        "best": marks.best, "best_of_all": marks.best_of_all, "link": marks.link, "note": marks.note,
+    }  # fmt: skip

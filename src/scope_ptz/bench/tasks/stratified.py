@@ -1,0 +1,44 @@
+"""Stratified samples of a dataset."""
+
+from __future__ import annotations
+
+import hashlib
+from collections import Counter
+from collections.abc import Sequence
+
+from scope_ptz.bench.tasks.task import Task
+
+
+def stratified_sample(tasks: Sequence[Task], number: int, seed: int) -> tuple[Task, ...]:
+    """Return a sample in which categories, scenes, difficulties and their combinations have nearly their original shares.
+
+    Tasks are taken one by one from the group that is most underrepresented. Within a group the choice depends only on the seed and
+    the task ids.
+
+    Args:
+        tasks: The tasks to sample.
+        number: Size of the sample.
+        seed: Seed of the choice.
+
+    Returns:
+        The sample in the original order.
+    """
+    number = min(number, len(tasks))
+    waiting: dict[tuple[str, ...], list[str]] = {}
+    for task in sorted(tasks, key=lambda t: hashlib.sha256(f"{seed}:{t.id}".encode()).hexdigest()):
+        waiting.setdefault((task.category, task.scene, task.difficulty), []).append(task.id)
+    share = Counter(mark for task in tasks for mark in _marks((task.category, task.scene, task.difficulty)))
+    of_all = number / len(tasks) if tasks else 0.0
+    taken, chosen = Counter[tuple[str, ...]](), set[str]()
+    for _ in range(number):
+        group = max(
+            (g for g, ids in waiting.items() if ids),
+            key=lambda g: (round(sum(share[mark] * of_all - taken[mark] for mark in _marks(g)), 6), g),
+        )
+        chosen.add(waiting[group].pop())
+        taken.update(_marks(group))
+    return tuple(task for task in tasks if task.id in chosen)
+
+
+def _marks(group: tuple[str, ...]) -> list[tuple[str, ...]]:
+    return [group, *(("any", part) for part in group)]

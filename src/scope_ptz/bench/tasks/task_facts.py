@@ -1,0 +1,49 @@
+"""The facts about a task that judges read and by which reports group runs."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict
+
+from scope_ptz.bench.tasks.task import Category, Scope, Stratum
+
+
+class TaskFacts(BaseModel):
+    """A task as judges and reports see it.
+
+    Attributes:
+        id: The task's id.
+        dataset: The dataset's version.
+        stratum: Part of the dataset; "imported" for a task of another file, without an executable check of its answer.
+        scene: The scene.
+        viewpoint: The viewpoint where the run starts.
+        preset: The preset where the run starts.
+        instruction: What the agent is asked to do.
+        category: The task's category.
+        scope: Whether the task is about the current view or the full scene.
+        difficulty: The task's difficulty.
+        expected: The expected answer in words.
+        demands: What the instruction requires the run to do, in sentences for a judge.
+        needs: Kinds of actions that the task needs.
+        pair: The task of the same wording with the opposite presence.
+        paraphrase_of: The task of which this one is a paraphrase.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    id: str
+    dataset: str
+    stratum: Stratum | Literal["imported"]
+    scene: str
+    viewpoint: str
+    preset: str
+    instruction: str
+    category: Category
+    scope: Scope
+    difficulty: Literal["easy", "medium", "hard"]
+    expected: str
+    demands: tuple[str, ...] = ()
+    needs: tuple[str, ...] = ()
+    pair: str | None = None
+    paraphrase_of: str | None = None

@@ -1,0 +1,157 @@
+"""``scope ask``, and the session that it shares with ``scope chat``."""
+
+from __future__ import annotations
+
+import shutil
+import signal
+import sys
+from pathlib import Path
+from typing import Any
+
+import anyio
+from anyio.lowlevel import checkpoint
+from rich.console import Console
+
+from scope_ptz.agent.filmstrip import write_filmstrip
+from scope_ptz.agent.loop import Agent
+from scope_ptz.agent.records import Budgets, Called, Decided, Ended, Listener, RunLabels, RunResult, Started
+from scope_ptz.agent.store import RunFolder
+from scope_ptz.agent.trace import Trace, TraceWriter, read_trace
+from scope_ptz.cli.display import LiveView, show_end
+from scope_ptz.cli.exit import CANCELLED, exit_code, interrupts_handled_by, put, put_json, run_until_interrupted
+from scope_ptz.cli.options import SessionFlags
+from scope_ptz.errors import InputError
+from scope_ptz.factory.cameras import OpenCamera
+from scope_ptz.factory.models import ModelOptions, make_perception, make_planner, perception_note, resolve_models
+from scope_ptz.perception.base import Perception
+from scope_ptz.planner.base import PastTurn, Planner
+from scope_ptz.settings import load_settings
+
+_NEXT_STEPS = """
+Next:
+  {program} ask "count the workers"    another instruction, in your own words
+  {program} chat                       a conversation with the camera
+  {program} scene list                 the scenes; name one with --scene
+  {program} --help                     every command"""
+
+
+class Session:
+    """A camera, perception and a planner that stay together for one or several runs."""
+
+    def __init__(self, flags: SessionFlags, opened: OpenCamera, perception: Perception, planner: Planner, note: str) -> None:
+        self.flags, self.perception, self.planner, self.note = flags, perception, planner, note
+        self.opened, self.camera = opened, opened.camera
+        self.runs_dir = flags.runs_dir or load_settings().runs_dir
+
+    @classmethod
+    async def open(cls, flags: SessionFlags, models: ModelOptions, *, realtime: bool) -> Session:
+        """Open the camera and connect to the models.
+
+        Args:
+            flags: Where the camera starts, and the limits of runs.
+            models: The planner and perception.
+            realtime: Whether the camera takes as long for a move as a real one does.
+        """
+        choice = await resolve_models(models)
+        planner = make_planner(choice.planner)
+        opened = await flags.open(realtime=realtime)
+        try:
+            perception = make_perception(choice.perception, opened.scenes, flags.seed)
+        except BaseException:
+            await opened.aclose()
+            raise
+        return cls(flags, opened, perception, planner, perception_note(choice.perception))
+
+    async def run(
+        self, instruction: str, folder: RunFolder, listener: Listener, conversation: tuple[PastTurn, ...] = ()
+    ) -> RunResult:
+        """Carry out one instruction and write its trace."""
+        labels = RunLabels(perception_note=self.note, seed=self.flags.seed, home_viewpoint=self.flags.viewpoint)
+        budgets = Budgets(max_steps=self.flags.max_steps, time_s=self.flags.time_budget)
+        agent = Agent(self.planner, self.camera, self.perception, folder, budgets=budgets, labels=labels)
+        with TraceWriter(folder.trace) as trace:
+
+            def both(record: Started | Decided | Called | Ended) -> None:
+                trace(record)
+                listener(record)
+
+            return await agent.run(instruction, conversation=conversation, listener=both)
+
+    async def close(self) -> None:
+        """Close the camera and the connections to model servers."""
+        await self.opened.aclose()
+        await self.perception.close()
+        await self.planner.close()
+
+
+def ask(instruction: str, flags: SessionFlags, models: ModelOptions, *, as_json: bool, next_steps: bool) -> int:
+    """Carry out one instruction, show it, and return the exit code."""
+    if not instruction.strip():
+        raise InputError("The instruction is empty. Say what the camera should do.")
+    folder: RunFolder | None = None
+
+    async def work() -> None:
+        nonlocal folder
+        session = await Session.open(flags, models, realtime=flags.in_real_time(as_json=as_json))
+        try:
+            await checkpoint()
+            folder = RunFolder.create(session.runs_dir, instruction)
+            view: Listener = (lambda _: None) if as_json else LiveView(Console(highlight=False))
+            await session.run(instruction, folder, view)
+        finally:
+            with anyio.CancelScope(shield=True):
+                await session.close()
+
+    try:
+        run_until_interrupted(work)
+    finally:
+        if folder is not None:
+            folder.discard_if_not_started()
+    if folder is None or not folder.trace.is_file():
+        raise KeyboardInterrupt
+    with interrupts_handled_by(signal.SIG_IGN):
+        code = _report(folder, as_json=as_json)
+    if next_steps and not as_json and code == 0:
+        put(_NEXT_STEPS.format(program="scope" if shutil.which("scope") else sys.argv[0]))
+    return code
+
+
+def make_filmstrip(trace: Trace) -> Path | None:
+    """Draw a run's filmstrip, unless the instruction was not understood or refused before anything was done."""
+    if not trace.calls and (trace.ended is None or trace.ended.outcome in ("clarification", "refused")):
+        return None
+    return write_filmstrip(trace)
+
+
+def _report(folder: RunFolder, *, as_json: bool) -> int:
+    trace = read_trace(folder.path)
+    if trace.ended is None:
+        return CANCELLED
+    filmstrip = make_filmstrip(trace)
+    if as_json:
+        put_json(summary(trace.calls, trace.ended, folder.path))
+    else:
+        console = Console(highlight=False)
+        note = trace.started.labels.perception_note if filmstrip else ""
+        show_end(console, trace.ended, note, folder.path, filmstrip)
+    return exit_code(trace.ended.outcome)
+
+
+def summary(calls: tuple[Called, ...], ended: Ended, folder: Path) -> dict[str, Any]:
+    """Return the object that ``scope ask --json`` prints."""
+    return {
+        "answer": ended.text,
+        "outcome": ended.outcome,
+        "tool_calls": [
+            {
+                "name": c.outcome.call.name,
+                "arguments": c.outcome.call.arguments,
+                "result": c.outcome.result,
+                "error": c.outcome.error,
+            }
+            for c in calls
+        ],
+        "pose": ended.pose.pose().as_dict(),
+        "timings": ended.timings.model_dump(),
+        "run_dir": str(folder),
+    }

@@ -1,0 +1,164 @@
+"""``scope chat``: several runs that share a camera and their history."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator
+from concurrent.futures import CancelledError
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from threading import Event
+
+from anyio.from_thread import BlockingPortal, start_blocking_portal
+from platformdirs import user_state_path
+from rich.console import Console
+from rich.text import Text
+
+from scope_ptz.agent.store import RunFolder
+from scope_ptz.agent.trace import read_trace
+from scope_ptz.cli.ask import Session, make_filmstrip
+from scope_ptz.cli.display import LiveView, plain, show_end
+from scope_ptz.cli.exit import complain, has_input
+from scope_ptz.cli.options import SessionFlags
+from scope_ptz.errors import InputError
+from scope_ptz.factory.models import ModelOptions
+from scope_ptz.planner.base import PastTurn
+
+MAX_HISTORY_LINES = 1000
+_PROMPT = "› "
+_WELCOME = "Type what the camera should do. /help lists the commands, /quit ends the chat."
+_HELP = """\
+/pose   print where the camera points
+/save   save a picture of what the camera sees
+/help   print this list
+/quit   end the chat (so does Ctrl-D)
+Ctrl-C cancels a run. Everything else is an instruction, for example: pan right 20 and count the cars"""
+
+
+def chat(flags: SessionFlags, models: ModelOptions) -> int:
+    """Talk until /quit or the end of the input, and return the exit code.
+
+    Lines are read in the main thread and carried out in another one, so that Ctrl-C always reaches the main thread: during a run it
+    cancels the run, at the prompt it ends the program.
+    """
+    if not has_input():
+        raise InputError("The standard input is closed, so there is nobody to chat with. Use `scope ask` for one instruction.")
+    with start_blocking_portal() as portal, _line_editing():
+        session = portal.call(_open, flags, models)
+        try:
+            _talk(portal, _Chat(session))
+        finally:
+            portal.call(session.close)
+    return 0
+
+
+async def _open(flags: SessionFlags, models: ModelOptions) -> Session:
+    return await Session.open(flags, models, realtime=flags.in_real_time())
+
+
+def _talk(portal: BlockingPortal, chat: _Chat) -> None:
+    interactive = sys.stdin.isatty()
+    chat.console.print(Text(_WELCOME, style="dim"))
+    while True:
+        try:
+            line = input(_PROMPT if interactive else "").strip()
+        except EOFError:
+            if interactive:
+                chat.console.print()
+            return
+        except OSError as error:
+            raise InputError(f"The standard input cannot be read: {error.strerror}.") from error
+        if line == "/quit":
+            return
+        if not line:
+            continue
+        chat.idle.clear()
+        turn = portal.start_task_soon(chat.turn, line)
+        try:
+            turn.result()
+        except InputError as error:
+            complain(str(error))
+        except KeyboardInterrupt:
+            turn.cancel()
+            chat.idle.wait()
+            with suppress(CancelledError):
+                turn.result()
+            complain("the run was cancelled; /quit ends the chat.")
+
+
+class _Chat:
+    """A conversation: its turns so far, and a folder for pictures once one is saved."""
+
+    def __init__(self, session: Session) -> None:
+        self.session, self.console = session, Console(highlight=False)
+        self.turns: tuple[PastTurn, ...] = ()
+        self.pictures: RunFolder | None = None
+        self.idle = Event()
+        self._note = session.note  # Printed after the first run only
+
+    async def turn(self, line: str) -> None:
+        """Carry out a command of the chat or an instruction. ``idle`` is set when it is over, also after a cancellation."""
+        try:
+            if line.startswith("/"):
+                await self._command(line)
+            else:
+                await self._instruct(line)
+        finally:
+            self.idle.set()
+
+    async def _command(self, line: str) -> None:
+        if line == "/help":
+            self.console.print(Text(_HELP, style="dim"))
+        elif line == "/pose":
+            pose = (await self.session.camera.pose()).as_dict()
+            self.console.print(f"pan {pose['pan_deg']:g}°, tilt {pose['tilt_deg']:g}°, zoom {pose['zoom']:g}x")
+        elif line == "/save":
+            self.pictures = self.pictures or RunFolder.create(self.session.runs_dir, "chat pictures")
+            name = self.pictures.save_picture(await self.session.camera.frame())
+            self.console.print(Text(f"Saved {self.pictures.path / name}"), soft_wrap=True)
+        else:
+            raise InputError(f"There is no command {plain(line.split()[0])}. Type /help for the commands.")
+
+    async def _instruct(self, instruction: str) -> None:
+        folder = RunFolder.create(self.session.runs_dir, instruction)
+        try:
+            run = await self.session.run(instruction, folder, LiveView(self.console), self.turns)
+        finally:
+            folder.discard_if_not_started()
+        self.turns = (*self.turns, run.past_turn())
+        if not run.exchanges and run.ended.outcome in ("clarification", "refused"):
+            show_end(self.console, run.ended)
+            return
+        show_end(self.console, run.ended, self._note, folder.path, make_filmstrip(read_trace(folder.path)))
+        self._note = ""
+
+
+@contextmanager
+def _line_editing() -> Iterator[None]:
+    """Give the prompt line editing and a history that is kept between chats, where there is a terminal and ``readline``."""
+    try:
+        import readline
+    except ImportError:  # Windows, whose console edits lines itself
+        yield
+        return
+    if not sys.stdin.isatty():
+        yield
+        return
+    path = user_state_path("scope-ptz") / "chat_history"
+    readline.set_history_length(MAX_HISTORY_LINES)
+    with suppress(OSError):
+        readline.read_history_file(path)
+    try:
+        yield
+    finally:
+        with suppress(OSError):
+            _make_private(path)
+            readline.write_history_file(path)
+
+
+def _make_private(path: Path) -> None:
+    """Create the file, readable by its owner only: instructions may be confidential."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    os.close(os.open(path, os.O_CREAT | os.O_WRONLY, 0o600))
+    path.chmod(0o600)

@@ -1,0 +1,261 @@
+"""Exit codes, error messages, and what the program does with its standard streams.
+
+A command ends with one clear line on stderr and an exit code; bad input never shows a traceback.
+
+0    done
+1    the run or the machinery failed: step limit, budget, planner, camera, Blender, a full disk; a replay that differs
+2    the input or the configuration is wrong, or a pack or a trace is missing or damaged
+3    the planner needs clarification, so nothing (more) was done
+4    the planner refused the instruction
+130  cancelled (Ctrl-C)
+"""
+
+from __future__ import annotations
+
+import codecs
+import json
+import logging
+import os
+import signal
+import sys
+import threading
+from collections.abc import Awaitable, Callable, Iterator
+from contextlib import contextmanager, suppress
+from typing import Any, TextIO, cast
+
+from scope_ptz.errors import InputError, PackError, ScopeError, ToolCallError, TraceError
+
+FAILED, BAD_INPUT, UNCLEAR, REFUSED, CANCELLED = 1, 2, 3, 4, 130
+_FORCED = 3  # presses of Ctrl-C that end the program without clean-up
+EXIT_CODES = "Exit codes: 0 done, 1 failed, 2 wrong input or a damaged file, 3 clarification needed, 4 refused, 130 cancelled."
+
+_BY_OUTCOME = {"answered": 0, "clarification": UNCLEAR, "refused": REFUSED, "cancelled": CANCELLED}
+_ASCII = {"›": ">", "°": " deg", "·": "-", "“": '"', "”": '"', "‘": "'", "’": "'", "…": "...", "×": "x", "–": "-", "—": "-"}
+
+
+def exit_code(outcome: str) -> int:
+    """Return the exit code for a run's outcome."""
+    return _BY_OUTCOME.get(outcome, FAILED)
+
+
+def put(text: str) -> None:
+    """Print one line on stdout, unformatted."""
+    sys.stdout.write(text + "\n")
+
+
+def put_json(content: Any, *, indent: int | None = None) -> None:
+    """Print JSON on stdout. An encoding that cannot represent all characters gets them as ``\\uXXXX``."""
+    put(json.dumps(content, indent=indent, ensure_ascii=not _is_unicode(sys.stdout)))
+
+
+def complain(message: str) -> None:
+    """Print one line on stderr."""
+    sys.stderr.write(f"scope: {message}\n")
+
+
+class _LogLines(logging.Handler):
+    """Prints the package's warnings as lines on stderr."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        complain(record.getMessage())
+
+
+def _show_warnings() -> None:
+    logger = logging.getLogger("scope_ptz")
+    if not any(isinstance(handler, _LogLines) for handler in logger.handlers):
+        logger.addHandler(_LogLines(logging.WARNING))
+        logger.propagate = False
+
+
+@contextmanager
+def exit_on_error(*, as_json: bool = False) -> Iterator[None]:
+    """Turn SCOPE's own errors and Ctrl-C into a message and an exit code.
+
+    Args:
+        as_json: Print the error as a JSON object on stdout, too.
+    """
+    _show_warnings()
+    try:
+        yield
+    except ScopeError as error:
+        bad_input = isinstance(error, InputError | PackError | TraceError | ToolCallError)
+        complain(str(error))
+        if as_json:
+            put_json({"error": str(error)})
+        sys.exit(BAD_INPUT if bad_input else FAILED)
+    except KeyboardInterrupt:
+        _ignore_interrupts()
+        complain("cancelled.")
+        sys.exit(CANCELLED)
+
+
+def run_until_interrupted(work: Callable[[], Awaitable[None]]) -> bool:
+    """Run a coroutine function, and cancel it at the first Ctrl-C.
+
+    The work then has time to record how it ended; a second Ctrl-C is ignored, and the third one ends the program at once.
+
+    Returns:
+        Whether it was cancelled.
+    """
+    import asyncio
+
+    import anyio
+
+    async def supervised() -> bool:
+        loop, presses = asyncio.get_running_loop(), 0
+        with anyio.CancelScope() as scope:
+
+            def interrupt(*_: object) -> None:
+                nonlocal presses
+                presses += 1
+                if presses == 1:
+                    loop.call_soon_threadsafe(scope.cancel)
+                elif presses == _FORCED:
+                    os._exit(CANCELLED)
+
+            with interrupts_handled_by(interrupt):
+                await work()
+        return scope.cancelled_caught
+
+    return anyio.run(supervised)
+
+
+def run_async(work: Callable[[], Awaitable[None]]) -> None:
+    """Run a coroutine function to its end. Ctrl-C cancels it and then ends the command, as ``run_until_interrupted`` describes.
+
+    Raises:
+        KeyboardInterrupt: It was cancelled.
+    """
+    if run_until_interrupted(work):
+        raise KeyboardInterrupt
+
+
+@contextmanager
+def interrupts_handled_by(handler: Callable[..., None] | signal.Handlers) -> Iterator[None]:
+    """Handle Ctrl-C otherwise for a while. Outside the main thread, or where the program ignores Ctrl-C, nothing changes."""
+    main = threading.current_thread() is threading.main_thread()
+    if not main or signal.getsignal(signal.SIGINT) in (signal.SIG_IGN, None):
+        yield
+        return
+    before = signal.signal(signal.SIGINT, handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+@contextmanager
+def guarded_streams() -> Iterator[None]:
+    """Make standard streams safe that are closed, full, cut off by their reader, or not in UTF-8.
+
+    A closed stream becomes the null device. Output whose reader has gone (``scope tools | head``) is dropped silently, because the
+    command's result decides its exit code. When output cannot be written, for example to a full disk, the exit code is 1.
+    """
+    _open_closed_descriptors()
+    before = sys.stdin, sys.stdout, sys.stderr
+    stdin = sys.stdin if sys.stdin is not None else open(os.devnull, encoding="utf-8")  # noqa: SIM115, PTH123
+    stdout, stderr = (_Output(stream or open(os.devnull, "w", encoding="utf-8")) for stream in before[1:])  # noqa: SIM115, PTH123
+    _make_readable(stdin, stdout, stderr)
+    sys.stdin, sys.stdout, sys.stderr = stdin, cast(TextIO, stdout), cast(TextIO, stderr)
+    try:
+        yield
+    except KeyboardInterrupt:
+        _ignore_interrupts()
+        complain("cancelled.")
+        sys.exit(CANCELLED)
+    finally:
+        stdout.flush()
+        if stdout.failure is not None:
+            complain(f"the output cannot be written: {stdout.failure.strerror or stdout.failure}.")
+        stderr.flush()
+        sys.stdin, sys.stdout, sys.stderr = before
+        if stdout.failure is not None and sys.exc_info()[0] in (None, SystemExit):
+            sys.exit(FAILED)
+
+
+def has_input() -> bool:
+    """Return whether the program was started with a standard input."""
+    return getattr(sys.stdin, "name", None) != os.devnull
+
+
+class _Output:
+    """A text stream that stays writable when the file behind it fails. ``failure`` is the first error other than a closed pipe."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+        self.failure: OSError | None = None
+
+    def write(self, text: str) -> int:
+        try:
+            return self._stream.write(text)
+        except OSError as error:
+            self._give_up(error)
+            return len(text)
+
+    def flush(self) -> None:
+        try:
+            self._stream.flush()
+        except OSError as error:
+            self._give_up(error)
+
+    def _give_up(self, error: OSError) -> None:
+        """Send the rest of the output, and what is still buffered, to the null device."""
+        if not isinstance(error, BrokenPipeError) and self.failure is None:
+            self.failure = error
+        with suppress(OSError, ValueError):
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, self._stream.fileno())
+            os.close(nowhere)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
+
+
+def _open_closed_descriptors() -> None:
+    """Occupy closed standard descriptors, so that no other file gets their numbers and then the program's output."""
+    for descriptor in range(3):
+        try:
+            os.fstat(descriptor)
+        except OSError:
+            with suppress(OSError):
+                os.open(os.devnull, os.O_RDWR)
+
+
+def _make_readable(stdin: TextIO, *outputs: _Output) -> None:
+    """Let an output that is not in UTF-8 replace what it cannot represent, and let any bytes be read."""
+    codecs.register_error("scope-ascii", _ascii_in_place)
+    for output in outputs:
+        if not _is_unicode(output) and hasattr(output, "reconfigure"):
+            output.reconfigure(errors="scope-ascii")
+        elif hasattr(output, "reconfigure"):
+            output.reconfigure(errors="replace")
+    if hasattr(stdin, "reconfigure") and stdin.encoding.lower() in ("ascii", "us-ascii", "ansi_x3.4-1968"):
+        stdin.reconfigure(encoding="utf-8", errors="replace")
+    elif hasattr(stdin, "reconfigure"):
+        stdin.reconfigure(errors="replace")
+
+
+def _ascii_in_place(error: UnicodeError) -> tuple[str, int]:
+    """Encoding error handler: write a character in ASCII where there is a usual way, else as a question mark."""
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    return "".join(_ASCII.get(c, "?") for c in error.object[error.start : error.end]), error.end
+
+
+def _is_unicode(stream: Any) -> bool:
+    return (getattr(stream, "encoding", None) or "utf-8").lower().replace("-", "").startswith("utf")
+
+
+def readable_arguments(arguments: list[str]) -> list[str]:
+    """Return command-line arguments with UTF-8 bytes decoded that the locale's encoding could not decode."""
+    return [os.fsencode(text).decode("utf-8", "replace") if _has_surrogates(text) else text for text in arguments]
+
+
+def _has_surrogates(text: str) -> bool:
+    return any("\udc80" <= c <= "\udcff" for c in text)
+
+
+def _ignore_interrupts() -> None:
+    """Ignore Ctrl-C from here on: the program is about to end, and a second one would only show a traceback."""
+    with suppress(ValueError):  # Signals belong to the main thread
+        signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -1,0 +1,345 @@
+"""Options that several commands share, each declared once, and the decorator that gives them to a command.
+
+A group of options is a frozen dataclass whose fields carry a ``typer.Option``. A command asks for a group by annotating one
+parameter with it, and ``command`` expands the group into the flat signature that Typer reads::
+
+    @app.command()
+    @command
+    def ask(instruction: Instruction, session: SessionFlags, models: PairFlags, as_json: JsonOption = False) -> int:
+        ...
+
+A parameter's default, if there is one, is an instance of its group: its values are the defaults of the options in that command.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass, fields, is_dataclass
+from functools import wraps
+from inspect import Parameter, Signature, signature
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
+
+import typer
+
+from scope_ptz.cli.exit import exit_on_error
+from scope_ptz.errors import InputError
+
+if TYPE_CHECKING:
+    from scope_ptz.factory.cameras import OpenCamera
+    from scope_ptz.factory.models import ModelOptions
+
+CAMERA_PANEL, RUN_PANEL, MODEL_PANEL, JUDGE_PANEL = "Camera", "Run", "Models", "Judge"
+
+JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON and nothing else.")]
+SeedOption = Annotated[int, typer.Option("--seed", help="Seed for every random choice.")]
+OutputFile = Annotated[Path, typer.Option("--out", "-o", help="File to write.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class StartFlags:
+    """The camera, and where and when it starts."""
+
+    camera: Annotated[
+        str | None,
+        typer.Option(
+            "--camera",
+            metavar="SPEC",
+            help="Camera: sim:SCENE, blender:SCENE, blender:FILE.blend, or a plug-in's (default: sim:highway-works).",
+            rich_help_panel=CAMERA_PANEL,
+        ),
+    ] = None
+    scene: Annotated[
+        str | None,
+        typer.Option("--scene", help="Short for --camera sim:SCENE; see `scope scene list`.", rich_help_panel=CAMERA_PANEL),
+    ] = None
+    viewpoint: Annotated[
+        str | None,
+        typer.Option("--viewpoint", help="Viewpoint to start at (default: the scene's home).", rich_help_panel=CAMERA_PANEL),
+    ] = None
+    preset: Annotated[
+        str | None,
+        typer.Option("--preset", help="Preset to start at (default: the scene's home).", rich_help_panel=CAMERA_PANEL),
+    ] = None
+    at: Annotated[
+        float | None,
+        typer.Option(
+            "--at", min=0.0, help="Scene time to start at, in seconds (default: the scene's).", rich_help_panel=CAMERA_PANEL
+        ),
+    ] = None
+
+    async def open(self, *, realtime: bool = False) -> OpenCamera:
+        """Open the camera at its start.
+
+        Args:
+            realtime: Whether moves take as long as with a real camera.
+        """
+        from scope_ptz.builtin_names import DEFAULT_SCENE
+        from scope_ptz.factory.cameras import open_camera
+
+        if self.camera is not None and self.scene is not None:
+            raise InputError("Give --camera or --scene, not both: --scene NAME is short for --camera sim:NAME.")
+        spec = self.camera or f"sim:{DEFAULT_SCENE if self.scene is None else self.scene}"
+        return await open_camera(spec, viewpoint=self.viewpoint, preset=self.preset, time_s=self.at, realtime=realtime)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SessionFlags(StartFlags):
+    """The camera's start, and how runs are carried out and kept."""
+
+    realtime: Annotated[
+        bool | None,
+        typer.Option(
+            "--realtime/--fast",
+            help="Move in real time or at once (default: real time on a terminal).",
+            rich_help_panel=CAMERA_PANEL,
+        ),
+    ] = None
+    runs_dir: Annotated[
+        Path | None,
+        typer.Option("--runs-dir", help="Folder for run folders (default: SCOPE_RUNS_DIR, or runs).", rich_help_panel=RUN_PANEL),
+    ] = None
+    max_steps: Annotated[
+        int, typer.Option("--max-steps", min=1, help="Maximum number of planner steps.", rich_help_panel=RUN_PANEL)
+    ] = 64
+    time_budget: Annotated[
+        float | None,
+        typer.Option(
+            "--time-budget", min=0.001, help="Maximum seconds of wall time (default: no limit).", rich_help_panel=RUN_PANEL
+        ),
+    ] = None
+    seed: Annotated[int, typer.Option("--seed", help="Seed for every random choice.", rich_help_panel=RUN_PANEL)] = 0
+
+    def in_real_time(self, *, as_json: bool = False) -> bool:
+        """Return whether moves take real time: as requested, else for a person at a terminal but not for a program."""
+        return self.realtime if self.realtime is not None else sys.stdout.isatty() and not as_json
+
+
+@dataclass(frozen=True, kw_only=True)
+class ModelFlags:
+    """The planner, perception, and the servers that they run on."""
+
+    planner: Annotated[
+        str | None,
+        typer.Option(
+            "--planner",
+            help="Planner: grammar (default), chat, a model, or a plug-in; see `scope models`.",
+            rich_help_panel=MODEL_PANEL,
+        ),
+    ] = None
+    perception: Annotated[
+        str | None,
+        typer.Option(
+            "--perception",
+            help="Perception: ground-truth (default), noisy, a model, a backend, or a plug-in.",
+            rich_help_panel=MODEL_PANEL,
+        ),
+    ] = None
+    planner_url: Annotated[
+        str | None,
+        typer.Option(
+            "--planner-url",
+            help="Address of the planner's server, ending in /v1 (or SCOPE_PLANNER_URL).",
+            rich_help_panel=MODEL_PANEL,
+        ),
+    ] = None
+    perception_url: Annotated[
+        str | None,
+        typer.Option(
+            "--perception-url", help="Address of the perception server (or SCOPE_PERCEPTION_URL).", rich_help_panel=MODEL_PANEL
+        ),
+    ] = None
+    planner_model: Annotated[
+        str | None,
+        typer.Option(
+            "--planner-model", help="Name of the planner on its server (default: the one it lists).", rich_help_panel=MODEL_PANEL
+        ),
+    ] = None
+    perception_model: Annotated[
+        str | None,
+        typer.Option(
+            "--perception-model",
+            help="Name of the vision model on its server (default: the one it lists).",
+            rich_help_panel=MODEL_PANEL,
+        ),
+    ] = None
+    planner_key_file: Annotated[
+        Path | None,
+        typer.Option(
+            "--planner-key-file",
+            help="File with the key of the planner's server (or SCOPE_PLANNER_KEY).",
+            rich_help_panel=MODEL_PANEL,
+        ),
+    ] = None
+    perception_key_file: Annotated[
+        Path | None,
+        typer.Option(
+            "--perception-key-file",
+            help="File with the key of the perception server (or SCOPE_PERCEPTION_KEY).",
+            rich_help_panel=MODEL_PANEL,
+        ),
+    ] = None
+    planner_option: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--planner-option",
+            metavar="NAME=VALUE",
+            help="Planner setting: thinking=on, prompt=..., summarise=true, ... (repeatable).",
+            rich_help_panel=MODEL_PANEL,
+        ),
+    ] = None
+    perception_option: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--perception-option",
+            metavar="NAME=VALUE",
+            help="Perception setting: coordinates=qwen3-vl, max_pixels=..., ... (repeatable).",
+            rich_help_panel=MODEL_PANEL,
+        ),
+    ] = None
+    reader: Annotated[
+        str | None,
+        typer.Option("--reader", help="Separate backend for reading text, for example rapidocr.", rich_help_panel=MODEL_PANEL),
+    ] = None
+    detector: Annotated[
+        str | None,
+        typer.Option(
+            "--detector", help="Separate backend for finding objects, for example owlv2-base.", rich_help_panel=MODEL_PANEL
+        ),
+    ] = None
+    timeout: Annotated[
+        float | None,
+        typer.Option(
+            "--timeout", min=0.1, help="Seconds for one request to a model server, retries included.", rich_help_panel=MODEL_PANEL
+        ),
+    ] = None
+
+    def options(self, pair: str | None = None) -> ModelOptions:
+        """Return these flags as the options that ``factory.resolve_models`` takes.
+
+        Args:
+            pair: A pair by name, for commands that take it as an argument.
+        """
+        from scope_ptz.factory.models import ModelOptions
+
+        return ModelOptions(
+            planner=self.planner,
+            perception=self.perception,
+            pair=pair,
+            planner_url=self.planner_url,
+            perception_url=self.perception_url,
+            planner_model=self.planner_model,
+            perception_model=self.perception_model,
+            planner_key_file=self.planner_key_file,
+            perception_key_file=self.perception_key_file,
+            planner_options=tuple(self.planner_option or ()),
+            perception_options=tuple(self.perception_option or ()),
+            reader=self.reader,
+            detector=self.detector,
+            timeout_s=self.timeout,
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class _PairFlag:
+    pair: Annotated[
+        str | None,
+        typer.Option(
+            "--pair",
+            help="Both at once: PLANNER+PERCEPTION, or one model that does both; see `scope models pairs`.",
+            rich_help_panel=MODEL_PANEL,
+        ),
+    ] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class PairFlags(ModelFlags, _PairFlag):
+    """The options about models, with ``--pair`` as the short form. ``--pair`` comes first in the help."""
+
+    def options(self, pair: str | None = None) -> ModelOptions:
+        """Return these flags as the options that ``factory.resolve_models`` takes."""
+        return super().options(pair or self.pair)
+
+
+@dataclass(frozen=True, kw_only=True)
+class JudgeFlags:
+    """The judge's server, and how it is asked."""
+
+    judge_url: Annotated[
+        str | None,
+        typer.Option(
+            "--judge-url", help="Address of the judge's server, ending in /v1 (or SCOPE_JUDGE_URL).", rich_help_panel=JUDGE_PANEL
+        ),
+    ] = None
+    judge_model: Annotated[
+        str | None,
+        typer.Option(
+            "--judge-model",
+            help="Name of the judge on its server (or SCOPE_JUDGE_MODEL; default: gpt-oss-120b, else the only one it lists).",
+            rich_help_panel=JUDGE_PANEL,
+        ),
+    ] = None
+    judge_key_file: Annotated[
+        Path | None,
+        typer.Option(
+            "--judge-key-file", help="File with the key of the judge's server (or SCOPE_JUDGE_KEY).", rich_help_panel=JUDGE_PANEL
+        ),
+    ] = None
+    judge_timeout: Annotated[
+        float,
+        typer.Option("--judge-timeout", min=0.1, help="Seconds for one judgement, retries included.", rich_help_panel=JUDGE_PANEL),
+    ] = 300.0
+    judge_option: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--judge-option",
+            metavar="NAME=VALUE",
+            help="Judge setting: temperature=0, seed=1, reasoning_effort=high, ... (repeatable).",
+            rich_help_panel=JUDGE_PANEL,
+        ),
+    ] = None
+
+
+def command(function: Callable[..., int | None]) -> Callable[..., None]:
+    """Make a function with option groups into one that Typer can register.
+
+    Each parameter annotated with a group becomes one keyword parameter per field of the group. The returned number becomes the exit
+    code. Errors that SCOPE raises on purpose become one line on stderr and an exit code (see ``scope_ptz.cli.exit``); a command
+    with a parameter ``as_json`` that is set prints the error as JSON, too.
+    """
+    hints = get_type_hints(function, include_extras=True)
+    groups: dict[str, type[Any]] = {}
+    flat: list[Parameter] = []
+    for parameter in signature(function).parameters.values():
+        kind = hints[parameter.name]
+        if isinstance(kind, type) and is_dataclass(kind):
+            groups[parameter.name] = kind
+            flat += _expanded(kind, None if parameter.default is Parameter.empty else parameter.default)
+        else:
+            flat.append(parameter.replace(annotation=kind, kind=Parameter.KEYWORD_ONLY))
+
+    @wraps(function)
+    def run(**given: Any) -> None:
+        with exit_on_error(as_json=bool(given.get("as_json"))):
+            made = {name: kind(**{f.name: given.pop(f.name) for f in fields(kind)}) for name, kind in groups.items()}
+            if code := function(**given, **made):
+                sys.exit(code)
+
+    del run.__wrapped__
+    run.__signature__ = Signature(flat)  # type: ignore[attr-defined]
+    run.__annotations__ = {p.name: p.annotation for p in flat}
+    return run
+
+
+def _expanded(group: type[Any], defaults: Any) -> list[Parameter]:
+    hints = get_type_hints(group, include_extras=True)
+    return [
+        Parameter(
+            field.name,
+            Parameter.KEYWORD_ONLY,
+            default=field.default if defaults is None else getattr(defaults, field.name),
+            annotation=hints[field.name],
+        )
+        for field in fields(group)
+    ]

@@ -1,0 +1,109 @@
+"""``scope plan``: what would be done, without moving anything."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+from rich.console import Console
+from rich.table import Column, Table
+from rich.text import Text
+
+from scope_ptz.cli.display import arguments_text, plain, shortened
+from scope_ptz.cli.exit import BAD_INPUT, complain, put_json
+from scope_ptz.errors import InputError
+from scope_ptz.planner.base import MAX_INSTRUCTION_CHARS
+from scope_ptz.planner.grammar.execution.outline import OutlineBlock, OutlineCall
+from scope_ptz.planner.plan import Plan
+from scope_ptz.planner.plan import plan as make_plan
+
+_INDENT = 5
+
+
+class _Line(BaseModel):
+    """One line of a file of instructions. Other fields are ignored, so that a task file can be given as it is."""
+
+    model_config = ConfigDict(strict=True)
+
+    instruction: str
+    presets: list[str] = []
+
+
+def plan(instruction: str | None, presets: str | None, source: Path | None, *, as_json: bool) -> int:
+    """Plan one instruction or a file of them, and return the exit code."""
+    if (instruction is None) == (source is None):
+        raise InputError("Give an instruction, or a file of them with --from.")
+    if source is not None:
+        if presets is not None:
+            raise InputError("With --from, presets are given in the file: one list per line.")
+        return _plan_file(source, as_json=as_json)
+    names = [name.strip() for name in (presets or "").split(",") if name.strip()]
+    _show(_planned(instruction or "", names), as_json=as_json)
+    return 0
+
+
+def _plan_file(source: Path, *, as_json: bool) -> int:
+    code = 0
+    for number, line in enumerate(_lines(source), 1):
+        if not line.strip():
+            continue
+        try:
+            given = _Line.model_validate_json(line)
+            _show(_planned(given.instruction, given.presets), as_json=as_json)
+        except ValidationError as error:
+            first = error.errors(include_url=False)[0]
+            where = ".".join(str(part) for part in first["loc"])
+            complain(f"{source}, line {number}: {f'{where}: ' if where else ''}{first['msg']}.")
+            code = BAD_INPUT
+        except InputError as error:
+            complain(f"{source}, line {number}: {error}")
+            code = BAD_INPUT
+    return code
+
+
+def _lines(source: Path) -> Iterator[str]:
+    try:
+        if str(source) == "-":
+            yield from sys.stdin
+            return
+        with source.open(encoding="utf-8") as file:
+            yield from file
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{source} cannot be read: {error}.") from error
+
+
+def _planned(instruction: str, presets: list[str]) -> Plan:
+    if not instruction.strip():
+        raise InputError("The instruction is empty. Say what the camera should do.")
+    if len(instruction) > MAX_INSTRUCTION_CHARS:
+        raise InputError(f"The instruction is longer than {MAX_INSTRUCTION_CHARS} characters.")
+    return make_plan(instruction, presets)
+
+
+def _show(planned: Plan, *, as_json: bool) -> None:
+    if as_json:
+        put_json(planned.as_dict())
+        return
+    console = Console(highlight=False)
+    console.print(Text.assemble(("› ", "bold cyan"), (plain(shortened(planned.instruction)), "bold")))
+    number = 0
+    for line in planned.outline.lines:
+        numbered = isinstance(line, OutlineCall) or not line.heading.startswith(("otherwise", "if that never"))
+        number += numbered
+        _show_line(console, line, f"{number:3d}  " if numbered else " " * _INDENT)
+    if planned.clarification is not None:
+        console.print(Text(plain(shortened(planned.clarification)), style="yellow"))
+
+
+def _show_line(console: Console, line: OutlineCall | OutlineBlock, lead: str) -> None:
+    """Print a line of the outline, and what belongs to it indented below. Long lines continue below their own beginning."""
+    grid = Table.grid(Column(width=len(lead), no_wrap=True), Column())
+    if isinstance(line, OutlineCall):
+        grid.add_row(Text(lead, "cyan"), Text.assemble((line.name, "bold"), f"({arguments_text(line.arguments)})"))
+    else:
+        grid.add_row(Text(lead, "cyan"), Text(plain(line.heading), "yellow"))
+    console.print(grid)
+    for inner in line.lines if isinstance(line, OutlineBlock) else ():
+        _show_line(console, inner, " " * (len(lead) + 4))

@@ -1,0 +1,288 @@
+"""``scope profile``: what a pair does on the user's own servers, and whether it meets the paper's real-time bar."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pydantic import BaseModel, ConfigDict
+from rich.console import Console
+from rich.progress import Progress, TextColumn
+from rich.text import Text
+
+from scope_ptz.builtin_names import DEFAULT_SCENE
+from scope_ptz.cli.display import plain
+from scope_ptz.cli.exit import FAILED, put_json, run_async
+from scope_ptz.endpoints.serving_facts import memory_gb, serving_facts
+from scope_ptz.errors import InputError
+from scope_ptz.factory.cameras import open_camera
+from scope_ptz.factory.models import (
+    ModelOptions,
+    ResolvedPerception,
+    ResolvedPlanner,
+    make_perception,
+    make_planner,
+    resolve_models,
+)
+from scope_ptz.planner.profile import InstructionRow, Sensitivity, ask_once, load_rows, measure_sensitivity, read_rows
+from scope_ptz.planner.profile.perception_speed import PerceptionSpeed, measure_perception
+from scope_ptz.planner.profile.prompt_sensitivity import Rate
+from scope_ptz.planner.profile.speed import Speed, Spread, speed_of
+
+if TYPE_CHECKING:
+    from scope_ptz.camera.base import Frame
+
+REAL_TIME_S = 0.5  # the paper's bar: a control loop of about 2 Hz, so at most 500 ms per inference
+_FURTHER_DEG = 7.0  # how far the camera turns on from a preset when more frames are requested than there are presets
+
+
+@dataclass(frozen=True, slots=True)
+class Extent:
+    """How much to measure.
+
+    Attributes:
+        instructions: A file to use instead of the packaged instructions.
+        limit: Maximum number of instructions, sampled evenly.
+        frames: Number of frames for perception.
+        scene: Scene that the frames are taken from.
+        prompts: Whether to measure the effect of small edits of prompt and instruction.
+    """
+
+    instructions: Path | None = None
+    limit: int | None = None
+    frames: int = 6
+    scene: str = DEFAULT_SCENE
+    prompts: bool = False
+
+
+class Side(BaseModel):
+    """A planner or perception as measured. ``meets_real_time`` is None if nothing, or nothing of one skill, succeeded."""
+
+    model_config = ConfigDict(frozen=True)
+
+    name: str
+    served_as: str = ""
+    url: str = ""
+    planner: Speed | None = None
+    perception: PerceptionSpeed | None = None
+    slowest_median_s: float | None = None
+    meets_real_time: bool | None = None
+    memory_gb: float | None = None
+    computed_memory_gb: float | None = None
+    serving: dict[str, str] = {}
+
+
+def profile(options: ModelOptions, extent: Extent, *, as_json: bool) -> int:
+    """Measure a pair and print the report.
+
+    Returns:
+        0 whether or not the bar is met; 1 if there is nothing to judge, because no request of a side succeeded.
+    """
+    report: dict[str, Any] = {}
+    rows = _rows(extent)
+
+    async def work() -> None:
+        choice = await resolve_models(options)
+        if choice.planner.endpoint is None and choice.perception.spec is None:
+            raise InputError("Name what to profile: a pair, or a planner or perception with the address of its server.")
+        sides = {}
+        if choice.planner.endpoint is not None:
+            sides["planner"] = await _planner_side(choice.planner, rows)
+        if choice.perception.spec is not None:
+            sides["perception"] = await _perception_side(choice.perception, extent)
+        report.update({role: side.model_dump() for role, side in sides.items()})
+        report["real_time"] = _verdict([side.meets_real_time for side in sides.values()])
+        if extent.prompts and "planner" in sides and sides["planner"].meets_real_time is not None:
+            report["prompts"] = (await _sensitivity(choice.planner, rows)).model_dump()
+
+    run_async(work)
+    if as_json:
+        put_json(report)
+    else:
+        _show(Console(highlight=False), report)
+    return FAILED if report["real_time"] == "unknown" else 0
+
+
+def _rows(extent: Extent) -> tuple[InstructionRow, ...]:
+    rows = load_rows() if extent.instructions is None else read_rows(extent.instructions)
+    if extent.limit is not None and extent.limit < len(rows):
+        rows = tuple(rows[i * len(rows) // extent.limit] for i in range(extent.limit))
+    return rows
+
+
+# Measuring -------------------------------------------------------------------------------------------------------------
+async def _planner_side(choice: ResolvedPlanner, rows: tuple[InstructionRow, ...]) -> Side:
+    assert choice.endpoint is not None  # noqa: S101 - called only with a server
+    planner, trials = make_planner(choice), []
+    try:
+        first = await ask_once(planner, rows[0])  # Loads the model, opens the connection, fills the prefix cache
+        with _bar("planner", len(rows)) as advance:
+            for row in rows:
+                trials.append(await ask_once(planner, row))
+                advance()
+    finally:
+        await planner.close()
+    speed, facts = speed_of(trials, first), await serving_facts(choice.endpoint)
+    return Side(
+        name=choice.name,
+        served_as=choice.endpoint.model,
+        url=choice.endpoint.url,
+        planner=speed,
+        memory_gb=memory_gb(facts),
+        computed_memory_gb=choice.model.memory_for() if choice.model else None,
+        serving=facts,
+        **_against_bar(speed.turn_s.median if speed.turn_s else None),
+    )
+
+
+async def _perception_side(choice: ResolvedPerception, extent: Extent) -> Side:
+    assert choice.spec is not None  # noqa: S101 - called only with a backend
+    frames = await _frames(extent.scene, extent.frames)
+    perception = make_perception(choice, None, 0)
+    try:
+        with _bar("perception", len(frames) * len(perception.skills)) as advance:
+            speed = await measure_perception(perception, frames, advance)
+    finally:
+        await perception.close()
+    facts = await serving_facts(choice.spec.endpoint) if choice.spec.endpoint else {}
+    return Side(
+        name=choice.name,
+        served_as=choice.spec.model,
+        url=choice.spec.endpoint.url if choice.spec.endpoint else "",
+        perception=speed,
+        memory_gb=memory_gb(facts),
+        computed_memory_gb=choice.model.memory_for() if choice.model else None,
+        serving=facts,
+        **_against_bar(speed.slowest_median_s),
+    )
+
+
+def _against_bar(median_s: float | None) -> dict[str, Any]:
+    return {"slowest_median_s": median_s, "meets_real_time": None if median_s is None else median_s <= REAL_TIME_S}
+
+
+async def _frames(scene_name: str, count: int) -> list[Frame]:
+    """Return frames of a scene's presets, turned on from them if more are requested, so that no two are alike."""
+    from scope_ptz.geometry import Pose
+
+    async with await open_camera(f"sim:{scene_name}") as opened:
+        camera = opened.camera
+        names = [preset.name for preset in await camera.presets()]
+        frames = []
+        for index in range(count):
+            await camera.go_to_preset(names[index % len(names)])
+            if index >= len(names):
+                pose = await camera.pose()
+                await camera.move(Pose(pose.pan_deg + _FURTHER_DEG * (index // len(names)), pose.tilt_deg, pose.zoom))
+            frames.append(await camera.frame())
+        return frames
+
+
+async def _sensitivity(choice: ResolvedPlanner, rows: tuple[InstructionRow, ...]) -> Sensitivity:
+    from scope_ptz.planner.chat import ChatOptions, ChatPlanner, Prompt, load_prompt
+
+    assert choice.endpoint is not None  # noqa: S101 - called only with a server
+    endpoint, options = choice.endpoint, choice.options or ChatOptions()
+
+    def make(prompt: Prompt) -> ChatPlanner:
+        return ChatPlanner(endpoint, options, prompt=prompt)
+
+    return await measure_sensitivity(make, load_prompt(options.prompt), rows=rows)
+
+
+def _verdict(sides: list[bool | None]) -> str:
+    if None in sides:
+        return "unknown"
+    return "met" if all(sides) else "missed"
+
+
+@contextmanager
+def _bar(title: str, total: int) -> Iterator[Callable[[], None]]:
+    """Show a progress bar on stderr, if that is a terminal; the function that is yielded advances it."""
+    console = Console(stderr=True)
+    columns = (*Progress.get_default_columns(), TextColumn(title))
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
+        task = progress.add_task(title, total=total)
+        yield lambda: progress.advance(task)
+
+
+# Printing --------------------------------------------------------------------------------------------------------------
+_VERDICTS = {
+    "met": ("met", "bold green"),
+    "missed": ("missed", "bold yellow"),
+    "unknown": ("unknown, because something never worked", "bold red"),
+}
+
+
+def _show(console: Console, report: dict[str, Any]) -> None:
+    for role in ("planner", "perception"):
+        if role in report:
+            _show_side(console, role, Side.model_validate(report[role]))
+    console.print(Text.assemble("Real-time bar of the paper (2 Hz, 500 ms per inference): ", _VERDICTS[report["real_time"]]))
+    if "prompts" in report:
+        _show_prompts(console, Sensitivity.model_validate(report["prompts"]))
+
+
+def _show_side(console: Console, role: str, side: Side) -> None:
+    served = f", served as {side.served_as}" if side.served_as not in ("", side.name) else ""
+    address = f" at {side.url}" if side.url else ""
+    console.print(Text.assemble((f"{role} {side.name}", "bold"), f"{served}{address}"), soft_wrap=True)
+    if side.planner is not None:
+        _show_planner(console, side.planner)
+    if side.perception is not None:
+        _show_perception(console, side.perception)
+    reported = f"{side.memory_gb:g} GB, reported by the server" if side.memory_gb is not None else "not reported by the server"
+    computed = f"; computed: {side.computed_memory_gb:g} GB" if side.computed_memory_gb is not None else ""
+    console.print(f"  {'memory':16}{reported}{computed}")
+    for name, value in side.serving.items():
+        console.print(Text(plain(f"  {name}: {value}"), style="dim"), soft_wrap=True)
+
+
+def _show_planner(console: Console, speed: Speed) -> None:
+    console.print(f"  {speed.turns} instructions, first step of each")
+    _show_spread(console, "first token", speed.first_token_s, " s")
+    _show_spread(console, "whole turn", speed.turn_s, " s")
+    _show_spread(console, "tokens/s", speed.tokens_per_s, "")
+    for label, rate in (("valid calls", speed.valid), ("expected call", speed.right), ("inverted moves", speed.inverted)):
+        interval = "" if rate.share is None else f", 95% {rate.low:.0%} to {rate.high:.0%}"
+        console.print(f"  {label:16}{_rate(rate, interval)}")
+    _show_failures(console, speed.failures, speed.first_failure)
+
+
+def _show_perception(console: Console, speed: PerceptionSpeed) -> None:
+    console.print(f"  {speed.frames} frames")
+    for skill, spread in speed.by_skill.items():
+        _show_spread(console, skill, spread, " s")
+    for skill in speed.never_worked:
+        console.print(Text(f"  {skill:16}never worked", style="red"))
+    _show_failures(console, speed.failures, speed.first_failure)
+
+
+def _rate(rate: Rate, interval: str = "") -> str:
+    return "-" if rate.share is None else f"{rate.share:.1%} ({rate.count} of {rate.of}{interval})"
+
+
+def _show_spread(console: Console, label: str, spread: Spread | None, unit: str) -> None:
+    console.print(f"  {label:16}{'-' if spread is None else f'{spread.median:.3g}{unit} (95%: {spread.p95:.3g}{unit})'}")
+
+
+def _show_failures(console: Console, failures: dict[str, int], first: str) -> None:
+    if failures:
+        console.print(Text(f"  {'failures':16}{', '.join(f'{n} {kind}' for kind, n in failures.items())}", style="red"))
+    if failures and first:
+        console.print(Text(f"  {'first failure':16}{plain(first)}", style="red"), soft_wrap=True)
+
+
+def _show_prompts(console: Console, result: Sensitivity) -> None:
+    console.print(Text(f"prompt {result.prompt}, {result.instructions} instructions", style="bold"))
+    rates = {
+        "tools changed by prompt edits": result.by_prompt,
+        "by instruction edits": result.by_instruction,
+        "by nothing (noise)": result.noise,
+        "inverted moves, all trials": result.inverted_anywhere,
+    }
+    for label, rate in rates.items():
+        console.print(f"  {label:32}{_rate(rate)}")

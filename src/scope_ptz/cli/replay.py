@@ -1,0 +1,116 @@
+"""``scope replay``: show a recorded run, and repeat it if it was made with a simulated camera."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from rich.console import Console
+from rich.text import Text
+
+from scope_ptz.agent.records import Started
+from scope_ptz.agent.replay import Replay
+from scope_ptz.agent.replay import replay as repeat
+from scope_ptz.agent.trace import Trace, read_trace
+from scope_ptz.camera.simulated import SimulatedCamera
+from scope_ptz.cli.ask import summary
+from scope_ptz.cli.display import LiveView, plain, show_end
+from scope_ptz.cli.exit import BAD_INPUT, FAILED, put_json, run_async
+from scope_ptz.errors import InputError, PackError, UnknownNameError
+from scope_ptz.factory.scenes import open_scene
+from scope_ptz.simulator.clock import SceneClock
+
+_LEAD_S = 30.0  # the clock starts this long before the run, so that the camera reaches the first pose in time
+_NO_CALLS = "the trace contains no calls, so there is nothing to repeat"
+
+
+def replay(run: Path, *, as_json: bool) -> int:
+    """Show and repeat a run, and return the exit code: 0 only if calls were repeated and gave the same results."""
+    trace = read_trace(run)
+    reason = "" if trace.calls else _NO_CALLS
+    found: Replay | None = None
+
+    async def work() -> None:
+        nonlocal found
+        found = await _repeat(trace)
+
+    try:
+        run_async(work)
+    except (InputError, PackError) as error:
+        reason = str(error)
+    if as_json:
+        put_json(_as_json(trace, found, reason))
+    else:
+        _show(trace, found, reason)
+    if found is None or (found.equal and not trace.calls):
+        return BAD_INPUT
+    return 0 if found.equal else FAILED
+
+
+async def _repeat(trace: Trace) -> Replay:
+    started = trace.started
+    if not started.simulated or started.scene is None:
+        raise InputError("the run was made with a real camera, and only runs with a simulated camera can be repeated")
+    camera = SimulatedCamera(
+        open_scene(started.scene),
+        viewpoint=started.labels.home_viewpoint,
+        clock=SceneClock(started.scene_time_s - _LEAD_S),
+        width=started.frame_width,
+        height=started.frame_height,
+    )
+    await _take_position(camera, started)
+    return await repeat(trace, camera)
+
+
+async def _take_position(camera: SimulatedCamera, started: Started) -> None:
+    """Bring a new camera to the pose of the recorded one, at the same scene time."""
+    if camera.viewpoint != started.viewpoint:
+        presets = open_scene(started.scene or "").file.presets
+        there = next((p.name for p in presets if p.viewpoint == started.viewpoint), None)
+        if there is None:
+            raise UnknownNameError("viewpoint", str(started.viewpoint), {p.viewpoint for p in presets})
+        await camera.go_to_preset(there)
+    await camera.move(started.pose.pose())
+    await camera.clock.sleep(max(0.0, started.scene_time_s - camera.clock.now_s()))
+
+
+def _show(trace: Trace, found: Replay | None, reason: str) -> None:
+    console = Console(highlight=False)
+    view = LiveView(console)
+    view(trace.started)
+    differences = {(c.recorded.step, c.recorded.index): c.difference for c in found.comparisons} if found else {}
+    for call in trace.calls:
+        view(call)
+        if difference := differences.get((call.step, call.index)):
+            console.print(Text(f"     differs: {plain(difference)}", style="bold red"))
+    if trace.ended is None:
+        console.print(Text("The trace ends here: the run was cut off.", style="bold red"))
+    else:
+        show_end(console, trace.ended, trace.started.labels.perception_note, trace.folder, None)
+    console.print()
+    style = "bold green" if found and found.equal and not reason else "bold yellow"
+    console.print(Text(_verdict(found, reason), style=style))
+
+
+def _verdict(found: Replay | None, reason: str) -> str:
+    if found is None:
+        return f"Shown from the trace only, not repeated: {plain(reason)}"
+    count = len(found.comparisons)
+    if not found.equal:
+        differing = sum(1 for c in found.comparisons if c.difference)
+        tail = f"; {plain(found.outcome_difference)}" if found.outcome_difference else ""
+        return f"Repeated without models: {differing} of {count} calls gave other results{tail}."
+    if reason:
+        return f"Shown from the trace only: {plain(reason)}."
+    return f"Repeated without models: all {count} calls gave the same results."
+
+
+def _as_json(trace: Trace, found: Replay | None, reason: str) -> dict[str, object]:
+    recorded = summary(trace.calls, trace.ended, trace.folder) if trace.ended else None
+    return {
+        "recorded": recorded,
+        "repeated": found is not None,
+        "equal": found.equal if found else None,
+        "differences": [c.difference for c in found.comparisons] if found else [],
+        "outcome_difference": found.outcome_difference if found else "",
+        "reason": reason,
+    }

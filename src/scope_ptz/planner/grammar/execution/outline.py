@@ -1,0 +1,149 @@
+"""The outline of a program: its calls with what repeats, until when and at most how often, and what depends on a condition.
+
+A program is run against imagined results, each loop's body and each branch once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any
+
+from scope_ptz import english
+from scope_ptz.geometry import Limits, Pose
+from scope_ptz.planner.base import ToolCall, ToolOutcome
+from scope_ptz.planner.grammar import instruction_tree as ast
+from scope_ptz.planner.grammar.execution import answer_sentences as say
+from scope_ptz.planner.grammar.execution.move_arguments import arguments_of
+from scope_ptz.planner.grammar.execution.program import Program
+from scope_ptz.planner.grammar.execution.run_state import Run
+
+MAX_LINES = 200  # a longer outline is cut off
+Imagined = Callable[[str, Mapping[str, Any]], dict[str, Any]]
+"""Returns the imagined result of a call."""
+
+
+@dataclass(frozen=True, slots=True)
+class OutlineCall:
+    """A call that the program makes."""
+
+    name: str
+    arguments: dict[str, Any]
+
+
+@dataclass(slots=True)
+class OutlineBlock:
+    """Lines that belong together under a heading, such as the body of a loop. The outermost block has no heading."""
+
+    heading: str = ""
+    lines: list[OutlineCall | OutlineBlock] = field(default_factory=list)
+
+
+def outline(steps: Sequence[ast.Step], limits: Limits, pose: Pose, imagined: Imagined) -> OutlineBlock:
+    """Return the outline of bound steps.
+
+    Args:
+        steps: The steps, with names bound to presets.
+        limits: The camera's limits, which decide how often a loop can move.
+        pose: Where the camera starts.
+        imagined: Returns what a call might return.
+    """
+    program = _Outlining(limits, pose, imagined)
+    for _ in program.run(steps):
+        raise AssertionError("an outlined program makes no calls")
+    return program.outermost
+
+
+class _Outlining(Program):
+    """A program that writes down its calls instead of making them."""
+
+    def __init__(self, limits: Limits, pose: Pose, imagined: Imagined) -> None:
+        super().__init__(limits, pose, assume_met=True)
+        self._imagined = imagined
+        self.outermost = self._block = OutlineBlock()
+        self._lines = 0
+
+    def _call(self, tool: str, **arguments: Any) -> Run:
+        yield from ()
+        self._add(OutlineCall(tool, arguments))
+        call = ToolCall(id=f"call-{self._lines}", name=tool, arguments=arguments)
+        result = self._imagined(tool, arguments)
+        self.pose = Pose(**result["pose"])
+        return ToolOutcome(call=call, result=result)
+
+    def _add(self, line: OutlineCall | OutlineBlock) -> None:
+        self._lines += 1
+        if self._lines <= MAX_LINES:
+            self._block.lines.append(line)
+
+    @contextmanager
+    def _under(self, heading: str) -> Iterator[None]:
+        outer, self._block = self._block, OutlineBlock(heading)
+        try:
+            yield
+        finally:
+            inner, self._block = self._block, outer
+            self._add(inner)
+
+    def _repeat(self, step: ast.Repeat) -> Run:
+        if step.times == 1:
+            yield from self._all(step.body)
+            return
+        with self._under(f"{step.times} times:"):
+            yield from self._all(step.body)
+
+    def _if(self, step: ast.If) -> Run:
+        yield from self._test(step.condition)
+        pose = self.pose
+        with self._under(f"if {condition_text(step.condition)}:"):
+            yield from self._all(step.then)
+        if step.otherwise:
+            after, self.pose = self.pose, pose
+            with self._under("otherwise:"):
+                yield from self._all(step.otherwise)
+            self.pose = after
+
+    def _loop(self, step: ast.Loop) -> Run:
+        most = self._allowance(step)
+        with self._under(f"repeat until {condition_text(step.until)}, at most {most} {'time' if most == 1 else 'times'}:"):
+            yield from self._test(step.until)
+            for inner in step.body:
+                if isinstance(inner, ast.Move):
+                    yield from self._moved("adjust_ptz", **arguments_of(inner, self.pose, self.limits, in_loop=True))
+                else:
+                    yield from self._all([inner])
+        with self._under("if that never happens:" if step.otherwise else "if that never happens: stop and report it"):
+            yield from self._all(step.otherwise)
+
+    def _joined(self, condition: ast.Joined) -> Run:
+        for part in condition.parts:
+            yield from self._test(part)
+        return True, ""
+
+
+def condition_text(condition: ast.Condition) -> str:
+    """Return a condition in the present tense: "at least 6 cones are visible"."""
+    match condition:
+        case ast.Seen(thing=thing, quantity=quantity, view=view):
+            verb = "is" if quantity.number == 1 and quantity != ast.Quantity() else "are"
+            return f"{say.quantity_text(quantity, thing.text)} {verb} visible{' in the whole scene' if view == 'full' else ''}"
+        case ast.Readable(thing=thing):
+            return f"the {thing.text} can be read"
+        case ast.Holds(subject=subject, predicate=predicate, wanted=expected, question=question):
+            if question:
+                return f"the answer to “{question}” is {'yes' if expected else 'no'}"
+            return f"{'the ' if subject.definite else ''}{subject.text} is {'' if expected else 'not '}{predicate}"
+        case ast.Outnumbers(first=first, second=second, sense=sense):
+            return f"{sense} {first.text} than {second.text} are visible"
+        case ast.PresetWins(thing=thing, first=first, second=second, sense=sense):
+            return f"{sense} {thing.text} are visible at {first.name} than at {second.name}"
+        case ast.Negated(part=ast.Answered()):
+            return "the answer was no, or nothing was found"
+        case ast.Negated(part=ast.Seen(thing=thing, quantity=quantity)) if quantity == ast.Quantity():
+            return f"no {say.noun(thing.text, 2)} are visible"
+        case ast.Negated(part=part):
+            return f"it is not the case that {condition_text(part)}"
+        case ast.Joined(parts=parts, mode=mode):
+            return english.listing([condition_text(part) for part in parts], "and" if mode == "all" else "or")
+    return "the answer was yes, or something was found"

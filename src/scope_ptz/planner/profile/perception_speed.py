@@ -1,0 +1,86 @@
+"""How fast perception answers on frames of a scene, skill by skill."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable, Sequence
+from time import perf_counter
+
+from pydantic import BaseModel, ConfigDict
+
+from scope_ptz.camera.base import Frame
+from scope_ptz.errors import PerceptionError
+from scope_ptz.perception.base import Perception
+from scope_ptz.planner.profile.speed import Spread
+
+OBJECT, QUESTION = "car", "What is the main thing in this picture? Answer in a few words."
+
+
+class PerceptionSpeed(BaseModel):
+    """Seconds per skill.
+
+    Attributes:
+        frames: Number of frames.
+        by_skill: Median and 95th percentile of the calls that succeeded.
+        never_worked: Skills without any successful call.
+        failures: Number of failed calls by kind.
+        first_failure: The error message of the first one.
+    """
+
+    model_config = ConfigDict(frozen=True)
+
+    frames: int
+    by_skill: dict[str, Spread]
+    never_worked: tuple[str, ...] = ()
+    failures: dict[str, int]
+    first_failure: str = ""
+
+    @property
+    def slowest_median_s(self) -> float | None:
+        """The median of the slowest skill; None if a skill never worked, because such a skill is not fast."""
+        if self.never_worked:
+            return None
+        return max((spread.median for spread in self.by_skill.values()), default=None)
+
+
+async def measure_perception(
+    perception: Perception, frames: Sequence[Frame], on_call: Callable[[], None] = lambda: None
+) -> PerceptionSpeed:
+    """Ask for every skill on every frame and time it.
+
+    One round before that is not counted: it loads the model and opens the connection.
+
+    Args:
+        perception: What is measured.
+        frames: Pictures, no two alike, so that nothing is answered from a cache.
+        on_call: Called after each call that counts.
+    """
+    skills: dict[str, Callable[[Frame], Awaitable[object]]] = {
+        "query": lambda frame: perception.query(frame, QUESTION),
+        "caption": perception.caption,
+        "detect": lambda frame: perception.detect(frame, OBJECT),
+        "point": lambda frame: perception.point(frame, OBJECT),
+    }
+    times: dict[str, list[float]] = {name: [] for name in skills if name in perception.skills}
+    failures: dict[str, int] = {}
+    first = ""
+    for number, frame in enumerate([frames[0], *frames]):
+        counts = number > 0
+        for name in times:
+            began = perf_counter()
+            try:
+                await skills[name](frame)
+                if counts:
+                    times[name].append(perf_counter() - began)
+            except PerceptionError as error:
+                kind, first = error.kind or "perception", first or str(error)
+                failures[kind] = failures.get(kind, 0) + counts
+            if counts:
+                on_call()
+    by_skill = {name: spread for name, values in times.items() if (spread := Spread.of(values)) is not None}
+    return PerceptionSpeed(
+        frames=len(frames),
+        by_skill=by_skill,
+        never_worked=tuple(name for name in times if name not in by_skill),
+        failures={kind: count for kind, count in failures.items() if count},
+        first_failure=first,
+    )

@@ -1,0 +1,115 @@
+"""A scene's card: what it contains and how it was made, for the terminal and as a Markdown page."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+
+from scope_ptz.simulator.models import Layer, Manifest, ScenePreset, SceneViewpoint
+from scope_ptz.simulator.pack import Scene
+
+
+@dataclass(frozen=True, slots=True)
+class Paragraph:
+    """A part of a card: a title, and lines that consist of a name (may be empty) and a text.
+
+    Attributes:
+        title: The heading.
+        lines: The name and the text of each line.
+    """
+
+    title: str
+    lines: tuple[tuple[str, str], ...]
+
+
+def folder_bytes(folder: Path) -> int:
+    """Return the total size of the files in a folder."""
+    return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
+
+
+def megabytes(size: int) -> str:
+    """Return a number of bytes as text in megabytes."""
+    return f"{size / 1e6:.1f} MB"
+
+
+def card(scene: Scene) -> Iterator[Paragraph]:
+    """Yield the paragraphs of a scene's card."""
+    file = scene.file
+    for viewpoint in file.viewpoints:
+        presets = [p for p in file.presets if p.viewpoint == viewpoint.name]
+        yield Paragraph(f"Viewpoint {viewpoint.name}", (("", _place(scene, viewpoint)), *(_preset(scene, p) for p in presets)))
+    categories = Counter([i.category for i in file.instances] + [a.category for a in file.actors])
+    inventory = ", ".join(f"{count} {category}" for category, count in categories.most_common())
+    yield Paragraph(
+        f"{len(file.instances)} objects and {len(file.actors)} moving ones, of {len(categories)} categories", (("", inventory),)
+    )
+    readable = Counter(f"“{' '.join(t.text.split())}”" for t in file.texts)
+    texts = "; ".join(f"{text} ({n} times)" if n > 2 else text for text, n in readable.items())
+    yield Paragraph(f"{len(file.texts)} texts", (("", texts or "none"),))
+    movers = tuple(
+        (a.name, f"{a.waypoints[0][0]:.0f} to {a.waypoints[-1][0]:.0f} s of every {a.period_s:.0f} s") for a in file.actors
+    )
+    yield Paragraph("Moving", movers or (("", "nothing"),))
+    yield Paragraph("Deliberately absent", (("", ", ".join(file.absent) or "nothing"),))
+    yield Paragraph("How it was made", tuple(_making(scene)))
+    yield Paragraph("Checksums (SHA-256)", tuple(_checksums(scene)))
+
+
+def markdown(scene: Scene, picture: str | None) -> str:
+    """Return the card as a Markdown page.
+
+    Args:
+        scene: The scene.
+        picture: Path of its contact sheet, as the page should link to it; None for a page without a picture.
+    """
+    parts = [f"# {scene.file.title}", f"`{scene.name}`, version {scene.file.version}"]
+    if picture:
+        parts.append(f"![All presets of {scene.name}]({picture})")
+    for paragraph in card(scene):
+        parts.append(f"## {paragraph.title}")
+        if len(paragraph.lines) == 1 and not paragraph.lines[0][0]:
+            parts.append(paragraph.lines[0][1])
+        else:
+            parts.append("\n".join(f"- **{name}**: {body}" if name else f"- {body}" for name, body in paragraph.lines))
+    return "\n\n".join(parts) + "\n"
+
+
+def _place(scene: Scene, viewpoint: SceneViewpoint) -> str:
+    x, y, z = viewpoint.position_m
+    return f"{viewpoint.description}; at ({x:.1f}, {y:.1f}, {z:.1f}) m, {megabytes(folder_bytes(scene.folder / viewpoint.name))}"
+
+
+def _preset(scene: Scene, preset: ScenePreset) -> tuple[str, str]:
+    home = ", home" if preset.name == scene.file.home_preset else ""
+    pose = f"pan {preset.pan_deg:g}°, tilt {preset.tilt_deg:g}°, zoom {preset.zoom:g}x{home}"
+    return preset.name, f"{pose}; {preset.description}" if preset.description else pose
+
+
+def _making(scene: Scene) -> Iterator[tuple[str, str]]:
+    yield "", f"modelled by code (`scope scene build {scene.name}`), rendered with Cycles of Blender {scene.file.blender_version}"
+    for place in scene.file.viewpoints:
+        manifest = scene.viewpoint(place.name).manifest
+        sprites = sum(len(sheet.sprites) for sheet in manifest.actors)
+        layers = ", ".join(f"{part} {layer.width}x{layer.height}" for part, layer in _panoramas(manifest))
+        rest = f"{len(manifest.tiles)} sharper tiles, {sprites} sprites of moving objects"
+        yield place.name, f"{layers}, {manifest.samples} samples per pixel, denoised; {rest}"
+
+
+def _panoramas(manifest: Manifest) -> tuple[tuple[str, Layer], ...]:
+    return ("panorama", manifest.base), ("instance numbers", manifest.ids), ("depth", manifest.depth)
+
+
+def _checksums(scene: Scene) -> Iterator[tuple[str, str]]:
+    yield "scene.json", f"`{_digest(scene.folder / 'scene.json')}`"
+    for place in scene.file.viewpoints:
+        yield (
+            f"{place.name}/manifest.json",
+            f"`{_digest(scene.folder / place.name / 'manifest.json')}` (contains those of its files)",
+        )
+
+
+def _digest(path: Path) -> str:
+    return sha256(path.read_bytes()).hexdigest()

@@ -1,0 +1,82 @@
+"""Options that are declared once: groups in a command's signature, their defaults, exit codes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from inspect import signature
+from typing import Annotated
+
+import pytest
+import typer
+from typer.testing import CliRunner
+
+from scope_ptz.cli.options import JsonOption, ModelFlags, PairFlags, SessionFlags, command
+from scope_ptz.errors import InputError, PlannerError
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sizes:
+    """Two options for the tests."""
+
+    width: Annotated[int, typer.Option("--width", rich_help_panel="Sizes")] = 3
+    names: Annotated[list[str] | None, typer.Option("--name")] = None
+
+
+SMALL = Sizes(width=1)
+
+
+def run(function: object, *arguments: str) -> tuple[int, str]:
+    app = typer.Typer(pretty_exceptions_enable=False)
+    app.command()(command(function))  # type: ignore[arg-type]
+    done = CliRunner().invoke(app, arguments)
+    return done.exit_code, done.output
+
+
+def test_a_group_arrives_as_one_object() -> None:
+    def show(label: str, sizes: Sizes, as_json: JsonOption = False) -> None:
+        typer.echo(f"{label} {sizes.width} {sizes.names} {as_json}")
+
+    assert run(show, "a") == (0, "a 3 None False\n")
+    assert run(show, "a", "--width", "5", "--name", "x", "--name", "y", "--json") == (0, "a 5 ['x', 'y'] True\n")
+    assert run(show, "a", "--width", "wide")[0] == 2
+
+
+def test_a_command_can_have_defaults_of_its_own() -> None:
+    def show(sizes: Sizes = SMALL) -> None:
+        typer.echo(str(sizes.width))
+
+    assert run(show) == (0, "1\n")
+
+
+def test_the_returned_number_is_the_exit_code() -> None:
+    assert run(lambda: 4)[0] == 4
+    assert run(lambda: None)[0] == 0
+
+
+@pytest.mark.parametrize(("error", "code"), [(InputError("Wrong."), 2), (PlannerError("Broken."), 1), (KeyboardInterrupt(), 130)])
+def test_errors_are_exit_codes(error: BaseException, code: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("scope_ptz.cli.exit._ignore_interrupts", lambda: None)
+
+    def fail() -> None:
+        raise error
+
+    assert run(fail)[0] == code
+
+
+def test_every_flag_about_models_ends_in_the_options() -> None:
+    given = PairFlags(
+        planner="a", perception="b", pair="c", planner_url="d", perception_url="e", planner_model="f", perception_model="g",
+        planner_option=["h=1"], perception_option=["i=2"], reader="j", detector="k", timeout=1.5,
+    )  # fmt: skip
+    options = given.options()
+    assert (options.planner, options.perception, options.pair, options.timeout_s) == ("a", "b", "c", 1.5)
+    assert (options.planner_options, options.perception_options) == (("h=1",), ("i=2",))
+    assert ModelFlags().options("x").pair == "x"
+
+
+def test_names_of_options_are_unique_within_a_command() -> None:
+    def show(session: SessionFlags, models: PairFlags) -> None: ...
+
+    names = list(signature(command(show)).parameters)
+    assert len(set(names)) == len(names)
+    assert names.index("pair") < names.index("planner")
