@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from scope_ptz import english
-from scope_ptz.english.number_words import CARDINALS
+from scope_ptz.english.numerals import CARDINALS
 
 
 @pytest.mark.parametrize("number", range(100))

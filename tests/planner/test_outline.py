@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from scope_ptz.planner.grammar.outline import OutlineBlock, OutlineCall
+from scope_ptz.planner.grammar.execution.outline import OutlineBlock, OutlineCall
 from scope_ptz.planner.plan import plan
 
 

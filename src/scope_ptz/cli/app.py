@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from scope_ptz.builtin_names import DEFAULT_SCENE
 from scope_ptz.cli.bench.app import bench_app
 from scope_ptz.cli.exit import EXIT_CODES
 from scope_ptz.cli.options import JsonOption, ModelFlags, OutputFile, PairFlags, SeedOption, SessionFlags, StartFlags, command
@@ -126,7 +127,7 @@ def profile(
     ] = None,
     limit: Annotated[int | None, typer.Option("--limit", min=1, help="Use at most N instructions, sampled evenly.")] = None,
     frames: Annotated[int, typer.Option("--frames", min=1, help="Number of frames to show to perception.")] = 6,
-    scene: Annotated[str, typer.Option("--scene", help="Scene to take the frames from.")] = "highway-works",
+    scene: Annotated[str, typer.Option("--scene", help="Scene to take the frames from.")] = DEFAULT_SCENE,
     prompts: Annotated[
         bool, typer.Option("--prompts", help="Also measure how small edits of prompt and instruction change the tool choice.")
     ] = False,

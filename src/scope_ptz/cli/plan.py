@@ -15,7 +15,7 @@ from scope_ptz.cli.display import arguments_text, plain, shortened
 from scope_ptz.cli.exit import BAD_INPUT, complain, put_json
 from scope_ptz.errors import InputError
 from scope_ptz.planner.base import MAX_INSTRUCTION_CHARS
-from scope_ptz.planner.grammar.outline import OutlineBlock, OutlineCall
+from scope_ptz.planner.grammar.execution.outline import OutlineBlock, OutlineCall
 from scope_ptz.planner.plan import Plan
 from scope_ptz.planner.plan import plan as make_plan
 

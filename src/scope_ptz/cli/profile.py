@@ -13,6 +13,7 @@ from rich.console import Console
 from rich.progress import Progress, TextColumn
 from rich.text import Text
 
+from scope_ptz.builtin_names import DEFAULT_SCENE
 from scope_ptz.cli.display import plain
 from scope_ptz.cli.exit import FAILED, put_json, run_async
 from scope_ptz.endpoints.serving_facts import memory_gb, serving_facts
@@ -53,7 +54,7 @@ class Extent:
     instructions: Path | None = None
     limit: int | None = None
     frames: int = 6
-    scene: str = "highway-works"
+    scene: str = DEFAULT_SCENE
     prompts: bool = False
 
 

@@ -5,7 +5,7 @@ Pure data and pure functions at the bottom of the package layers. Nothing here k
 
 from scope_ptz.english.colours import COLOURS
 from scope_ptz.english.nouns import article, counted, is_plural, plural, singular
-from scope_ptz.english.number_words import cardinal, number_word, ordinal, ordinal_suffix
+from scope_ptz.english.numerals import cardinal, number_word, ordinal, ordinal_suffix
 from scope_ptz.english.text_forms import letters, listing, sentence
 
 __all__ = [

@@ -12,9 +12,9 @@ from typing import Any
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import ToolCall, ToolOutcome
 from scope_ptz.planner.grammar.binding.understand import understand
+from scope_ptz.planner.grammar.execution.outline import OutlineBlock
+from scope_ptz.planner.grammar.execution.outline import outline as make_outline
 from scope_ptz.planner.grammar.execution.program import Program
-from scope_ptz.planner.grammar.outline import OutlineBlock
-from scope_ptz.planner.grammar.outline import outline as make_outline
 
 _MOST_CALLS = 200
 _ZOOM_ON_OBJECT = 2.0
@@ -36,7 +36,7 @@ class Plan:
         instruction: The instruction.
         understood: Whether there is anything to do.
         calls: The calls, as if every tool succeeded and every condition were met at its first test.
-        clarification: The question back, or the refusal, when there is nothing to do.
+        clarification: The question or the refusal when there is nothing to do.
         outline: The calls with loops and conditions as such.
     """
 

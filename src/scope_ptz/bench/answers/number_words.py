@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 
 from scope_ptz.bench.answers.tokenizer import Word
-from scope_ptz.english.number_words import CARDINALS, SCALES, TENS, UNITS
+from scope_ptz.english.numerals import CARDINALS, SCALES, TENS, UNITS
 
 _BEFORE_ONE = frozenset({
     "is", "are", "was", "were", "be", "see", "sees", "seeing", "count", "counted", "counts", "find", "found", "shows",

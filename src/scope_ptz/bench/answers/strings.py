@@ -11,7 +11,7 @@ from scope_ptz.bench.answers.quotes import Quote, quoted_lettering, quotes_of
 from scope_ptz.bench.answers.text import AnswerText
 from scope_ptz.bench.answers.tokenizer import clean
 from scope_ptz.bench.tasks.expected import Text
-from scope_ptz.english.number_words import SMALL_NUMBERS
+from scope_ptz.english.numerals import SMALL_NUMBERS
 
 TEXT_SEPARATOR = " / "
 """Separator between texts that are written in separate places."""

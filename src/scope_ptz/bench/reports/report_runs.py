@@ -14,13 +14,13 @@ from scope_ptz.bench.judging.judgement_tally import without_verdict
 from scope_ptz.bench.reports.display_names import served_instead, split_name
 from scope_ptz.bench.scoring.trials import Evaluation, ModelCard, Trial
 from scope_ptz.bench.statistics.clustered import IntervalEstimate, Scores, macro_weights, share
+from scope_ptz.builtin_names import GRAMMAR, GROUND_TRUTH
 from scope_ptz.errors import UnknownNameError
 from scope_ptz.registry import Model, Registry
 
 RunKind = Literal["models", "reference", "blind", "person"]
 """Kinds of runs. "reference": with the grammar planner or ground-truth perception; "blind": without perception; "person": human."""
 PERSON = "person"
-GRAMMAR, GROUND_TRUTH = "grammar", "ground-truth"
 """Names of the exact built-in planner and perception. Noisy ground truth is not among them."""
 MAIN_STRATA = ("core", "imported")
 FULL_PRECISION = ("fp32", "fp16", "bf16")

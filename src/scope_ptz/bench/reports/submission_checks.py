@@ -21,6 +21,7 @@ from scope_ptz.version import __version__
 
 MOST_BYTES = 200_000_000
 NOT_RANKED = "not ranked: {pair} uses the grammar planner or ground-truth perception, which are not models"
+"""Built-in planners and perception backends. They are not models, whatever a header says."""
 
 
 @dataclass(frozen=True, slots=True)

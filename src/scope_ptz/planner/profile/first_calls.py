@@ -77,7 +77,7 @@ def load_rows() -> tuple[InstructionRow, ...]:
 def read_rows(source: Path) -> tuple[InstructionRow, ...]:
     """Read instructions with expected calls from a file of JSON lines.
 
-    Lines without calls are left out: they expect a question back, and say nothing about calls.
+    Lines without calls are skipped, because they expect a question instead of calls.
 
     Raises:
         InputError: The file cannot be read, a line is malformed, or there is no line with calls.
@@ -104,6 +104,8 @@ def read_rows(source: Path) -> tuple[InstructionRow, ...]:
 
 
 class _Line(BaseModel):
+    """A line of such a file."""
+
     instruction: str
     kind: str = ""
     calls: list[dict[str, Any]] = []

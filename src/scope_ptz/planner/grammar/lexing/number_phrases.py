@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from itertools import takewhile
 
-from scope_ptz.english.number_words import FRACTIONS
+from scope_ptz.english.numerals import FRACTIONS
 from scope_ptz.planner.grammar.lexing.vocabulary import NUMBER_WORDS, ORDINAL_WORDS
 
 _DIGITS = re.compile(r"[-+−]?\d*\.?\d+")

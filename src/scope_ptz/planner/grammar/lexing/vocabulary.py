@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from functools import cache
 from importlib.resources import files
 
-from scope_ptz.english.number_words import CARDINALS, ORDINALS, SCALES
+from scope_ptz.english.numerals import CARDINALS, ORDINALS, SCALES
 
 NUMBER_WORDS: Mapping[str, float] = {**CARDINALS, **SCALES, "fourty": 40, "dozen": 12, "couple": 2}
 ORDINAL_WORDS: Mapping[str, int] = {**ORDINALS, "last": -1, "final": -1}

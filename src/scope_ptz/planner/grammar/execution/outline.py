@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
-from scope_ptz.english.text_forms import listing
+from scope_ptz import english
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import ToolCall, ToolOutcome
 from scope_ptz.planner.grammar import instruction_tree as ast
@@ -145,5 +145,5 @@ def condition_text(condition: ast.Condition) -> str:
         case ast.Negated(part=part):
             return f"it is not the case that {condition_text(part)}"
         case ast.Joined(parts=parts, mode=mode):
-            return listing([condition_text(part) for part in parts], "and" if mode == "all" else "or")
+            return english.listing([condition_text(part) for part in parts], "and" if mode == "all" else "or")
     return "the answer was yes, or something was found"
