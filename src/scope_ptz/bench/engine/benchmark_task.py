@@ -15,7 +15,7 @@ from scope_ptz.bench.engine.entries import Entry, datasets, digest, select
 from scope_ptz.bench.engine.external_agents import source_digest
 from scope_ptz.bench.engine.judge_scorer import judge_scorer
 from scope_ptz.bench.engine.run_cards import AGENT_SOURCE
-from scope_ptz.bench.engine.samples import dataset_of
+from scope_ptz.bench.engine.samples import dataset_of, viewpoint_order
 from scope_ptz.version import __version__
 
 __all__ = ["Task", "benchmark_task"]
@@ -62,10 +62,8 @@ def benchmark_task(provide_context: Callable[[int], EvalContext]) -> Callable[..
         """
         context = provide_context(seed)
         entries = select(context.load_tasks(split), _names(category), _names(scene), limit)
-        # Place after place: the layers of a viewpoint are read once, and few viewpoints are in memory at a time.
-        by_place = sorted(entries, key=lambda entry: (entry.facts.scene, entry.facts.viewpoint))
         return Task(
-            dataset=dataset_of(by_place, name=f"{datasets(entries)} {Path(split).name}"),
+            dataset=dataset_of(viewpoint_order(entries, context.open_scene), name=f"{datasets(entries)} {Path(split).name}"),
             solver=agent_solver(context, agent=agent, pictures=pictures, max_steps=max_steps, time_s=time_s, seed=seed),
             scorer=[checks_scorer(context), *(judge_scorer(context, repeat) for repeat in range(judgements))],
             epochs=Epochs(epochs, "mean"),

@@ -85,8 +85,9 @@ async def _trial(state: TaskState, context: EvalContext | None) -> Trial:
     trial = trial_of(entry, kept, state.epoch, where)
     if trial.headline == "incorrect" and context is not None and context.true_count is not None and not kept.truths:
         kept = await _with_truths(entry, kept, context.true_count)
-        state.store.set(STORE, kept.as_store())
-        trial = trial_of(entry, kept, state.epoch, where)
+        if kept.truths:
+            state.store.set(STORE, kept.as_store())
+            trial = trial_of(entry, kept, state.epoch, where)
     if context is not None:
         context.watcher.ended(sample_name(entry.facts.id, state.epoch), trial)
     return trial

@@ -12,17 +12,44 @@ from pydantic import ValidationError
 
 from scope_ptz.agent.records import RECORD, Called, Decided, Ended, Started
 from scope_ptz.agent.trace import FILE_NAME, Trace
-from scope_ptz.bench.engine.entries import Entry
+from scope_ptz.bench.engine.entries import Entry, OpenScene
 from scope_ptz.bench.scoring.episode import Episode, PresetViewpoints, episode_of
 from scope_ptz.errors import TraceError
 
+MAX_SHARED_VIEWPOINTS = 2
 STORE = "scope"
 """The key in a sample's store that belongs to this project."""
 
 
+def viewpoint_order(entries: Iterable[Entry], open_scene: OpenScene) -> list[Entry]:
+    """Sort entries so that few viewpoints are in use at a time: reading the layers of one takes as long as many runs.
+
+    Within a scene, entries that use one or two viewpoints follow each other so that neighbours share a viewpoint. Those that use
+    more come last.
+    """
+
+    def key(entry: Entry) -> tuple[str, bool, str, int, list[str], str]:
+        used = sorted(_viewpoints_of(entry, open_scene))
+        return entry.facts.scene, len(used) > MAX_SHARED_VIEWPOINTS, used[0], len(used), used, entry.facts.viewpoint
+
+    return sorted(entries, key=key)
+
+
+def _viewpoints_of(entry: Entry, open_scene: OpenScene) -> set[str]:
+    """Return the viewpoints that a run probably uses: those of its start, its evidence and its reference program."""
+    used = {entry.facts.viewpoint}
+    if entry.task is not None:
+        file = open_scene(entry.world).file
+        of_preset = {preset.name: preset.viewpoint for preset in file.presets}
+        used |= {view.aim.viewpoint for view in entry.task.evidence}
+        visited = [str(call.arguments.get("name")) for call in entry.task.reference if call.tool == "go_to_preset"]
+        visited += [file.home_preset for call in entry.task.reference if call.tool == "go_home"]
+        used |= {of_preset[name] for name in visited if name in of_preset}
+    return used
+
+
 def dataset_of(entries: Iterable[Entry], name: str) -> MemoryDataset:
-    """Return the entries as a dataset of the engine, grouped by viewpoint so that its layers are read once."""
-    entries = sorted(entries, key=lambda e: (e.facts.scene, e.facts.viewpoint))
+    """Return the entries, in their order, as a dataset of the engine."""
     samples = [Sample(id=e.facts.id, input=e.facts.instruction, target=e.facts.expected, metadata=e.metadata()) for e in entries]
     return MemoryDataset(samples, name=name)
 
