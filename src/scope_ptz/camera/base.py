@@ -7,13 +7,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from time import monotonic
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
-import anyio
-import numpy as np
-from numpy.typing import NDArray
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
-from scope_ptz.geometry import Axis, Limits, Optics, Pose, Projection
+    from scope_ptz.geometry import Axis, Limits, Optics, Pose, Projection
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +71,7 @@ class Frame:
     origin: FrameOrigin | None = None
 
     def __post_init__(self) -> None:
-        if self.image.ndim != 3 or self.image.shape[2] != 3 or self.image.dtype != np.uint8:
+        if self.image.ndim != 3 or self.image.shape[2] != 3 or self.image.dtype != "uint8":
             raise ValueError(f"a frame needs an (H, W, 3) uint8 image, got {self.image.shape} {self.image.dtype}")
         self.image.flags.writeable = False
 
@@ -131,6 +131,8 @@ class WallClock:
 
     async def sleep(self, seconds: float) -> None:
         """Wait."""
+        import anyio
+
         await anyio.sleep(max(0.0, seconds))
 
 

@@ -1,9 +1,16 @@
-"""Poses, optics and projections. Pure functions; callers use degrees, radians stay inside this package."""
+"""Poses, optics and projections. Pure functions; callers use degrees, radians stay inside this package.
 
-from scope_ptz.geometry.optics import AXIS_M5075_G, Axis, Limits, Optics
-from scope_ptz.geometry.poses import Pose, wrap_pan_deg
-from scope_ptz.geometry.projection import Equirectangular, Perspective, Projection
-from scope_ptz.geometry.sphere import angle_between_deg, direction, pan_tilt_deg
+Names are loaded on first use: poses and limits need no NumPy, and commands that need only those start faster.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from scope_ptz.geometry.optics import AXIS_M5075_G, Axis, Limits, Optics
+    from scope_ptz.geometry.poses import Pose, wrap_pan_deg
+    from scope_ptz.geometry.projection import Equirectangular, Perspective, Projection
+    from scope_ptz.geometry.sphere import angle_between_deg, direction, pan_tilt_deg
 
 __all__ = [
     "AXIS_M5075_G",
@@ -19,3 +26,20 @@ __all__ = [
     "pan_tilt_deg",
     "wrap_pan_deg",
 ]
+
+_MODULES = {
+    "optics": ("AXIS_M5075_G", "Axis", "Limits", "Optics"),
+    "poses": ("Pose", "wrap_pan_deg"),
+    "projection": ("Equirectangular", "Perspective", "Projection"),
+    "sphere": ("angle_between_deg", "direction", "pan_tilt_deg"),
+}
+_MODULE_OF = {name: module for module, names in _MODULES.items() for name in names}
+
+
+def __getattr__(name: str) -> Any:
+    module = _MODULE_OF.get(name)
+    if module is None:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(f"{__name__}.{module}"), name)
+    globals()[name] = value
+    return value

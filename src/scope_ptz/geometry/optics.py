@@ -6,8 +6,6 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-import numpy as np
-
 from scope_ptz.geometry.poses import Pose, wrap_pan_deg
 
 Axis = Literal["pan", "tilt", "zoom"]
@@ -42,6 +40,8 @@ class Optics:
 
     def focal(self, zoom: float) -> float:
         """Return the focal length in units of half the image width: 1 / tan(hfov / 2)."""
+        import numpy as np  # loaded late: limits and optics are read without it
+
         return float(np.interp(zoom, [z for z, _ in self.table], self._focals()))
 
     def hfov_deg(self, zoom: float) -> float:
@@ -50,6 +50,8 @@ class Optics:
 
     def zoom_for_focal(self, focal: float) -> float:
         """Return the magnification with the given focal length (in half widths), clamped to the table."""
+        import numpy as np
+
         return float(np.interp(focal, self._focals(), [z for z, _ in self.table]))
 
     def zoom_for_hfov(self, hfov_deg: float) -> float:

@@ -7,15 +7,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
+from scope_ptz import geometry
 from scope_ptz.camera.base import CameraInfo, Frame
-from scope_ptz.geometry import Axis, Perspective, Pose, direction, pan_tilt_deg
+from scope_ptz.geometry import Axis, Pose
 from scope_ptz.perception.base import Box
 
-Floats = NDArray[np.float64]
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from scope_ptz.geometry import Perspective
+
+    Floats = NDArray[np.float64]
 
 TARGET_FILL = 0.75
 """Share of its limiting side that a framed target fills. The paper asks for 60 to 90%."""
@@ -38,6 +43,8 @@ class Aim:
 
 def outline(frame: Frame, box: Box, per_side: int = 9) -> Floats:
     """Return directions of shape ``(4 * per_side, 3)`` along the border of a box in a frame."""
+    import numpy as np
+
     t = np.linspace(0.0, 1.0, per_side)
     xs, ys = box.x_min + t * box.width, box.y_min + t * box.height
     low_x, high_x, low_y, high_y = (np.full(per_side, v) for v in (box.x_min, box.x_max, box.y_min, box.y_max))
@@ -47,11 +54,13 @@ def outline(frame: Frame, box: Box, per_side: int = 9) -> Floats:
 
 def view(info: CameraInfo, pose: Pose) -> Perspective:
     """Return the projection of the camera's picture at a pose."""
-    return Perspective(pose.pan_deg, pose.tilt_deg, info.optics.hfov_deg(pose.zoom), info.frame_width, info.frame_height)
+    return geometry.Perspective(pose.pan_deg, pose.tilt_deg, info.optics.hfov_deg(pose.zoom), info.frame_width, info.frame_height)
 
 
 def spans(points: Floats) -> tuple[float, float, float, float]:
     """Return left, top, right and bottom of normalised points; infinite if some lie behind the camera."""
+    import numpy as np
+
     if np.isnan(points).any():
         return -math.inf, -math.inf, math.inf, math.inf
     (left, top), (right, bottom) = points.min(axis=0), points.max(axis=0)
@@ -80,11 +89,13 @@ def aim(info: CameraInfo, start: Pose, target: Floats, fill: float = TARGET_FILL
 
     The calculation iterates because the bounding box of a target, and so its middle, changes with the view.
     """
+    import numpy as np
+
     middle = target.mean(axis=0)
     limits = info.limits
     pose, clamped = start, set[Axis]()
     for _ in range(8):
-        pan, tilt = (float(v) for v in pan_tilt_deg(middle))
+        pan, tilt = (float(v) for v in geometry.pan_tilt_deg(middle))
         zoom = _zoom_for(info, Pose(pan, tilt, start.zoom), target, fill)
         requested = pose_towards(info, pan, tilt, zoom)
         pose, cut = limits.clamp(requested)
@@ -98,7 +109,7 @@ def aim(info: CameraInfo, start: Pose, target: Floats, fill: float = TARGET_FILL
 
 def aim_at_zoom(info: CameraInfo, target: Floats, zoom: float) -> Aim:
     """Return the pose within the limits that looks at the middle of a target at a given magnification."""
-    pan, tilt = (float(v) for v in pan_tilt_deg(target.mean(axis=0)))
+    pan, tilt = (float(v) for v in geometry.pan_tilt_deg(target.mean(axis=0)))
     pose, clamped = info.limits.clamp(pose_towards(info, pan, tilt, zoom))
     return Aim(pose, None, clamped)
 
@@ -153,7 +164,7 @@ def pose_towards(info: CameraInfo, pan_deg: float, tilt_deg: float, zoom: float)
 
 def lookahead(previous: Floats, now: Floats, ratio: float) -> Floats:
     """Extrapolate a motion by ``ratio`` times the interval between two unit vectors of shape ``(3,)``."""
-    pan0, tilt0 = pan_tilt_deg(previous)
-    pan1, tilt1 = pan_tilt_deg(now)
+    pan0, tilt0 = geometry.pan_tilt_deg(previous)
+    pan1, tilt1 = geometry.pan_tilt_deg(now)
     turn = (float(pan1 - pan0) + 180.0) % 360.0 - 180.0
-    return direction(float(pan1) + turn * ratio, float(tilt1) + float(tilt1 - tilt0) * ratio)
+    return geometry.direction(float(pan1) + turn * ratio, float(tilt1) + float(tilt1 - tilt0) * ratio)

@@ -6,12 +6,15 @@ from scope_ptz.camera.base import Frame
 from scope_ptz.perception.base import Answer, Detections
 from scope_ptz.tools.arguments import View
 from scope_ptz.tools.context import ToolContext
-from scope_ptz.tools.sweep import sweep
 
 
 async def view_frame(context: ToolContext, view: View) -> Frame:
     """Return the current frame, or the panorama of a sweep for the full view."""
-    return await (sweep(context.camera) if view == "full" else context.camera.frame())
+    if view == "full":
+        from scope_ptz.tools.sweep import sweep  # OpenCV is loaded for a sweep only
+
+        return await sweep(context.camera)
+    return await context.camera.frame()
 
 
 def remarks(observation: Detections | Answer) -> str:

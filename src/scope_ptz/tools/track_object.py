@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
+from scope_ptz import geometry
 from scope_ptz.camera.base import Frame
-from scope_ptz.geometry import Axis, angle_between_deg, pan_tilt_deg
+from scope_ptz.geometry import Axis
 from scope_ptz.perception.base import Box
-from scope_ptz.tools.aiming import Floats, in_order, lookahead, pose_towards
+from scope_ptz.tools.aiming import in_order, lookahead, pose_towards
 from scope_ptz.tools.arguments import Arguments, Phrase
 from scope_ptz.tools.context import ToolContext
 from scope_ptz.tools.results import PerceptionResult, PoseData
 from scope_ptz.tools.tool import Tool
+
+if TYPE_CHECKING:
+    from scope_ptz.tools.aiming import Floats
 
 PERIOD_S = 0.5
 """Time between two detections: the paper's control loop runs at 2 Hz."""
@@ -95,7 +98,7 @@ class _Target:
     def find(self, frame: Frame, boxes: tuple[Box, ...]) -> Box | None:
         """Return the box nearest to the expected direction, or None if the target cannot have moved that far."""
         expected = self.at(frame.time_s)
-        angles = [float(angle_between_deg(_middle(frame, box), expected)) for box in boxes]
+        angles = [float(geometry.angle_between_deg(_middle(frame, box), expected)) for box in boxes]
         if not angles:
             return None
         best = min(range(len(boxes)), key=angles.__getitem__)
@@ -104,12 +107,16 @@ class _Target:
 
 
 def _middle(frame: Frame, box: Box) -> Floats:
+    import numpy as np
+
     return frame.projection.directions(np.array(box.centre))
 
 
 def _size_deg(frame: Frame, box: Box) -> float:
+    import numpy as np
+
     corners = frame.projection.directions(np.array([[box.x_min, box.y_min], [box.x_max, box.y_max]]))
-    return float(angle_between_deg(corners[0], corners[1]))
+    return float(geometry.angle_between_deg(corners[0], corners[1]))
 
 
 async def track_object(context: ToolContext, arguments: TrackObject) -> TrackResult:
@@ -167,7 +174,7 @@ async def _correct(context: ToolContext, frame: Frame, seen: Box, target: _Targe
 
 
 async def _turn(context: ToolContext, towards: Floats, zoom: float) -> tuple[Axis, ...]:
-    pan, tilt = (float(v) for v in pan_tilt_deg(towards))
+    pan, tilt = (float(v) for v in geometry.pan_tilt_deg(towards))
     return (await context.camera.move(pose_towards(context.camera.info, pan, tilt, zoom))).clamped
 
 

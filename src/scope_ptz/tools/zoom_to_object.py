@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from pydantic import Field
 
+from scope_ptz import geometry
 from scope_ptz.camera.base import Arrival, CameraInfo, Frame
-from scope_ptz.geometry import Axis, Pose, angle_between_deg, direction
+from scope_ptz.geometry import Axis, Pose
 from scope_ptz.perception.base import Box
-from scope_ptz.tools.aiming import TARGET_FILL, Aim, Floats, aim, aim_at_zoom, is_cut, measure, nearest, outline
+from scope_ptz.tools.aiming import TARGET_FILL, Aim, aim, aim_at_zoom, is_cut, measure, nearest, outline
 from scope_ptz.tools.arguments import Arguments, Phrase
 from scope_ptz.tools.context import ToolContext, pose_text
 from scope_ptz.tools.results import PerceptionResult, PoseData
 from scope_ptz.tools.tool import Tool
+
+if TYPE_CHECKING:
+    from scope_ptz.tools.aiming import Floats
 
 MAX_DETECTIONS = 3
 """Perception calls per tool call."""
@@ -129,13 +134,13 @@ def _framed(context: ToolContext, pose: Pose, target: Floats, plan: Aim) -> bool
     """Return whether the camera frames the target as well as it can."""
     fill, (dx, dy) = measure(context.camera.info, pose, target)
     if plan.limited_by:
-        turn = angle_between_deg(_axis(pose), _axis(plan.pose))
+        turn = geometry.angle_between_deg(_axis(pose), _axis(plan.pose))
         return bool(turn < 0.05) and abs(plan.pose.zoom / pose.zoom - 1) < 0.01
     return max(abs(dx), abs(dy)) <= SETTLED_OFFSET and SETTLED_FILL[0] <= fill <= SETTLED_FILL[1]
 
 
 def _axis(pose: Pose) -> Floats:
-    return direction(pose.pan_deg, pose.tilt_deg)
+    return geometry.direction(pose.pan_deg, pose.tilt_deg)
 
 
 async def _locate(context: ToolContext, description: str, known: Floats | None) -> _Detection | Frame:

@@ -1,1 +1,33 @@
-"""``scope bench``: run the benchmark, score and compare runs, and make tasks."""
+"""The commands of ``scope bench``, loaded when one of them is used or listed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from typer.core import TyperGroup
+
+HELP = """Measure planners and perception on 536 tasks.
+
+Start with `scope bench browse` to see tasks, and `scope bench run --split lite` for a first score without any model.
+"""
+
+
+class BenchGroup(TyperGroup):
+    """The group of benchmark commands. Other commands start faster because these are loaded late."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        self._load()
+        return super().list_commands(ctx)
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        self._load()
+        return super().get_command(ctx, cmd_name)
+
+    def _load(self) -> None:
+        if not self.commands:
+            import typer
+
+            from scope_ptz.cli.bench.app import bench_app
+
+            group = typer.main.get_group(bench_app)
+            self.commands.update(group.commands)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import typer
 
+from scope_ptz.cli.bench import HELP
 from scope_ptz.cli.bench.audit import audit_app
 from scope_ptz.cli.bench.browse import browse
 from scope_ptz.cli.bench.build import build, card, gold_app, validate
@@ -17,10 +18,6 @@ from scope_ptz.cli.bench.sweep import sweep
 from scope_ptz.cli.exit import put_json
 from scope_ptz.cli.options import command
 
-HELP = """Measure planners and perception on 536 tasks.
-
-Start with `scope bench browse` to see tasks, and `scope bench run --split lite` for a first score without any model.
-"""
 START, RUN, SCORES, TASKS, SHARE = "Start here", "Run", "Scores and judges", "Make tasks", "Share"
 
 bench_app = typer.Typer(help=HELP, no_args_is_help=True)

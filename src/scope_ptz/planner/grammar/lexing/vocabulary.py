@@ -12,6 +12,7 @@ from scope_ptz.english.numerals import CARDINALS, ORDINALS, SCALES
 NUMBER_WORDS: Mapping[str, float] = {**CARDINALS, **SCALES, "fourty": 40, "dozen": 12, "couple": 2}
 ORDINAL_WORDS: Mapping[str, int] = {**ORDINALS, "last": -1, "final": -1}
 
+_BRACKETS = re.compile(r"([()\[\]|])")
 _NOT_DOUBLED = frozenset({"open", "visit", "orient", "monitor", "widen", "tighten", "broaden", "enter"})
 
 
@@ -26,15 +27,38 @@ def _forms(verb_phrase: str) -> list[str]:
 
 
 def expand(pattern: str) -> list[tuple[str, ...]]:
-    """Return every word sequence that a phrase pattern stands for."""
-    option = re.search(r"[(\[]([^()\[\]]*)[)\]]", pattern)
-    if option:
-        choices = option.group(1).split("|") + ([""] if option.group(0)[0] == "[" else [])
-        return [words for choice in choices for words in expand(pattern[: option.start()] + choice + pattern[option.end() :])]
-    text = " ".join(pattern.split())
-    if text.startswith("~"):
-        return [tuple(form.split()) for form in _forms(text[1:].strip())]
-    return [tuple(text.split())] if text else []
+    """Return every word sequence that a phrase pattern stands for.
+
+    ``(a|b)`` is a choice, ``[a|b]`` an optional choice, and ``~`` before a verb stands for its forms.
+    """
+    found: list[tuple[str, ...]] = []
+    for variant in _variants(pattern):
+        text = " ".join(variant.split())
+        if text.startswith("~"):
+            found.extend(tuple(form.split()) for form in _forms(text[1:].strip()))
+        elif text:
+            found.append(tuple(text.split()))
+    return found
+
+
+def _variants(pattern: str) -> list[str]:
+    """Return the pattern once for each combination of its choices."""
+    open_groups: list[tuple[str, list[str], list[str]]] = []  # bracket, texts before the group, choices so far
+    texts = [""]
+    for token in _BRACKETS.split(pattern):
+        if token in ("(", "["):
+            open_groups.append((token, texts, []))
+            texts = [""]
+        elif token == "|" and open_groups:
+            open_groups[-1][2].extend(texts)
+            texts = [""]
+        elif token in (")", "]"):
+            bracket, before, choices = open_groups.pop()
+            choices = [*choices, *texts, *([""] if bracket == "[" else [])]
+            texts = [text + choice for choice in choices for text in before]
+        elif token:
+            texts = [text + token for text in texts]
+    return texts
 
 
 def _sections(file: str) -> dict[str, list[str]]:
