@@ -33,6 +33,7 @@ format: $(DEV)
 bench: $(DEV)
 	$(BIN)/python benchmarks/reprojection.py
 	$(BIN)/python benchmarks/plan_latency.py
+	$(BIN)/python benchmarks/startup.py
 
 $(VENV)/pyvenv.cfg:
 	@if command -v uv >/dev/null 2>&1; then uv venv -q --python ">=3.11" $(VENV); \

@@ -71,14 +71,14 @@ class Score:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--split", action="append", help="split or task file (default: core, unseen, paraphrase)")
-    parser.add_argument("--eyes", action="append", choices=("truth", "noisy", "rapidocr"), help="default: truth and noisy")
+    parser.add_argument("--perception", action="append", choices=("truth", "noisy", "rapidocr"), help="default: truth and noisy")
     parser.add_argument("--failures", action="store_true", help="list what failed, and why")
     parser.add_argument("--json", action="store_true")
     arguments = parser.parse_args()
     results = {}
     for split in arguments.split or ("core", "unseen", "paraphrase"):
         tasks = load_split(split)
-        for eyes in arguments.eyes or ("truth", "noisy"):
+        for eyes in arguments.perception or ("truth", "noisy"):
             rows = [task for task in tasks if eyes != "rapidocr" or task.category == "ocr"]
             began, cpu_began = time.perf_counter(), time.process_time()
             score = anyio.run(_score, rows, eyes)

@@ -1,11 +1,14 @@
-"""How long the built-in planner takes for a step: median and 95th percentile over the test instructions.
+"""Time of a planning step of the built-in planner: median and 95th percentile over the test instructions.
 
-Every instruction is planned cold (nothing cached from earlier ones but the compiled grammar), then once more as a later step
-of the same run.
+    python benchmarks/plan_latency.py [--limit N]
+
+Each instruction is planned twice: as the first step of a run, and once more as a later step. Times are also given as multiples of
+parsing a JSON document of the same run, because absolute times on a shared machine mean little.
 """
 
 from __future__ import annotations
 
+import argparse
 import asyncio
 import json
 import statistics
@@ -15,33 +18,38 @@ from pathlib import Path
 from scope_ptz.geometry import Limits, Pose
 from scope_ptz.planner.base import Briefing, State
 from scope_ptz.planner.grammar import GrammarPlanner
-from scope_ptz.planner.grammar.parsing.instruction_parser import parser
 
 DATA = Path(__file__).parents[1] / "tests" / "data" / "instructions.jsonl"
+REFERENCE = json.dumps([{"pan_deg": n, "tilt_deg": -n, "text": "turn right"} for n in range(500)])
 
 
-async def measure() -> dict[str, list[float]]:
-    """Milliseconds of first and of later steps."""
+async def measure(limit: int) -> dict[str, list[float]]:
+    """Return the milliseconds of first steps, of later steps and of the reference."""
     planner = GrammarPlanner()
-    times: dict[str, list[float]] = {"first step": [], "later step": []}
-    for line in DATA.read_text(encoding="utf-8").splitlines():
+    times: dict[str, list[float]] = {"first step": [], "later step": [], "reference": []}
+    for line in DATA.read_text(encoding="utf-8").splitlines()[:limit]:
         row = json.loads(line)
         briefing = Briefing(presets=tuple(row["presets"]), pose=Pose(), limits=Limits())
         state = State(instruction=row["instruction"], briefing=briefing)
-        for kind in times:
+        for kind in ("first step", "later step"):
             start = time.perf_counter()
             await planner.step(state)
             times[kind].append(1e3 * (time.perf_counter() - start))
+        start = time.perf_counter()
+        json.loads(REFERENCE)
+        times["reference"].append(1e3 * (time.perf_counter() - start))
     return times
 
 
 def main() -> None:
-    start = time.perf_counter()
-    parser()
-    print(f"compiling the grammar, once a process: {1e3 * (time.perf_counter() - start):.0f} ms")
-    for kind, taken in asyncio.run(measure()).items():
-        p95 = statistics.quantiles(taken, n=20)[-1]
-        print(f"{kind}: median {statistics.median(taken):.2f} ms, p95 {p95:.2f} ms over {len(taken)} instructions")
+    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    arguments.add_argument("--limit", type=int, default=1_000_000, help="plan at most this many instructions")
+    times = asyncio.run(measure(arguments.parse_args().limit))
+    reference = statistics.median(times.pop("reference"))
+    print(f"reference: parsing {len(REFERENCE) / 1000:.0f} kB of JSON takes {reference:.2f} ms")
+    for kind, taken in times.items():
+        middle, p95 = statistics.median(taken), statistics.quantiles(taken, n=20)[-1]
+        print(f"{kind}: median {middle / reference:.1f} x reference, p95 {p95 / reference:.1f} x, {len(taken)} instructions")
 
 
 if __name__ == "__main__":

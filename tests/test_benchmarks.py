@@ -1,0 +1,48 @@
+"""Every benchmark runs, in its smallest form. Nothing here looks at a time."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+BENCHMARKS = Path(__file__).parents[1] / "benchmarks"
+SMALLEST = {
+    "plan_latency": ["--limit", "20"],
+    "startup": ["--rounds", "1"],
+}
+
+
+def run(name: str, *arguments: str, folder: Path) -> str:
+    done = subprocess.run(
+        [sys.executable, str(BENCHMARKS / f"{name}.py"), *arguments],
+        cwd=folder, capture_output=True, text=True, timeout=300, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize("name", SMALLEST)
+def test_a_benchmark_prints_ratios(name: str, tmp_path: Path) -> None:
+    assert " x " in run(name, *SMALLEST[name], folder=tmp_path)
+
+
+# blender_engines runs inside Blender; reprojection starts it.
+@pytest.mark.parametrize(
+    "name", sorted(path.stem for path in BENCHMARKS.glob("*.py") if path.stem not in {*SMALLEST, "blender_engines"})
+)
+def test_a_benchmark_can_be_imported_and_explains_itself(name: str, tmp_path: Path) -> None:
+    assert "usage:" in run(name, "--help", folder=tmp_path)
+
+
+@pytest.mark.full
+@pytest.mark.parametrize(("name", "arguments"), [
+    ("reprojection", ["--scene", "highway-works"]),
+    ("model_overhead", ["--rounds", "6"]),
+    ("reading", ["--scene", "highway-works", "--views", "1"]),
+    ("bench_numbers", ["--split", "lite"]),
+])  # fmt: skip
+def test_a_longer_benchmark_runs(name: str, arguments: list[str], tmp_path: Path) -> None:
+    assert run(name, *arguments, folder=tmp_path).strip()
