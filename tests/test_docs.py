@@ -17,7 +17,7 @@ TEXTS = [*PAGES, ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG
 ARCHITECTURE = (DOCS / "architecture.md").read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("path", sorted(set(re.findall(r"`([\w/-]+(?:\.py|\.lark|\.yaml|\.jsonl|/))`", ARCHITECTURE))))
+@pytest.mark.parametrize("path", sorted(set(re.findall(r"`([\w-]+/[\w/-]*(?:\.\w+)?)`", ARCHITECTURE))))
 def test_architecture_names_files_that_exist(path: str) -> None:
     places = [ROOT, ROOT / "src", ROOT / "src" / "scope_ptz"]
     assert any((place / path).exists() for place in places), f"docs/architecture.md names {path}, which does not exist"
