@@ -7,9 +7,10 @@ BASE := $(VENV)/.base-installed
 DEV := $(VENV)/.dev-installed
 FULL := $(VENV)/.full-installed
 TORCH := torch==2.13.0
+SITE := $(BIN)/sphinx-build -q -W --keep-going docs docs/_build/html
 DEMO := Go to the highway preset, then pan right in 15 degree steps until you see at least six cones
 
-.PHONY: demo test test-full check format bench requirements clean
+.PHONY: demo test test-full check docs format bench requirements clean
 
 demo: $(BASE)
 	@$(BIN)/scope ask "$(DEMO)" --next-steps
@@ -25,6 +26,12 @@ check: $(DEV)
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(SITE)
+
+# Warnings are errors: a broken link, a docstring that does not render, a missing file.
+docs: $(DEV)
+	@$(SITE)
+	@echo "Open docs/_build/html/index.html in a browser."
 
 format: $(DEV)
 	$(BIN)/ruff format .
@@ -63,4 +70,4 @@ requirements: | $(VENV)/pyvenv.cfg
 		--override $(VENV)/no-torch.txt -c requirements/dev.txt pyproject.toml | grep -v "'never'" > requirements/full.txt
 
 clean:
-	rm -rf $(VENV) .pytest_cache .ruff_cache .mypy_cache .hypothesis
+	rm -rf $(VENV) docs/_build .pytest_cache .ruff_cache .mypy_cache .hypothesis

@@ -1,8 +1,8 @@
-"""How the grammar planner does on the tasks, by category: with the ground truth for eyes, noisy eyes, or text read from pixels.
+"""Accuracy of the grammar planner by category: with ground-truth perception, noisy perception, or text read from pixels.
 
-    python benchmarks/bench_numbers.py [--split core --split unseen --split paraphrase] [--eyes truth --eyes noisy --eyes rapidocr]
+    python benchmarks/bench_numbers.py [--split core --split unseen ...] [--perception truth --perception noisy ...]
 
-Runs go through the agent loop, the real tools and the checks, in this process and without pictures where the eyes need none.
+Runs go through the agent loop, the real tools and the checks, in this process, and without pictures if perception needs none.
 With ``rapidocr`` everything but reading is done by the ground truth, and only tasks of the category ocr are run. Time and memory
 are this process's own. ``scope bench run`` measures the same through the evaluation engine.
 """
@@ -78,35 +78,35 @@ def main() -> int:
     results = {}
     for split in arguments.split or ("core", "unseen", "paraphrase"):
         tasks = load_split(split)
-        for eyes in arguments.perception or ("truth", "noisy"):
-            rows = [task for task in tasks if eyes != "rapidocr" or task.category == "ocr"]
+        for perception in arguments.perception or ("truth", "noisy"):
+            rows = [task for task in tasks if perception != "rapidocr" or task.category == "ocr"]
             began, cpu_began = time.perf_counter(), time.process_time()
-            score = anyio.run(_score, rows, eyes)
+            score = anyio.run(_score, rows, perception)
             took_s, cpu_s = time.perf_counter() - began, time.process_time() - cpu_began
             peak_mb = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-            results[f"{Path(split).stem} {eyes}"] = {
+            results[f"{Path(split).stem} {perception}"] = {
                 "right": dict(score.right), "of": dict(score.of), "micro": score.micro, "macro": score.macro,
                 "unscored": score.unscored, "seconds": took_s, "cpu_seconds": cpu_s, "peak_mb": peak_mb,
             }  # fmt: skip
             if not arguments.json:
                 cost = f"{took_s:.1f} s ({cpu_s:.1f} s of processor), peak memory so far {peak_mb:.0f} MB"
-                print(f"{split}, grammar + {eyes}: {len(rows)} tasks in {cost}")
+                print(f"{split}, grammar + {perception}: {len(rows)} tasks in {cost}")
                 print("\n".join((*score.lines(), *(score.failed if arguments.failures else ()))), flush=True)
     if arguments.json:
         json.dump(results, sys.stdout, indent=1)
     return 0
 
 
-async def _score(tasks: Sequence[Task], eyes: str) -> Score:
+async def _score(tasks: Sequence[Task], backend: str) -> Score:
     worlds, score = worlds_of(tasks), Score()
-    perception = _eyes(eyes, worlds)
+    perception = _perception(backend, worlds)
     last = ""
     for task in sorted(tasks, key=lambda t: (t.scene, t.world)):
         if last and last != task.scene:  # the pictures of one scene at a time take less memory
             for world in worlds.values():
                 world.release()
         last = task.scene
-        trace = await _run(task, worlds[task.world], perception, drawn=eyes == "rapidocr")
+        trace = await _run(task, worlds[task.world], perception, drawn=backend == "rapidocr")
         verdict = score_episode(task, episode_of(trace, PresetViewpoints.of(worlds[task.world].file), keeps_files=False))
         score.of[task.category] += 1
         score.right[task.category] += verdict.headline == "correct"
@@ -117,7 +117,7 @@ async def _score(tasks: Sequence[Task], eyes: str) -> Score:
     return score
 
 
-def _eyes(name: str, worlds: Mapping[str, Scene]) -> Perception:
+def _perception(name: str, worlds: Mapping[str, Scene]) -> Perception:
     truth = GroundTruthPerception(lambda world: worlds[world], KnownViews().look)
     if name == "noisy":
         return NoisyPerception(truth, seed=NOISE_SEED)

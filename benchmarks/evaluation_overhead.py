@@ -29,7 +29,7 @@ from scope_ptz.simulator.clock import SceneClock
 
 async def bare(entries: tuple[Entry, ...], lent: EvalContext, folder: Path, *, pictures: bool) -> float:
     """Processor seconds for all runs, one after the other, without any engine."""
-    planner, eyes = planner_for(ResolvedPlanner("grammar")), await lent.make_perception(ModelRequest("ground-truth"))
+    planner, perception = planner_for(ResolvedPlanner("grammar")), await lent.make_perception(ModelRequest("ground-truth"))
     began = time.process_time()
     for entry in entries:
         clock, scene = SceneClock(entry.time_s), lent.open_scene(entry.world)
@@ -37,7 +37,7 @@ async def bare(entries: tuple[Entry, ...], lent: EvalContext, folder: Path, *, p
         with clock.hold():
             await camera.go_to_preset(entry.facts.preset)
         images = RunFolder.create(folder, entry.facts.instruction) if pictures else NoImages()
-        await Agent(planner, camera, eyes, images, snapshots=pictures).run(entry.facts.instruction)
+        await Agent(planner, camera, perception, images, snapshots=pictures).run(entry.facts.instruction)
     return time.process_time() - began
 
 

@@ -188,7 +188,7 @@ async def _planner_cases(url: str, bare: openai.AsyncOpenAI) -> dict[str, tuple[
     return cases
 
 
-async def _eyes_cases(url: str, bare: openai.AsyncOpenAI, frames: _Frames) -> dict[str, tuple[Work, Work]]:
+async def _perception_cases(url: str, bare: openai.AsyncOpenAI, frames: _Frames) -> dict[str, tuple[Work, Work]]:
     http = httpx2.AsyncClient()
     at = Endpoint(url=url, model=MODEL)
     moondream = make_backend(BackendSpec(name="moondream", backend="moondream", endpoint=at))
@@ -206,23 +206,23 @@ async def _eyes_cases(url: str, bare: openai.AsyncOpenAI, frames: _Frames) -> di
         message: Any = {"role": "user", "content": [picture, {"type": "text", "text": "Locate every cone, as JSON."}]}
         return await bare.chat.completions.create(model=MODEL, messages=[message])
 
-    cases: dict[str, tuple[Work, Work]] = {"look, Moondream": (plain, lambda: moondream.detect(frames.next(), "cones"))}
+    cases: dict[str, tuple[Work, Work]] = {"perception call, Moondream": (plain, lambda: moondream.detect(frames.next(), "cones"))}
     for name in COORDINATES:
-        cases[f"look, {name} over chat"] = (chat, lambda eyes=visions[name]: eyes.detect(frames.next(), "cones"))  # type: ignore[misc]
+        cases[f"perception call, {name} over chat"] = (chat, lambda vision=visions[name]: vision.detect(frames.next(), "cones"))  # type: ignore[misc]
     return cases
 
 
 async def _measure(url: str, rounds: int) -> bool:
     bare, frames, gap = openai.AsyncOpenAI(api_key="none", base_url=url, max_retries=0), _Frames(), random.Random(1)
-    cases = await _planner_cases(url, bare) | await _eyes_cases(url, bare, frames)
+    cases = await _planner_cases(url, bare) | await _perception_cases(url, bare, frames)
     print(f"{'':30}{'bare':>9}{'ours':>9}{'overhead':>10}   (medians, ms)")
     good = True
     for name, (theirs, ours) in cases.items():
-        looks = name.startswith("look")
-        if looks:
+        perceiving = name.startswith("perception")
+        if perceiving:
             frames.prepare(2 * (rounds // 3 + 20))
         gc.collect()
-        bare_ms, ours_ms = await _compare(theirs, ours, rounds // 3 if looks else rounds, gap)
+        bare_ms, ours_ms = await _compare(theirs, ours, rounds // 3 if perceiving else rounds, gap)
         over = statistics.median(ours - bare for ours, bare in zip(ours_ms, bare_ms, strict=True))
         good = good and over <= TARGET_MS
         print(f"{name:30}{statistics.median(bare_ms):9.2f}{statistics.median(ours_ms):9.2f}{over:+10.2f}")
@@ -232,7 +232,7 @@ async def _measure(url: str, rounds: int) -> bool:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--rounds", type=int, default=300, help="calls of each kind (looks: a third of it)")
+    parser.add_argument("--rounds", type=int, default=300, help="calls of each kind (perception calls: a third of it)")
     rounds = parser.parse_args().rounds
     hear, tell = multiprocessing.Pipe(duplex=False)
     server = multiprocessing.get_context("spawn").Process(target=_serve, args=(tell,), daemon=True)

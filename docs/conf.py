@@ -37,5 +37,11 @@ napoleon_numpy_docstring = False
 
 html_theme = "furo"
 html_title = f"SCOPE {release}"
-html_theme_options = {"source_repository": "", "navigation_with_keys": True}
-copybutton_exclude = ".linenos, .gp, .go"
+html_theme_options = {
+    "navigation_with_keys": True,
+    # Help texts are 96 characters wide: this size fits them into a page.
+    "light_css_variables": {"code-font-size": "12px"},
+}
+copybutton_prompt_text = "$ "
+copybutton_only_copy_prompt_lines = True
+copybutton_line_continuation_character = "\\"

@@ -1,7 +1,8 @@
-"""The README's commands work as they stand there, and its picture is there."""
+"""The README's commands and its Python example run as printed, and its transcript and links are right."""
 
 from __future__ import annotations
 
+import os
 import re
 import shlex
 import shutil
@@ -13,21 +14,70 @@ import pytest
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-BLOCKS = re.findall(r"```console\n(.*?)```", README, flags=re.DOTALL)
-COMMANDS = [line.split("  #")[0].strip() for block in BLOCKS for line in block.splitlines()]
-SCOPE = Path(sys.executable).with_name("scope")
+CONSOLE = re.findall(r"```console\n(.*?)```", README, flags=re.DOTALL)
+TRANSCRIPTS = [block for block in CONSOLE if block.startswith("$ ")]
+COMMANDS = [block for block in CONSOLE if not block.startswith("$ ")]
+PYTHON = re.findall(r"```python\n(.*?)```", README, flags=re.DOTALL)
+MAKE = sorted(set(re.findall(r"`(make [a-z-]+)`", README)))
 
 
-@pytest.mark.parametrize("command", [c for c in COMMANDS if c.startswith("scope ")])
-def test_scope_commands(command: str, tmp_path: Path) -> None:
-    done = subprocess.run(
-        [SCOPE, *shlex.split(command)[1:]], cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False
+def run(script: str, folder: Path) -> subprocess.CompletedProcess[str]:
+    """Run shell commands in a folder, with this environment's programs first in the search path."""
+    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
+    environment = os.environ | {"PATH": path, "COLUMNS": "84"}
+    return subprocess.run(
+        ["/bin/sh", "-ec", script], cwd=folder, env=environment, capture_output=True, text=True, timeout=600, check=False
     )
+
+
+def scope_commands(block: str) -> list[str]:
+    """Return the `scope` commands of a block. The tests do not install anything."""
+    return [line for line in block.splitlines() if line.startswith("scope ")]
+
+
+@pytest.mark.parametrize("command", [c for block in COMMANDS for c in scope_commands(block) if not c.startswith("scope bench")])
+def test_commands_run(command: str, tmp_path: Path) -> None:
+    done = run(command, tmp_path)
     assert done.returncode == 0, done.stderr
     assert done.stdout.strip()
 
 
-@pytest.mark.parametrize("command", [c for c in COMMANDS if c.startswith("make ")])
+@pytest.mark.full
+def test_benchmark_commands_run_one_after_the_other(tmp_path: Path) -> None:
+    [block] = [block for block in COMMANDS if "scope bench" in block]
+    done = run("\n".join(scope_commands(block)), tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "rule-based" in done.stdout
+    assert (tmp_path / "report" / "index.html").is_file()
+
+
+def test_transcript_shows_what_the_command_prints(tmp_path: Path) -> None:
+    [transcript] = TRANSCRIPTS
+    command, printed = transcript.removeprefix("$ ").split("\n", 1)
+    done = run(command, tmp_path)
+    assert done.returncode == 0, done.stderr
+    for shown in re.findall(r"^ +\d+  \w+ +\S+|\b\d+ of '\w+' in the \w+ view|pan -?\d+, tilt -?\d+", printed, flags=re.MULTILINE):
+        assert plain(shown) in plain(done.stdout)
+    answer = re.search(r"Answer:.*ground truth\.\)", printed, flags=re.DOTALL)
+    assert answer is not None
+    assert plain(answer[0]) in plain(done.stdout)
+    [folder] = (tmp_path / "runs").iterdir()
+    assert (folder / "trace.jsonl").is_file()
+    assert (folder / "filmstrip.png").is_file()
+
+
+def test_python_example_runs(tmp_path: Path) -> None:
+    [program] = PYTHON
+    (tmp_path / "example.py").write_text(program, encoding="utf-8")
+    done = run(shlex.join([sys.executable, "example.py"]), tmp_path)
+    assert done.returncode == 0, done.stderr
+    stated = re.search(r"# (I can see \d+ cones)", program)
+    assert stated is not None
+    assert done.stdout.startswith(stated[1])
+    assert (tmp_path / "filmstrip.png").is_file()
+
+
+@pytest.mark.parametrize("command", MAKE)
 def test_make_targets_exist(command: str) -> None:
     make = shutil.which("make")
     assert make is not None
@@ -35,22 +85,17 @@ def test_make_targets_exist(command: str) -> None:
     assert done.returncode == 0, done.stderr
 
 
-def test_the_readme_shows_both_kinds_of_command() -> None:
-    assert {c.split()[0] for c in COMMANDS} == {"scope", "make"}
-
-
-def test_the_demo_finds_its_seven_cones(tmp_path: Path) -> None:
-    instruction = re.search(r'scope ask "(.+)"|^DEMO := (.+)$', (ROOT / "Makefile").read_text(encoding="utf-8"), flags=re.MULTILINE)
-    assert instruction is not None
-    asked = instruction.group(2) or instruction.group(1)
-    done = subprocess.run([SCOPE, "ask", asked], cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False)
-    assert done.returncode == 0, done.stderr
-    assert re.search(r"\b(7|seven)\b", done.stdout.split("Answer")[-1])
-    run = next((tmp_path / "runs").iterdir())
-    assert (run / "trace.jsonl").is_file()
-    assert (run / "filmstrip.png").is_file()
+def test_the_demo_is_the_transcript() -> None:
+    demo = re.search(r"^DEMO := (.+)$", (ROOT / "Makefile").read_text(encoding="utf-8"), flags=re.MULTILINE)
+    assert demo is not None
+    assert f'scope ask "{demo[1]}"' in TRANSCRIPTS[0]
 
 
 @pytest.mark.parametrize("target", re.findall(r"\]\(([^)#:]+)\)", README))
 def test_links_and_pictures_are_there(target: str) -> None:
-    assert (ROOT / target).is_file()
+    assert (ROOT / target).exists()
+
+
+def plain(text: str) -> str:
+    """Return a text with every run of white space as one space, so that line breaks make no difference."""
+    return " ".join(text.split())

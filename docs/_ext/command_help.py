@@ -3,51 +3,60 @@
 from __future__ import annotations
 
 import os
-import re
-import subprocess
-import sys
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-WIDTH = "100"
-_COMMANDS = re.compile(r"^[│|] (?P<name>[a-z][a-z-]*) ", flags=re.MULTILINE)
+# Typer reads these when it is imported: the text has one width and no colours, whatever terminal runs the build.
+os.environ |= {"TERMINAL_WIDTH": "96", "_TYPER_FORCE_DISABLE_TERMINAL": "1", "NO_COLOR": "1"}
+
+from typer.main import get_command
+from typer.testing import CliRunner
+
+from scope_ptz.cli.app import app
 
 
 class CommandHelp(SphinxDirective):
-    """``{command-help} scope``: one section per command, sub-commands included."""
+    """``{command-help} scope``: one section per command, sub-commands included. All commands are shown in one process."""
 
     required_arguments = 1
     final_argument_whitespace = True
     option_spec: ClassVar = {}
 
     def run(self) -> list[nodes.Node]:
-        return list(self._sections(self.arguments[0].split()))
-
-    def _sections(self, command: list[str]) -> list[nodes.Node]:
-        text = _help(command[1:])
-        title = " ".join(command)
-        section = nodes.section(ids=[nodes.make_id(title)], names=[title])
-        section += nodes.title(text=title)
-        section += nodes.literal_block(text, text, language="none")
-        found = [section]
-        panels = text.split("Options ─")[-1]
-        for name in _COMMANDS.findall(panels):
-            found += self._sections([*command, name])
-        return found
+        self.env.note_reread()
+        name, *path = self.arguments[0].split()
+        command: Any = get_command(app)
+        for step in path:
+            command = command.commands[step]
+        return [_section(" ".join([name, *words]), words) for words in _walk(command, path)]
 
 
-def _help(arguments: list[str]) -> str:
-    environment = os.environ | {"COLUMNS": WIDTH, "TERM": "dumb", "NO_COLOR": "1", "TERMINAL_WIDTH": WIDTH}
-    done = subprocess.run(
-        [sys.executable, "-m", "scope_ptz.cli", *arguments, "--help"], env=environment, capture_output=True, text=True, check=True
-    )
-    return "\n".join(line.rstrip() for line in done.stdout.strip("\n").splitlines())
+def _walk(command: Any, path: list[str]) -> list[list[str]]:
+    """Return the words of a command and of all commands below it, in the order of the help."""
+    below = [words for name, child in getattr(command, "commands", {}).items() for words in _walk(child, [*path, name])]
+    return [path, *below]
 
 
-def setup(app: Sphinx) -> dict[str, bool]:
+def _section(title: str, words: list[str]) -> nodes.section:
+    text = help_text(words)
+    section = nodes.section(ids=[nodes.make_id(title)], names=[title])
+    section += nodes.title(text=title)
+    section += nodes.literal_block(text, text, language="none")
+    return section
+
+
+def help_text(words: list[str]) -> str:
+    """Return what ``scope WORDS... --help`` prints."""
+    result = CliRunner().invoke(app, [*words, "--help"], prog_name="scope", catch_exceptions=False)
+    if result.exit_code != 0:
+        raise RuntimeError(f"`scope {' '.join(words)} --help` exits with {result.exit_code}: {result.output}")
+    return "\n".join(line.rstrip() for line in result.output.strip("\n").splitlines())
+
+
+def setup(app_: Sphinx) -> dict[str, bool]:
     """Register the directive."""
-    app.add_directive("command-help", CommandHelp)
+    app_.add_directive("command-help", CommandHelp)
     return {"parallel_read_safe": True}
