@@ -103,7 +103,8 @@ def test_users_models_and_their_addresses(scope: Scope, tmp_path: Path, monkeypa
         key = tmp_path / "key"
         key.write_text(KEY + "\n")
         file.write_text(
-            f"models: {{mine: {{repo: {MODEL}, roles: [planner], size_b: 1, active_b: 1, precision: bf16, context: 4096,"
+            f"models: {{mine: {{repo: {MODEL}, roles: [planner], size_b: 1, active_b: 1, precision: bf16, "
+            "context: 4096,"
             f" licence: MIT, url: '{server.url}', key_file: '{key}'}}}}"
         )
         assert ask(scope, "--pair", "mine+ground-truth").code == 0
@@ -155,7 +156,8 @@ def test_a_backend_of_ones_own_gets_the_address_of_its_model_or_of_the_environme
     file = tmp_path / "mine.yaml"
     with Misbehaving() as server:
         file.write_text(
-            "models: {mine: {repo: a/b, roles: [perception], backend: our_eyes, size_b: 1, active_b: 1, precision: bf16, context: 4096,"
+            "models: {mine: {repo: a/b, roles: [perception], backend: our_eyes, size_b: 1, active_b: 1, precision: bf16, "
+            "context: 4096,"
             f" licence: MIT, url: '{server.url}'}}}}"
         )
         assert ask(scope, "--perception", "our_eyes").code == 2

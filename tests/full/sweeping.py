@@ -33,7 +33,8 @@ models:
     context: 16384, licence: none}}
   tiny-adept: {{repo: {adept.model}, url: '{adept.url}', roles: [planner], size_b: 0.001, active_b: 0.001, precision: fp32,
     context: 16384, licence: none}}
-  tiny-eyes: {{repo: {eyes.model}, url: '{eyes.url}', roles: [perception], backend: openai_vision, coordinates: qwen3-vl, size_b: 0.001,
+  tiny-eyes: {{repo: {eyes.model}, url: '{eyes.url}', roles: [perception], backend: openai_vision, coordinates: qwen3-vl,
+    size_b: 0.001,
     active_b: 0.001, precision: fp32, context: 2048, licence: none}}
 """
 NOVICE, ADEPT = "tiny-novice + tiny-eyes", "tiny-adept + tiny-eyes"

@@ -149,9 +149,11 @@ def eyes_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 
 MINE = """
 models:
-  tiny-eyes: {{repo: {eyes.model}, url: '{eyes.url}', roles: [perception], backend: openai_vision, coordinates: qwen3-vl, size_b: 0.001,
+  tiny-eyes: {{repo: {eyes.model}, url: '{eyes.url}', roles: [perception], backend: openai_vision, coordinates: qwen3-vl,
+    size_b: 0.001,
     active_b: 0.001, precision: fp32, context: 2048, licence: none}}
-  tiny-owl: {{repo: {owl}, roles: [perception], backend: zero_shot, coordinates: pixels, size_b: 0.001, active_b: 0.001, precision: fp32,
+  tiny-owl: {{repo: {owl}, roles: [perception], backend: zero_shot, coordinates: pixels,
+    size_b: 0.001, active_b: 0.001, precision: fp32,
     context: 0, licence: none}}
 """
 

@@ -45,19 +45,19 @@ def _variants(pattern: str) -> list[str]:
     """Return the pattern once for each combination of its choices."""
     open_groups: list[tuple[str, list[str], list[str]]] = []  # bracket, texts before the group, choices so far
     texts = [""]
-    for token in _BRACKETS.split(pattern):
-        if token in ("(", "["):
-            open_groups.append((token, texts, []))
+    for part in _BRACKETS.split(pattern):
+        if part in ("(", "["):
+            open_groups.append((part, texts, []))
             texts = [""]
-        elif token == "|" and open_groups:
+        elif part == "|" and open_groups:
             open_groups[-1][2].extend(texts)
             texts = [""]
-        elif token in (")", "]"):
+        elif part in (")", "]"):
             bracket, before, choices = open_groups.pop()
             choices = [*choices, *texts, *([""] if bracket == "[" else [])]
             texts = [text + choice for choice in choices for text in before]
-        elif token:
-            texts = [text + token for text in texts]
+        elif part:
+            texts = [text + part for text in texts]
     return texts
 
 
