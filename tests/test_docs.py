@@ -44,7 +44,7 @@ def test_every_page_is_in_the_index() -> None:
 
 
 def test_the_api_page_documents_every_public_name() -> None:
-    documented = re.findall(r"^\.\. auto\w+:: (\S+)", (DOCS / "api.md").read_text(encoding="utf-8"), flags=re.MULTILINE)
+    documented = re.findall(r"^\.\. (?:auto\w+|py:data):: (\S+)", (DOCS / "api.md").read_text(encoding="utf-8"), flags=re.MULTILINE)
     expected = {f"scope_ptz.{name}" for name in scope_ptz.__all__ if name != "__version__"}
     expected |= {f"scope_ptz.contracts.{name}" for name in contracts.__all__ if name not in scope_ptz.__all__}
     assert set(documented) == expected

@@ -191,7 +191,7 @@ class Task(_Model):
 
     @property
     def world(self) -> str:
-        """The name of the world to open: the scene, or a variation of it."""
+        """Name of the scene to open, or of its variation."""
         return self.scene if self.variation is None else variation_name(self.scene, self.variation)
 
     @model_validator(mode="after")
