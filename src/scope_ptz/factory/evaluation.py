@@ -38,6 +38,10 @@ if TYPE_CHECKING:
     from scope_ptz.perception.ground_truth import GroundTruthPerception
 
 
+MAX_KNOWN_VIEWS = 150
+"""Views whose ground truth is kept. Runs are ordered by viewpoint, so that neighbours ask for the same views."""
+
+
 class ThreadedPlanner(Planner):
     """A planner whose steps run in a worker thread, so that they do not block the other runs.
 
@@ -84,7 +88,7 @@ def eval_context(
     """
     from scope_ptz.factory.validation_perception import KnownViews
 
-    scenes, views = Library(scene_search(load_settings())), KnownViews()
+    scenes, views = Library(scene_search(load_settings())), KnownViews(MAX_KNOWN_VIEWS)
     made = perception_for(perception, scenes, seed, views) if perception is not None else None
 
     async def requested_planner(request: ModelRequest) -> Planner:

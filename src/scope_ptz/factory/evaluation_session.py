@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gc
 import json
-import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -64,7 +63,8 @@ class EvaluationSession:
         )
         _check_pictures(options, pair, self.planner)
         local = pair.planner.endpoint is None and pair.perception.spec is None and options.agent == OWN_AGENT
-        default = (os.cpu_count() or 1) if local else RUNS_AT_A_TIME_WITH_SERVERS
+        # Without servers, runs compete for the interpreter: a second one at a time costs memory and gains nothing.
+        default = 1 if local else RUNS_AT_A_TIME_WITH_SERVERS
         self.concurrency = 1 if options.latency else options.concurrency or default
         details = self.planner.details if self.planner is not None else {}
         spec = pair.perception.spec

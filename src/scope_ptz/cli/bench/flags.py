@@ -66,7 +66,7 @@ class EvaluationFlags:
             "--concurrency",
             min=1,
             max=256,
-            help="Runs at a time (default: 8 with model servers, else one per CPU core).",
+            help="Runs at a time (default: 8 with model servers, else 1).",
             rich_help_panel=RUN_PANEL,
         ),
     ] = None
