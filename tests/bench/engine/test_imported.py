@@ -57,7 +57,7 @@ def test_imported_tasks_run_and_are_judged(scope: Scope, tmp_path: Path) -> None
     other = {"reason": "It did not.", "verdict": "incorrect", "error_mode": "scope"}
     with Misbehaving(then=good(Say(json.dumps(other)))) as server:
         second = scope("bench", "rescore", str(log), "--judge-url", server.url, "--judge-model", "b")
-    assert second.code == 0 and "decides on the run that only a judge can score; what b (judge-1:" in second.out
+    assert second.code == 0 and "decides on the run that only a judge can score; the verdicts of b (judge-1:" in second.out
     (trial,) = read_evaluation(log).trials
     assert (trial.headline, trial.reason, [j.judge for j in trial.judgements]) == ("correct", "It turned.", ["j", "b"])
     assert "judged     j (judge-1:" in scope(*run[:-1]).out
