@@ -18,8 +18,10 @@ demo: $(BASE)
 test: $(DEV)
 	$(BIN)/pytest -q -n 2 -m "not full" tests
 
-test-full: test $(FULL)
-	$(BIN)/pytest -q -m full tests
+# Both tiers, with line coverage of everything but the modelling code, which runs inside Blender.
+test-full: $(FULL)
+	$(BIN)/pytest -q -n 2 --cov --cov-report= -m "not full" tests
+	$(BIN)/pytest -q --cov --cov-append --cov-report=term:skip-covered -m full tests
 
 check: $(DEV)
 	$(BIN)/ruff format --check .

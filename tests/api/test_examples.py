@@ -32,6 +32,7 @@ def test_programs(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ca
     assert EXPECTED[name] in capsys.readouterr().out
 
 
+@pytest.mark.full
 def test_the_notebook(tmp_path: Path) -> None:
     notebook = nbformat.read(EXAMPLES / "tutorial.ipynb", as_version=4)  # type: ignore[no-untyped-call]
     cells = [cell for cell in notebook.cells if cell.cell_type == "code"]

@@ -18,6 +18,7 @@ FILES = {
 }  # fmt: skip
 
 
+@pytest.mark.full
 def test_one_command_makes_everything(scope: Scope, tmp_path: Path) -> None:
     folder, page = tmp_path / "data", tmp_path / "dataset.md"
     done = scope(
@@ -59,6 +60,7 @@ def test_what_does_not_go_together_is_told(scope: Scope, tmp_path: Path) -> None
     assert scope("bench", "build", "--out", out, "--seeds", "0").code == 2
 
 
+@pytest.mark.full
 def test_an_audit_gives_readers_pictures_and_no_truth(scope: Scope, tmp_path: Path) -> None:
     tasks = tmp_path / "tasks.jsonl"
     made = scope("bench", "build", "--scene", "analytic-yard", "--share", "0.02", "--out", str(tasks))

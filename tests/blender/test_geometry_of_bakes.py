@@ -172,6 +172,7 @@ def test_what_passes_out_of_the_band_is_left_out() -> None:
     assert keyframes(actor(), None, HERE, Band(top_tilt_deg=59, bottom_tilt_deg=30), None, 40) == []
 
 
+@pytest.mark.full
 def test_wider_tiles_go_where_most_outlines_are() -> None:
     panorama = Panorama.of(1440, BAND)
     ids = np.zeros((panorama.height, 1440), dtype=np.uint16)

@@ -14,7 +14,12 @@ from scope_ptz.simulator.pack import list_scenes, load_scene
 FOLDER = Path(__file__).parent.parent / "data" / "references"
 
 
-@pytest.fixture(scope="module", params=list_scenes())
+FAST = "high-street"  # the other scenes take minutes
+
+
+@pytest.fixture(
+    scope="module", params=[pytest.param(name, marks=() if name == FAST else pytest.mark.full) for name in list_scenes()]
+)
 def reports(request: pytest.FixtureRequest) -> list[PoseReport]:
     scene = load_scene(request.param)
     return [compare(scene, *reference) for reference in references(FOLDER / scene.name)]

@@ -106,14 +106,13 @@ async def test_no_pause_goes_beyond_the_deadline() -> None:
 
 
 async def test_the_deadline_holds_over_all_attempts() -> None:
-    caller, _ = make(total_s=0.1)
+    caller, _ = make(total_s=1.0)
     left = [K.CUT_OFF]
 
     async def attempt() -> None:
-        await anyio.sleep(0.02)
         if left:
             raise ServerFailure(left.pop(), where=URL)
-        await anyio.sleep(10)
+        await anyio.sleep(600)
 
     with pytest.raises(ServerFailure) as caught:
         await caller.call(attempt)

@@ -89,6 +89,7 @@ def test_chat_uses_a_camera_of_a_plugin(installed: Path, tmp_path: Path) -> None
     assert "pan 10°" in done.stdout
 
 
+@pytest.mark.full
 def test_a_benchmark_runs_with_a_planner_and_perception_of_plugins(installed: Path, tmp_path: Path) -> None:
     done = scope(
         installed,

@@ -38,6 +38,7 @@ def test_a_world_rich_enough_to_ask_about(scene: Scene) -> None:
     assert not categories & set(file.absent)
 
 
+@pytest.mark.full
 def test_packs_are_lean_and_undamaged(scene: Scene) -> None:
     for place in scene.file.viewpoints:
         viewpoint = scene.viewpoint(place.name)
@@ -59,6 +60,7 @@ def test_presets_are_within_the_cameras_reach(scene: Scene) -> None:
         assert limits.clamp(Pose(preset.pan_deg, preset.tilt_deg, preset.zoom))[1] == ()
 
 
+@pytest.mark.full
 def test_texts_and_small_things_lie_in_tiles(scene: Scene) -> None:
     for place in scene.file.viewpoints:
         viewpoint = scene.viewpoint(place.name)
@@ -85,6 +87,7 @@ def legible_at(scene: Scene, zoom: float) -> set[str]:
     return found
 
 
+@pytest.mark.full
 def test_texts_to_read_some_of_them_only_from_close(scene: Scene) -> None:
     close, wide = legible_at(scene, 5.0), legible_at(scene, 2.5)
     assert len(close) >= 12

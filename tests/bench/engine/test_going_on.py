@@ -74,6 +74,7 @@ def wait_for(begun: int, server: Misbehaving, process: subprocess.Popen[bytes]) 
         time.sleep(0.05)
 
 
+@pytest.mark.full
 def test_killed_twice_and_nothing_lost_or_done_twice(
     scope: Scope, scenes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -50,6 +50,7 @@ def test_a_run_with_noisy_eyes_is_not_the_run_with_ground_truth_eyes() -> None:
     assert row(both, "oracle", "qwen3-4b + moondream3")["macro_rerun"] == pytest.approx(1.0)
 
 
+@pytest.mark.full
 def test_the_audit_sets_beside_a_task_only_what_no_model_and_no_noise_took_part_in() -> None:
     pairs = [whole(*pair, "incorrect") for pair in PAIRS]
     noise = [whole("grammar", "noisy", "incorrect"), whole("qwen3-4b", "ground-truth", "incorrect")]

@@ -104,7 +104,7 @@ def put_card(**values: Any) -> Callable[[Rows], None]:
     [
         (drop(3), "is missing (repeats"),
         (drop(3), "line 1: totals say"),
-        (lambda rows: rows.append(rows[2]), "stands 2 times"),
+        (lambda rows: rows.append(rows[2]), "occurs 2 times"),
         (change(2, task="scope1-made-up-001"), "is no task of the split"),
         (change(2, epoch=3), "repeat 3 of 2"),
         (change(2, error_mode="scope"), "error mode scope although the trial is correct"),
@@ -114,7 +114,7 @@ def put_card(**values: Any) -> Callable[[Rows], None]:
         (change(2, headline="unscored"), "unscored although the checks tell"),
         (change(2, checks={}), "no check at all"),
         (change(2, answer="I cannot tell."), "the answer reads as wrong and its check says right"),
-        (change(2, scored_by="judge"), "which no judgement says"),
+        (change(2, scored_by="judge"), "but no judgement says so"),
         (change(2, category="ocr"), "category ocr where the task's is"),
         (change(2, outcome="won"), "outcome won is none of"),
         (change(2, steps=61), "61 steps where 60 are the most"),
@@ -195,8 +195,8 @@ JUDGED = [{"judge": "me", "prompt": "p", "verdict": "correct", "error_mode": Non
         (counted(bad_calls=2, perception_failures=1), "3 calls failed of 2"),
         (unmoved, "passed and nothing moved the camera"),
         (unpictured, "pictures passed with 0 of"),
-        (lambda rows: rows[0]["card"]["perception"].update(name="ground-truth"), "ground-truth is said to be a model"),
-        (lambda rows: rows[0]["card"]["planner"].update(name="grammar"), "grammar is said to be a model"),
+        (lambda rows: rows[0]["card"]["perception"].update(name="ground-truth"), "ground-truth is built in, but"),
+        (lambda rows: rows[0]["card"]["planner"].update(name="grammar"), "grammar is built in, but"),
     ],
 )  # fmt: skip
 def test_what_the_file_and_the_tasks_show_to_be_untrue_is_refused(

@@ -16,6 +16,8 @@ from scope_ptz.taskgen.authoring.assembly import QUOTAS, BuiltTasks, build
 from scope_ptz.taskgen.validation.report_text import report_lines
 from scope_ptz.taskgen.validation.validate import validate
 
+pytestmark = pytest.mark.full
+
 FEW: dict[Category, int] = {**dict.fromkeys(QUOTAS, 2), "counting": 6, "descriptor": 4, "ocr": 1}
 
 

@@ -62,6 +62,7 @@ dump_tasks(build([Scene(Path(folder))], int(seed), QUOTAS, None, answered).tasks
 """
 
 
+@pytest.mark.full
 def test_same_seed_gives_the_same_bytes_and_another_seed_does_not(built: BuiltTasks, analytic_folder: Path, tmp_path: Path) -> None:
     """Separate processes have other hash seeds, so that strings and sets are ordered differently."""
     files = [tmp_path / f"{n}.jsonl" for n in range(3)]
