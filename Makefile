@@ -10,7 +10,7 @@ TORCH := torch==2.13.0
 SITE := $(BIN)/sphinx-build -q -W --keep-going docs docs/_build/html
 DEMO := Go to the highway preset, then pan right in 15 degree steps until you see at least six cones
 
-.PHONY: demo test test-full check docs format bench requirements clean
+.PHONY: demo test test-full coverage check docs format bench requirements clean
 
 demo: $(BASE)
 	@$(BIN)/scope ask "$(DEMO)" --next-steps
@@ -18,8 +18,11 @@ demo: $(BASE)
 test: $(DEV)
 	$(BIN)/pytest -q -n 2 -m "not full" tests
 
-# Both tiers, with line coverage of everything but the modelling code, which runs inside Blender.
-test-full: $(FULL)
+test-full: test $(FULL)
+	$(BIN)/pytest -q -m full tests
+
+# Both tiers again with line coverage of everything but the modelling code, which runs inside Blender.
+coverage: $(FULL)
 	$(BIN)/pytest -q -n 2 --cov --cov-report= -m "not full" tests
 	$(BIN)/pytest -q --cov --cov-append --cov-report=term:skip-covered -m full tests
 
