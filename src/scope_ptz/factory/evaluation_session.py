@@ -170,8 +170,8 @@ class EvaluationSession:
         )  # fmt: skip
 
     async def _engine_setup(self, judge: JudgeServer | None) -> EngineSetup:
+        from scope_ptz.bench.engine.recording.scope_model import engine_model
         from scope_ptz.bench.engine.runs import EngineSetup
-        from scope_ptz.bench.engine.scope_model import engine_model
         from scope_ptz.factory.run_card import run_card
 
         options, pair = self.options, self.pair

@@ -13,7 +13,7 @@ from scope_ptz.bench.engine.benchmark_task import benchmark_task
 from scope_ptz.bench.engine.checks_scorer import CHECKS, METRICS, checks_scorer
 from scope_ptz.bench.engine.judge_scorer import judge_scorer
 from scope_ptz.bench.engine.judgement_scores import JUDGE
-from scope_ptz.bench.engine.scope_model import scope_ptz
+from scope_ptz.bench.engine.recording.scope_model import scope_ptz
 from scope_ptz.factory.evaluation import eval_context
 
 __all__ = ["bench", "checks", "judge", "scope_agent", "scope_ptz"]

@@ -12,7 +12,7 @@ from scope_ptz.factory.judges import UnnamedJudgeError, open_judge
 
 if TYPE_CHECKING:
     from scope_ptz.bench.engine.context import EvalContext, ModelRequest
-    from scope_ptz.bench.engine.scope_model import Model
+    from scope_ptz.bench.engine.recording.scope_model import Model
     from scope_ptz.bench.judging.judge import Complete
     from scope_ptz.bench.judging.judgement_tally import JudgementTally
     from scope_ptz.bench.judging.server import JudgeServer
@@ -41,7 +41,7 @@ async def open_requested_judge(settings: JudgeSettings) -> JudgeServer:
 
 def judge_model(judge: JudgeServer, max_connections: int) -> Model:
     """Return the engine's model that stands for a judge."""
-    from scope_ptz.bench.engine.scope_model import engine_model
+    from scope_ptz.bench.engine.recording.scope_model import engine_model
 
     endpoint = judge.client.endpoint
     return engine_model(endpoint.model, max_connections, url=endpoint.url, served=endpoint.model)

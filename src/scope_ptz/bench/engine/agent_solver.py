@@ -12,12 +12,12 @@ from scope_ptz.bench.engine.context import EvalContext
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.external_agents import ExternalPlanner, load_external_agent
 from scope_ptz.bench.engine.inspect_internals import attachment_reference
-from scope_ptz.bench.engine.logged_perception import LoggedPerception
-from scope_ptz.bench.engine.logged_planner import LoggedPlanner
-from scope_ptz.bench.engine.logged_tools import ToolLog
-from scope_ptz.bench.engine.picture_store import PictureStore
+from scope_ptz.bench.engine.recording.logged_perception import LoggedPerception
+from scope_ptz.bench.engine.recording.logged_planner import LoggedPlanner
+from scope_ptz.bench.engine.recording.logged_tools import ToolLog
+from scope_ptz.bench.engine.recording.picture_store import PictureStore
+from scope_ptz.bench.engine.recording.transcript import Record, conversation_of
 from scope_ptz.bench.engine.samples import STORE, Kept, sample_name
-from scope_ptz.bench.engine.transcript import Record, conversation_of
 from scope_ptz.bench.engine.trial_records import broken_by
 from scope_ptz.bench.program_runner import BlankCamera
 from scope_ptz.camera.simulated import SimulatedCamera

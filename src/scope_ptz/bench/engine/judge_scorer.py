@@ -25,8 +25,8 @@ from scope_ptz.bench.engine.context import EvalContext
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.judgement_journal import Journal
 from scope_ptz.bench.engine.judgement_scores import JUDGE, score_of_judgement
+from scope_ptz.bench.engine.recording.scope_model import ScopeModel
 from scope_ptz.bench.engine.samples import STORE, Kept, sample_name, trace_of
-from scope_ptz.bench.engine.scope_model import ScopeModel
 from scope_ptz.bench.engine.trial_records import broken_by
 from scope_ptz.bench.judging.judge import Completion, Judge, JudgeMessage, NoReplyError
 

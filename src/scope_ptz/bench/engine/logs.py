@@ -18,7 +18,7 @@ from scope_ptz.bench.engine.checks_scorer import TRIAL
 from scope_ptz.bench.engine.entries import Entry
 from scope_ptz.bench.engine.inspect_internals import header_context
 from scope_ptz.bench.engine.judgement_scores import judgements_in
-from scope_ptz.bench.engine.picture_store import jpeg_of
+from scope_ptz.bench.engine.recording.picture_store import jpeg_of
 from scope_ptz.bench.engine.run_cards import card_of, cost_usd
 from scope_ptz.bench.engine.samples import STORE, Kept, sample_name, trace_of
 from scope_ptz.bench.engine.trial_records import trial_of

@@ -27,8 +27,8 @@ from inspect_ai.tool import ToolCall, ToolChoice, ToolInfo
 from pydantic import BaseModel
 
 from scope_ptz.bench.engine.context import EvalContext, ModelRequest
-from scope_ptz.bench.engine.recorded_chat import Exchanges, recorded
-from scope_ptz.bench.engine.transcript import call_id, state_of
+from scope_ptz.bench.engine.recording.recorded_chat import Exchanges, recorded
+from scope_ptz.bench.engine.recording.transcript import call_id, state_of
 from scope_ptz.bench.judging.judge import Complete
 from scope_ptz.errors import ConfigError
 from scope_ptz.perception.base import Perception

@@ -8,8 +8,8 @@ from typing import TypeVar
 from inspect_ai.model import ChatMessage, ChatMessageUser, Content, ContentImage, ContentText, Model
 
 from scope_ptz.bench.engine.context import EvalContext
-from scope_ptz.bench.engine.picture_store import data_url
-from scope_ptz.bench.engine.scope_model import ScopeModel
+from scope_ptz.bench.engine.recording.picture_store import data_url
+from scope_ptz.bench.engine.recording.scope_model import ScopeModel
 from scope_ptz.camera.base import Frame
 from scope_ptz.errors import ConfigError
 from scope_ptz.perception.base import Answer, Caption, Detections, Perception, Points

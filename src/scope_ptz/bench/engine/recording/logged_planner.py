@@ -9,8 +9,8 @@ from inspect_ai.tool import ToolParams
 from pydantic import TypeAdapter
 
 from scope_ptz.bench.engine.context import EvalContext
-from scope_ptz.bench.engine.scope_model import ScopeModel
-from scope_ptz.bench.engine.transcript import messages_of, tool_infos
+from scope_ptz.bench.engine.recording.scope_model import ScopeModel
+from scope_ptz.bench.engine.recording.transcript import messages_of, tool_infos
 from scope_ptz.endpoints.chat_replies import ChatReply, RawToolCall
 from scope_ptz.errors import PlannerError, ScopeError
 from scope_ptz.planner.base import Decision, Planner, State

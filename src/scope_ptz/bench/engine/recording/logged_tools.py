@@ -9,7 +9,7 @@ from typing import Any
 from inspect_ai.model import ChatMessageAssistant, Content, ContentImage, ContentText, execute_tools
 from inspect_ai.tool import ToolCall, ToolDef, ToolError, ToolParams
 
-from scope_ptz.bench.engine.picture_store import PictureStore
+from scope_ptz.bench.engine.recording.picture_store import PictureStore
 from scope_ptz.errors import CameraError, PerceptionError, ScopeError, ToolCallError, UnknownNameError
 from scope_ptz.tools.context import ToolContext
 from scope_ptz.tools.registry import run_tool
