@@ -10,7 +10,7 @@ from typing import TypeVar
 import anyio
 from anyio.from_thread import BlockingPortal
 
-CHECK_S = 0.5  # how often the thread looks whether the main thread has ended
+CHECK_S = 0.5  # seconds between checks whether the main thread has ended
 _T = TypeVar("_T")
 
 
@@ -33,7 +33,7 @@ class EventLoopThread:
     def _run(self) -> None:
         try:
             anyio.run(self._serve)
-        except BaseException as error:  # the thread that waits for the portal has to hear of any failure
+        except BaseException as error:  # any failure must reach the thread that waits for the portal
             if not self._ready.done():
                 self._ready.set_exception(error)
 
@@ -87,7 +87,7 @@ class EventLoopThread:
 
 
 def run_in_thread(work: Callable[[], Awaitable[_T]]) -> _T:
-    """Run a coroutine in an event loop of its own, also where an event loop is running already."""
+    """Run a coroutine in a new event loop, even if the calling thread already runs one."""
 
     async def nothing() -> None: ...
 

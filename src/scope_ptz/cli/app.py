@@ -86,7 +86,7 @@ def plan(
     ] = None,
     as_json: JsonOption = False,
 ) -> int:
-    """Show which calls an instruction leads to, without moving anything."""
+    """Show the tool calls that the planner would make, without moving the camera."""
     from scope_ptz.cli.plan import plan as run
 
     return run(instruction, presets, source, as_json=as_json)
@@ -134,7 +134,7 @@ def profile(
     ] = False,
     as_json: JsonOption = False,
 ) -> int:
-    """Measure a pair on your own servers: speed, well-formed calls, perception latency, the paper's real-time bar."""
+    """Measure a pair on your own servers: speed, well-formed calls, perception latency, and the paper's real-time criterion."""
     from scope_ptz.cli.profile import Extent
     from scope_ptz.cli.profile import profile as run
 
@@ -145,7 +145,7 @@ def profile(
 @app.command(rich_help_panel="Set up")
 @command
 def doctor(models: PairFlags, as_json: JsonOption = False) -> int:
-    """Report what is installed, reachable and missing; with a server's address, whether it does what SCOPE needs."""
+    """Report what is installed, reachable and missing. With a server's address, check that server."""
     from scope_ptz.cli.doctor import check_installation, check_servers
 
     options = models.options()
@@ -159,7 +159,7 @@ def doctor(models: PairFlags, as_json: JsonOption = False) -> int:
 def models_list(
     context: typer.Context,
     memory: Annotated[float | None, typer.Option("--memory", min=0.1, help="List only models that fit into N GB.")] = None,
-    role: Annotated[str | None, typer.Option("--role", help="List only models for planner, or for perception.")] = None,
+    role: Annotated[str | None, typer.Option("--role", help="List only models for this role: planner or perception.")] = None,
     as_json: JsonOption = False,
 ) -> None:
     """List the models: the paper's, current ones, and your own (SCOPE_MODELS)."""
@@ -205,7 +205,7 @@ def models_plugins(as_json: JsonOption = False) -> None:
 @models_app.command("pairs")
 @command
 def models_pairs(as_json: JsonOption = False) -> None:
-    """List the pairs of a planner and a perception model: the paper's 19, and more."""
+    """List known pairs of a planner and a perception model, including the paper's 19."""
     from scope_ptz.cli.models import list_pairs
 
     list_pairs(as_json=as_json)

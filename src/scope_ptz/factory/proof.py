@@ -1,4 +1,4 @@
-"""Validation of tasks in the worlds in which they are set."""
+"""Validate tasks in the scenes that they belong to."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ def prove(
     Args:
         tasks: Tasks to prove.
         seed: Seed of the wrong answers that are tried.
-        say: Receives the number of proved tasks and their total.
-        beside: The dataset from which the tasks are selected.
+        say: Progress callback; receives the number of validated tasks and the total.
+        beside: The whole dataset that the tasks were selected from.
     """
     worlds, views = worlds_of(tasks), KnownViews()
     equip = equip_with_truth(worlds, views)

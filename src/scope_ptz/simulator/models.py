@@ -7,7 +7,7 @@ Layout of a scene folder::
     <viewpoint>/base.avif         equirectangular colour
     <viewpoint>/ids.webp          equirectangular instance numbers, 16 bit
     <viewpoint>/depth.webp        equirectangular distance, 16 bit, logarithmic
-    <viewpoint>/tiles/NN.avif     perspective colour where zooming pays, NN-ids.webp its instance numbers
+    <viewpoint>/tiles/NN.avif     perspective colour where more detail is needed, NN-ids.webp its instance numbers
     <viewpoint>/actors/ID.avif    sprites of a moving actor along its path (colour, alpha), ID-depth.webp their distances
 
 All angles are in the camera's own frame (pan 0 = the viewpoint's ``pan0_bearing_deg``), all lengths in metres.
@@ -161,7 +161,7 @@ class Tile(Model):
         return Perspective(self.pan_deg, self.tilt_deg, self.hfov_deg, self.colour.width, self.colour.height)
 
     def suits(self, view: Perspective) -> bool:
-        """Return whether the tile is about as dense as a view, or denser."""
+        """Return whether the tile's pixel density is about that of a view, or higher."""
         return self.view.focal_px >= SUITABLE * view.focal_px
 
 

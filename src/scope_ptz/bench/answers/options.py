@@ -19,7 +19,7 @@ _AFTER = frozenset({
     "stands", "takes", "being", "followed", "because", "since", "as", "while", "next", "last", "first", "second", "third", "by",
     "to",
 })  # fmt: skip
-"""Words that may surround a short form. Any other word would make it another thing's name ("the Whitlock sign", "bus stop")."""
+"""Words that may stand next to a short form. Another word makes it the name of something else ("the Whitlock sign", "bus stop")."""
 
 
 def option_mentions(text: AnswerText, options: Mapping[str, Sequence[str]]) -> list[NameMention]:

@@ -1,4 +1,4 @@
-"""The facts about a task that judges read and by which reports group runs."""
+"""The facts about a task that judges read and reports use to group runs."""
 
 from __future__ import annotations
 

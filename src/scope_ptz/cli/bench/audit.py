@@ -69,14 +69,14 @@ def audit_make(
 @audit_app.command("score")
 @command
 def audit_score(
-    folder: Annotated[Path, typer.Argument(help="Folder of 'audit make' with answers.jsonl in it.")],
+    folder: Annotated[Path, typer.Argument(help="Folder that 'audit make' wrote, with answers.jsonl in it.")],
     tasks: TasksOption = "core",
     out: Annotated[Path | None, typer.Option("--out", help="File for the result, for the dataset card (audit.json).")] = None,
     as_json: JsonOption = False,
 ) -> None:
     """Compare the answers with the tasks, using the benchmark's own answer parser.
 
-    Write what you find out about a disagreement into findings.jsonl.
+    Write explanations of disagreements to findings.jsonl in the folder.
     """
     from scope_ptz.bench.tasks.splits import load_split
     from scope_ptz.taskgen.picture_audit import score_answers

@@ -27,7 +27,7 @@ def browse(
     seed: Annotated[int | None, typer.Option(help="Seed for --random.")] = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for pictures of the start and of the evidence.")] = None,
 ) -> None:
-    """List tasks, or show one: instruction, expected answer, the run of its reference program, and the frames it rests on."""
+    """List tasks, or show one: instruction, expected answer, reference run, and the frames with its evidence."""
     rows = _matching(_tasks(tasks), category_named(category), scene)
     if task:
         chosen = _with_id(rows, task)

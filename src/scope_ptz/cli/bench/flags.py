@@ -109,7 +109,10 @@ class SingleRunFlags(EvaluationFlags):
         bool, typer.Option("--fresh", help="Start again instead of resuming an earlier log.", rich_help_panel=RUN_PANEL)
     ] = False
     variant: Annotated[
-        str, typer.Option("--variant", help="Label for runs that differ by one setting.", rich_help_panel=RUN_PANEL)
+        str,
+        typer.Option(
+            "--variant", help="Label for an evaluation that differs from another in one setting.", rich_help_panel=RUN_PANEL
+        ),
     ] = ""
     price: Annotated[
         str | None,

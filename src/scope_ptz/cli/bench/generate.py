@@ -158,7 +158,7 @@ def import_tasks(
     ] = None,
     as_json: JsonOption = False,
 ) -> int:
-    """Import tasks from a file in the paper's format: map tools, arguments, categories and scenes, and report what is doubtful.
+    """Import tasks from a file in the paper's format: map tools, arguments, categories and scenes, and report doubtful rows.
 
     Exit code 1 when no row can be run.
     """

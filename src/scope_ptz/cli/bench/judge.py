@@ -35,7 +35,7 @@ def rescore(
         typer.Option("--decides", metavar="JUDGE", help="Judge whose verdicts count from now on where only a judge can score."),
     ] = "",
 ) -> int:
-    """Add verdicts of a judge (--judge-url) or of today's checks (--checks) to logs. The agent is not run again.
+    """Add verdicts of a judge (--judge-url) or of the installed checks (--checks) to logs. The agent is not run again.
 
     Where only a judge can score a run, the first judge keeps deciding when another is added; --decides names another.
 

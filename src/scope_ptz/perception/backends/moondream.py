@@ -25,8 +25,8 @@ class MoondreamOptions(Options):
     """Options of the backend.
 
     Attributes:
-        max_pixels: Larger frames are shrunk to this, because the model looks at a few crops of 378 pixels.
-        max_objects: How many objects to request; None leaves it to the server's own limit.
+        max_pixels: Larger frames are scaled down to this size, because the model sees only a few crops of 378 pixels.
+        max_objects: Maximum number of objects to request; None uses the server's own limit.
         reasoning: Whether Moondream 3 reasons about questions.
         caption_length: "short", "normal" or "long".
     """
@@ -64,7 +64,7 @@ class MoondreamPerception(Perception):
         await self._client.close()
 
     async def _locate(self, frame: Frame, path: str, description: str, wanted: str) -> VisionReply:
-        """Request a list of places. A server that refuses the requested limit is asked without it, now and from then on."""
+        """Request a list of locations. If the server refuses ``max_objects``, this and all later requests omit it."""
         fields: dict[str, Any] = {"object": one_line(description)}
         if self._limit is None:
             return await self._ask(frame, path, fields, wanted)

@@ -1,7 +1,7 @@
-"""What a server turned out not to support.
+"""Request features that a server has refused.
 
-Servers differ in the request fields that they know. A server that refuses a field is not sent it again. This is knowledge about the
-server, not about a run.
+Servers support different request fields. A field that a server refuses is omitted from later requests. This is knowledge about
+the server, not about a run.
 """
 
 from __future__ import annotations

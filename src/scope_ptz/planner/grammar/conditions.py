@@ -32,7 +32,7 @@ class Thing:
 
     Attributes:
         definite: Whether it has a definite article.
-        odd: Whether it consists of words that name no thing ("times", "closer").
+        odd: Whether its words do not name an object ("times", "closer").
     """
 
     text: str = ""
@@ -76,7 +76,7 @@ class Holds:
 
     Attributes:
         wanted: The answer that meets the condition.
-        question: The question, when it is another than "is it so?".
+        question: The question to ask; empty for "is it so?".
     """
 
     subject: Thing
@@ -106,7 +106,7 @@ class PresetWins:
 
 @dataclass(frozen=True, slots=True)
 class Answered:
-    """The condition of "if so": the last question was answered with yes, or the last count was not zero."""
+    """The condition "if so": the last answer was yes, or the last count was not zero."""
 
 
 @dataclass(frozen=True, slots=True)

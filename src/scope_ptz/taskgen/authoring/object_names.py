@@ -1,4 +1,4 @@
-"""Names for single objects in a view that no other object in the view can be mistaken for."""
+"""Names that identify exactly one object in a view."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from scope_ptz.taskgen.facts.kinds import COLOUR_WORDS, GROUPS, SIGNS, Kind, Sce
 from scope_ptz.taskgen.facts.robust import RobustTruth, with_parts
 
 MADE_OUT_PX = 8.0
-"""Height in pixels at which somebody who knows what to look for can make out capitals."""
+"""Height in pixels at which a person who knows what to look for can recognise capital letters."""
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class NamedThing:
     """An object and its name.
 
     Attributes:
-        thing: The object as it shows in the view.
+        thing: The object as it appears in the view.
         name: The name without an article ("excavator", "leftmost car").
         kind: The kind that the name is built from.
         positional: Whether the name depends on the position in the view.
@@ -101,7 +101,7 @@ def named_things(truth: RobustTruth, min_pixels: int = 350, made_out_px: float =
 def recognised(truth: RobustTruth, sighting: Sighting, name: str, made_out_px: float) -> bool:
     """Whether a person recognises an object by its name in this view.
 
-    Objects that are known by their lettering, such as signs and numbered bays, must show it large enough to be made out.
+    The lettering of signs, numbered bays and similar objects must be large enough to recognise.
     """
     thing = sighting.instance
     own = _letters(name) - _LITTLE - _WEAK - _letters(thing.category) - _letters(_head(name))
@@ -144,8 +144,8 @@ def spoken(name: str) -> str:
 def could_bear_name(other: SceneThing, name: str, thing: SceneThing) -> bool:
     """Whether a person could mistake another object for the named one.
 
-    That is so when name, category and attributes of the other object agree with the name, apart from words that distinguish
-    little ("tall", "saloon") and colours that are nearly alike.
+    This is the case if the other object's name, category and attributes match the name. Words that distinguish little ("tall",
+    "saloon") and similar colours are ignored.
     """
     named = _letters(name) - _LITTLE
     facts = (f"{key} {value}" for key, value in other.attributes.items() if isinstance(value, str))
@@ -240,7 +240,7 @@ def colours_confusable(one: str, other: str | None) -> bool:
 
 
 def whole_group(truth: RobustTruth, kind: Kind) -> bool:
-    """Whether no further object of the kind shows in part. Somebody could take it for the outermost one."""
+    """Whether no other object of the kind is partly visible. A person could take such an object for the outermost one."""
     visible = {s.instance.number for s in truth.all_of(kind) or ()}
     return not any(kind.fits(s.instance) and s.instance.number not in visible and s.pixels > 30 for s in truth.samples[0].sightings)
 

@@ -90,7 +90,7 @@ def gold_runs(
 
     Args:
         runs: Tasks with passing runs.
-        settings: The setting of each world.
+        settings: Fault settings by world.
         seed: Seed for every random choice.
         per_mode: Runs per error mode, drawn alternately from the categories.
     """

@@ -1,4 +1,4 @@
-"""Mutation of a run that passes: one known fault of one error mode is put into it."""
+"""Insert one known fault of one error mode into a passing run."""
 
 from __future__ import annotations
 

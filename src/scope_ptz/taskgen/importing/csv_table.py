@@ -1,4 +1,4 @@
-"""Reading of CSV files with byte order marks, several encodings, four separators, blank lines and ragged rows."""
+"""Read CSV files with byte order marks, several encodings, four separators, blank lines and ragged rows."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from scope_studio.kit.vehicles.paintwork import AMBER, TRIM, Patch
 def headlamp(x: tuple[float, float], y: float, z: tuple[float, float], rise: float = 0.0) -> list[Patch]:
     """Return a wrap-round headlamp from ``x`` outwards and from ``y`` forwards.
 
-    It has a dark housing, two lenses, a daylight strip and an indicator.
+    It has a dark housing, two lenses, a daytime running light and an indicator.
     """
     (x0, x1), (z0, z1) = x, z
     size = (z1 - z0) * 0.78

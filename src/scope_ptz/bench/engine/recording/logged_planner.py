@@ -1,4 +1,4 @@
-"""The planner seen by the engine: each decision is a model event."""
+"""A planner wrapper that logs each decision as a model event of the engine."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from scope_ptz.planner.chat.prompts import DEFAULT_PROMPT, Prompt, load_prompt
 
 _DECISION: TypeAdapter[Decision] = TypeAdapter(Decision)
 _ANYTHING = ToolParams(additionalProperties=True)
-"""What a call may hold is checked where it is made, so that the planner reads the same words whoever runs it."""
+"""Any arguments are accepted here. The tool registry validates them, so error messages do not depend on the engine."""
 
 
 class LoggedPlanner(Planner):
-    """A planner behind a model of the engine: one of this project, or any chat model that the engine supports."""
+    """A planner that runs as a model of the engine: one of this project's planners, or any chat model that the engine supports."""
 
     def __init__(self, model: Model, planner: Planner | None) -> None:
-        """``planner`` is the one behind a model of this project; None for other models."""
+        """``planner`` is the planner that a model of this project wraps; None for other models."""
         self._model, self._planner = model, planner
         self.name = planner.name if planner is not None else str(model)
         self.sees = planner.sees if planner is not None else False

@@ -16,7 +16,7 @@ from scope_ptz.perception.ground_truth.language.question_tree import Description
 from scope_ptz.perception.ground_truth.language.tokeniser import Passed, tokenise
 
 MAX_TOKENS = 40
-"""Longer input is no description of a picture, and would take long to parse."""
+"""Longer input is unlikely to describe a picture and is slow to parse."""
 
 MAX_LINKS = 6
 """The number of readings multiplies with every "next to", "with" and "that"; with more of them the meaning is unclear anyway."""
