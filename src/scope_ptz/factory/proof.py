@@ -24,10 +24,10 @@ def prove(
     """Validate tasks with ground-truth perception.
 
     Args:
-        tasks: Tasks to prove.
-        seed: Seed of the wrong answers that are tried.
-        say: Receives the number of proved tasks and their total.
-        beside: The dataset from which the tasks are selected.
+        tasks: Tasks to validate.
+        seed: Seed for the wrong answers to try.
+        say: Called with the number of validated tasks and the total.
+        beside: The dataset that the tasks are selected from.
     """
     worlds, views = worlds_of(tasks), KnownViews()
     equip = equip_with_truth(worlds, views)

@@ -19,7 +19,7 @@ from scope_ptz.planner.chat.prompts import DEFAULT_PROMPT, Prompt, load_prompt
 
 _DECISION: TypeAdapter[Decision] = TypeAdapter(Decision)
 _ANYTHING = ToolParams(additionalProperties=True)
-"""What a call may hold is checked where it is made, so that the planner reads the same words whoever runs it."""
+"""Arguments are validated when a call is made, so that the planner gets the same error messages in every loop."""
 
 
 class LoggedPlanner(Planner):

@@ -1,7 +1,7 @@
-"""What a server turned out not to support.
+"""The features that a server turned out not to support.
 
-Servers differ in the request fields that they know. A server that refuses a field is not sent it again. This is knowledge about the
-server, not about a run.
+Servers differ in the request fields that they know. A field that a server refuses is not sent to it again. This
+knowledge belongs to the server, not to a run.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _OPTIONAL = ("chat_template_kwargs", "reasoning_effort", "temperature", "seed")
 
 
 class Dialect:
-    """What to leave out of the requests to a server."""
+    """The features to leave out of requests to a server."""
 
     def __init__(self, notation: Notation, *, fixed: bool) -> None:
         self.notation: Notation = notation

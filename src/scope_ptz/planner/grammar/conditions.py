@@ -75,7 +75,7 @@ class Holds:
     """A yes-or-no question about the scene.
 
     Attributes:
-        wanted: The answer that meets the condition.
+        wanted: The answer that satisfies the condition.
         question: The question, when it is another than "is it so?".
     """
 

@@ -14,7 +14,7 @@ from scope_ptz.taskgen.facts.kinds import COLOUR_WORDS, GROUPS, SIGNS, Kind, Sce
 from scope_ptz.taskgen.facts.robust import RobustTruth, with_parts
 
 MADE_OUT_PX = 8.0
-"""Height in pixels at which somebody who knows what to look for can make out capitals."""
+"""Minimum height of capitals, in pixels, for a person who knows what to look for to read them."""
 
 
 @dataclass(frozen=True)
@@ -120,7 +120,7 @@ _STEM = 4
 """Words with this many first letters in common are forms of one word ("optician", "opticians")."""
 
 _BY_WORDS = SIGNS | {"shop", "kiosk", "market stall", "door"}
-"""Categories whose objects are told apart by their lettering."""
+"""Categories whose objects are distinguished by their lettering."""
 
 _HAVING, _HAD_SHARE = frozenset({"with", "carrying", "pushing", "holding"}), 0.75
 """When less than this share of an object shows, the part that it is named after ("with a pram") may be hidden."""
@@ -183,7 +183,7 @@ _VAGUE = frozenset({
     "wheel guide", "window", "door sign", "window notice", "fence", "silo", "chimney", "dock leveller", "dock shelter",
     "tram platform", "lane signal", "gate",
 })  # fmt: skip
-"""Categories whose objects nobody can tell apart by name."""
+"""Categories whose objects cannot be distinguished by name."""
 
 
 def nameable_things(truth: RobustTruth, min_pixels: int = 500, made_out_px: float = MADE_OUT_PX) -> list[NamedThing]:
@@ -240,13 +240,13 @@ def colours_confusable(one: str, other: str | None) -> bool:
 
 
 def whole_group(truth: RobustTruth, kind: Kind) -> bool:
-    """Whether no further object of the kind shows in part. Somebody could take it for the outermost one."""
+    """Whether no further object of the kind is partly visible. A person could mistake it for the outermost one."""
     visible = {s.instance.number for s in truth.all_of(kind) or ()}
     return not any(kind.fits(s.instance) and s.instance.number not in visible and s.pixels > 30 for s in truth.samples[0].sightings)
 
 
 def outermost(truth: RobustTruth, things: Sequence[Sighting], which: int) -> Sighting | None:
-    """Return the first (0) or last (-1) object from the left, or None when the one beside it is too close."""
+    """Return the first (0) or last (-1) object from the left, or None if its neighbour is too close."""
     order = sorted(things, key=lambda s: (s.box[0] + s.box[2]) / 2)
     pair = order[:2] if which == 0 else order[-2:]
     return order[which] if truth.in_order(pair, 0, 0.05) is not None else None
