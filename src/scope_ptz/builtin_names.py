@@ -20,4 +20,4 @@ DETERMINISTIC = (GRAMMAR, GROUND_TRUTH, NOISY)
 """Planners and perception that need no model: the same input always gives the same output."""
 
 DEFAULT_SCENE = "highway-works"
-"""The scene that commands use unless told otherwise."""
+"""The default scene of commands."""

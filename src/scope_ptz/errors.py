@@ -5,11 +5,11 @@ ScopeError
 │   ├── ConfigError         a setting, an option or a URL
 │   ├── UnknownNameError    a scene, viewpoint, preset, planner or tool that does not exist
 │   └── OutputError         a folder or file that cannot be written
-├── PackError               a pack is missing, damaged or of another version (exit code 2)
+├── PackError               a pack is missing, damaged or has an unsupported version (exit code 2)
 ├── CameraError             the camera fails or does not answer
-├── PerceptionError         a frame cannot be read, which differs from "nothing there"
+├── PerceptionError         perception cannot interpret a frame (an empty result is not an error)
 ├── PlannerError            the planner fails, or its reply is not a decision
-├── ServerFailure           a model server gives no usable reply (endpoints.failures); becomes one of the two above
+├── ServerFailure           a model server gives no usable reply (endpoints.failures); raised to callers as one of the two above
 ├── ToolCallError           a tool call with a wrong name or wrong arguments
 ├── TraceError              a trace that cannot be read or replayed
 └── BlenderError            the Blender worker is missing or fails
@@ -73,7 +73,7 @@ class OutputError(InputError):
 
 
 class PackError(ScopeError):
-    """A scene or viewpoint pack is missing, damaged or of another version."""
+    """A scene or viewpoint pack is missing, damaged or has an unsupported version."""
 
 
 class CameraError(ScopeError):
@@ -84,7 +84,7 @@ class _ModelError(ScopeError):
     """An error of a planner or perception, which may run on a model server.
 
     Attributes:
-        kind: The server's kind of failure (``endpoints.FailureKind``), None if no server failed.
+        kind: How the server failed (``endpoints.FailureKind``); None if no server failed.
         attempts: The requests that were made (``endpoints.Attempt``).
     """
 
@@ -94,7 +94,7 @@ class _ModelError(ScopeError):
 
 
 class PerceptionError(_ModelError):
-    """A frame cannot be read. This is not the same as "nothing there"."""
+    """Perception cannot interpret a frame. An empty result ("nothing there") is not an error."""
 
 
 class PlannerError(_ModelError):

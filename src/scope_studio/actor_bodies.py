@@ -38,7 +38,7 @@ class ActorBodies:
         return self._bodies[key]
 
     def stand(self, actor: ActorPath, time_s: float, phase: float | None = None) -> Built | None:
-        """Place the actor where it is at a scene time and show it.
+        """Place the actor at its position for a scene time, and show it.
 
         Returns:
             The body, or None when the actor is not in the scene at that time.
@@ -56,7 +56,7 @@ class ActorBodies:
 
     @contextmanager
     def shown_at(self, time_s: float) -> Iterator[None]:
-        """Show every actor that is in the scene at that time, until the end of the block."""
+        """Context manager: show every actor that is in the scene at that time, until the block ends."""
         standing = [built for actor in self._stage.actors if (built := self.stand(actor, time_s)) is not None]
         bpy.context.view_layer.update()
         try:
@@ -90,7 +90,7 @@ def along(actor: ActorPath, t: float) -> tuple[tuple[float, float, float], float
 
 
 def show(built: Built, on: bool) -> None:
-    """Show or hide a thing in renders.
+    """Show or hide an object in renders.
 
     The viewport's own visibility flag must stay on: Cycles does not export objects that are hidden there.
     """

@@ -38,7 +38,7 @@ from scope_ptz.tools.registry import TOOLS, ToolRegistry
 from scope_ptz.version import __version__
 
 STOP_TIMEOUT_S = 5.0  # limit for stopping the camera and reading its pose at the end of a run
-MAX_CALLS_PER_STEP = 32  # further calls of one decision are dropped, and the planner is told so
+MAX_CALLS_PER_STEP = 32  # further calls in one decision are dropped, and the planner is notified
 MAX_REPEATED_BAD_CALLS = 5  # steps in a row with the same wrong call, after which the run ends as a planner error
 
 
@@ -59,7 +59,7 @@ class Agent:
         run_tool: RunTool | None = None,
         guarded: bool = True,
     ) -> None:
-        """Put an agent together.
+        """Create an agent.
 
         Args:
             planner: decides on the next step.

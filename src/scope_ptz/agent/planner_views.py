@@ -44,7 +44,7 @@ class PictureStore:
         return name
 
     async def shown(self) -> Picture | None:
-        """Return the remembered picture for the planner, None when no picture was taken."""
+        """Return the remembered picture for the planner; None if no picture was taken."""
         if self.kept is None:
             return None
         name, frame = self.kept

@@ -77,8 +77,8 @@ class Started(_Record):
 
     Attributes:
         planner_details: what determines the planner's decisions, such as the exact prompt.
-        scene: the scene of a simulated camera, else None.
-        viewpoint: the viewpoint of a simulated camera, else None.
+        scene: the scene of a simulated camera; otherwise None.
+        viewpoint: the viewpoint of a simulated camera; otherwise None.
         frame: name of the picture that was taken before the first step.
     """
 

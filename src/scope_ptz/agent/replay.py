@@ -180,7 +180,7 @@ class _PacedCamera(TimedCamera):
 
 
 def _difference(recorded: Called, again: Called | None) -> str:
-    """Describe how a call differs from its repetition; empty when they agree."""
+    """Describe how a call differs from its repetition; empty if they agree."""
     if again is None:
         return "not reached"
     before, now = recorded.outcome, again.outcome

@@ -89,7 +89,7 @@ class CallRunner:
             history: the exchanges of the run; the step is appended, also when the run is cancelled between two calls.
 
         Returns:
-            The end of the run when a call ended it, else None.
+            The end of the run when a call ended it; otherwise None.
         """
         done: dict[int, _Done] = {}
         try:

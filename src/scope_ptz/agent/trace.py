@@ -51,7 +51,7 @@ class Trace:
 
     Attributes:
         folder: folder of the run's pictures; ``Path()`` for a run that was kept in memory.
-        ended: the end of the run, None when the program was killed before it.
+        ended: the end of the run; None if the program was killed before it.
     """
 
     folder: Path

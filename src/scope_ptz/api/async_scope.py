@@ -352,7 +352,7 @@ class _Recorder:
             self._listener(event_of(record))
 
     def run(self) -> Run | None:
-        """Return the run, None when it never began or its end could not be recorded."""
+        """Return the run; None if it never began or its end could not be recorded."""
         if not self._records or not isinstance(ended := self._records[-1], Ended):
             return None
         if isinstance(self.images, RunFolder):

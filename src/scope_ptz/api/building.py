@@ -25,7 +25,7 @@ class Parts:
     """The parts of an open session.
 
     Attributes:
-        scene: the scene of a camera in a scene, else None.
+        scene: the scene of a camera in a scene; otherwise None.
         note: a sentence on what perception is, empty for models.
         release: closes the parts that were made for the session. Objects that the caller passed stay open.
     """

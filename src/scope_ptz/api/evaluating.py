@@ -116,7 +116,7 @@ def _borrowed(models: ModelOptions) -> ModelOptions:
 
 
 def _task_file(tasks: tuple[Task, ...], out: Path) -> str:
-    """Write tasks beside the logs, so that the log names a file that holds them and the evaluation can be resumed."""
+    """Write tasks next to the logs, so that the log names a file that contains them and the evaluation can be resumed."""
     from scope_ptz.bench.tasks.files import digest_of, dump_tasks
 
     path = out / "tasks" / f"{digest_of(tasks)[:16]}.jsonl"

@@ -24,7 +24,7 @@ class EvaluationResults:
     """The results of an evaluation: scores by category, and every trial. In a notebook, it shows a table of scores.
 
     ``evaluate`` and ``load_results`` return it. A score is the share of correct trials among those that were scored. Trials that
-    failed for reasons of infrastructure are left out, and so are those that wait for a judge.
+    failed because of infrastructure are excluded, and so are those that await a judge.
 
     Example:
         >>> import scope_ptz, tempfile
@@ -67,12 +67,12 @@ class EvaluationResults:
 
     @property
     def macro(self) -> float | None:
-        """Unweighted mean of the scores of the categories; None when nothing was scored."""
+        """Unweighted mean of the scores of the categories; None if nothing was scored."""
         return sum(self.scores.values()) / len(self.scores) if self.scores else None
 
     @property
     def micro(self) -> float | None:
-        """Score of all trials together; None when nothing was scored."""
+        """Share of correct trials among all scored ones; None if nothing was scored."""
         return score(self.trials)
 
     def to_pandas(self) -> pd.DataFrame:
@@ -193,7 +193,7 @@ def evaluate(
         perception: name of a backend or model, or a ``Perception`` object; the simulator's ground truth by default.
         tasks: a split, a task file, or tasks of ``load_tasks``.
         out: folder of the logs.
-        pair: planner and perception in one name, "PLANNER+PERCEPTION", or one model that is both.
+        pair: planner and perception in one name, "PLANNER+PERCEPTION", or one model that does both.
         agent: "module:Class" of an agent of your own, which replaces the planner and the loop around it.
         categories: only tasks of these categories; all by default.
         scenes: only tasks of these scenes; all by default.
@@ -202,7 +202,7 @@ def evaluate(
         seed: seed for every random choice.
         max_steps: planner steps after which a run ends.
         time_budget_s: wall seconds after which a run ends; no limit by default.
-        concurrency: number of runs at a time; by default a number that suits the models.
+        concurrency: number of concurrent runs; by default it depends on the models.
         pictures: whether to render and log frames. Ground truth needs none, and is faster without.
         fresh: start again even if there is a log of the same evaluation.
         planner_url: address of the planner's model server.
@@ -217,7 +217,7 @@ def evaluate(
     Raises:
         ConfigError: the evaluation engine is not installed, or a model is not configured.
         InputError: an option is wrong, or a name is unknown.
-        ScopeError: too many runs in a row failed for reasons of infrastructure.
+        ScopeError: too many runs in a row failed because of infrastructure.
 
     Example:
         >>> import scope_ptz, tempfile
@@ -242,10 +242,10 @@ def load_results(path: str | PathLike[str]) -> EvaluationResults:
     """Read the results of an evaluation.
 
     Args:
-        path: a log file, or a folder with logs, of which the newest is read.
+        path: a log file, or a folder, whose newest log is read.
 
     Returns:
-        The results. Those of an unfinished evaluation have ``finished`` False.
+        The results. ``finished`` is False if the evaluation is incomplete.
 
     Raises:
         TraceError: there is no log, or it is damaged.
@@ -265,7 +265,7 @@ def load_results(path: str | PathLike[str]) -> EvaluationResults:
 
 
 def score(trials: Sequence[Trial]) -> float | None:
-    """Return the share of correct trials among the scored ones; None when none is scored."""
+    """Return the share of correct trials among the scored ones; None if none is scored."""
     from scope_ptz.bench.judging.judgement_tally import without_verdict
 
     scored = [trial for trial in trials if trial.headline != "infrastructure" and not without_verdict(trial)]

@@ -1,4 +1,4 @@
-"""Stands in for perception where a session has none."""
+"""A placeholder for perception in sessions without any."""
 
 from __future__ import annotations
 

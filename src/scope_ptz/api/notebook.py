@@ -1,4 +1,4 @@
-"""How runs, scenes and results show themselves in a notebook: HTML with embedded pictures, for light and dark themes."""
+"""Notebook display of runs, scenes and results: HTML with embedded pictures, for light and dark themes."""
 
 from __future__ import annotations
 

@@ -30,8 +30,8 @@ class CallResult:
         step: the planner step that the call belongs to, from 1.
         name: name of the tool.
         arguments: the arguments as the planner gave them.
-        result: the result of the tool as JSON data, None when the call failed.
-        error: why the call failed, None when it succeeded.
+        result: the result of the tool as JSON data; None if the call failed.
+        error: why the call failed; None if it succeeded.
         fault: the category of the failure: "bad_call", "perception", "camera", "skipped" or "cancelled".
         pose: pose of the camera after the call.
         duration_s: wall seconds of the call.
@@ -84,7 +84,7 @@ class CallResult:
 
 
 class Run:
-    """A finished run: the answer, how it came about, and its pictures. In a notebook, a run shows itself.
+    """A finished run: the answer, the steps that led to it, and its pictures. A notebook displays it as HTML.
 
     ``Scope.ask`` returns runs, and ``Run.load`` reads one from a run folder.
 
@@ -169,7 +169,7 @@ class Run:
 
     @property
     def note(self) -> str:
-        """A sentence that says what the perception is when it is not a model, else empty."""
+        """A sentence about the perception if it is not a model; otherwise empty."""
         return self._trace.started.labels.perception_note
 
     @property
@@ -184,7 +184,7 @@ class Run:
 
     @property
     def folder(self) -> Path | None:
-        """The run folder with trace and pictures, None when the run was kept in memory."""
+        """The run folder with trace and pictures; None if the run was kept in memory."""
         return self._trace.folder if self._files is None else None
 
     @cached_property
@@ -251,8 +251,8 @@ class Event:
     Attributes:
         kind: "started", "decided" (the planner chose calls or an end), "called" (a tool call finished) or "ended".
         text: the event in words.
-        call: the finished call of a "called" event, else None.
-        run: the whole run of an "ended" event, else None.
+        call: the finished call of a "called" event; otherwise None.
+        run: the whole run of an "ended" event; otherwise None.
 
     Example:
         >>> import scope_ptz

@@ -1,4 +1,4 @@
-"""What there is to open: scenes, models, and the schemas of the tools."""
+"""List and inspect scenes, models, and the schemas of the tools."""
 
 from __future__ import annotations
 

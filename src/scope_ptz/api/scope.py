@@ -189,7 +189,7 @@ class Scope:
         """Take a frame of the current view.
 
         Returns:
-            The frame. ``frame.image`` is an ``(H, W, 3)`` uint8 RGB array; in a notebook, the frame shows itself.
+            The frame. ``frame.image`` is an ``(H, W, 3)`` uint8 RGB array; a notebook displays the frame as a picture.
         """
         return self._call(self._session.frame)
 

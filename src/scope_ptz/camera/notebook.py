@@ -1,4 +1,4 @@
-"""How a frame shows itself in a notebook."""
+"""Notebook display of a frame."""
 
 from __future__ import annotations
 

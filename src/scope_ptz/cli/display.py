@@ -1,4 +1,4 @@
-"""What a person sees of a run, while it happens and at its end."""
+"""Terminal output of a run: live steps, and a summary at the end."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from scope_ptz.agent.records import Called, Decided, Ended, Started
 from scope_ptz.agent.timing import Timings
 from scope_ptz.planner.base import CallTools, ToolCall
 
-MESSAGE_CHARS = 2000  # longer messages of tools are cut when printed
-SHOWN_CHARS = 200  # longer instructions and arguments are cut when printed
+MESSAGE_CHARS = 2000  # longer tool messages are truncated when printed
+SHOWN_CHARS = 200  # longer instructions and arguments are truncated when printed
 _OUTCOME_WORDS = {
     "answered": ("Answer", "bold green"),
     "clarification": ("Question", "bold yellow"),
@@ -36,18 +36,18 @@ def plain(text: str) -> str:
 
 
 def shortened(text: str, most: int = SHOWN_CHARS) -> str:
-    """Return at most the first characters of a text, with the length of the whole if something was cut off."""
+    """Truncate a text. A truncated text ends with the full length."""
     return text if len(text) <= most else f"{text[:most].rstrip()}… ({len(text)} characters)"
 
 
 def arguments_text(arguments: dict[str, Any]) -> str:
-    """Return arguments as people read them: ``pan_deg=15, view=current``."""
+    """Format arguments for display: ``pan_deg=15, view=current``."""
     parts = (f"{k}={v if isinstance(v, str) and v.isprintable() else json.dumps(v)}" for k, v in arguments.items())
     return plain(shortened(", ".join(parts)))
 
 
 def seconds(value: float) -> str:
-    """Return a duration with its unit."""
+    """Format a duration with its unit."""
     return f"{value:.1f} s" if value >= 1 else f"{value * 1000:.0f} ms"
 
 
@@ -104,13 +104,13 @@ class LiveView:
 
 
 def show_end(console: Console, ended: Ended, note: str = "", folder: Path | None = None, filmstrip: Path | None = None) -> None:
-    """Print the answer, what it is based on, where the time went, and where the run is kept.
+    """Print the answer, its evidence, the timings, and the run folder.
 
     Args:
         console: Where to print.
         ended: The run's last record.
-        note: What perception is, if it is not a model.
-        folder: The run folder; without one only the answer is printed.
+        note: A note on the perception, if it is not a model.
+        folder: The run folder. If None, only the answer is printed.
         filmstrip: The run's picture, if one was made.
     """
     title, style = _OUTCOME_WORDS[ended.outcome]
@@ -127,7 +127,7 @@ def show_end(console: Console, ended: Ended, note: str = "", folder: Path | None
 
 
 def timings_text(timings: Timings) -> str:
-    """Return a sentence that says where the time went."""
+    """Return a sentence that breaks down the duration by stage."""
     parts = (("planner", timings.planner_s), ("perception", timings.perception_s), ("camera", timings.camera_s))
     split = ", ".join(f"{name} {seconds(value)}" for name, value in (*parts, ("rendering", timings.render_s)))
     return f"{seconds(timings.total_s)} in total: {split}."

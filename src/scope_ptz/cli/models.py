@@ -19,7 +19,7 @@ MEMORY_NOTE = (
     f"Memory in GB, computed, not measured: parameters x bytes + cache for {WINDOW} tokens + {RUNTIME_GB:g} GB. "
     "'from': with the smallest weights that a server offers, mostly 4-bit."
 )
-_WIDE, _PIPE = 120, 180  # columns that the longer table needs, and columns assumed for a file or a pipe
+_WIDE, _PIPE = 120, 180  # terminal columns for the wide table, and for a file or a pipe
 _THINKING = {"none": "no", "optional": "when asked", "default": "unless switched off", "always": "always"}
 
 
@@ -33,8 +33,8 @@ def list_models(role: str | None, memory_gb: float | None, *, as_json: bool) -> 
 
     Args:
         role: Only models for this role.
-        memory_gb: Only models that fit into so much memory. Those that fit with smaller weights only are named below the table.
-        as_json: Print JSON, without the latter.
+        memory_gb: Only models that fit into this many GB. A line below the table names those that fit only with smaller weights.
+        as_json: Print JSON, without that line.
     """
     known, only = registry(), _role(role)
     suitable = [m for m in known.models.values() if only is None or only in m.roles]
@@ -95,7 +95,7 @@ def list_plugins(*, as_json: bool) -> None:
 
 
 def _name_plugins(console: Console, role: Role | None) -> None:
-    """Name the plug-ins that can be used like the models of the table."""
+    """Print the names of plug-ins that can be used like the listed models."""
     from scope_ptz.factory.plugins import plugins_of
 
     for kind in ("planner", "perception") if role is None else (role,):
@@ -105,7 +105,7 @@ def _name_plugins(console: Console, role: Role | None) -> None:
 
 
 def show_model(name: str, *, as_json: bool) -> None:
-    """Print everything that is known about a model."""
+    """Print all registry data of a model."""
     known = registry()
     model = known.model(name)
     if as_json:
@@ -148,7 +148,7 @@ def _show_serving(known: Registry, model: Model, server: str) -> None:
 
 
 def serve_command(name: str, server: str | None) -> None:
-    """Print the commands that serve a model, and nothing else, for a shell to run."""
+    """Print only the commands that serve a model, so that a shell can run the output."""
     known = registry()
     model = known.model(name)
     if server is None:
@@ -160,7 +160,7 @@ def serve_command(name: str, server: str | None) -> None:
 
 
 def list_pairs(*, as_json: bool) -> None:
-    """Print the pairs."""
+    """Print the known pairs of planner and perception models."""
     known = registry()
     rows = [
         {

@@ -82,7 +82,7 @@ def load_object(body: bytes, endpoint: Endpoint, status: int) -> dict[str, Any]:
     if not body.strip():
         raise ServerFailure(K.EMPTY, where=endpoint.url, status=status, detail="an empty body")
     try:
-        # Not strict, because some servers put raw line ends into strings.
+        # Not strict, because some servers leave raw line breaks in strings.
         data: Any = json.loads(scrub(body.decode("utf-8"), endpoint.secret), strict=False)
     except (ValueError, RecursionError) as error:
         detail = f"{_no_json(error)} in '{in_brief(body[:_QUOTED].decode(errors='replace'), endpoint.secret)}'"

@@ -40,7 +40,7 @@ class Breaker:
         return self._last
 
     def wait_s(self) -> float | None:
-        """Return how many seconds no request may be sent, None when one may be sent now. Its outcome must then be reported."""
+        """Return how many seconds no request may be sent; None if one may be sent now. Its outcome must then be reported."""
         if self._open_until is None:
             return None
         left = self._open_until - self.clock()

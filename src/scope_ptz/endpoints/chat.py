@@ -25,7 +25,7 @@ K = FailureKind
 EVENT_STREAM = "text/event-stream"
 UNKNOWN_FIELD = 422
 DRAIN_S = 0.1
-"""How long a finished stream is read to its end, so that its connection can be used again."""
+"""Time limit for draining a finished stream, so that its connection can be reused."""
 
 
 class ChatClient:

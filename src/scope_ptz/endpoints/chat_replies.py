@@ -121,7 +121,7 @@ class Gathering:
         held["arguments"] += arguments
 
     def _slot(self, index: Any, call_id: str, name: str, arguments: str) -> int | None:
-        """Return the call that a chunk continues, None when it begins a new one.
+        """Return the call that a chunk continues; None if it begins a new one.
 
         Chunks of a call share an index. Some servers send no index, send the same one for every call, or repeat id and name in each
         chunk.

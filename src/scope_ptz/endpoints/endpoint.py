@@ -72,7 +72,7 @@ class Endpoint(BaseModel):
 
     @property
     def loopback(self) -> bool:
-        """Whether the server is on this machine, where no proxy leads."""
+        """Whether the server is on this machine, so that no proxy is used."""
         return self.host == "localhost" or self.host.startswith("127.") or self.host == "::1"
 
 
@@ -115,7 +115,7 @@ def _without_secrets(url: str) -> str:
 
 
 def checked_key(key: str) -> SecretStr | None:
-    """Return a key that fits into a header, None when it is blank.
+    """Return a key that fits into a header; None if it is blank.
 
     Raises:
         ConfigError: It cannot be a key. The message does not show it.

@@ -69,7 +69,7 @@ class Attempt(BaseModel):
     """One request of a call.
 
     Attributes:
-        kind: How it failed, None when it succeeded.
+        kind: How it failed; None if it succeeded.
         waited_s: The pause before it.
         input_tokens: Input tokens of a reply that was unusable; usable replies carry their own counts.
         output_tokens: Output tokens of a reply that was unusable.
@@ -117,7 +117,7 @@ class ServerFailure(ScopeError):  # noqa: N818 - named like the kinds in this pa
 
     @property
     def attempts(self) -> int:
-        """How often the server was asked."""
+        """Number of requests to the server."""
         return len(self.history)
 
     def after(self, history: Iterable[Attempt]) -> ServerFailure:

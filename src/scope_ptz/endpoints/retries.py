@@ -122,7 +122,7 @@ class Caller:
         return failure
 
     def _pause_s(self, failure: ServerFailure, attempts: int) -> float | None:
-        """Return the pause before the next attempt, None when there is none."""
+        """Return the pause before the next attempt; None if there is none."""
         if failure.kind not in RETRIED or attempts > self.endpoint.retries:
             return None
         jitter_s = self.rng.uniform(0.0, min(LONGEST_PAUSE_S, FIRST_PAUSE_S * 2.0 ** (attempts - 1)))

@@ -1,4 +1,4 @@
-"""How a server was set up, as it reports: version, context, precision, memory. Each kind of server reports it at another path."""
+"""The setup that a model server reports: version, context, precision, memory. Each kind of server uses a different path."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def _labels(labels: str) -> Iterator[tuple[str, str]]:
 
 
 def _walk(content: Any, depth: int) -> Iterator[tuple[str, str]]:
-    """Yield wanted fields of nested JSON, to a limited depth."""
+    """Yield the requested fields of nested JSON, to a limited depth."""
     if depth > 4:
         return
     if isinstance(content, Mapping):

@@ -29,7 +29,7 @@ _SPENT = re.compile(r"insufficient_quota|billing|payment|credits?\b", re.IGNOREC
 
 
 def as_failure(error: BaseException, endpoint: Endpoint) -> ServerFailure | None:
-    """Return the failure that a client library's exception stands for, None when it is something else, such as a bug."""
+    """Return the failure that a client library's exception stands for; None if it is something else, such as a bug."""
     import httpx2
 
     chain = list(_chain(error))
@@ -116,7 +116,7 @@ def status_failure(status: int, headers: Mapping[str, str], body: str, endpoint:
 
 
 def error_body(body: dict[str, Any], endpoint: Endpoint, status: int = 200) -> ServerFailure | None:
-    """Return the failure in a reply that claims success, None when there is no error in it."""
+    """Return the failure in a reply that claims success; None if there is no error in it."""
     if not body.get("error") and body.get("object") != "error" and not _only_words(body):
         return None
     parsed = _ErrorBody(json.dumps(body))
@@ -176,7 +176,7 @@ def _as_text(value: Any) -> str:
 
 
 def retry_after_s(headers: Mapping[str, str]) -> float | None:
-    """Return the seconds that Retry-After asks for, None when it is absent or invalid."""
+    """Return the seconds that Retry-After asks for; None if it is absent or invalid."""
     milliseconds = _number(headers.get("retry-after-ms"))
     if milliseconds is not None:
         return milliseconds / 1000

@@ -35,7 +35,7 @@ class LiveBlender:
 
     Attributes:
         camera: The camera.
-        scene: The pack with the ground truth of the same scene, None where there is none.
+        scene: The pack with the ground truth of the same scene; None if there is none.
         release: Ends the worker.
     """
 
@@ -105,7 +105,7 @@ def _absolute(path: str) -> str:
 
 
 def _pack_of(live: SceneFile) -> Scene | None:
-    """Return the pack that holds the ground truth of a live scene, None when none was baked from the same things."""
+    """Return the pack that holds the ground truth of a live scene; None if none was baked from the same things."""
     try:
         scene = open_scene(live.name)
     except (UnknownNameError, PackError):

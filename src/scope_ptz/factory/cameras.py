@@ -74,7 +74,7 @@ class OpenCamera:
     Attributes:
         spec: What was opened.
         camera: The camera.
-        scene: The scene that holds the ground truth of the camera's frames, None where there is no ground truth.
+        scene: The scene that holds the ground truth of the camera's frames; None if there is no ground truth.
     """
 
     def __init__(

@@ -41,14 +41,14 @@ async def evaluate(options: EvaluationOptions, *, progress: EvaluationProgress |
         progress: Receives notes, the estimate, and every run that begins and ends.
 
     Returns:
-        The evaluation as its log holds it, and what came of the judgements. Runs that failed for reasons of infrastructure are
-        among its trials; the same call runs them again.
+        The evaluation in the log, and the outcome of the judgements. Runs that failed because of infrastructure are
+        among its trials; the same call repeats them.
 
     Raises:
         ConfigError: The evaluation engine is not installed, or models are not configured.
         InputError: Options contradict each other or name something unknown.
         OutputError: The log folder cannot be written.
-        ScopeError: Too many consecutive runs failed for reasons of infrastructure.
+        ScopeError: Too many consecutive runs failed because of infrastructure.
     """
     require_engine()
     from scope_ptz.bench.engine.runs import exclusive

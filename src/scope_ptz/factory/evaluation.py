@@ -159,7 +159,7 @@ async def _open_judge(request: ModelRequest) -> JudgeServer:
 
 
 async def _count(truth: GroundTruthPerception, scene: str, look: Observation) -> int | None:
-    """Count what a perception call asked for in the view that it received; None where the description is too open to count."""
+    """Count what a perception call asked for in the view that it received; None if the description is too open to count."""
     from scope_ptz.factory.validation_perception import is_plain_noun
 
     if look.viewpoint is None:

@@ -62,7 +62,7 @@ class EvaluationOptions:
         pictures: Render frames and log them.
         variant: Label that distinguishes evaluations which differ by one setting.
         fresh: Start again even if there is a log of the same evaluation.
-        resume: Log to resume; None for the one in ``out`` that got furthest.
+        resume: Log to resume; None for the most complete one in ``out``.
         price: Price of the planner's tokens, for the estimate and the log.
         judge: Judge that scores each run, or None.
     """
@@ -90,10 +90,10 @@ class EvaluationOptions:
 
 @dataclass(frozen=True, slots=True)
 class EvaluationPlan:
-    """What is about to run. ``agent`` is None for the built-in loop; ``finished`` are runs taken over from an earlier log.
+    """The plan of an evaluation that is about to start.
 
-    ``asks_planner_server`` is False where planning costs nothing. ``origin`` says which log is resumed, or why none is; it may be
-    empty.
+    ``agent`` is None for the built-in loop; ``finished`` are runs taken over from an earlier log. ``asks_planner_server``
+    is False if planning costs nothing. ``origin`` names the log that is resumed, or the reason why none is; it may be empty.
     """
 
     runs: int

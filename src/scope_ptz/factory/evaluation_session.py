@@ -1,4 +1,4 @@
-"""One evaluation in progress: its tasks and models, its log, and what is missing in it."""
+"""An evaluation in progress: its tasks, its models, its log, and the runs and judgements that are still missing."""
 
 from __future__ import annotations
 
@@ -36,16 +36,16 @@ if TYPE_CHECKING:
 
 RUNS_AT_A_TIME_WITH_SERVERS = 8
 PERCEPTION_CALLS_PER_STEP = 8
-"""The agent loop makes up to this many perception calls of one step at the same time."""
+"""Maximum number of concurrent perception calls in one step of the agent loop."""
 MAX_BROKEN_IN_A_ROW = 12
-"""An evaluation stops after this many consecutive runs were broken by infrastructure."""
+"""An evaluation stops after this many consecutive runs that failed because of infrastructure."""
 
 
 COLLECTOR_THRESHOLDS = (20_000, 20, 50)
 
 
 class EvaluationSession:
-    """One call of ``evaluate``: its tasks and models, and the connections to close at its end."""
+    """One call of ``evaluate``: its tasks, its models, and the connections that ``close`` closes."""
 
     def __init__(self, options: EvaluationOptions, pair: ResolvedPair, progress: EvaluationProgress) -> None:
         from scope_ptz.bench.engine.entries import digest, select
@@ -63,7 +63,7 @@ class EvaluationSession:
         )
         _check_pictures(options, pair, self.planner)
         local = pair.planner.endpoint is None and pair.perception.spec is None and options.agent == OWN_AGENT
-        # Without servers, runs compete for the interpreter: a second one at a time costs memory and gains nothing.
+        # Without servers, runs compete for the interpreter, so concurrent runs cost memory and save no time.
         default = 1 if local else RUNS_AT_A_TIME_WITH_SERVERS
         self.concurrency = 1 if options.latency else options.concurrency or default
         details = self.planner.details if self.planner is not None else {}
@@ -82,7 +82,7 @@ class EvaluationSession:
                 await held.close()
 
     async def stored_logs(self) -> list[StoredLog]:
-        """Return the logs of this evaluation to resume, the one that got furthest first."""
+        """Return the logs from which this evaluation can resume, the most complete first."""
         from scope_ptz.bench.engine.runs import find_logs, stored_log
 
         if self.options.resume is not None:
@@ -93,9 +93,9 @@ class EvaluationSession:
         return [] if self.options.fresh else await find_logs(self.options.out, self.identity)
 
     async def run(self, stored: Sequence[StoredLog]) -> Path:
-        """Run what ``stored`` logs lack, and return the path of the log that holds everything.
+        """Run what is missing in the ``stored`` logs, and return the path of the complete log.
 
-        Raises ``ScopeError`` when too many consecutive runs failed for reasons of infrastructure.
+        Raises ``ScopeError`` if too many consecutive runs failed because of infrastructure.
         """
         from scope_ptz.bench.engine.failure_summary import failure_summary
         from scope_ptz.bench.engine.logs import read_evaluation
@@ -118,7 +118,7 @@ class EvaluationSession:
 
         self.progress.planned(plan)
         try:
-            # The engine handles a cancellation by itself; in a task of its own, ours is not marked as cancelled by it.
+            # The engine catches cancellation. It runs in a separate task, so that the current task is not marked as cancelled.
             with few_collections():
                 async with group:
                     group.start_soon(work)
@@ -136,9 +136,9 @@ class EvaluationSession:
         return came
 
     async def with_judgements(self, log: Path, *, retry_failed: bool) -> EvaluationResult:
-        """Return a log as it stands after its missing judgements were requested.
+        """Request the missing judgements of a log, and return the updated results.
 
-        ``retry_failed``: also request those again for which the judge's server failed.
+        ``retry_failed``: also retry the judgements for which the judge's server failed.
         """
         from scope_ptz.bench.engine.logs import read_evaluation
 
@@ -150,7 +150,7 @@ class EvaluationSession:
         )
 
     async def _opened_judge(self, settings: JudgeSettings) -> JudgeServer:
-        """Return the judge's port, opened at most once."""
+        """Return the connection to the judge, opened on first use."""
         if self.judge is None:
             self.judge = await open_requested_judge(settings)
         return self.judge
@@ -218,7 +218,7 @@ class EvaluationSession:
 
 
 class _CircuitBreaker(Watcher):
-    """Passes runs on to a watcher, and stops the evaluation when too many in a row were broken by infrastructure."""
+    """Forwards runs to a watcher, and stops the evaluation if too many runs in a row fail because of infrastructure."""
 
     def __init__(self, watcher: Watcher, stop: Callable[[], None]) -> None:
         self._watcher, self._stop = watcher, stop
@@ -240,9 +240,9 @@ class _CircuitBreaker(Watcher):
 
 @contextmanager
 def few_collections() -> Iterator[None]:
-    """Let the garbage collector run less often, and not over what lives until the end.
+    """Make the garbage collector run less often and skip the objects that already exist.
 
-    Scenes and tasks are many small objects. Going through them again and again takes a tenth of an evaluation's time.
+    Scenes and tasks consist of many small objects. Scanning them repeatedly takes a tenth of an evaluation's time.
     """
     thresholds = gc.get_threshold()
     gc.collect()
@@ -256,7 +256,7 @@ def few_collections() -> Iterator[None]:
 
 
 def prompt_chars(planner: Planner | None) -> int | None:
-    """Return the length of a planner's prompt and tools; None without a prompt, or where pictures dominate it."""
+    """Return the length of a planner's prompt and tools; None without a prompt, or if pictures dominate it."""
     from scope_ptz.planner.chat.prompts import Prompt
     from scope_ptz.tools.registry import schemas
 
@@ -277,7 +277,7 @@ def _check_pictures(options: EvaluationOptions, pair: ResolvedPair, planner: Pla
 
 
 def _is_built_in(pair: ResolvedPair) -> bool:
-    """Return whether runs are so cheap that an interrupted evaluation may repeat the last few."""
+    """Return whether both models are built in. Such runs are cheap, so a resumed evaluation may repeat the last few."""
     planner, perception = pair.planner, pair.perception
     return (
         planner.name == GRAMMAR

@@ -1,4 +1,4 @@
-"""The entry point of Inspect AI into this package: the task ``scope_ptz/bench``, its scorers, and the models ``scope_ptz/...``.
+"""The Inspect AI plug-in of this package: the task ``scope_ptz/bench``, its scorers, and the models ``scope_ptz/...``.
 
 inspect eval scope_ptz/bench --model-role planner=scope_ptz/grammar --model-role eyes=scope_ptz/ground-truth -T limit=5
 """
@@ -19,14 +19,14 @@ from scope_ptz.factory.evaluation import eval_context
 __all__ = ["bench", "checks", "judge", "scope_agent", "scope_ptz"]
 
 bench = benchmark_task(lambda seed: eval_context(seed=seed))
-"""The benchmark, in a context made from the settings."""
+"""The benchmark task, with a context that is built from the settings."""
 
 
 @solver
 def scope_agent(
     agent: str = OWN_AGENT, pictures: bool = True, max_steps: int = 60, time_s: float | None = None, seed: int = 1
 ) -> Solver:
-    """The agent as a solver that logs name. The parameters are those of ``bench``."""
+    """The agent as a solver, under the name that logs record. The parameters are those of ``bench``."""
     context = eval_context(seed=seed)
     return agent_solver(context, agent=agent, pictures=pictures, max_steps=max_steps, time_s=time_s, seed=seed)
 
@@ -39,5 +39,5 @@ def checks() -> Scorer:
 
 @scorer(metrics=list(METRICS), name=JUDGE)
 def judge(repeat: int = 0) -> Scorer:
-    """The judge, for ``inspect score --model-role judge=...``. ``repeat`` is the number of the judgement."""
+    """The judge, for ``inspect score --model-role judge=...``. ``repeat`` is the index of the judgement."""
     return judge_scorer(eval_context(seed=1), repeat)

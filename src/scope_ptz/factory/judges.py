@@ -21,7 +21,7 @@ _LOG = logging.getLogger(__name__)
 
 
 class UnnamedJudgeError(ScopeError):
-    """A judge's server does not say what it serves, and no option names the judge."""
+    """A judge's server does not report its model, and no option names the judge."""
 
     def __init__(self, url: str, why: str) -> None:
         super().__init__(
@@ -33,7 +33,7 @@ class UnnamedJudgeError(ScopeError):
 async def open_judge(
     url: str | None, model: str | None, key_file: Path | None, timeout_s: float, options: Iterable[str] | None = None
 ) -> JudgeServer:
-    """Open the port to a judge's server. The caller closes it.
+    """Connect to a judge's server. The caller closes the connection.
 
     Args:
         url: Address of the server; None takes ``SCOPE_JUDGE_URL``.
@@ -43,7 +43,7 @@ async def open_judge(
         options: ``NAME=VALUE`` options of the judge.
 
     Returns:
-        The port. ``client.endpoint.model`` is the judge's name.
+        The connection. ``client.endpoint.model`` is the judge's name.
 
     Raises:
         InputError: No server is named, an option is wrong, or the server serves several models and none is the usual judge.

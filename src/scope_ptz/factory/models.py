@@ -112,7 +112,7 @@ def make_perception(
         resolved: What to make.
         scenes: Opens the scenes of simulated frames by name; None for a camera without ground truth.
         seed: Seed for the mistakes of ``noisy``.
-        read_truth: Reads the ground truth of a view; the default reads it anew each time.
+        read_truth: Reads the ground truth of a view; the default reads it again each time.
 
     Raises:
         InputError: Built-in perception is requested for a camera without ground truth.

@@ -58,7 +58,7 @@ async def add_scores(
     at_a_time: int = JUDGEMENTS_AT_A_TIME,
     notify: Notify,
 ) -> JudgementTally:
-    """Add scores to a log and return what came of the judgements. The agent is not run again.
+    """Add scores to a log and return the outcome of the judgements. The agent is not run again.
 
     Args:
         log: Log of a finished evaluation.
@@ -102,7 +102,7 @@ async def complete_judgements(
     Args:
         log: Log of an evaluation.
         settings: The judge, and how often it judges each run.
-        opened_judge: Opens the judge's port; not called when nothing is missing and the judge's name is known.
+        opened_judge: Connects to the judge; not called if nothing is missing and the judge's name is known.
         context: Context of the evaluation.
         retry_failed: Also request judgements again for which the judge's server failed.
         notify: Receives notes for the user.

@@ -89,7 +89,7 @@ async def _card(name: str, registered: str | None, endpoint: Endpoint | None) ->
 
 
 def _plain(options: dict[str, Any]) -> dict[str, Any]:
-    """Options that a card can hold; eyes made of several are told by their names."""
+    """Return options as plain values for a card. A perception option that is an object is replaced by its name."""
     return {
         name: value if isinstance(value, str | int | float | bool) else str(getattr(value, "name", value))
         for name, value in options.items()

@@ -22,7 +22,7 @@ async def with_served_name(endpoint: Endpoint, name: str | None, model: Model | 
     Args:
         endpoint: The server.
         name: The served name, None to find it in the server's list of models.
-        model: The requested model, None when the user named only a server.
+        model: The requested model; None if the user named only a server.
         option: The command-line option that the error message names.
 
     Raises:
@@ -50,6 +50,6 @@ async def with_served_name(endpoint: Endpoint, name: str | None, model: Model | 
 
 
 def registered_model(registry: Registry, served: str, role: Role) -> Model | None:
-    """Return the registry's entry for a served name, None when it lists no such model."""
+    """Return the registry's entry for a served name; None if it lists no such model."""
     candidates = (model for model in registry.models.values() if role in model.roles)
     return next((model for model in candidates if served.lower() in (name.lower() for name in model.served_names())), None)

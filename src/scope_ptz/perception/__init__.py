@@ -1,1 +1,1 @@
-"""Eyes behind one contract."""
+"""Perception backends behind one interface."""

@@ -45,7 +45,7 @@ class PerceptionConformance(ABC):
         """Return a frame that the backend can read."""
 
     def unreadable_frame(self) -> Frame | None:
-        """Return a frame that the backend must refuse, None when there is no such frame."""
+        """Return a frame that the backend must refuse; None if there is no such frame."""
         return None
 
     async def findings(self) -> dict[str, str]:

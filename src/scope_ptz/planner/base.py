@@ -43,7 +43,7 @@ class Picture(_Model):
 
 
 class ToolOutcome(_Model):
-    """What a tool call returned: its result as JSON data, or ``error`` when it failed."""
+    """The outcome of a tool call: its result as JSON data, or ``error`` when it failed."""
 
     call: ToolCall
     result: dict[str, Any] | None = None
@@ -68,7 +68,7 @@ class PastTurn(_Model):
 
 
 class Briefing(_Model):
-    """What the planner knows about the camera when a run starts."""
+    """The facts about the camera that the planner gets when a run starts."""
 
     presets: tuple[str, ...]
     pose: Pose
@@ -104,7 +104,7 @@ class Usage(_Model):
 
 
 class Served(_Model):
-    """How a model server answered.
+    """Facts about a model server's reply.
 
     Attributes:
         model: The model's name as the server reports it.
@@ -127,7 +127,7 @@ class CallTools(_Model):
     Attributes:
         thought: Text that accompanies the calls.
         reasoning: The planner's reasoning, kept in traces only.
-        opened: Whether the planner took the picture that was offered; None when pictures are sent with every request.
+        opened: Whether the planner took the picture that was offered; None if pictures are sent with every request.
     """
 
     kind: Literal["call"] = "call"

@@ -30,7 +30,7 @@ class PlannedCall:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What an instruction leads to.
+    """The plan for an instruction.
 
     Attributes:
         instruction: The instruction.

@@ -1,4 +1,4 @@
-"""What the factory of a planner plug-in receives."""
+"""The specification that the factory of a planner plug-in receives."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class PlannerSpec(BaseModel):
     Attributes:
         name: The planner's name, as traces and reports show it.
         model: The value of ``--planner-model``, empty when it was not given.
-        endpoint: The server named by ``--planner-url`` or ``SCOPE_PLANNER_URL``, None when there is none.
+        endpoint: The server named by ``--planner-url`` or ``SCOPE_PLANNER_URL``; None if there is none.
         options: The values of ``--planner-option NAME=VALUE``, parsed as JSON where possible.
     """
 

@@ -1,4 +1,4 @@
-"""Which models can plan and which can be used for perception, what they need, and how to serve them.
+"""The registry of models for planning and perception, with their requirements and the commands that serve them.
 
 The data is in ``data/models.yaml``.
 """

@@ -1,4 +1,4 @@
-"""A limit on how many viewpoints keep their layers in memory when many scenes are in use."""
+"""A limit on the number of viewpoints whose layers stay in memory across scenes."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Variations of a scene: other positions of moving objects and other presets, derived deterministically from a number.
 
-The baked layers stay as they are. The same code composites moving objects into pictures and into the ground truth, so a
-variation that moves, holds or removes them changes both alike.
+The baked layers stay as they are. The same code composites moving objects into pictures and into the ground truth, so
+pictures and ground truth agree in every variation.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _WINDS = ("north", "north-east", "east", "south-east", "south", "south-west", "w
 
 @dataclass(frozen=True, slots=True)
 class HeldObject:
-    """A moving object that is held where it is at one scene time."""
+    """A moving object that is frozen at its position at one scene time."""
 
     actor: SceneActor
     time_s: float
@@ -54,7 +54,7 @@ def vary(file: SceneFile, number: int, extents: Mapping[str, Sequence[Extent]]) 
     Args:
         file: The scene.
         number: Number of the variation.
-        extents: Silhouettes of what can be seen, by viewpoint.
+        extents: Silhouettes of the visible objects, by viewpoint.
     """
     rng = random.Random(f"{file.name}:{number}")
     start_s = round(rng.uniform(0.0, MOST_START_S), 1)
@@ -82,7 +82,7 @@ def companions(actors: Sequence[SceneActor]) -> list[list[SceneActor]]:
 
 
 def _itineraries(actors: Sequence[SceneActor], rng: random.Random) -> tuple[list[SceneActor], list[HeldObject]]:
-    """Decide for every group whether it comes at other times, is held somewhere on its path, or is absent."""
+    """Decide for every group whether it is delayed, held at a point on its path, or removed."""
     moving, held = list[SceneActor](), list[HeldObject]()
     for group in companions(actors):
         fate = rng.choices(("late", "held", "gone"), (4, 4, 2))[0]
@@ -101,7 +101,7 @@ def _itineraries(actors: Sequence[SceneActor], rng: random.Random) -> tuple[list
 
 
 def _period(actor: SceneActor, rng: random.Random) -> float:
-    """Return a period as long as before or longer. Actors on a closed circuit keep theirs."""
+    """Return a period at least as long as the original. Actors on a closed circuit keep theirs."""
     rests_s = actor.period_s - (actor.waypoints[-1][0] - actor.waypoints[0][0])
     longer = rng.choice(_LONGER)
     return actor.period_s if rests_s < 0.1 else round(actor.period_s * longer, 3)
@@ -124,7 +124,7 @@ def _place(held: HeldObject) -> tuple[float, float, float, float]:
 
 
 def _clear(held: HeldObject, others: Sequence[SceneActor]) -> bool:
-    """Return whether no moving object comes near."""
+    """Return whether all moving objects keep their distance from a held object."""
     x, y, _, _ = _place(held)
     reach = CLEARANCE_M + max(held.actor.size_m[:2]) / 2
     return all(_distance(x, y, one, two) > reach for other in others for one, two in pairwise(other.waypoints))
@@ -139,7 +139,7 @@ def _distance(x: float, y: float, one: Sequence[float], two: Sequence[float]) ->
 
 
 def _standing(held: HeldObject) -> SceneInstance:
-    """Return a held object as an instance of the scene. It has no state, because its sprite still shows it in motion."""
+    """Return a held object as an instance of the scene. Its ``state`` is left out, because its sprite still shows it in motion."""
     actor, (x, y, z, heading) = held.actor, _place(held)
     width, length, height = actor.size_m
     c, s = abs(math.cos(heading)), abs(math.sin(heading))
@@ -157,7 +157,7 @@ def _standing(held: HeldObject) -> SceneInstance:
 
 
 def _presets(file: SceneFile, extents: Mapping[str, Sequence[Extent]], rng: random.Random) -> Iterator[ScenePreset]:
-    """Return new presets, as many at each viewpoint as before: of several random views, the one that shows most is kept."""
+    """Yield one new preset for each old one, at the same viewpoint: the random view that shows the most objects."""
     places = {place.name: place for place in file.viewpoints}
     taken = {preset.name for preset in file.presets}
     made = list(file.presets)
@@ -186,7 +186,7 @@ def _is_apart(one: ScenePreset, two: ScenePreset) -> bool:
 
 
 def _things_in(preset: ScenePreset, extents: Sequence[Extent]) -> int:
-    """Return how many sufficiently large outlines have their centre well inside the view. Occlusion is ignored."""
+    """Count the sufficiently large outlines whose centre is well inside the view. Occlusion is ignored."""
     view = Perspective(preset.pan_deg, preset.tilt_deg, AXIS_M5075_G.hfov_deg(preset.zoom), _WIDTH, _HEIGHT)
     large = [e for e in extents if e.hull and e.solid_angle_sr * view.focal_px**2 > _CLEAR_PX]
     if not large:

@@ -1,4 +1,4 @@
-"""A task for a human reader: its text, the run of its reference program, and pictures of its start and its evidence."""
+"""Show a task to a human reader: its text, its reference run, and pictures of the start view and the evidence."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def reference_run(task: Task, scene: Scene, equip: MakeToolContext) -> Iterator[
 
 
 def write_frames(task: Task, scene: Scene, out: Path) -> Iterator[Path]:
-    """Write a picture of the start, then one of each view of the evidence with its items outlined and listed."""
+    """Write a picture of the start view, then one per evidence view with its items outlined and listed."""
     start = next(p for p in scene.file.presets if p.name == task.preset)
     at_start = EYES.view(Pose(start.pan_deg, start.tilt_deg, start.zoom))
     sheets = [(f"{task.id}-start.png", _sheet(task, scene, start.viewpoint, at_start, (), f"start: preset {start.name}"))]

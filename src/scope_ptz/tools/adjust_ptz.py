@@ -1,4 +1,4 @@
-"""The tool ``adjust_ptz``: turn and zoom relative to the present pose."""
+"""The tool ``adjust_ptz``: turn and zoom relative to the current pose."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def requested_pose(start: Pose, arguments: AdjustPtz, limits: Limits) -> Pose:
 
 
 async def adjust_ptz(context: ToolContext, arguments: AdjustPtz) -> MoveResult:
-    """Turn and zoom."""
+    """Turn and zoom the camera."""
     start = await context.camera.pose()
     arrival = await context.camera.move(requested_pose(start, arguments, context.camera.info.limits))
     verb = "Moved" if arrival.pose != start else "The camera did not move"

@@ -1,4 +1,4 @@
-"""What a tool works with: a camera, perception, and a store for pictures."""
+"""The context of a tool call: a camera, perception, and a store for pictures."""
 
 from __future__ import annotations
 

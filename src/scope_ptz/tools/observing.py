@@ -1,4 +1,4 @@
-"""What ``count_objects`` and ``query_answer`` share: the frame of a view, and the remarks about an observation."""
+"""Helpers for ``count_objects`` and ``query_answer``: the frame of a view, and remarks about an observation."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from scope_ptz.tools.context import ToolContext
 async def view_frame(context: ToolContext, view: View) -> Frame:
     """Return the current frame, or the panorama of a sweep for the full view."""
     if view == "full":
-        from scope_ptz.tools.sweep import sweep  # OpenCV is loaded for a sweep only
+        from scope_ptz.tools.sweep import sweep  # load OpenCV only for a sweep
 
         return await sweep(context.camera)
     return await context.camera.frame()
 
 
 def remarks(observation: Detections | Answer) -> str:
-    """Return what was corrected in an observation and a second opinion that differs, as sentences after a space."""
+    """Return sentences about corrections and differing second opinions of an observation, with a leading space."""
     sentences = list(observation.notes)
     agreement = observation.agreement
     if agreement is not None and not agreement.agrees:

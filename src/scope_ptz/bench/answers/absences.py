@@ -53,7 +53,7 @@ def is_listed_as_absent(words: Sequence[Word], end: int) -> bool:
 
 
 def uncrossed(text: str) -> str:
-    """Replace crosses such as ❌ by the word "absent". A cross beside a denial is removed."""
+    """Replace crosses such as ❌ by the word "absent". A cross next to a denial is removed."""
     return "\n".join(map(_uncrossed, text.split("\n")))
 
 

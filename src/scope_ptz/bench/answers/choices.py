@@ -30,7 +30,7 @@ _ALL = re.compile(r"\b(all|everything|both|each|every)\b")
 def parse_choice(expected: Choice, text: AnswerText) -> ParsedAnswer:
     """Parse the one option that an answer names and does not deny.
 
-    If several options are named, the one counts that a comparison picks or that the answer concludes on.
+    If several options are named, the one that a comparison picks or that the answer concludes with is returned.
     """
     if expected.subject and True in says_that_none(text, expected.subject):
         return Unreadable("it says that there is none")

@@ -1,4 +1,4 @@
-"""What an answer claims about a thing that it names: that it is there, that it is not, or nothing at all."""
+"""Determine what an answer claims about a thing that it names: that it is present, that it is absent, or nothing."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scope_ptz.bench.answers.tokenizer import Word
 
 
 class Claim(Enum):
-    """What the naming of a thing claims.
+    """The claim that an answer makes by naming a thing.
 
     ``STATED``: the sentence itself decides. ``FOUND`` and ``MISSED``: the result of a search. ``NOTHING``: the thing is only
     searched for or asked about.

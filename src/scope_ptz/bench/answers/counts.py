@@ -89,7 +89,7 @@ def _is_denied(text: AnswerText, unit: Sequence[str]) -> bool:
 
 
 def _wholes(text: AnswerText, numbers: Sequence[NumberMention]) -> list[NumberMention]:
-    """Return the numbers of which another is a part, such as the 7 of "5 of the 7 cones" and "5 out of 7"."""
+    """Return the totals of which another number is a part, such as the 7 of "5 of the 7 cones" and "5 out of 7"."""
     links = (["of", "the"], ["of"], ["out", "of"], ["out", "of", "the"], ["of", "these"], ["of", "those"])
     pairs = pairwise(numbers)
     return [two for one, two in pairs if [w.text for w in text.words[one.end : two.start]] in links]
@@ -131,7 +131,7 @@ def _is_range(text: AnswerText, numbers: Sequence[NumberMention]) -> bool:
 
 
 def _is_absent(text: AnswerText, unit: Sequence[str], number: NumberMention) -> bool:
-    """Return whether the answer says that so many are absent, as in "3 cones are missing"."""
+    """Return whether the answer counts absent things, as in "3 cones are missing"."""
     near = [m for m in text.mentions({"own": unit}) if 0 <= m.start - number.end <= 4] if unit and number.own else []
     return any(text.denied_after(m.end) for m in near[:1])
 

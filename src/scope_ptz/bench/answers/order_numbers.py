@@ -1,4 +1,4 @@
-"""The numbers beside the things of an order, and the place where the final order of an answer begins."""
+"""The numbers next to the items of an ordered list, and the place where the final order of an answer begins."""
 
 from __future__ import annotations
 

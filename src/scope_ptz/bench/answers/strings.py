@@ -77,7 +77,7 @@ def normalized_text(text: str, ocr: bool) -> str:
 def parse_text(expected: Text, statement: AnswerText, answer: str) -> ParsedAnswer:
     """Parse the lettering that an answer reports.
 
-    It is what the answer quotes, else what follows "reads", "says" or "is", else a short answer as a whole.
+    It is the quoted text; else the text after "reads", "says" or "is"; else the whole of a short answer.
     """
     text = clean(answer)
     quotes = quotes_of(text)

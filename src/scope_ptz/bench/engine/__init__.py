@@ -1,1 +1,4 @@
-"""The evaluation engine: Inspect AI around the agent loop. Besides the plug-in, only modules in here import ``inspect_ai``."""
+"""The evaluation engine: Inspect AI around the agent loop.
+
+Apart from the plug-in, only modules in this package import ``inspect_ai``.
+"""

@@ -1,4 +1,4 @@
-"""Human labels and judgements in files beside a log. They move along when another log takes over the runs."""
+"""Human labels and judgements in files next to a log. They are moved when another log takes over the runs."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from scope_ptz.bench.judging.json_lines import append_line, whole_lines
 
 
 def check_beside(logs: Sequence[Path]) -> None:
-    """Check, before anything is run, that the labels beside logs can be read. Raises ``InputError``."""
+    """Check that the labels next to logs can be read, before any run starts. Raises ``InputError``."""
     for log in logs:
         read_labels(labels_file(log))
 
 
 def put_away(logs: Sequence[Path], new: Path, folder: Path) -> None:
-    """Move logs whose runs are all in ``new`` into a folder, with the files beside them.
+    """Move logs whose runs are all in ``new`` into a folder, with the files next to them.
 
     Nothing is deleted, and no report counts a run twice. Labels and judgements of runs that were taken over are copied to ``new``.
     Those of runs that were repeated stay with the old log.

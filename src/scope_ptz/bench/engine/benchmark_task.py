@@ -84,7 +84,7 @@ def _names(given: str | list[str] | None) -> list[str]:
 
 
 def _log_metadata(entries: Sequence[Entry], split: str, *, agent: str, max_steps: int, seed: int) -> dict[str, Any]:
-    """Return what a log says about its tasks and the loop, whoever started it."""
+    """Return the metadata that a log records about its tasks and the loop, independent of who started it."""
     return {
         "scope": {
             "package_version": __version__,

@@ -62,8 +62,8 @@ def checks_scorer(context: EvalContext | None = None) -> Scorer:
     A run that infrastructure broke has a score without a value, which no metric counts.
 
     Args:
-        context: Its watcher receives the trial, and its ground truth tells miscounts from wrong conclusions. None to apply the
-            checks to what the log holds, and nothing else.
+        context: Its watcher receives the trial, and its ground truth distinguishes miscounts from wrong conclusions. If None,
+            the checks use only the contents of the log.
     """
 
     @scorer(metrics=list(METRICS), name=CHECKS)
@@ -94,7 +94,7 @@ async def _trial(state: TaskState, context: EvalContext | None) -> Trial:
 
 
 async def _with_truths(entry: Entry, kept: Kept, true_count: TrueCount) -> Kept:
-    """Return a run with the true number beside every count."""
+    """Return a run with the true number added to every count."""
     trace = trace_of(kept.trace, Path(entry.facts.scene))
     if trace is None:
         return kept

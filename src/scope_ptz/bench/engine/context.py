@@ -1,6 +1,6 @@
-"""The context that whoever starts an evaluation provides to the engine: scenes, planners, perception, true counts, a watcher.
+"""The context that the caller of an evaluation provides to the engine: scenes, planners, perception, true counts, a watcher.
 
-The engine makes its own objects from names. What a name cannot carry reaches solvers and scorers through this context.
+The engine makes its own objects from names. Objects that a name cannot describe reach solvers and scorers through this context.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class ModelRequest:
 
 
 TrueCount = Callable[[str, Observation], Awaitable[int | None]]
-"""Returns how many of the things that a perception call asked for are visible; None where this cannot be known."""
+"""Returns how many of the things that a perception call asked for are visible; None if this cannot be known."""
 LoadTasks = Callable[[str], tuple[Entry, ...]]
 """Returns the tasks of a split by its name, or of a file."""
 
@@ -46,18 +46,18 @@ class Watcher:
 
 @dataclass(frozen=True, slots=True)
 class EvalContext:
-    """What solvers and scorers of an evaluation use.
+    """The resources that solvers and scorers of an evaluation use.
 
     Attributes:
         open_scene: Opens a scene, or a variation of one, by name.
-        make_planner: Makes the planner of a name.
-        make_perception: Makes the perception of a name.
-        make_judge: Makes a judge's port for its n-th judgement of a run.
+        make_planner: Makes a planner by name.
+        make_perception: Makes perception by name.
+        make_judge: Connects to a judge for its n-th judgement of a run.
         load_tasks: Loads tasks by split or file.
-        true_count: Ground truth for perception calls; None where there is none.
+        true_count: Ground truth for perception calls; None if there is none.
         watcher: Receives runs as they begin and end.
         perception_note: Note for the trace about the origin of the perception.
-        perception: The perception, where it was made in advance; whoever made it closes it.
+        perception: The perception, if it was made in advance; its creator closes it.
     """
 
     open_scene: OpenScene

@@ -1,4 +1,4 @@
-"""What is run: one instruction at one place in a scene, with the facts that reports group by.
+"""Entries to run: one instruction at one place in a scene, with the facts that reports group by.
 
 Most entries have a task with executable checks. An entry without one comes from a file of another format; only a judge scores it.
 """
@@ -32,7 +32,7 @@ class Entry(BaseModel):
         facts: What reports group by.
         world: Name under which the scene, or its variation, is opened.
         time_s: Scene time at the start.
-        task: The task with its checks; None where only a judge can score the run.
+        task: The task with its checks; None if only a judge can score the run.
         imported: The calls that a file of another format expects.
     """
 

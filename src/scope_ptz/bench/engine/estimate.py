@@ -71,7 +71,7 @@ def estimate(
         concurrency: Runs at a time.
         earlier: Evaluations of the same pair.
         price: Price of the planner's tokens.
-        opening_chars: Length of prompt and tools, which begin every request; None where tokens cannot be guessed from it.
+        opening_chars: Length of prompt and tools, which begin every request; None if tokens cannot be guessed from it.
     """
     calls = [_calls(entry) for entry in entries]
     runs, decisions = len(entries) * epochs, round(sum(calls) + len(calls)) * epochs

@@ -30,14 +30,14 @@ from scope_ptz.planner.base import CallTools, Decision, Finish, Planner, State, 
 
 @dataclass(frozen=True, slots=True)
 class AgentReply:
-    """How an agent ends a run: with an answer, a question back, or a refusal."""
+    """An agent's final reply: an answer, a clarification question, or a refusal."""
 
     text: str
     kind: Literal["answered", "clarification", "refused"] = "answered"
 
 
 class AgentSession:
-    """What an external agent works with: the instruction, the tools, facts about the camera, and a way to call tools.
+    """The environment of an external agent: the instruction, the tools, facts about the camera, and a way to call tools.
 
     ``tools`` are JSON schemas in the OpenAI function format; ``presets`` are names of views.
     """

@@ -67,7 +67,7 @@ def _kind(name: str) -> FailureKind | None:
 
 
 def _advice(model: ModelCard, kind: FailureKind | None) -> str:
-    """Return what is wrong with a model's server and the remedy; empty where it has no server or the kind is unknown."""
+    """Return what is wrong with a model's server and the remedy; empty if it has no server or the kind is unknown."""
     address = model.provider if "://" in model.provider else ""
     return f" {ServerFailure(kind, where=address)}" if kind is not None and address else ""
 

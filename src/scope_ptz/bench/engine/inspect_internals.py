@@ -52,7 +52,7 @@ def attachment_reference(content: str) -> str:
 
 
 async def recover_log(path: Path) -> None:
-    """Write the finished samples of a killed evaluation into a log beside its own, where there are any."""
+    """Write the finished samples of a killed evaluation, if there are any, into a log next to its own."""
     with suppress(RecoveryNotAvailable):
         await recover_eval_log_async(str(path), cleanup=True)
 

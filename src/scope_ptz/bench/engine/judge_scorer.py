@@ -44,7 +44,7 @@ def judge_scorer(context: EvalContext, repeat: int = 0, journal: Journal | None 
     """Return the scorer whose verdict is that of the model in the role "judge".
 
     Args:
-        context: Provides the judge's port.
+        context: Provides the connection to the judge.
         repeat: Number of the judgement, where one judge gives several.
         journal: Judgements that are known already, and where new ones are kept; None for a journal in memory.
     """
@@ -80,7 +80,7 @@ async def _judgement(state: TaskState, context: EvalContext, repeat: int, journa
 
 
 class LoggedJudge:
-    """A judge's port whose requests go through a model of the engine."""
+    """A connection to a judge whose requests go through an Inspect model."""
 
     def __init__(self, model: Model, context: EvalContext, repeat: int) -> None:
         self._model, self._context, self._repeat = model, context, repeat

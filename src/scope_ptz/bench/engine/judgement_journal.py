@@ -1,4 +1,4 @@
-"""A file beside a log that holds new judgements until the log has them, so that an interrupted rescoring loses none."""
+"""A file next to a log that stores new judgements until they are in the log, so that an interrupted rescoring loses none."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Judgements in a log: each is a score of its own, named after the judge and the number of the judgement."""
+"""Store judgements in a log. Each one is a separate score, named after the judge and the index of the judgement."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ JUDGEMENT = "judgement"
 
 
 def score_of_judgement(judgement: Judgement) -> Score:
-    """Return a judgement as a score of the engine. Without a verdict it has no value, and no metric counts it."""
+    """Return a judgement as an Inspect score. A judgement without a verdict is unscored, and metrics ignore it."""
     metadata = {"error_mode": judgement.error_mode, JUDGEMENT: judgement.model_dump(mode="json")}
     if judgement.verdict in ("correct", "incorrect"):
         value = CORRECT if judgement.verdict == "correct" else INCORRECT
@@ -27,7 +27,7 @@ def score_of_judgement(judgement: Judgement) -> Score:
 def judgements_in(scores: Mapping[str, Any]) -> tuple[Judgement, ...]:
     """Return the judgements among the scores of a sample, in the order in which they were made.
 
-    A failed judgement that was requested again has the same number as the new one; the newer counts. Raises ``TraceError``.
+    A failed judgement and its retry have the same index; only the retry is returned. Raises ``TraceError``.
     """
     stored = (score["metadata"][JUDGEMENT] for score in scores.values() if JUDGEMENT in (score.get("metadata") or {}))
     try:

@@ -45,7 +45,7 @@ class SampleFiles:
     attachments: Mapping[str, str]
 
     def picture(self, name: str) -> bytes | None:
-        """Return a picture as JPEG; None when it was not stored."""
+        """Return a picture as JPEG; None if it was not stored."""
         data = self.attachments.get(self.references.get(name, "").removeprefix(ATTACHMENT))
         return jpeg_of(data) if data is not None else None
 

@@ -86,7 +86,7 @@ def _tasks(evaluation: Evaluation) -> str:
 
 
 def _shares(trials: Sequence[Trial]) -> dict[str, float]:
-    """Return each task's share of correct runs, without runs that were broken or that wait for a judge."""
+    """Return each task's share of correct runs, excluding runs that are broken or await a judge."""
     runs: dict[str, list[bool]] = {}
     for trial in trials:
         if trial.headline != "infrastructure" and not without_verdict(trial):

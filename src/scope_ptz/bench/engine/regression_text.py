@@ -12,7 +12,7 @@ MAX_TASKS_LISTED = 40
 
 
 def judge_change_note(now: Evaluation, before: Evaluation) -> str:
-    """Return a note where different judges decided in the two logs; empty where they did not."""
+    """Return a note where different judges decided in the two logs; empty if they did not."""
     one, two = decider_of(before.trials), decider_of(now.trials)
     if one is None or two is None or one == two:
         return ""

@@ -45,7 +45,7 @@ async def rescore(
     at_a_time: int = AT_A_TIME,
     report: Report,
 ) -> JudgementTally:
-    """Append scores to a log, and return what came of the new judgements. The log is replaced at the end, in one step.
+    """Append scores to a log, and return the outcome of the new judgements. The log is replaced at the end, in one step.
 
     Args:
         log: Log of a finished evaluation.

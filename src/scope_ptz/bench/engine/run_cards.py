@@ -47,7 +47,7 @@ def card_of(header: EvalLog, trace: Trace | None) -> RunCard:
 
 
 def cost_usd(card: RunCard, input_tokens: int, output_tokens: int) -> float | None:
-    """Return the cost of a run's planner tokens; None where no prices were given."""
+    """Return the cost of a run's planner tokens; None if no prices were given."""
     price = card.sampling.get(PRICE)
     return (input_tokens * price["input"] + output_tokens * price["output"]) / 1e6 if price else None
 

@@ -14,16 +14,16 @@ CATEGORIES: tuple[str, ...] = get_args(Category)
 
 
 def accuracy(trials: Sequence[Trial]) -> float | None:
-    """Return the share of correct runs; None when no run is scored.
+    """Return the share of correct runs; None if no run is scored.
 
-    Runs that infrastructure broke, and runs that wait for a judge, are excluded.
+    Runs that infrastructure broke and runs that await a judge are excluded.
     """
     scored = [t for t in trials if t.headline != "infrastructure" and not without_verdict(t)]
     return sum(t.headline == "correct" for t in scored) / len(scored) if scored else None
 
 
 def macro_accuracy(trials: Sequence[Trial]) -> float | None:
-    """Return the unweighted mean of the categories' accuracies; None when no run is scored."""
+    """Return the unweighted mean of the categories' accuracies; None if no run is scored."""
     groups = [[t for t in trials if t.task.category == category] for category in CATEGORIES]
     shares = [share for share in (accuracy(group) for group in groups if group) if share is not None]
     return sum(shares) / len(shares) if shares else None

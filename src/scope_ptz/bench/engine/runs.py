@@ -48,7 +48,7 @@ class StoredLog:
 
     @property
     def finished(self) -> bool:
-        """Whether nothing is left to run. A log with a few broken runs is successful, and still has to repeat them."""
+        """Whether nothing is left to run. A log with a few broken runs has status "success", but must still repeat them."""
         return self.header.status == "success" and all(self.runs.values())
 
 
@@ -84,7 +84,7 @@ def identity_of(*parts: Any) -> str:
 
 
 async def find_logs(log_dir: Path, identity: str) -> list[StoredLog]:
-    """Return the logs of an evaluation in a folder, the one that got furthest first.
+    """Return the logs of an evaluation in a folder, the most complete first.
 
     Runs that a killed program had finished but not written are first recovered into a log of their own.
     """
@@ -165,7 +165,7 @@ async def run(task: Task, setup: EngineSetup, before: Sequence[StoredLog]) -> Pa
     Args:
         task: The task.
         setup: How to run it.
-        before: Logs of the same evaluation, the one that got furthest first.
+        before: Logs of the same evaluation, the most complete first.
 
     Raises:
         OutputError: The evaluation was stopped before there was a log.

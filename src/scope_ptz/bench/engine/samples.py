@@ -61,10 +61,10 @@ def sample_name(task: str, epoch: int) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Kept:
-    """What a run stored.
+    """The data that a run stored.
 
     Attributes:
-        trace: Trace as JSON lines; empty when the run never began.
+        trace: Trace as JSON lines; empty if the run never began.
         presets: Viewpoint of each preset.
         home: Viewpoint of the home preset.
         sees: Whether the planner was shown frames.
@@ -104,7 +104,7 @@ class Kept:
 
 
 def trace_of(text: str, where: Path) -> Trace | None:
-    """Parse a trace from JSON lines; None when the run never began. Raises ``TraceError``."""
+    """Parse a trace from JSON lines; None if the run never began. Raises ``TraceError``."""
     try:
         records = [RECORD.validate_json(line) for line in text.splitlines() if line]
     except ValidationError as error:

@@ -1,4 +1,4 @@
-"""Trials made from what runs stored."""
+"""Build trials from the data that runs stored."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _TIMED_TOOLS = ("count_objects", "query_answer")
 def trial_of(entry: Entry, kept: Kept, epoch: int, where: Path, judgements: tuple[Judgement, ...] = ()) -> Trial:
     """Return the trial of a run: scored by its task's checks, or without checks by the first verdict of a judge.
 
-    Where a log has several judges, ``judging.deciding`` says which of them decides.
+    If a log has several judges, ``judging.deciding_judge`` selects the one that decides.
     """
     name = sample_name(entry.facts.id, epoch)
     trace = trace_of(kept.trace, where)
@@ -77,7 +77,7 @@ def _by_judge(trace: Trace, judgements: tuple[Judgement, ...]) -> dict[str, Any]
 
 
 def broken_by(ended: Ended | None) -> str | None:
-    """Return why infrastructure broke a run, as far as its end shows it; None when it did not."""
+    """Return how infrastructure broke a run, judging by its end; None if it did not."""
     if ended is None:
         return "the run was cut off"
     if ended.outcome in ("camera_error", "cancelled"):

@@ -1,7 +1,7 @@
-"""The deciding judge: whose verdict counts for runs that only a judge can score, if several judges have judged them.
+"""The deciding judge: the one whose verdicts count when several judges have judged the runs that only a judge can score.
 
-One judge decides all such runs of a log, so that no accuracy mixes two judges. It is the judge that was requested by name, else the
-one that gave the first verdict on most of the runs. Adding another judge does not change it.
+One judge decides all such runs of a log, so that an accuracy never mixes two judges. It is the judge requested by name, or else
+the one that gave the first verdict on most of the runs. Adding another judge does not change it.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def deciding_judge(trials: Iterable[Trial], requested: str = "") -> str | None:
 
     Args:
         trials: The trials of the log.
-        requested: The requested judge, with or without its prompt. Without a verdict of this judge, another one decides.
+        requested: The requested judge, with or without its prompt. If this judge has given no verdict, another one decides.
 
     Returns:
         None if no judge has given a verdict on such a run.
@@ -54,7 +54,7 @@ def verdict_by(judgements: Sequence[Judgement], judge: str | None = None) -> dic
 
     Args:
         judgements: The judgements of the run.
-        judge: The deciding judge; None for the judge that came first.
+        judge: The deciding judge; None for the judge of the first verdict.
     """
     own = [j for j in judgements if judge is None or judge_of(j) == judge]
     verdict = first_verdict(own)
@@ -89,7 +89,7 @@ def _by(trial: Trial, judge: str) -> Trial:
 
 
 def check_decides(trials: Sequence[Trial], requested: str) -> None:
-    """Check that a judge can decide.
+    """Check that the requested judge can be the deciding judge.
 
     Raises:
         InputError: The judge has given no verdict on a run that only a judge can score.
@@ -104,13 +104,13 @@ def check_decides(trials: Sequence[Trial], requested: str) -> None:
 
 
 def decider_of(trials: Iterable[Trial]) -> str | None:
-    """Return the judge whose verdicts are the headlines of the runs that only a judge can score."""
+    """Return the judge whose verdicts are reported for the runs that only a judge can score."""
     rows = (t for t in trials if t.scored_by == "judge" and t.headline in VERDICTS)
     return next((judge_of(first) for trial in rows if (first := first_verdict(trial.judgements)) is not None), None)
 
 
 def other_judges_note(trials: Sequence[Trial]) -> str:
-    """Return a note about judges that do not decide; empty if there are none."""
+    """Return a note about judges other than the deciding one; empty if there are none."""
     judge = decider_of(trials)
     rows = [trial for trial in trials if trial.scored_by == "judge"]
     others = [o for o in dict.fromkeys(judge_of(j) for t in rows for j in t.judgements if j.verdict in VERDICTS) if o != judge]

@@ -50,7 +50,7 @@ class NoReplyError(ScopeError):
 
 
 Complete = Callable[[list[JudgeMessage], dict[str, Any]], Awaitable[Completion]]
-"""Completes messages under the JSON schema of the reply. It raises ``NoReplyError`` and nothing else."""
+"""Completes messages under the JSON schema of the reply. It raises only ``NoReplyError``."""
 
 
 class Judge:

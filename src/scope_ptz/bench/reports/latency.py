@@ -1,7 +1,7 @@
 """The latency section: seconds by stage, by planner, by perception model, and for the current view against the panorama.
 
-The camera is a separate stage. Its moves and frames cost time in the simulator and depend on the views that a pair asks for. A
-pair's own latency is everything else.
+The camera is a separate stage. Its moves and frames cost time in the simulator and depend on the views that a pair requests. A
+pair's own latency is the sum of the other stages.
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ def _by_stage(runs: Sequence[ReportRun]) -> ReportTable:
 
 
 Timed = tuple[ReportRun, ReportRun]
-"""A pair's run over the most tasks, and the run that gives its latency. They may be the same."""
+"""A pair's run with the most tasks, and the run from which its latency is taken. They may be the same run."""
 
 
 def _by_planner(pairs: Sequence[Timed]) -> ReportTable:
@@ -136,7 +136,7 @@ def _by_model(
     key: str, title: str, pairs: Sequence[Timed], name: Callable[[ReportRun], str], stage: str,
     single: tuple[Column, ...], cells: Callable[[Sequence[ReportRun]], tuple[CellValue, ...]], notes: tuple[str, ...],
 ) -> ReportTable:  # fmt: skip
-    """Return a table with one row per model. ``single`` are columns about single steps or calls, filled by ``cells``."""
+    """Return a table with one row per model. ``single`` are columns for individual steps or calls, filled by ``cells``."""
     columns = (
         Column("model", "Model"),
         Column("contended", "Measured"),

@@ -54,7 +54,7 @@ class ReportRun:
 
     @property
     def kind(self) -> RunKind:
-        """What kind of run it is."""
+        """The kind of this run."""
         card = self.evaluation.card
         if card.planner.provider == PERSON:
             return "person"
@@ -64,7 +64,7 @@ class ReportRun:
 
     @property
     def ranked(self) -> bool:
-        """Whether it is a pair of models."""
+        """Whether the run is by a pair of models."""
         return self.kind == "models"
 
     @property
@@ -91,7 +91,7 @@ class ReportRun:
 
     @property
     def system(self) -> tuple[str, str, str, str]:
-        """What was evaluated, without the tasks: planner, perception, agent, variant."""
+        """The evaluated system: planner, perception, agent, variant."""
         card = self.evaluation.card
         return self.planner_name, self.perception_name, card.agent, card.variant
 
@@ -114,7 +114,7 @@ class ReportRun:
 
     @cached_property
     def scored_trials(self) -> tuple[Trial, ...]:
-        """Main trials that count: not broken by infrastructure, and not waiting for a judge. Unscored ones count as not correct."""
+        """Main trials that are neither broken by infrastructure nor awaiting a judge. Unscored trials count as not correct."""
         return tuple(t for t in self.main_trials if t.headline != "infrastructure" and not without_verdict(t))
 
     @cached_property
@@ -124,7 +124,7 @@ class ReportRun:
 
     @cached_property
     def checked_trials(self) -> tuple[Trial, ...]:
-        """Scored trials whose verdict is that of the checks."""
+        """Scored trials whose verdict comes from the checks."""
         return tuple(t for t in self.scored_trials if t.scored_by == "checks")
 
     @cached_property

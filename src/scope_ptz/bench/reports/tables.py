@@ -47,7 +47,7 @@ class Column:
 
     @property
     def worded(self) -> bool:
-        """Whether it holds text and not numbers."""
+        """Whether the column contains text, not numbers."""
         return self.kind in ("text", "prose")
 
 
@@ -195,6 +195,6 @@ _SPECIAL = str.maketrans({mark: f"\\{mark}" for mark in "\\`*_{}[]()#+-!|~"} | {
 
 
 def escape(text: str) -> str:
-    """Escape text for Markdown and put it on one line."""
+    """Escape text for Markdown and join it into one line."""
     plain = " ".join(text.split())
     return plain if plain.replace(".", "").replace(" ", "").isalnum() else plain.translate(_SPECIAL)

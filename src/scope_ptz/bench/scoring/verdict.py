@@ -31,7 +31,7 @@ class Verdict:
         headline: The verdict itself.
         checks: The results of the checks.
         collateral: Whether the camera ended elsewhere without being asked to. It does not affect the headline.
-        reason: Why the headline is what it is.
+        reason: The reason for the headline.
     """
 
     task: str

@@ -31,7 +31,7 @@ JudgeRepeats = Annotated[
 
 @dataclass(frozen=True, kw_only=True)
 class SelectionFlags:
-    """Which tasks are run."""
+    """Options that select the tasks."""
 
     split: Annotated[
         str, typer.Option("--split", "--tasks", help=f"Split ({SPLITS}) or task file.", rich_help_panel=TASKS_PANEL)
@@ -58,7 +58,7 @@ class SelectionFlags:
 
 @dataclass(frozen=True, kw_only=True)
 class EvaluationFlags:
-    """How runs are carried out, and where their log is written."""
+    """Options for running tasks and for the location of the log."""
 
     concurrency: Annotated[
         int | None,

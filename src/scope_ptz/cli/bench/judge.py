@@ -86,7 +86,7 @@ def rescore(
 
 
 def _made(judge: JudgeServer | None, tally: JudgementTally) -> str:
-    """Return what came of a log's judgements."""
+    """Return the outcome of a log's judgements."""
     if judge is None:
         return ""
     return f"{tally.made} judgement{'' if tally.made == 1 else 's'} by {judge.client.endpoint.model}: {tally.summary}"

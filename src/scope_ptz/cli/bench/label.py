@@ -45,7 +45,7 @@ def label(
     ] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Label runs by hand: correct, incorrect with an error mode, or unclear. Labels are saved beside the log.
+    """Label runs by hand: correct, incorrect with an error mode, or unclear. Labels are saved next to the log.
 
     You can quit and resume at any time.
     """

@@ -1,4 +1,4 @@
-"""What a terminal shows of an evaluation: notes and the estimate, a live table, and the scores at the end."""
+"""Terminal output of an evaluation: notes and the estimate, a live table, and the scores at the end."""
 
 from __future__ import annotations
 
@@ -180,7 +180,7 @@ def summary(evaluation: Evaluation) -> RenderableType:
 
 
 def baseline_note(evaluation: Evaluation) -> str:
-    """Return what to say beside a score that is not the result of models; empty where it is."""
+    """Return a note for scores that are not results of models; empty for those that are."""
     card = evaluation.card
     if card.planner.deterministic:
         return RULE_BASED_NOTE

@@ -74,7 +74,7 @@ def run(
 
 
 def _report_failures(result: EvaluationResult) -> int:
-    """Print what failed and how to go on, and return the exit code."""
+    """Print the failures and how to resume, and return the exit code."""
     from scope_ptz.bench.engine.failure_summary import failure_summary
     from scope_ptz.cli.bench.judge import judge_failure
 

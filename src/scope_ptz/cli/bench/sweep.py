@@ -23,13 +23,13 @@ if TYPE_CHECKING:
     from scope_ptz.factory.models import ModelOptions
 
 MIN_WIDTH_FOR_CATEGORIES = 160
-"""Characters of a terminal from which a column for each category fits."""
+"""Minimum terminal width, in characters, for a column per category."""
 PAIR_COLUMN_WIDTH = 36
 
 
 @dataclass(frozen=True, kw_only=True)
 class ServerFlags(ModelFlags):
-    """The options about model servers that hold for all pairs. The pairs themselves name planner and perception."""
+    """Model server options that apply to all pairs. The pairs themselves name the planner and perception."""
 
     planner: ClassVar[None] = None  # type: ignore[misc]
     perception: ClassVar[None] = None  # type: ignore[misc]
@@ -91,7 +91,7 @@ def sweep(
 
 
 def pair_names(text: str | None, *, paper: bool) -> list[str]:
-    """Return the pairs to run, each once. Raises ``InputError`` for unknown ones, before anything is run."""
+    """Return the pairs to run, each once. Raises ``InputError`` for unknown pairs before any pair runs."""
     from scope_ptz.factory.model_resolver import read_pair
     from scope_ptz.registry import load_registry
     from scope_ptz.settings import load_settings
@@ -148,14 +148,14 @@ def _models_of_pair(shared: ModelOptions, name: str) -> ModelOptions:
 
 
 def is_complete(evaluation: Evaluation) -> bool:
-    """Return whether every run has ended and none was broken by infrastructure."""
+    """Return whether every run has ended, and none failed because of infrastructure."""
     return evaluation.finished and not any(trial.headline == "infrastructure" for trial in evaluation.trials)
 
 
 def sweep_tables(done: dict[str, Evaluation | str], width: int) -> Iterator[Table]:
-    """Return tables of the pairs of models, of the built-in ones, of server failures, and of pairs that did not run.
+    """Yield tables for model pairs, built-in baselines, server failures, and pairs that did not run.
 
-    ``width`` is that of the terminal in characters; a wide one gets a column for each category.
+    ``width`` is the terminal width in characters. A wide terminal gets a column for each category.
     """
     from scope_ptz.bench.engine.failure_summary import failure_summary
 

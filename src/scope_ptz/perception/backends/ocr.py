@@ -152,7 +152,7 @@ class RapidOcr:
 
 
 def _line(corners: np.ndarray[Any, np.dtype[np.float64]], text: str, score: float, image: Image) -> Line | None:
-    """Return a line from its four corners in pixels (4, 2), None when nothing of it is in the picture."""
+    """Return a line from its four corners in pixels (4, 2); None if nothing of it is in the picture."""
     if not np.isfinite(corners).all():
         return None
     low = np.clip(corners.min(axis=0) / (image.shape[1], image.shape[0]), 0, 1)

@@ -49,7 +49,7 @@ class VisionOptions(Options):
 
 
 class OpenAIVisionPerception(Perception):
-    """Perception by a chat model with images. ``style`` is how the model writes places, None when it writes none."""
+    """Perception by a chat model with images. ``style`` is how the model writes places; None if it writes none."""
 
     def __init__(
         self, client: ChatClient, style: Convention | None, options: VisionOptions | None = None, name: str = "vision"

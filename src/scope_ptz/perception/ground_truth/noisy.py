@@ -25,13 +25,13 @@ _LOOKALIKES = {
 
 @dataclass(frozen=True, slots=True)
 class Noise:
-    """How large the errors are.
+    """The size of the simulated errors.
 
     Attributes:
         miss: A thing of ``pixels`` pixels is missed with probability ``miss * exp(-pixels / miss_scale_px)``.
         miss_scale_px: See ``miss``.
         duplicate: The probability that a thing is reported twice.
-        misread: The probability that a character of a barely legible text is misread; larger text is misread less.
+        misread: The probability that a character of a barely legible text is misread; larger text is misread less often.
         jitter: The sides of boxes move by up to this share of their size.
     """
 

@@ -106,7 +106,7 @@ def from_corner(thing: Thing, sides: Sequence[str]) -> float:
 
 
 def faces(thing: Thing, side: str) -> bool | None:
-    """Return whether a thing points to a side, None where the scene does not say."""
+    """Return whether a thing points to a side; None if the scene does not say."""
     for key, value in facts(thing):
         if set(key_words(key)) & {"direction", "facing", "heading", "pointing", "orientation", "arrow"}:
             return side in english.letters(str(value)).split()

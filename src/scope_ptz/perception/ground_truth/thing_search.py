@@ -41,7 +41,7 @@ def find(view: View, description: s.Description) -> list[Thing]:
 
 
 def things_named(view: View, description: s.Description) -> list[Thing]:
-    """Return only things of their own, not what people wear."""
+    """Return only independent things, not what people wear."""
     found = _two_coloured(view, description)
     if found:
         return found
@@ -51,7 +51,7 @@ def things_named(view: View, description: s.Description) -> list[Thing]:
 
 
 def _worn(view: View, phrase: s.Phrase) -> list[Thing]:
-    """Find "hard hats", which are no things of their own, on the people who wear them."""
+    """Find "hard hats", which are not independent things, on the people who wear them."""
     if phrase.tests or phrase.order or phrase.ordinal or not nouns_in(phrase.words):
         return []
     return sorted((t for t in view.things if "person" in t.concepts and wears(view, t, phrase.words)), key=pixels, reverse=True)
@@ -156,7 +156,7 @@ def _all_words(view: View, thing: Thing, words: Sequence[str]) -> bool:
 
 
 def holds(view: View, thing: Thing, test: s.Test) -> bool | None:
-    """Return whether a test holds for a thing; None where the scene does not say."""
+    """Return whether a test holds for a thing; None if the scene does not say."""
     match test:
         case s.Not(test=inner):
             answer = holds(view, thing, inner)

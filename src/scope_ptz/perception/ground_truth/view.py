@@ -1,4 +1,4 @@
-"""What a frame shows, prepared for questions: visible things with their facts, and the texts on them."""
+"""The content of a frame, prepared for questions: visible things with their facts, and the texts on them."""
 
 from __future__ import annotations
 
@@ -159,7 +159,7 @@ def read_view(truth: ViewTruth, scene: SceneFile, time_s: float) -> View:
 
 
 def head_of(name: str) -> str:
-    """Return the part of a name that says what the thing is."""
+    """Return the part of a name that identifies the kind of thing."""
     head = name.lower()
     for mark in PART_WORDS:
         head = head.partition(mark)[0]

@@ -26,7 +26,7 @@ MAX_ASPECT = 200.0
 
 @dataclass(frozen=True, slots=True)
 class Convention:
-    """How a family of models writes places.
+    """The coordinate format of a model family.
 
     Attributes:
         factor: The model resizes pictures to multiples of this many pixels. The client does it first, so that the server
@@ -236,7 +236,7 @@ def _box(unit: list[float], thing: RawThing, counts: Counter[str]) -> Box | None
 
 
 BORDER_SLACK = 0.02
-"""How far outside the frame, in frames, a point still counts as lying on the border."""
+"""Distance outside the frame, as a share of its size, up to which a point counts as on the border."""
 
 
 def _point(unit: list[float], thing: RawThing, counts: Counter[str]) -> Point | None:

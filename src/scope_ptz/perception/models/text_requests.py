@@ -1,4 +1,4 @@
-"""Which questions ask to read text, what they ask to read, and which text a description means."""
+"""Recognise questions that ask to read text, the text that they ask for, and the text that a description refers to."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _TARGETS = (
 
 
 def reading_target(question: str) -> str | None:
-    """Return the thing whose text a question asks for ("the gantry sign"), None when it asks for all text in view."""
+    """Return the thing whose text a question asks for ("the gantry sign"); None if it asks for all text in view."""
     for pattern in _TARGETS:
         if found := pattern.search(question):
             target = re.split(r"\s+(?:and|then|for|to|please|in view|right now)\b", found["x"].strip())[0].strip()
@@ -65,7 +65,7 @@ def wanted_texts(description: str) -> tuple[str, ...] | None:
     """Return the texts that a description names, in quotes or after "that says".
 
     Returns:
-        An empty tuple when any text is meant, None when the description is not about text.
+        An empty tuple when any text is meant; None if the description is not about text.
     """
     if quoted := [a or b for a, b in _QUOTED.findall(description)]:
         return tuple(quoted)
@@ -90,6 +90,6 @@ def likeness(a: str, b: str) -> float:
 
 
 def text_fits(wanted: str, line: str) -> bool:
-    """Return whether a line of text is or contains a wanted text, with tolerance for OCR mistakes."""
+    """Return whether a line of text is or contains a requested text, with tolerance for OCR mistakes."""
     a, b = plain(wanted), plain(line)
     return bool(a) and bool(b) and (a in b or likeness(a, b) >= SAME_TEXT)

@@ -1,4 +1,4 @@
-"""Checks of a perception backend and its server, on a frame of the user's choice."""
+"""Checks of a perception backend and its server, on a frame that the user chooses."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ async def check_perception(
 ) -> AsyncIterator[ServerCheck]:
     """Check each skill of a backend.
 
-    A reply that becomes a result was parsed, and its boxes lie in the frame.
+    A check passes only if the reply can be parsed and its boxes lie within the frame.
 
     Args:
         perception: The backend.

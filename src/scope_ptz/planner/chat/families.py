@@ -1,4 +1,4 @@
-"""How each model family switches its reasoning on and off, and at which temperature it works.
+"""Reasoning switches and sampling temperatures by model family.
 
 This is data: a new family is one entry.
 """
@@ -17,7 +17,7 @@ Server = Literal["vllm", "sglang", "llama.cpp", "ollama", "transformers", "lm-st
 
 @dataclass(frozen=True, slots=True)
 class Switch:
-    """What to send to switch reasoning.
+    """The request data that switches reasoning on or off.
 
     Attributes:
         fields: Fields of the request.
@@ -41,7 +41,7 @@ class Family:
 
     Attributes:
         thinks: Whether it reasons by default.
-        on: How to switch its reasoning on; None when it cannot be switched.
+        on: How to switch its reasoning on; None if it cannot be switched.
         off: How to switch it off.
         temperatures: The temperature with reasoning (as its makers recommend, because greedy reasoning tends to loop; None
             leaves it to the server) and without (0 gives the same calls every time).
@@ -105,7 +105,7 @@ def family_of(model: str) -> Family:
 
 
 def likely_server(url: str) -> Server | None:
-    """Return the server that usually listens at an address, None when the address does not tell."""
+    """Return the server that usually listens at an address; None if the address does not tell."""
     place = urlsplit(url).netloc
     return next((server for mark, server in _KNOWN_PLACES if mark in place), None)
 

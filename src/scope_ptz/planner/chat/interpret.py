@@ -22,7 +22,7 @@ MOST_CALLS = 32
 """Calls executed in one step. A model that writes more is out of control."""
 
 MOST_CHARS = 20_000
-"""Characters kept of an answer, or of the text beside calls. Longer texts are truncated and marked."""
+"""Characters kept of an answer, or of the text that accompanies calls. Longer texts are truncated and marked."""
 
 _FULL = 0.98
 _CONTROL = re.compile(r"<\|[\w ]{2,30}\|>|</s>|<(?:end|start)_of_turn>|<turn\|>")

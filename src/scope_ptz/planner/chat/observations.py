@@ -1,4 +1,4 @@
-"""What a planner reads of a call's outcome: concise, with rounded numbers, and text that the camera saw marked as data."""
+"""Text of a call's outcome for the planner: concise, with rounded numbers, and text that the camera saw marked as data."""
 
 from __future__ import annotations
 

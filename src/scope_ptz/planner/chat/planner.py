@@ -27,7 +27,7 @@ _MOST_LESSONS = 6
 
 
 class ChatOptions(BaseModel):
-    """How to plan with a chat model.
+    """Options for planning with a chat model.
 
     Attributes:
         tools: How tools are offered: through the server's interface ("native"), in the prompt and the text ("text"), or

@@ -27,7 +27,7 @@ class FoundCalls:
 
     Attributes:
         rest: The text without its calls.
-        notation: How the calls were written; empty when there are none.
+        notation: How the calls were written; empty if there are none.
     """
 
     calls: tuple[WrittenCall, ...]
@@ -179,7 +179,7 @@ _MARKED: tuple[tuple[str, re.Pattern[str], _Reader], ...] = (
     ("llama", _between(r"<\|python_tag\|>", r"<\|eom_id\|>|<\|eot_id\|>"), _json_calls),
 )
 _MOST_STARTS = 20
-"""How many lines of a text are tried as the start of its calls. A text with more is a table or a program."""
+"""Maximum number of lines that are tried as the start of calls. A text with more lines is a table or a program."""
 _FENCE = re.compile(r"```[\w-]*[ \t]*\n(?P<body>.*?)(?:\n[ \t]*```|\Z)", re.DOTALL)
 
 

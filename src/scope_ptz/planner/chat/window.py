@@ -1,4 +1,4 @@
-"""What to do when a conversation outgrows the model's context.
+"""Handle conversations that outgrow the model's context.
 
 By default the run ends with an outcome of its own. When the user allows it, old observations are shortened instead: the calls stay,
 and their results keep only counts, readings, findings and poses.

@@ -1,4 +1,4 @@
-"""How stable a planner's tool choice is when the prompt or the instruction is edited slightly."""
+"""Measure how stable a planner's tool choice is under small edits of the prompt or the instruction."""
 
 from scope_ptz.planner.profile.edits import INSTRUCTION_EDITS, PROMPT_EDITS, Edit
 from scope_ptz.planner.profile.first_calls import InstructionRow, PlannerTrial, ask_once, load_rows, read_rows

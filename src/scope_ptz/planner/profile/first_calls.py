@@ -1,6 +1,6 @@
-"""Put one instruction to a planner without a camera, and check its first calls.
+"""Send one instruction to a planner without a camera, and check its first calls.
 
-A call can be valid, be the expected one, or be inverted: a move in the opposite direction.
+The checks: whether a call is valid, whether it is the expected one, and whether it moves in the opposite direction (inverted).
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class FirstCall(_Model):
 
 
 class InstructionRow(_Model):
-    """An instruction with the calls that carry it out. ``alternatives`` are other tools that are as good for the first call."""
+    """An instruction with the calls that carry it out. ``alternatives`` are other acceptable tools for the first call."""
 
     instruction: str
     kind: str
@@ -44,12 +44,12 @@ class InstructionRow(_Model):
 
 
 class PlannerTrial(_Model):
-    """What a planner did in its first step.
+    """The first step of a planner.
 
     Attributes:
         calls: The valid calls.
         invalid: The number of invalid calls.
-        failure: How the planner failed, None when it did not.
+        failure: The kind of failure; None if the planner did not fail.
         right: Whether the first call is the expected one.
         inverted: Whether it turns or zooms in the opposite direction.
     """
@@ -104,7 +104,7 @@ def read_rows(source: Path) -> tuple[InstructionRow, ...]:
 
 
 class _Line(BaseModel):
-    """A line of such a file."""
+    """A line of a file of instructions with expected calls."""
 
     instruction: str
     kind: str = ""
@@ -113,7 +113,7 @@ class _Line(BaseModel):
 
 
 async def ask_once(planner: Planner, row: InstructionRow, *, asked: str | None = None, edit: str = "") -> PlannerTrial:
-    """Put an instruction to a planner. ``asked`` is the edited wording, if any."""
+    """Send an instruction to a planner. ``asked`` is the edited wording, if any."""
     words = row.instruction if asked is None else asked
     state = State(
         instruction=words, briefing=Briefing(presets=PRESETS, pose=Pose(), limits=Limits()), tools=tuple(schemas())
@@ -153,7 +153,7 @@ def _valid(name: str, arguments: dict[str, Any]) -> bool:
 
 
 def is_right(row: InstructionRow, call: FirstCall) -> bool:
-    """Return whether a call is the expected first one. Descriptions are compared by their words, questions not at all."""
+    """Return whether a call is the expected first one. Descriptions are compared by their words; questions are not compared."""
     expected = row.calls[0]
     if call.name in row.alternatives:
         return True
@@ -188,7 +188,7 @@ def _words(text: str) -> list[str]:
 
 
 def same_choice(one: Sequence[FirstCall], other: Sequence[FirstCall]) -> bool:
-    """Return whether two planners began with the same tools, as far as both went."""
+    """Return whether two planners began with the same tools, up to the length of the shorter sequence."""
     if not one or not other:
         return not one and not other
     return all(a.name == b.name for a, b in zip(one, other, strict=False))

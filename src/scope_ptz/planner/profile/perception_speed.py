@@ -1,4 +1,4 @@
-"""How fast perception answers on frames of a scene, skill by skill."""
+"""Measure the speed of perception on frames of a scene, skill by skill."""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ class Rate(_Model):
 
 
 class EditEffect(_Model):
-    """What an edit changed.
+    """The effect of an edit.
 
     Attributes:
         tools_changed: How often another tool was chosen than without the edit.

@@ -1,4 +1,4 @@
-"""How fast a planner answers, and how many of its calls are valid, from trials of single instructions."""
+"""Measure a planner's speed and its share of valid calls on single instructions."""
 
 from __future__ import annotations
 

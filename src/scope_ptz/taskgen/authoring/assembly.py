@@ -152,7 +152,7 @@ def build(
     Args:
         scenes: The scenes. Their order matters.
         seed: Seed for every random choice.
-        quotas: Core tasks per category. By default the published ones, with reactions besides.
+        quotas: Core tasks per category. The default is the published quotas, plus reactions.
         progress: Receives a line of text after every step.
         can_answer: Whether perception can answer the reference program of a draft. By default every draft counts as answerable.
 

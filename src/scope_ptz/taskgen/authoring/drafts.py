@@ -67,10 +67,10 @@ class TaskDraft:
         evidence: The views that the answer rests on.
         perception_calls: The calls of the reference program that ask perception.
         program: The reference program. By default, the calls of the place followed by ``perception_calls``.
-        behaviour: What a run must do besides answering.
+        behaviour: What a run must do in addition to answering.
         needs: What an agent must do before it can answer. By default, what the place needs.
         tags: Tags of the task.
-        weight: How many objects must be told apart, for the difficulty.
+        weight: Number of objects to distinguish, for the difficulty.
         twin: The task with the same wording whose answer is a presence, where the answer of this one is an absence.
         answer_key: The answer as a short text, which the selection balances.
     """

@@ -15,7 +15,7 @@ _MOST_COUNTED, _MOST_COUNTED_IN_SWEEP = 15, 8
 """People count larger numbers differently, in one view and in a sweep."""
 
 _LEAST_SHARE = 0.5
-"""People disagree whether to count an object of which less than this share shows."""
+"""People disagree whether to count an object if less than this share of it is visible."""
 
 _LEAST_PX, _LEAST_PX_IN_SWEEP = 220, 450
 """Even careful people overlook objects that cover fewer pixels of a view, or of a sweep."""
@@ -32,7 +32,7 @@ _UNASKED_NOUNS = frozenset({
     "taxi sign", "departures board", "gatehouse", "charging point", "wall lamp", "pavement board", "shop sign", "luggage trolley",
     "estate agent board", "hanging basket",
 })  # fmt: skip
-"""Nouns that nobody would ask about, or whose absence nobody could be sure of."""
+"""Nouns that are unnatural to ask about, or whose absence is never certain."""
 
 
 @lru_cache(maxsize=512)

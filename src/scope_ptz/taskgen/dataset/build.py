@@ -20,7 +20,7 @@ from scope_ptz.taskgen.gold.reference_runs import matrix_lines
 from scope_ptz.taskgen.validation.validation_report import ValidationReport
 
 REPORT_EVERY = 100
-"""Proved tasks between two notes."""
+"""Number of validated tasks between two progress notes."""
 
 Prove = Callable[[Sequence[Task], int, Callable[[int, int], None]], ValidationReport]
 MakeGold = Callable[[Sequence[Task], int], list[GoldRun]]
@@ -44,17 +44,17 @@ def build_dataset(
     Args:
         scenes: Scenes to make tasks for, by name.
         out: Folder to write.
-        seed: Another seed makes another dataset of the same scenes.
+        seed: Seed for every random choice.
         numbers: Variations of the scenes for the unseen split.
         quotas: Number of tasks of each category; None for the published numbers.
         prove: Validates tasks.
         make_gold: Makes gold runs.
         answered: Whether ground-truth perception can answer what a draft asks.
-        report: Receives lines of the result.
-        notify: Receives notes about progress and shortfalls.
+        report: Called with each line of the result.
+        notify: Called with notes about progress and shortfalls.
 
     Returns:
-        Whether every quota was met and every task was proved.
+        True if every quota was met and every task was validated.
     """
     core = build(list(scenes.values()), seed, quotas, notify, answered)
     unseen = build_unseen(list(scenes.values()), numbers, quotas, lambda text: notify(f"unseen {text}"), answered)
@@ -81,7 +81,7 @@ def build_dataset(
 
 
 def shortfall(built: BuiltTasks, of: str = "") -> str:
-    """Return which quotas the scenes did not meet; empty when they met all."""
+    """Return a message that names the unmet quotas; empty if all quotas are met."""
     missing = ", ".join(f"{number} of {name} are missing" for name, number in built.short.items())
     return f"too few{of}: {missing}" if missing else ""
 

@@ -1,4 +1,4 @@
-"""Kinds of objects that a question can be about, and the objects that somebody could call by the name of a kind.
+"""Kinds of objects that a question can be about, and the objects that a person could call by the name of a kind.
 
 What one person calls a litter bin is a bin or a recycling bin to others. Where a view holds objects with such names, nothing is
 asked about them, so that no expected number is a matter of taste.
@@ -164,7 +164,7 @@ class Kind:
         return self.category in GROUPS["person"] and thing.category in _RIDDEN
 
     def ambiguous_with(self, thing: SceneThing) -> bool:
-        """Whether somebody could call an object by the name of this kind although it does not fit."""
+        """Whether a person could call an object by the name of this kind although it does not fit."""
         if self.fits(thing):
             return False
         if self._has_other_name(thing):
@@ -214,7 +214,7 @@ _COLOURLESS = (SIGNS - {"shop sign", "pavement board", "hanging sign"}) | {
     "cyclist", "driver", "clock", "statue", "fox", "tram", "lorry", "articulated lorry", "charging point", "traffic light",
     "plate compactor", "belisha beacon",
 }  # fmt: skip
-"""Categories of which nobody would say that they have one colour, or that colour."""
+"""Categories that people would not describe by a single colour, or by that colour."""
 
 _JOINS = frozenset({"of", "with", "in", "on", "for"})
 

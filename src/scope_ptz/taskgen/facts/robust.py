@@ -45,7 +45,7 @@ TRACE_PX = 20
 """Most pixels of an object that counts as absent. A person sees nothing of it."""
 
 FAINT_PX = 40
-"""Somebody may count an object with more pixels even if it is not visible by definition. Its kind is then not counted at all."""
+"""A person may count an object with more pixels even if it is not visible by definition. Its kind is then excluded from counts."""
 
 _EDGE = 0.2
 """Cosine of the angle to the normal of a surface below which it is seen edge-on."""
@@ -132,7 +132,7 @@ class RobustTruth:
         return tuple(s for s in self.samples[0].sightings if self.visibility(s.instance.number) and self.recognisable(s.instance))
 
     def recognisable(self, thing: SceneThing) -> bool:
-        """Whether a picture from here shows what an object is. Some categories are known only by their lettered side."""
+        """Whether an object can be recognised in a picture from here. Some categories are known only by their lettered side."""
         if self.unreliable(thing.category) or thing.attributes.get("canopy") == "rolled up":
             return False  # without its canopy, a market stall is a bare frame
         if thing.category not in KNOWN_BY_THEIR_FACE:
@@ -145,7 +145,7 @@ class RobustTruth:
         return category in FACELESS or category in BACKDROP.get(self.scene.name, ())
 
     def all_of(self, kind: Kind) -> tuple[Sighting, ...] | None:
-        """Return all visible objects of a kind, or None when that is uncertain or somebody could see it differently."""
+        """Return all visible objects of a kind, or None if that is uncertain or a person could see it differently."""
         found = []
         if self.unreliable(kind.category):
             return None
@@ -191,13 +191,13 @@ class RobustTruth:
 
     @cached_property
     def traces(self) -> tuple[SceneThing, ...]:
-        """Objects of which more than a trace shows in any sample."""
+        """Objects of which more than a trace is visible in any sample."""
         numbers = {s.instance.number for truth in self.samples for s in truth.sightings if s.pixels > TRACE_PX}
         return tuple(self.scene.by_number[number] for number in sorted(numbers))
 
     @cached_property
     def _ever_shown(self) -> tuple[SceneThing, ...]:
-        """Objects of which more than a trace shows in any sample, and the actors that pass by."""
+        """Objects of which more than a trace is visible in any sample, and the actors that pass by."""
         passing = tuple(actor for actor in self.scene.file.actors if actor.number in self.passing)
         return tuple(thing for thing in self.traces if thing not in passing) + passing
 

@@ -32,7 +32,7 @@ class _Solution:
         expected: The right answer.
         evidence: The views that it rests on.
         program: The reference program.
-        size: How many objects must be told apart.
+        size: Number of objects to distinguish.
         tags: Tags of the task.
     """
 

@@ -29,7 +29,7 @@ from scope_ptz.taskgen.gold.mutations import FaultSetting, GoldRun, mutate
 PER_MODE = 30  # runs per error mode, 240 in all
 
 OTHER = ("accepted", "not scored")
-"""Outcomes of a faulty run besides the eight error modes: it is judged correct, or not scored at all."""
+"""Outcomes of a faulty run other than the eight error modes: it is judged correct, or not scored at all."""
 
 
 @dataclass(frozen=True)

@@ -83,7 +83,7 @@ async def judge_gold(
         cases: The runs.
         concurrency: How many runs are judged at the same time.
         repeat: Number of this repetition.
-        note: Receives every verdict as soon as it is available, so that an interruption loses nothing.
+        note: Called with every verdict as soon as it is available, so that an interruption loses nothing.
 
     Raises:
         Exception: Whatever ``note`` raises.

@@ -35,7 +35,7 @@ PresetOf = Callable[[str], str | None]
 
 @dataclass
 class Expectation:
-    """The required calls of a row, as far as they could be mapped, and the findings about the others."""
+    """The required calls of a row that could be mapped, and the findings about the others."""
 
     calls: list[RequiredCall] = field(default_factory=list)
     findings: list[RowFinding] = field(default_factory=list)

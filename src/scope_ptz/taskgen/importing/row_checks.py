@@ -1,6 +1,6 @@
 """Checks for doubtful rows: duplicates, contradictions, answers in the question, requirements that do not fit the question.
 
-No row is changed or dropped. A row with such a finding runs like any other, and the report lists the finding.
+No row is changed or dropped. A doubtful row runs like any other, and the report lists its findings.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ _MOST_ANSWER_WORDS = 6
 
 
 def check_rows(rows: Sequence[ParsedRow]) -> dict[int, tuple[RowFinding, ...]]:
-    """Return the findings of doubtful rows by line number."""
+    """Return the findings about doubtful rows, by line number."""
     found: dict[int, list[RowFinding]] = defaultdict(list)
     for row in rows:
         found[row.line] += _single_row_findings(row)
@@ -47,7 +47,7 @@ def check_rows(rows: Sequence[ParsedRow]) -> dict[int, tuple[RowFinding, ...]]:
 
 
 def _single_row_findings(row: ParsedRow) -> Iterator[RowFinding]:
-    """Yield the findings of a row by itself."""
+    """Yield the findings that concern a single row."""
     if _NOW.search(row.question) and row.sweeps:
         yield _finding("now-but-full")
     if _THEN.search(row.question) and row.order == "any" and len(row.calls) > 1:
@@ -63,8 +63,8 @@ def _single_row_findings(row: ParsedRow) -> Iterator[RowFinding]:
 def answer_in_question(question: str, answer: str) -> str | None:
     """Return the part of the answer that the question already contains, or None.
 
-    Quoted parts of the answer are checked, and whole answers of up to six words. Yes, no, and options that the question offers do
-    not count.
+    The check covers quoted parts of the answer, and whole answers of up to six words. Yes, no, and options that the question offers
+    are ignored.
     """
     if re.search(r"\bor\b", question, re.IGNORECASE):
         return None
@@ -121,14 +121,14 @@ def _by_id(rows: Iterable[ParsedRow]) -> Mapping[str, list[ParsedRow]]:
 
 
 def _answer_key(answer: str) -> tuple[str, ...]:
-    """Return what can be compared of an answer without understanding it: its numbers if it has any, else its words."""
+    """Return a key for comparing answers: the numbers in the answer if there are any, else its words."""
     words = comparable(answer)
     numbers = tuple(sorted(word for word in words if word.replace(".", "", 1).isdigit()))
     return numbers or tuple(words)
 
 
 def comparable(text: str) -> list[str]:
-    """Return the words of a text without differences in case, spelling and punctuation, with numbers in digits."""
+    """Return the words of a text with normalised case, spelling and punctuation, and with numbers as digits."""
     return [_NUMBERS.get(word, word) for word in plain_words(text)]
 
 

@@ -1,4 +1,4 @@
-"""The report of a validation as lines of text."""
+"""Format a validation report as lines of text."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ MOST_LISTED = 40
 
 
 def report_lines(report: ValidationReport) -> Iterator[str]:
-    """Return counts by category, correct programs, adversarial answers, then every failure."""
+    """Yield counts by category, correct programs, adversarial answers, then every failure."""
     content = report.as_dict()
     yield f"{report.tasks} tasks: " + ", ".join(f"{number} {name}" for name, number in sorted(report.by_stratum.items()))
     for name, number in report.by_category.items():

@@ -145,7 +145,7 @@ def _banner(
 
 
 def approach(*, length_m: float, width_m: float, height_m: float, side: int, grass: bpy.types.Material) -> Built:
-    """Build an embankment for the bridge's road, from ``height_m`` at x = 0 down to the ground.
+    """Build the embankment that carries the road up to the bridge, from ``height_m`` at x = 0 down to the ground.
 
     It runs towards +x for ``side`` 1 and towards -x for -1.
     """

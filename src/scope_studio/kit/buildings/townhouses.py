@@ -119,7 +119,7 @@ def shutter_pair(s: Solid, x: float, w: float, za: float, zb: float, colour: str
 
 
 def town_house(h: House) -> Built:
-    """Build a house without the shop in front of its ground floor; ``square_shops`` has those."""
+    """Build a house. A shop front for its ground floor is built separately, by ``square_shops``."""
     rng = random.Random(f"town house {h.seed}")
     s = Solid("town house")
     trim, tile = paint(h.trim, dirt=0.35, roughness=0.8), tile_material(f"roof {h.roof[0]:.2f}", h.roof)

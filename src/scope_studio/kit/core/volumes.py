@@ -18,7 +18,7 @@ Skin = tuple[np.ndarray, list[tuple[int, ...]]]
 
 
 class Volume:
-    """Overlapping closed shapes that are to be merged into one surface."""
+    """A set of overlapping closed shapes to merge into one surface."""
 
     def __init__(self) -> None:
         self.points: list[tuple[float, float, float]] = []
@@ -115,7 +115,7 @@ def crease(
     scale: tuple[float, float, float],
     seed: float,
 ) -> Skin:
-    """Return the skin displaced by folded noise, which looks like cloth.
+    """Return the skin displaced by noise that imitates the folds of cloth.
 
     Args:
         amount: Metres, an array (n,) of metres, or a function of the points (n, 3) that returns either.

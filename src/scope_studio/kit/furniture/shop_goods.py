@@ -17,7 +17,7 @@ Rgb = tuple[float, float, float]
 
 
 def _ware(name: str, colour: Rgb, roughness: float = 0.5, glow: float = 0.16) -> bpy.types.Material:
-    """Return the material of goods under shop window lamps. It emits slightly more light than it receives from the street."""
+    """Return the material of goods in a lit shop window. It glows slightly, so that the goods look brighter than the street."""
     full = f"ware {name}"
     found = bpy.data.materials.get(full)
     if found is not None:

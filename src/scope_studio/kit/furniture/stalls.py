@@ -20,8 +20,8 @@ COUNTER_M = 0.78
 def stall(first: str, second: str | None = None, *, sign: str | None = None, table: bool = True, rolled: bool = False) -> Built:
     """Build a stall, 3.0 x 2.2 m: steel poles, ridged canopy, sloping counter with a skirt, and a name board.
 
-    The canopy is plain, or striped with ``second``. The name board hangs under its front edge. ``rolled`` leaves the frame
-    without canvas.
+    The canopy is plain, or striped with ``second``. The name board hangs under its front edge. With ``rolled``, the
+    canvas is rolled up at the back of the bare frame.
     """
     s = Solid("market stall")
     pole, w, d = steel(), 1.5, 1.1

@@ -163,7 +163,7 @@ def _limb(along: np.ndarray) -> np.ndarray:
 
 
 IN_HAND = {"shovel": "shovel", "phone": "phone", "clipboard": "clipboard", "carry": "box", "kneel": "trowel"}
-"""What a pose holds by default."""
+"""The objects that a pose holds by default."""
 
 
 def _person(

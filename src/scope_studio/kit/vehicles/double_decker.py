@@ -17,7 +17,7 @@ from scope_studio.kit.vehicles.paintwork import TRIM, Patch
 FRONT_M, REAR_M, HALF_M, TOP_M = 5.2, -5.2, 1.25, 4.30
 _LOWER = (1.92, 0.98)
 _UPPER = (3.46, 0.92)
-"""Height of the middle, and height, of the windows of each deck."""
+"""Height of the window centre and height of the window, in metres, for each deck."""
 
 
 def _parts() -> Parts:
@@ -95,8 +95,8 @@ def _side(parts: Parts, *, kerb: bool) -> None:
 def double_decker(colour: str, *, plate: str, route: str, destination: str, operator: str, poster: str) -> Built:
     """Build a double-deck bus, 10.4 m long and 4.3 m high, with its door on the left.
 
-    Route and destination are lit in front. ``operator`` is lettered above the lower windows; ``poster`` is an advertisement
-    between the decks.
+    A lit display at the front shows the route and destination. ``operator`` is lettered above the lower windows.
+    ``poster`` is an advertisement between the decks.
     """
     own, letters = bw.plates(plate, (FRONT_M + 0.01, 0.50), (REAR_M - 0.012, 0.60))
     letters.append(bw.words(f"{route} {destination}", 0.17, (0, FRONT_M - 0.106, 2.72), "+Y", "display", width_m=1.75))

@@ -18,7 +18,7 @@ from scope_studio.kit.vehicles import paintwork
 LENGTH_M = 19.6
 HALF_WIDTH_M = 1.2
 RAKE = 0.20
-"""How far the front leans back, in metres for each metre of height."""
+"""Slope of the front, in metres backwards per metre of height."""
 
 SECTION = [
     (0.0, 0.32),

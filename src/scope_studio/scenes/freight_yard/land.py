@@ -15,7 +15,7 @@ from scope_studio.kit.vehicles import cars
 from scope_studio.kit.yard import floor as yard_floor
 
 ROAD = highway.Carriageway(edge_m=-1.0, straight_m=900.0)
-"""Only its level strip is used, away from which the land rises to hills."""
+"""Only its level strip is used; beyond it, the land rises to hills."""
 STREET_Y = -58.0
 
 

@@ -29,7 +29,7 @@ from scope_studio.scenes.high_street.plan import (
 )
 
 END_X = 84.0
-"""Where a house closes each cross street."""
+"""Position of the house that closes off each cross street."""
 
 
 def build(stage: Stage) -> None:

@@ -29,7 +29,7 @@ def build(stage: Stage, shops: dict[int, str]) -> None:
 def _row(
     stage: Stage, number: int, parent: str, xs: Sequence[float], wares: Sequence[Ware], *, y: float = -0.30, z: float = SHELF_M
 ) -> None:
-    """Place goods in a row on the display shelf of a shop's window. Equal ones are linked copies."""
+    """Place goods in a row on the display shelf of a shop's window. Identical goods are linked copies."""
     plot = plots()[number]
     prototypes: dict[str, Built] = {}
     for k, x in enumerate(xs):
@@ -101,7 +101,7 @@ BOARDS: tuple[tuple[int, float, float, tuple[str, ...], str], ...] = (
     (16, -2.4, 2.5, ("LAMPS", "HALF PRICE"), "navy"),
     (6, 2.3, 2.4, ("CUT AND DRY", "28.00", "NO BOOKING"), "black"),
 )
-"""Pavement boards: number, place in front of the shop (m), lines, colour."""
+"""Pavement boards: number, position in front of the shop (m), lines, colour."""
 
 
 def _boards(stage: Stage, shops: dict[int, str]) -> None:

@@ -37,7 +37,7 @@ class RecordedChat(ChatClient):
     """A view of a chat client that records each exchange. Keys are sent in headers, which are not recorded."""
 
     def __init__(self, client: ChatClient, exchanges: Exchanges) -> None:
-        # No call of the base class: this object shares the connections of the other one and holds none of its own.
+        # ``super().__init__`` is not called: this object shares the connections of ``client`` and opens none.
         self.endpoint, self.caller = client.endpoint, client.caller
         self._client_behind, self._exchanges = client, exchanges
 

@@ -76,7 +76,7 @@ class ScopeModel(ModelAPI):
             return self._perception
 
     async def judge(self, context: EvalContext, repeat: int) -> Complete:
-        """Return the port of the judge of this name for its ``repeat``-th judgement, made at the first call."""
+        """Return the connection to a judge by name for its ``repeat``-th judgement, opened on first use."""
         async with self._lock:
             if repeat not in self._judges:
                 self._judges[repeat] = await context.make_judge(self.request, repeat)

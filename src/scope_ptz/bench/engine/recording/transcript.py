@@ -66,7 +66,7 @@ def _exchange(exchange: Exchange, step: int) -> list[ChatMessage]:
 
 
 def call_id(step: int, index: int) -> str:
-    """Return the id of a call in messages. It has nine characters, because some chat templates accept nothing else."""
+    """Return the id of a call in messages. It has nine characters, because some chat templates accept no other length."""
     return f"s{step:04d}c{index:03d}"
 
 

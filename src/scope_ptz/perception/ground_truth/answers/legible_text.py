@@ -101,7 +101,7 @@ def text_exists(view: View, question: s.TextExists) -> AnswerText:
 
 
 def spoken_texts(view: View, signs: Sequence[Thing], fact: str) -> AnswerText | None:
-    """Answer with a fact ("speed limit") that is written on some signs, None when they have no text."""
+    """Answer with a fact ("speed limit") that is written on some signs; None if they have no text."""
     texts = _texts(view, signs, plate=False)
     legible = list(dict.fromkeys(t.text.text for t in texts if t.legible and ("limit" not in fact or _is_limit(view, t))))
     if legible:

@@ -102,7 +102,7 @@ def _nothing(view: View, question: s.What, description: s.Description) -> Answer
 
 
 def _by_nearness(view: View, tests: tuple[s.Test, ...], found: list[Thing]) -> list[Thing]:
-    """Sort things beside something by their distance to it."""
+    """Sort things next to something by their distance to it."""
     anchors = [a for t in tests if isinstance(t, s.Relation) for a in find(view, t.other)]
     return sorted(found, key=lambda t: min(t.gap_m(a) for a in anchors)) if anchors else found
 

@@ -1,4 +1,4 @@
-"""Descriptions and tests put into words again, so that an answer shows how the question was understood."""
+"""Restate descriptions and tests in words, so that an answer shows how the question was understood."""
 
 from __future__ import annotations
 

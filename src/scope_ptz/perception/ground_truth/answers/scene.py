@@ -38,7 +38,7 @@ def describe(view: View, question: s.Describe) -> AnswerText:
 
 
 def _load_of(view: View, tests: tuple[s.Test, ...]) -> AnswerText | None:
-    """Answer with the load of something that carries one according to the scene, None when the question is about something else."""
+    """Answer with the load of something that carries one according to the scene; None if the question is about something else."""
     match tests:
         case (s.Relation(kind="on", other=other),):
             bearer = next(iter(find(view, other)), None)

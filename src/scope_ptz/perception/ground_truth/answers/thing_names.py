@@ -1,4 +1,4 @@
-"""How things and places are put into words."""
+"""Phrases that name things and places."""
 
 from __future__ import annotations
 

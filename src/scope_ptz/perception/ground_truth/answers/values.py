@@ -70,7 +70,7 @@ def ask(view: View, question: s.Ask) -> AnswerText:
 
 
 def value_of(thing: Thing, attribute: Sequence[str]) -> str | None:
-    """Return an attribute of a thing in words, None when the scene has none."""
+    """Return an attribute of a thing in words; None if the scene has none."""
     if attribute[-1] in COLOUR_KEYS:
         colour = colour_of(thing)
         return colour if colour or "person" not in thing.concepts else _clothes(thing)

@@ -1,4 +1,4 @@
-"""What nouns mean: concepts, their other names, and the kinds that they belong to."""
+"""The meaning of nouns: concepts, their other names, and the kinds that they belong to."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ def parse_description(text: str) -> Description:
 
 @lru_cache(maxsize=512)
 def parse_question(text: str) -> Question | None:
-    """Return the best reading of a question, None when it fits no rule."""
+    """Return the best reading of a question; None if it fits no rule."""
     found = _best(text, "question") or _best(text, "description")
     if not isinstance(found, Description):
         return found

@@ -20,7 +20,7 @@ class Phrase:
     order: Order | None = None
     ordinal: int | None = None
     amount: int | None = None
-    """How many are meant ("the two nearest cones"); used only together with ``order``."""
+    """The number of things requested ("the two nearest cones"); used only together with ``order``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ class Order:
 
 @dataclass(frozen=True, slots=True)
 class Relation:
-    """A relation to other things. ``preposition`` is the preposition in the text, because several prepositions mean one kind."""
+    """A relation to other things. ``preposition`` keeps the original wording, because one kind covers several."""
 
     kind: RelationKind
     other: Description
@@ -65,7 +65,7 @@ class Region:
 
 @dataclass(frozen=True, slots=True)
 class Has:
-    """A test for what something has ("with a yellow helmet", "wearing orange vests"). ``worn``: only a person can be meant."""
+    """A test for possessions ("with a yellow helmet", "wearing orange vests"). ``worn``: the subject must be a person."""
 
     what: Description
     worn: bool = False
@@ -73,21 +73,21 @@ class Has:
 
 @dataclass(frozen=True, slots=True)
 class Says:
-    """Bears a text: these words, or any text when there are none."""
+    """A test for text on a thing: these words, or any text if ``words`` is empty."""
 
     words: Words
 
 
 @dataclass(frozen=True, slots=True)
 class Is:
-    """Loose words: "parked", "lit", "in use"."""
+    """A test for a state in free words: "parked", "lit", "in use"."""
 
     words: Words
 
 
 @dataclass(frozen=True, slots=True)
 class Faces:
-    """Points to one side: "facing left"."""
+    """A test for the side that a thing faces: "facing left"."""
 
     side: Side
 
@@ -102,7 +102,7 @@ class Measured:
 
 @dataclass(frozen=True, slots=True)
 class Within:
-    """Within some metres of the camera or of ``other``; with ``beyond``, further away than that."""
+    """A test for a distance of at most ``metres`` from the camera or ``other``; with ``beyond``, of more than that."""
 
     metres: float
     other: Description | None = None
@@ -147,7 +147,7 @@ class Exists:
 
 @dataclass(frozen=True, slots=True)
 class Count:
-    """Ask how many there are, or for how many the tests hold."""
+    """Ask how many things there are, or how many of them pass the tests."""
 
     what: Description
     tests: tuple[Test, ...] = ()
@@ -163,7 +163,7 @@ class CountKinds:
 
 @dataclass(frozen=True, slots=True)
 class YesNo:
-    """Ask whether tests hold for a subject. Without tests, the predicate is within the words of the subject."""
+    """Ask whether tests hold for a subject. Without tests, the subject's words include the predicate."""
 
     subject: Description
     tests: tuple[Test, ...]
@@ -180,7 +180,7 @@ class IsA:
 
 @dataclass(frozen=True, slots=True)
 class Ask:
-    """Ask for the value of an attribute ("what colour is the van?", "which lane is closed?"). ``what`` None means any thing."""
+    """Ask for the value of an attribute ("what colour is the van?", "which lane is closed?"). ``what`` is None for any thing."""
 
     attribute: Words
     what: Description | None

@@ -1,4 +1,4 @@
-"""Which questions a camera can answer, and which instructions it must refuse."""
+"""Recognise questions that a camera can answer, and instructions that it must refuse."""
 
 from __future__ import annotations
 

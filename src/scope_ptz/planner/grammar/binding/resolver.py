@@ -1,4 +1,4 @@
-"""Resolving names: presets to the camera's list, pronouns to the last named thing, and the scope that a sweep sets."""
+"""Resolve preset names to the camera's presets, pronouns to the last named thing, and the scope that a sweep sets."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def match_exactly(name: str, presets: Sequence[str]) -> str | None:
 
 
 def match_preset(name: str, presets: Sequence[str]) -> str | None:
-    """Return the preset that a name means: an exact match, or else the one that is clearly closest; None when there is none."""
+    """Return the preset that matches a name exactly, or else the only close match; None if there is neither."""
     wanted = "".join(preset_key(name))
     keys = {preset: "".join(preset_key(preset)) for preset in presets}
     exact = match_exactly(name, presets)
@@ -82,7 +82,7 @@ def match_preset(name: str, presets: Sequence[str]) -> str | None:
 
 
 def abbreviates(short: str, long: str) -> bool:
-    """Return whether a word is another with vowels left out: "hwy" for "highway"."""
+    """Return whether a word abbreviates another by omitting vowels: "hwy" for "highway"."""
     letters = iter(long)
     return (
         len(short) >= _SHORTEST_ABBREVIATION
@@ -93,7 +93,7 @@ def abbreviates(short: str, long: str) -> bool:
 
 
 def plausible_name(text: str) -> bool:
-    """Return whether words may be a preset's name when no presets are known: few words, none of them about camera motion."""
+    """Return whether words could name a preset when the presets are unknown: few words, none about camera motion."""
     words = [(word,) for word in preset_key(text)]
     telling = {
         "DEG", "PRON", "NUM", "LEFT", "RIGHT", "UP", "DOWN", "ZOOM", "PAN",
@@ -106,10 +106,10 @@ def plausible_name(text: str) -> bool:
 
 @dataclass(slots=True)
 class Resolver:
-    """Binds the steps of one instruction.
+    """Resolves the names in the steps of one instruction.
 
     Attributes:
-        presets: The camera's presets; None when they are unknown, so that names are accepted as written.
+        presets: The camera's presets; None if they are unknown, so that names are accepted as written.
         antecedent: The thing that a pronoun refers to.
         preset: The preset that "there" refers to.
         compared: Whether presets were compared.
@@ -138,7 +138,7 @@ class Resolver:
         """Return the steps with all names resolved.
 
         Raises:
-            UnresolvedError: A name needs a question to the user.
+            UnresolvedError: A name is unclear, and the user must be asked.
         """
         out: list[ast.Step] = []
         for step in steps:
@@ -148,7 +148,7 @@ class Resolver:
         return tuple(out)
 
     def _completed(self, step: ast.Step, before: Sequence[ast.Step]) -> ast.Step:
-        """Give a bare thing the verb of the step before it, as in "read the left sign and then the right one"."""
+        """Complete a step without a verb with that of the previous step, as in "read the left sign and then the right one"."""
         last = before[-1] if before else None
         bare = isinstance(step, ast.GoPreset) and step.how == "bare" and step.ref.determined
         if not bare or not isinstance(step, ast.GoPreset) or (self.presets and self.find_place(step.ref)):
@@ -177,7 +177,7 @@ class Resolver:
         return ast.Thing(self.antecedent, definite=True)
 
     def _with_noun(self, text: str) -> str:
-        """Replace "one" by the last noun: "the nearest one" after cars is the nearest car."""
+        """Replace "one" with the last noun: after cars, "the nearest one" means the nearest car."""
         head = re.split(r" (?:on|in|at|by|with|near|behind) ", self.antecedent)[0].split(" ")[-1]
         return _ONES.sub(lambda match: noun(head, 2 if match[0].lower() == "ones" else 1), text) if head else text
 
@@ -381,7 +381,7 @@ class Resolver:
         return [replace(step, thing=self.thing(step.thing), moves=self.bind(step.moves))]
 
     def condition(self, condition: ast.Condition) -> ast.Condition:
-        """Return a condition with its things resolved."""
+        """Return a condition with its names resolved."""
         if isinstance(condition, ast.Seen):
             return replace(condition, thing=self.thing(condition.thing), view=self._view(condition.view))
         if isinstance(condition, ast.Readable):

@@ -1,4 +1,4 @@
-"""Sentences of the grammar planner's answers. They state what the tool results state and nothing else."""
+"""Sentences of the grammar planner's answers. They state only facts from the tool results."""
 
 from __future__ import annotations
 

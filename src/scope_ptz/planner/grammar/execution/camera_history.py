@@ -1,4 +1,4 @@
-"""Where the camera has been, according to the conversation."""
+"""The camera's earlier positions, according to the conversation."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def _pose(result: dict[str, Any] | None) -> Pose | None:
 
 
 def _before(outcome: ToolOutcome, after: Pose) -> VisitedPlace | None:
-    """Return where a first relative move started, as far as its arguments determine it; None for a clamped move."""
+    """Return where a first relative move started, if its arguments determine it; None for a clamped move."""
     arguments = outcome.call.arguments
     if outcome.call.name != "adjust_ptz" or (outcome.result or {}).get("clamped") or arguments.get("zoom_limit"):
         return None

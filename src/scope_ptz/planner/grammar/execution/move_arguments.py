@@ -10,7 +10,7 @@ from scope_ptz.planner.grammar.instruction_tree import Aim, Amount, Move, Turn, 
 _DEFAULT_DEG, _LITTLE_DEG = 10.0, 5.0
 _LOT_DEG = {"pan": 45.0, "tilt": 20.0}
 _LIMIT_DEG = {"pan": 360.0, "tilt": 90.0}
-_LOOP_PAN_DEG = 15.0  # a loop makes 24 steps unless told otherwise, which is one full turn
+_LOOP_PAN_DEG = 15.0  # a loop makes 24 steps by default, which is one full turn
 _LOOP_ZOOM_FACTOR = 1.5
 _SAME = 1e-6
 

@@ -186,7 +186,7 @@ class Lexer:
         return 1 if splits else phrase
 
     def _number(self, words: list[_Word], i: int, number: SpokenNumber, phrase: list[str], before: list[Lexeme]) -> Lexeme | None:
-        """Return the lexeme of a number, None when it only orders sentences ("first, ...")."""
+        """Return the lexeme of a number; None if it only orders sentences ("first, ...")."""
         used = words[i : i + number.used]
         if _starts_clause(before) and "FILLER" in self._table.get(tuple(w.text for w in used), ()):
             return None

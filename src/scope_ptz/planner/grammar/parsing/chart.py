@@ -66,7 +66,7 @@ class ChartParser:
         return self._ids.setdefault(name, len(self._ids))
 
     def parse(self, lexemes: Sequence[Collection[str]], start: str) -> Branch | None:
-        """Return the best reading of all lexemes as ``start``, None when there is none."""
+        """Return the best reading of all lexemes as ``start``; None if there is none."""
         n = len(lexemes)
         chart: list[dict[int, dict[int, _Best]]] = [{} for _ in range(n + 1)]
         for i in range(n - 1, -1, -1):

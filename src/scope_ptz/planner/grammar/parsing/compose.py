@@ -1,4 +1,4 @@
-"""How neighbouring steps of a sentence combine: moves joined by "and", "each time", "do that again"."""
+"""Combine neighbouring steps of a sentence: moves joined by "and", "each time", "do that again"."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def _add_further(out: list[Step], step: Further) -> None:
 
 
 def _joined_to_last(last: Step, link: str, step: Step) -> list[Step] | None:
-    """Return what replaces the last step when the new step belongs to it, None when the new step stands alone."""
+    """Return what replaces the last step when the new step belongs to it; None if the new step stands alone."""
     if isinstance(step, Repeat) and link in {"and", ","} and _covers_before(step, last):
         return [Repeat(tuple(compose([Linked(link, s) for s in step.body], [last])), step.times)]
     if isinstance(last, Move):
@@ -161,7 +161,7 @@ def _shared(part: Part, others: tuple[Part, ...]) -> Part:
 
 
 def _step_size(step: Step) -> Turn | None:
-    """Return the turn of a move that is made in steps, None when there is none."""
+    """Return the turn of a move that is made in steps; None if there is none."""
     if isinstance(step, Move):
         return next((p for p in step.parts if isinstance(p, Turn) and p.step), None)
     return None

@@ -1,4 +1,4 @@
-"""Counting tasks: how many objects of a kind there are in a view or all around, and kinds of which there are none."""
+"""Counting tasks: the number of objects of a kind in a view or all around, including kinds that are absent."""
 
 from __future__ import annotations
 

@@ -70,7 +70,7 @@ def _presence_draft(place: TaskPlace, kind: Kind, *, there: bool, twin: TaskDraf
 
 
 def _coloured_or_not(place: TaskPlace, rng: random.Random) -> Iterator[TaskDraft]:
-    """Yield questions about whether one object has a colour: its own, or one that nobody would mistake for it."""
+    """Yield questions about whether one object has a colour: its own, or one that cannot be mistaken for it."""
     for one in unique_things(place.truth, coloured=False, min_pixels=400):
         colour = plain_colour(own_colour(one.thing.instance))
         if colour is None or colour in one.name or not colour_shows(one.thing.instance):

@@ -58,7 +58,7 @@ def options(values: Sequence[str]) -> Options:
 
 
 def one_of(value: str, values: Sequence[str], category: str) -> Options:
-    """Return answer options of which ``value`` is right.
+    """Return answer options, among which ``value`` is right.
 
     Values that say the same in more words share an option: a "road bicycle" is a "road" one, and "cast iron" is iron.
     """
@@ -138,7 +138,7 @@ def _state(place: TaskPlace, one: NamedThing) -> Iterator[TaskDraft]:
 
 
 def _other_attributes(place: TaskPlace, one: NamedThing, values: Values) -> Iterator[TaskDraft]:
-    """Yield questions about kind, material, load and what somebody carries."""
+    """Yield questions about kind, material, load and what a person carries."""
     category = one.thing.instance.category
     for key, usual_forms in _ATTRIBUTE_FORMS.items():
         if (key == "kind" and category not in _OF_KINDS) or (key == "material" and category in _MATERIAL_HARDLY_SHOWS):

@@ -16,10 +16,10 @@ from scope_ptz.taskgen.authoring.zoom_targets import SMALLEST_PX, framed
 from scope_ptz.taskgen.facts.robust import with_parts
 
 LONGEST = 80
-"""Most characters of a text that is asked for. Nobody would dictate a longer one."""
+"""Maximum length of a requested text, in characters. A person would not dictate a longer one."""
 
 _GUESSED_PX = 5.0
-"""Height of capitals in pixels from which somebody can tell what to zoom in on."""
+"""Minimum height of capitals, in pixels, for a person to see what to zoom in on."""
 
 
 def drafts(place: TaskPlace) -> list[TaskDraft]:
@@ -62,7 +62,7 @@ def _zoomed(place: TaskPlace, named: list[NamedThing]) -> Iterator[TaskDraft]:
 
 
 def lines(texts: tuple[TextSighting, ...] | None) -> tuple[TextSighting, ...] | None:
-    """Return texts from top to bottom if they are lines of one piece of writing, else None."""
+    """Return texts from top to bottom if they are lines of one piece of writing; otherwise None."""
     if not texts:
         return None
     found = {t.text.text.strip(): t for t in texts}

@@ -143,7 +143,7 @@ def within(place: TaskPlace, rng: random.Random) -> list[TaskDraft]:
 
 
 def _unlike(one: Kind, two: Kind) -> bool:
-    """Whether one kind is alive and the other is not. Nobody would add these up."""
+    """Whether one kind is alive and the other is not. Adding these up would be unnatural."""
     return (one.category in _ALIVE) != (two.category in _ALIVE)
 
 
