@@ -1,5 +1,6 @@
-"""Fixtures for all rooms."""
+"""Fixtures for all packages."""
 
+import signal
 from collections.abc import Generator
 
 import pytest
@@ -17,3 +18,7 @@ def pytest_runtest_makereport() -> Generator[None, pytest.TestReport, pytest.Tes
         report.outcome = "failed"
         report.longrepr = f"skipped, and a skipped test fails its tier: {report.longrepr}"
     return report
+
+
+# A shell that starts the tests in the background ignores SIGINT, and every program that the tests interrupt would inherit that.
+signal.signal(signal.SIGINT, signal.default_int_handler)
