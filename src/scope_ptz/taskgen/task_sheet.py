@@ -13,7 +13,6 @@ from PIL import Image
 from scope_ptz.agent.drawing import AMBER, CYAN, EDGE, FAINT, INK, SURFACE, Canvas, cut, drawable, wrap
 from scope_ptz.bench.program_runner import MakeToolContext, ProgramRunner
 from scope_ptz.bench.scoring.coverage import box_directions
-from scope_ptz.bench.scoring.episode import FrameGeometry
 from scope_ptz.bench.scoring.verdict import score_episode
 from scope_ptz.bench.tasks.task import EvidenceView, Item, Task
 from scope_ptz.errors import OutputError
@@ -21,8 +20,8 @@ from scope_ptz.geometry import Equirectangular, Perspective, Pose, Projection
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.simulator.views import picture
 from scope_ptz.taskgen.facts.answer_phrasing import right_answers
+from scope_ptz.taskgen.facts.robust import TASK_CAMERA
 
-EYES = FrameGeometry(1280, 720)
 _MARGIN, _HEAD, _LINE = 28, 118, 24
 _WIDE = 2200.0
 _NEAR = (260, 146)
@@ -48,7 +47,7 @@ def summary(task: Task, wordings: Sequence[Task]) -> Iterator[str]:
 def reference_run(task: Task, scene: Scene, equip: MakeToolContext) -> Iterator[str]:
     """Return the calls of the reference program with the results of the tools, and the verdict."""
     text, outcome = right_answers(task.expected)[0], task.behaviour.outcomes[0]
-    stage = ProgramRunner(scene, equip, EYES)
+    stage = ProgramRunner(scene, equip, TASK_CAMERA)
     episode = anyio.run(stage.run, task, task.reference, text, outcome)
     for call in episode.calls:
         yield f"call       {call.name} {json.dumps(dict(call.arguments))} -> {call.error or (call.result or {}).get('message')}"
@@ -60,7 +59,7 @@ def reference_run(task: Task, scene: Scene, equip: MakeToolContext) -> Iterator[
 def write_frames(task: Task, scene: Scene, out: Path) -> Iterator[Path]:
     """Write a picture of the start view, then one per evidence view with its items outlined and listed."""
     start = next(p for p in scene.file.presets if p.name == task.preset)
-    at_start = EYES.view(Pose(start.pan_deg, start.tilt_deg, start.zoom))
+    at_start = TASK_CAMERA.view(Pose(start.pan_deg, start.tilt_deg, start.zoom))
     sheets = [(f"{task.id}-start.png", _sheet(task, scene, start.viewpoint, at_start, (), f"start: preset {start.name}"))]
     for number, view in enumerate(task.evidence, 1):
         caption = f"evidence {number} of {len(task.evidence)}: {_where(view)}"
@@ -83,7 +82,7 @@ def _where(view: EvidenceView) -> str:
 
 def _projection(view: EvidenceView) -> Projection:
     aim = view.aim
-    return EYES.sweep() if view.scope == "full" else EYES.view(Pose(aim.pan_deg, aim.tilt_deg, aim.zoom))
+    return TASK_CAMERA.sweep() if view.scope == "full" else TASK_CAMERA.view(Pose(aim.pan_deg, aim.tilt_deg, aim.zoom))
 
 
 def _sheet(task: Task, scene: Scene, viewpoint: str, projection: Projection, items: Sequence[Item], caption: str) -> Image.Image:

@@ -113,8 +113,8 @@ def read_header(path: Path) -> EvalLog:
         # The engine's own reader changes asyncio for the whole program when an event loop runs.
         with ZipFile(path) as archive:
             whole = HEADER in archive.namelist()
-            told = from_json(archive.read(HEADER if whole else START))
-        header = EvalLog.model_validate(told if whole else {**told, "status": "started"}, context=header_context())
+            header_data = from_json(archive.read(HEADER if whole else START))
+        header = EvalLog.model_validate(header_data if whole else {**header_data, "status": "started"}, context=header_context())
         header.location = str(path)
         if "scope" not in (header.eval.metadata or {}):
             raise TraceError(f"{path} is the log of another evaluation ({header.eval.task}), not of this benchmark.")
@@ -181,8 +181,8 @@ def trial_in(sample: Mapping[str, Any], path: Path) -> Trial:
     """Return the trial of a sample, with its latest checks and every judgement."""
     entry, scores = Entry.of_metadata(sample["metadata"]), sample.get("scores") or {}
     judgements = judgements_in(scores)
-    told = next((s["metadata"][TRIAL] for s in reversed(scores.values()) if TRIAL in (s.get("metadata") or {})), None)
-    if told is None or entry.task is None:
+    stored = next((s["metadata"][TRIAL] for s in reversed(scores.values()) if TRIAL in (s.get("metadata") or {})), None)
+    if stored is None or entry.task is None:
         kept = kept_in(sample) or Kept("", {}, "")
         return trial_of(entry, kept, sample["epoch"], path, judgements)
-    return Trial.model_validate({**told, "task": entry.facts, "judgements": judgements})
+    return Trial.model_validate({**stored, "task": entry.facts, "judgements": judgements})

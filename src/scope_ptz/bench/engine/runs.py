@@ -111,13 +111,13 @@ def stored_log(path: Path) -> StoredLog:
     return StoredLog(path, read_header(path), runs_in(path))
 
 
-def earlier_evaluations(log_dir: Path, planner: str, eyes: str) -> list[Evaluation]:
+def earlier_evaluations(log_dir: Path, planner: str, perception: str) -> list[Evaluation]:
     """Return the evaluations of a pair in a folder. A run that several logs hold is in the first of them only."""
     found, seen = [], set[str]()
     for path in sorted(log_dir.glob("*.eval")):
         try:
             card = card_of(read_header(path), None)
-            if (card.planner.name, card.perception.name) != (planner, eyes):
+            if (card.planner.name, card.perception.name) != (planner, perception):
                 continue
             names = {sample_name(*run): uuid for run, uuid in uuids_in(path).items()}
             evaluation = read_evaluation(path)

@@ -42,8 +42,8 @@ def audit_make(
     from scope_ptz.factory.validation_perception import KnownViews, equip_with_truth
     from scope_ptz.factory.worlds import worlds_of
     from scope_ptz.taskgen.audit_questions import write_question
+    from scope_ptz.taskgen.facts.robust import TASK_CAMERA
     from scope_ptz.taskgen.picture_audit import DRAW, QUESTIONS, QuestionDraw, draw_questions
-    from scope_ptz.taskgen.task_sheet import EYES
 
     rows = load_split(tasks)
     chosen = draw_questions(rows, number, seed)
@@ -51,7 +51,7 @@ def audit_make(
         raise InputError("None of these tasks expects an answer: there is nothing to ask.")
     worlds = worlds_of([task for _, task in chosen])
     equip = equip_with_truth(worlds, KnownViews())
-    stages = {name: ProgramRunner(world, equip, EYES) for name, world in worlds.items()}
+    stages = {name: ProgramRunner(world, equip, TASK_CAMERA) for name, world in worlds.items()}
     try:
         out.mkdir(parents=True)
     except FileExistsError as error:
