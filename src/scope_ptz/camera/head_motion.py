@@ -37,8 +37,8 @@ class HeadMotion:
 
     def __init__(self, head: Head, limits: Limits, pose: Pose) -> None:
         self._head, self._limits = head, limits
-        self._command: _Move | _Driving = _Move(head, pose, pose)
-        self._since_s = 0.0
+        # One attribute, so that another thread that reads a pose never sees half of a command.
+        self._current: tuple[_Move | _Driving, float] = _Move(head, pose, pose), 0.0
         self.commands = 0
         """Number of commands so far. It tells whether another command has replaced one."""
 
@@ -61,7 +61,8 @@ class HeadMotion:
 
     def pose(self, now_s: float) -> Pose:
         """Return the pose at a time, which lies at or after the last command."""
-        command, time_s = self._command, now_s - self._since_s
+        command, since_s = self._current
+        time_s = now_s - since_s
         if isinstance(command, _Move):
             return command.head.at(command.start, command.end, time_s)
         pan, tilt, octaves = (distance for distance, _ in self._driven(command, time_s))
@@ -71,11 +72,11 @@ class HeadMotion:
 
     def velocity(self, now_s: float) -> Velocity:
         """Return the velocity of a driven head. A move to a pose reports none: the next command starts from rest."""
-        command = self._command
+        command, since_s = self._current
         if isinstance(command, _Move):
             return Velocity()
         pose = self.pose(now_s)
-        pan, tilt, zoom = (speed for _, speed in self._driven(command, now_s - self._since_s))
+        pan, tilt, zoom = (speed for _, speed in self._driven(command, now_s - since_s))
         limits = self._limits
         return Velocity(
             0.0 if not limits.pan_endless and _pushes(pan, pose.pan_deg, limits.min_pan_deg, limits.max_pan_deg) else pan,
@@ -85,13 +86,13 @@ class HeadMotion:
 
     def ends_s(self) -> float:
         """Return the time at which the current command ends, with the settling of a move to a pose."""
-        command = self._command
+        command, since_s = self._current
         if isinstance(command, _Move):
-            return self._since_s + command.head.duration_s(command.start, command.end)
+            return since_s + command.head.duration_s(command.start, command.end)
         head, at_end = self._head, self._driven(command, command.hold_s)
         motors = (head.pan, head.tilt, head.zoom)
         braking_s = max(motor.braking_s(speed) for motor, (_, speed) in zip(motors, at_end, strict=True))
-        return self._since_s + command.hold_s + braking_s
+        return since_s + command.hold_s + braking_s
 
     def moving(self, now_s: float) -> bool:
         """Return whether a command is still being carried out."""
@@ -107,7 +108,7 @@ class HeadMotion:
         )
 
     def _replace(self, command: _Move | _Driving, now_s: float) -> None:
-        self._command, self._since_s = command, now_s
+        self._current = command, now_s
         self.commands += 1
 
 
