@@ -156,7 +156,7 @@ def test_the_end_can_be_typed() -> None:
     assert parse("help") is None
     with pytest.raises(TaskLeftError) as left:
         parse("quit")
-    assert left.value.for_good
+    assert left.value.ends_session
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""The schema of a judge's reply, and its strict parser. An invalid reply is reported back to the judge and never guessed."""
+"""The schema of a judge's reply, and its strict parser. An invalid reply is reported to the judge, and its verdict is never guessed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scope_ptz.bench.scoring.error_modes import ErrorMode
 NO_MODE = "none"
 MOST_REASON_CHARS = 1_000
 _MOST_BRACES = 100
-"""Maximum number of braces that open no valid JSON. A text with more of them is degenerate."""
+"""Maximum number of opening braces without valid JSON after which the parser stops."""
 
 REPLY_SCHEMA: dict[str, Any] = {
     "type": "object",
@@ -70,7 +70,7 @@ def parse_judge_reply(text: str) -> JudgeReply | str:
     The reply must contain one JSON object, possibly surrounded by words or a code fence. Several objects must agree.
 
     Returns:
-        The verdict, or what is wrong with the reply, in words for the judge.
+        The verdict, or a description of the error, which is sent to the judge.
     """
     found = [content for content in _objects(text) if isinstance(content, dict) and "verdict" in content]
     if not found:

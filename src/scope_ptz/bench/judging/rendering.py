@@ -20,17 +20,17 @@ from scope_ptz.bench.tasks.task_facts import TaskFacts
 from scope_ptz.geometry import Pose
 
 LEAST_CHARS = 6_000
-"""Minimum budget in characters. A shorter description could not be judged."""
+"""Minimum budget in characters. A shorter description could not be judged reliably."""
 
 _INSTRUCTION_CHARS, _EXPECTED_CHARS, _ANSWER_CHARS = 4_000, 2_000, 8_000
 _RESULT_CHARS = (4_000, 1_200, 300)
-"""Maximum lengths of one tool result, tried in this order."""
+"""Maximum lengths of a tool result in characters. The first one with which all calls fit is used."""
 
 _NAME_CHARS, _MOST_PRESETS, _NOTE_CHARS = 60, 40, 300
-_BULK = frozenset({"boxes", "box", "path", "frames", "source"})
-"""Parts of results that are left out: they do not help a judge, or they would reveal the perception model."""
+_OMITTED_FIELDS = frozenset({"boxes", "box", "path", "frames", "source"})
+"""Fields of results that are left out, because they do not help a judge or would reveal the perception model."""
 
-_LOOKER = re.compile(r" ?\(seen by [^()]*\)")
+_PERCEPTION_NAME = re.compile(r" ?\(seen by [^()]*\)")
 
 _ENDINGS = {
     "answered": "the agent gave a final answer",
@@ -127,7 +127,7 @@ def _all_calls(calls: Sequence[CaseCall], most: int, room: int) -> list[str] | N
 
 
 def _ends_kept(calls: Sequence[CaseCall], room: int) -> list[str]:
-    """Return as many of the first and last calls as fit, taken alternately from both ends, and a note about the others."""
+    """Return as many calls from both ends as fit, taken alternately, and a note about the calls in the middle."""
     front, back = list[str](), list[str]()
     left = room - _NOTE_CHARS
     while len(front) + len(back) < len(calls):
@@ -159,9 +159,9 @@ def _at(viewpoint: str | None) -> str:
 
 
 def _kept(result: Mapping[str, Any]) -> dict[str, Any]:
-    kept = {name: value for name, value in result.items() if name not in _BULK and name != "pose"}
+    kept = {name: value for name, value in result.items() if name not in _OMITTED_FIELDS and name != "pose"}
     if isinstance(kept.get("message"), str):
-        kept["message"] = _LOOKER.sub("", kept["message"])
+        kept["message"] = _PERCEPTION_NAME.sub("", kept["message"])
     return kept
 
 
@@ -175,7 +175,10 @@ def in_words(pose: Pose) -> str:
 
 
 def specimen() -> str:
-    """Return the description of an invented run with every part once. The prompt version includes it, so it covers the layout."""
+    """Return the description of an invented run that contains every part of the layout.
+
+    The prompt version includes it, so a change of the layout changes the version.
+    """
     pose = Pose(10.0, -5.0, 2.0)
     facts = TaskFacts(
         id="id", dataset="dataset", stratum="core", scene="scene", viewpoint="mast", preset="gate", instruction="Look.",
