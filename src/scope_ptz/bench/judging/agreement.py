@@ -72,7 +72,7 @@ class RaterPair:
 
 @dataclass(frozen=True)
 class RaterGroup:
-    """The agreement of several raters on the runs that all of them rated. ``left_out`` is the number of runs that only some rated."""
+    """The agreement of several raters on the runs that all of them rated. ``left_out`` is the number of the other runs."""
 
     raters: tuple[str, ...]
     what: str

@@ -1,6 +1,7 @@
 """Human labels of runs, stored as JSON lines in a file next to the log.
 
-A later line by the same person about the same run replaces an earlier one. Lines are only appended, so an interruption loses no label.
+A later line by the same person about the same run replaces an earlier one. Lines are only appended, so an interruption loses no
+label.
 """
 
 from __future__ import annotations

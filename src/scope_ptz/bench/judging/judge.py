@@ -12,7 +12,7 @@ from scope_ptz.agent.trace import Trace
 from scope_ptz.bench.judging.case import JudgeCase, case_of
 from scope_ptz.bench.judging.judge_replies import REPLY_SCHEMA, JudgeReply, parse_judge_reply
 from scope_ptz.bench.judging.quoting import cut
-from scope_ptz.bench.judging.rendering import LEAST_CHARS, render
+from scope_ptz.bench.judging.rendering import MIN_CHARS, render
 from scope_ptz.bench.judging.rubrics import prompt_version, system_prompt
 from scope_ptz.bench.scoring.episode import PresetViewpoints
 from scope_ptz.bench.scoring.trials import Judgement
@@ -103,8 +103,8 @@ class _Session:
             try:
                 reply = await self.judge.complete(messages, REPLY_SCHEMA)
             except NoReplyError as failure:
-                if failure.overflow and budget > LEAST_CHARS:
-                    budget = max(budget // 2, LEAST_CHARS)
+                if failure.overflow and budget > MIN_CHARS:
+                    budget = max(budget // 2, MIN_CHARS)
                     messages = opening = judge_messages(facts, case, budget)
                     continue
                 return self._made("failed", str(failure))

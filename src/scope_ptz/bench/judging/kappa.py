@@ -1,8 +1,8 @@
 """Agreement of raters beyond chance: Cohen's kappa for two raters (1960), Fleiss' kappa for more (1971), with bootstrap intervals.
 
 Point estimates are computed by statsmodels. Intervals are percentile bootstraps over clusters (Efron and Tibshirani 1993, section
-13.3). Whole tasks are drawn, because ratings of runs of one task are not independent. kappa = (p_o - p_e) / (1 - p_e) is undefined if all ratings
-are the same (p_e = 1).
+13.3). Whole tasks are drawn, because ratings of runs of one task are not independent. kappa = (p_o - p_e) / (1 - p_e) is undefined
+if all ratings are the same (p_e = 1).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 LEVEL = 0.95
 DRAWS = 2000
-_LEAST_DEFINED = 0.5
+_MIN_DEFINED = 0.5
 """Minimum share of draws in which kappa must be defined. Below it, no interval is given."""
 
 Numbers = NDArray[np.float64]
@@ -154,7 +154,7 @@ def _interval(by_cluster: Numbers, value: Callable[[Numbers], Numbers], seed: in
     drawn = np.random.default_rng(seed).multinomial(clusters, np.full(clusters, 1 / clusters), size=DRAWS)
     values = value(drawn @ by_cluster)
     values = values[~np.isnan(values)]
-    if len(values) < DRAWS * _LEAST_DEFINED:
+    if len(values) < DRAWS * _MIN_DEFINED:
         return {"low": None, "high": None}
     tail = (1 - LEVEL) / 2
     low, high = np.quantile(values, (tail, 1 - tail))

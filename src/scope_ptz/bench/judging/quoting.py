@@ -24,13 +24,13 @@ def quoted(text: str) -> str:
 
 
 def inline(text: str, max_chars: int) -> str:
-    """Return a name in quotation marks for use within a line, with at max_chars ``max_chars`` characters. It cannot close the marks."""
+    """Return a name of at most ``max_chars`` characters for use within a line, in quotation marks that it cannot close."""
     line = _harmless(" ".join(_LINE_ENDS.sub(" ", text).split())).replace('"', "'")
     return f'"{line if len(line) <= max_chars else line[: max_chars - 1] + "…"}"'
 
 
 def cut(text: str, max_chars: int) -> str:
-    """Return a text of at max_chars about ``max_chars`` characters. A note replaces the middle of a longer text."""
+    """Return a text of at most about ``max_chars`` characters. A note replaces the middle of a longer text."""
     if len(text) <= max_chars:
         return text
     head, tail = max_chars * 2 // 3, max_chars // 3

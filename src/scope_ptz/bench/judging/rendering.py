@@ -19,14 +19,14 @@ from scope_ptz.bench.scoring.episode import PresetViewpoints
 from scope_ptz.bench.tasks.task_facts import TaskFacts
 from scope_ptz.geometry import Pose
 
-LEAST_CHARS = 6_000
+MIN_CHARS = 6_000
 """Minimum budget in characters. A shorter description could not be judged reliably."""
 
 _INSTRUCTION_CHARS, _EXPECTED_CHARS, _ANSWER_CHARS = 4_000, 2_000, 8_000
 _RESULT_CHARS = (4_000, 1_200, 300)
 """Maximum lengths of a tool result in characters. The first one with which all calls fit is used."""
 
-_NAME_CHARS, _MOST_PRESETS, _NOTE_CHARS = 60, 40, 300
+_NAME_CHARS, _MAX_PRESETS, _NOTE_CHARS = 60, 40, 300
 _OMITTED_FIELDS = frozenset({"boxes", "box", "path", "frames", "source"})
 """Fields of results that are left out, because they do not help a judge or would reveal the perception model."""
 
@@ -50,15 +50,15 @@ def render(facts: TaskFacts, case: JudgeCase, budget: int) -> str:
     Args:
         facts: The facts about the task.
         case: The run.
-        budget: Maximum length in characters. A budget below ``LEAST_CHARS`` counts as ``LEAST_CHARS``.
+        budget: Maximum length in characters. A budget below ``MIN_CHARS`` counts as ``MIN_CHARS``.
     """
     head, tail = _task_part(facts, case), _end_part(case)
-    room = max(budget, LEAST_CHARS) - len(head) - len(tail)
-    return f"{head}\n\n{_calls_part(case.calls, max(room, LEAST_CHARS // 4))}\n\n{tail}"
+    room = max(budget, MIN_CHARS) - len(head) - len(tail)
+    return f"{head}\n\n{_calls_part(case.calls, max(room, MIN_CHARS // 4))}\n\n{tail}"
 
 
 def _task_part(facts: TaskFacts, case: JudgeCase) -> str:
-    names = [_preset(name, case) for name in case.presets[:_MOST_PRESETS]]
+    names = [_preset(name, case) for name in case.presets[:_MAX_PRESETS]]
     more = len(case.presets) - len(names)
     presets = ", ".join(names) + (f" and {more} more" if more > 0 else "") if names else "none"
     where = f" at viewpoint {inline(case.viewpoint, _NAME_CHARS)}" if case.viewpoint else ""
@@ -185,8 +185,8 @@ def specimen() -> str:
         category="counting", scope="current", difficulty="easy", expected="5", demands=("go_home()",),
     )  # fmt: skip
     calls = [CaseCall("tool", {"a": 1}, {"message": "Done.", "box": [0]}, None, pose, "mast")]
-    calls += [CaseCall("tool", {}, None, "It failed.", pose)] * LEAST_CHARS
+    calls += [CaseCall("tool", {}, None, "It failed.", pose)] * MIN_CHARS
     case = JudgeCase(
         "Look.", pose, "mast", ("gate",), tuple(calls), pose, "Five.", "answered", True, PresetViewpoints({"gate": "mast"}, "mast")
     )
-    return "\n\n".join(render(facts, shown, LEAST_CHARS) for shown in (case, replace(case, calls=(), outcome=None, answer="")))
+    return "\n\n".join(render(facts, shown, MIN_CHARS) for shown in (case, replace(case, calls=(), outcome=None, answer="")))

@@ -17,10 +17,9 @@ from scope_ptz.endpoints.failures import FailureKind, ServerFailure
 from scope_ptz.planner.chat.dialect import Dialect
 from scope_ptz.planner.chat.reasoning_text import part
 
-Kind = FailureKind
 Form = Literal["json_schema", "json_object", "free"]
 _FORMS: tuple[Form, ...] = ("json_schema", "json_object", "free")
-_REFUSALS = (Kind.BAD_REQUEST, Kind.SERVER_ERROR, Kind.NOT_FOUND, Kind.ERROR_BODY)
+_REFUSALS = (FailureKind.BAD_REQUEST, FailureKind.SERVER_ERROR, FailureKind.NOT_FOUND, FailureKind.ERROR_BODY)
 _ABOUT_FORM = re.compile(r"response_format|json_?(schema|object)|schema|grammar|guided|structured|xgrammar|outlines", re.IGNORECASE)
 _MAX_REQUESTS = 6
 """Maximum number of requests for one reply. Each drops an option that the server refused."""
@@ -53,7 +52,10 @@ class _Known:
 
 
 class JudgeServer:
-    """Completes a judge's messages on a server. Concurrent judgements may share it. It remembers which options the server refuses."""
+    """Completes a judge's messages on a server.
+
+    Concurrent judgements may share it. It remembers which options the server refuses.
+    """
 
     def __init__(self, endpoint: Endpoint, options: JudgeModelOptions | None = None) -> None:
         self.options, self.client, self._known = options or JudgeModelOptions(), ChatClient(endpoint), _Known()
@@ -70,7 +72,7 @@ class JudgeServer:
         Raises:
             NoReplyError: The server failed or refuses every form of request.
         """
-        form, quiet, dialect = self._known.form, False, self._known.dialect
+        form, after_empty, dialect = self._known.form, False, self._known.dialect
         for _ in range(_MAX_REQUESTS):
             fields = dialect.fields(self.options.model_dump())
             try:
@@ -80,13 +82,13 @@ class JudgeServer:
             except ServerFailure as failure:
                 if dialect.learn(failure, fields, with_tools=False):
                     continue
-                if form + 1 < len(_FORMS) and (failure.kind is Kind.EMPTY or _refuses_form(failure)):
-                    form, quiet = form + 1, quiet or failure.kind is Kind.EMPTY
+                if form + 1 < len(_FORMS) and (failure.kind is FailureKind.EMPTY or _refuses_form(failure)):
+                    form, after_empty = form + 1, after_empty or failure.kind is FailureKind.EMPTY
                     continue
-                if failure.kind is Kind.EMPTY:
+                if failure.kind is FailureKind.EMPTY:
                     return Completion(text="")
-                raise NoReplyError(str(failure), overflow=failure.kind is Kind.CONTEXT_OVERFLOW) from None
-            if not quiet:  # An empty reply may be temporary; a refusal is not.
+                raise NoReplyError(str(failure), overflow=failure.kind is FailureKind.CONTEXT_OVERFLOW) from None
+            if not after_empty:  # An empty reply may be temporary; a refusal is not.
                 self._known.form = max(self._known.form, form)
             return _read(reply)
         raise NoReplyError(f"The judge's server at {self.client.endpoint.url} refuses every form of request.")
@@ -98,7 +100,7 @@ class JudgeServer:
 
 def _refuses_form(failure: ServerFailure) -> bool:
     """Return whether a server may have refused the response format: it names it, or calls the request bad."""
-    return failure.kind in _REFUSALS and (failure.kind is Kind.BAD_REQUEST or _ABOUT_FORM.search(failure.detail) is not None)
+    return failure.kind in _REFUSALS and (failure.kind is FailureKind.BAD_REQUEST or _ABOUT_FORM.search(failure.detail) is not None)
 
 
 def _response_format(form: Form, schema: dict[str, Any]) -> dict[str, Any]:
