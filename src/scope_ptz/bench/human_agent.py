@@ -28,7 +28,7 @@ HELP = """  pan 20  pan -20  tilt -5  zoom 2  zoom in  zoom out   turn and zoom;
 Ask = Callable[[str], str]
 """Asks the person for a line. Raises ``EOFError`` at the end of the input."""
 T = TypeVar("T")
-_ENDS = {"answer": "answered", "question": "clarification", "refuse": "refused"}
+_FINAL_REPLIES = {"answer": "answered", "question": "clarification", "refuse": "refused"}
 
 
 class TaskLeftError(Exception):
@@ -40,13 +40,16 @@ class TaskLeftError(Exception):
 
 
 def parse(line: str) -> ToolCall | Finish | None:
-    """Parse a typed line; None for help. Raises ``TaskLeftError``, or ``InputError`` when the line is wrong."""
+    """Parse a typed line into a call or a final reply; return None if it asks for help.
+
+    Raises ``TaskLeftError``, or ``InputError`` when the line is wrong.
+    """
     verb, _, rest = line.strip().partition(" ")
     verb, rest = verb.lower(), rest.strip()
-    if verb in _ENDS:
+    if verb in _FINAL_REPLIES:
         if not rest:
             raise InputError(f"'{verb}' needs a text after it.")
-        return Finish(kind=_ENDS[verb], text=rest)  # type: ignore[arg-type]
+        return Finish(kind=_FINAL_REPLIES[verb], text=rest)  # type: ignore[arg-type]
     if verb in ("skip", "quit"):
         raise TaskLeftError(ends_session=verb == "quit")
     if verb in ("help", "?", ""):

@@ -229,7 +229,7 @@ def test_totals_are_counted_again(rows: Rows, tmp_path: Path) -> None:
     rows[0]["totals"]["headlines"] = {"correct": 2 * len(TASKS)}
     rows[0]["totals"]["error_modes"] = {"reasoning": 4}
     found = faults_of(rows, tmp_path)
-    assert "headline correct, counted" in found and "headline incorrect, counted 1" in found
+    assert "headline correct 28 times, but it occurs 27 times" in found and "headline incorrect" in found
     assert "4 times error mode reasoning, counted 0" in found and "error mode scope, counted 1" in found
 
 
@@ -237,7 +237,7 @@ def test_lines_that_are_no_json_are_told_and_files_that_are_none_refused(tmp_pat
     path = tmp_path / "x.jsonl"
     path.write_text('{"kind": "trial"\n[1]\n{"a": NaN}\n' + "[" * 100_000 + "\n", "utf-8")
     found = "\n".join(check_submission(path, TASKS).faults)
-    assert "line 1: no JSON" in found and "line 2" in found and "line 3: no JSON (NaN" in found and "line 4" in found
+    assert "line 1: not valid JSON" in found and "line 2" in found and "line 3: not valid JSON (NaN" in found and "line 4" in found
     path.write_bytes(b"\xff\xfe\x00")
     with pytest.raises(InputError, match="not UTF-8"):
         check_submission(path, TASKS)

@@ -26,7 +26,7 @@ _DEFINITE = re.compile(
 
 
 def is_half_unclear(text: AnswerText, subject: Sequence[str]) -> bool:
-    """Return whether an answer leaves open whether the subject is in the half that was asked about.
+    """Return whether it is unclear if an answer is about the half that the question asks about.
 
     Such an answer makes different statements about the two halves ("one on the left, none on the right"), or places everything in
     one half.
@@ -49,7 +49,7 @@ def is_half_unclear(text: AnswerText, subject: Sequence[str]) -> bool:
 
 
 def _is_definite(text: AnswerText, group: Sequence[int], mention: NameMention) -> bool:
-    """Return whether a segment places all of the subject at one side, as in "the cones are on the left"."""
+    """Return whether a segment places every instance of the subject on one side, as in "the cones are on the left"."""
     before = " ".join(text.words[i].text for i in group if i < mention.start)
     after = " ".join(text.words[i].text for i in group if i >= mention.end)
     return re.search(r"\b(the|these|those)( \w+)?$", before) is not None and _DEFINITE.match(after) is not None

@@ -14,6 +14,7 @@ _ALLOWED_BEFORE = frozenset({
     "thus", "answer", "finally", "first", "last", "second", "third", "next", "lastly", "nearest", "closest", "farthest",
     "furthest", "largest", "biggest", "smallest", "leftmost", "rightmost",
 })  # fmt: skip
+"""Words that may precede a short form."""
 _ALLOWED_AFTER = frozenset({
     "is", "are", "was", "were", "has", "have", "and", "or", "then", "than", "comes", "come", "appears", "appear", "seems", "looks",
     "stands", "takes", "being", "followed", "because", "since", "as", "while", "next", "last", "first", "second", "third", "by",
@@ -25,7 +26,7 @@ _ALLOWED_AFTER = frozenset({
 def option_mentions(text: AnswerText, options: Mapping[str, Sequence[str]]) -> list[NameMention]:
     """Return the mentions of options. "The bus" names the red double-decker bus if no other option is a bus."""
     full_names = {name: all_wordings(name, further) for name, further in options.items()}
-    short = _shortenings(full_names)
+    short = _unambiguous_short_forms(full_names)
     found = text.mentions({name: (*wordings, *short[name]) for name, wordings in full_names.items()})
     return [m for m in found if _is_full_name(text, m, full_names[m.name]) or _stands_alone(text, m)]
 
@@ -61,7 +62,7 @@ def _stands_alone(text: AnswerText, mention: NameMention) -> bool:
 _PLACES = frozenset({"in the middle", "on the left", "on the right", "in the centre", "in between them"})
 
 
-def _shortenings(full_names: Mapping[str, Sequence[str]]) -> dict[str, tuple[str, ...]]:
+def _unambiguous_short_forms(full_names: Mapping[str, Sequence[str]]) -> dict[str, tuple[str, ...]]:
     """Return the short forms of each option that fit no other option.
 
     A short form is the noun with some of the words before it, or the proper name at the beginning of the option.
@@ -69,11 +70,13 @@ def _shortenings(full_names: Mapping[str, Sequence[str]]) -> dict[str, tuple[str
     found = dict[str, tuple[str, ...]]()
     for name in full_names:
         others = [plain_words(wording) for other, wordings in full_names.items() if other != name for wording in wordings]
-        found[name] = tuple(" ".join(words) for words in _shorter(name) if not any(_is_within(words, other) for other in others))
+        found[name] = tuple(
+            " ".join(words) for words in _short_forms(name) if not any(_is_within(words, other) for other in others)
+        )
     return found
 
 
-def _shorter(name: str) -> list[tuple[str, ...]]:
+def _short_forms(name: str) -> list[tuple[str, ...]]:
     """Return the possible short forms of a name."""
     words = plain_words(name)
     connections = [at for at, word in enumerate(words) if word in _CONNECTING_WORDS]

@@ -72,7 +72,10 @@ class RaterPair:
 
 @dataclass(frozen=True)
 class RaterGroup:
-    """The agreement of several raters on the runs that all of them rated. ``left_out`` is the number of the other runs."""
+    """The agreement of several raters on the runs that all of them rated.
+
+    ``what`` describes the group, such as "people". ``left_out`` is the number of runs that only some of them rated.
+    """
 
     raters: tuple[str, ...]
     what: str
@@ -176,7 +179,7 @@ class _RaterCollector:
         item = RatedRun(log, trial.sample, trial.task.paraphrase_of or trial.task.id)
         if trial.scored_by == "checks":
             self._rate("the checks", "checks", "the checks", item, trial.headline, trial.error_mode)
-        for name, group, judgement in numbered(trial.judgements):
+        for name, group, judgement in judgements_with_raters(trial.judgements):
             self._rate(name, "judge", group, item, judgement.verdict, judgement.error_mode)
         for label in trial.labels:
             self._rate(label.by, "person", label.by, item, label.verdict, label.error_mode)
@@ -194,8 +197,8 @@ def add_rating(rater: Rater, item: RatedRun, verdict: str, mode: ErrorMode | Non
         rater.apart[verdict] += 1
 
 
-def numbered(judgements: Sequence[Judgement]) -> Iterator[tuple[str, str, Judgement]]:
-    """Yield the judgements of one run with the names of their raters.
+def judgements_with_raters(judgements: Sequence[Judgement]) -> Iterator[tuple[str, str, Judgement]]:
+    """Yield the judgements of one run with their raters.
 
     One model with two prompts counts as two judges.
 

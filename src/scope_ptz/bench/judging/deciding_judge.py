@@ -99,7 +99,7 @@ def check_decides(trials: Sequence[Trial], requested: str) -> None:
         known = dict.fromkeys(judge_of(j) for t in trials if t.scored_by == "judge" for j in t.judgements if j.verdict in VERDICTS)
         raise InputError(
             f"'{requested}' has given no verdict on a run that only a judge can score, so it cannot decide. "
-            f"Those that have: {', '.join(known) or 'none'}."
+            f"Judges with such verdicts: {', '.join(known) or 'none'}."
         )
 
 

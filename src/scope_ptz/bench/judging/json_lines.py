@@ -33,13 +33,13 @@ def append_line(path: Path, line: str) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with path.open("a+b") as file:
-            file.truncate(_finished(file.seek(0, 2), path))
+            file.truncate(_complete_bytes(file.seek(0, 2), path))
             file.write(line.encode("utf-8") + b"\n")
     except OSError as error:
         raise OutputError(f"{path} cannot be written: {error.strerror}.") from error
 
 
-def _finished(size: int, path: Path, step: int = 4096) -> int:
+def _complete_bytes(size: int, path: Path, step: int = 4096) -> int:
     """Return the size of the complete lines of a file, in bytes."""
     with path.open("rb") as file:
         at = size

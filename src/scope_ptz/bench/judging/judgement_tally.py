@@ -46,7 +46,7 @@ class JudgementTally:
 
     @property
     def summary(self) -> str:
-        """The numbers in words."""
+        """The numbers as text."""
         return f"{self.verdicts} with a verdict, {self.unparseable} unparseable, {self.failed} failed"
 
 
@@ -58,7 +58,7 @@ def without_verdict(trial: Trial) -> bool:
 def not_judged(trial: Trial) -> bool:
     """Return whether a run without a verdict still needs a judgement.
 
-    This holds if it was not judged, if the judge's server failed, or if only judges that do not decide have judged it.
+    This holds if it was not judged, if the judge's server failed, or if only judges other than the deciding one have judged it.
     """
     return without_verdict(trial) and not any(judgement.verdict == "unparseable" for judgement in trial.judgements)
 

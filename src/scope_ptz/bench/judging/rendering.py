@@ -53,8 +53,8 @@ def render(facts: TaskFacts, case: JudgeCase, budget: int) -> str:
         budget: Maximum length in characters. A budget below ``MIN_CHARS`` counts as ``MIN_CHARS``.
     """
     head, tail = _task_part(facts, case), _end_part(case)
-    room = max(budget, MIN_CHARS) - len(head) - len(tail)
-    return f"{head}\n\n{_calls_part(case.calls, max(room, MIN_CHARS // 4))}\n\n{tail}"
+    budget_left = max(budget, MIN_CHARS) - len(head) - len(tail)
+    return f"{head}\n\n{_calls_part(case.calls, max(budget_left, MIN_CHARS // 4))}\n\n{tail}"
 
 
 def _task_part(facts: TaskFacts, case: JudgeCase) -> str:
@@ -104,32 +104,32 @@ def _end_part(case: JudgeCase) -> str:
     )
 
 
-def _calls_part(calls: Sequence[CaseCall], room: int) -> str:
+def _calls_part(calls: Sequence[CaseCall], budget_left: int) -> str:
     if not calls:
         return "Tool calls: none."
     title = f"Tool calls, in order ({len(calls)}):"
-    for most in _RESULT_CHARS:
-        texts = _all_calls(calls, most, room)
+    for max_chars in _RESULT_CHARS:
+        texts = _all_calls(calls, max_chars, budget_left)
         if texts is not None:
             return "\n".join((title, *texts))
-    return "\n".join((title, *_ends_kept(calls, room)))
+    return "\n".join((title, *_ends_kept(calls, budget_left)))
 
 
-def _all_calls(calls: Sequence[CaseCall], most: int, room: int) -> list[str] | None:
-    """Return the text of every call, or None if they do not fit into ``room`` characters."""
-    texts, left = list[str](), room
+def _all_calls(calls: Sequence[CaseCall], max_chars: int, budget_left: int) -> list[str] | None:
+    """Return the text of every call, or None if they do not fit into ``budget_left`` characters."""
+    texts, left = list[str](), budget_left
     for number, call in enumerate(calls, 1):
-        texts.append(_call_text(number, call, most))
+        texts.append(_call_text(number, call, max_chars))
         left -= len(texts[-1]) + 1
         if left < 0:
             return None
     return texts
 
 
-def _ends_kept(calls: Sequence[CaseCall], room: int) -> list[str]:
+def _ends_kept(calls: Sequence[CaseCall], budget_left: int) -> list[str]:
     """Return as many calls from both ends as fit, taken alternately, and a note about the calls in the middle."""
     front, back = list[str](), list[str]()
-    left = room - _NOTE_CHARS
+    left = budget_left - _NOTE_CHARS
     while len(front) + len(back) < len(calls):
         at = len(front) if len(front) <= len(back) else len(calls) - 1 - len(back)
         text = _call_text(at + 1, calls[at], _RESULT_CHARS[-1])
@@ -140,15 +140,17 @@ def _ends_kept(calls: Sequence[CaseCall], room: int) -> list[str]:
     first, last = len(front), len(calls) - len(back)
     tools = Counter(inline(call.name, 30) for call in calls[first:last])
     failed = sum(call.error is not None for call in calls[first:last])
-    most = ", ".join(f"{name} {number} times" for name, number in tools.most_common(9))
-    note = f"[Calls {first + 1} to {last} are left out because the run is long: {most}; {failed} of them failed.]"
+    counts = ", ".join(f"{name} {number} times" for name, number in tools.most_common(9))
+    note = f"[Calls {first + 1} to {last} are left out because the run is long: {counts}; {failed} of them failed.]"
     return [*front, note, *reversed(back)]
 
 
-def _call_text(number: int, call: CaseCall, most: int) -> str:
-    arguments = cut(_json(call.arguments), most)
+def _call_text(number: int, call: CaseCall, max_chars: int) -> str:
+    arguments = cut(_json(call.arguments), max_chars)
     result = (
-        f"error: {cut(call.error, most)}" if call.error is not None else f"result: {cut(_json(_kept(call.result or {})), most)}"
+        f"error: {cut(call.error, max_chars)}"
+        if call.error is not None
+        else f"result: {cut(_json(_shown_fields(call.result or {})), max_chars)}"
     )
     body = quoted(f"{cut(call.name, 80)} {arguments}\n{result}")
     return f"Call {number}:\n{body}\nCamera afterwards:{_at(call.viewpoint)} {in_words(call.pose)}."
@@ -158,7 +160,7 @@ def _at(viewpoint: str | None) -> str:
     return f" at viewpoint {inline(viewpoint, _NAME_CHARS)}," if viewpoint else ""
 
 
-def _kept(result: Mapping[str, Any]) -> dict[str, Any]:
+def _shown_fields(result: Mapping[str, Any]) -> dict[str, Any]:
     kept = {name: value for name, value in result.items() if name not in _OMITTED_FIELDS and name != "pose"}
     if isinstance(kept.get("message"), str):
         kept["message"] = _PERCEPTION_NAME.sub("", kept["message"])

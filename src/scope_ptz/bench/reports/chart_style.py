@@ -106,20 +106,20 @@ def shades(runs: Sequence[ReportRun]) -> list[tuple[str, str | None]]:
     return found
 
 
-def shorten_label(label: str, most: int = 46) -> str:
-    """Return a label shortened to ``most`` characters, without unprintable characters."""
+def shorten_label(label: str, max_chars: int = 46) -> str:
+    """Return a label shortened to ``max_chars`` characters, without unprintable characters."""
     shown = "".join(mark if mark.isprintable() else " " for mark in label)
-    return shown if len(shown) <= most else shown[: most - 1] + "…"
+    return shown if len(shown) <= max_chars else shown[: max_chars - 1] + "…"
 
 
-def wrap_label(label: str, most: int = 42) -> str:
+def wrap_label(label: str, max_chars: int = 42) -> str:
     """Return a label wrapped to at most three lines."""
-    return "\n".join(wrap(shorten_label(label, 3 * most - 8), most) or [""])
+    return "\n".join(wrap(shorten_label(label, 3 * max_chars - 8), max_chars) or [""])
 
 
-def legend_columns(labels: Sequence[str], most: int = 52) -> int:
+def legend_columns(labels: Sequence[str], max_chars: int = 52) -> int:
     """Return the number of legend columns: two if every label fits half the width, else one."""
-    return 2 if len(labels) > 1 and max(map(len, labels)) <= most else 1
+    return 2 if len(labels) > 1 and max(map(len, labels)) <= max_chars else 1
 
 
 def legend_below(figure: Figure, labels: Sequence[str], keys: Sequence[Artist] = ()) -> None:
@@ -134,6 +134,6 @@ def legend_px(labels: Sequence[str]) -> int:
     return 20 * -(-len(labels) // legend_columns(labels))
 
 
-def row_px(labels: Sequence[str], least: int = 26) -> int:
+def row_px(labels: Sequence[str], min_px: int = 26) -> int:
     """Return the height in pixels of a row that fits every label."""
-    return max([least, *(8 + 16 * (1 + words.count("\n")) for words in labels)])
+    return max([min_px, *(8 + 16 * (1 + words.count("\n")) for words in labels)])

@@ -243,8 +243,8 @@ def _point(axes: Axes, at: tuple[float, ...], area: float, shade: str, of: Candi
     return ring, axes.scatter(x, y, s=(sqrt(area) - 3 * width) ** 2, facecolor=shade, edgecolor="none", alpha=0.85)
 
 
-def repeats_chart(table: ReportTable, most: int) -> Chart:
-    """Draw pass^k against k."""
+def repeats_chart(table: ReportTable, max_trials: int) -> Chart:
+    """Draw pass^k for k from 1 to ``max_trials``."""
     labels = [shorten_label(str(row[0]), 100) for row in table.rows]
     with canvas(880, 330 + legend_px(labels)) as (figure, axes):
         parts = []
@@ -254,7 +254,7 @@ def repeats_chart(table: ReportTable, most: int) -> Chart:
                 hue, marker = HUES[number % len(HUES)], "os^Dvp*"[number % 7]
                 axes.plot(*zip(*points, strict=True), marker=marker, color=hue, label=words, lw=2, ms=7)
                 parts.append(f"{row[0]} from {points[0][1]:.1f}% to {points[-1][1]:.1f}%")
-        axes.set_xticks(range(1, most + 1))
+        axes.set_xticks(range(1, max_trials + 1))
         axes.set_ylim(0, 102)
         axes.set_xlabel("k")
         axes.set_ylabel("pass^k (%)")
