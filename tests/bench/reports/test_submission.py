@@ -229,8 +229,8 @@ def test_totals_are_counted_again(rows: Rows, tmp_path: Path) -> None:
     rows[0]["totals"]["headlines"] = {"correct": 2 * len(TASKS)}
     rows[0]["totals"]["error_modes"] = {"reasoning": 4}
     found = faults_of(rows, tmp_path)
-    assert "headline correct 28 times, but it occurs 27 times" in found and "headline incorrect" in found
-    assert "4 times error mode reasoning, counted 0" in found and "error mode scope, counted 1" in found
+    assert "state 28 for headline correct, but the trials have 27" in found and "state 0 for headline incorrect" in found
+    assert "state 4 for error mode reasoning, but the trials have 0" in found and "state 0 for error mode scope" in found
 
 
 def test_lines_that_are_no_json_are_told_and_files_that_are_none_refused(tmp_path: Path) -> None:

@@ -148,7 +148,7 @@ def _header_faults(header: Header, lines: Sequence[TrialLine], known: Mapping[st
     ):
         for name in sorted({*reported, *found}):
             if reported.get(name, 0) != found.get(name, 0):
-                yield f"the totals state {kind} {name} {reported.get(name, 0)} times, but it occurs {found.get(name, 0)} times"
+                yield f"the totals state {reported.get(name, 0)} for {kind} {name}, but the trials have {found.get(name, 0)}"
     datasets = {task.dataset for task in known.values()}
     if header.card.dataset not in {"+".join(sorted(datasets)), *datasets}:
         yield f"the dataset is {header.card.dataset}, but the tasks are of {', '.join(sorted(datasets))}"
