@@ -12,7 +12,8 @@ implement a camera, a planner or a perception backend. Every other module is int
 Sessions: ``open``, ``open_async``, ``Scope``, ``AsyncScope``, ``Run``, ``CallResult``, ``Event``.
 Scenes, models and tools: ``scenes``, ``SceneInfo``, ``models``, ``tool_schemas``.
 Evaluations: ``load_tasks``, ``Task``, ``evaluate``, ``load_results``, ``EvaluationResults``, ``Trial``.
-Base classes and conformance suites: ``Camera``, ``Frame``, ``Pose``, ``Planner``, ``Perception``, ``CameraConformance``, ``PerceptionConformance``.
+Contracts and conformance suites: ``Camera``, ``Frame``, ``Pose``, ``Planner``, ``Perception``, ``CameraConformance``,
+``PerceptionConformance``.
 Errors: ``ScopeError`` and its subclasses ``InputError``, ``CameraError``, ``PlannerError`` and ``PerceptionError``.
 
 Importing the package is cheap, because each name is imported on first use.

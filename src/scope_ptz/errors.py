@@ -30,10 +30,10 @@ __all__ = [
     "PackError",
     "PerceptionError",
     "PlannerError",
+    "RequestRecord",
     "ScopeError",
     "ToolCallError",
     "TraceError",
-    "RequestRecord",
     "UnknownNameError",
 ]
 

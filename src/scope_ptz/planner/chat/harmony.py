@@ -1,7 +1,8 @@
-"""Parse the harmony format of the gpt-oss models, for servers that return it unparsed. A reply is a sequence of messages in channels.
+"""Parse the harmony format of the gpt-oss models, for servers that return it unparsed.
 
-The channel ``analysis`` contains reasoning (``<|channel|>analysis<|message|>...<|end|>``) and ``final`` the answer. A tool call is
-a message whose recipient is the tool:
+A reply is a sequence of messages in channels. The channel ``analysis`` contains reasoning
+(``<|channel|>analysis<|message|>...<|end|>``), and ``final`` contains the answer. A tool call is a message whose recipient is the
+tool:
 ``<|channel|>commentary to=functions.go_home <|constrain|>json<|message|>{}<|call|>``.
 """
 

@@ -21,9 +21,9 @@ from scope_ptz.planner.chat.written_calls import (
     Signatures,
     WrittenCall,
     call_from_object,
+    malformed_call,
     plain_name,
     read_arguments,
-    malformed_call,
 )
 
 _CallParser = Callable[[str, Signatures], list[WrittenCall]]

@@ -10,11 +10,11 @@ from scope_ptz.planner.grammar.instruction_tree import (
     BeforeAfter,
     Compare,
     Condition,
-    Holds,
+    IsTrue,
     Joined,
     Negated,
     Outnumbers,
-    PresetWins,
+    PresetOutnumbers,
     Quantity,
     Readable,
     Seen,
@@ -77,15 +77,15 @@ class JudgingRules(SceneRules):
         thing, predicate = self._thing(node), self.text(node.branches("words")[0].all_leaves())
         if any(np.has("ANY") for b in node.branches("subject") for np in b.branches("np")):
             return Seen(Thing(f"{thing.text} {'' if wanted else 'not '}{predicate}"))
-        return Holds(thing, predicate, wanted)
+        return IsTrue(thing, predicate, wanted)
 
     def says(self, node: Node) -> Condition:
         text = self.text(node.branches("words")[0].all_leaves())
-        return Holds(self._thing(node), text, question=f"does the {self._thing(node).text} say {text}?")
+        return IsTrue(self._thing(node), text, question=f"does the {self._thing(node).text} say {text}?")
 
     def preset_wins(self, node: Node) -> Condition:
         first, second = (self.visit(b) for b in node.branches("named", "numbered", "marked"))
-        return PresetWins(self._thing(node), first, second, self._sense(node))
+        return PresetOutnumbers(self._thing(node), first, second, self._sense(node))
 
     def outnumbers(self, node: Node) -> Condition:
         first, second = self._things(node)[:2]

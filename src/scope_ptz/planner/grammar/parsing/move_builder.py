@@ -68,7 +68,7 @@ class MoveRules(Rules):
         return Amount("limit")
 
     def unsaid(self, node: Node) -> Amount:
-        return Amount("unsaid")
+        return Amount("unspecified")
 
     def same(self, node: Node) -> Amount:
         return Amount("same")
