@@ -92,7 +92,10 @@ class Perspective:
 
 @dataclass(frozen=True, slots=True)
 class Equirectangular:
-    """A panorama: columns are pan, rows are tilt, both linear. ``pan_span_deg`` up to 360, clockwise from ``left_pan_deg``."""
+    """A panorama, whose columns are linear in pan and whose rows are linear in tilt.
+
+    It covers ``pan_span_deg`` (at most 360) clockwise from ``left_pan_deg``.
+    """
 
     left_pan_deg: float
     pan_span_deg: float

@@ -1,4 +1,4 @@
-"""Builders for the rules about conditions and comparisons."""
+"""Build conditions and comparisons from the parse tree."""
 
 # ruff: noqa: ARG002 - all rule methods share one signature
 
@@ -24,13 +24,14 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Unclear,
     WhichPreset,
 )
-from scope_ptz.planner.grammar.parsing.scene_builder import SCOPES, SceneRules, described
+from scope_ptz.planner.grammar.parsing.scene_builder import SCOPES, SceneBuilder, described
 from scope_ptz.planner.grammar.parsing.tree_nodes import Node
 
 
-class JudgingRules(SceneRules):
+class ConditionBuilder(SceneBuilder):
+    """Builds conditions, and steps that compare counts."""
+
     # Conditions --------------------------------------------------------------------------------------------------------
-    """Rules about conditions and comparisons."""
 
     def seen(self, node: Node) -> Condition:
         quantity = next(
@@ -54,7 +55,7 @@ class JudgingRules(SceneRules):
         return Seen(self._people(node), Quantity("==", 0), self._view(node))
 
     def _people(self, node: Node) -> Thing:
-        """Return "people in the lane" for "anyone in the lane"."""
+        """Build "people in the lane" for "anyone in the lane"."""
         return Thing(described(" ".join(["people", *(self.text(b.all_leaves()) for b in node.branches("words"))])))
 
     def unseen_both(self, node: Node) -> Condition:
@@ -67,17 +68,17 @@ class JudgingRules(SceneRules):
         return Readable(self._thing(node))
 
     def holds(self, node: Node) -> Condition:
-        return self._holds(node, True)
+        return self._is_true(node, True)
 
     def holds_not(self, node: Node) -> Condition:
-        return self._holds(node, False)
+        return self._is_true(node, False)
 
-    def _holds(self, node: Node, wanted: bool) -> Condition:
-        """Build a question for "the gate is open", and a count for "any worker is not wearing a helmet"."""
+    def _is_true(self, node: Node, expected: bool) -> Condition:
+        """Build a question for "the gate is open", but a count for "any worker is not wearing a helmet"."""
         thing, predicate = self._thing(node), self.text(node.branches("words")[0].all_leaves())
         if any(np.has("ANY") for b in node.branches("subject") for np in b.branches("np")):
-            return Seen(Thing(f"{thing.text} {'' if wanted else 'not '}{predicate}"))
-        return IsTrue(thing, predicate, wanted)
+            return Seen(Thing(f"{thing.text} {'' if expected else 'not '}{predicate}"))
+        return IsTrue(thing, predicate, expected)
 
     def says(self, node: Node) -> Condition:
         text = self.text(node.branches("words")[0].all_leaves())

@@ -1,4 +1,4 @@
-"""Builders for the rules about motion."""
+"""Build camera moves from the parse tree."""
 
 # ruff: noqa: ARG002 - all rule methods share one signature
 
@@ -7,7 +7,7 @@ from __future__ import annotations
 from typing import Any
 
 from scope_ptz.planner.grammar.instruction_tree import Aim, Amount, Back, Move, Part, Turn, Unclear, Zoom
-from scope_ptz.planner.grammar.parsing.tree_nodes import Node, Rules
+from scope_ptz.planner.grammar.parsing.tree_nodes import Node, RuleBuilder
 
 _DIRECTIONS: dict[str, tuple[tuple[str, int], ...]] = {
     "left": (("pan", -1),),
@@ -43,17 +43,18 @@ class StepSize:
     """The size of the steps of a move: "in 15 degree steps".
 
     Attributes:
-        count: How many steps, where the instruction gives a number.
-        whole: Whether the count divides the whole move, as in "20 degrees in 2 steps".
+        size: The size of one step.
+        count: The number of steps, if the instruction gives it.
+        divides_move: Whether the count divides the divides_move move, as in "20 degrees in 2 steps".
     """
 
-    def __init__(self, size: Amount, count: int | None = None, whole: bool = False) -> None:
-        self.size, self.count, self.whole = size, count, whole
+    def __init__(self, size: Amount, count: int | None = None, divides_move: bool = False) -> None:
+        self.size, self.count, self.divides_move = size, count, divides_move
 
 
-class MoveRules(Rules):
+class MoveBuilder(RuleBuilder):
     # Amounts -----------------------------------------------------------------------------------------------------------
-    """Rules about motion."""
+    """RuleBuilder about motion."""
 
     def degrees(self, node: Node) -> Amount:
         return Amount("degrees", self.visit(node.branches()[0]))
@@ -97,7 +98,7 @@ class MoveRules(Rules):
 
     def in_steps(self, node: Node) -> StepSize:
         number = abs(self.number(node))
-        return StepSize(Amount("degrees", number), max(1, round(number)), whole=True)
+        return StepSize(Amount("degrees", number), max(1, round(number)), divides_move=True)
 
     def step_small(self, node: Node) -> StepSize:
         return StepSize(Amount("degrees", _SMALL_STEP_DEG))
@@ -139,9 +140,9 @@ class MoveRules(Rules):
                 step = made
             else:
                 amount = made
-        if step and step.whole and step.count and amount and amount.kind == "degrees":
+        if step and step.divides_move and step.count and amount and amount.kind == "degrees":
             step = StepSize(Amount("degrees", abs(amount.degrees) / step.count), step.count)
-        elif step and step.whole:
+        elif step and step.divides_move:
             step = StepSize(step.size)
         return tuple(
             Turn(axis, sign, amount, step.size if step else None, step.count if step else None)  # type: ignore[arg-type]
@@ -155,7 +156,7 @@ class MoveRules(Rules):
     turn_late = turn
 
     def turn_at(self, node: Node) -> tuple[Part, ...] | Unclear:
-        """Build "point the camera to the left". "Zoom in on the left" names no thing and asks back."""
+        """Build "point the camera to the left". "Zoom in on the left" names no object, so it becomes a question to the user."""
         if not self.words_of(node.leaves("LOOKAT")[0]).startswith(_AIMING):
             return Unclear("On what shall I zoom in?")
         return self.turn(node)

@@ -1,4 +1,4 @@
-"""Builders for the rules about places, things and questions."""
+"""Build steps about presets, objects and questions from the parse tree."""
 
 # ruff: noqa: ARG002 - all rule methods share one signature
 
@@ -30,7 +30,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     WhichPreset,
     ZoomTo,
 )
-from scope_ptz.planner.grammar.parsing.tree_nodes import Node, Rules
+from scope_ptz.planner.grammar.parsing.tree_nodes import Node, RuleBuilder
 from scope_ptz.tools.arguments import View
 
 SCOPES = {"now", "full", "scene"}
@@ -52,13 +52,13 @@ _RELATIVE = (
     (re.compile(r" (?:what|that)$", re.IGNORECASE), ""),
 )
 _ASKING = re.compile(r"(?:what|where|which|who|why|how|is|are|does|do)(?:['’]s)?\b", re.IGNORECASE)
-_FUSED = re.compile(r"^(?:the|this|that) (?=\w+ ?\w)", re.IGNORECASE)
+_ARTICLE_IN_PHRASE = re.compile(r"^(?:the|this|that) (?=\w+ ?\w)", re.IGNORECASE)
 _DURATIONS = {"seconds", "minutes", "part_minute", "minute_and_part", "minutes_seconds", "hours"}
 
 
-class SceneRules(Rules):
+class SceneBuilder(RuleBuilder):
     # Descriptions ------------------------------------------------------------------------------------------------------
-    """Rules about places, things and questions."""
+    """RuleBuilder about places, things and questions."""
 
     def np(self, node: Node) -> Thing:
         parts = node.branches("words", "relative")
@@ -66,7 +66,7 @@ class SceneRules(Rules):
         leaves = parts[0].all_leaves()
         not_an_object = not any(leaf.kind == "WORD" or self.lexemes[leaf.index].kinds & _NOUNS for leaf in leaves)
         text = described(self.text([leaf for part in parts for leaf in part.all_leaves()]))
-        bare = _FUSED.sub("", text)  # "the site office": "the site" is one lexeme
+        bare = _ARTICLE_IN_PHRASE.sub("", text)  # in "the site office", "the site" is one lexeme
         return Thing(bare, definite=determiner or bare != text, not_an_object=not_an_object)
 
     def thing(self, node: Node) -> Thing:
@@ -205,7 +205,7 @@ class SceneRules(Rules):
 
     # Counting and asking -----------------------------------------------------------------------------------------------
     def count(self, node: Node) -> Step | tuple[Step, ...]:
-        """Build a count of several things, unless the last of them is a question of its own."""
+        """Build a count. If the last of several descriptions is a question, it becomes a step of its own."""
         *things, last = self._things(node)
         if things and _ASKING.match(last.text):
             return (Count(tuple(things), self._view(node)), Ask(last.text + "?", self._view(node)))
