@@ -17,7 +17,8 @@ case only the length of the reasoning can be set.
 BYTES_PER_PARAMETER: dict[Precision, float] = {
     "fp32": 4.0, "fp16": 2.0, "bf16": 2.0, "fp8": 1.05, "int4": 0.6, "q4": 0.61, "mxfp4": 0.61,
 }  # fmt: skip
-"""Memory of the weights, in bytes per parameter. Four-bit formats store scales and some layers in more bits (Q4_K_M: 4.85 bits per weight)."""
+"""Memory of the weights, in bytes per parameter. Four-bit formats store scales and some layers in more bits
+(Q4_K_M: 4.85 bits per weight)."""
 RUNTIME_GB = 1.5
 """GB that a serving process needs besides weights and cache: kernels, activations and the workspace of the vision tower."""
 WINDOW = 16_384
@@ -77,9 +78,7 @@ class Model(_Entry):
     context: int = Field(ge=0, description="Context length in tokens; 0 if the model has none.")
     thinking: Thinking = "none"
     sees: bool = Field(default=False, description="Whether the model takes images in the chat.")
-    coordinates: str = Field(
-        default="none", description="The notation of boxes and points: a convention of perception.models.coordinates."
-    )
+    coordinates: str = Field(default="none", description="Notation of boxes and points, see perception.models.coordinates.")
     licence: str
     kv_kib: float = Field(default=128.0, ge=0)
     memory_gb: float | None = Field(default=None, gt=0, description="Measured memory, which replaces the computed figure.")
@@ -117,7 +116,7 @@ class Model(_Entry):
         """Tokens of context to serve the model with."""
         return min(self.context, WINDOW)
 
-    def smallest(self) -> tuple[str | None, float]:
+    def least_memory(self) -> tuple[str | None, float]:
         """Return the server on which the model needs the least memory (the first of equals), and that memory in GB."""
         if not self.serve:
             return None, self.memory_for()

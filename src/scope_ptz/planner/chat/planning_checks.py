@@ -84,7 +84,7 @@ async def _check_answer(planner: ChatPlanner, tools: Sequence[dict[str, Any]]) -
     if "<think" in decision.text:
         return "failed", f"its reasoning is in the answer: {_brief(decision)}"
     if not (decision.usage.input_tokens and decision.usage.output_tokens):
-        return "partly", f"it does not report token counts; it answered: {_brief(decision)}"
+        return "partly", f"the server does not report token counts; it answered: {_brief(decision)}"
     return "ok", _brief(decision)
 
 
