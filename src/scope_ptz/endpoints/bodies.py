@@ -69,7 +69,7 @@ async def chunks(response: Response, endpoint: Endpoint) -> AsyncGenerator[bytes
 
 
 async def read_object(response: Response, endpoint: Endpoint) -> dict[str, Any]:
-    """Return a complete JSON object.
+    """Read the body of a response as a JSON object.
 
     Raises:
         ServerFailure: The content type is wrong, or the body is empty, too large, not a JSON object, or an error message.

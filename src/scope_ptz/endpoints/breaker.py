@@ -14,9 +14,9 @@ UNAVAILABLE_STATUS = frozenset({502, 503, 504})
 
 
 class Breaker:
-    """Opens after ``threshold`` consecutive requests to an unavailable server. While it is open, no request is sent.
+    """A circuit breaker. After ``threshold`` consecutive failures of an unavailable server it is open, and no request may be sent.
 
-    After ``pause_s`` seconds it lets one request through. If that request fails too, the pause doubles, up to ``longest_pause_s``.
+    After ``pause_s`` seconds it permits one request. If that request fails too, the pause doubles, up to ``longest_pause_s``.
     """
 
     def __init__(
@@ -42,7 +42,7 @@ class Breaker:
     def wait_s(self) -> float | None:
         """Return the seconds until a request may be sent, or None if one may be sent now.
 
-        After None, the caller must report the request's outcome with one of the methods below.
+        If one may be sent, the caller must report its outcome with one of the methods below.
         """
         if self._open_until is None:
             return None

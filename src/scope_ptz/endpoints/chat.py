@@ -89,7 +89,7 @@ class ChatClient:
         try:
             reply, attempts = await self._called(body)
         except ServerFailure as failure:
-            raise failure.after((*refused, *failure.history)) from None
+            raise failure.with_history((*refused, *failure.history)) from None
         self._counts_tokens = False
         return reply, (*refused, *attempts)
 

@@ -31,7 +31,7 @@ class Timeouts(BaseModel):
 
     @classmethod
     def within(cls, total_s: float) -> Timeouts:
-        """Return timeouts for a call that may take ``total_s`` in all.
+        """Return timeouts for a call that may take ``total_s`` in total.
 
         Up to half of a long limit may pass before the reply begins, because slow machines need that for the first token.
         """
@@ -100,7 +100,7 @@ def checked_url(url: str) -> str:
         raise ConfigError(f"'{shown}' is not the address of a model server. Give a full address, such as http://127.0.0.1:8000/v1.")
     if parts.username is not None or parts.password is not None:
         raise ConfigError(
-            f"The address of {parts.hostname} contains a user name or password. Remove it, and set the key by its variable."
+            f"The address of {parts.hostname} contains a password or user name. Use the variable for the key instead."
         )
     if parts.query or parts.fragment:
         raise ConfigError(f"The address {_without_secrets(url)} contains a query or fragment. Remove the part from ? or # on.")

@@ -69,7 +69,7 @@ _MESSAGES: dict[FailureKind, tuple[str, str]] = {
 
 
 class Attempt(BaseModel):
-    """One request of a call, which may need several.
+    """One request to a model server. A call may need several requests.
 
     Attributes:
         kind: How it failed; None if it succeeded.
@@ -123,7 +123,7 @@ class ServerFailure(ScopeError):  # noqa: N818 - named like the kinds in this pa
         """Number of requests to the server."""
         return len(self.history)
 
-    def after(self, history: Iterable[Attempt]) -> ServerFailure:
+    def with_history(self, history: Iterable[Attempt]) -> ServerFailure:
         """Return the same failure with another history."""
         return ServerFailure(
             self.kind,

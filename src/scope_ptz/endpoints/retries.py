@@ -68,7 +68,7 @@ class Caller:
                 return result, tuple(tried)
             pause_s = self._pause_s(result, len(tried))
             if pause_s is None or perf_counter() + pause_s + self._needed_s(result) >= deadline:
-                raise result.after(tried)
+                raise result.with_history(tried)
             await self.sleep(pause_s)
             waited_s = pause_s
 

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from httpx2 import AsyncClient
 
 PATHS = ("/v1/models", "/version", "/props", "/api/ps", "/get_server_info", "/metrics", "/v1/stats")
-"""Of most servers: models, version. Of single programs: props (llama.cpp), ps (Ollama), server info (SGLang), metrics (vLLM) and
-stats (Moondream Station).
+"""Most servers report models and version. The other paths belong to llama.cpp (props), Ollama (ps), SGLang (server info), vLLM
+(metrics) and Moondream Station (stats).
 """
 _FIELDS = re.compile(
     r"^(id|owned_by|root|max_model_len|version|build_info|model_path|n_ctx|size|size_vram|context_length|parameter_size"

@@ -26,7 +26,7 @@ _INVARIANT = frozenset({
 })  # fmt: skip
 """Words that end in "s" but are not plurals, and words without a plural form."""
 
-_REGULAR_PLURAL = frozenset({"bus", "glass", "cross"})  # invariant words that nevertheless have a regular plural
+_REGULAR_PLURAL = frozenset({"bus", "glass", "cross"})  # words of _INVARIANT whose plural is formed regularly
 _PREPOSITIONS = frozenset({"with", "of", "on", "in", "at", "for", "by", "from", "near", "carrying"})
 
 

@@ -15,9 +15,8 @@ Axis = Literal["pan", "tilt", "zoom"]
 class Optics:
     """The zoom curve as a table of ``(magnification, horizontal field of view in degrees)``, widest first.
 
-    Between the rows, focal length (1 / tan(hfov / 2)) is interpolated linearly in magnification, which is close to
-    real zoom curves. No formula fits all lenses: an AXIS M5075-G is rated 5x, but the focal lengths at its two ends have a ratio of
-    5.8.
+    Between the rows, focal length (1 / tan(hfov / 2)) is interpolated linearly in magnification, which is close to real zoom
+    curves. No formula fits all lenses: an AXIS M5075-G is rated 5x, but the ratio of its longest and shortest focal lengths is 5.8.
     """
 
     table: tuple[tuple[float, float], ...]

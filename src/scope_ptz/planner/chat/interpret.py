@@ -19,7 +19,7 @@ from scope_ptz.planner.chat.tool_text import FoundCalls, find_calls
 from scope_ptz.planner.chat.written_calls import Signatures, WrittenCall, plain_name, read_arguments
 
 MAX_CALLS = 32
-"""Maximum number of calls in one step. A reply with more is a sign of a model that repeats itself."""
+"""Maximum number of calls in one step. Further calls are not executed, and the planner is informed."""
 
 MAX_CHARS = 20_000
 """Maximum characters of an answer, or of the text that accompanies calls. Longer texts are truncated and marked."""

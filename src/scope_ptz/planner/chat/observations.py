@@ -48,7 +48,7 @@ def as_data(text: str, *, mark: bool = True) -> str:
     """Return untrusted text, such as a perception reply, as data.
 
     Angle brackets are replaced, so that the text can neither close the ``camera_text`` element nor contain control tokens of a
-    chat template. ``mark`` is whether to enclose the text in that element.
+    chat template. ``mark`` encloses the text in that element.
     """
     cut = text if len(text) <= MAX_CHARS else text[:MAX_CHARS] + " (cut)"
     harmless = cut.translate(_REPLACED_BRACKETS)

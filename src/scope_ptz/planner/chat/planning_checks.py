@@ -51,7 +51,7 @@ def probe(instruction: str, tools: Sequence[dict[str, Any]], *history: Exchange)
 
 
 def picture_taken() -> Exchange:
-    """Return the history of a run in which a picture was taken."""
+    """Return the step in which a picture was taken."""
     return Exchange(outcomes=(ToolOutcome(call=ToolCall(id="call-1", name="take_image"), result=_PICTURE_RESULT),))
 
 

@@ -1,6 +1,6 @@
 """Tool schemas in a form that all servers accept.
 
-Some servers compile a schema into a grammar and refuse what they cannot compile, such as a pattern without anchors; others do not
+Some servers compile a schema into a grammar and reject what they cannot compile, such as a pattern without anchors; others do not
 support unions. Calls are validated before they run anyway, so these schemas only have to inform the model.
 """
 
@@ -23,7 +23,7 @@ _DROPPED_KEYWORDS = (
 
 
 def plain_schemas(tools: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return the tools with one plain type for each parameter. A nullable parameter is only left out of ``required``."""
+    """Return the tools with one plain type for each parameter. Parameters that may be null keep only their other type."""
     return [{**tool, "function": {**tool["function"], "parameters": _parameters(tool["function"]["parameters"])}} for tool in tools]
 
 

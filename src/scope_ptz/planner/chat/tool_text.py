@@ -35,7 +35,7 @@ class FoundCalls:
 
     Attributes:
         rest: The text without its calls.
-        notation: How the calls were written; empty if there are none.
+        notation: The name of the notation in which they were written; empty if there are no calls.
     """
 
     calls: tuple[WrittenCall, ...]

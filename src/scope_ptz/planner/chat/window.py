@@ -1,4 +1,4 @@
-"""Handle conversations that outgrow the model's context.
+"""Handle conversations that exceed the model's context.
 
 By default the run ends with a context overflow. With ``ChatOptions.summarise``, old observations are shortened instead: all calls
 are kept, and their results keep only counts, answers, poses and other short fields.

@@ -75,14 +75,14 @@ class Readable:
 
 
 @dataclass(frozen=True, slots=True)
-class IsTrue:
-    """The condition that a statement about an object is true, such as "the gate is open".
+class Statement:
+    """The condition that a statement about an object, such as "the gate is open", is true or false.
 
     Attributes:
         subject: The object.
         predicate: The statement about the object, such as "open".
-        expected: Whether the statement must be true or false to meet the condition.
-        question: The question to perception; if it is empty, the question is "is SUBJECT PREDICATE?".
+        expected: True if the statement must be true to meet the condition, False if it must be false.
+        question: The question to ask perception; if it is empty, "is SUBJECT PREDICATE?" is asked.
     """
 
     subject: Thing
@@ -93,7 +93,7 @@ class IsTrue:
 
 @dataclass(frozen=True, slots=True)
 class Outnumbers:
-    """The condition that more (or fewer) objects of the first description than of the second are visible."""
+    """The condition that more (or fewer) visible objects match the first description than the second."""
 
     first: Thing
     second: Thing
@@ -117,7 +117,7 @@ class Answered:
 
 @dataclass(frozen=True, slots=True)
 class Joined:
-    """Several conditions, of which all ("and") or any ("or") must be met."""
+    """Conditions joined by "and" (all must be met) or "or" (at least one must be met)."""
 
     parts: tuple[Condition, ...]
     mode: Literal["all", "any"]
@@ -130,4 +130,4 @@ class Negated:
     part: Condition
 
 
-Condition = Answered | PresetOutnumbers | Seen | Readable | IsTrue | Outnumbers | Joined | Negated
+Condition = Answered | PresetOutnumbers | Seen | Readable | Statement | Outnumbers | Joined | Negated

@@ -7,7 +7,6 @@ from typing import Literal
 
 from scope_ptz.planner.grammar.conditions import Answered as Answered
 from scope_ptz.planner.grammar.conditions import Condition as Condition
-from scope_ptz.planner.grammar.conditions import IsTrue as IsTrue
 from scope_ptz.planner.grammar.conditions import Joined as Joined
 from scope_ptz.planner.grammar.conditions import Negated as Negated
 from scope_ptz.planner.grammar.conditions import Operator as Operator
@@ -18,6 +17,7 @@ from scope_ptz.planner.grammar.conditions import Quantity as Quantity
 from scope_ptz.planner.grammar.conditions import Readable as Readable
 from scope_ptz.planner.grammar.conditions import Seen as Seen
 from scope_ptz.planner.grammar.conditions import Sense as Sense
+from scope_ptz.planner.grammar.conditions import Statement as Statement
 from scope_ptz.planner.grammar.conditions import Thing as Thing
 from scope_ptz.tools.arguments import View
 
@@ -71,7 +71,7 @@ Part = Turn | Zoom | Aim
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """A camera movement about one or more axes.
+    """A camera movement on one or more axes.
 
     Attributes:
         verb: Whether the instruction has a verb for the move. "Left 5" has none, so it may belong to the previous move.
@@ -209,7 +209,7 @@ class DoAgain:
     """Repeat the previous steps.
 
     Attributes:
-        times: How often they are done in total, or in addition if ``more`` is set.
+        times: How often the steps run in total or, if ``more`` is set, in addition; None for once more.
     """
 
     times: int | None = None
@@ -279,7 +279,7 @@ class Mention:
 
 @dataclass(frozen=True, slots=True)
 class AtPlaces:
-    """Run the body at each of several presets. No places stands for every preset."""
+    """Run the body at each of several presets. If ``places`` is empty, run it at every preset."""
 
     places: tuple[PresetRef, ...]
     body: tuple[Step, ...]
@@ -298,7 +298,7 @@ class WhichPreset:
 
     Attributes:
         go: Whether to go to that preset afterwards.
-        any_of: Whether to report the presets that show any at all instead.
+        any_of: Whether to report instead which presets show any of the objects.
     """
 
     thing: Thing

@@ -12,7 +12,7 @@ from scope_ptz.english import number_word
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """An edit. If ``apply`` returns a text unchanged, that text is not measured again."""
+    """An edit. Texts that ``apply`` returns unchanged are not measured again."""
 
     name: str
     where: Literal["prompt", "instruction"]

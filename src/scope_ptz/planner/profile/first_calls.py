@@ -22,7 +22,7 @@ from scope_ptz.tools.adjust_ptz import AdjustPtz
 from scope_ptz.tools.registry import parse_call, schemas
 
 PRESETS = ("gate", "highway")  # the presets that the planner is given
-_TOLERANCE = 0.01  # of equal numbers
+_TOLERANCE = 0.01  # numbers that differ by at most this are equal
 
 
 class _Model(BaseModel):
@@ -157,7 +157,7 @@ def _valid(name: str, arguments: dict[str, Any]) -> bool:
 
 
 def is_right(row: InstructionRow, call: FirstCall) -> bool:
-    """Return whether a call is the expected first one. Descriptions are compared word by word; questions are not compared."""
+    """Return whether a call is the expected first one. Descriptions are compared by their words; questions are not compared."""
     expected = row.calls[0]
     if call.name in row.alternatives:
         return True

@@ -68,8 +68,8 @@ class Sensitivity(_Model):
     """The report of a measurement.
 
     ``valid``, ``right``, ``inverted`` and ``failed`` are rates over the unedited instructions. A trial in which the planner or its
-    server failed counts only in ``failed``. ``noise`` is how often the tools change without any edit; an edit has an effect only if
-    its rate is higher. ``inverted_anywhere`` covers all trials with a move. ``inversions`` and ``changes`` are examples.
+    server failed counts only in ``failed``. ``noise`` is the rate at which the tools change without any edit; an edit has an effect
+    only if its rate is higher. ``inverted_anywhere`` covers all trials with a move. ``inversions`` and ``changes`` are examples.
     """
 
     prompt: str

@@ -389,9 +389,9 @@ class Resolver:
             return replace(condition, thing=self.thing(condition.thing), view=self._view(condition.view))
         if isinstance(condition, ast.Readable):
             return ast.Readable(self.thing(condition.thing))
-        if isinstance(condition, ast.IsTrue) and not condition.subject.text and _IMPERSONAL.search(f"it {condition.predicate}"):
+        if isinstance(condition, ast.Statement) and not condition.subject.text and _IMPERSONAL.search(f"it {condition.predicate}"):
             return replace(condition, subject=ast.Thing("it"))
-        if isinstance(condition, ast.IsTrue):
+        if isinstance(condition, ast.Statement):
             return replace(condition, subject=self.thing(condition.subject))
         if isinstance(condition, ast.Outnumbers):
             return replace(condition, first=self.thing(condition.first), second=self.thing(condition.second))

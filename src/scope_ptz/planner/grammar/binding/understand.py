@@ -24,7 +24,7 @@ class Understanding:
 
 
 def understand(instruction: str, presets: Sequence[str] | None, conversation: Sequence[PastTurn] = ()) -> Understanding:
-    """Return the steps of an instruction, or the question or refusal to answer it with. Never raises, for any text.
+    """Return the steps of an instruction, or a clarifying question or refusal. Never raises, for any text.
 
     Args:
         instruction: What the user typed.

@@ -11,7 +11,6 @@ from scope_ptz.builtin_names import GROUND_TRUTH
 from scope_ptz.english.nouns import plural_noun
 from scope_ptz.planner.grammar.instruction_tree import (
     Condition,
-    IsTrue,
     Joined,
     Negated,
     Outnumbers,
@@ -19,6 +18,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Quantity,
     Readable,
     Seen,
+    Statement,
 )
 
 _MAX_SPELLED = 12  # larger counts are written in digits
@@ -139,7 +139,7 @@ def condition_text(condition: Condition) -> str:
         return f"saw {quantity_text(condition.quantity, condition.thing.text)}"
     if isinstance(condition, Readable):
         return f"could read the {condition.thing.text}"
-    if isinstance(condition, IsTrue):
+    if isinstance(condition, Statement):
         return f"saw that the {condition.subject.text} is {'' if condition.expected else 'not '}{condition.predicate}"
     if isinstance(condition, PresetOutnumbers):
         return f"saw {condition.sense} {condition.thing.text} at {condition.first.name} than at {condition.second.name}"

@@ -89,20 +89,20 @@ class _OutlineProgram(Program):
 
     def _repeat(self, step: ast.Repeat) -> Run:
         if step.times == 1:
-            yield from self._all(step.body)
+            yield from self._run_steps(step.body)
             return
         with self._block_under(f"{step.times} times:"):
-            yield from self._all(step.body)
+            yield from self._run_steps(step.body)
 
     def _if(self, step: ast.If) -> Run:
         yield from self._test(step.condition)
         pose = self.pose
         with self._block_under(f"if {condition_text(step.condition)}:"):
-            yield from self._all(step.then)
+            yield from self._run_steps(step.then)
         if step.otherwise:
             after, self.pose = self.pose, pose
             with self._block_under("otherwise:"):
-                yield from self._all(step.otherwise)
+                yield from self._run_steps(step.otherwise)
             self.pose = after
 
     def _loop(self, step: ast.Loop) -> Run:
@@ -113,9 +113,9 @@ class _OutlineProgram(Program):
                 if isinstance(inner, ast.Move):
                     yield from self._camera_call("adjust_ptz", **arguments_of(inner, self.pose, self.limits, in_loop=True))
                 else:
-                    yield from self._all([inner])
+                    yield from self._run_steps([inner])
         with self._block_under("if that never happens:" if step.otherwise else "if that never happens: stop and report it"):
-            yield from self._all(step.otherwise)
+            yield from self._run_steps(step.otherwise)
 
     def _joined(self, condition: ast.Joined) -> Run:
         for part in condition.parts:
@@ -131,7 +131,7 @@ def condition_text(condition: ast.Condition) -> str:
             return f"{phrases.quantity_text(quantity, thing.text)} {verb} visible{' in the whole scene' if view == 'full' else ''}"
         case ast.Readable(thing=thing):
             return f"the {thing.text} can be read"
-        case ast.IsTrue(subject=subject, predicate=predicate, expected=expected, question=question):
+        case ast.Statement(subject=subject, predicate=predicate, expected=expected, question=question):
             if question:
                 return f"the answer to “{question}” is {'yes' if expected else 'no'}"
             return f"{'the ' if subject.definite else ''}{subject.text} is {'' if expected else 'not '}{predicate}"

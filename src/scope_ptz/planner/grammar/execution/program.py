@@ -36,11 +36,11 @@ class Program(ConditionTests):
         start = VisitedPosition(self.pose, self.positions.preset, home=self.positions.before is None and self.pose == Pose())
         self._trail = [self.positions.before, start] if self.positions.before else [start]
         try:
-            yield from self._all(steps)
+            yield from self._run_steps(steps)
         except HaltedError as halt:
             self._note(str(halt))
 
-    def _all(self, steps: Sequence[ast.Step]) -> Run:
+    def _run_steps(self, steps: Sequence[ast.Step]) -> Run:
         for step in steps:
             yield from getattr(self, f"_{type(step).__name__.lower()}")(step)
 
@@ -195,15 +195,15 @@ class Program(ConditionTests):
     # Control -----------------------------------------------------------------------------------------------------------
     def _repeat(self, step: ast.Repeat) -> Run:
         for _ in range(step.times):
-            yield from self._all(step.body)
+            yield from self._run_steps(step.body)
 
     def _if(self, step: ast.If) -> Run:
         met, reason = yield from self._test(step.condition)
         self._note(reason)
         if met:
-            yield from self._all(step.then)
+            yield from self._run_steps(step.then)
         elif step.otherwise:
-            yield from self._all(step.otherwise)
+            yield from self._run_steps(step.otherwise)
         else:
             self._note("So I did nothing further for that")
 
@@ -225,7 +225,7 @@ class Program(ConditionTests):
                     if last:
                         yield from self._camera_call("adjust_ptz", **last)
                 else:
-                    yield from self._all([inner])
+                    yield from self._run_steps([inner])
             done += 1
             if self.pose == pose and any(isinstance(s, ast.Move) for s in step.body):
                 yield from self._unmet(step, best, f": the camera reached its limit after {phrases.moves_text(last, done)}")
@@ -234,11 +234,11 @@ class Program(ConditionTests):
 
     def _unmet(self, step: ast.Loop, best: int, how: str) -> Run:
         """End a loop whose condition was never met: run the alternative steps, or stop the run if there are none."""
-        reason = f"I never {phrases.condition_text(step.until)}{_highest_count(best)}{how}"
+        reason = f"I never {phrases.condition_text(step.until)}{_highest_count_text(best)}{how}"
         if not step.otherwise:
             raise HaltedError(reason)
         self._note(reason)
-        yield from self._all(step.otherwise)
+        yield from self._run_steps(step.otherwise)
 
     def _move_limit(self, step: ast.Loop) -> int:
         """Return the limit on a loop's moves: the one in the instruction, otherwise enough moves to cover the axis once."""
@@ -270,7 +270,7 @@ class Program(ConditionTests):
     def _beforeafter(self, step: ast.BeforeAfter) -> Run:
         text = step.thing.text
         before = yield from self._visible_count(text, "current")
-        yield from self._all(step.moves)
+        yield from self._run_steps(step.moves)
         after = yield from self._visible_count(text, "current")
         self._note(f"I can see {phrases.counted(text, before)} before the move and {phrases.counted(text, after)} after it")
         if before == after:
@@ -318,7 +318,7 @@ def _the(thing: ast.Thing) -> str:
     return f"the {thing.text}"
 
 
-def _highest_count(best: int) -> str:
+def _highest_count_text(best: int) -> str:
     return f" (the most was {best})" if best >= 0 else ""
 
 

@@ -18,7 +18,7 @@ Run = Generator[CallRequest, ToolOutcome, Any]
 
 
 class HaltedError(Exception):
-    """The run cannot continue. The message gives the reason, for the answer."""
+    """The run cannot continue. The message gives the reason, and becomes part of the answer."""
 
 
 @dataclass
@@ -39,13 +39,13 @@ class RunState:
     assume_met: bool = False
     notes: list[str] = field(default_factory=list)
     sources: list[str] = field(default_factory=list)
-    _missing: set[str] = field(default_factory=set)
-    _trail: list[VisitedPosition] = field(default_factory=list)
-    _winner: str | None = None
-    _moved_to_object: bool = False
+    _missing: set[str] = field(default_factory=set)  # descriptions of objects that were not found
+    _trail: list[VisitedPosition] = field(default_factory=list)  # positions to which "go back" can return
+    _winner: str | None = None  # the preset that a comparison found
+    _moved_to_object: bool = False  # whether a perception tool has moved the camera since the last preset or home
     _went_home: bool = False
     _last_count: int = -1
-    _last_yes: bool = False
+    _last_yes: bool = False  # whether the last answer was yes, or the last count above zero
 
     def answer(self) -> str:
         """Return the answer: all notes, and the note about the sources."""

@@ -37,7 +37,7 @@ _DIAGONALS = ("UPLEFT", "UPRIGHT", "DOWNLEFT", "DOWNRIGHT")
 
 @dataclass(frozen=True, slots=True)
 class Lexeme:
-    """A phrase, a number, a separator or free words, with the terminals that it may be.
+    """A phrase, a number, a separator or free words.
 
     Attributes:
         kinds: The terminals that it may be.
@@ -280,7 +280,7 @@ def _merge_text(lexemes: list[Lexeme], text: str) -> list[Lexeme]:
 
 
 def preset_key(name: str) -> tuple[str, ...]:
-    """Return a preset name as the lexer sees it: lower-case words without accents, numbers in digits."""
+    """Return a preset name in the form used for comparison: lower-case words without accents, with numbers in digits."""
     plain = unicodedata.normalize("NFKD", name.lower())
     words = re.findall(r"[^\W\d_]+|\d+", "".join(c for c in plain if not unicodedata.combining(c)))
     return tuple(str(int(NUMBER_WORDS[w])) if w in NUMBER_WORDS and NUMBER_WORDS[w] < 100 else w for w in words)

@@ -17,7 +17,7 @@ class NumberPhrase:
     """A number at the start of a list of words.
 
     Attributes:
-        used: The number of words that it consists of; 0 if there is no number.
+        used: The number of words that form the number; 0 if the words do not begin with one.
         kind: NUM, FRACTION ("half", "quarter") or ORDINAL ("second").
     """
 
@@ -36,7 +36,7 @@ def read_number(words: list[str], spans: list[tuple[int, int]] | None = None) ->
 
     Args:
         words: Words in lower case.
-        spans: Their positions in the text, which distinguish "1st" from "1 st".
+        spans: The start and end of each word in the text, which distinguish "1st" from "1 st".
     """
     if not words:
         return NumberPhrase()

@@ -48,7 +48,7 @@ def compose(linked: Sequence[Linked], before: Sequence[Step]) -> list[Step]:
 
 
 def _add(out: list[Step], link: str, step: Step) -> None:
-    """Append a step to the previous steps, or modify them by it."""
+    """Append a step to the previous steps, or combine it with them."""
     if isinstance(step, Move):
         step = _with_same_amounts(step, out)
     if _add_modifier(out, step):
@@ -65,7 +65,7 @@ def _add(out: list[Step], link: str, step: Step) -> None:
 
 
 def _add_modifier(out: list[Step], step: Step) -> bool:
-    """Apply a step that modifies or repeats the previous steps. Return False if it is another step."""
+    """Apply a step that modifies or repeats the previous steps. Return False for any other step, without applying it."""
     last = out[-1] if out else None
     match step:
         case EachTime():
@@ -106,7 +106,7 @@ def _joined_to_last(last: Step, link: str, step: Step) -> list[Step] | None:
 
 
 def _joined_to_move(last: Move, step: Step) -> list[Step] | None:
-    """Join a step to the move before its "and": another move, or a loop that includes the move."""
+    """Join a move with the step after its "and": another move, or a loop that then includes the move."""
     if isinstance(step, Loop) and isinstance(step.body[0], Count | Snap | Ask):
         return [_stepped_loop(replace(step, body=(last, *step.body)))]
     if isinstance(step, Loop | Repeat) and (verbless := _verbless(step.body[0])):
@@ -116,7 +116,7 @@ def _joined_to_move(last: Move, step: Step) -> list[Step] | None:
 
 
 def _joined_to_places(last: AtPlaces, link: str, step: Step) -> list[Step] | None:
-    """Add a step to what is done at each of several places."""
+    """Add a step to those that run at each of several presets."""
     if not last.body and (link == "and" or not last.places):
         return [replace(last, body=(step,))]
     if last.body and link == "and" and not isinstance(step, GoPreset | Home | AtPlaces):

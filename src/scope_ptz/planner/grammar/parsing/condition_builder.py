@@ -10,7 +10,6 @@ from scope_ptz.planner.grammar.instruction_tree import (
     BeforeAfter,
     Compare,
     Condition,
-    IsTrue,
     Joined,
     Negated,
     Outnumbers,
@@ -18,6 +17,7 @@ from scope_ptz.planner.grammar.instruction_tree import (
     Quantity,
     Readable,
     Seen,
+    Statement,
     Step,
     ThanBefore,
     Thing,
@@ -68,21 +68,21 @@ class ConditionBuilder(SceneBuilder):
         return Readable(self._thing(node))
 
     def holds(self, node: Node) -> Condition:
-        return self._is_true(node, True)
+        return self._statement(node, True)
 
     def holds_not(self, node: Node) -> Condition:
-        return self._is_true(node, False)
+        return self._statement(node, False)
 
-    def _is_true(self, node: Node, expected: bool) -> Condition:
+    def _statement(self, node: Node, expected: bool) -> Condition:
         """Build a question for "the gate is open", but a count for "any worker is not wearing a helmet"."""
         thing, predicate = self._thing(node), self.text(node.branches("words")[0].all_leaves())
         if any(np.has("ANY") for b in node.branches("subject") for np in b.branches("np")):
             return Seen(Thing(f"{thing.text} {'' if expected else 'not '}{predicate}"))
-        return IsTrue(thing, predicate, expected)
+        return Statement(thing, predicate, expected)
 
     def says(self, node: Node) -> Condition:
         text = self.text(node.branches("words")[0].all_leaves())
-        return IsTrue(self._thing(node), text, question=f"does the {self._thing(node).text} say {text}?")
+        return Statement(self._thing(node), text, question=f"does the {self._thing(node).text} say {text}?")
 
     def preset_wins(self, node: Node) -> Condition:
         first, second = (self.visit(b) for b in node.branches("named", "numbered", "marked"))

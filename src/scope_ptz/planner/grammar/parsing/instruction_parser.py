@@ -76,7 +76,7 @@ def parse(text: str, presets: tuple[str, ...] = ()) -> Parsed:
 
 
 def _sentences(lexemes: list[Lexeme]) -> list[tuple[int, int]]:
-    """Return the first and the end index of each sentence."""
+    """Return the start and end index of each sentence."""
     stops = [i for i, lexeme in enumerate(lexemes) if "STOP" in lexeme.kinds]
     edges = [-1, *stops, len(lexemes)]
     return [(a + 1, b) for a, b in pairwise(edges) if b > a + 1]

@@ -45,7 +45,7 @@ class StepSize:
     Attributes:
         size: The size of one step.
         count: The number of steps, if the instruction gives it.
-        divides_move: Whether the count divides the divides_move move, as in "20 degrees in 2 steps".
+        divides_move: Whether the count divides the whole move, as in "20 degrees in 2 steps".
     """
 
     def __init__(self, size: Amount, count: int | None = None, divides_move: bool = False) -> None:
@@ -53,9 +53,9 @@ class StepSize:
 
 
 class MoveBuilder(RuleBuilder):
-    # Amounts -----------------------------------------------------------------------------------------------------------
-    """RuleBuilder about motion."""
+    """Builds moves and their amounts."""
 
+    # Amounts -----------------------------------------------------------------------------------------------------------
     def degrees(self, node: Node) -> Amount:
         return Amount("degrees", self.visit(node.branches()[0]))
 

@@ -57,9 +57,9 @@ _DURATIONS = {"seconds", "minutes", "part_minute", "minute_and_part", "minutes_s
 
 
 class SceneBuilder(RuleBuilder):
-    # Descriptions ------------------------------------------------------------------------------------------------------
-    """RuleBuilder about places, things and questions."""
+    """Builds references to presets and objects, and the steps that use them."""
 
+    # Descriptions ------------------------------------------------------------------------------------------------------
     def np(self, node: Node) -> Thing:
         parts = node.branches("words", "relative")
         determiner = any(self.words_of(leaf).split()[0] in {"the", "that", "this", "these", "those"} for leaf in node.leaves("DET"))
