@@ -27,7 +27,7 @@ _WH = re.compile(
     re.IGNORECASE,
 )
 _PLURAL = re.compile(r"(?:[^s]s|\b(?:people|men|women|children|feet))$", re.IGNORECASE)
-"""Matches words that look like plurals. The test remains coarse ("this" counts as a plural), because recorded plans depend on it."""
+"""Matches words that look like plurals. It must remain coarse ("this" counts as a plural), because recorded plans depend on it."""
 
 _QUESTION_WORD = re.compile(
     r"(what|which|who|whom|whose|where|when|why|how|is|are|was|were|do|does|did|can|could|has|have|any)\b", re.IGNORECASE

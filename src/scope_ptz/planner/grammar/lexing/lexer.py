@@ -26,12 +26,14 @@ _TOKEN = re.compile(
 )
 _MARKS = {**dict.fromkeys(",:()", "COMMA"), **dict.fromkeys(";.!?\n", "STOP"), "&": "AND"}
 SEPARATORS = ("COMMA", "AND", "THEN", "STOP")
-_ATTACHED_TO_PREVIOUS = frozenset({"UNTIL", "OTHERWISE", "ATMOST", "EACHTIME"})
+_ATTACHED_TO_PREVIOUS = frozenset({"UNTIL", "OTHERWISE", "ATMOST", "EACHTIME"})  # a separator before them is dropped
 _MAX_PHRASE_WORDS = 9
 _DIRECTION_LETTERS = {"r": "right", "l": "left", "u": "up", "d": "down"}
-_MOTION = frozenset({"TILT", "PAN", "MOVE", "LOOK", "CAMERA"})
+_MOTION = frozenset({"TILT", "PAN", "MOVE", "LOOK", "CAMERA"})  # after them, "up to" and "down to" are directions
 _NEVER_GERUND = frozenset({*SEPARATORS, "DET", "ONEOF", "PREP", "SAYS", "BY", "SHOWS", "VISIBLE", "FILLS"})
-_HEDGES = frozenset({"FILLER", "BY"})
+"""Terminals whose words that end in "ing" are not gerunds of a command."""
+
+_HEDGES = frozenset({"FILLER", "BY"})  # words such as "about" that are dropped at the start of a clause
 _DIAGONALS = ("UPLEFT", "UPRIGHT", "DOWNLEFT", "DOWNRIGHT")
 
 
@@ -177,16 +179,16 @@ class Lexer:
         if phrase < 2:
             return phrase
         kinds = self._table[tuple(run[:phrase])]
-        after = before[-1].kinds if before else frozenset[str]()
+        previous = before[-1].kinds if before else frozenset[str]()
         read_separately = False
         if run[0] == "the":  # "the overview" if a preset has that name
             read_separately = bool(self._presets) and self._preset_length(run[1:]) >= phrase - 1
         elif run[0] in {"up", "down"}:  # "tilt up to 10" is a direction, not a limit
-            read_separately = bool(after & _MOTION) and not kinds & {"UP", "DOWN", *_DIAGONALS}
+            read_separately = bool(previous & _MOTION) and not kinds & {"UP", "DOWN", *_DIAGONALS}
         elif run[:2] == ["if", "you"]:  # "if you can see" begins a condition; "if you can" at the end is a filler
             read_separately = "FILLER" in kinds and phrase < len(run)
         elif run[0] == "or":
-            read_separately = bool(kinds & {"ORMORE", "ORFEWER"}) and "NUM" not in after
+            read_separately = bool(kinds & {"ORMORE", "ORFEWER"}) and "NUM" not in previous
         return 1 if read_separately else phrase
 
     def _number(self, words: list[_Word], i: int, number: NumberPhrase, phrase: list[str], before: list[Lexeme]) -> Lexeme | None:

@@ -12,7 +12,9 @@ from scope_ptz.planner.grammar.parsing.chart import ChartParser
 from scope_ptz.planner.grammar.parsing.rules import load_rules
 
 _STRUCTURAL = frozenset({*SEPARATORS, "OR", "THAN", "IF", "UNLESS", "OTHERWISE", "UNTIL"})
-_FREE_WORDS = frozenset({"TEXT", "PRESETNAME"})
+"""Terminals that cannot be part of a description."""
+
+_FREE_WORDS = frozenset({"TEXT", "PRESETNAME"})  # cost nothing in a description
 _SOFT = frozenset(
     {
         "AFTER", "AHEAD", "ANY", "AROUND", "BE", "BEFORE", "BY", "CAMERA", "CIRCLE", "CLOSE", "COMPASS", "DEG", "DET", "DOWN",
@@ -22,7 +24,9 @@ _SOFT = frozenset(
         "SEVERAL", "SURROUND", "THATREL", "THERE", "TO", "UP", "VISIBLE", "WHO", "X", "YOUSEE",
     }
 )  # fmt: skip
-_RULES_FOR_KNOWN_PRESETS = frozenset({"far_ref"})
+"""Terminals that often occur in descriptions, and therefore have a lower cost there than the others."""
+
+_RULES_FOR_KNOWN_PRESETS = frozenset({"far_ref"})  # left out of the grammar if the presets are unknown
 MAX_CHARS = 2000  # the rest of a longer text is ignored
 MAX_LEXEMES = 120  # longer texts are not parsed
 

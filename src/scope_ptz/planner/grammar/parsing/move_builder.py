@@ -19,8 +19,18 @@ _DIRECTIONS: dict[str, tuple[tuple[str, int], ...]] = {
     "down_left": (("tilt", -1), ("pan", -1)),
     "down_right": (("tilt", -1), ("pan", 1)),
 }
-_LITTLE_ZOOM, _LOT_ZOOM, _PLAIN_ZOOM = 1.25, 4.0, 2.0
-_AIMING = ("point", "aim", "look", "turn", "direct", "train", "swing", "orient", "rotat")
+_LITTLE_ZOOM, _LOT_ZOOM, _PLAIN_ZOOM = 1.25, 4.0, 2.0  # factors for "a little", "a lot" and no amount
+_AIMING = (
+    "point",
+    "aim",
+    "look",
+    "turn",
+    "direct",
+    "train",
+    "swing",
+    "orient",
+    "rotat",
+)  # beginnings of verbs that aim the camera; others mean zooming in
 _SMALL_STEP_DEG = 5.0
 _VERBS = (
     "PAN",
