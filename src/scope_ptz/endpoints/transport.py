@@ -57,7 +57,7 @@ def _open(endpoint: Endpoint, hooks: dict[str, list[Callable[..., Any]]]) -> htt
         limits=httpx2.Limits(max_connections=64, max_keepalive_connections=16, keepalive_expiry=30.0),
         headers={"accept-encoding": "identity"},
         trust_env=not endpoint.loopback,  # requests to this machine never use a proxy
-        verify=endpoint.url.startswith("https:"),  # loading certificates takes a tenth of a second
+        verify=endpoint.url.startswith("https:"),  # certificates, which load slowly, are needed for HTTPS only
         follow_redirects=False,
         event_hooks=hooks,
     )

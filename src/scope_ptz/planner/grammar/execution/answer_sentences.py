@@ -35,7 +35,7 @@ def number(value: float) -> str:
 
 
 def spelled(count: int) -> str:
-    """Return a count as a word from 1 to 12, otherwise in digits. Used for repetitions; counts of objects are always in digits."""
+    """Return a count from 1 to 12 as a word, any other in digits. Used for repetitions; counts of objects are always in digits."""
     return english.number_word(count) if 0 < count <= _MAX_SPELLED else str(count)
 
 

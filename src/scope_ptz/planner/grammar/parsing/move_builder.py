@@ -30,7 +30,9 @@ _AIMING = (
     "swing",
     "orient",
     "rotat",
-)  # beginnings of verbs that aim the camera; others mean zooming in
+)
+"""Beginnings of the verbs of LOOKAT that aim the camera; the others zoom in."""
+
 _SMALL_STEP_DEG = 5.0
 _VERBS = (
     "PAN",
