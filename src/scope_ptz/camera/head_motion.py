@@ -42,9 +42,10 @@ class HeadMotion:
         self.commands = 0
         """Number of commands so far. It tells whether another command has replaced one."""
 
-    def move(self, pose: Pose, now_s: float, *, speed_share: float = 1.0) -> None:
+    def move(self, pose: Pose, now_s: float, *, speed_share: float = 1.0, zoom_speed_share: float | None = None) -> None:
         """Start towards a pose within the limits, from where the head is, at a share of its top speeds."""
-        head = self._head if speed_share == 1.0 else self._head.at_speed(speed_share)
+        zoom_share = speed_share if zoom_speed_share is None else zoom_speed_share
+        head = self._head if speed_share == zoom_share == 1.0 else self._head.at_speed(speed_share, zoom_share)
         self._replace(_Move(head, self.pose(now_s), pose), now_s)
 
     def drive(self, velocity: Velocity, now_s: float, timeout_s: float) -> None:
@@ -54,6 +55,20 @@ class HeadMotion:
     def brake(self, now_s: float) -> None:
         """Decelerate to a standstill."""
         self.drive(Velocity(), now_s, 0.0)
+
+    def stop_axes(self, now_s: float, *, pan_tilt: bool, zoom: bool) -> None:
+        """Stop pan and tilt, the zoom, or neither. The other axes keep their velocity and timeout, or their destination."""
+        command, since_s = self._current
+        if isinstance(command, _Driving):
+            speed = self.velocity(now_s)
+            kept = Velocity(
+                0.0 if pan_tilt else speed.pan_dps, 0.0 if pan_tilt else speed.tilt_dps, 0.0 if zoom else speed.zoom_rate
+            )
+            self.drive(kept, now_s, max(0.0, since_s + command.hold_s - now_s))
+        elif self.moving(now_s):
+            here, end = self.pose(now_s), command.end
+            axes = here if pan_tilt else end
+            self._replace(_Move(command.head, here, Pose(axes.pan_deg, axes.tilt_deg, here.zoom if zoom else end.zoom)), now_s)
 
     def halt(self, pose: Pose, now_s: float) -> None:
         """Be at a pose at once."""
@@ -69,6 +84,11 @@ class HeadMotion:
         zoom = command.start.zoom * 2.0**octaves
         reached, _ = self._limits.clamp(Pose(command.start.pan_deg + pan, command.start.tilt_deg + tilt, zoom))
         return Pose(wrap_pan_deg(reached.pan_deg), reached.tilt_deg, reached.zoom) if self._limits.pan_endless else reached
+
+    def destination(self, now_s: float) -> Pose:
+        """Return where a move to a pose ends; the current pose of a driven head."""
+        command, _ = self._current
+        return command.end if isinstance(command, _Move) else self.pose(now_s)
 
     def velocity(self, now_s: float) -> Velocity:
         """Return the velocity of a driven head. A move to a pose reports none: the next command starts from rest."""

@@ -127,12 +127,23 @@ class VirtualDevice:
         status = self._faults.move_status
         return None if status == "missing" else (self.moving() and status != "lying")
 
-    def move(self, pose: Pose, *, speed_share: float = 1.0) -> None:
-        """Start towards a pose. Values beyond a limit are clamped, and a stuck axis stays where it is."""
+    def destination(self) -> Pose:
+        """Return where the current move to a pose ends; the current pose if the head is driven or at rest."""
+        return self._motion.destination(self.now_s())
+
+    def move(self, pose: Pose, *, speed_share: float = 1.0, zoom_speed_share: float | None = None) -> None:
+        """Start towards a pose. Values beyond a limit are clamped, and a stuck axis stays where it is.
+
+        Args:
+            pose: Where to go.
+            speed_share: Share (0 to 1] of the top speeds of pan and tilt.
+            zoom_speed_share: The same for the zoom; None for ``speed_share``.
+        """
         reachable, _ = self.limits.clamp(pose)
         here = self.pose()
         stuck = {_STUCK_FIELDS[axis]: getattr(here, _STUCK_FIELDS[axis]) for axis in self._faults.stuck}
-        self._motion.move(replace(reachable, **stuck), self.now_s(), speed_share=speed_share)
+        zoom_share = speed_share if zoom_speed_share is None else zoom_speed_share
+        self._motion.move(replace(reachable, **stuck), self.now_s(), speed_share=speed_share, zoom_speed_share=zoom_share)
 
     def drive(self, velocity: Velocity, *, timeout_s: float | None = None, sent_s: float | None = None) -> bool:
         """Move continuously. The command is dropped if it was sent before the last ``stop`` and arrived after it.
@@ -162,11 +173,20 @@ class VirtualDevice:
         """The current velocity of a driven head."""
         return self._motion.velocity(self.now_s())
 
-    def stop(self, *, sent_s: float | None = None) -> None:
-        """Brake. ``sent_s`` is when the client sent the command, in Unix seconds, if it says so."""
+    def stop(self, *, pan_tilt: bool = True, zoom: bool = True, sent_s: float | None = None) -> None:
+        """Brake pan and tilt, the zoom, or all. The rest goes on.
+
+        Args:
+            pan_tilt: Whether pan and tilt stop.
+            zoom: Whether the zoom stops.
+            sent_s: When the client sent the command, in Unix seconds, if it says so.
+        """
         if sent_s is not None:
             self._stopped_by_s = max(self._stopped_by_s, sent_s)
         now_s = self.now_s()
+        if not (pan_tilt and zoom):
+            self._motion.stop_axes(now_s, pan_tilt=pan_tilt, zoom=zoom)
+            return
         if self._motion.velocity(now_s) == Velocity():
             self._motion.halt(self._motion.pose(now_s), now_s)
         else:
