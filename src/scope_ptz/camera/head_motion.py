@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from scope_ptz.camera.capabilities import Velocity
 from scope_ptz.camera.motion import Head
@@ -42,10 +42,14 @@ class HeadMotion:
         self.commands = 0
         """Number of commands so far. It tells whether another command has replaced one."""
 
-    def move(self, pose: Pose, now_s: float, *, speed_share: float = 1.0, zoom_speed_share: float | None = None) -> None:
-        """Start towards a pose within the limits, from where the head is, at a share of its top speeds."""
-        zoom_share = speed_share if zoom_speed_share is None else zoom_speed_share
-        head = self._head if speed_share == zoom_share == 1.0 else self._head.at_speed(speed_share, zoom_share)
+    def move(self, pose: Pose, now_s: float, *, speed_share: float = 1.0, zoom_share: float | None = None) -> None:
+        """Start towards a pose within the limits, from where the head is, at a share of its top speeds.
+
+        ``zoom_share`` is the share for zoom where it differs from that for pan and tilt.
+        """
+        head = self._head if speed_share == 1.0 else self._head.at_speed(speed_share)
+        if zoom_share is not None:
+            head = replace(head, zoom=self._head.at_speed(zoom_share).zoom)
         self._replace(_Move(head, self.pose(now_s), pose), now_s)
 
     def drive(self, velocity: Velocity, now_s: float, timeout_s: float) -> None:
@@ -60,15 +64,14 @@ class HeadMotion:
         """Stop pan and tilt, the zoom, or neither. The other axes keep their velocity and timeout, or their destination."""
         command, since_s = self._current
         if isinstance(command, _Driving):
-            speed = self.velocity(now_s)
-            kept = Velocity(
-                0.0 if pan_tilt else speed.pan_dps, 0.0 if pan_tilt else speed.tilt_dps, 0.0 if zoom else speed.zoom_rate
-            )
-            self.drive(kept, now_s, max(0.0, since_s + command.hold_s - now_s))
+            target, left_s = command.target, since_s + command.hold_s - now_s
+            if left_s > 0:
+                pan_dps, tilt_dps = (0.0, 0.0) if pan_tilt else (target.pan_dps, target.tilt_dps)
+                self.drive(Velocity(pan_dps, tilt_dps, 0.0 if zoom else target.zoom_rate), now_s, left_s)
         elif self.moving(now_s):
             here, end = self.pose(now_s), command.end
-            axes = here if pan_tilt else end
-            self._replace(_Move(command.head, here, Pose(axes.pan_deg, axes.tilt_deg, here.zoom if zoom else end.zoom)), now_s)
+            aim = here if pan_tilt else end
+            self._replace(_Move(command.head, here, Pose(aim.pan_deg, aim.tilt_deg, here.zoom if zoom else end.zoom)), now_s)
 
     def halt(self, pose: Pose, now_s: float) -> None:
         """Be at a pose at once."""
@@ -85,11 +88,6 @@ class HeadMotion:
         reached, _ = self._limits.clamp(Pose(command.start.pan_deg + pan, command.start.tilt_deg + tilt, zoom))
         return Pose(wrap_pan_deg(reached.pan_deg), reached.tilt_deg, reached.zoom) if self._limits.pan_endless else reached
 
-    def destination(self, now_s: float) -> Pose:
-        """Return where a move to a pose ends; the current pose of a driven head."""
-        command, _ = self._current
-        return command.end if isinstance(command, _Move) else self.pose(now_s)
-
     def velocity(self, now_s: float) -> Velocity:
         """Return the velocity of a driven head. A move to a pose reports none: the next command starts from rest."""
         command, since_s = self._current
@@ -103,6 +101,17 @@ class HeadMotion:
             0.0 if _pushes(tilt, pose.tilt_deg, limits.min_tilt_deg, limits.max_tilt_deg) else tilt,
             0.0 if _pushes(zoom, pose.zoom, limits.min_zoom, limits.max_zoom) else zoom,
         )
+
+    @property
+    def end(self) -> Pose | None:
+        """The pose that the current move leads to; None for a driven head."""
+        command, _ = self._current
+        return command.end if isinstance(command, _Move) else None
+
+    def driven_at(self, now_s: float) -> Velocity:
+        """Return the commanded velocity of a driven head; zero after its timeout, and for a move to a pose."""
+        command, since_s = self._current
+        return command.target if isinstance(command, _Driving) and now_s - since_s < command.hold_s else Velocity()
 
     def ends_s(self) -> float:
         """Return the time at which the current command ends, with the settling of a move to a pose."""

@@ -76,11 +76,9 @@ class Head:
     zoom: Motor
     settle_s: float
 
-    def at_speed(self, share: float, zoom_share: float | None = None) -> Head:
-        """Return the head with top speeds reduced to a share (0 to 1] of its own; the zoom may have a share of its own."""
-        shares = (share, share, share if zoom_share is None else zoom_share)
-        motors = zip((self.pan, self.tilt, self.zoom), shares, strict=True)
-        pan, tilt, zoom = (replace(motor, speed=motor.speed * part) for motor, part in motors)
+    def at_speed(self, share: float) -> Head:
+        """Return the head with top speeds reduced to a share (0 to 1] of its own."""
+        pan, tilt, zoom = (replace(motor, speed=motor.speed * share) for motor in (self.pan, self.tilt, self.zoom))
         return Head(pan, tilt, zoom, self.settle_s)
 
     def duration_s(self, start: Pose, end: Pose) -> float:

@@ -22,11 +22,11 @@ async def test_services_and_device_information(camera: ONVIFCamera, serving: Ser
         "/onvif/ptz_service",
     }
     about = await device.GetDeviceInformation()
-    assert about.Manufacturer == "SCOPE"
+    assert about.Manufacturer == "AXIS"
     assert len(about.SerialNumber) == 12
 
 
 async def test_absolute_move(camera: ONVIFCamera, device: VirtualDevice) -> None:
     ptz = await camera.create_ptz_service()
     await ptz.AbsoluteMove({"ProfileToken": "profile-1", "Position": {"PanTilt": {"x": 0.5, "y": -1.0}, "Zoom": {"x": 1.0}}})
-    assert device.destination() == Pose(89.5, -60.0, 5.0)
+    assert device.destination == Pose(89.5, -60.0, 5.0)

@@ -7,7 +7,7 @@ from typing import Any
 from urllib.parse import quote
 
 from scope_ptz.virtual_camera.device import VirtualDevice
-from scope_ptz.virtual_camera.identity import identify
+from scope_ptz.virtual_camera.identity import BRAND, FIRMWARE, PRODUCT, device_uuid, hostname, mac_address, serial_number
 from scope_ptz.virtual_camera.onvif.clock import device_datetime
 from scope_ptz.virtual_camera.onvif.operations import Operation, Operations, Reply, Request
 from scope_ptz.virtual_camera.onvif.soap import SoapFault, invalid_argument
@@ -30,9 +30,8 @@ _ABSENT = {"Analytics", "Events", "Imaging"}
 
 def scopes(device: VirtualDevice) -> list[str]:
     """Return the scopes by which WS-Discovery clients choose devices."""
-    about = identify(device)
     items = ("type/ptz", "type/video_encoder", "type/Network_Video_Transmitter", "Profile/Streaming")
-    named = (f"hardware/{quote(about.model)}", f"name/{quote(about.name)}", f"location/{quote(device.scene.name)}")
+    named = (f"hardware/{quote(PRODUCT)}", f"name/{quote(device.name)}", f"location/{quote(device.scene.name)}")
     return [f"onvif://www.onvif.org/{item}" for item in (*items, *named)]
 
 
@@ -106,30 +105,28 @@ class DeviceService:
         }  # fmt: skip
 
     def _hostname(self, _: Request) -> Reply:
-        return {"HostnameInformation": {"FromDHCP": False, "Name": identify(self._device).hostname}}
+        return {"HostnameInformation": {"FromDHCP": False, "Name": hostname(self._device)}}
 
     def _endpoint(self, _: Request) -> Reply:
-        return {"GUID": str(identify(self._device).uuid)}
+        return {"GUID": str(device_uuid(self._device))}
 
     def _information(self, _: Request) -> Reply:
-        about = identify(self._device)
         return {
-            "Manufacturer": about.manufacturer,
-            "Model": about.model,
-            "FirmwareVersion": about.firmware,
-            "SerialNumber": about.serial,
-            "HardwareId": about.serial,
+            "Manufacturer": BRAND,
+            "Model": PRODUCT,
+            "FirmwareVersion": FIRMWARE,
+            "SerialNumber": serial_number(self._device),
+            "HardwareId": "virtual",
         }
 
     def _scopes(self, _: Request) -> Reply:
         return {"Scopes": [{"ScopeDef": "Fixed", "ScopeItem": item} for item in scopes(self._device)]}
 
     def _network_interfaces(self, request: Request) -> Reply:
-        about = identify(self._device)
         interface: dict[str, Any] = {
             "token": "eth0",
             "Enabled": True,
-            "Info": {"Name": "eth0", "HwAddress": about.mac, "MTU": 1500},
+            "Info": {"Name": "eth0", "HwAddress": mac_address(self._device), "MTU": 1500},
         }
         if request.host.replace(".", "").isdigit():
             address = {"Address": request.host, "PrefixLength": 8 if request.host.startswith("127.") else 24}

@@ -65,7 +65,7 @@ class PtzService:
     def _absolute(self, request: Request) -> Reply:
         require_profile(request.ProfileToken)
         pan_tilt, zoom = _axes(request.Position)
-        pose = self._device.destination()
+        pose = self._device.destination
         if pan_tilt is not None:
             space = s.chosen(self._spaces.positions, pan_tilt, self._configuration.position)
             space.check(pan_tilt, "InvalidPosition")
@@ -79,7 +79,7 @@ class PtzService:
     def _relative(self, request: Request) -> Reply:
         require_profile(request.ProfileToken)
         pan_tilt, zoom = _axes(request.Translation)
-        here, pose = self._device.pose(), self._device.destination()
+        here, pose = self._device.pose(), self._device.destination
         if pan_tilt is not None:
             space = s.chosen(self._spaces.translations, pan_tilt, self._configuration.translation)
             space.check(pan_tilt, "InvalidTranslation")
@@ -94,7 +94,7 @@ class PtzService:
     def _continuous(self, request: Request) -> Reply:
         require_profile(request.ProfileToken)
         pan_tilt, zoom = _axes(request.Velocity)
-        velocity, top = self._device.velocity, top_speed(self._device.head)
+        velocity, top = self._device.driven, top_speed(self._device.head)
         if pan_tilt is not None:
             s.chosen(self._spaces.velocities, pan_tilt, s.VELOCITY).check(pan_tilt, "InvalidVelocity")
             velocity = replace(velocity, pan_dps=pan_tilt.x * top.pan_dps, tilt_dps=pan_tilt.y * top.tilt_dps)
@@ -132,7 +132,7 @@ class PtzService:
 
     def _move(self, pose: Pose, speed: Any) -> None:
         share, zoom_share = self._configuration.shares(speed)
-        self._device.move(pose, speed_share=share, zoom_speed_share=zoom_share)
+        self._device.move(pose, speed_share=share, zoom_share=zoom_share)
 
 
 def _axes(vector: Any) -> tuple[Any, Any]:
