@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import logging
 import re
-from collections.abc import Awaitable, Callable, MutableMapping
+from collections.abc import Awaitable, Callable, Iterable, MutableMapping
+from dataclasses import dataclass
 from typing import Any
 
 from zeep.exceptions import Error as ZeepError
 
 from scope_ptz.virtual_camera.accounts import Role
 from scope_ptz.virtual_camera.device import VirtualDevice
+from scope_ptz.virtual_camera.digest import DigestAuthenticator, Verdict
+from scope_ptz.virtual_camera.identity import serial_number
 from scope_ptz.virtual_camera.onvif.clock import device_time_s
 from scope_ptz.virtual_camera.onvif.device_service import PATHS, DeviceService
 from scope_ptz.virtual_camera.onvif.login import Stamp, UsernameTokens, created, not_authorized
@@ -39,27 +42,47 @@ Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
 Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
 
 
+@dataclass(frozen=True, slots=True)
+class Caller:
+    """How a client reached the device, and what it proved over HTTP.
+
+    Attributes:
+        host: The host, as it appears in an address.
+        origin: Scheme, host and port.
+        verdict: The result of HTTP digest authentication, None if the client did not try it.
+    """
+
+    host: str
+    origin: str
+    verdict: Verdict | None = None
+
+
 class OnvifApp:
-    """The ONVIF services of one camera.
+    """The ONVIF services of one camera. Clients sign in with a WS-UsernameToken or by HTTP digest.
 
     Args:
         device: The camera.
         rtsp_port: Where its streams are, for the addresses in replies.
+
+    Attributes:
+        rtsp_port: Where its streams are; assign it if the port becomes known later.
 
     Raises:
         ConfigError: zeep or the WSDL files are not installed.
     """
 
     def __init__(self, device: VirtualDevice, *, rtsp_port: int = 554) -> None:
+        self.rtsp_port = rtsp_port
         self._device = device
         self._types, self._messages = load_document().types, load_operations()
         self._tokens = UsernameTokens(device.accounts, lambda: device_time_s(device))
+        self._digest = DigestAuthenticator(device.accounts, f"AXIS_{serial_number(device)}")
         configuration = PtzConfiguration(device)
         ptz = PtzService(device, configuration)
         self._operations: dict[str, Operations] = {
             DEVICE: DeviceService(device, self._capabilities).operations(),
-            MEDIA: MediaService(device, configuration, rtsp_port).operations(),
-            MEDIA2: Media2Service(device, configuration, rtsp_port).operations(),
+            MEDIA: MediaService(device, configuration, lambda: self.rtsp_port).operations(),
+            MEDIA2: Media2Service(device, configuration, lambda: self.rtsp_port).operations(),
             PTZ: {
                 **ptz.operations(),
                 **configuration.operations(),
@@ -72,24 +95,22 @@ class OnvifApp:
         if scope["path"].rstrip("/") not in PATHS.values():
             return await _send(send, 404, b"")
         if scope["method"] != "POST":
-            return await _send(send, 405, b"", (b"allow", b"POST"))
+            return await _send(send, 405, b"", [(b"allow", b"POST")])
+        caller, headers = self._caller(scope), []
         try:
             data = await _read(receive)
             if data is None:
                 return None
-            host, origin = _address(scope)
-            status, reply = 200, self.answer(data, host, origin)
+            status, reply = 200, self.answer(data, caller)
         except SoapFault as fault:
             status, reply = fault.status, fault.envelope()
-        return await _send(send, status, reply)
+            if status == 401:
+                stale = caller.verdict is not None and caller.verdict.stale
+                headers = [(b"www-authenticate", text.encode()) for text in self._digest.challenges(stale=stale)]
+        return await _send(send, status, reply, headers)
 
-    def answer(self, data: bytes, host: str, origin: str) -> bytes:
+    def answer(self, data: bytes, caller: Caller) -> bytes:
         """Return the reply to a request.
-
-        Args:
-            data: The request.
-            host: The host by which the client reached the device, as in an address.
-            origin: Scheme, host and port by which the client reached it.
 
         Raises:
             SoapFault: The request is refused.
@@ -101,17 +122,16 @@ class OnvifApp:
             known = (namespace, name) in self._messages
             what = "does not offer" if known else "does not know"
             raise SoapFault(f"The device {what} the operation {name[:64]}.", "ActionNotSupported", receiver=known)
-        stamp = None if operation.role is None else self._stamp(envelope, operation.role)
-        message = self._messages[namespace, name]
+        stamp = None if operation.role is None else self._admit(envelope, caller, operation.role)
         try:
-            arguments = message.input.body.parse(envelope.body, self._types)
+            arguments = self._messages[namespace, name].input.body.parse(envelope.body, self._types)
         except (ZeepError, ValueError, TypeError, ArithmeticError, LookupError, AttributeError) as error:
             _LOG.debug("Arguments of %s: %s", name, error)
             raise SoapFault(f"The arguments of {name} are not of the types in its WSDL.", "InvalidArgs") from error
-        reply = operation.run(Request(arguments, host, origin, stamp))
+        reply = operation.run(Request(arguments, caller.host, caller.origin, stamp))
         return as_bytes(self._serialized(namespace, name, reply))
 
-    def _stamp(self, envelope: Envelope, role: Role) -> Stamp | None:
+    def _admit(self, envelope: Envelope, caller: Caller, role: Role) -> Stamp | None:
         """Check that the sender of a request may make it, and return when it was created, None if it does not say so.
 
         Raises:
@@ -122,11 +142,21 @@ class OnvifApp:
         if self._device.accounts.open_to_all:
             return created(envelope.header)
         sender = self._tokens.sender(envelope.header)
-        if sender is None:
+        account = sender.account if sender else caller.verdict.account if caller.verdict else None
+        if account is None:
             raise not_authorized("The operation needs a login.", status=401)
-        if sender.account.role < role:
-            raise not_authorized(f"The account may not do this: it is not {role.name.lower()}.")
-        return sender.stamp
+        if account.role < role:
+            raise not_authorized(f"The account may not do this: it needs the role {role.name.lower()}.")
+        return sender.stamp if sender else None
+
+    def _caller(self, scope: Scope) -> Caller:
+        headers = dict(scope["headers"])
+        host, origin = _address(scope, headers.get(b"host", b"").decode("latin-1"))
+        if (answer := headers.get(b"authorization")) is None:
+            return Caller(host, origin)
+        query = scope["query_string"].decode("latin-1")
+        target = scope["raw_path"].decode("latin-1") + (f"?{query}" if query else "")
+        return Caller(host, origin, self._digest.check(answer.decode("latin-1"), scope["method"], target))
 
     def _serialized(self, namespace: str, name: str, reply: Reply) -> Any:
         return self._messages[namespace, name].output.serialize(**reply).content
@@ -137,9 +167,8 @@ class OnvifApp:
         return self._serialized(namespace, "GetServiceCapabilities", reply).find(f".//{{{namespace}}}Capabilities")
 
 
-def _address(scope: Scope) -> tuple[str, str]:
-    """Return the host, and scheme with host and port, by which a client reached the server."""
-    stated = next((value.decode("latin-1") for key, value in scope["headers"] if key == b"host"), "")
+def _address(scope: Scope, stated: str) -> tuple[str, str]:
+    """Return the host, and scheme with host and port, by which a client says that it reached the server."""
     found = _HOST.fullmatch(stated)
     if found is None:
         host, port = scope.get("server") or ("localhost", None)
@@ -167,7 +196,7 @@ async def _read(receive: Receive) -> bytes | None:
             return b"".join(parts)
 
 
-async def _send(send: Send, status: int, body: bytes, *headers: tuple[bytes, bytes]) -> None:
+async def _send(send: Send, status: int, body: bytes, headers: Iterable[tuple[bytes, bytes]] = ()) -> None:
     kind = [(b"content-type", CONTENT_TYPE.encode())] if body else []
     length = (b"content-length", str(len(body)).encode())
     await send({"type": "http.response.start", "status": status, "headers": [*kind, length, *headers]})

@@ -72,7 +72,7 @@ class DeviceService:
         return {"Service": found}
 
     def _service_capabilities(self, _: Request) -> Reply:
-        security = {"UsernameToken": True, "HttpDigest": False, "TLS1.2": False, "RELToken": False, "MaxUsers": 0}
+        security = {"UsernameToken": True, "HttpDigest": True, "TLS1.2": False, "RELToken": False, "MaxUsers": 0}
         system = {"DiscoveryResolve": True, "DiscoveryBye": True, "RemoteDiscovery": False, "SystemLogging": False}
         network = {"IPFilter": False, "ZeroConfiguration": False, "IPVersion6": False, "DynDNS": False, "NTP": 0}
         return {"Capabilities": {"Network": network, "Security": security, "System": system}}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from scope_ptz.errors import ConfigError
 
@@ -41,7 +41,7 @@ def load_document() -> Document:
 
     folders = (_OWN_FOLDER, _shipped_folder())
 
-    class LocalFiles(Transport):  # type: ignore[misc, no-any-unimported]
+    class LocalFiles(Transport):
         """Finds documents by file name in the two folders, and never on the network."""
 
         def load(self, url: str) -> bytes:
@@ -51,10 +51,11 @@ def load_document() -> Document:
                     return (folder / name).read_bytes()
             raise ConfigError(f"The WSDL file {name} is missing. {_INSTALL}")
 
-    document = Document(str(_OWN_FOLDER / "services.wsdl"), LocalFiles(), settings=Settings())
+    transport: Any = LocalFiles
+    document: Any = Document(str(_OWN_FOLDER / "services.wsdl"), transport(), settings=Settings())
     for prefix, namespace in _PREFIXES.items():
         document.types.set_ns_prefix(prefix, namespace)
-    return document
+    return cast("Document", document)
 
 
 @cache
