@@ -8,11 +8,13 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
 import anyio
+from anyio import to_thread
 
 from scope_ptz.virtual_camera.device import VirtualDevice
 from scope_ptz.virtual_camera.digest import DigestAuthenticator
 from scope_ptz.virtual_camera.live_source import LiveSource
 from scope_ptz.virtual_camera.rtsp.connection import RtspConnection
+from scope_ptz.virtual_camera.rtsp.encoder import parameter_sets
 from scope_ptz.virtual_camera.rtsp.messages import MAX_LINE_BYTES
 from scope_ptz.virtual_camera.rtsp.playback import StreamStatistics
 from scope_ptz.virtual_camera.rtsp.sessions import Sessions
@@ -65,7 +67,14 @@ class RtspServer:
 
     @asynccontextmanager
     async def listen(self, listener: socket.socket) -> AsyncIterator[RtspServer]:
-        """Serve at a listening socket while the context is open, and close it."""
+        """Serve at a listening socket while the context is open, and close it.
+
+        Raises:
+            ConfigError: PyAV is missing, or lacks libx264.
+        """
+        device = self.device
+        # A build without an encoder is noticed now, and the first client does not wait for it to be loaded.
+        await to_thread.run_sync(parameter_sets, device.width, device.height, self._source.rate_hz)
         server = await asyncio.start_server(self._connected, sock=listener, limit=MAX_LINE_BYTES)
         watcher = asyncio.create_task(self._watch())
         try:
