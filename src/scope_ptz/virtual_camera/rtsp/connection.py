@@ -43,6 +43,7 @@ class RtspConnection:
         source: Its live picture.
         sessions: The sessions of all connections.
         digest: Checks passwords.
+        chance: Decides which requests are dropped if the camera drops some.
         reader: What the client sends.
         writer: What it gets.
     """
@@ -53,16 +54,17 @@ class RtspConnection:
         source: LiveSource,
         sessions: Sessions,
         digest: DigestAuthenticator,
+        chance: random.Random,
         reader: asyncio.StreamReader,
         writer: asyncio.StreamWriter,
     ) -> None:
         self._device, self._source, self._sessions, self._digest = device, source, sessions, digest
+        self._chance = chance
         self._reader, self._writer = reader, writer
         self._here: str = writer.get_extra_info("sockname")[0]
         self._peer: str = writer.get_extra_info("peername")[0]
         self._account = ""
         self._own: dict[str, Session] = {}
-        self._random = random.Random(0)
         self._handlers: dict[str, Handler] = {
             "OPTIONS": self._options,
             "DESCRIBE": self._describe,
@@ -123,7 +125,7 @@ class RtspConnection:
         faults = self._device.faults
         if faults.stall_s:
             await asyncio.sleep(faults.stall_s)
-        if self._device.faults.down or self._random.random() < faults.drop:
+        if self._device.faults.down or self._chance.random() < faults.drop:
             self.abort()
             return False
         if faults.garbage:

@@ -6,6 +6,7 @@ import asyncio
 import logging
 import random
 from dataclasses import dataclass
+from math import inf
 from time import monotonic
 from typing import Protocol
 
@@ -68,8 +69,13 @@ class LiveStreams:
         """The formats that are being encoded."""
         return list(self._streams)
 
-    def join(self, wanted: StreamFormat, viewer: Viewer) -> None:
-        """Let somebody play. The next picture is a keyframe.
+    def join(self, wanted: StreamFormat, viewer: Viewer, start_s: float) -> None:
+        """Let somebody play.
+
+        Args:
+            wanted: The format.
+            viewer: Who gets its pictures.
+            start_s: Time on ``time.monotonic``; the first picture from then on is a keyframe.
 
         Raises:
             RefusedError: Too many formats are being played.
@@ -80,7 +86,7 @@ class LiveStreams:
             self._streams[wanted] = _Stream(self._source, wanted)
         stream = self._streams[wanted]
         stream.viewers.add(viewer)
-        stream.keyframe_wanted = True
+        stream.keyframe_from_s = start_s
 
     def leave(self, wanted: StreamFormat, viewer: Viewer) -> None:
         """Let somebody stop playing. Without viewers, a format is not encoded."""
@@ -106,7 +112,7 @@ class _Stream:
         self._source, self._wanted = source, wanted
         self._random = random.Random(0)
         self.viewers: set[Viewer] = set()
-        self.keyframe_wanted = True
+        self.keyframe_from_s = inf  # a picture from then on is to be a keyframe
         self.task = asyncio.create_task(self._run())
 
     async def _run(self) -> None:
@@ -122,7 +128,7 @@ class _Stream:
         device, fps = self._source.device, self._wanted.fps
         encoder: H264Encoder | None = None
         before: Exposure | None = None
-        due_s = key_s = 0.0
+        due_s, key_s = 0.0, -inf
         async with self._source.subscribe() as exposures:
             async for exposure in exposures:
                 # The time stamps of a frozen picture go on, as from a camera whose sensor hangs.
@@ -135,11 +141,12 @@ class _Stream:
                 width, height = _size(device, self._wanted)
                 if encoder is None or (encoder.width, encoder.height) != (width, height):
                     encoder = await to_thread.run_sync(H264Encoder, width, height, fps)
-                    key_s = -KEYFRAME_INTERVAL_S
-                since_s = taken_s - key_s
-                keyframe = since_s >= (MIN_KEYFRAME_INTERVAL_S if self.keyframe_wanted else KEYFRAME_INTERVAL_S - 0.5 / fps)
+                    key_s = -inf
+                wanted = taken_s >= self.keyframe_from_s
+                keyframe = taken_s - key_s >= (MIN_KEYFRAME_INTERVAL_S if wanted else KEYFRAME_INTERVAL_S - 0.5 / fps)
                 if keyframe:
-                    key_s, self.keyframe_wanted = taken_s, False
+                    key_s = taken_s
+                    self.keyframe_from_s = inf if wanted else self.keyframe_from_s
                 nals = await to_thread.run_sync(_encode, encoder, exposure, taken_s, keyframe)
                 unit = AccessUnit(taken_s, keyframe, tuple(payloads(self._damaged(nals))))
                 for viewer in list(self.viewers):

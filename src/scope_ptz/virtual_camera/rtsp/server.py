@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import random
 import socket
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -38,6 +39,7 @@ class RtspServer:
         # Many RTSP clients do not know the quality of protection that HTTP clients use.
         self._digest = DigestAuthenticator(source.device.accounts, realm, qop=False)
         self._sessions = Sessions(source, timeout_s=session_timeout_s)
+        self._chance = random.Random(0)
         self._connections: dict[asyncio.Task[None], RtspConnection] = {}
 
     @property
@@ -92,7 +94,7 @@ class RtspServer:
         if len(self._connections) >= MAX_CONNECTIONS or self.device.faults.down:
             writer.transport.abort()
             return
-        connection = RtspConnection(self.device, self._source, self._sessions, self._digest, reader, writer)
+        connection = RtspConnection(self.device, self._source, self._sessions, self._digest, self._chance, reader, writer)
         task = asyncio.create_task(connection.run())
         self._connections[task] = connection
         task.add_done_callback(self._connections.pop)

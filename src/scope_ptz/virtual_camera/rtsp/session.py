@@ -85,7 +85,7 @@ class Session:
                 # TCP confirms that the client took the bytes; by UDP its reports do.
                 on_sent=self.touch if isinstance(self.sink, InterleavedSink) else lambda: None,
             )
-            self._streams.join(self.wanted, playback)
+            self._streams.join(self.wanted, playback, playback.start_s)
             self._playback = playback
             self._task = asyncio.create_task(self._run(playback))
         return self.clock.sequence, self.clock.timestamp(self._playback.start_s)
@@ -102,12 +102,14 @@ class Session:
         self.ended = True
         playback, task = self._playback, self._task
         self.pause()
-        if task is not None and task is not asyncio.current_task():
-            await asyncio.gather(task, return_exceptions=True)
-        if self.sink is not None:
-            if playback is not None:
-                playback.goodbye()
-            self.sink.close()
+        try:
+            if task is not None:
+                await asyncio.gather(task, return_exceptions=True)
+        finally:
+            if self.sink is not None:
+                if playback is not None:
+                    playback.goodbye()
+                self.sink.close()
 
     async def _run(self, playback: Playback) -> None:
         try:
