@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from scope_ptz.geometry import Pose
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.virtual_camera.device import VirtualDevice
 from scope_ptz.virtual_camera.rtsp.encoder import H264Encoder, nal_units, parameter_sets
+from tests.virtual_camera.rtsp.pictures import difference
 
 
 def decoded(pictures: list[list[bytes]]) -> list[NDArray[np.uint8]]:
@@ -24,18 +26,12 @@ def decoded(pictures: list[list[bytes]]) -> list[NDArray[np.uint8]]:
     return [np.asarray(frame.to_ndarray(format="rgb24"), np.uint8) for frame in frames]
 
 
-def difference(a: NDArray[np.uint8], b: NDArray[np.uint8]) -> float:
-    """Return the mean difference of pictures in grey levels."""
-    assert a.shape == b.shape
-    return float(np.abs(a.astype(float) - b).mean())
-
-
 @pytest.fixture(scope="module")
 def images(analytic_scene: Scene) -> list[NDArray[np.uint8]]:
     device = VirtualDevice(analytic_scene, width=320, height=180, time_scale=1e6)
     taken = []
     for pan_deg in range(0, 40, 4):
-        device.move(device.pose().__class__(float(pan_deg), 0.0, 1.0))
+        device.move(Pose(float(pan_deg), 0.0, 1.0))
         while device.moving():
             pass
         taken.append(device.expose().image)
