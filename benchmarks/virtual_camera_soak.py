@@ -132,6 +132,8 @@ class Camera:
         assert self._process.stdin is not None
         self._process.stdin.close()
         left: dict[str, int] = self._line()["left_over"]
+        assert self._process.stdout is not None
+        self._process.stdout.close()
         if self._process.wait(timeout=60):
             raise SystemExit(f"The camera ended with code {self._process.returncode}.")
         return left
@@ -319,10 +321,8 @@ def soak(scene: str, duration_s: float) -> dict[str, Any]:
         samples.append((time.monotonic(), camera.sample()))
         if len(samples) % 15 == 1:
             now_s, figures = samples[-1]
-            print(
-                f"{now_s - start_s:5.0f} s  {figures['memory_mb']:6.0f} MB  {figures['threads']:2} threads  {figures['sockets']:2} sockets",
-                flush=True,
-            )
+            numbers = f"{figures['memory_mb']:6.0f} MB  {figures['threads']:2} threads  {figures['sockets']:2} sockets"
+            print(f"{now_s - start_s:5.0f} s  {numbers}", flush=True)
         time.sleep(SAMPLE_S)
     end_s = time.monotonic()
     ended.set()
@@ -363,25 +363,21 @@ def guarded(stream: Stream | None, work: Callable[[], None]) -> None:
 def report(results: dict[str, Any]) -> None:
     """Print the results."""
     print(f"\nCounted: {results['counted_seconds']:.0f} of {results['seconds']:.0f} s")
-    memory = results["memory_mb"]
-    print(
-        f"Memory: {memory['start']:.0f} MB, later {memory['end']:.0f} MB: {results['memory_growth']:.3f} x; at most {memory['peak']:.0f} MB"
-    )
+    memory, growth = results["memory_mb"], results["memory_growth"]
+    print(f"Memory: {memory['start']:.0f} MB, later {memory['end']:.0f} MB: {growth:.3f} x; at most {memory['peak']:.0f} MB")
     print(f"Processor time of the camera: {results['cores_used']:.2f} cores; {results['skipped_ticks']} exposures skipped")
     for name, stream in results["streams"].items():
         rate, worst = stream["frames_per_s"], stream["worst_10_s_frames_per_s"]
-        print(f"{name}: {rate:.2f} frames/s ({rate / RATE_HZ:.3f} x {RATE_HZ:g})", end="")
+        figures = [f"{rate:.2f} frames/s ({rate / RATE_HZ:.3f} x {RATE_HZ:g})"]
         if worst is not None:
-            print(f", worst 10 s {worst:.1f}", end="")
+            figures.append(f"worst 10 s {worst:.1f}")
         if stream["median_age_s"] is not None:
-            print(f"; age {1000 * stream['median_age_s']:.0f} ms, 99% {1000 * stream['p99_age_s']:.0f} ms", end="")
-        print(
-            f"; {stream['late_frames']} of {stream['frames_with_age']} late, {stream['out_of_order']} out of order {stream['failure']}"
-        )
+            figures.append(f"age {1000 * stream['median_age_s']:.0f} ms, 99% {1000 * stream['p99_age_s']:.0f} ms")
+        figures.append(f"{stream['late_frames']} of {stream['frames_with_age']} late, {stream['out_of_order']} out of order")
+        print(f"{name}: {'; '.join(figures)} {stream['failure']}".rstrip())
     server = results["server"]
-    print(
-        f"RTSP: {server['sent']} pictures sent, {server['dropped']} left out; oldest when sent {1000 * server['oldest_sent_s']:.0f} ms"
-    )
+    oldest_ms = 1000 * server["oldest_sent_s"]
+    print(f"RTSP: {server['sent']} pictures sent, {server['dropped']} left out; oldest when sent {oldest_ms:.0f} ms")
     print(
         f"{results['clients_that_came']} RTSP sessions in all; open after all have left: {results['sessions_open_after_all_left']}"
     )

@@ -94,9 +94,8 @@ async def test_ffmpeg_reads_pictures_without_an_error(analytic_scene: Scene, str
             program("ffmpeg"), "-v", "fatal", "-xerror", *STREAMS[stream], "-i", address(camera, stream), "-frames:v", "50",
             "-fps_mode", "passthrough", str(tmp_path / "%d.png"),
         )  # fmt: skip
-        assert len(list(tmp_path.iterdir())) == 50
         image = cv2.imread(str(tmp_path / "50.png"))
-        assert image is not None
+        assert image is not None, "fewer than 50 pictures"
         right, wrong = likeness(np.asarray(image[..., ::-1], np.uint8), camera)
     assert right < 6
     assert right < wrong / 2
