@@ -35,6 +35,7 @@ import httpx2
 RATE_HZ = 25.0
 LATE_S = 0.5
 SAMPLE_S = 2.0
+END_S = 5.0
 VANISH_EVERY_S = 0.5
 CLIENT_START_S = 8.0  # FFmpeg analyses a stream before it hands out frames, which are old then
 POSES = [(pan, tilt, zoom) for zoom in (1, 3500, 9999) for pan, tilt in ((0, 0), (90, -20), (179, 5), (-90, -10))]
@@ -64,9 +65,13 @@ def run_camera(scene: str) -> int:
     """Serve a camera. Every line on standard input is answered by a line of numbers; its end ends the camera."""
     before = counts()
     asyncio.run(serve_camera(scene))
-    after = counts()
+    # Worker threads are told to end with the event loop, and need a moment.
+    ends_s = time.monotonic() + END_S
+    while (after := counts())["threads"] > before["threads"] and time.monotonic() < ends_s:
+        time.sleep(0.05)
     left = {name: after[name] - before[name] for name in ("threads", "sockets")}
-    print(json.dumps({"left_over": left}), flush=True)
+    names = sorted(thread.name for thread in threading.enumerate())
+    print(json.dumps({"left_over": left, "threads": names}), flush=True)
     return 0
 
 
@@ -131,7 +136,10 @@ class Camera:
         """End the camera and return what is left over in its process."""
         assert self._process.stdin is not None
         self._process.stdin.close()
-        left: dict[str, int] = self._line()["left_over"]
+        line = self._line()
+        left: dict[str, int] = line["left_over"]
+        if left["threads"]:
+            print(f"Threads that are left over: {line['threads']}", file=sys.stderr)
         assert self._process.stdout is not None
         self._process.stdout.close()
         if self._process.wait(timeout=60):
