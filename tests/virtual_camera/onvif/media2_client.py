@@ -14,7 +14,7 @@ from typing import Any
 
 def main(port: int) -> dict[str, Any]:
     """Ask the camera at a port of this machine. The password is in the environment variable CAMERA_PASSWORD."""
-    from onvif import ONVIFClient, ONVIFOperationException  # type: ignore[attr-defined, unused-ignore]
+    from onvif import ONVIFClient, ONVIFDiscovery, ONVIFOperationException  # type: ignore[attr-defined, unused-ignore]
 
     password = os.environ["CAMERA_PASSWORD"]
     client = ONVIFClient("127.0.0.1", port, "admin", password)
@@ -50,6 +50,8 @@ def main(port: int) -> dict[str, Any]:
         found["refused"] = str(error)
     digest = ONVIFClient("127.0.0.1", port, "admin", password, http_digest=True)
     found["by_http_digest"] = len(digest.media2().GetProfiles())
+    devices = ONVIFDiscovery(timeout=2, interface="127.0.0.1").discover()
+    found["discovered"] = {device["port"]: device["epr"] for device in devices}
     return found
 
 

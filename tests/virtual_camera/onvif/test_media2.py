@@ -7,6 +7,7 @@ import json
 import os
 import shutil
 import sys
+from contextlib import AsyncExitStack
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,9 @@ import pytest
 from scope_ptz.simulator.pack import Scene
 from scope_ptz.virtual_camera.device import VirtualDevice
 from scope_ptz.virtual_camera.http.server import ServedCamera, serve
+from scope_ptz.virtual_camera.identity import device_uuid
 from scope_ptz.virtual_camera.onvif.app import OnvifApp
+from scope_ptz.virtual_camera.onvif.discovery import Discoverable, discoverable
 from tests.virtual_camera.onvif.conftest import ACCOUNTS, RTSP_PORT, HandClock
 from tests.virtual_camera.onvif.envelopes import MEDIA2, Answer, envelope, post, ptz_request, token
 
@@ -101,9 +104,13 @@ async def test_onvif_python(analytic_scene: Scene, tmp_path: Path) -> None:
     await run(uv, "venv", "--quiet", "--python", sys.executable, str(environment))
     await run(uv, "pip", "install", "--quiet", "--python", str(python), "onvif-python==0.4.7")
     device = VirtualDevice(analytic_scene, accounts=ACCOUNTS, width=320, height=180, time_scale=100.0)
-    async with serve([device], onvif=lambda each: OnvifApp(each, rtsp_port=RTSP_PORT)) as (camera,):
+    async with AsyncExitStack() as stack:
+        (camera,) = await stack.enter_async_context(serve([device], onvif=lambda each: OnvifApp(each, rtsp_port=RTSP_PORT)))
+        await stack.enter_async_context(discoverable([Discoverable(device, camera.port)]))
         script = Path(__file__).with_name("media2_client.py")
-        heard: dict[str, Any] = json.loads(await run(str(python), str(script), str(camera.port), CAMERA_PASSWORD=ACCOUNTS[0].password))
+        heard: dict[str, Any] = json.loads(
+            await run(str(python), str(script), str(camera.port), CAMERA_PASSWORD=ACCOUNTS[0].password)
+        )
         assert MEDIA2 in heard["services"]
         assert {"VideoEncoder", "PTZ"} <= set(heard["capabilities"])
         assert (heard["encoding"], heard["size"], heard["bounds"]) == ("H264", [320, 180], [320, 180])
@@ -117,6 +124,7 @@ async def test_onvif_python(analytic_scene: Scene, tmp_path: Path) -> None:
         assert heard["zoom"] == pytest.approx(0.5)
         assert "NotAuthorized" in heard["refused"] or "wrong" in heard["refused"]
         assert heard["by_http_digest"] == 1
+        assert str(device_uuid(device)) in heard["discovered"][str(camera.port)]
 
 
 async def run(*command: str, **variables: str) -> str:
