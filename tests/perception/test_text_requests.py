@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from scope_ptz.perception.models.text_requests import is_reading, likeness, reading_target, text_fits, wanted_texts
+from scope_ptz.perception.models.text_requests import is_reading, likeness, reading_target, requested_texts, text_fits
 
 
 @pytest.mark.parametrize(
@@ -68,7 +68,7 @@ def test_questions_that_are_not_only_about_reading(question: str) -> None:
     ],
 )
 def test_texts_that_a_description_names(description: str, wanted: tuple[str, ...] | None) -> None:
-    assert wanted_texts(description) == wanted
+    assert requested_texts(description) == wanted
 
 
 @pytest.mark.parametrize(

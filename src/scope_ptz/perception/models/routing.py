@@ -17,7 +17,7 @@ import anyio
 from scope_ptz.camera.base import Frame
 from scope_ptz.errors import PerceptionError
 from scope_ptz.perception.base import Agreement, Answer, Box, Caption, Detections, Perception, Points, Skill
-from scope_ptz.perception.models.text_requests import is_reading, reading_target, wanted_texts
+from scope_ptz.perception.models.text_requests import is_reading, reading_target, requested_texts
 from scope_ptz.perception.models.tile_geometry import iou
 
 ANY_TEXT = "text"
@@ -98,7 +98,7 @@ class RouterPerception(Perception):
         return list(dict.fromkeys(there))
 
     def _finders(self, description: str, skill: Skill) -> list[Perception]:
-        is_text = wanted_texts(description) is not None
+        is_text = requested_texts(description) is not None
         return self._available(self._reader if is_text else None, self._detector, self._answerer, skill=skill)
 
     async def _read(self, frame: Frame, question: str) -> Answer:

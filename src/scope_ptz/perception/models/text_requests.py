@@ -61,7 +61,7 @@ _ANY_TEXT = re.compile(
 )
 
 
-def wanted_texts(description: str) -> tuple[str, ...] | None:
+def requested_texts(description: str) -> tuple[str, ...] | None:
     """Return the texts that a description names, in quotes or after "that says".
 
     Returns:
