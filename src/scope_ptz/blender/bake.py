@@ -1,4 +1,4 @@
-"""The bake of a scene into viewpoint packs. An interrupted bake resumes where it stopped."""
+"""Baking of a scene into viewpoint packs. An interrupted bake resumes where it stopped."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ from scope_ptz.simulator.models import Extent, SceneActor, SceneFile, SceneViewp
 from scope_ptz.simulator.pack import Scene
 
 CHECKS, CHECK_SEED = 2, 1
-"""Live renders per viewpoint at the end of a bake, both at the widest zoom and zoomed in, and the seed of their poses."""
+"""Number of live renders per viewpoint at the end of a bake, at the widest zoom and as many zoomed in; and their seed."""
 
 
 @dataclass(frozen=True, slots=True)
 class BakedViewpoint:
-    """The result of a bake for one viewpoint: its folder, size, number of tiles, and the targets that no tile covers."""
+    """The baked pack of one viewpoint: its folder, size, number of tiles, and the targets that no tile covers."""
 
     folder: Path
     weight_bytes: int
@@ -47,7 +47,7 @@ class BakedViewpoint:
 
 @dataclass(frozen=True, slots=True)
 class Baked:
-    """The packs of a scene, and how they compare with live renders."""
+    """The result of a bake: the packs of a scene, and their comparison with live renders."""
 
     packs: tuple[BakedViewpoint, ...]
     reports: tuple[PoseReport, ...]
@@ -70,10 +70,10 @@ def bake(
     Args:
         source: A scene of ``scope_studio.scenes``, or the path of a Python file with ``build(stage)``.
         out_dir: The scene's folder, which must have the scene's name.
-        quality: Sizes and samples.
-        command: Starts the worker.
-        cache_dir: Where unfinished parts are kept.
-        viewpoints: Names of the viewpoints to bake, None for all.
+        quality: The quality settings.
+        command: The command that starts the worker.
+        cache_dir: The folder for unfinished parts.
+        viewpoints: Names of the viewpoints to bake; None bakes all.
         progress: Called after every step.
 
     Raises:
@@ -90,7 +90,7 @@ def bake(
         step()
         scene = scene_file(description, key.rsplit("-", 1)[1])
         if out_dir.name != scene.name:
-            raise BlenderError(f"The folder of a scene bears its name: bake to '{out_dir.with_name(scene.name)}'.")
+            raise BlenderError(f"The folder must have the name of the scene: bake to '{out_dir.with_name(scene.name)}'.")
         known = {v.name: v for v in scene.viewpoints}
         wanted = list(known) if viewpoints is None else list(viewpoints)
         for name in wanted:
@@ -110,7 +110,7 @@ def bake(
 
 
 def scene_file(description: dict[str, Any], version: str) -> SceneFile:
-    """Return the scene file that the worker's description makes.
+    """Return the scene file for the worker's description of a scene.
 
     Raises:
         BlenderError: The description is not a valid scene.
@@ -125,7 +125,7 @@ def scene_file(description: dict[str, Any], version: str) -> SceneFile:
 
 
 class _Baker:
-    """The parts of a bake that share a worker and a workshop."""
+    """Bakes viewpoints with one worker and one folder of unfinished parts."""
 
     def __init__(
         self, worker: BlenderWorker, shop: Workshop, scene: SceneFile, description: dict[str, Any], quality: Quality
@@ -199,8 +199,8 @@ class _Baker:
 
     def _actor(self, viewpoint: SceneViewpoint, actor: SceneActor) -> RenderedActor | None:
         q, stride_m = self._quality, self._strides[actor.id]
-        most = q.max_sprites * 3 // 2 if stride_m else q.max_sprites
-        frames = keyframes(actor, stride_m, viewpoint, self._band, self._sun, most)
+        limit = q.max_sprites * 3 // 2 if stride_m else q.max_sprites
+        frames = keyframes(actor, stride_m, viewpoint, self._band, self._sun, limit)
         if not frames:
             return None
         folder = self._sprite_folder(viewpoint.name, actor, frames)

@@ -131,13 +131,13 @@ class Points(_Result):
 class Perception(ABC):
     """Base class of perception backends: a vision-language model, a detector, OCR, or the simulator's ground truth.
 
-    ``skills`` lists the calls that a backend supports; the others raise ``PerceptionError``. A detector, for example, has no "query".
+    ``skills`` lists the calls that a backend supports; others raise ``PerceptionError``. A detector, for example, lacks "query".
     """
 
     name: str
     skills: frozenset[Skill] = ALL_SKILLS
     handles_panoramas: bool = False
-    """Whether the backend finds small objects in a whole panorama. Other backends get panoramas in parts (``models.tiled_panoramas``)."""
+    """Whether it finds small objects in a whole panorama. Other backends get panoramas in parts (``models.tiled_panoramas``)."""
 
     @abstractmethod
     async def caption(self, frame: Frame) -> Caption:

@@ -13,7 +13,7 @@ Start with `scope bench browse` to see tasks, and `scope bench run --split lite`
 
 
 class BenchGroup(TyperGroup):
-    """The group of benchmark commands. Other commands start faster because these are loaded late."""
+    """The group of benchmark commands. They are loaded on first use, so that other commands start faster."""
 
     def list_commands(self, ctx: Any) -> list[str]:
         self._load()

@@ -15,7 +15,7 @@ from scope_ptz.perception.base import Answer, Caption, Detections, Perception, P
 from scope_ptz.perception.models.coordinates import MAX_THINGS, convention, fit
 from scope_ptz.perception.models.encoding import picture_of
 from scope_ptz.perception.models.vision_prompts import one_line
-from scope_ptz.perception.models.vision_reply import VisionReply, served
+from scope_ptz.perception.models.vision_reply import VisionReply, server_errors
 
 KEY_HEADER = "X-Moondream-Auth"
 UNIT = convention("unit")
@@ -64,7 +64,7 @@ class MoondreamPerception(Perception):
         await self._client.close()
 
     async def _locate(self, frame: Frame, path: str, description: str, reply_field: str) -> VisionReply:
-        """Request boxes or points. If the server rejects ``max_objects``, this request is repeated without it, and later ones omit it."""
+        """Request boxes or points. If the server rejects ``max_objects``, retry without it, and omit it from then on."""
         fields: dict[str, Any] = {"object": one_line(description)}
         if self._limit is None:
             return await self._ask(frame, path, fields, reply_field)
@@ -75,14 +75,14 @@ class MoondreamPerception(Perception):
                 raise
             reply = await self._ask(frame, path, fields, reply_field)
             self._limit = None
-            return reply.preceded(error)
+            return reply.with_earlier_attempts(error)
 
     async def _ask(self, frame: Frame, path: str, fields: dict[str, Any], reply_field: str) -> VisionReply:
         """Send one request. The reply contains the text or the JSON of the response field ``reply_field``."""
         began = perf_counter()
         picture = await picture_of(frame, fit(frame.width, frame.height, self._options.max_pixels))
         body = _body(picture.data_url, {**fields, "stream": False})
-        with served(self.name):
+        with server_errors(self.name):
             data, attempts = await self._client.post(path, body)
         return self._reply(data, reply_field, began, attempts)
 

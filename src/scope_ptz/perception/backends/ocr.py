@@ -42,8 +42,8 @@ class Line:
 class OcrPerception(Perception):
     """Perception of text only. ``detect`` and ``point`` find a text by its wording.
 
-    Other descriptions, and questions that text alone does not answer, raise ``PerceptionError``: a picture without the text "car" may
-    still show a car. The lines of each frame are cached for later questions.
+    Other descriptions, and questions that text alone does not answer, raise ``PerceptionError``: a picture without the text "car"
+    may still show a car. The lines of each frame are cached for later questions.
     """
 
     handles_panoramas = True

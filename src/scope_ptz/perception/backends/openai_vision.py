@@ -24,7 +24,7 @@ from scope_ptz.perception.models.vision_prompts import (
     query_prompt,
     sent_size,
 )
-from scope_ptz.perception.models.vision_reply import VisionReply, served
+from scope_ptz.perception.models.vision_reply import VisionReply, server_errors
 
 NO_COORDINATES = "none"
 """The value of ``coordinates`` for models that return no boxes and no points, such as Moondream 3 behind vLLM."""
@@ -50,7 +50,7 @@ class VisionOptions(Options):
 
 
 class OpenAIVisionPerception(Perception):
-    """Perception by a chat model that accepts images. ``style`` is its coordinate convention; None if it returns no boxes or points."""
+    """Perception by a chat model that accepts images. ``style`` is its coordinate convention, None if it gives no boxes."""
 
     def __init__(
         self, client: ChatClient, style: Convention | None, options: VisionOptions | None = None, name: str = "vision"
@@ -136,7 +136,7 @@ class OpenAIVisionPerception(Perception):
 
     async def _complete(self, picture: EncodedPicture, prompt: str, fields: dict[str, Any]) -> ChatReply:
         content = [{"type": "image_url", "image_url": {"url": picture.data_url}}, {"type": "text", "text": prompt}]
-        with served(self.name):
+        with server_errors(self.name):
             return await self._client.complete([{"role": "user", "content": content}], extra=fields)
 
 

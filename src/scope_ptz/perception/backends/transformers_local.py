@@ -38,8 +38,8 @@ UNIT = convention("unit")
 class LocalOptions(Options):
     """Options of the backend.
 
-    Moondream's interface is Python code in the model's repository. It runs only if ``trust_remote_code`` is set, and only from a local
-    folder or from the commit that ``revision`` pins.
+    Moondream's interface is Python code in the model's repository. It runs only if ``trust_remote_code`` is set, and only from a
+    local folder or from the commit that ``revision`` pins.
 
     Attributes:
         family: "moondream" for Moondream's own interface, "chat" for models with a chat template.
@@ -67,7 +67,7 @@ class ChatModel(Protocol):
 
 
 class LocalChatPerception(Perception):
-    """Perception by a local chat model, prompted in its coordinate convention. It processes one frame at a time in a worker thread."""
+    """Perception by a local chat model, prompted in its coordinate convention. Frames are processed one at a time in a thread."""
 
     def __init__(self, model: ChatModel, style: Convention, options: LocalOptions | None = None, name: str = "local") -> None:
         self.name, self._model, self._style, self._options = name, model, style, options or LocalOptions()

@@ -8,7 +8,7 @@ from scope_ptz import english
 from scope_ptz.perception.ground_truth.answers.restating import none_of, not_stated, noun, predicate_words
 from scope_ptz.perception.ground_truth.answers.thing_names import AnswerText, are, name, reply, several, unknown
 from scope_ptz.perception.ground_truth.language import question_tree as s
-from scope_ptz.perception.ground_truth.thing_facts import wears
+from scope_ptz.perception.ground_truth.thing_facts import has_item
 from scope_ptz.perception.ground_truth.thing_search import find, things_named
 from scope_ptz.perception.ground_truth.view import Thing, View
 
@@ -45,7 +45,7 @@ def _owner(view: View, what: s.Description) -> Thing | None:
     phrase = what.phrases[0]
     if len(what.phrases) != 1 or len(phrase.tests) != 1 or not isinstance(test := phrase.tests[0], s.Relation) or test.kind != "on":
         return None
-    return next((t for t in find(view, test.other) if wears(view, t, phrase.words)), None)
+    return next((t for t in find(view, test.other) if has_item(view, t, phrase.words)), None)
 
 
 def there_are(view: View, what: s.Description, found: list[Thing]) -> str:

@@ -38,7 +38,7 @@ def where(view: View, question: s.Where) -> AnswerText:
 
 
 def neighbour(view: View, thing: Thing) -> str:
-    """Return a thing's relation to the largest thing near it or in line with it (", next to the barrier"); empty if there is none."""
+    """Return a thing's relation to the largest thing near it or in line with it (", next to the barrier"), or nothing."""
     others = [
         t
         for t in view.top_level()

@@ -33,7 +33,7 @@ def unknown(text: str) -> AnswerText:
 
 
 def name(thing: Thing) -> str:
-    """Return the name of a thing, preceded by its colour if the name contains no colour."""
+    """Return the name of a thing, with_earlier_attempts by its colour if the name contains no colour."""
     colour = colour_of(thing)
     words = english.letters(thing.name).split()
     shown = thing.name if thing.name[:2].isupper() else thing.name[:1].lower() + thing.name[1:]

@@ -129,7 +129,7 @@ def _is_clothes(attribute: Sequence[str]) -> bool:
 
 
 def _clothes(thing: Thing) -> str | None:
-    """Return what a person wears: "an orange vest and a white helmet"."""
+    """Return what a person has_item: "an orange vest and a white helmet"."""
     worn: list[str] = []
     for key, value in facts(thing):
         if key in {"wearing", "clothing", "clothes", "outfit", "ppe"}:

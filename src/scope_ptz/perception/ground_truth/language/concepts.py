@@ -65,7 +65,7 @@ def lexicon() -> Lexicon:
 
 
 def nouns_in(words: Sequence[str], known: frozenset[str] = frozenset()) -> list[tuple[int, int]]:
-    """Return spans ``[start, end)`` that could be the noun of a phrase, best first. They end with the last noun; the longest comes first.
+    """Return spans ``[start, end)`` of words that could be the noun of a phrase: those with the last end, longest first.
 
     Args:
         words: The words of the phrase.

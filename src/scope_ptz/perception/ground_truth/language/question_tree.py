@@ -32,7 +32,7 @@ class Description:
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """A superlative ("the tallest"). "Nearest" and "furthest" are relative to ``reference`` ("closest to the van") or to the camera."""
+    """A superlative ("the tallest"). The nearest and furthest are relative to ``reference``, or to the camera if it is None."""
 
     key: OrderKey
     reference: Description | None = None

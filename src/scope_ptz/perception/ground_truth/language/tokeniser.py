@@ -1,4 +1,4 @@
-"""The tokeniser: splits text into closed-class phrases of the vocabulary, numbers, ordinals, quoted text and other words (``W``)."""
+"""Tokeniser that splits text into closed-class phrases of the vocabulary, numbers, ordinals, quoted text and other words."""
 
 from __future__ import annotations
 
