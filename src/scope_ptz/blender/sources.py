@@ -20,7 +20,7 @@ def studio_folder() -> Path:
     """
     spec = importlib.util.find_spec(PACKAGE)
     if spec is None or not spec.submodule_search_locations:
-        raise BlenderError("Building and rendering scenes needs scope-studio. Install it in the same environment as scope-ptz.")
+        raise BlenderError("scope-studio is not installed. Building and rendering scenes needs it: install it next to scope-ptz.")
     return Path(next(iter(spec.submodule_search_locations)))
 
 

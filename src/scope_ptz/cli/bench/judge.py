@@ -39,8 +39,8 @@ def rescore(
 
     For runs that only a judge can score, the verdicts of the first judge count until --decides names another.
 
-    Running the same command again resumes an interrupted rescoring and requests only missing judgements. Exit code 1 if the
-    judge's server failed on any of them.
+    Running the same command again resumes an interrupted rescoring: only missing judgements are requested. Exit code 1 if any of
+    them fails.
     """
     import anyio
 
@@ -68,9 +68,8 @@ def rescore(
                         log, server, eval_context(seed=1), repeats=repeats, checks=checks, at_a_time=concurrency, notify=complain
                     )
                     total += tally
-                    put(
-                        f"{log}: {'checked again' if checks else ''}{', ' if checks and server else ''}{_new_judgements(server, tally)}"
-                    )
+                    done = ["checked again"] if checks else []
+                    put(f"{log}: {', '.join([*done, *_new_judgements(server, tally)])}")
                 if decides:
                     let_decide(log, decides)
                 if several := other_judges_note(read_evaluation(log).trials):
@@ -87,11 +86,11 @@ def rescore(
     return 0
 
 
-def _new_judgements(judge: JudgeServer | None, tally: JudgementTally) -> str:
+def _new_judgements(judge: JudgeServer | None, tally: JudgementTally) -> list[str]:
     """Describe the new judgements of a log."""
     if judge is None:
-        return ""
-    return f"{tally.made} judgement{'' if tally.made == 1 else 's'} by {judge.client.endpoint.model}: {tally.summary}"
+        return []
+    return [f"{tally.made} judgement{'' if tally.made == 1 else 's'} by {judge.client.endpoint.model}: {tally.summary}"]
 
 
 def judge_failure(tally: JudgementTally) -> str:
