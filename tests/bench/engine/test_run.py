@@ -152,7 +152,7 @@ def test_built_in_ones_may_be_in_a_pair(scope: Scope, tasks_file: Path, tmp_path
         (["--agent", "nonsense"], "module:Class"),
         (["--agent", "json:nothing"], "cannot be imported"),
         (["--agent", "json:JSONDecoder"], "is not an agent"),
-        (["--price", "cheap"], "--price wants two amounts"),
+        (["--price", "cheap"], "--price needs two amounts"),
         (["--resume", "missing.eval"], "There is no log"),
         (["--perception", "rapidocr", "--no-pictures"], "looks at pictures"),
     ],

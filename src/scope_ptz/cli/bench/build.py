@@ -37,7 +37,7 @@ def build(
     ] = False,
     card: Annotated[Path | None, typer.Option("--card", help="With --all: file for the dataset card (Markdown).")] = None,
 ) -> int:
-    """Make tasks from the ground truth of scenes. Exit code 1 if there are not enough of them."""
+    """Make tasks from the ground truth of scenes. Exit code 1 if the scenes do not yield enough tasks."""
     from scope_ptz.bench.tasks.files import dump_tasks
     from scope_ptz.factory.validation_perception import answered
     from scope_ptz.factory.worlds import scenes_named

@@ -39,8 +39,8 @@ def rescore(
 
     For runs that only a judge can score, the verdicts of the first judge count until --decides names another.
 
-    Running the same command again resumes an interrupted rescoring: only missing judgements are requested. Exit code 1 if any of
-    them fails.
+    Running the same command again resumes an interrupted rescoring: only missing judgements are requested. Exit code 1 if any
+    judgement fails.
     """
     import anyio
 
