@@ -16,8 +16,8 @@ MAX_SIDE_PX = 1280  # larger pictures are scaled down, as vision models would do
 async def picture(frame: Frame, caption: str) -> Picture:
     """Return a frame as a captioned JPEG for a planner, at most ``MAX_SIDE_PX`` pixels wide and high."""
     scale = min(1.0, MAX_SIDE_PX / max(frame.width, frame.height))
-    coded = await picture_of(frame, (round(frame.width * scale), round(frame.height * scale)))
-    return Picture(data_url=coded.data_url, caption=caption)
+    encoded = await picture_of(frame, (round(frame.width * scale), round(frame.height * scale)))
+    return Picture(data_url=encoded.data_url, caption=caption)
 
 
 async def newest_view(frame: Frame) -> Picture:

@@ -132,14 +132,14 @@ def _fitting_colour(folder: Path, rendered: Rendered, quality: Quality, limit_by
     Spare space goes to the base. If there is too little space, the quality of the tiles is reduced first.
     """
     space = limit_bytes - weight_bytes(folder)
-    coded = (-1, -1)
+    encoded = (-1, -1)
     layers: list[Layer] = []
     for codings in _codings(quality):
-        if codings[0] != coded[0]:
+        if codings[0] != encoded[0]:
             layers[:1] = [_colour(folder, f"base{COLOUR}", rendered.base, codings[0])]
-        if codings[1] != coded[1]:
+        if codings[1] != encoded[1]:
             layers[1:] = _tiles(folder, rendered.tiles, codings[1])
-        coded = codings
+        encoded = codings
         if sum((folder / layer.file).stat().st_size for layer in layers) <= space:
             break
     return layers[0], layers[1:]

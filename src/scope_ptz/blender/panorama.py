@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from scope_ptz.blender.band import Panorama, Strip
 from scope_ptz.blender.client import BlenderWorker
+from scope_ptz.blender.part_cache import PartCache
 from scope_ptz.blender.requests import panorama_request
-from scope_ptz.blender.workshop import Workshop
 from scope_ptz.geometry import Equirectangular
 from scope_ptz.simulator.layers import read_colour
 
@@ -24,13 +24,13 @@ SKY_TILT_DEG, NADIR_TILT_DEG = 22.0, -58.0  # strips above and below need fewer 
 Picture = NDArray[np.uint8]
 
 
-def render_base(worker: BlenderWorker, shop: Workshop, viewpoint: str, panorama: Panorama, samples: int) -> Picture:
+def render_base(worker: BlenderWorker, cache: PartCache, viewpoint: str, panorama: Panorama, samples: int) -> Picture:
     """Render the base panorama of shape ``(H, W, 3)``, RGB.
 
     Each strip is cached separately, so an interrupted bake loses at most one.
     """
     strips = panorama.strips(STRIP_ROWS, OVERLAP_ROWS)
-    step = shop.steps(f"{viewpoint}/base", len(strips))
+    step = cache.steps(f"{viewpoint}/base", len(strips))
     pictures = []
     for strip in strips:
         size = strip.width, strip.last_row - strip.first_row
@@ -44,7 +44,7 @@ def render_base(worker: BlenderWorker, shop: Workshop, viewpoint: str, panorama:
             )
 
         parameters = {"projection": projection, "samples": count}
-        pictures.append(read_colour(shop.part(f"{viewpoint}/base-{strip.first_row:04d}", ".png", parameters, produce)))
+        pictures.append(read_colour(cache.part(f"{viewpoint}/base-{strip.first_row:04d}", ".png", parameters, produce)))
         step()
     return smoothed(joined(panorama, strips, pictures), panorama)
 

@@ -16,7 +16,7 @@ WIDER_DENSITY_PX_PER_DEG = 34.0
 """Density of the wider tiles: enough for views at 1.7x, and half of what a view at 3.5x needs."""
 
 DEPTH_STEP = 48
-"""Depth codes are rounded to multiples of this, 0.8% of the distance. Actors and what hides them are further apart."""
+"""Depth codes are rounded to multiples of this, which is 0.8% of the distance and precise enough for occlusion."""
 
 
 @dataclass(frozen=True, slots=True)

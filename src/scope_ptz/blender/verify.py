@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from scope_ptz.blender.client import BlenderWorker
 from scope_ptz.blender.parity import box_ious, sharpness, ssim
+from scope_ptz.blender.part_cache import PartCache, Progress
 from scope_ptz.blender.references import keep_reference
 from scope_ptz.blender.requests import perspective_request
-from scope_ptz.blender.workshop import Progress, Workshop
 from scope_ptz.geometry import AXIS_M5075_G, Limits, Perspective, Pose, angle_between_deg, direction, pan_tilt_deg, wrap_pan_deg
 from scope_ptz.simulator.layers import read_colour
 from scope_ptz.simulator.models import Tile
@@ -136,7 +136,7 @@ def verify(
     """
     reports = []
     with TemporaryDirectory() as folder:
-        step = Workshop(Path(folder), "verify", progress).steps("verify", len(poses))
+        step = PartCache(Path(folder), "verify", progress).steps("verify", len(poses))
         for name, pose in poses:
             view = Perspective(pose.pan_deg, pose.tilt_deg, AXIS_M5075_G.hfov_deg(pose.zoom), width, height)
             colour, ids = _live(worker, name, view, samples, Path(folder))

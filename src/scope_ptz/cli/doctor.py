@@ -166,7 +166,7 @@ def check_servers(options: ModelOptions, *, as_json: bool) -> int:
     async def work() -> None:
         choice = await resolve_models(options)
         if choice.planner.endpoint is None and choice.perception.spec is None:
-            raise InputError("There is no server to check. Name one with --planner-url, or with --perception and --perception-url.")
+            raise InputError("There is no server to check. Give one with --planner-url, or with --perception and --perception-url.")
         async for server, check in _server_checks(choice.planner, choice.perception):
             found.append((server, check))
             if not as_json:

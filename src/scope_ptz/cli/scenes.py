@@ -37,7 +37,7 @@ def list_scenes(*, as_json: bool) -> int:
         put_json(scenes)
         return 0
     if not scenes:
-        put("There are no scenes. `scope doctor` reports where they are searched for.")
+        put("There are no scenes. Run `scope doctor` to find out why.")
         return 0
     table = Table("scene", "viewpoint", "presets", "objects", "texts", "size", box=None, pad_edge=False, header_style="dim")
     for scene in scenes:

@@ -30,8 +30,8 @@ FILL_RANGE = (0.12, 0.5)
 TRACKING_FILL = 0.28
 """Outside the range, the zoom is corrected to this fill. It leaves room for motion, and enough pixels to recognise the target."""
 
-FREE_RATE_DEG_S = 25.0
-STEADY_RATE_DEG_S = 10.0
+MAX_RATE_UNKNOWN_MOTION_DEG_S = 25.0
+MAX_RATE_KNOWN_MOTION_DEG_S = 10.0
 """Limits on how fast the target may deviate from the expected direction, before and after its motion is known. A match beyond the
 limit is a different object.
 """
@@ -104,7 +104,7 @@ class _Target:
         if not angles:
             return None
         best = min(range(len(boxes)), key=angles.__getitem__)
-        rate = FREE_RATE_DEG_S if self.before is None else STEADY_RATE_DEG_S
+        rate = MAX_RATE_UNKNOWN_MOTION_DEG_S if self.before is None else MAX_RATE_KNOWN_MOTION_DEG_S
         return boxes[best] if angles[best] <= self.size_deg + rate * (frame.time_s - self.time_s) else None
 
 

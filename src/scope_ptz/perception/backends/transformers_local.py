@@ -164,7 +164,7 @@ class TransformersChat:
         with self._lock:
             processor, model = self._loaded = self._loaded or self._load()
             parts = [{"type": "image", "image": _pillow(image)}, {"type": "text", "text": prompt}]
-            # A chat template without this option would pass it on to the processor.
+            # If the chat template lacked this option, it would be passed to the processor.
             template_options = {"enable_thinking": False} if "enable_thinking" in str(processor.chat_template) else {}
             inputs = processor.apply_chat_template(
                 [{"role": "user", "content": parts}],

@@ -92,11 +92,11 @@ def merged(parts: Iterable[tuple[PanoramaTile, Iterable[Box]]], width: int) -> l
         for box in boxes:
             cut_left, cut_right = tile.left > 0 and box.x_min < CUT, tile.right < width and box.x_max > 1 - CUT
             part = _Part(tile, tile.place(box, width), cut_left, cut_right)
-            twin = next((i for i, other in enumerate(kept) if other.tile != tile and _is_same(other, part)), None)
-            if twin is None:
+            duplicate = next((i for i, other in enumerate(kept) if other.tile != tile and _is_same(other, part)), None)
+            if duplicate is None:
                 kept.append(part)
             else:
-                kept[twin] = _Part(tile, _union_box(kept[twin].box, part.box), kept[twin].cut_left, part.cut_right)
+                kept[duplicate] = _Part(tile, _union_box(kept[duplicate].box, part.box), kept[duplicate].cut_left, part.cut_right)
     return [part.box for part in kept]
 
 
@@ -105,21 +105,21 @@ def merged_points(parts: Iterable[tuple[PanoramaTile, Iterable[Point]]], width: 
     kept: list[tuple[PanoramaTile, Point]] = []
     for tile, points in parts:
         for point in (tile.place_point(p, width) for p in points):
-            twins = (p for other, p in kept if other != tile)
-            if all(abs(p.x - point.x) > near or abs(p.y - point.y) > 5 * near for p in twins):
+            duplicates = (p for other, p in kept if other != tile)
+            if all(abs(p.x - point.x) > near or abs(p.y - point.y) > 5 * near for p in duplicates):
                 kept.append((tile, point))
     return [point for _, point in kept]
 
 
 def without_seam_twins(boxes: list[Box]) -> list[Box]:
     """Drop the narrower half of each object that appears at both ends of a 360-degree panorama."""
-    twins = {
+    duplicates = {
         (i, j)
         for i, left in enumerate(boxes)
         for j, right in enumerate(boxes)
         if i != j and left.x_min < SEAM and right.x_max > 1 - SEAM and _same_heights(left, right)
     }
-    lost = {i if boxes[i].width < boxes[j].width else j for i, j in twins}
+    lost = {i if boxes[i].width < boxes[j].width else j for i, j in duplicates}
     return [box for i, box in enumerate(boxes) if i not in lost]
 
 

@@ -25,7 +25,7 @@ _UNITS = {
 def sent_size(frame: Frame, convention: Convention, max_pixels: int) -> Size:
     """Return the width and height at which a frame is sent to a model.
 
-    A model that answers in pixels gets the frame at the size to which it would resize it, so that its pixels are known. For other
+    A model that answers in pixels receives the frame at its own input size, because its coordinates refer to that size. For other
     models only the aspect ratio matters.
     """
     if convention.factor is None or convention.space != "pixels":

@@ -143,13 +143,13 @@ def _predicate(view: View, test: s.Test, count: int, negated: bool) -> str:
             return f"{_do('bear', 'bears', count, negated)} text that I can read"
         case s.Says(words=words):
             return f'{_do("say", "says", count, negated)} "{" ".join(words).upper()}"'
-        case s.Is(words=words) if words and english.is_plural(words[-1]) is False and words[-1] in _NOUNLIKE:
+        case s.Is(words=words) if words and english.is_plural(words[-1]) is False and words[-1] in _PREDICATE_NOUNS:
             return f"{_be(count, negated)} {english.article(' '.join(words))}"
         case _:
             return f"{_be(count, negated)} {after_noun(view, test)}"
 
 
-_NOUNLIKE = frozenset(["car", "van", "lorry", "truck", "bus", "worker", "person", "cone", "vehicle", "digger", "excavator"])
+_PREDICATE_NOUNS = frozenset(["car", "van", "lorry", "truck", "bus", "worker", "person", "cone", "vehicle", "digger", "excavator"])
 
 
 def _be(count: int, negated: bool) -> str:

@@ -217,7 +217,7 @@ class NounPhrases(Transformer[Token, Any]):
         return _Predicate(tests_of(c))
 
     def predicate(self, c: Children) -> _Predicate:
-        """Build a predicate. Of tests joined by "or", one must hold; of others, all must."""
+        """Build a predicate. If its tests are joined by "or", one of them must hold; otherwise all must hold."""
         tests = tests_of(c)
         return _Predicate((s.Any(tests),) if tokens_of(c, "OR") and len(tests) > 1 else tests)
 

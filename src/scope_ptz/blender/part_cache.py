@@ -16,7 +16,7 @@ class Progress(Protocol):
     def __call__(self, part: str, done: int, total: int, seconds: float) -> None: ...
 
 
-class Workshop:
+class PartCache:
     """The folder with the cached parts of one version of a scene."""
 
     def __init__(self, root: Path, scene_key: str, progress: Progress) -> None:
