@@ -54,7 +54,7 @@ def test_numbers_of_worlds_may_follow_one_another() -> None:
 
 def test_what_does_not_go_together_is_told(scope: Scope, tmp_path: Path) -> None:
     out = str(tmp_path / "tasks.jsonl")
-    assert "follow --seeds" in scope("bench", "build", "--out", out, "7").err
+    assert "after --seeds" in scope("bench", "build", "--out", out, "7").err
     assert "--all" in scope("bench", "build", "--out", out, "--card", out).err
     assert "no whole dataset" in scope("bench", "card", "--data", str(tmp_path)).err
     assert scope("bench", "build", "--out", out, "--seeds", "0").code == 2
