@@ -13,7 +13,7 @@ from scope_studio.kit.core.stage import Instance, Stage
 
 
 def scene(stage: Stage, actor_bodies: ActorBodies) -> dict[str, Any]:
-    """Describe a scene: instances with world boxes, texts in world coordinates, viewpoints, presets, actors, absent things."""
+    """Return a scene's viewpoints, presets, instances with world boxes, texts in world coordinates, actors and absent objects."""
     bpy.context.view_layer.update()
     depsgraph = bpy.context.evaluated_depsgraph_get()
     corners: dict[str, np.ndarray] = {}
@@ -116,7 +116,7 @@ def _texts(instance: Instance) -> list[dict[str, Any]]:
 
 
 def _sun() -> list[float] | None:
-    """Return the unit vector towards the sun, or None when the scene has no sun. Shadow lengths depend on it."""
+    """Return the unit vector towards the sun, which determines the shadows, or None if the scene has no sun."""
     for obj in bpy.data.objects:
         if obj.type == "LIGHT" and obj.data.type == "SUN":
             return _rounded(obj.matrix_world.to_quaternion() @ Vector((0, 0, 1)), 6)

@@ -1,4 +1,4 @@
-"""Sprites of a moving actor: images of its body alone, with the shadow that it casts on flat ground."""
+"""Render sprites of a moving actor: images of its body alone, with the shadow that it casts on flat ground."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from scope_studio.actor_bodies import ActorBodies, show
 from scope_studio.kit.core.stage import Stage, Viewpoint
 
 GROUND_M = 60.0
-"""Side length of the plane that catches the shadow."""
+"""Side length in metres of the plane that receives the shadow."""
 
 
 def render_frames(
@@ -58,7 +58,7 @@ def render_frames(
 
 @contextmanager
 def _only_shadows() -> Iterator[bpy.types.Object]:
-    """Hide every visible object and yield a plane that only catches shadows."""
+    """Hide every visible object while the context is active, and yield a shadow-catcher plane."""
     hidden = [o for o in bpy.data.objects if o.type not in {"LIGHT", "CAMERA"} and not o.hide_render]
     for obj in hidden:
         obj.hide_render = True

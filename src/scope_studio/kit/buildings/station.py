@@ -1,4 +1,4 @@
-"""A small-town railway station of dressed stone: a gabled centre with three arches, two wings under iron canopies."""
+"""A small-town railway station of dressed stone: a gabled centre with three arches, and two wings with iron canopies."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
 CENTRE_M = 14.4
-"""Width of the gabled centre, which projects from the wings by ``PROJECTION_M``."""
+"""Width in metres of the gabled centre, which projects from the wings by ``PROJECTION_M``."""
 PROJECTION_M = 1.6
 WING_M = 16.0
 WING_EAVES_M = 6.6
@@ -65,7 +65,7 @@ def arch_trim(
 
 
 def station_house(name: str) -> Built:
-    """Build the station without its doors, clock and board.
+    """Build the station without its doors, clock and departures board.
 
     It is 46 m wide and faces +y; the front of the centre is the plane y = 0.
     """

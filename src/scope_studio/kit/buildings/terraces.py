@@ -26,10 +26,10 @@ WHITE = (0.66, 0.655, 0.62)
 
 @dataclass(frozen=True)
 class Terrace:
-    """One building of a row.
+    """Parameters of one building of a row.
 
-    ``wall`` is (kind, colour) of ``wet_masonry.wall``. ``lit`` lists (floor, column) of lit windows. ``shop`` leaves the ground
-    floor of the front open for a shop front; otherwise it has windows and a door opening.
+    ``wall`` is the kind and colour that ``wet_masonry.wall`` takes. ``lit`` lists (floor, column) of lit windows. ``shop`` leaves
+    the ground floor of the front open for a shop front; otherwise it has windows and a door opening.
     """
 
     width_m: float
@@ -52,7 +52,7 @@ class Terrace:
 
 
 def terrace(spec: Terrace) -> Built:
-    """Build the terraced building as one mesh."""
+    """Build a terraced building as one mesh."""
     s = Solid(f"{spec.wall[1]} {spec.wall[0]} building")
     rng = Random(f"terrace {spec.seed} {spec.width_m}")
     face = wall(*spec.wall)
@@ -78,7 +78,7 @@ def terrace(spec: Terrace) -> Built:
 
 
 Hole = tuple[float, float, float, float, int, int]
-"""Middle x, bottom z, width, height, floor (0 = ground, -1 = a door), column."""
+"""Hole in a wall: middle x, bottom z, width, height, floor (0 = ground, -1 = a door), column."""
 
 
 def _holes(spec: Terrace) -> list[Hole]:
@@ -101,7 +101,7 @@ def _house_holes(spec: Terrace) -> list[Hole]:
 
 
 def _pierced(s: Solid, width: float, low: float, high: float, holes: list[Hole], face: bpy.types.Material) -> None:
-    """Add the front wall as a grid of quads with holes, and the reveals of the holes, 0.13 m deep."""
+    """Add the front wall as a grid of quads with holes, and the reveals of the holes, which are 0.13 m deep."""
     xs = sorted({-width / 2, width / 2, *(x - w / 2 for x, _, w, *_ in holes), *(x + w / 2 for x, _, w, *_ in holes)})
     zs = sorted({low, high, *(z for _, z, *_ in holes), *(z + h for _, z, _, h, *_ in holes)})
     zs = [z for z in zs if low <= z <= high]
@@ -219,12 +219,12 @@ def _front_door(s: Solid, x: float, w: float, h: float) -> None:
 
 
 def dark_pane() -> bpy.types.Material:
-    """Return the window glass of an unlit room: reflections on a dark surface."""
+    """Return the material of an unlit window, a dark surface with reflections."""
     return plain("unlit pane", (0.016, 0.018, 0.020), 0.03)
 
 
 def lit_pane() -> bpy.types.Material:
-    """Return the window of a lit room: warm lamplight, brightest below the middle."""
+    """Return the material of a lit window, with warm lamplight that is brightest below the middle."""
     found = bpy.data.materials.get("lit pane")
     if found is not None:
         return found

@@ -1,4 +1,4 @@
-"""Mesh objects from numbers: boxes, surfaces of revolution, tubes, text."""
+"""Functions that create mesh objects: boxes, surfaces of revolution, tubes, text."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def tube(
 
 
 def to_mesh(obj: bpy.types.Object) -> bpy.types.Object:
-    """Replace a curve, text or modified object by its evaluated mesh, in place."""
+    """Replace a curve, text or modified object with its evaluated mesh, in place."""
     graph = bpy.context.evaluated_depsgraph_get()
     mesh = bpy.data.meshes.new_from_object(obj.evaluated_get(graph), depsgraph=graph)
     made = bpy.data.objects.new(obj.name, mesh)
@@ -112,7 +112,7 @@ def to_mesh(obj: bpy.types.Object) -> bpy.types.Object:
 
 
 def join(name: str, parts: Sequence[bpy.types.Object]) -> bpy.types.Object:
-    """Join meshes into one object, which renders and exports faster. The parts are consumed."""
+    """Join mesh objects into one, which renders and exports faster. The original objects no longer exist afterwards."""
     with bpy.context.temp_override(active_object=parts[0], selected_editable_objects=list(parts), selected_objects=list(parts)):
         bpy.ops.object.join()
     parts[0].name = name

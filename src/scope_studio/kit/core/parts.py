@@ -1,4 +1,4 @@
-"""One mesh from many simple solids. Vehicles and machines are assembled with it into a single Blender object."""
+"""A builder that collects simple solids into one mesh, used for vehicles and machines."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _AXES = {
 
 
 class Parts:
-    """A collection of polygons with materials. ``matrix`` is the frame in which further parts are added."""
+    """A collection of polygons with materials. ``matrix`` transforms the points of parts that are added from then on."""
 
     def __init__(self) -> None:
         self.matrix = Matrix.Identity(4)
@@ -31,7 +31,7 @@ class Parts:
         self._smooth: list[bool] = []
 
     def slot(self, material: bpy.types.Material) -> int:
-        """Return the slot number of a material. It is added on first use."""
+        """Return the slot number of a material, which is added on first use."""
         if material not in self.materials:
             self.materials.append(material)
         return self.materials.index(material)
@@ -115,7 +115,7 @@ class Parts:
         segments: int = 1,
         smooth: bool = False,
     ) -> None:
-        """Add an outline extruded along ``axis`` from ``low`` to ``high``.
+        """Add a closed outline, extruded along ``axis`` from ``low`` to ``high``.
 
         The outline is (y, z), (x, z) or (x, y) for axis X, Y or Z.
         """
@@ -143,7 +143,7 @@ class Parts:
         smooth: bool = True,
         caps: bool = True,
     ) -> None:
-        """Add a surface of revolution from ``(radius, height)`` pairs about ``axis`` through ``centre``, closed by ``caps``."""
+        """Add a surface of revolution about ``axis`` from ``(radius, height)`` pairs. ``caps`` closes its ends."""
         place = _AXES[axis]
         points: list[Point] = []
         for radius, height in profile:

@@ -1,4 +1,4 @@
-"""Cycles materials written as expressions: each method of ``Shader`` adds one node."""
+"""Cycles materials written as expressions, in which each method of ``Shader`` adds one node."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ class Shader:
         self.bsdf = next(n for n in self.tree.nodes if n.type == "BSDF_PRINCIPLED")
 
     def node(self, kind: str, **settings: Any) -> bpy.types.Node:
-        """Add a node of this kind and set its properties."""
+        """Add a node of type ``kind`` and set its properties."""
         made = self.tree.nodes.new(kind)
         for key, value in settings.items():
             setattr(made, key, value)
         return made
 
     def feed(self, socket: bpy.types.NodeSocket, value: Value) -> None:
-        """Link a socket to an input, or set a constant. Tuples of 3 are extended by alpha 1 for colour inputs."""
+        """Link a socket to an input, or set a constant. For colour inputs, an alpha of 1 is appended to tuples of 3."""
         if value is None:
             return
         if isinstance(value, bpy.types.NodeSocket):
@@ -61,7 +61,7 @@ class Shader:
         return made.outputs[0], made.outputs[1], made.outputs[2]
 
     def scaled(self, vector: Value, scale: tuple[float, float, float], offset: tuple[float, float, float] = (0, 0, 0)) -> Value:
-        """Return the vector scaled by component and shifted."""
+        """Return ``vector`` multiplied by ``scale`` and shifted by ``offset``, component by component."""
         made = self.node("ShaderNodeMapping")
         self.feed(made.inputs["Vector"], vector)
         made.inputs["Scale"].default_value = scale
@@ -84,7 +84,7 @@ class Shader:
         return made.outputs[output]
 
     def math(self, operation: str, a: Value, b: Value = None, *, clamp: bool = False) -> Value:
-        """Return the result of a scalar operation."""
+        """Return the result of a scalar operation of Blender's Math node."""
         made = self.node("ShaderNodeMath", operation=operation, use_clamp=clamp)
         self.feed(made.inputs[0], a)
         self.feed(made.inputs[1], b)
@@ -93,7 +93,7 @@ class Shader:
     def ramp(
         self, value: Value, low: float, high: float, to_low: float = 0.0, to_high: float = 1.0, *, smooth: bool = True
     ) -> Value:
-        """Map ``low..high`` to ``to_low..to_high``, clamped. Most masks are built from it."""
+        """Map ``low..high`` to ``to_low..to_high``, clamped. Most masks use it."""
         made = self.node("ShaderNodeMapRange", interpolation_type="SMOOTHSTEP" if smooth else "LINEAR")
         for index, number in enumerate([value, low, high, to_low, to_high]):
             self.feed(made.inputs[index], number)

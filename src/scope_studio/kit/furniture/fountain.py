@@ -18,7 +18,7 @@ from scope_studio.kit.core.stage import Built
 def fountain_basin(radius: float = 3.0) -> Built:
     """Build a stone basin with moulded rim, water and four low jets.
 
-    In the middle, a base 1.2 m square and 0.5 m high takes a pedestal.
+    A base in the middle, 1.2 m square and 0.5 m high, supports a pedestal.
     """
     s = Solid("fountain")
     stone = _basin_stone()
@@ -65,7 +65,7 @@ def _water() -> bpy.types.Material:
 
 
 def plinth(lines: Sequence[str], *, height: float = 2.2, side: float = 1.1) -> Built:
-    """Build a stone pedestal with a moulded foot and cap, and an inscription cut into its +y face."""
+    """Build a stone pedestal with a moulded foot and cap, and an inscribed slate tablet on its +y face."""
     s = Solid("plinth")
     stone = _basin_stone()
     s.box((side + 0.5, side + 0.5, 0.35), (0, 0, 0.17), stone, 0.04)
@@ -83,7 +83,7 @@ def plinth(lines: Sequence[str], *, height: float = 2.2, side: float = 1.1) -> B
 
 
 def bronze(built: Built) -> Built:
-    """Return the same figure in weathered bronze."""
+    """Give all parts of ``built`` the material of weathered bronze, and return it."""
     metal = _bronze()
     for obj in built.objects:
         for slot in obj.material_slots:

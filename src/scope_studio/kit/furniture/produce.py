@@ -13,7 +13,7 @@ from scope_studio.kit.core.solid import Solid
 from scope_studio.kit.core.stage import Built
 
 CRATE_M = (0.56, 0.38, 0.16)
-"""Width, depth and height of a produce crate."""
+"""Width, depth and height of a produce crate in metres."""
 
 
 def crate(colour: str = "timber") -> Built:
@@ -113,11 +113,11 @@ PRODUCE: dict[str, tuple[Maker, float]] = {
     "lettuces": (_leafy(0.080, (0.17, 0.33, 0.045), (0.28, 0.43, 0.085), "lettuce"), 0.140),
     "cheeses": (_ball(0.085, (0.66, 0.42, 0.08), (0.62, 0.50, 0.26), squash=0.5, name="cheese"), 0.165),
 }
-"""Kinds of produce: the pieces that fill a crate, and their spacing (m)."""
+"""For each kind of produce, a function that adds one piece to a crate, and the spacing of pieces in metres."""
 
 
 def produce_crate(kind: str, *, seed: int = 0, colour: str = "timber") -> Built:
-    """Build a crate heaped with one kind of ``PRODUCE``."""
+    """Build a crate heaped with one kind of produce, a key of ``PRODUCE``."""
     s = Solid(f"crate of {kind}")
     rng = random.Random(f"{kind} {seed}")
     _crate(s, colour)
@@ -142,7 +142,7 @@ def produce_crate(kind: str, *, seed: int = 0, colour: str = "timber") -> Built:
 
 
 def price_card(text: str, *, cap: float = 0.055, colour: str = "white") -> Built:
-    """Build a card on a stick with a word and a price, on one line or two (split at the newline).
+    """Build a card on a stick with a word and a price. A newline splits the text into two lines.
 
     The foot of the stick is at the origin.
     """

@@ -17,7 +17,7 @@ Rgb = tuple[float, float, float]
 
 
 def _ware(name: str, colour: Rgb, roughness: float = 0.5, glow: float = 0.16) -> bpy.types.Material:
-    """Return the material of goods in a lit shop window. It glows slightly, so that the goods look brighter than the street."""
+    """Return a material for goods in a lit shop window. It is slightly emissive, so that they look brighter than the street."""
     full = f"ware {name}"
     found = bpy.data.materials.get(full)
     if found is not None:
@@ -28,7 +28,7 @@ def _ware(name: str, colour: Rgb, roughness: float = 0.5, glow: float = 0.16) ->
 
 
 def loaf(seed: int = 0) -> Built:
-    """Build a crusty loaf with slashes, 0.30 m along x."""
+    """Build a crusty loaf of bread, 0.30 m along x."""
     s, rng = Solid("loaf of bread"), Random(f"loaf {seed}")
     v = Volume()
     half = rng.uniform(0.09, 0.13)
@@ -57,7 +57,7 @@ def cake(colour: str = "pink") -> Built:
 
 
 def ham() -> Built:
-    """Build a ham on its hook. The top of the hook is at the origin."""
+    """Build a ham that hangs from a hook. The top of the hook is at the origin."""
     s = Solid("ham")
     s.tube([(0, 0, 0), (0, 0, -0.10), (0.02, 0, -0.13), (0, 0, -0.15)], 0.005, steel(), sides=6)
     v = Volume()
@@ -69,7 +69,7 @@ def ham() -> Built:
 
 
 def bottle(colour: str = "green") -> Built:
-    """Build a chemist's round jar or bottle with label and stopper, 0.34 m high."""
+    """Build a chemist's round bottle with label and stopper, 0.34 m high."""
     s = Solid(f"{colour} bottle")
     glass = _ware(f"bottle {colour}", PALETTE[colour], 0.08, 0.25)
     s.lathe(
@@ -116,7 +116,7 @@ def table_lamp(colour: str = "cream", *, lit: bool = True) -> Built:
 
 
 def mannequin(colour: str = "red", *, dress: bool = True) -> Built:
-    """Build a headless dressmaker's figure on a stand, 1.55 m high. It wears a dress, or a coat when ``dress`` is false."""
+    """Build a headless mannequin on a stand, 1.55 m high. It wears a dress, or a coat when ``dress`` is false."""
     s = Solid(f"mannequin in {colour}")
     s.lathe([(0.17, 0.0), (0.17, 0.02), (0.02, 0.03), (0.016, 0.75)], _ware("stand", (0.25, 0.15, 0.07), 0.3), steps=20)
     v = Volume()

@@ -17,7 +17,7 @@ from scope_studio.kit.ground import markings
 
 @dataclass(frozen=True)
 class Carriageway:
-    """A straight dual road along +y that bends in the distance. Offsets are measured from the middle of the central reserve."""
+    """A dual carriageway along +y that bends in the distance. Offsets are measured from the middle of the central reserve."""
 
     reserve_m: float = 1.55
     edge_m: float = 15.5
@@ -53,7 +53,7 @@ def strip(
 
 
 def carriageways(road: Carriageway) -> Built:
-    """Build both carriageways with their paint, and the hardened reserve between them."""
+    """Build both carriageways with their paint, and the paved central reserve between them."""
     asphalt = asphalt_material(road)
     concrete = slab_material()
     parts = [
@@ -70,7 +70,7 @@ def carriageways(road: Carriageway) -> Built:
 
 
 def asphalt_material(road: Carriageway) -> bpy.types.Material:
-    """Return worn asphalt with aggregate, wheel tracks, oil, seams, cracks, patches and paint, in road coordinates."""
+    """Return the material of worn asphalt, with wheel tracks, oil, seams, cracks, patches and paint, in road coordinates."""
     s = Shader("asphalt carriageway")
     uv = s.node("ShaderNodeUVMap", uv_map="road").outputs[0]
     u, v, _ = s.xyz(uv)
@@ -110,7 +110,7 @@ def asphalt_material(road: Carriageway) -> bpy.types.Material:
 
 
 def _cracks(s: Shader, uv: Value) -> Value:
-    """Return thin irregular cracks, dense in a few weathered stretches and absent elsewhere."""
+    """Return a mask of thin irregular cracks, dense in a few weathered stretches and absent elsewhere."""
     warp = s.noise(uv, 0.9, detail=5.0)
     made = s.node("ShaderNodeVectorMath", operation="ADD")
     s.feed(made.inputs[0], s.scaled(uv, (1.0, 0.6, 1.0)))
@@ -150,7 +150,7 @@ def _patches(
 
 
 def slab_material() -> bpy.types.Material:
-    """Return weathered concrete hardening with joints every 5 m, stains, and weeds in the joints."""
+    """Return the material of weathered concrete paving with stains, and weeds in its joints, which are 5 m apart."""
     s = Shader("reserve concrete")
     uv = s.node("ShaderNodeUVMap", uv_map="road").outputs[0]
     u, v, _ = s.xyz(uv)

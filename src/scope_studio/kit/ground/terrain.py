@@ -14,10 +14,10 @@ from scope_studio.kit.ground.highway import Carriageway
 
 
 def terrain(road: Carriageway, bare: Sequence[tuple[float, float, float, float]], *, extent_m: float = 3200.0) -> Built:
-    """Build the land: flat beside the road, rolling fields beyond, hills at the horizon.
+    """Build the land: flat next to the road, rolling fields farther away, and hills at the horizon.
 
     Args:
-        bare: Worn yards as (x0, x1, y0, y1) in metres.
+        bare: Rectangles of worn ground without grass, as (x0, x1, y0, y1) in metres.
     """
     rings = [0.0, 20.0, 40.0, 60.0, 80.0, 100.0, 125.0, 150.0]
     while rings[-1] < extent_m:
@@ -63,7 +63,7 @@ def _smooth(value: float, low: float, high: float) -> float:
 
 
 def land_material(road: Carriageway, bare: Sequence[tuple[float, float, float, float]]) -> bpy.types.Material:
-    """Return mown verges and yards near the road, and a patchwork of fields with hedgerows and woods beyond."""
+    """Return the material of the land: mown verges and worn ground near the road, and fields with hedgerows and woods beyond."""
     s = Shader("land")
     p = s.position()
     x, y, _ = s.xyz(p)

@@ -13,16 +13,16 @@ from scope_studio.kit.core.stage import Built
 from scope_studio.kit.ground.markings import Stencil
 
 KERB_M = 0.12
-"""Height of the footways above the road."""
+"""Height of the footways above the road, in metres."""
 
 LIFT_M = 0.004
-"""Thickness of paint on the road."""
+"""Height of paint above the road, in metres."""
 
 Outline = Sequence[tuple[float, float]]
 
 
 def carriageway(half_m: float, gutters: Sequence[Stencil]) -> Built:
-    """Build one sheet of asphalt on z = 0 that extends ``half_m`` to all sides. Water stands along the ``gutters``."""
+    """Build a square of asphalt on z = 0, ``half_m`` from its middle to its edges, with standing water along the ``gutters``."""
     h = half_m
     sheet = from_data("asphalt", [(-h, -h, 0), (h, -h, 0), (h, h, 0), (-h, h, 0)], [(0, 1, 2, 3)], _asphalt(gutters))
     return Built.of("asphalt", [sheet])
@@ -54,7 +54,7 @@ def _asphalt(gutters: Sequence[Stencil]) -> bpy.types.Material:
 
 
 def _patchwork(s: Shader, p: Value, fine: Value) -> Value:
-    """Return trenches of newer, darker asphalt: a few cells of a stretched Chebyshev Voronoi pattern."""
+    """Return a mask of trenches filled with newer, darker asphalt: a few cells of a stretched Chebyshev Voronoi pattern."""
     cell = s.node("ShaderNodeTexVoronoi", distance="CHEBYCHEV")
     s.feed(cell.inputs["Vector"], s.scaled(p, (0.30, 0.085, 0.0)))
     cell.inputs["Scale"].default_value = 1.0
@@ -72,7 +72,7 @@ def markings(bars: Sequence[Stencil], colour: str) -> Built:
 
 
 def road_paint(colour: str) -> bpy.types.Material:
-    """Return thermoplastic paint under a film of water. Asphalt shows through where it is worn."""
+    """Return the material of thermoplastic paint under a film of water. Asphalt shows through where the paint is worn."""
     found = bpy.data.materials.get(f"road paint {colour}")
     if found is not None:
         return found
@@ -126,7 +126,7 @@ def _inset(outline: Outline, by_m: float) -> list[tuple[float, float]]:
 
 
 def _paving(slab: tuple[float, float]) -> bpy.types.Material:
-    """Return wet concrete flags in running bond, with blotches, chewing gum, and water in the joints of a few loose ones."""
+    """Return the material of wet concrete flags in running bond, with blotches, chewing gum, and water in the joints of a few."""
     s = Shader(f"wet paving {slab[0]:.2f}")
     p = s.position()
     brick = s.node("ShaderNodeTexBrick")

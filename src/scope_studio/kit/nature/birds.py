@@ -1,4 +1,4 @@
-"""Town pigeons."""
+"""Pigeons."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ PLUMAGE = {
     "brown": ((0.16, 0.075, 0.045), (0.34, 0.27, 0.22)),
     "white": ((0.62, 0.62, 0.60), (0.75, 0.75, 0.73)),
 }
-"""Back and wing colours of a pigeon, by plain colour name."""
+"""Back and wing colours of a pigeon (linear RGB), by plain colour name."""
 
 
 def pigeon(colour: str = "grey", *, pose: str = "stand") -> Built:
@@ -53,7 +53,7 @@ _AIM = {"stand": Vector((0, 1, -0.30)), "peck": Vector((0, 0.65, -0.9)), "rest":
 
 
 def _body(frame: Matrix, pose: str) -> Skin:
-    """Return breast, back, neck, head, folded wings and tail as one skin, in world coordinates of the bird."""
+    """Return the body with neck, head, folded wings and tail as one skin, in the bird's own coordinates."""
     v = Volume()
     v.ellipsoid((0, 0.02, 0.0), (0.058, 0.088, 0.056))
     v.ellipsoid((0, -0.055, 0.004), (0.046, 0.082, 0.040))
@@ -78,7 +78,7 @@ def _leg(s: Solid, side: int, body: Matrix) -> None:
 
 
 def _feathers(colour: str) -> bpy.types.Material:
-    """Return plumage with a dark head, a sheen on the neck, two wing bars and a dark tail tip. Masks are in the body's frame."""
+    """Return the material of plumage with a dark head, a sheen on the neck, two wing bars and a dark tail tip."""
     name = f"pigeon {colour}"
     found = bpy.data.materials.get(name)
     if found is not None:

@@ -20,7 +20,7 @@ COATS = {
     "brown": ((0.075, 0.034, 0.016), (0.13, 0.065, 0.03)),
     "white": ((0.55, 0.53, 0.49), (0.68, 0.66, 0.62)),
 }
-"""Darkest and lightest coat colours of a dog, by plain colour name."""
+"""Darkest and lightest tone of a dog's coat (linear RGB), by plain colour name."""
 
 
 def dog(colour: str = "black", *, phase: float | None = None, lead_to: Point | None = None, collar: str = "red") -> Built:

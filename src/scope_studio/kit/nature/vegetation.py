@@ -1,4 +1,4 @@
-"""Plants: trees of several species, hedges, bushes and rough grass. Build each once and place linked copies."""
+"""Plants: trees of several species, hedges, bushes and rough grass. They are large: build each once and place linked copies."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ Rgb = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Species:
-    """Parameters of a tree's growth.
+    """Parameters of a tree species.
 
-    ``crown`` is the outline: "round", "column", "cone" or "weeping". The colours are those of dark and bright leaves.
+    ``crown`` is the outline: "round", "column", "cone" or "weeping". ``dark`` and ``bright`` are the two colours of its leaves.
     """
 
     name: str
@@ -60,11 +60,11 @@ def tree(species: Species, seed: int, *, detail: float = 1.0) -> Built:
 
 
 Limb = tuple[list[Vector], float, float]
-"""Centre line, start radius, end radius."""
+"""Limb of a tree: centre line, start radius, end radius."""
 
 
 def _grow(sp: Species, rng: random.Random) -> tuple[list[Limb], list[tuple[Vector, Vector]]]:
-    """Return the limbs (trunk, boughs, branches, twigs) and the (start, end) of every twig that bears leaves."""
+    """Return the limbs (trunk, boughs, branches, twigs) and the (start, end) of every twig that has leaves."""
     limbs: list[Limb] = []
     twigs: list[tuple[Vector, Vector]] = []
     girth = 0.020 * sp.height_m + 0.02
@@ -105,7 +105,7 @@ def _grow(sp: Species, rng: random.Random) -> tuple[list[Limb], list[tuple[Vecto
 
 
 def _habit(sp: Species, share: float) -> tuple[float, float]:
-    """Return the rise angle (radians) and length of a bough at a relative height in the crown."""
+    """Return the rise angle (radians) and length (m) of a bough at ``share`` of the crown's height."""
     r = sp.crown_radius_m
     if sp.crown == "round":
         return 0.05 + 1.15 * share**1.4, r * (0.80 + 0.34 * math.sin(math.pi * min(1.0, share * 0.95 + 0.12)) - 0.32 * share)
@@ -168,7 +168,7 @@ def _tubes(limbs: Sequence[Limb], sides: int) -> tuple[np.ndarray, np.ndarray]:
 def _leaves(
     sp: Species, twigs: Sequence[tuple[Vector, Vector]], rng: random.Random, detail: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return folded leaf cards in loose sprays around the twigs: fewer and larger ones when ``detail`` is low."""
+    """Return the points, quads and tints of leaves around the twigs. A lower ``detail`` gives fewer and larger leaves."""
     gen = np.random.default_rng(rng.randrange(2**31))
     each = max(5, round(42 * detail))
     size = sp.leaf_m * detail**-0.42
@@ -214,7 +214,7 @@ Part = tuple[np.ndarray, np.ndarray, bpy.types.Material]
 
 
 def _combine(name: str, parts: Sequence[Part], tints: np.ndarray) -> bpy.types.Object:
-    """Return one mesh from groups of quads with one material each. ``tints`` belong to the points of the last group."""
+    """Create one mesh from groups of quads with one material each. ``tints`` has a value for each point of the last group."""
     mesh = bpy.data.meshes.new(name)
     points = np.concatenate([p for p, _, _ in parts]).astype(np.float32)
     offsets = np.cumsum([0] + [len(p) for p, _, _ in parts])
@@ -239,7 +239,7 @@ def _combine(name: str, parts: Sequence[Part], tints: np.ndarray) -> bpy.types.O
 
 
 def leaf_material(sp: Species) -> bpy.types.Material:
-    """Return leaves of two tones, paler in patches, with a third of the light passing through them."""
+    """Return the material of leaves: two tones, paler in patches, with a third of the light passing through."""
     found = bpy.data.materials.get(f"{sp.name} leaves")
     if found is not None:
         return found
@@ -263,7 +263,7 @@ def leaf_material(sp: Species) -> bpy.types.Material:
 
 
 def bark_material(sp: Species) -> bpy.types.Material:
-    """Return the bark of a species."""
+    """Return the material of a species' bark."""
     found = bpy.data.materials.get(f"{sp.name} bark")
     if found is not None:
         return found
@@ -281,7 +281,7 @@ HAWTHORN = Species("hawthorn", 1.9, 0.7, 0.0, "round", 0.085, (0.049, 0.087, 0.0
 
 
 def hedge(length_m: float, *, height_m: float = 1.9, depth_m: float = 1.2, seed: int = 0, detail: float = 1.0) -> Built:
-    """Build a field hedge along x: leaf cards over an uneven dark core."""
+    """Build a field hedge along x: leaves over an uneven dark core."""
     gen = np.random.default_rng(7919 + seed)
     count = int(900 * length_m * detail)
     along = gen.uniform(-length_m / 2, length_m / 2, count)
@@ -307,7 +307,7 @@ def hedge(length_m: float, *, height_m: float = 1.9, depth_m: float = 1.2, seed:
 
 
 def grass_patch(size_m: float, *, blades: int, height_m: float, seed: int, flowers: int = 0) -> Built:
-    """Build a square of uneven grass tufts with a few flower heads. It is meant to be scattered as linked copies."""
+    """Build a square of uneven grass tufts with some flower heads, to be scattered as linked copies."""
     gen = np.random.default_rng(104729 + seed)
     tufts = gen.uniform(-size_m / 2, size_m / 2, size=(max(1, blades // 7), 2))
     roots = tufts[gen.integers(len(tufts), size=blades)] + gen.normal(size=(blades, 2)) * 0.075

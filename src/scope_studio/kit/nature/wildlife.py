@@ -1,4 +1,4 @@
-"""Wild animals that visit a yard at dusk: a fox, standing or trotting."""
+"""Wild animals: a fox, standing or trotting."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scope_studio.kit.core.stage import Built
 from scope_studio.kit.core.volumes import Volume
 
 TROT_M = 0.78
-"""Length of one gait cycle of the fox."""
+"""Length in metres of one gait cycle of a trotting fox."""
 
 
 def fox(*, phase: float | None = None) -> Built:
@@ -64,7 +64,7 @@ def _leg(v: Volume, side: int, front: bool, phase: float | None) -> None:
 
 
 def _coat() -> bpy.types.Material:
-    """Return a coat that is red above, with white throat, belly and tail tip, and black legs and ears."""
+    """Return the material of a fox's coat: red above, with white throat, belly and tail tip, and black legs and ears."""
     found = bpy.data.materials.get("fox coat")
     if found is not None:
         return found

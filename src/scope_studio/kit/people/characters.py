@@ -1,7 +1,7 @@
 """Road workers and pedestrians of varied height, build, skin and hair, in relaxed poses or walking.
 
-A person stands at the origin facing +y, with about 45,000 points in one object. Appearance and small asymmetries are drawn from
-``seed``; everything else is a parameter. ``phase`` in [0, 1) is the gait phase of the poses "walk" and "carry". One cycle
+A person stands at the origin facing +y, with about 45,000 points in one object. Appearance and small asymmetries are random and
+depend on ``seed``; everything else is a parameter. ``phase`` in [0, 1) is the gait phase of the poses "walk" and "carry". One cycle
 covers ``STRIDE_M`` times the person's height over 1.77 m.
 """
 
@@ -25,7 +25,7 @@ from scope_studio.kit.people.poses import Joints, Pose, named, solve
 
 @dataclass(frozen=True)
 class _Appearance:
-    """Physical features of a person, drawn from the seed."""
+    """Physical features of a person."""
 
     height_m: float
     girth: float
@@ -98,7 +98,7 @@ def _helmet(s: Solid, joints: Joints, colour: str) -> None:
 
 @dataclass(frozen=True)
 class _Outfit:
-    """Clothes of a person. ``vest`` and ``helmet`` make a worker."""
+    """Clothes of a person. Only workers have a ``vest`` and a ``helmet``."""
 
     top: str
     legs: str
@@ -111,7 +111,7 @@ class _Outfit:
 
 
 def _dress(s: Solid, joints: Joints, random: Random, looks: _Appearance, outfit: _Outfit, curls: tuple[float, float]) -> None:
-    """Add clothes and hands."""
+    """Add the clothed body and the hands."""
     seed = random.uniform(0, 50)
     vest = outfit.vest
     loose = random.uniform(0.004, 0.012)
@@ -163,7 +163,7 @@ def _limb(along: np.ndarray) -> np.ndarray:
 
 
 IN_HAND = {"shovel": "shovel", "phone": "phone", "clipboard": "clipboard", "carry": "box", "kneel": "trowel"}
-"""The objects that a pose holds by default."""
+"""The prop that a person in a pose holds by default."""
 
 
 def _person(
@@ -207,10 +207,10 @@ def worker(
     """Build a road worker in a high-visibility vest ("orange" or "yellow").
 
     Args:
-        helmet: A colour, or None.
+        helmet: Colour of the helmet, or None for no helmet.
         pose: "stand", "walk", "point", "carry", "kneel", "shovel", "phone" or "clipboard".
-        holding: Replaces what the pose holds by default.
-        stance: The caller's own pose, instead of a named one.
+        holding: Name of a prop that replaces the default prop of the pose; see ``HOLDABLE``.
+        stance: A pose to use instead of the one that ``pose`` names.
     """
     random = Random(f"worker {seed}")
     looks = _looks(random, None, 0.15)
@@ -234,10 +234,10 @@ def pedestrian(
     stance: Pose | None = None,
     seed: int = 0,
 ) -> Built:
-    """Build a passer-by in everyday clothes.
+    """Build a pedestrian in everyday clothes.
 
-    Colours have plain names and are drawn from the seed when not given. ``stance`` is the caller's own pose, instead of a named
-    one.
+    Colours have plain names; those that are not given are random and depend on the seed. ``stance`` is a pose to use instead of
+    the one that ``pose`` names.
     """
     random = Random(f"pedestrian {seed}")
     looks = _looks(random, hair, 0.5)

@@ -1,4 +1,4 @@
-"""The clothed human figure: trunk, sleeves, trousers, boots and hands around solved joints."""
+"""The clothed human figure: trunk, sleeves, trousers, boots and hands, modelled around solved joints."""
 
 from __future__ import annotations
 
@@ -57,8 +57,8 @@ def trunk(
     """Return the body of a garment, and the upright (rest) coordinates of its points.
 
     Args:
-        swell: Distance of the cloth from the body (m).
-        low: Height of the hem.
+        swell: Distance between the cloth and the body (m).
+        low: Height of the hem (m).
         neck: "collar", "hood" or None.
         flare: Extra looseness of the folds at the hem (m).
     """
@@ -94,7 +94,7 @@ def trunk(
 def sleeves(joints: Joints, *, loose: float, seed: float) -> tuple[Skin, np.ndarray]:
     """Return both sleeves, and the distance of each point from the shoulder along the arm (m).
 
-    ``loose`` is extra cloth (m).
+    ``loose`` is the extra width of the sleeve (m).
     """
     v = Volume()
     for i in range(2):
@@ -146,7 +146,7 @@ def trousers(joints: Joints, *, loose: float, girth: float, seed: float) -> tupl
 def _along(points: np.ndarray, bones: list[tuple[Vector, Vector, float, float]]) -> np.ndarray:
     """Return for each point a value that is interpolated between the ends of its nearest bone.
 
-    Bones are (from, to, value, value).
+    Bones are (from, to, value at from, value at to).
     """
     best = np.full(len(points), 1e9)
     value = np.zeros(len(points))

@@ -81,7 +81,7 @@ def hair_cap(style: str, thickness: float, seed: float) -> Skin:
 def _hairline(points: np.ndarray, style: str) -> np.ndarray:
     """Return the height of the hair's lower edge, which depends on how far forward a point is.
 
-    It is high over the brow, above the ears, and low at the nape.
+    The edge is high at the forehead, just above the ears, and low at the back of the neck.
     """
     y = points[:, 1]
     table = [

@@ -1,6 +1,6 @@
 """Sign faces: rounded reflective boards with borders, lettering, arrows, route patches and pictograms.
 
-A face is drawn in the plane y = 0 of the current frame of a ``Solid``, towards +y. Positions are given as the reader sees them:
+A face is drawn in the plane y = 0 of the current frame of a ``Solid``, towards +y. Positions are given as a viewer sees them:
 ``u`` to the right, ``v`` up (so x = -u).
 """
 
@@ -19,10 +19,10 @@ from scope_studio.kit.core.shapes import rounded
 from scope_studio.kit.core.solid import Solid
 
 PROUD_M = 0.0035
-"""Distance of lettering from its board, large enough to avoid z-fighting at any distance."""
+"""Distance in metres between lettering and its board, large enough to avoid z-fighting in distant views."""
 
 INK = {"blue": "white", "green": "white", "red": "white", "dark green": "white", "brown": "white", "black": "white"}
-"""Lettering colour by background; black for backgrounds not listed."""
+"""Lettering colour for each background colour. On other backgrounds, lettering is black."""
 
 ARROW_TURN = {
     "up": 0.0,
@@ -40,9 +40,9 @@ ARROW_TURN = {
 class Panel:
     r"""A direction or information sign, sizes in metres.
 
-    A tab inside a line sends the rest of it to the right edge ("Halden\t12"). ``arrows`` gives a direction (a key of
-    ``ARROW_TURN``) or None for each line, or a single one for the whole panel. ``route`` is a road number on a patch in the
-    first row.
+    In a line, the text after a tab is aligned to the right edge ("Halden\t12"). ``arrows`` gives a direction (a key of
+    ``ARROW_TURN``) or None for each line, or a single direction for the whole panel. ``route`` is a road number that is shown
+    on a patch in the first row.
     """
 
     lines: Sequence[str]
@@ -82,7 +82,7 @@ def board(
 
 
 def flat(s: Solid, outline: Sequence[tuple[float, float]], material: bpy.types.Material, lift: float = PROUD_M) -> None:
-    """Add a flat shape on the face. ``outline`` is in reader coordinates."""
+    """Add a flat shape on the face. ``outline`` is in (u, v) coordinates."""
     s.prism([(-u, v) for u, v in outline], (lift - 0.002, lift), material, "XZ")
 
 
@@ -182,7 +182,7 @@ def panel_face(s: Solid, spec: Panel) -> None:
 
 
 def _need(line: str) -> float:
-    """Return the width of a line in cap heights: both its parts and the gap between them."""
+    """Return the width of a line, including the gap at a tab, as a multiple of the cap height."""
     head, _, tail = line.partition("\t")
     return extent(head, 1.0) + (extent(tail, 1.0) + 1.2 if tail else 0.0)
 

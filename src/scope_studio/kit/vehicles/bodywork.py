@@ -1,4 +1,4 @@
-"""Car bodies: lofted shells with glazing, number plates, lettering, and the assembly of a painted vehicle."""
+"""Car bodies: lofted shells with windows, number plates, lettering, and the assembly of a painted vehicle."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Station:
     """A cross-section of a body at ``y``.
 
     Its right-hand ``(x, z)`` points run from the middle of the floor to the middle of the roof. ``dy`` moves single points
-    along y, which rakes and bows the section.
+    along y, which slants and curves the section.
     """
 
     y: float
@@ -33,7 +33,7 @@ class Station:
 
 @dataclass(frozen=True)
 class Pane:
-    """A window: the cage between two stations and two rows, on both sides, or joined ``across`` the middle."""
+    """A window between two stations and two rows of section points, on both sides, or in one piece ``across`` the middle."""
 
     stations: tuple[int, int]
     rows: tuple[int, int]
@@ -54,8 +54,8 @@ def shell(
     """Return a closed body, lofted through ``stations`` from front to rear and subdivided, with windows framed in black trim.
 
     Args:
-        creases: (row, strength, first station, last station).
-        bulge: How far the front and rear ends bow outwards.
+        creases: Edges to sharpen: (row, strength, first station, last station).
+        bulge: Distances in metres by which the front and rear ends bulge outwards.
         cutters: Solids to subtract (wheel arches). The cut faces keep the material of the cutter.
     """
     bm = bmesh.new()
@@ -165,7 +165,7 @@ def _evaluated(data: bpy.types.Mesh, cutters: Parts | None, levels: int) -> bpy.
 
 
 class Surface:
-    """Ray casts against a finished mesh. They find where fittings and lettering touch the body."""
+    """A finished mesh to cast rays against, which finds where fittings and lettering touch the body."""
 
     def __init__(self, made: bpy.types.Mesh) -> None:
         self.tree = BVHTree.FromPolygons([v.co for v in made.vertices], [p.vertices for p in made.polygons])
@@ -176,7 +176,7 @@ class Surface:
         return hit.x if hit is not None else 0.0
 
     def end(self, x: float, z: float, front: bool) -> float:
-        """Return the y of the body's front or rear at ``(x, z)``."""
+        """Return the y coordinate of the body's front or rear at ``(x, z)``."""
         sign = 1.0 if front else -1.0
         hit = self.tree.ray_cast(Vector((x, 20.0 * sign, z)), Vector((0, -sign, 0)))[0]
         return hit.y if hit is not None else 0.0
@@ -189,7 +189,7 @@ class Surface:
 
 @dataclass
 class Lettering:
-    """A line of letters in its place on a vehicle, and its text mark."""
+    """A line of letters in its position on a vehicle, and its text mark."""
 
     points: list[Point]
     faces: list[tuple[int, ...]]
@@ -217,7 +217,7 @@ def words(
 ) -> Lettering:
     """Return a line of lettering around ``centre``, narrowed to fit ``width_m``.
 
-    ``onto`` lays it on a curved side instead of a plane.
+    ``onto`` projects it on a curved side instead of a plane.
     """
     flat, faces = lettering.letters(body, cap_m)
     if onto is not None:
@@ -271,7 +271,7 @@ def both_sides(
 ) -> list[Lettering]:
     """Return the same lettering for the right and the left side.
 
-    It stands in front of the panel at ``x``, or is laid ``onto`` the surface.
+    It is on the planes at ``x`` and -``x``, or is projected ``onto`` a surface.
     """
     return [
         words(body, cap_m, (sign * (x + 0.003), y, z), facing, colour, width_m=width_m, onto=onto)
@@ -282,7 +282,7 @@ def both_sides(
 def plates(plate: str, front: tuple[float, float], rear: tuple[float, float]) -> tuple[Parts, list[Lettering]]:
     """Return UK number plates, white in front and yellow at the rear.
 
-    ``front`` and ``rear`` are the (y, z) of the plate's face.
+    ``front`` and ``rear`` are the positions (y, z) of the faces of the plates.
     """
     parts, letters = Parts(), []
     for (y, z), colour, rgb, sign in (
@@ -297,7 +297,7 @@ def plates(plate: str, front: tuple[float, float], rear: tuple[float, float]) ->
 
 
 def body_mesh(model: str, make: Callable[[], Parts]) -> bpy.types.Mesh:
-    """Return the mesh of a model. It is made on first use and shared by all vehicles of the model in the file."""
+    """Return the mesh of a model, which ``make`` creates on first use and which all vehicles of the model share."""
     return bpy.data.meshes.get(f"kit {model}") or make().build(f"kit {model}")
 
 
@@ -308,7 +308,7 @@ def finish(
     letters: Sequence[Lettering] = (),
     fittings: Parts | None = None,
 ) -> Built:
-    """Assemble a vehicle: the shared mesh in its own paint, and a second object with its lettering and fittings."""
+    """Assemble a vehicle from the shared mesh in its own paint, and a second object with its lettering and fittings."""
     obj = bpy.data.objects.new(name, body)
     bpy.context.scene.collection.objects.link(obj)
     for number, material in enumerate(paints):
@@ -329,7 +329,7 @@ def finish(
 
 
 def arches(axles: Sequence[float], radius: float, inner_x: float) -> Parts:
-    """Return cutters for the wheel arches of axles at the given y. They reach from ``inner_x`` outwards on both sides."""
+    """Return cutters for the wheel arches of axles at the given y. They extend outwards from ``inner_x`` on both sides."""
     tools = Parts()
     for y in axles:
         for sign in (-1, 1):

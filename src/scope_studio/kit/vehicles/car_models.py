@@ -1,4 +1,4 @@
-"""Shapes of the car models: sections, windows, printed details.
+"""Shapes of the car models: cross-sections, windows, and details drawn on the paint.
 
 Lengths are in metres. y points forward, and the wheelbase is centred on 0.
 """
@@ -16,7 +16,7 @@ from scope_studio.kit.vehicles.paintwork import AMBER, GAP, REAR_LAMP, TRIM, Pat
 
 @dataclass(frozen=True)
 class Cabin:
-    """The visible interior: seats between ``front_y`` (dashboard) and ``rear_y``, below the ``belt_z`` line."""
+    """The interior that is visible through the windows, between ``front_y`` (dashboard) and ``rear_y`` and below ``belt_z``."""
 
     front_y: float
     rear_y: float

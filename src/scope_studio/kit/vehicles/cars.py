@@ -176,7 +176,7 @@ def suv(colour: str, *, plate: str) -> Built:
 
 
 def van(colour: str, *, plate: str, lettering: str | None, roof_beacon: bool = False) -> Built:
-    """Build a high-roof panel van, 5.5 m long, with lettering (lines separated by newlines) on both sides."""
+    """Build a high-roof panel van, 5.5 m long, with ``lettering`` (lines separated by newlines) on both sides."""
     surface = bw.Surface(bw.body_mesh(VAN.name, lambda: _body(VAN)))
     letters: list[bw.Lettering] = []
     if lettering:

@@ -1,4 +1,4 @@
-"""Tramway: an articulated tram, its stop's shelter and signs, overhead poles. The tram heads +y and stands on z = 0."""
+"""A tramway: an articulated tram that faces +y, the shelter and signs of its stop, and overhead poles."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from scope_studio.kit.vehicles import paintwork
 LENGTH_M = 19.6
 HALF_WIDTH_M = 1.2
 RAKE = 0.20
-"""Slope of the front, in metres backwards per metre of height."""
+"""Slope of the front: metres backwards per metre of height."""
 
 SECTION = [
     (0.0, 0.32),
@@ -163,7 +163,7 @@ def _bellows(s: Solid, y: float) -> None:
 def shelter(name: str) -> Built:
     """Build a glazed tram shelter, 4.4 x 1.5 m, open towards +y, with a bench.
 
-    The lettered roof edge is readable from both sides.
+    The name on the roof edge is readable from both sides.
     """
     s = Solid("tram shelter")
     metal, pane = paint("dark grey", dirt=0.2), clear_glass()

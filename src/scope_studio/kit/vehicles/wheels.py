@@ -1,4 +1,4 @@
-"""Road wheels: lathed tyres with alloy, steel and lorry rims. All turn about the x axis."""
+"""Wheels of road vehicles: tyres with alloy, steel and lorry rims. Their axles are along x."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ def steel() -> bpy.types.Material:
 
 
 def shade() -> bpy.types.Material:
-    """Return the dark material behind spokes."""
+    """Return the dark material of the space behind spokes."""
     return shading.plain("vehicle shade", (0.006, 0.006, 0.006), 0.9)
 
 
 def _frame(centre: Point, side: int) -> Matrix:
-    """Return a frame whose +x points outwards from the vehicle on either side."""
+    """Return a frame whose +x points away from the vehicle, on the right (``side`` +1) or left (-1)."""
     mirror = Matrix.Scale(-1, 4, (1, 0, 0)) if side < 0 else Matrix.Identity(4)
     return Matrix.Translation(centre) @ mirror
 

@@ -1,4 +1,4 @@
-"""Freight yard: the road outside, trees, neighbours, and the town between the yard and the hills."""
+"""Freight yard: the road outside, trees, neighbouring buildings, and the town between the yard and the hills."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from scope_studio.kit.vehicles import cars
 from scope_studio.kit.yard import floor as yard_floor
 
 ROAD = highway.Carriageway(edge_m=-1.0, straight_m=900.0)
-"""Only its level strip is used; beyond it, the land rises to hills."""
+"""Carriageway that defines the terrain: a level strip with hills on both sides. The road itself is not built."""
 STREET_Y = -58.0
 
 

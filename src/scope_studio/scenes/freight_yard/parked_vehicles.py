@@ -1,4 +1,4 @@
-"""Freight yard: parked vehicles: lorries at the docks, trailers in their bays, cars, forklifts."""
+"""Freight yard: the parked vehicles (lorries at the docks, trailers in their bays, cars, forklifts)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scope_studio.scenes.freight_yard import ground
 from scope_studio.scenes.freight_yard.premises import DOCK_X, FRONT_Y
 
 SEAM_Y = FRONT_Y - 0.55
-"""Position of the rear of a docked lorry."""
+"""y coordinate of the rear of a docked lorry."""
 
 MAKES = {
     "12": ("hatchback", "LD19 KRA"), "13": ("saloon", "MV70 TSE"), "15": ("hatchback", "YK18 BOW"), "16": ("suv", "PN22 FGH"),
@@ -22,7 +22,7 @@ MAKES = {
     "31": ("van", "GU19 NGF"), "33": ("hatchback", "FY68 JAM"), "34": ("pickup", "AK72 TOW"), "37": ("saloon", "WR66 VIS"),
     "39": ("suv", "DS21 HAT"),
 }  # fmt: skip
-"""Body and number plate of the car in each occupied bay."""
+"""Body style and number plate of the car in each occupied bay."""
 
 
 def build(stage: Stage) -> None:
@@ -42,7 +42,7 @@ def _combination(
     facts: dict[str, object],
     trailer_facts: dict[str, object],
 ) -> None:
-    """Place a tractor and its trailer facing south, with the trailer's rear at ``rear_y``."""
+    """Place a tractor unit and its trailer facing south, with the trailer's rear at ``rear_y``."""
     nose_y = rear_y - artics.TRAILER_M
     king_y = nose_y + artics.KINGPIN_M
     name = str(trailer_facts.pop("name"))
@@ -349,6 +349,6 @@ def _forklifts(stage: Stage) -> None:
 
 
 def _turned(x: float, y: float, bearing_deg: float) -> tuple[float, float]:
-    """Rotate a point from a thing's own frame to world axes."""
+    """Rotate a point from the frame of an object with this bearing to world axes."""
     b = math.radians(bearing_deg)
     return x * math.cos(b) + y * math.sin(b), -x * math.sin(b) + y * math.cos(b)

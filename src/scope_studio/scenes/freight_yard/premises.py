@@ -1,4 +1,4 @@
-"""Freight yard: the warehouse with its docks and office, and the things fixed to it."""
+"""Freight yard: the warehouse with its docks and office, and the fixtures on its walls."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def build(stage: Stage) -> None:
 
 
 def _local(x: float) -> float:
-    """Convert a world x to the position along the warehouse's front that its builder uses."""
+    """Convert a world x to the x coordinate along the warehouse's front that its builder uses."""
     return MIDDLE_X - x
 
 

@@ -12,7 +12,7 @@ from scope_studio.kit.yard import goods as yard_goods
 from scope_studio.kit.yard import safety as yard_safety
 
 STACKS = (
-    # feet, x, y, then (colour, code, livery) of each container from the ground up
+    # length in feet, x, y, then (colour, code, livery) of each container from the ground up
     (20, 20.5, -14.5, (("blue", "KVRU 482915 3", "KESTREL"), ("dark red", "TSLU 610382 7", None))),
     (
         20,
@@ -213,7 +213,7 @@ def _gear(stage: Stage) -> None:
 
 
 def _guards(stage: Stage) -> None:
-    """Place bollards, concrete blocks and cones."""
+    """Place bollards, concrete and water-filled barriers, and cones."""
     prototypes = Prototypes()
     bollards = [
         (19.2, 28.9),

@@ -1,4 +1,4 @@
-"""High street: things on the footways and at the kerbs, and the works at a manhole."""
+"""High street: street furniture on the footways and along the kerbs, scaffolding, and works at a manhole."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scope_studio.scenes.high_street.plan import EAST_KERB, WEST_KERB, ZEBRA, Pl
 from scope_studio.scenes.high_street.shops import plots
 
 WEST_X, EAST_X = WEST_KERB - 0.55, EAST_KERB + 0.55
-"""The lines of posts along the kerbs."""
+"""x coordinates of the posts along the kerbs."""
 
 LAMPS = (
     (WEST_X - 5.0, -51.3, True), (WEST_X, -16.5, True), (WEST_X, 6.0, True), (WEST_X, 31.0, False),

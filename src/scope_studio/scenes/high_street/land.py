@@ -1,4 +1,4 @@
-"""High street: roads, footways and their paint, houses that close the view in every direction, trees behind the roofs."""
+"""High street: roads, footways, road markings, houses that hide the horizon in every direction, and trees behind the roofs."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from scope_studio.scenes.high_street.plan import (
 )
 
 END_X = 84.0
-"""Position of the house that closes off each cross street."""
+"""Distance in metres from x = 0 of the houses at both ends of each cross street."""
 
 
 def build(stage: Stage) -> None:
@@ -148,7 +148,7 @@ DOORS = ("green", "blue", "black", "dark green", "navy", "white")
 
 
 def _cross_streets(stage: Stage) -> None:
-    """Place terraced houses along Church Road and Mill Lane, as linked copies of six."""
+    """Place terraced houses along Church Road and Mill Lane, as linked copies of six prototypes."""
     row = _Row(stage)
     for sign in (1, -1):
         far_bearing, near_bearing = (180.0, 0.0) if sign > 0 else (0.0, 180.0)
@@ -163,7 +163,7 @@ def _cross_streets(stage: Stage) -> None:
 
 
 class _Row:
-    """Places houses, as linked copies after the first use of each prototype."""
+    """Places houses. After the first use of a prototype, they are linked copies of it."""
 
     def __init__(self, stage: Stage) -> None:
         self._stage = stage
@@ -183,7 +183,7 @@ class _Row:
             x += side * width
 
     def house(self, plot: Plot, pick: int | None = None) -> None:
-        """Place the house number ``pick`` on a plot."""
+        """Place a house on a plot. ``pick`` is its index in ``HOUSES``; by default, houses take turns."""
         pick = self._count % len(HOUSES) if pick is None else pick
         spec = HOUSES[pick]
         built = self._moulds[pick].copy() if pick in self._moulds else self._moulds.setdefault(pick, terrace(spec))

@@ -1,4 +1,4 @@
-"""High street: people, dogs and pigeons that stay where they are."""
+"""High street: people, dogs and pigeons that do not move."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ UMBRELLAS: tuple[tuple[str, str | None, float, float, float, int, bool], ...] = 
     ("purple", None, 7.6, 30.8, 176, 27, True), ("pink", None, -5.4, 40.6, 130, 28, False), ("navy", "white", 12.0, 61.2, 268,
     29, True),
 )  # fmt: skip
-"""Colour, second colour, place, bearing, seed, walking."""
+"""Colour, second colour, x, y, bearing, seed, whether the person walks."""
 STANDING: tuple[tuple[float, float, float, str, int, str | None, str], ...] = (
     (-5.0, -6.1, 95, "stand", 41, None, "waiting"), (-4.6, -7.2, 60, "phone", 42, None, "on the phone"), (-5.4, -39.0, 178,
     "walk", 43, "bag", "walking"),
@@ -28,7 +28,7 @@ STANDING: tuple[tuple[float, float, float, str, int, str | None, str], ...] = (
     (2.0, 61.0, 180, "stand", 51, None, "standing"), (2.4, -60.9, 80, "walk", 52, "bag", "walking"), (-11.0, -61.4, 268, "walk",
     53, None, "walking"),
 )  # fmt: skip
-"""Place, bearing, pose, seed, what they hold, what they do."""
+"""x, y, bearing, pose, seed, what the person holds, what the person does."""
 
 
 def build(stage: Stage) -> None:

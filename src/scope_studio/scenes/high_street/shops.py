@@ -13,9 +13,9 @@ from scope_studio.scenes.high_street.plan import EAST_FRONT, ROW_END, WEST_FRONT
 
 @dataclass(frozen=True)
 class Shop:
-    """One house of the rows.
+    """One building of the rows.
 
-    ``noun`` is what a person calls the shop; an empty string makes it a dwelling with a front door.
+    ``noun`` is the common name for the kind of shop. If it is empty, the building is a house with a front door.
     """
 
     number: int
@@ -106,7 +106,7 @@ EAST: tuple[Shop, ...] = (
 
 
 def plots() -> dict[int, Plot]:
-    """Return the plot of each house number."""
+    """Return the plot of each building, by house number."""
     made: dict[int, Plot] = {}
     for row, x, bearing in ((WEST, WEST_FRONT, 90.0), (EAST, EAST_FRONT, 270.0)):
         y = -ROW_END
@@ -125,7 +125,7 @@ def build(stage: Stage) -> dict[int, str]:
     """Place both rows.
 
     Returns:
-        The instance id of each number's shop or house.
+        The instance id of each shop or house, by house number.
     """
     where = plots()
     return {shop.number: _house(stage, shop, where[shop.number]) for shop in (*WEST, *EAST)}
@@ -195,7 +195,7 @@ def _front(stage: Stage, shop: Shop, plot: Plot, building: str) -> str:
 
 
 def _notices(stage: Stage, shop: Shop, plot: Plot, ident: str) -> None:
-    """Place the open or closed sign on the door, and the card with opening hours beside it."""
+    """Place the open or closed sign on the door, and the card with opening hours next to it."""
     bearing = plot.bearing_deg
     if shop.open is not None:
         word, tint = ("OPEN", "green") if shop.open else ("CLOSED", "red")

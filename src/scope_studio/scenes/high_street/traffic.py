@@ -16,9 +16,9 @@ from scope_studio.kit.vehicles import cars, cycles, double_decker
 from scope_studio.scenes.high_street.plan import BAY_X, NORTHBOUND_X, SOUTHBOUND_X, ZEBRA, Plot
 
 FIRST_ACTOR = 9001
-"""Number of the first actor in the instance-number layer, far above the numbers of the instances."""
+"""Number of the first actor in the instance-number layer, well above the numbers of the instances."""
 PERIOD_S = 40.0
-"""All paths repeat with this period, so that walkers and traffic always meet in the same way."""
+"""Period of all paths. It is the same, so that pedestrians and traffic always meet at the same places."""
 PARKED = (
     (cars.hatchback, "red", "LK19 FWD", "hatchback", -38.4), (cars.saloon, "silver", "GY68 TNB", "saloon", -26.0),
     (cars.suv, "blue", "RO21 HXC", "SUV", -13.8), (cars.hatchback, "yellow", "EA17 JVP", "hatchback", -1.6),
@@ -170,20 +170,20 @@ def _walker(phase: float) -> Built:
 
 
 def _loose(built: Built) -> bpy.types.Object:
-    """Return the single object of a thing, detached from its root."""
+    """Return the only Blender object of ``built``, detached from its root."""
     obj = built.objects[0]
     obj.parent = None
     return obj
 
 
 def _height(x: float, y: float) -> float:
-    """Return the height of footway or road. Kerbs are dropped at the zebra crossing."""
+    """Return the height of the ground at a point of the footways or of the zebra crossing."""
     on_road = -3.2 < x < 5.4
     return 0.0 if on_road and ZEBRA[0] - 1 < y < ZEBRA[1] + 1 else KERB_M
 
 
 def _closed(corners: list[tuple[float, float]], period_s: float) -> list[tuple[float, float, float, float]]:
-    """Return a closed path at constant speed that takes ``period_s`` and steps down where it crosses the road."""
+    """Return the waypoints of a closed path at constant speed that takes ``period_s`` and steps down to cross the road."""
     ring = []
     for (x0, y0), (x1, y1) in zip(corners, corners[1:] + corners[:1], strict=True):
         ring.append((x0, y0))
@@ -207,6 +207,6 @@ def _timed(points: list[tuple[float, float]], speed_mps: float, start_s: float) 
 
 
 def _beside(lead: list[tuple[float, float]], own: list[tuple[float, float]]) -> list[tuple[float, float, float, float]]:
-    """Return a path along the ``own`` corners that keeps pace with a walker along the ``lead`` corners."""
+    """Return the waypoints of a path along the ``own`` corners, in step with a person who walks along the ``lead`` corners."""
     times = [w[0] for w in _closed(lead, PERIOD_S)]
     return [(t, *p, KERB_M) for t, p in zip(times, [*own, own[0]], strict=True)]

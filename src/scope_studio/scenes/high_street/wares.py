@@ -101,7 +101,7 @@ BOARDS: tuple[tuple[int, float, float, tuple[str, ...], str], ...] = (
     (16, -2.4, 2.5, ("LAMPS", "HALF PRICE"), "navy"),
     (6, 2.3, 2.4, ("CUT AND DRY", "28.00", "NO BOOKING"), "black"),
 )
-"""Pavement boards: number, position in front of the shop (m), lines, colour."""
+"""Pavement boards: house number of the shop, position in front of it (x and y in metres), lines, colour."""
 
 
 def _boards(stage: Stage, shops: dict[int, str]) -> None:

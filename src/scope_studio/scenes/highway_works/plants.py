@@ -87,7 +87,7 @@ def _near_trees(stage: Stage, height: Height) -> None:
 
 
 def _boundaries(stage: Stage, height: Height) -> None:
-    """Place timber fences along the highway boundary and hedges behind them. They have no visible ends and are not annotated."""
+    """Place timber fences along the highway boundary and hedges behind them. They are not annotated: no camera sees their ends."""
     fence = structures.post_and_rail(9.0)
     first = True
     for x, spans in ((27.5, ((-190, 64), (106, 190))), (-21.2, ((106, 190), (-190, -50)))):
@@ -125,7 +125,7 @@ def _boundaries(stage: Stage, height: Height) -> None:
 
 
 def _countryside(stage: Stage, height: Height) -> None:
-    """Place woods at the road's vanishing points and on the hills, and hedgerow trees in the fields."""
+    """Place woods where the road disappears and on the hills, and hedgerow trees in the fields."""
     rng = random.Random("countryside")
     species = (vegetation.OAK, vegetation.LIME, vegetation.POPLAR, vegetation.PINE, vegetation.COPPER)
     far = [vegetation.tree(sp, 7 + k, detail=0.14) for k, sp in enumerate(species)] + [
@@ -181,7 +181,7 @@ def _countryside(stage: Stage, height: Height) -> None:
 
 
 def _grass(stage: Stage) -> None:
-    """Place grass blades where a camera can look closely: on the verges near the viewpoints."""
+    """Place grass on the verges near the viewpoints, where a camera can see it in close-up."""
     rng = random.Random("grass")
     long = [vegetation.grass_patch(2.0, blades=1500, height_m=0.17, seed=k, flowers=4 * (k == 0)) for k in range(3)]
     mown = [vegetation.grass_patch(2.0, blades=1700, height_m=0.075, seed=10 + k) for k in range(2)]

@@ -34,7 +34,7 @@ ABSENT = (
     "train",
     "tent",
 )
-"""Things that a person might ask for but that are not in the scene."""
+"""Objects that a question might ask for but that are not in the scene."""
 
 
 def build(stage: Stage) -> None:
@@ -51,7 +51,7 @@ def build(stage: Stage) -> None:
     market.build(stage)
     people.build(stage)
     ground.build(stage)
-    beyond.build(stage)  # last, because building is slower the more objects the file holds
+    beyond.build(stage)  # last, because building gets slower with the number of objects in the file
     _cameras(stage)
     stage.absent = list(ABSENT)
     stage.finish = sky.finish_materials

@@ -10,7 +10,7 @@ from scope_studio.kit.core.stage import Stage
 from scope_studio.kit.furniture import cafe, produce, stalls
 
 FACING = 150.0
-"""Bearing that the fronts of the stalls face."""
+"""Bearing in degrees that the fronts of the stalls face."""
 
 Goods = tuple[str, str | None]
 """Contents of a crate, and the text of its price card (lines split at the newline)."""
@@ -99,7 +99,7 @@ STALLS: list[Stall] = [
         [("rolls", None), ("lemons", "LEMON\n2.50")],
     ),
 ]
-"""Name board, canvas colours, place, goods."""
+"""Name board, canvas colours, position and goods of each stall."""
 
 EMPTY_STALL = (-5.8, 15.8)
 BLOOMS = ("red", "yellow", "pink", "white", "purple", "orange")
@@ -108,9 +108,9 @@ TERRACE_COLUMNS = (-32.2, -28.9)
 
 
 def spot(place: tuple[float, float], right: float, out: float, bearing: float = FACING) -> tuple[float, float]:
-    """Return the world position of a point at a front.
+    """Convert a point in the frame of a front to a world position.
 
-    ``right`` is measured to the reader's right along the front, ``out`` in front of it (m).
+    ``right`` is the distance along the front, to the right as seen by a viewer, and ``out`` the distance in front of it (m).
     """
     b = math.radians(bearing)
     return place[0] - right * math.cos(b) + out * math.sin(b), place[1] + right * math.sin(b) + out * math.cos(b)
@@ -311,7 +311,7 @@ def _terrace(stage: Stage, prototypes: Prototypes) -> None:
 
 
 def seat_place(column: int, row: int, seat: int) -> tuple[tuple[float, float], float]:
-    """Return the position of a chair of the terrace, and the bearing that its sitter faces."""
+    """Return the position of a chair of the terrace, and the bearing that a person on it faces."""
     x, y = TERRACE_COLUMNS[column], TERRACE_ROWS[row]
     towards = (20.0, 140.0, 260.0)[seat] + 25.0 * ((row + column) % 2)
     b = math.radians(towards)

@@ -14,7 +14,7 @@ from scope_studio.scenes.station_square.fixtures import BENCHES, PLATFORM_TOP_M
 from scope_studio.scenes.station_square.market import FACING, STALLS, seat_place, spot
 
 TRAIL: tuple[float, float, float] = (0.24, -0.16, 0.86)
-"""Position of a walker's right hand on the handle of a case that rolls behind."""
+"""Position of the right hand of a walking person who pulls a suitcase."""
 
 VENDORS = ["white", "green", "dark green", "purple", "navy", "cream", "brown", "red"]
 CUSTOMERS: list[tuple[int, float, float, str, str, str | None]] = [
@@ -23,7 +23,7 @@ CUSTOMERS: list[tuple[int, float, float, str, str, str | None]] = [
     (5, -0.3, 1.7, "green", "stand", "bag"), (6, 0.8, 1.7, "light blue", "point", None), (7, 0.0, 1.9, "black", "stand", None),
     (7, 0.9, 2.3, "orange", "stand", None),
 ]  # fmt: skip
-"""Stall, place in front of it (right, out), coat, pose, what is held."""
+"""Index of the stall, position in front of it (right, out), coat, pose, what the person holds."""
 
 STROLLERS: list[tuple[float, float, float, str, str, str | None, str]] = [
     (3.3, 22.6, 160, "navy", "stand", None, "waiting by the station"),
@@ -56,7 +56,7 @@ SITTERS: list[tuple[int, int, int, str, str]] = [
     (1, 3, 2, "light blue", "table"),
     (1, 3, 0, "black", "cup"),
 ]
-"""Column, row and seat of the terrace, coat, what the hands do."""
+"""Column, row and seat of the terrace, coat, and what the person does with the hands."""
 
 
 def build(stage: Stage) -> None:
@@ -159,7 +159,7 @@ def _companions(stage: Stage) -> None:
 
 
 def _free_walk(phase: float) -> Pose:
-    """Return a walk whose right hand is free to hold something."""
+    """Return a walking pose in which the right hand can hold something."""
     return replace(walking(phase), twist=0.0)
 
 
@@ -171,7 +171,7 @@ def _with_case(phase: float) -> Built:
 
 
 def _walkers() -> list[ActorPath]:
-    """Return the actors: a traveller from the station, a passer-by on the way to the trains, and a dog that trots alone."""
+    """Return the walking actors: a traveller from the station, a person on the way to the trains, and a dog on its own."""
     traveller = [(0.4, 31.5), (0.3, 24.0), (-3.6, 19.6), (-14.0, 16.4), (-24.0, 17.4), (-31.0, 18.8), (-37.0, 18.9), (-42.0, 19.0)]
     commuter = [
         (47.5, 6.0),

@@ -97,9 +97,9 @@ def _house(stage: Stage, h: House, place: tuple[float, float, float], colour: st
 
 
 def _local(place: tuple[float, float, float], right: float, out: float) -> tuple[float, float]:
-    """Return the world position of a point at a front.
+    """Convert a point in the frame of a front to a world position.
 
-    ``right`` is measured to the reader's right along the front, ``out`` in front of it (m).
+    ``right`` is the distance along the front, to the right as seen by a viewer, and ``out`` the distance in front of it (m).
     """
     x, y, bearing = place
     b = math.radians(bearing)
@@ -125,7 +125,7 @@ def shop(
     awning_open: bool = True,
     seed: int = 0,
 ) -> None:
-    """Place a shop front with its sign, door and awning, each an instance, in front of the house at ``place``."""
+    """Place a shop front in front of the house at ``place``. Its sign, door and awning are separate instances."""
     bearing = place[2]
     x, y = _local(place, 0.0, 0.0)
     front = stage.place(
