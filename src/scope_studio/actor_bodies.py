@@ -37,7 +37,7 @@ class ActorBodies:
             self._bodies[key] = built
         return self._bodies[key]
 
-    def stand(self, actor: ActorPath, time_s: float, phase: float | None = None) -> Built | None:
+    def place(self, actor: ActorPath, time_s: float, phase: float | None = None) -> Built | None:
         """Move the actor's body to its position at a scene time and show it.
 
         Returns:
@@ -57,12 +57,12 @@ class ActorBodies:
     @contextmanager
     def shown_at(self, time_s: float) -> Iterator[None]:
         """Show every actor that is in the scene at that time while the context is active."""
-        standing = [built for actor in self._stage.actors if (built := self.stand(actor, time_s)) is not None]
+        shown = [built for actor in self._stage.actors if (built := self.place(actor, time_s)) is not None]
         bpy.context.view_layer.update()
         try:
             yield
         finally:
-            for built in standing:
+            for built in shown:
                 show(built, False)
 
     def size_m(self, actor: ActorPath) -> tuple[float, float, float]:

@@ -38,7 +38,7 @@ def render_frames(
         for k, frame in enumerate(frames):
             picture = out_dir / f"{k:03d}.png"
             if not picture.with_suffix(".npz").exists():
-                built = actor_bodies.stand(actor, frame["time_s"], frame["phase"])
+                built = actor_bodies.place(actor, frame["time_s"], frame["phase"])
                 if built is None:
                     raise ValueError(f"{actor_id} is not in the scene at {frame['time_s']} s")
                 ground.location = frame["position_m"]

@@ -18,7 +18,7 @@ from typing import Any
 MARK = "@scope "
 
 
-def adopt_packages() -> None:
+def register_packages() -> None:
     """Make ``scope_studio`` and ``scope_ptz`` importable without adding their parent folder to ``sys.path``.
 
     The parent folder is not added because it may contain packages that conflict with Blender's own, such as another version of
@@ -82,8 +82,8 @@ def main() -> None:
 if __name__ == "__main__":
     folder = str(Path(__file__).resolve().parent)
     sys.path[:] = [p for p in sys.path if p != folder]
-    adopt_packages()
-    from scope_studio.worker import main as adopted_main
+    register_packages()
+    from scope_studio.worker import main as package_main
 
-    adopted_main()
+    package_main()
     os._exit(0)  # Blender's teardown can hang or crash, and nothing is left to save

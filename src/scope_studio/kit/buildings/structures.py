@@ -63,9 +63,9 @@ def overbridge(*, span_m: float, width_m: float = 9.0, deck_m: float = 6.9, numb
             parts.append(letters)
             marks.append(mark)
         if banner:
-            made, written = _banner(banner, side, facing, edge, deck_m)
-            parts += made
-            marks += written
+            objects, banner_marks = _banner(banner, side, facing, edge, deck_m)
+            parts += objects
+            marks += banner_marks
     return Built.of("overbridge", parts, marks)
 
 
@@ -116,12 +116,12 @@ def _rails(span_m: float, edge: float, deck_m: float) -> list[bpy.types.Object]:
     parts = []
     reach = span_m / 2 + 4.4
     for y in (-edge, edge):
-        made = [tube("rail", [(-reach, y, deck_m + 1.12), (reach, y, deck_m + 1.12)], 0.04, steel)]
+        objects = [tube("rail", [(-reach, y, deck_m + 1.12), (reach, y, deck_m + 1.12)], 0.04, steel)]
         count = int(reach * 2 / 2.2)
         for k in range(count + 1):
             x = -reach + 2 * reach * k / count
-            made.append(box("post", (0.07, 0.05, 0.30), (x, y, deck_m + 0.98), steel, bevel_m=0))
-        parts.append(join("rails", made))
+            objects.append(box("post", (0.07, 0.05, 0.30), (x, y, deck_m + 0.98), steel, bevel_m=0))
+        parts.append(join("rails", objects))
     return parts
 
 

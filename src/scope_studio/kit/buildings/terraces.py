@@ -57,9 +57,9 @@ def terrace(spec: Terrace) -> Built:
     rng = Random(f"terrace {spec.seed} {spec.width_m}")
     face = wall(*spec.wall)
     low = GROUND_M - 0.1 if spec.shop else 0.0
-    holes = _holes(spec)
+    holes = _upper_holes(spec)
     if not spec.shop:
-        holes += _house_holes(spec)
+        holes += _ground_floor_holes(spec)
     _pierced(s, spec.width_m, low, spec.eaves_m + (0.75 if spec.parapet else 0.0), holes, face)
     _shell(s, spec, face)
     for x, z, w, h, floor, column in holes:
@@ -81,23 +81,25 @@ Hole = tuple[float, float, float, float, int, int]
 """Hole in a wall: middle x, bottom z, width, height, floor (0 = ground, -1 = a door), column."""
 
 
-def _holes(spec: Terrace) -> list[Hole]:
-    made: list[Hole] = []
+def _upper_holes(spec: Terrace) -> list[Hole]:
+    holes: list[Hole] = []
     pitch = spec.width_m / spec.columns
     for floor in range(1, spec.storeys):
         height = 1.75 if floor == 1 else 1.35
         base = GROUND_M + STOREY_M * (floor - 1) + 0.72
-        made += [(pitch * (k + 0.5) - spec.width_m / 2, base, min(1.2, pitch * 0.5), height, floor, k) for k in range(spec.columns)]
-    return made
+        holes += [
+            (pitch * (k + 0.5) - spec.width_m / 2, base, min(1.2, pitch * 0.5), height, floor, k) for k in range(spec.columns)
+        ]
+    return holes
 
 
-def _house_holes(spec: Terrace) -> list[Hole]:
+def _ground_floor_holes(spec: Terrace) -> list[Hole]:
     pitch = spec.width_m / spec.columns
-    made: list[Hole] = []
+    holes: list[Hole] = []
     for k in range(spec.columns):
         x = pitch * (k + 0.5) - spec.width_m / 2
-        made.append((x, 0.0, 1.0, 2.25, -1, k) if k == spec.columns - 1 else (x, 0.85, min(1.2, pitch * 0.5), 1.75, 0, k))
-    return made
+        holes.append((x, 0.0, 1.0, 2.25, -1, k) if k == spec.columns - 1 else (x, 0.85, min(1.2, pitch * 0.5), 1.75, 0, k))
+    return holes
 
 
 def _pierced(s: Solid, width: float, low: float, high: float, holes: list[Hole], face: bpy.types.Material) -> None:

@@ -54,10 +54,10 @@ def _shared(name: str, make: Callable[[Shader], bpy.types.Material]) -> bpy.type
 
 def _coords(s: Shader) -> Value:
     """Return object coordinates with an offset that differs between objects."""
-    made = s.node("ShaderNodeVectorMath", operation="ADD")
-    s.feed(made.inputs[0], s.object_coords())
-    s.feed(made.inputs[1], s.math("MULTIPLY", s.random(), 37.0))
-    return made.outputs[0]
+    node = s.node("ShaderNodeVectorMath", operation="ADD")
+    s.feed(node.inputs[0], s.object_coords())
+    s.feed(node.inputs[1], s.math("MULTIPLY", s.random(), 37.0))
+    return node.outputs[0]
 
 
 def soiled(s: Shader, colour: Value, amount: float, splash_m: float = 0.35) -> Value:

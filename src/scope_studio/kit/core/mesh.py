@@ -93,22 +93,22 @@ def tube(
     spline.points.add(len(path) - 1)
     for point, (x, y, z) in zip(spline.points, path, strict=True):
         point.co = (x, y, z, 1.0)
-    made = bpy.data.objects.new(name, curve)
-    bpy.context.scene.collection.objects.link(made)
+    obj = bpy.data.objects.new(name, curve)
+    bpy.context.scene.collection.objects.link(obj)
     if material is not None:
         curve.materials.append(material)
-    return to_mesh(made)
+    return to_mesh(obj)
 
 
 def to_mesh(obj: bpy.types.Object) -> bpy.types.Object:
     """Replace a curve, text or modified object with its evaluated mesh, in place."""
     graph = bpy.context.evaluated_depsgraph_get()
     mesh = bpy.data.meshes.new_from_object(obj.evaluated_get(graph), depsgraph=graph)
-    made = bpy.data.objects.new(obj.name, mesh)
-    made.matrix_world = obj.matrix_world.copy()
-    bpy.context.scene.collection.objects.link(made)
+    converted = bpy.data.objects.new(obj.name, mesh)
+    converted.matrix_world = obj.matrix_world.copy()
+    bpy.context.scene.collection.objects.link(converted)
     bpy.data.objects.remove(obj, do_unlink=True)
-    return made
+    return converted
 
 
 def join(name: str, parts: Sequence[bpy.types.Object]) -> bpy.types.Object:

@@ -122,9 +122,9 @@ class Parts:
         bm = bmesh.new()
         place = _AXES[axis]
         face = bm.faces.new([bm.verts.new(place(a, b, low)) for a, b in outline])
-        made = bmesh.ops.extrude_face_region(bm, geom=[face])
+        extruded = bmesh.ops.extrude_face_region(bm, geom=[face])
         shift = Vector(place(0, 0, high - low))
-        bmesh.ops.translate(bm, vec=shift, verts=[g for g in made["geom"] if isinstance(g, bmesh.types.BMVert)])
+        bmesh.ops.translate(bm, vec=shift, verts=[g for g in extruded["geom"] if isinstance(g, bmesh.types.BMVert)])
         bmesh.ops.recalc_face_normals(bm, faces=bm.faces[:])
         if bevel_m > 0:
             bmesh.ops.bevel(bm, geom=bm.edges[:], offset=bevel_m, segments=segments, profile=0.5, affect="EDGES")
@@ -220,14 +220,14 @@ class Parts:
 
     def build(self, name: str) -> bpy.types.Mesh:
         """Return the assembled mesh datablock."""
-        made = bpy.data.meshes.new(name)
-        made.from_pydata([tuple(p) for p in self._points], [], self._faces)
+        mesh = bpy.data.meshes.new(name)
+        mesh.from_pydata([tuple(p) for p in self._points], [], self._faces)
         for material in self.materials:
-            made.materials.append(material)
-        made.polygons.foreach_set("material_index", self._slots)
-        made.polygons.foreach_set("use_smooth", self._smooth)
-        made.update()
-        return made
+            mesh.materials.append(material)
+        mesh.polygons.foreach_set("material_index", self._slots)
+        mesh.polygons.foreach_set("use_smooth", self._smooth)
+        mesh.update()
+        return mesh
 
 
 def _outward(points: Sequence[Point], face: tuple[int, ...], middle: Vector) -> tuple[int, ...]:

@@ -125,7 +125,7 @@ class ActorPath:
     stride_m: float | None = None
 
 
-def _leave(*, skip: tuple[str, ...] = ()) -> None:
+def _leave_materials(*, skip: tuple[str, ...] = ()) -> None:
     """Leave the materials unchanged."""
 
 
@@ -147,7 +147,7 @@ class Stage:
         self.actors: list[ActorPath] = []
         self.absent: list[str] = []
         self.start_s = 0.0
-        self.finish: Callable[..., None] = _leave
+        self.finish: Callable[..., None] = _leave_materials
         self._numbers: dict[str, int] = {}
 
     def place(

@@ -70,7 +70,7 @@ class Volume:
             rows.append(row)
         self.rings(rows)
 
-    def melt(self, voxel_m: float, smooth: int = 4) -> Skin:
+    def merge(self, voxel_m: float, smooth: int = 4) -> Skin:
         """Merge the shapes into one smoothed, watertight surface."""
         mesh = bpy.data.meshes.new("melt")
         mesh.from_pydata(self.points, [], self.faces)

@@ -93,12 +93,12 @@ def bronze(built: Built) -> Built:
 
 
 def _bronze() -> bpy.types.Material:
-    made = bpy.data.materials.get("statue bronze")
-    if made is None:
+    material = bpy.data.materials.get("statue bronze")
+    if material is None:
         s = Shader("statue bronze")
         p = s.object_coords()
         _, _, z = s.xyz(s.node("ShaderNodeNewGeometry").outputs["Normal"])
         patina = s.math("MULTIPLY", s.ramp(z, -0.1, 0.7), s.ramp(s.noise(p, 5.0, 6.0, 0.65), 0.38, 0.62, 0.25, 0.95))
         colour = s.mix(patina, (0.055, 0.035, 0.020), (0.16, 0.30, 0.23))
-        made = s.surface(base_color=colour, metallic=0.55, roughness=0.48)
-    return made
+        material = s.surface(base_color=colour, metallic=0.55, roughness=0.48)
+    return material

@@ -112,10 +112,10 @@ def asphalt_material(road: Carriageway) -> bpy.types.Material:
 def _cracks(s: Shader, uv: Value) -> Value:
     """Return a mask of thin irregular cracks, dense in a few weathered stretches and absent elsewhere."""
     warp = s.noise(uv, 0.9, detail=5.0)
-    made = s.node("ShaderNodeVectorMath", operation="ADD")
-    s.feed(made.inputs[0], s.scaled(uv, (1.0, 0.6, 1.0)))
-    s.feed(made.inputs[1], warp)
-    distance = s.voronoi(made.outputs[0], 0.34, feature="DISTANCE_TO_EDGE")
+    node = s.node("ShaderNodeVectorMath", operation="ADD")
+    s.feed(node.inputs[0], s.scaled(uv, (1.0, 0.6, 1.0)))
+    s.feed(node.inputs[1], warp)
+    distance = s.voronoi(node.outputs[0], 0.34, feature="DISTANCE_TO_EDGE")
     thin = s.ramp(distance, 0.0008, 0.0045, 1.0, 0.0)
     return s.math("MULTIPLY", thin, s.ramp(s.noise(uv, 0.06, detail=3.0), 0.50, 0.58))
 

@@ -71,7 +71,7 @@ def inside(s: Shader, u: Value, v: Value, patch: Patch, soft_m: float = 0.01, gr
 
 
 def _vector(s: Shader, u: Value, v: Value) -> Value:
-    made = s.node("ShaderNodeCombineXYZ")
-    s.feed(made.inputs[0], u)
-    s.feed(made.inputs[1], v)
-    return made.outputs[0]
+    node = s.node("ShaderNodeCombineXYZ")
+    s.feed(node.inputs[0], u)
+    s.feed(node.inputs[1], v)
+    return node.outputs[0]

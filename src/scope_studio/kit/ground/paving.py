@@ -21,14 +21,14 @@ def _courses(
     s: Shader, where: Value, size: tuple[float, float], joint_m: float, low: Rgb, high: Rgb, joint: Rgb
 ) -> tuple[Value, Value]:
     """Return the colour of bonded rectangular stones, each with its own tone, and a mask that is 1 in the joints."""
-    made = s.node("ShaderNodeTexBrick")
-    s.feed(made.inputs["Vector"], where)
+    node = s.node("ShaderNodeTexBrick")
+    s.feed(node.inputs["Vector"], where)
     settings = {"Scale": 1.0, "Mortar Size": joint_m, "Mortar Smooth": 0.35, "Brick Width": size[0], "Row Height": size[1]}
     for key, value in settings.items():
-        made.inputs[key].default_value = value
+        node.inputs[key].default_value = value
     for key, colour in {"Color1": low, "Color2": high, "Mortar": joint}.items():
-        s.feed(made.inputs[key], colour)
-    return made.outputs["Color"], made.outputs["Fac"]
+        s.feed(node.inputs[key], colour)
+    return node.outputs["Color"], node.outputs["Fac"]
 
 
 def _wobbly(s: Shader, p: Value, amount_m: float, scale: float) -> Value:
@@ -109,10 +109,10 @@ def sett_material(name: str = "street setts", *, turn_deg: float = 0.0) -> bpy.t
 
 
 def _blend(s: Shader, factor: Value, a: Value, b: Value) -> Value:
-    made = s.node("ShaderNodeMix", data_type="FLOAT")
+    node = s.node("ShaderNodeMix", data_type="FLOAT")
     for socket, value in zip((0, 2, 3), (factor, a, b), strict=True):
-        s.feed(made.inputs[socket], value)
-    return made.outputs[0]
+        s.feed(node.inputs[socket], value)
+    return node.outputs[0]
 
 
 def floor(name: str, areas: list[Area], z: float, material: bpy.types.Material) -> Built:

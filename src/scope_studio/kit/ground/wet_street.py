@@ -113,7 +113,7 @@ def footway(outline: Outline, *, slab: tuple[float, float] = (0.60, 0.45)) -> Bu
 
 def _inset(outline: Outline, by_m: float) -> list[tuple[float, float]]:
     """Return the convex outline moved inwards."""
-    made = []
+    corners = []
     n = len(outline)
     for i in range(n):
         (x0, y0), (x1, y1), (x2, y2) = outline[i - 1], outline[i], outline[(i + 1) % n]
@@ -121,8 +121,8 @@ def _inset(outline: Outline, by_m: float) -> list[tuple[float, float]]:
         la, lb = (ax * ax + ay * ay) ** 0.5, (bx * bx + by * by) ** 0.5
         nx, ny = -ay / la - by / lb, ax / la + bx / lb
         scale = 2 * by_m / max(1e-6, nx * nx + ny * ny)
-        made.append((x1 + nx * scale, y1 + ny * scale))
-    return made
+        corners.append((x1 + nx * scale, y1 + ny * scale))
+    return corners
 
 
 def _paving(slab: tuple[float, float]) -> bpy.types.Material:

@@ -156,14 +156,14 @@ def _add_haze(tree: bpy.types.NodeTree, visibility_m: float) -> None:
     camera_ray = tree.nodes.new("ShaderNodeLightPath").outputs["Is Camera Ray"]
 
     def math_node(operation: str, a: Value, b: Value | None = None) -> Value:
-        made = tree.nodes.new("ShaderNodeMath")
-        made.operation = operation
-        for socket, value in zip(made.inputs, (a, b), strict=False):
+        node = tree.nodes.new("ShaderNodeMath")
+        node.operation = operation
+        for socket, value in zip(node.inputs, (a, b), strict=False):
             if isinstance(value, bpy.types.NodeSocket):
                 tree.links.new(value, socket)
             elif value is not None:
                 socket.default_value = value
-        return made.outputs[0]
+        return node.outputs[0]
 
     share = math_node("SUBTRACT", 1.0, math_node("EXPONENT", math_node("MULTIPLY", distance, -1.0 / visibility_m)))
     glow = tree.nodes.new("ShaderNodeEmission")

@@ -63,7 +63,7 @@ def _body(frame: Matrix, pose: str) -> Skin:
     for side in (-1, 1):
         v.capsule((side * 0.050, 0.045, 0.010), (side * 0.020, -0.155, 0.012), 0.032, 0.011, flat=0.42, across=(0, 0, 1))
     v.capsule((0, -0.10, 0.0), (0, -0.20, -0.012), 0.034, 0.030, flat=0.22, across=(1, 0, 0))
-    points, faces = v.melt(0.006, 2)
+    points, faces = v.merge(0.006, 2)
     turn = np.array(frame)
     return points @ turn[:3, :3].T + turn[:3, 3], faces
 

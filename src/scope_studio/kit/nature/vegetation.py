@@ -83,28 +83,28 @@ def _grow(sp: Species, rng: random.Random) -> tuple[list[Limb], list[tuple[Vecto
         index = z_share * sp.height_m / top * 8
         base = _along(trunk, min(index, 7.99))
         azimuth += 2.4 + rng.uniform(-0.5, 0.5)
-        rise, reach = _habit(sp, share)
+        rise, reach = _bough_shape(sp, share)
         reach *= rng.uniform(0.82, 1.12)
         heading = Vector((math.cos(azimuth) * math.cos(rise), math.sin(azimuth) * math.cos(rise), math.sin(rise)))
         bough = _limb(base, heading, reach, rng, 6, 0.20, _droop(sp))
         radius = max(0.022, girth * (0.42 - 0.26 * share))
         limbs.append((bough, radius, radius * 0.3))
         for j in range(7):
-            at = 1.2 + 4.7 * (j + rng.random()) / 7
-            side = _fork(bough, at, rng, 0.75)
-            branch = _limb(_along(bough, at), side, reach * rng.uniform(0.26, 0.46), rng, 4, 0.25, _droop(sp))
+            fork_at = 1.2 + 4.7 * (j + rng.random()) / 7
+            side = _fork(bough, fork_at, rng, 0.75)
+            branch = _limb(_along(bough, fork_at), side, reach * rng.uniform(0.26, 0.46), rng, 4, 0.25, _droop(sp))
             limbs.append((branch, radius * 0.34, 0.007))
             for _ in range(5):
-                spot = rng.uniform(0.8, 3.99)
-                start = _along(branch, spot)
-                end = start + _fork(branch, spot, rng, 0.9) * reach * rng.uniform(0.12, 0.24)
+                position = rng.uniform(0.8, 3.99)
+                start = _along(branch, position)
+                end = start + _fork(branch, position, rng, 0.9) * reach * rng.uniform(0.12, 0.24)
                 twigs.append((start, end))
             twigs.append((branch[-2], branch[-1]))
         twigs.append((bough[-2], bough[-1]))
     return limbs, twigs
 
 
-def _habit(sp: Species, share: float) -> tuple[float, float]:
+def _bough_shape(sp: Species, share: float) -> tuple[float, float]:
     """Return the rise angle (radians) and length (m) of a bough at ``share`` of the crown's height."""
     r = sp.crown_radius_m
     if sp.crown == "round":

@@ -33,7 +33,7 @@ def fox(*, phase: float | None = None) -> Built:
     v.capsule((0, -0.25, 0.335), (sway * 0.5, -0.38, 0.29), 0.030, 0.050)
     v.capsule((sway * 0.5, -0.38, 0.29), (sway, -0.58, 0.26), 0.052, 0.046)
     v.capsule((sway, -0.58, 0.26), (sway * 1.3, -0.70, 0.265), 0.044, 0.012)
-    points, faces = v.melt(0.009, 3)
+    points, faces = v.merge(0.009, 3)
     s.add(points.tolist(), faces, _coat(), points.tolist())
     dark = plain("fox nose", (0.008, 0.007, 0.007), 0.3)
     s.lathe([(0.004, 0.0), (0.010, 0.006), (0.004, 0.012)], dark, (0, 0.463, 0.430), "Y", 10)

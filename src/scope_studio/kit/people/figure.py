@@ -81,7 +81,7 @@ def trunk(
         heights = ((1.45, 0.080), (1.49, 0.074), (1.528, 0.072))
         v.rings([[(r * math.cos(t), -0.012 + r * 0.95 * math.sin(t), z - 0.014 * math.sin(t)) for t in turns] for z, r in heights])
     skin = crease(
-        v.melt(0.012, 4),
+        v.merge(0.012, 4),
         lambda p: 0.004 + (0.004 + flare) * np.clip((1.15 - p[:, 2]) / 0.3, 0, 1),
         (7.0, 7.0, 10.0),
         seed,
@@ -103,7 +103,7 @@ def sleeves(joints: Joints, *, loose: float, seed: float) -> tuple[Skin, np.ndar
         v.capsule(shoulder.lerp(elbow, 0.5), elbow, 0.053 + loose, 0.046 + loose)
         v.capsule(elbow, elbow.lerp(wrist, 0.45), 0.046 + loose, 0.043 + loose)
         v.capsule(elbow.lerp(wrist, 0.45), elbow.lerp(wrist, 0.93), 0.043 + loose, 0.034 + loose)
-    points, faces = v.melt(0.012, 4)
+    points, faces = v.merge(0.012, 4)
     bones = []
     for i in range(2):
         bones.append((joints.shoulders[i], joints.elbows[i], 0.0, 0.295))
@@ -129,7 +129,7 @@ def trousers(joints: Joints, *, loose: float, girth: float, seed: float) -> tupl
         v.capsule(hip.lerp(knee, 0.5), knee, 0.078 + loose * 0.6, 0.062 + loose)
         v.capsule(knee, knee.lerp(ankle, 0.4), 0.062 + loose, 0.060 + loose)
         v.capsule(knee.lerp(ankle, 0.4), cuff, 0.060 + loose, 0.054 + loose)
-    points, faces = v.melt(0.013, 4)
+    points, faces = v.merge(0.013, 4)
     bones = []
     for i in range(2):
         bones.append((joints.hips[i], joints.knees[i], 0.92, 0.495))
@@ -171,7 +171,7 @@ def boots(joints: Joints, *, shoe: bool) -> Skin:
         v.ellipsoid((0, -0.045, 0.048), (0.040, 0.044, 0.044), f)
         if not shoe:
             v.capsule(f @ Vector((0, -0.012, 0.07)), joints.ankles[i].lerp(joints.knees[i], 0.22), 0.048, 0.049)
-    return v.melt(0.009, 3)
+    return v.merge(0.009, 3)
 
 
 def sole_outline(foot: Matrix, side: int, low: float, high: float) -> list[list[tuple[float, float, float]]]:
@@ -219,4 +219,4 @@ def hands(joints: Joints, curls: tuple[float, float], *, glove: bool) -> Skin:
         joint = root + along * 0.036 + thumb_side * 0.022 + normal * 0.014
         v.capsule(root, joint, 0.014 + fat, 0.011 + fat, sides=8)
         v.capsule(joint, joint + along * 0.028 + normal * 0.010 * (1 + max(0.0, curl)), 0.011 + fat, 0.008 + fat, sides=8)
-    return v.melt(0.0055, 2)
+    return v.merge(0.0055, 2)

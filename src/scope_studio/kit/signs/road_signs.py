@@ -68,7 +68,7 @@ def _rounded_triangle(side: float, corner: float) -> list[tuple[float, float]]:
     return points
 
 
-def _digger(s: Solid, k: float) -> None:
+def _man_digging(s: Solid, k: float) -> None:
     """Add the "road works" pictogram, a man digging, about 2k wide and high and centred on the origin."""
     ink = sheet("black", dirt=0.05)
     disc(s, -0.10 * k, 0.62 * k, 0.15 * k, ink)
@@ -114,7 +114,7 @@ def triangle(
         s.prism([(u * 0.70, v * 0.70) for u, v in outline], (-0.003, 0.0), sheet("white"), "XZ")
         with s.at(0, 0, -0.02 * side):
             if symbol == "works":
-                _digger(s, side * 0.19)
+                _man_digging(s, side * 0.19)
             else:
                 ink = sheet("black", dirt=0.05)
                 flat(

@@ -222,12 +222,12 @@ def skeletal(code: str, colour: str, *, livery: str | None = None, plate: str, f
         bevel_m=0.003,
     )
     letters.append(plate_letters[1])
-    made = bw.finish("skeletal trailer", mesh, [], letters, own)
+    built = bw.finish("skeletal trailer", mesh, [], letters, own)
     load = container(colour, code, feet=feet, livery=livery)
     lift = Matrix.Translation((0, -TRAILER_M / 2 + LENGTH_M[feet] / 2 + 0.25, 1.24)) @ Matrix.Rotation(math.pi, 4, "Z")
     for obj in load.objects:
         obj.data.transform(lift)
-        obj.parent = made.root
+        obj.parent = built.root
     turned = []
     for mark in load.texts:
         turned.append(
@@ -242,7 +242,7 @@ def skeletal(code: str, colour: str, *, livery: str | None = None, plate: str, f
             )
         )
     bpy.data.objects.remove(load.root)
-    return Built(made.root, [*made.objects, *load.objects], [*made.texts, *turned])
+    return Built(built.root, [*built.objects, *load.objects], [*built.texts, *turned])
 
 
 def _skeletal_parts() -> Parts:

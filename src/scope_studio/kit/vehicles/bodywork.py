@@ -155,20 +155,20 @@ def _evaluated(data: bpy.types.Mesh, cutters: Parts | None, levels: int) -> bpy.
         cut = obj.modifiers.new("cut", "BOOLEAN")
         cut.object, cut.operation, cut.solver, cut.material_mode = tool, "DIFFERENCE", "EXACT", "TRANSFER"
     graph = bpy.context.evaluated_depsgraph_get()
-    made = bpy.data.meshes.new_from_object(obj.evaluated_get(graph), depsgraph=graph)
+    mesh = bpy.data.meshes.new_from_object(obj.evaluated_get(graph), depsgraph=graph)
     for used in (obj, tool):
         if used is not None:
-            spent = used.data
+            used_mesh = used.data
             bpy.data.objects.remove(used, do_unlink=True)
-            bpy.data.meshes.remove(spent)
-    return made
+            bpy.data.meshes.remove(used_mesh)
+    return mesh
 
 
 class Surface:
     """A finished mesh to cast rays against, which finds where fittings and lettering touch the body."""
 
-    def __init__(self, made: bpy.types.Mesh) -> None:
-        self.tree = BVHTree.FromPolygons([v.co for v in made.vertices], [p.vertices for p in made.polygons])
+    def __init__(self, mesh: bpy.types.Mesh) -> None:
+        self.tree = BVHTree.FromPolygons([v.co for v in mesh.vertices], [p.vertices for p in mesh.polygons])
 
     def side(self, y: float, z: float) -> float:
         """Return the body's half width at ``(y, z)`` on the right."""
@@ -221,7 +221,7 @@ def words(
     """
     flat, faces = lettering.letters(body, cap_m)
     if onto is not None:
-        flat, faces = _fine(flat, faces)
+        flat, faces = _subdivided(flat, faces)
     xs, ys = [p[0] for p in flat], [p[1] for p in flat]
     width, height = max(xs) - min(xs), max(ys) - min(ys)
     squeeze = min(1.0, width_m / width)
@@ -239,7 +239,7 @@ def words(
     return Lettering(points, faces, colour, TextMark(body, centre, right, up, width * squeeze, height, cap_m))
 
 
-def _fine(points: list[Point], faces: list[tuple[int, ...]]) -> tuple[list[Point], list[tuple[int, ...]]]:
+def _subdivided(points: list[Point], faces: list[tuple[int, ...]]) -> tuple[list[Point], list[tuple[int, ...]]]:
     """Split long triangles, so that letters can follow a curve."""
     bm = bmesh.new()
     verts = [bm.verts.new(p) for p in points]
@@ -253,9 +253,9 @@ def _fine(points: list[Point], faces: list[tuple[int, ...]]) -> tuple[list[Point
             break
         bmesh.ops.subdivide_edges(bm, edges=long, cuts=1)
     bm.verts.index_update()
-    made = [tuple(v.co) for v in bm.verts], [tuple(v.index for v in f.verts) for f in bm.faces]
+    result = [tuple(v.co) for v in bm.verts], [tuple(v.index for v in f.verts) for f in bm.faces]
     bm.free()
-    return made
+    return result
 
 
 def both_sides(
@@ -330,9 +330,9 @@ def finish(
 
 def arches(axles: Sequence[float], radius: float, inner_x: float) -> Parts:
     """Return cutters for the wheel arches of axles at the given y. They extend outwards from ``inner_x`` on both sides."""
-    tools = Parts()
+    cutters = Parts()
     for y in axles:
         for sign in (-1, 1):
             low, high = sorted((sign * inner_x, sign * 1.6))
-            tools.disc(radius, low, high, (0, y, radius * 0.86), wheels.shade(), axis="X", steps=40)
-    return tools
+            cutters.disc(radius, low, high, (0, y, radius * 0.86), wheels.shade(), axis="X", steps=40)
+    return cutters

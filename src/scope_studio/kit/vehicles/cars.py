@@ -19,10 +19,10 @@ def _body(model: CarModel) -> Parts:
     cutters = bw.arches(model.axles, radius + 0.055, model.track_x - model.tyre_width / 2 - 0.10)
     for size, centre in model.extra_cutters:
         cutters.box(size, centre, shading.plain("pickup bed liner", (0.055, 0.056, 0.058), 0.75), bevel_m=0.0)
-    made = bw.shell(model.stations, model.panes, creases=model.creases, bulge=model.bulge, cutters=cutters)
+    shell = bw.shell(model.stations, model.panes, creases=model.creases, bulge=model.bulge, cutters=cutters)
     parts = Parts()
-    parts.mesh(made)
-    surface = bw.Surface(made)
+    parts.mesh(shell)
+    surface = bw.Surface(shell)
     for y in model.axles:
         for sign in (-1, 1):
             centre = (sign * model.track_x, y, radius)

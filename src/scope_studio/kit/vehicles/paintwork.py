@@ -82,12 +82,12 @@ def paint(
         return found
     # Building hundreds of nodes takes a second and copying them a millisecond, so all colours copy the same pattern.
     pattern = bpy.data.materials.get(f"paint {model}") or _pattern(f"paint {model}", patches, dirt_top_m, dirt, gloss)
-    made = pattern.copy()
-    made.name = name
-    nodes = made.node_tree.nodes
+    material = pattern.copy()
+    material.name = name
+    nodes = material.node_tree.nodes
     nodes["Colour"].outputs[0].default_value = (*PAINTS[colour], 1.0)
     nodes["Flake"].outputs[0].default_value = 0.35 if colour in _METALLIC else 0.0
-    return made
+    return material
 
 
 def _pattern(name: str, patches: Sequence[Patch], dirt_top_m: float, dirt: float, gloss: float) -> bpy.types.Material:
@@ -124,18 +124,18 @@ def _pattern(name: str, patches: Sequence[Patch], dirt_top_m: float, dirt: float
 
 
 def _blend(sh: shading.Shader, factor: shading.Value, a: shading.Value, b: shading.Value) -> shading.Value:
-    made = sh.node("ShaderNodeMix", data_type="FLOAT")
+    node = sh.node("ShaderNodeMix", data_type="FLOAT")
     for socket, value in zip((0, 2, 3), (factor, a, b), strict=True):
-        sh.feed(made.inputs[socket], value)
-    return made.outputs[0]
+        sh.feed(node.inputs[socket], value)
+    return node.outputs[0]
 
 
 def _within(sh: shading.Shader, value: shading.Value, limits: Range) -> shading.Value:
     """Return 1 between the limits and 0 elsewhere. The hard edges need one node; ``Shader.band`` needs three."""
-    made = sh.node("ShaderNodeMath", operation="COMPARE")
+    node = sh.node("ShaderNodeMath", operation="COMPARE")
     for socket, number in enumerate((value, sum(limits) / 2, (limits[1] - limits[0]) / 2)):
-        sh.feed(made.inputs[socket], number)
-    return made.outputs[0]
+        sh.feed(node.inputs[socket], number)
+    return node.outputs[0]
 
 
 def _patch_mask(sh: shading.Shader, patch: Patch, x: shading.Value, y: shading.Value, z: shading.Value) -> shading.Value:

@@ -8,7 +8,7 @@ import bpy
 
 from scope_studio.kit.core.stage import Stage
 from scope_studio.kit.light import overcast, sky
-from scope_studio.scenes.high_street import kerb, land, people, shops, traffic, wares
+from scope_studio.scenes.high_street import goods, land, people, shops, street_furniture, traffic
 
 NAME = "high-street"
 TITLE = "High street"
@@ -27,8 +27,8 @@ def build(stage: Stage) -> None:
     people.build(stage)  # first, because building people gets slower with the number of objects in the file
     traffic.build(stage)
     shop_ids = shops.build(stage)
-    wares.build(stage, shop_ids)
-    kerb.build(stage)
+    goods.build(stage, shop_ids)
+    street_furniture.build(stage)
     land.build(stage)
     _cameras(stage)
     stage.absent = list(ABSENT)

@@ -11,9 +11,9 @@ from scope_studio.kit.people import characters, luggage, poses, prams, seated, s
 from scope_studio.kit.people.poses import Pose, walking
 from scope_studio.scenes.station_square import traffic
 from scope_studio.scenes.station_square.fixtures import BENCHES, PLATFORM_TOP_M
-from scope_studio.scenes.station_square.market import FACING, STALLS, seat_place, spot
+from scope_studio.scenes.station_square.market import FACING, STALLS, at_front, seat_place
 
-TRAIL: tuple[float, float, float] = (0.24, -0.16, 0.86)
+CASE_GRIP: tuple[float, float, float] = (0.24, -0.16, 0.86)
 """Position of the right hand of a walking person who pulls a suitcase."""
 
 VENDORS = ["white", "green", "dark green", "purple", "navy", "cream", "brown", "red"]
@@ -85,13 +85,13 @@ def _person(stage: Stage, at: tuple[float, float, float], bearing: float, name: 
 
 def _market(stage: Stage) -> None:
     for k, top in enumerate(VENDORS):
-        x, y = spot(STALLS[k][2], (-0.5, 0.6, 0.0)[k % 3], -0.85)
+        x, y = at_front(STALLS[k][2], (-0.5, 0.6, 0.0)[k % 3], -0.85)
         trade = STALLS[k][0].split()[-1].lower()
         _person(
             stage, (x, y, 0), FACING + (12, -15, 0)[k % 3], f"stallholder in {top}", top, 300 + k, role="stallholder", stall=trade
         )
     for k, (stall, right, out, top, pose, held) in enumerate(CUSTOMERS):
-        x, y = spot(STALLS[stall][2], right, out)
+        x, y = at_front(STALLS[stall][2], right, out)
         turn = FACING + 180 + (-14, 10, 22, -8)[k % 4]
         _person(stage, (x, y, 0), turn, f"customer in {top}", top, 340 + k, pose=pose, holding=held, role="customer")
 
@@ -143,18 +143,18 @@ def _companions(stage: Stage) -> None:
         stage, (5.6, 3.2, 0), 140, "dog walker in grey", "grey", 460, stance=stances.leading(None, seed=3), activity="walking a dog"
     )
     dog = dogs.dog("golden", lead_to=(stances.LEAD_GRIP[0] - 0.55, stances.LEAD_GRIP[1] - 0.55, stances.LEAD_GRIP[2]))
-    x, y = spot((5.6, 3.2), -0.55, 0.55, 140)
+    x, y = at_front((5.6, 3.2), -0.55, 0.55, 140)
     stage.place(dog, "dog", "golden dog on a lead", (x, y, 0), 140, colour="golden", state="standing")
     _person(
         stage, (14.2, 14.0, 0), 262, "woman with a pram", "light blue", 461, stance=stances.pushing(0.2), activity="pushing a pram"
     )
-    x, y = spot((14.2, 14.0), 0.0, 0.86, 262)
+    x, y = at_front((14.2, 14.0), 0.0, 0.86, 262)
     stage.place(prams.pram("navy"), "pram", "navy pram", (x, y, 0), 262, colour="navy")
     for k, (at, bearing, top, case) in enumerate((((-3.6, 15.6), 20, "black", "green"), ((16.4, -0.6), 10, "dark red", "purple"))):
-        stance = stances.reaching(_free_walk(0.3 + 0.3 * k), right=TRAIL)
+        stance = stances.reaching(_free_walk(0.3 + 0.3 * k), right=CASE_GRIP)
         _person(stage, (*at, 0), bearing, f"traveller in {top}", top, 470 + k, stance=stance, activity="pulling a suitcase")
         stage.place(
-            luggage.trailing_case(case, TRAIL), "suitcase", f"{case} suitcase", (*at, 0), bearing, colour=case, state="pulled"
+            luggage.trailing_case(case, CASE_GRIP), "suitcase", f"{case} suitcase", (*at, 0), bearing, colour=case, state="pulled"
         )
 
 
@@ -164,8 +164,10 @@ def _free_walk(phase: float) -> Pose:
 
 
 def _with_case(phase: float) -> Built:
-    walker = characters.pedestrian(top="orange", trousers="navy", seed=501, stance=stances.reaching(_free_walk(phase), right=TRAIL))
-    case = luggage.trailing_case("blue", TRAIL)
+    walker = characters.pedestrian(
+        top="orange", trousers="navy", seed=501, stance=stances.reaching(_free_walk(phase), right=CASE_GRIP)
+    )
+    case = luggage.trailing_case("blue", CASE_GRIP)
     case.root.parent = walker.root
     return Built(walker.root, [*walker.objects, *case.objects], [])
 

@@ -36,11 +36,11 @@ def build(stage: Stage) -> None:
             index = k % len(kinds)
             width = kinds[index].width
             step += width / 2
-            _lay(index, x + step * math.cos(b), y - step * math.sin(b), bearing)
+            _house(index, x + step * math.cos(b), y - step * math.sin(b), bearing)
             step += width / 2
             k += rng.choice((1, 2, 3))
 
-    def _lay(index: int, x: float, y: float, bearing: float) -> None:
+    def _house(index: int, x: float, y: float, bearing: float) -> None:
         built: Built = prototypes[index].copy() if index in used else prototypes[index]
         used.add(index)
         stage.put(built, (x, y, 0.0), bearing)
@@ -68,7 +68,7 @@ def build(stage: Stage) -> None:
         behind_south = abs(x) < 30 and -84 < y < -50
         if inside and not (behind_west or behind_east or behind_south):
             continue
-        _lay(rng.randrange(len(kinds)), x, y, rng.choice((0, 90, 180, 270)) + rng.uniform(-9, 9))
+        _house(rng.randrange(len(kinds)), x, y, rng.choice((0, 90, 180, 270)) + rng.uniform(-9, 9))
     _trees(stage, rng)
 
 
