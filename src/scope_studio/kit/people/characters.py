@@ -185,7 +185,7 @@ def _person(
     own_pose: Pose | None = None,
 ) -> Built:
     if holding is not None and holding not in HOLDABLE:
-        raise ValueError(f"cannot hold {holding!r}; known: {sorted(HOLDABLE)}")
+        raise ValueError(f"no prop named {holding!r}; known props: {sorted(HOLDABLE)}")
     stance = own_pose or named(pose, phase, random)
     joints = solve(stance)
     s = Solid(name)
