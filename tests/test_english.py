@@ -9,7 +9,7 @@ from scope_ptz.english.numerals import CARDINALS
 
 
 @pytest.mark.parametrize("number", range(100))
-def test_number_words_are_read_back(number: int) -> None:
+def test_number_words_are_parsed_back(number: int) -> None:
     assert english.cardinal(english.number_word(number)) == number
     assert english.cardinal(str(number)) == number
 
@@ -20,7 +20,7 @@ def test_number_words_outside_the_range_are_errors() -> None:
             english.number_word(number)
 
 
-def test_words_that_are_no_numbers() -> None:
+def test_words_that_are_not_numbers() -> None:
     assert english.cardinal("fivety") is None and english.cardinal("twenty-eleven") is None
     assert english.ordinal("car") is None and "hundred" not in CARDINALS
 

@@ -64,7 +64,7 @@ def test_results_as_a_data_frame(results: scope_ptz.EvaluationResults) -> None:
     assert table["correct"].mean() == results.micro
 
 
-def test_repeating_a_call_reads_the_complete_evaluation(results: scope_ptz.EvaluationResults, tasks: tuple[scope_ptz.Task, ...]) -> None:
+def test_repeating_a_call_reads_a_complete_log(results: scope_ptz.EvaluationResults, tasks: tuple[scope_ptz.Task, ...]) -> None:
     assert scope_ptz.evaluate(tasks=tasks, out=results.log.parent, pictures=False).log == results.log
 
 

@@ -15,7 +15,7 @@ from tests.cli.conftest import Scope
 
 
 def evaluation(like: Evaluation, right: dict[str, int], of: int = 10) -> Evaluation:
-    """Return an evaluation with the given number of correct trials in a category of ten tasks."""
+    """Return an evaluation with ``of`` trials in each category, of which ``right`` are correct."""
     trials: list[Trial] = []
     for category, number in right.items():
         for at in range(of):
@@ -63,7 +63,7 @@ def judged_by(like: Evaluation, judge: str) -> Evaluation:
     return like.model_copy(update={"trials": tuple(trials)})
 
 
-def test_repeats_count_as_one_task_and_different_judges_are_reported(a_log: Path) -> None:
+def test_broken_tasks_and_changed_judges_are_reported(a_log: Path) -> None:
     like = read_evaluation(a_log)
     first, *rest = like.trials
     broken = first.model_copy(update={"headline": "infrastructure"})

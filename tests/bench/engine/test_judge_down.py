@@ -77,7 +77,7 @@ def test_a_run_whose_judge_is_unavailable_is_not_complete(scope: Scope, tasks_fi
     assert "Every run has been judged by j" in err
 
 
-def test_an_unavailable_server_has_no_judge_name(scope: Scope, evaluated: Path, tasks_file: Path, tmp_path: Path) -> None:
+def test_an_unavailable_judge_changes_no_log(scope: Scope, evaluated: Path, tasks_file: Path, tmp_path: Path) -> None:
     before = evaluated.read_bytes()
     gone = scope("bench", "rescore", str(evaluated), "--judge-url", AWAY)
     assert gone.code == 1 and "nothing was judged" in gone.err and "Start it, or check the address." in gone.err

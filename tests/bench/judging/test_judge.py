@@ -136,7 +136,7 @@ def no_schema(x: m.Exchange) -> Any:
 
 
 def free_only(x: m.Exchange) -> Any:
-    """A server that refuses unknown fields without naming them."""
+    """A server that refuses the field ``response_format`` without naming it."""
     return m.status(422, {"detail": "extra"})(x) if "response_format" in x.request.data else says(CORRECT)(x)
 
 

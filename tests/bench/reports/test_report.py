@@ -154,7 +154,7 @@ def test_the_oracle_setting_both_ways(report: EvaluationReport, evaluations: lis
     assert mean == pytest.approx(fmean(_value(values[5]) for values in pairs))
 
 
-def test_spreads_fix_one_role(report: EvaluationReport) -> None:
+def test_spreads_vary_one_role_only(report: EvaluationReport) -> None:
     by_pair = {str(unmarked(v[0])): _value(v[1]) for v in table(report, "accuracy").rows}
     values = [by_pair[f"{planner} + moondream2"] for planner in ("qwen3-4b", "qwen3-4b-fp8", "qwen3-30b-a3b")]
     assert row(report, "spread_planner", "moondream2")["spread"] == pytest.approx(max(values) - min(values))
